@@ -1,0 +1,54 @@
+# What every target of the project shares, and the one way to declare a library or a test.
+
+add_library(lightwell_options INTERFACE)
+target_include_directories(lightwell_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_definitions(lightwell_options INTERFACE GLM_FORCE_SILENT_WARNINGS)
+set(warnings -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-unknown-pragmas -Werror)
+target_compile_options(lightwell_options INTERFACE
+  "$<$<COMPILE_LANGUAGE:CXX>:${warnings}>"
+  "$<$<COMPILE_LANGUAGE:CXX>:-march=${LIGHTWELL_MARCH}>"
+  "$<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;-diag-suppress=20012;-Werror=all-warnings>")
+if(LIGHTWELL_SANITIZE)
+  target_compile_options(lightwell_options INTERFACE -fsanitize=${LIGHTWELL_SANITIZE} -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  target_link_options(lightwell_options INTERFACE -fsanitize=${LIGHTWELL_SANITIZE})
+endif()
+
+# lightwell_library(NAME [PUBLIC targets...] [PRIVATE targets...])
+# All .cpp files of the current folder. What PUBLIC names is what its headers may include.
+function(lightwell_library name)
+  cmake_parse_arguments(arg "" "" "PUBLIC;PRIVATE" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  if(LIGHTWELL_CUDA)
+    file(GLOB cuda_sources CONFIGURE_DEPENDS *.cu)
+  endif()
+  add_library(${name} STATIC ${sources} ${cuda_sources})
+  target_link_libraries(${name} PUBLIC lightwell_options ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+  if(NOT LIGHTWELL_CUDA)
+    target_precompile_headers(${name} PRIVATE <glm/glm.hpp> <string> <vector> <map> <memory> <filesystem> <functional>)
+  endif()
+endfunction()
+
+# lightwell_tests(FOLDER libraries...)
+# The suffix of a file gives its label: x_test.cpp unit, x_analytic_test.cpp analytic, x_image_test.cpp image,
+# x_slow_test.cpp slow. One executable per label.
+function(lightwell_tests folder)
+  file(GLOB all CONFIGURE_DEPENDS *_test.cpp)
+  foreach(label unit analytic image slow)
+    set(sources ${all})
+    if(label STREQUAL unit)
+      list(FILTER sources EXCLUDE REGEX "_(analytic|image|slow)_test\\.cpp$")
+    else()
+      list(FILTER sources INCLUDE REGEX "_${label}_test\\.cpp$")
+    endif()
+    if(sources)
+      set(target test_${folder}_${label})
+      add_executable(${target} ${sources})
+      target_link_libraries(${target} PRIVATE ${ARGN} GTest::gtest GTest::gtest_main)
+      target_compile_definitions(${target} PRIVATE
+        LIGHTWELL_SOURCE_DIR="${PROJECT_SOURCE_DIR}" LIGHTWELL_PROGRAM="$<TARGET_FILE_DIR:lightwell>/lightwell")
+      target_precompile_headers(${target} PRIVATE <gtest/gtest.h> <glm/glm.hpp> <string> <vector>)
+      gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${folder}." PROPERTIES LABELS ${label} TIMEOUT 600)
+    endif()
+  endforeach()
+endfunction()
+include(GoogleTest)

@@ -1,0 +1,21 @@
+#pragma once
+// Files appear whole or not at all.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gi {
+
+/// Call `write` with a temporary path beside `file`, then rename it to `file`. On any exception the
+/// temporary is removed and the exception goes on; a target folder that does not exist, is read-only or full
+/// throws InputError naming the file.
+void write_by_rename(std::filesystem::path const& file,
+                     std::function<void(std::filesystem::path const&)> const& write);
+void write_text(std::filesystem::path const& file, std::string_view text);
+/// The whole file. Throws InputError if it does not exist, is a folder, or is larger than max_bytes.
+std::vector<unsigned char> read_bytes(std::filesystem::path const& file, std::size_t max_bytes = std::size_t(8) << 30);
+
+} // namespace gi

@@ -1,0 +1,26 @@
+#pragma once
+// Every light-transport method by name. One line here gives a method its place on the command line, in the
+// benchmarks, in studies and in --help.
+
+#include "gi/image/render_settings.h"
+#include "gi/scene/world.h"
+
+#include <span>
+#include <string_view>
+
+namespace gi {
+
+using RenderFunction = RenderResult (*)(World const&, Camera const&, RenderSettings const&, StopRequest const&,
+                                        RenderProgress const&, Report&);
+
+struct Method {
+    std::string_view name;
+    std::string_view summary; ///< one line for --help
+    RenderFunction render;
+};
+
+std::span<Method const> methods();
+/// Throws InputError naming the known methods.
+Method const& find_method(std::string_view name);
+
+} // namespace gi

@@ -1,0 +1,46 @@
+#pragma once
+// Scattering at a point of a surface. Directions are unit vectors in the local shading frame, z = shading normal,
+// both pointing away from the surface; wo is towards the viewer, wi towards the light. f is in 1/sr.
+// Solid-angle measure throughout; perfect mirrors and smooth glass are delta lobes that only `sample` sees.
+
+#include "gi/scene/material.h"
+
+namespace gi {
+
+/// GGX alpha below which a lobe is a perfect mirror (roughness < 0.01).
+inline constexpr float kSmoothAlpha = 1e-4f;
+
+/// A material after its textures have been looked up: what scatters at one point.
+struct Bsdf {
+    MaterialModel model;
+    vec3 diffuse;        ///< Lambert albedo, already times (1 - metallic)(1 - transmission)
+    vec3 f0, f90;        ///< Fresnel reflectance at normal and grazing incidence (Schlick), specular lobe
+    float alpha;         ///< GGX width; < kSmoothAlpha: delta
+    vec3 transmitted;    ///< tint of light that passes, 0 = opaque
+    float ior;           ///< inside over outside, seen from the front face
+    bool thin;
+    vec3 phong_specular;
+    float phong_exponent;
+};
+
+struct BsdfSample {
+    vec3 wi{0};
+    vec3 weight{0};     ///< f |cos| / pdf (for delta lobes the same limit); 0 = the path ends
+    float pdf = 0;      ///< of wi over all non-delta lobes together, 1/sr; 0 for delta
+    bool delta = false;
+    bool transmitted = false;
+};
+
+/// f(wo, wi) of all non-delta lobes.
+GI_FN vec3 evaluate(Bsdf const& bsdf, vec3 wo, vec3 wi);
+/// Density with which `sample` draws wi through a non-delta lobe (including the lobe's selection probability).
+GI_FN float pdf(Bsdf const& bsdf, vec3 wo, vec3 wi);
+/// @param front  wo is on the front face (decides which side of a dielectric is the inside)
+/// @param u_lobe selects the lobe, u the direction; uniform in [0, 1)
+GI_FN BsdfSample sample(Bsdf const& bsdf, vec3 wo, bool front, float u_lobe, vec2 u);
+/// True when every lobe is delta or black, so that sampling lights is useless.
+GI_FN bool only_delta(Bsdf const& bsdf);
+
+} // namespace gi
+
+#include "gi/scene/bsdf.inl.h"

@@ -1,0 +1,31 @@
+#pragma once
+// One door to every scene format. The extension chooses the reader: .gltf/.glb tinygltf, .yaml/.yml scene files,
+// everything else Assimp. A name without a file ("atrium", "cornell") is a scene that the project generates.
+
+#include "gi/base/report.h"
+#include "gi/scene/scene.h"
+
+#include <filesystem>
+#include <string>
+
+namespace gi {
+
+/// Throws InputError for anything that cannot be a scene. What is repaired or ignored is counted in the report.
+Scene load_scene(std::string const& file_or_name, Report& report);
+
+Scene load_gltf(std::filesystem::path const& file, Report& report);
+/// glTF JSON or GLB from memory; external files are looked up in `folder`, empty = none allowed.
+Scene parse_gltf(unsigned char const* bytes, std::size_t size, std::filesystem::path const& folder,
+                 std::string const& name, Report& report);
+Scene load_assimp(std::filesystem::path const& file, Report& report);
+Scene load_scene_file(std::filesystem::path const& yaml, Report& report);
+/// `name` is used in messages, relative paths are looked up in `folder`.
+Scene parse_scene_file(std::string const& text, std::filesystem::path const& folder, std::string const& name,
+                       Report& report);
+/// Append an image to the pool, de-duplicated by the caller. Throws InputError if it cannot be decoded.
+std::int32_t add_texture(TexturePool& pool, unsigned char const* bytes, std::size_t size, bool srgb,
+                         std::string const& name);
+/// A lat-long map from HDR or EXR; pixels that are not finite or negative are set to 0 and counted.
+EnvironmentMap load_environment(std::filesystem::path const& file, Report& report);
+
+} // namespace gi

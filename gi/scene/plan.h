@@ -1,0 +1,32 @@
+#pragma once
+// The scene plan: what is built for this scene and what is left out, each with its reason. Renderers obey it;
+// `lightwell info` prints it.
+
+#include "gi/scene/world.h"
+
+#include <string>
+#include <vector>
+
+namespace gi {
+
+struct PlanItem {
+    std::string what;   ///< "environment sampling", "alpha tests", "delta lobes", ...
+    bool build = false;
+    std::string reason; ///< "3 of 25 materials are masks", "no light-transmitting material"
+};
+
+struct ScenePlan {
+    bool alpha_tests = false;  ///< some material is a mask or blends: rays must ask for coverage
+    bool environment = false;
+    bool emitters = false;
+    bool punctual_lights = false;
+    bool delta_lobes = false;  ///< mirrors or smooth glass
+    bool transmission = false;
+    bool textures = false, normal_maps = false;
+    bool skins = false, morphs = false, motion = false; ///< motion: some clip plays
+    std::vector<PlanItem> items;
+};
+
+ScenePlan plan_scene(World const& world);
+
+} // namespace gi

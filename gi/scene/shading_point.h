@@ -1,0 +1,29 @@
+#pragma once
+// From a ray hit to everything that shading needs: interpolated attributes, textures looked up, a frame.
+
+#include "gi/scene/bsdf.h"
+#include "gi/scene/world.h"
+
+namespace gi {
+
+struct ShadingPoint {
+    vec3 position;          ///< on the triangle (from barycentrics, not from the ray)
+    vec3 geometric_normal;  ///< unit, towards the viewer's side
+    Frame frame;            ///< about the shading normal (interpolated, normal-mapped), same side
+    bool front;             ///< viewer is on the counter-clockwise side
+    Bsdf bsdf;
+    vec3 albedo;            ///< total directional-free albedo for the AOV: diffuse + f0 (+ transmitted)
+    vec3 emission;          ///< radiance leaving towards the viewer (0 on the dark side)
+    std::uint32_t triangle, material;
+};
+
+/// @param barycentric  weights of vertices 1 and 2 (Embree's u, v)
+/// @param direction    of the ray that arrived, unit
+GI_FN ShadingPoint shading_point(WorldView const& world, std::uint32_t triangle, vec2 barycentric, vec3 direction);
+
+/// Coverage of the surface there, 0..1: 1 for opaque materials, 0 or 1 for masks, alpha for blend.
+GI_FN float coverage(WorldView const& world, std::uint32_t triangle, vec2 barycentric);
+
+} // namespace gi
+
+#include "gi/scene/shading_point.inl.h"

@@ -1,0 +1,83 @@
+#pragma once
+// The world at one moment: every instance, skin and morph target evaluated to world-space triangles, with the
+// tables that light sampling needs. Plain arrays in one index space; WorldView borrows them for kernels.
+//
+// Coordinates are float metres relative to `origin`, which is the centre of the scene's bounds when those lie so
+// far from zero that floats would be coarse there (else 0); transforms are evaluated in double before that.
+
+#include "gi/base/alias_table.h"
+#include "gi/base/report.h"
+#include "gi/scene/scene.h"
+
+#include <memory>
+
+namespace gi {
+
+struct Bounds {
+    vec3 low{kInf}, high{-kInf};
+    bool empty() const { return !(low.x <= high.x); }
+    vec3 center() const { return 0.5f * (low + high); }
+    float radius() const { return empty() ? 0.0f : 0.5f * glm::length(high - low); }
+};
+
+struct World {
+    std::shared_ptr<Scene const> scene; ///< materials, textures, environment map
+    dvec3 origin{0};
+    Bounds bounds;
+
+    // Vertices: arrays are empty where no mesh of the scene has the attribute.
+    std::vector<vec3> positions;
+    std::vector<vec3> normals;  ///< zero vector = this vertex is flat shaded
+    std::vector<vec4> tangents; ///< zero = none
+    std::vector<vec2> uv0, uv1;
+    std::vector<vec3> colors;   ///< 1 where a mesh has none
+    // Triangles
+    std::vector<uvec3> triangles;
+    std::vector<std::uint32_t> triangle_material; ///< index into materials
+    std::vector<std::uint32_t> triangle_instance; ///< 0-based number of the node-mesh pair it came from
+    std::uint32_t instances = 0;
+
+    std::vector<Material> materials; ///< the scene's, and the default material last
+    std::vector<Light> lights;       ///< in this frame
+    std::vector<Camera> cameras;     ///< world_from_camera without origin removed (absolute, double)
+
+    // Light selection, see light_sampling.h
+    std::vector<std::uint32_t> emitters; ///< triangles that emit
+    std::vector<float> emitter_pdf;      ///< per triangle of the world: probability that select picks it; empty = no emitters
+    AliasTable light_select;             ///< over lights, then emitters, then (last, if any) the environment
+    AliasTable environment_select;       ///< over texels of the environment map
+    float environment_pdf = 0;           ///< probability that select picks the environment
+};
+
+/// Time at which a scene is looked at: without one, nodes rest as the file has them.
+using SceneTime = std::optional<double>;
+
+/// Evaluate the scene. Triangles with a vertex that is not finite, or with no area, are skipped and counted.
+/// Throws InputError if a count overflows 32 bits.
+World build_world(std::shared_ptr<Scene const> scene, SceneTime time_s, Report& report);
+
+/// Borrowed arrays of a World for kernels.
+struct WorldView {
+    View<vec3 const> positions, normals;
+    View<vec4 const> tangents;
+    View<vec2 const> uv0, uv1;
+    View<vec3 const> colors;
+    View<uvec3 const> triangles;
+    View<std::uint32_t const> triangle_material, triangle_instance;
+    View<Material const> materials;
+    TexturePoolView textures;
+    View<Light const> lights;
+    View<std::uint32_t const> emitters;
+    View<float const> emitter_pdf;
+    AliasTableView light_select, environment_select;
+    View<vec3 const> environment_radiance; ///< empty = no environment
+    std::uint32_t environment_width = 0, environment_height = 0;
+    vec3 environment_scale{1};
+    float environment_cos = 1, environment_sin = 0; ///< of its rotation about +Y
+    float environment_pdf = 0;
+    float scene_radius = 0; ///< m
+};
+
+WorldView view(World const& world);
+
+} // namespace gi
