@@ -1,0 +1,111 @@
+#include "gi/reference/accumulator.h"
+
+#include "gi/base/error.h"
+#include "gi/base/file.h"
+
+#include <cstring>
+#include <fstream>
+
+namespace gi {
+
+dvec3 Accumulator::variance_of_mean(PixelSums const& p) const
+{
+    if (paths < 2) return dvec3{0};
+    double const n = double(paths);
+    dvec3 const m = mean(p);
+    return glm::max(dvec3{0}, (p.color_squared / n - m * m) / (n - 1));
+}
+
+double Accumulator::relative_mse() const
+{
+    double sum = 0;
+    for (PixelSums const& p : pixels) {
+        dvec3 const m = mean(p), v = variance_of_mean(p) / (m * m + 0.01);
+        sum += v.x + v.y + v.z;
+    }
+    return sum / (3.0 * double(pixels.size()));
+}
+
+Picture Accumulator::picture(dvec3 world_origin) const
+{
+    Picture out;
+    out.width = width;
+    out.height = height;
+    auto const fill = [&](char const* name, int channels, auto const& value) {
+        Layer& layer = out.add(name, channels);
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            dvec3 const v = value(pixels[i]);
+            for (int c = 0; c < channels; ++c) layer.data[i * std::size_t(channels) + std::size_t(c)] = float(v[c]);
+        }
+    };
+    double const n = std::max(1.0, double(paths));
+    fill("color", 3, [&](PixelSums const& p) { return (p.radiance[0] + p.radiance[1] + p.radiance[2]) / n; });
+    fill("L0", 3, [&](PixelSums const& p) { return p.radiance[0] / n; });
+    fill("L1", 3, [&](PixelSums const& p) { return p.radiance[1] / n; });
+    fill("L2", 3, [&](PixelSums const& p) { return p.radiance[2] / n; });
+    fill("variance", 3, [&](PixelSums const& p) { return variance_of_mean(p); });
+    // Surface layers average over the paths that met a surface; where none did they are 0.
+    auto const over_hits = [](PixelSums const& p, dvec3 v) { return p.hits > 0 ? v / p.hits : dvec3{0}; };
+    fill("albedo", 3, [&](PixelSums const& p) { return over_hits(p, p.albedo); });
+    fill("normal", 3, [&](PixelSums const& p) {
+        double const length = glm::length(p.normal);
+        return length > 0 ? p.normal / length : dvec3{0};
+    });
+    fill("depth", 1, [&](PixelSums const& p) { return over_hits(p, dvec3{p.depth}); });
+    fill("position", 3, [&](PixelSums const& p) {
+        return p.hits > 0 ? p.position / p.hits + world_origin : dvec3{0};
+    });
+    return out;
+}
+
+namespace {
+
+struct CheckpointHeader {
+    char magic[8] = {'L', 'W', 'S', 'T', 'A', 'T', 'E', '1'};
+    std::uint64_t fingerprint = 0;
+    std::int32_t width = 0, height = 0;
+    std::uint32_t paths = 0, pixel_bytes = sizeof(PixelSums);
+};
+static_assert(std::is_trivially_copyable_v<CheckpointHeader> && std::is_trivially_copyable_v<PixelSums>);
+
+} // namespace
+
+void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, std::uint64_t fingerprint)
+{
+    CheckpointHeader header;
+    header.fingerprint = fingerprint;
+    header.width = a.width;
+    header.height = a.height;
+    header.paths = a.paths;
+    write_by_rename(file, [&](std::filesystem::path const& temporary) {
+        std::ofstream out(temporary, std::ios::binary);
+        out.exceptions(std::ios::failbit | std::ios::badbit);
+        out.write(reinterpret_cast<char const*>(&header), sizeof header);
+        out.write(reinterpret_cast<char const*>(a.pixels.data()),
+                  std::streamsize(a.pixels.size() * sizeof(PixelSums)));
+        out.flush();
+    });
+}
+
+bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint)
+{
+    if (file.empty() || !std::filesystem::exists(file)) return false;
+    auto const bytes = read_bytes(file);
+    CheckpointHeader header, expected;
+    if (bytes.size() < sizeof header || std::memcmp(bytes.data(), expected.magic, sizeof expected.magic) != 0)
+        throw InputError("'" + file.string() + "' is not a checkpoint", "it does not start like one",
+                         "delete it to start afresh");
+    std::memcpy(&header, bytes.data(), sizeof header);
+    if (header.fingerprint != fingerprint || header.width != a.width || header.height != a.height)
+        throw InputError("'" + file.string() + "' belongs to another render",
+                         "scene, camera or settings differ from when it was written",
+                         "delete it or drop --resume to start afresh");
+    if (header.pixel_bytes != sizeof(PixelSums) || bytes.size() != sizeof header + a.pixels.size() * sizeof(PixelSums))
+        throw InputError("'" + file.string() + "' is damaged", "its size does not fit its header",
+                         "delete it to start afresh");
+    std::memcpy(a.pixels.data(), bytes.data() + sizeof header, a.pixels.size() * sizeof(PixelSums));
+    a.paths = header.paths;
+    return true;
+}
+
+} // namespace gi

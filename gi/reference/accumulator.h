@@ -1,0 +1,58 @@
+#pragma once
+// Sums over the paths of every pixel, in double and in path order, so that neither threads nor passes nor an
+// interruption change the picture. A checkpoint stores them exactly.
+
+#include "gi/base/picture.h"
+#include "gi/reference/path_tracer.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace gi {
+
+/// Sums of one pixel.
+struct PixelSums {
+    std::array<dvec3, 3> radiance{dvec3{0}, dvec3{0}, dvec3{0}}; ///< L0, L1, L2
+    dvec3 color_squared{0};                                      ///< of L0 + L1 + L2, per path
+    dvec3 albedo{0}, normal{0}, position{0};                     ///< over paths that hit something
+    double depth = 0;
+    double hits = 0;
+
+    void add(PathSample const& s)
+    {
+        dvec3 const color = dvec3(s.radiance[0]) + dvec3(s.radiance[1]) + dvec3(s.radiance[2]);
+        for (std::size_t i = 0; i < 3; ++i) radiance[i] += dvec3(s.radiance[i]);
+        color_squared += color * color;
+        if (!s.hit) return;
+        albedo += dvec3(s.albedo);
+        normal += dvec3(s.normal);
+        position += dvec3(s.position);
+        depth += double(s.depth);
+        hits += 1;
+    }
+};
+
+struct Accumulator {
+    int width = 0, height = 0;
+    std::uint32_t paths = 0; ///< per pixel
+    std::vector<PixelSums> pixels;
+
+    Accumulator(int w, int h) : width(w), height(h), pixels(std::size_t(w) * std::size_t(h)) {}
+    dvec3 mean(PixelSums const& p) const
+    {
+        return (p.radiance[0] + p.radiance[1] + p.radiance[2]) / double(paths);
+    }
+    /// Variance of the mean per channel; 0 with fewer than two paths.
+    dvec3 variance_of_mean(PixelSums const& p) const;
+    /// Estimated relMSE of the picture: mean over pixels and channels of var(mean) / (mean^2 + 0.01).
+    double relative_mse() const;
+    /// @param world_origin added to positions
+    Picture picture(dvec3 world_origin) const;
+};
+
+/// @param fingerprint of scene, camera and settings; a checkpoint with another one is refused (InputError)
+void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, std::uint64_t fingerprint);
+/// False where there is no such file. Throws InputError if it does not belong to this render or is damaged.
+bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint);
+
+} // namespace gi

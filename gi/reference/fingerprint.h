@@ -1,0 +1,13 @@
+#pragma once
+// A number that changes with whatever changes the picture, to refuse checkpoints of another render.
+
+#include "gi/image/render_settings.h"
+#include "gi/scene/world.h"
+
+namespace gi {
+
+/// Hash of geometry, materials, lights, camera and of those settings that decide the value of every path (not of
+/// those that decide how many paths there are).
+std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettings const& settings);
+
+} // namespace gi
