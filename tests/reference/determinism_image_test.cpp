@@ -1,0 +1,128 @@
+// The same seed gives the same bits, however the work is divided; another seed gives another sample of the same mean.
+
+#include "gi/base/error.h"
+#include "gi/reference/reference.h"
+#include "tests/support/scenes.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <gtest/gtest.h>
+
+namespace gi::test {
+namespace {
+
+World room()
+{
+    Scene scene;
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, lambert({0.7f, 0.6f, 0.5f})), true);
+    add_quad(scene, {-0.3f, 0.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{6})));
+    add_sphere(scene, {-0.4f, -0.5f, 0}, 0.4f, 3, add_material(scene, glass(1.5f, false)), true);
+    add_sphere(scene, {0.5f, -0.6f, -0.2f}, 0.35f, 3, add_material(scene, mirror(vec3{0.9f})), true);
+    return world_of(scene);
+}
+
+RenderSettings settings()
+{
+    RenderSettings s;
+    s.width = 40;
+    s.height = 30;
+    s.paths = 32;
+    s.seed = 3;
+    return s;
+}
+
+Camera eye() { return look_at({0, 0, 0.95}, {0, -0.2, 0}, 80); }
+
+RenderResult render(World const& world, RenderSettings const& s, StopRequest const& stop = {})
+{
+    Report report;
+    return render_reference(world, eye(), s, stop, {}, report);
+}
+
+void expect_same_bits(Picture const& a, Picture const& b)
+{
+    ASSERT_EQ(a.layers.size(), b.layers.size());
+    for (std::size_t i = 0; i < a.layers.size(); ++i)
+        EXPECT_EQ(0, std::memcmp(a.layers[i].data.data(), b.layers[i].data.data(), 4 * a.layers[i].data.size()))
+            << a.layers[i].name;
+}
+
+TEST(Determinism, ThreadsDoNotMatter)
+{
+    World const world = room();
+    RenderSettings s = settings();
+    s.threads = 1;
+    Picture const one = render(world, s).picture;
+    s.threads = 2;
+    expect_same_bits(one, render(world, s).picture);
+}
+
+TEST(Determinism, ResumedEqualsUninterrupted)
+{
+    World const world = room();
+    std::filesystem::path const state =
+        std::filesystem::temp_directory_path() / ("lightwell_resume_" + std::to_string(getpid()) + ".state");
+    RenderSettings s = settings();
+    Picture const whole = render(world, s).picture;
+
+    s.checkpoint = state;
+    StopRequest stop;
+    stop.request();
+    RenderResult const part = render(world, s, stop);
+    EXPECT_EQ(part.end, RenderEnd::interrupted);
+    EXPECT_LT(part.paths, s.paths);
+    ASSERT_TRUE(std::filesystem::exists(state));
+
+    RenderSettings other = s;
+    other.resume = true;
+    other.seed = 4;
+    EXPECT_THROW(render(world, other), InputError);
+    s.resume = true;
+    expect_same_bits(whole, render(world, s).picture);
+    EXPECT_FALSE(std::filesystem::exists(state));
+
+    std::ofstream(state) << "not a checkpoint";
+    EXPECT_THROW(render(world, s), InputError);
+    std::filesystem::remove(state);
+}
+
+TEST(Determinism, SeedsDifferWithinTheirVariance)
+{
+    World const world = room();
+    RenderSettings s = settings();
+    s.paths = 64;
+    Picture const a = render(world, s).picture;
+    s.seed = 99;
+    Picture const b = render(world, s).picture;
+    Estimate const ea = mean_of(a), eb = mean_of(b);
+    EXPECT_NE(ea.mean, eb.mean);
+    EXPECT_LT(std::abs(ea.mean - eb.mean), 4 * std::hypot(ea.sigma, eb.sigma));
+}
+
+TEST(Determinism, StopsAtErrorTargetAndBudget)
+{
+    World const world = room();
+    RenderSettings s = settings();
+    s.paths = 1u << 20;
+    s.until_relmse = 0.05;
+    RenderResult const target = render(world, s);
+    EXPECT_EQ(target.end, RenderEnd::error_target);
+    EXPECT_LT(target.relmse, 0.05);
+    s.until_relmse = 0;
+    s.budget_s = 0.2;
+    RenderResult const timed = render(world, s);
+    EXPECT_EQ(timed.end, RenderEnd::budget);
+    EXPECT_LT(timed.seconds, 1.0);
+}
+
+TEST(Determinism, LayersAddUp)
+{
+    Picture const p = render(room(), settings()).picture;
+    for (std::size_t i = 0; i < p.pixels(); ++i) {
+        vec3 const sum = rgb(*p.find("L0"), i) + rgb(*p.find("L1"), i) + rgb(*p.find("L2"), i);
+        EXPECT_LT(glm::length(rgb(*p.find("color"), i) - sum), 1e-5f * (1 + glm::length(sum)));
+    }
+}
+
+} // namespace
+} // namespace gi::test
