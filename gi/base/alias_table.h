@@ -17,19 +17,22 @@ struct AliasEntry {
 struct AliasTableView {
     View<AliasEntry const> entries;
 
-    /// Draw an index from u in [0, 1); u is remapped to a fresh uniform number in [0, 1).
-    GI_FN std::uint32_t sample(float& u) const
+    /// Draw an index from u in [0, 1); u is remapped to a fresh uniform number in [0, 1). Double, because among
+    /// millions of bins the 24 bits of a float would leave none to decide with.
+    GI_FN std::uint32_t sample(double& u) const
     {
-        float const scaled = u * float(entries.size());
+        constexpr double kBelowOne = 1 - 0x1p-53;
+        double const scaled = u * double(entries.size());
         auto i = std::uint32_t(scaled);
         if (i >= entries.size()) i = std::uint32_t(entries.size()) - 1;
-        float const within = glm::min(scaled - float(i), 0x1.fffffep-1f);
+        double const within = scaled - double(i);
         AliasEntry const& e = entries[i];
-        if (within < e.keep) {
-            u = glm::min(within / e.keep, 0x1.fffffep-1f);
+        double const keep = double(e.keep);
+        if (within < keep) {
+            u = glm::min(within / keep, kBelowOne);
             return i;
         }
-        u = glm::min((within - e.keep) / (1.0f - e.keep), 0x1.fffffep-1f);
+        u = glm::clamp((within - keep) / (1 - keep), 0.0, kBelowOne);
         return e.alias;
     }
     GI_FN float probability(std::uint32_t i) const { return entries[i].probability; }

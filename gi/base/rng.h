@@ -41,6 +41,12 @@ public:
     }
     /// Uniform in [0, 1), a multiple of 2^-24.
     GI_FN float uniform() { return float(next() >> 8) * 0x1p-24f; }
+    /// Uniform in [0, 1), a multiple of 2^-53.
+    GI_FN double uniform_double()
+    {
+        std::uint64_t const high = next() >> 6;
+        return double((high << 27) | (next() >> 5)) * 0x1p-53;
+    }
     GI_FN vec2 uniform2()
     {
         float const x = uniform();

@@ -78,7 +78,7 @@ inline vec2 filter_offset(PixelFilter filter, vec2 u)
 template <class Visibility>
 vec3 PathTracer<Visibility>::direct_light(ShadingPoint const& at, vec3 wo, Pcg32& rng, PathCounts& counts) const
 {
-    float const u_select = rng.uniform();
+    double const u_select = rng.uniform_double();
     LightSample const light = sample_light(world, at.position, u_select, rng.uniform2());
     if (!(light.pdf > 0)) return vec3{0};
     vec3 const wi = at.frame.to_local(light.direction);

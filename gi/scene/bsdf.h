@@ -11,17 +11,34 @@ namespace gi {
 inline constexpr float kSmoothAlpha = 1e-4f;
 
 /// A material after its textures have been looked up: what scatters at one point.
+///   metal_rough, opaque: the diffuse base below a Schlick coat + GGX reflection with Fresnel f0..f90
+///   metal_rough, transmitted > 0: the diffuse base + smooth dielectric (exact Fresnel; roughness and metal ignored)
+///   phong: Lambert + Phong lobe
 struct Bsdf {
-    MaterialModel model;
-    vec3 diffuse;        ///< Lambert albedo, already times (1 - metallic)(1 - transmission)
-    vec3 f0, f90;        ///< Fresnel reflectance at normal and grazing incidence (Schlick), specular lobe
-    float alpha;         ///< GGX width; < kSmoothAlpha: delta
-    vec3 transmitted;    ///< tint of light that passes, 0 = opaque
-    float ior;           ///< inside over outside, seen from the front face
-    bool thin;
-    vec3 phong_specular;
-    float phong_exponent;
+    MaterialModel model = MaterialModel::metal_rough;
+    bool thin = true;
+    vec3 diffuse{0};     ///< albedo of the base, already times (1 - metallic)(1 - transmission)
+    vec3 f0{0}, f90{0};  ///< reflectance at normal and grazing incidence; 0 = no specular lobe
+    float coat_f0 = 0, coat_f90 = 0; ///< the same of the dielectric coat over the base, largest channel
+    float alpha = 1;     ///< GGX width; < kSmoothAlpha: delta
+    vec3 transmitted{0}; ///< tint of light that passes, 0 = opaque
+    float ior = 1.5f;    ///< inside over outside, seen from the front face
+    vec3 phong_specular{0};
+    float phong_exponent = 1;
 };
+
+/// The factors of a material at one point: its own values times its textures.
+struct MaterialFactors {
+    vec3 base_color;
+    float metallic, roughness, specular;
+    vec3 specular_color;
+    float transmission;
+};
+
+/// glTF 2 appendix B with KHR_materials_specular, _ior and _transmission.
+GI_FN Bsdf make_bsdf(Material const& material, MaterialFactors const& factors);
+/// A material without textures.
+GI_FN Bsdf make_bsdf(Material const& material);
 
 struct BsdfSample {
     vec3 wi{0};

@@ -15,8 +15,8 @@ struct LightSample {
     bool delta = false;
 };
 
-/// @param u_select, u uniform in [0, 1)
-GI_FN LightSample sample_light(WorldView const& world, vec3 point, float u_select, vec2 u);
+/// @param u_select, u uniform in [0, 1); u_select chooses among all lights and texels and needs its 53 bits
+GI_FN LightSample sample_light(WorldView const& world, vec3 point, double u_select, vec2 u);
 /// Density with which sample_light draws the direction to a point on an emissive triangle.
 /// @param distance_m to that point, cos_light = |cos| between the triangle's normal and the direction
 GI_FN float emitter_direction_pdf(WorldView const& world, std::uint32_t triangle, float distance_m, float cos_light);

@@ -40,8 +40,12 @@ struct TexturePool {
 struct TexturePoolView {
     View<Rgba8 const> texels;
     View<Texture const> textures;
+    View<float const> linear_of_srgb; ///< 256 entries
 };
 
-inline TexturePoolView view(TexturePool const& pool) { return {pool.texels, pool.textures}; }
+/// The sRGB decoding (IEC 61966-2-1) of 0..255. Static storage.
+View<float const> linear_of_srgb();
+
+inline TexturePoolView view(TexturePool const& pool) { return {pool.texels, pool.textures, linear_of_srgb()}; }
 
 } // namespace gi

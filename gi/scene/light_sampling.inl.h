@@ -1,0 +1,185 @@
+#pragma once
+// Implementation of light_sampling.h.
+
+#include "gi/scene/shading_point.h"
+#include "gi/scene/warp.h"
+
+namespace gi {
+namespace light_detail {
+
+/// KHR_lights_punctual: inverse square, windowed where the light has a range.
+GI_FN inline float distance_attenuation(Light const& light, float distance)
+{
+    float const inverse_square = 1 / (distance * distance);
+    if (!(light.range > 0)) return inverse_square;
+    float const window = 1 - square(square(distance / light.range));
+    return window > 0 ? glm::min(window, 1.0f) * inverse_square : 0.0f;
+}
+
+/// KHR_lights_punctual: smooth between the two cones.
+GI_FN inline float cone_attenuation(Light const& light, float cos_angle)
+{
+    float const width = glm::max(light.cos_inner - light.cos_outer, 1e-3f);
+    return square(glm::clamp((cos_angle - light.cos_outer) / width, 0.0f, 1.0f));
+}
+
+GI_FN inline LightSample sample_punctual(Light const& light, vec3 point)
+{
+    LightSample s;
+    s.delta = true;
+    if (light.type == LightType::directional) {
+        s.direction = -light.direction;
+        s.distance = kInf;
+        s.radiance = light.intensity;
+        s.pdf = 1;
+        return s;
+    }
+    vec3 const way = light.position - point;
+    s.distance = glm::length(way);
+    if (!(s.distance > 0)) return s;
+    s.direction = way / s.distance;
+    float factor = distance_attenuation(light, s.distance);
+    if (light.type == LightType::spot) factor *= cone_attenuation(light, -glm::dot(s.direction, light.direction));
+    if (!(factor > 0)) return s;
+    s.radiance = light.intensity * factor;
+    s.pdf = 1;
+    return s;
+}
+
+/// Twice the area vector of a triangle.
+GI_FN inline vec3 area_vector(WorldView const& world, uvec3 t)
+{
+    vec3 const p0 = world.positions[t.x];
+    return glm::cross(world.positions[t.y] - p0, world.positions[t.z] - p0);
+}
+
+GI_FN inline LightSample sample_emitter(WorldView const& world, std::uint32_t triangle, vec3 point, vec2 u)
+{
+    LightSample s;
+    Material const& m = world.materials[world.triangle_material[triangle]];
+    shading_detail::SurfacePoint const on = shading_detail::surface_point(world, triangle, square_to_triangle(u));
+    vec3 const way = on.interpolate(world.positions) - point;
+    s.distance = glm::length(way);
+    if (!(s.distance > 0)) return s;
+    s.direction = way / s.distance;
+    vec3 const area = area_vector(world, on.vertex);
+    float const facing = -glm::dot(area, s.direction); // 2 * area * cos at the lamp
+    if (!(facing > 0) && !m.double_sided) return s;
+    s.pdf = 2 * s.distance * s.distance / std::abs(facing);
+    if (!(s.pdf < kInf)) return {};
+    s.radiance = shading_detail::look_up_emission(world, m, on);
+    return s;
+}
+
+/// From the world to the map's own frame.
+GI_FN inline vec3 to_map(WorldView const& world, vec3 d)
+{
+    float const c = world.environment_cos, s = world.environment_sin;
+    return {c * d.x - s * d.z, d.y, s * d.x + c * d.z};
+}
+
+GI_FN inline vec3 from_map(WorldView const& world, vec3 d)
+{
+    float const c = world.environment_cos, s = world.environment_sin;
+    return {c * d.x + s * d.z, d.y, -s * d.x + c * d.z};
+}
+
+struct MapPoint {
+    vec2 position;   ///< texels, (0, 0) the top left corner
+    float sin_theta; ///< from +Y
+};
+
+GI_FN inline MapPoint map_point(WorldView const& world, vec3 direction)
+{
+    vec3 const d = to_map(world, direction);
+    float const sin_theta = std::sqrt(d.x * d.x + d.z * d.z);
+    float const u = 0.5f + std::atan2(d.x, -d.z) * (0.5f * kInvPi);
+    float const v = std::atan2(sin_theta, d.y) * kInvPi;
+    return {{u * float(world.environment_width), v * float(world.environment_height)}, sin_theta};
+}
+
+/// Density per solid angle of a uniform point in a texel chosen with probability p.
+GI_FN inline float texel_pdf(WorldView const& world, float p, float sin_theta)
+{
+    float const texels = float(world.environment_width) * float(world.environment_height);
+    return p * texels / (2 * kPi * kPi * sin_theta);
+}
+
+/// Bilinear, around in u, held in v.
+GI_FN inline vec3 map_radiance(WorldView const& world, vec2 position)
+{
+    TexelPair const u =
+        texel_pair(position.x / float(world.environment_width), world.environment_width, Wrap::repeat, false);
+    TexelPair const v =
+        texel_pair(position.y / float(world.environment_height), world.environment_height, Wrap::clamp, false);
+    auto const texel = [&](std::uint32_t x, std::uint32_t y) {
+        return world.environment_radiance[std::uint64_t(y) * world.environment_width + x];
+    };
+    vec3 const top = glm::mix(texel(u.first, v.first), texel(u.second, v.first), u.weight);
+    vec3 const bottom = glm::mix(texel(u.first, v.second), texel(u.second, v.second), u.weight);
+    return world.environment_scale * glm::mix(top, bottom, v.weight);
+}
+
+GI_FN inline LightSample sample_environment(WorldView const& world, double u_texel, vec2 u)
+{
+    LightSample s;
+    std::uint32_t const texel = world.environment_select.sample(u_texel);
+    vec2 const corner{float(texel % world.environment_width), float(texel / world.environment_width)};
+    vec2 const position = corner + u;
+    float const phi = (position.x / float(world.environment_width) - 0.5f) * 2 * kPi;
+    float const theta = position.y / float(world.environment_height) * kPi;
+    float const sin_theta = std::sin(theta);
+    if (!(sin_theta > 0)) return s;
+    s.direction = from_map(world, {sin_theta * std::sin(phi), std::cos(theta), -sin_theta * std::cos(phi)});
+    s.distance = kInf;
+    s.radiance = map_radiance(world, position);
+    s.pdf = texel_pdf(world, world.environment_select.probability(texel), sin_theta);
+    return s;
+}
+
+} // namespace light_detail
+
+GI_FN inline LightSample sample_light(WorldView const& world, vec3 point, double u_select, vec2 u)
+{
+    using namespace light_detail;
+    if (world.light_select.empty()) return {};
+    std::uint32_t const chosen = world.light_select.sample(u_select);
+    auto const lights = std::uint32_t(world.lights.size()), emitters = std::uint32_t(world.emitters.size());
+    LightSample s;
+    if (chosen < lights)
+        s = sample_punctual(world.lights[chosen], point);
+    else if (chosen < lights + emitters)
+        s = sample_emitter(world, world.emitters[chosen - lights], point, u);
+    else
+        s = sample_environment(world, u_select, u);
+    s.pdf *= world.light_select.probability(chosen);
+    return s;
+}
+
+GI_FN inline float emitter_direction_pdf(WorldView const& world, std::uint32_t triangle, float distance_m,
+                                         float cos_light)
+{
+    if (world.emitter_pdf.empty() || !(cos_light > 0)) return 0;
+    float const doubled_area = glm::length(light_detail::area_vector(world, world.triangles[triangle]));
+    return world.emitter_pdf[triangle] * 2 * distance_m * distance_m / (doubled_area * cos_light);
+}
+
+GI_FN inline float environment_direction_pdf(WorldView const& world, vec3 direction)
+{
+    using namespace light_detail;
+    if (world.environment_select.empty()) return 0;
+    MapPoint const at = map_point(world, direction);
+    if (!(at.sin_theta > 0)) return 0;
+    std::uint32_t const x = wrap_texel(std::floor(at.position.x), world.environment_width, Wrap::repeat);
+    std::uint32_t const y = wrap_texel(std::floor(at.position.y), world.environment_height, Wrap::clamp);
+    float const p = world.environment_select.probability(y * world.environment_width + x);
+    return world.environment_pdf * texel_pdf(world, p, at.sin_theta);
+}
+
+GI_FN inline vec3 environment_radiance(WorldView const& world, vec3 direction)
+{
+    if (world.environment_radiance.empty()) return vec3{0};
+    return light_detail::map_radiance(world, light_detail::map_point(world, direction).position);
+}
+
+} // namespace gi
