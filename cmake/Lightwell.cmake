@@ -2,7 +2,7 @@
 
 add_library(lightwell_options INTERFACE)
 target_include_directories(lightwell_options INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_definitions(lightwell_options INTERFACE GLM_FORCE_SILENT_WARNINGS)
+target_compile_definitions(lightwell_options INTERFACE GLM_FORCE_SILENT_WARNINGS GLM_FORCE_XYZW_ONLY) # plain members: nvcc 13 miscompiles constants of unions
 set(warnings -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wno-unknown-pragmas -Werror)
 target_compile_options(lightwell_options INTERFACE
   "$<$<COMPILE_LANGUAGE:CXX>:${warnings}>"
