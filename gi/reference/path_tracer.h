@@ -1,16 +1,16 @@
 #pragma once
 // One light path at a time, written to be read: next-event estimation and BSDF sampling combined with the power
-// heuristic (Veach 1997, sec. 9.2.4), Russian roulette on throughput. The estimator is unbiased but for the limit on
-// bounces; nothing is clamped.
+// heuristic (Veach 1997, sec. 9.2.4), Russian roulette on throughput. The estimator is unbiased but for the limit
+// on bounces; nothing is clamped.
 //
-// Light is sorted by the number of non-delta scatterings between the lamp and the eye: L0 emitted light seen directly
-// (also through mirrors and glass), L1 direct light, L2 all indirect light.
+// Light is sorted by the number of non-delta scatterings between the lamp and the eye: L0 emitted light seen
+// directly (also through mirrors and glass), L1 direct light, L2 all indirect light.
 
 #include "gi/base/rng.h"
 #include "gi/image/render_settings.h"
+#include "gi/reference/exact_visibility.h"
 #include "gi/scene/camera.h"
 #include "gi/scene/light_sampling.h"
-#include "gi/reference/exact_visibility.h"
 #include "gi/scene/shading_point.h"
 
 #include <array>
@@ -45,16 +45,22 @@ struct PathTracer {
     PathSample trace(int x, int y, std::uint32_t path, PathCounts& counts) const;
 
 private:
-    /// Leave the surface by more than the rounding error of the interpolated position, which scales with the
-    /// coordinates of the triangle it was interpolated from.
-    vec3 leave(ShadingPoint const& at, vec3 direction) const
+    /// More than the rounding error of the interpolated position, which scales with the coordinates of the
+    /// triangle it was interpolated from.
+    float clearance(ShadingPoint const& at) const
     {
         uvec3 const t = world.triangles[at.triangle];
         vec3 const extent = glm::max(glm::abs(world.positions[t.x]),
                                      glm::max(glm::abs(world.positions[t.y]), glm::abs(world.positions[t.z])));
-        float const offset = 2e-6f * max_component(extent);
-        return at.position + (glm::dot(direction, at.geometric_normal) > 0 ? offset : -offset) * at.geometric_normal;
+        return 2e-6f * max_component(extent);
     }
+    vec3 leave(ShadingPoint const& at, vec3 direction) const
+    {
+        float const offset = clearance(at);
+        return at.position +
+               (glm::dot(direction, at.geometric_normal) > 0 ? offset : -offset) * at.geometric_normal;
+    }
+    bool reaches(ShadingPoint const& at, LightSample const& light, std::uint32_t alpha_seed) const;
     vec3 direct_light(ShadingPoint const& at, vec3 wo, Pcg32& rng, PathCounts& counts) const;
 };
 
@@ -76,6 +82,20 @@ inline vec2 filter_offset(PixelFilter filter, vec2 u)
 }
 
 template <class Visibility>
+bool PathTracer<Visibility>::reaches(ShadingPoint const& at, LightSample const& light,
+                                     std::uint32_t alpha_seed) const
+{
+    vec3 const origin = leave(at, light.direction);
+    if (light.distance == kInf) return !visibility.occluded(origin, light.direction, kInf, alpha_seed);
+    // Aim from where the ray starts, and stop short of the lamp's own surface by more than the rounding of both
+    // ends.
+    vec3 const way = at.position + light.distance * light.direction - origin;
+    float const length = glm::length(way);
+    float const reach = length * (1 - 2e-5f) - clearance(at);
+    return !(reach > 0) || !visibility.occluded(origin, way / length, reach, alpha_seed);
+}
+
+template <class Visibility>
 vec3 PathTracer<Visibility>::direct_light(ShadingPoint const& at, vec3 wo, Pcg32& rng, PathCounts& counts) const
 {
     double const u_select = rng.uniform_double();
@@ -89,10 +109,7 @@ vec3 PathTracer<Visibility>::direct_light(ShadingPoint const& at, vec3 wo, Pcg32
     if (!(max_component(value) > 0)) return vec3{0};
     if (!light.delta) value *= power_heuristic(light.pdf, pdf(at.bsdf, wo, wi));
     ++counts.shadow_rays;
-    // Stop short of the lamp's own surface by more than the rounding of both end points.
-    float const reach = light.distance * (1 - 2e-5f);
-    if (visibility.occluded(leave(at, light.direction), light.direction, reach, rng.next())) return vec3{0};
-    return value;
+    return reaches(at, light, rng.next()) ? value : vec3{0};
 }
 
 template <class Visibility>

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <cstring>
 #include <gtest/gtest.h>
 
 namespace gi::test {
