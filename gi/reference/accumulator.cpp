@@ -35,7 +35,8 @@ Picture Accumulator::picture(dvec3 world_origin) const
         Layer& layer = out.add(name, channels);
         for (std::size_t i = 0; i < pixels.size(); ++i) {
             dvec3 const v = value(pixels[i]);
-            for (int c = 0; c < channels; ++c) layer.data[i * std::size_t(channels) + std::size_t(c)] = float(v[c]);
+            for (int c = 0; c < channels; ++c)
+                layer.data[i * std::size_t(channels) + std::size_t(c)] = float(v[c]);
         }
     };
     double const n = std::max(1.0, double(paths));
@@ -52,9 +53,8 @@ Picture Accumulator::picture(dvec3 world_origin) const
         return length > 0 ? p.normal / length : dvec3{0};
     });
     fill("depth", 1, [&](PixelSums const& p) { return over_hits(p, dvec3{p.depth}); });
-    fill("position", 3, [&](PixelSums const& p) {
-        return p.hits > 0 ? p.position / p.hits + world_origin : dvec3{0};
-    });
+    fill("position", 3,
+         [&](PixelSums const& p) { return p.hits > 0 ? p.position / p.hits + world_origin : dvec3{0}; });
     return out;
 }
 
@@ -100,7 +100,8 @@ bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uin
         throw InputError("'" + file.string() + "' belongs to another render",
                          "scene, camera or settings differ from when it was written",
                          "delete it or drop --resume to start afresh");
-    if (header.pixel_bytes != sizeof(PixelSums) || bytes.size() != sizeof header + a.pixels.size() * sizeof(PixelSums))
+    if (header.pixel_bytes != sizeof(PixelSums) ||
+        bytes.size() != sizeof header + a.pixels.size() * sizeof(PixelSums))
         throw InputError("'" + file.string() + "' is damaged", "its size does not fit its header",
                          "delete it to start afresh");
     std::memcpy(a.pixels.data(), bytes.data() + sizeof header, a.pixels.size() * sizeof(PixelSums));

@@ -25,7 +25,8 @@ void ExactVisibility::coverage_filter(RTCFilterFunctionNArguments const* a)
 }
 
 ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threads)
-    : device_(rtcNewDevice(threads > 0 ? fmt::format("threads={}", threads).c_str() : nullptr)), world_(view(world))
+    : device_(rtcNewDevice(threads > 0 ? fmt::format("threads={}", threads).c_str() : nullptr)),
+      world_(view(world))
 {
     if (!device_) throw std::runtime_error("Embree could not be started");
     scene_.reset(rtcNewScene(device_.get()));

@@ -50,10 +50,7 @@ private:
     static constexpr float kFar = 1e30f;
 
     struct Context {
-        explicit Context(ExactVisibility const& owner) : world(&owner.world_)
-        {
-            rtcInitIntersectContext(&rtc);
-        }
+        explicit Context(ExactVisibility const& owner) : world(&owner.world_) { rtcInitIntersectContext(&rtc); }
         RTCIntersectContext rtc; // first, so that the filter finds `world` behind it
         WorldView const* world;
     };

@@ -76,8 +76,8 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
     for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 4; ++r) h.add(camera.world_from_camera[c][r]);
     for (double const v : {camera.yfov_rad, camera.ymag_m, double(camera.orthographic)}) h.add(v);
-    for (std::uint64_t const v : {std::uint64_t(s.width), std::uint64_t(s.height), std::uint64_t(s.bounces), s.seed,
-                                  std::uint64_t(s.filter)})
+    for (std::uint64_t const v : {std::uint64_t(s.width), std::uint64_t(s.height), std::uint64_t(s.bounces),
+                                  s.seed, std::uint64_t(s.filter)})
         h.add(v);
     return h.value();
 }

@@ -17,7 +17,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start)
+{
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// Denormals cost hundreds of cycles each and carry no light.
 class FlushDenormals {
@@ -31,18 +34,29 @@ private:
     unsigned saved_;
 };
 
+constexpr int kTile = 16; // px; the paths of a tile advance together
+
 void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t paths,
                 tbb::combinable<PathCounts>& counts)
 {
-    tbb::parallel_for(tbb::blocked_range2d<int>(0, sums.height, 8, 0, sums.width, 8), [&](auto const& tile) {
-        FlushDenormals const guard;
-        PathCounts& local = counts.local();
-        for (int y = tile.rows().begin(); y < tile.rows().end(); ++y)
-            for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) {
-                PixelSums& pixel = sums.pixels[std::size_t(y) * std::size_t(sums.width) + std::size_t(x)];
-                for (std::uint32_t i = 0; i < paths; ++i) pixel.add(tracer.trace(x, y, sums.paths + i, local));
-            }
-    });
+    tbb::parallel_for(tbb::blocked_range2d<int>(0, sums.height, kTile, 0, sums.width, kTile),
+                      [&](auto const& tile) {
+                          FlushDenormals const guard;
+                          PathCounts& local = counts.local();
+                          std::vector<Path> batch;
+                          for (std::uint32_t i = 0; i < paths; ++i) {
+                              batch.clear();
+                              for (int y = tile.rows().begin(); y < tile.rows().end(); ++y)
+                                  for (int x = tile.cols().begin(); x < tile.cols().end(); ++x)
+                                      batch.push_back(tracer.start(x, y, sums.paths + i));
+                              tracer.trace(batch, local);
+                              auto next = batch.begin();
+                              for (int y = tile.rows().begin(); y < tile.rows().end(); ++y)
+                                  for (int x = tile.cols().begin(); x < tile.cols().end(); ++x)
+                                      sums.pixels[std::size_t(y) * std::size_t(sums.width) + std::size_t(x)].add(
+                                          (next++)->sample);
+                          }
+                      });
     sums.paths += paths;
 }
 
@@ -72,7 +86,7 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
         visibility = std::make_unique<ExactVisibility>(world, plan.alpha_tests, settings.threads);
     }
     PathTracer<ExactVisibility> const tracer{
-        view(world),   *visibility,     camera_rays(camera, settings.width, settings.height, world.origin),
+        view(world),      *visibility,   camera_rays(camera, settings.width, settings.height, world.origin),
         settings.bounces, settings.seed, settings.filter,
         settings.width};
 
@@ -111,7 +125,8 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
         if (progress) {
             double fraction = double(sums.paths) / double(settings.paths);
             if (settings.budget_s > 0) fraction = std::max(fraction, now / settings.budget_s);
-            if (settings.until_relmse > 0 && relmse > 0) fraction = std::max(fraction, settings.until_relmse / relmse);
+            if (settings.until_relmse > 0 && relmse > 0)
+                fraction = std::max(fraction, settings.until_relmse / relmse);
             progress({std::min(1.0, fraction), sums.paths, relmse});
         }
         if (keeps_state && seconds_since(saved) > kCheckpointSeconds) {
@@ -125,8 +140,8 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
         std::filesystem::remove(settings.checkpoint);
 
     PathCounts const total = counts.combine([](PathCounts a, PathCounts const& b) {
-        return PathCounts{a.nearest_rays + b.nearest_rays, a.shadow_rays + b.shadow_rays, a.cut_paths + b.cut_paths,
-                          a.invalid_paths + b.invalid_paths};
+        return PathCounts{a.nearest_rays + b.nearest_rays, a.shadow_rays + b.shadow_rays,
+                          a.cut_paths + b.cut_paths, a.invalid_paths + b.invalid_paths};
     });
     result.seconds = seconds_since(start);
     report.add_time("trace", result.seconds);

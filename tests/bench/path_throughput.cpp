@@ -43,13 +43,19 @@ struct RecordingVisibility {
 template <class Visibility>
 double trace_all(PathTracer<Visibility> const& tracer, int size, std::uint32_t paths)
 {
+    constexpr int kTile = 16;
     PathCounts counts;
     double sum = 0;
-    for (int y = 0; y < size; ++y)
-        for (int x = 0; x < size; ++x)
+    std::vector<Path> batch;
+    for (int top = 0; top < size; top += kTile)
+        for (int left = 0; left < size; left += kTile)
             for (std::uint32_t i = 0; i < paths; ++i) {
-                PathSample const s = tracer.trace(x, y, i, counts);
-                sum += double(s.radiance[0].x + s.radiance[1].x + s.radiance[2].x);
+                batch.clear();
+                for (int y = top; y < top + kTile; ++y)
+                    for (int x = left; x < left + kTile; ++x) batch.push_back(tracer.start(x, y, i));
+                tracer.trace(batch, counts);
+                for (Path const& p : batch)
+                    sum += double(p.sample.radiance[0].x + p.sample.radiance[1].x + p.sample.radiance[2].x);
             }
     return sum;
 }
