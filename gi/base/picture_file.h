@@ -23,11 +23,15 @@ void write_exr(std::filesystem::path const& file, Picture const& picture, PixelT
 /// channels rejected. Channels are grouped into layers by their name up to the last '.'; the group without a
 /// prefix is "color". Throws InputError on unreadable, empty, oversized or non-image files.
 Picture read_exr(std::filesystem::path const& file);
+/// As above from memory; `name` is used in messages.
+Picture decode_exr(std::span<unsigned char const> bytes, std::string const& name);
+/// Radiance RGBE (.hdr), old and new run-length encoding.
+Picture decode_hdr(std::span<unsigned char const> bytes, std::string const& name);
 
-/// Radiance HDR, PNG, JPEG, TIFF, ... through OpenCV. 8 and 16-bit files are sRGB-decoded to linear; HDR is
-/// taken as it is. One layer "color".
+/// OpenEXR, Radiance HDR, or PNG, JPEG, TIFF, ... through OpenCV, told apart by their first bytes. 8 and 16-bit files are
+/// sRGB-decoded to linear and give one layer "color"; HDR is taken as it is.
 Picture read_picture(std::filesystem::path const& file);
-/// As above from memory; `name` is used in messages; bytes may be EXR too.
+/// As above from memory; `name` is used in messages.
 Picture decode_picture(std::span<unsigned char const> bytes, std::string const& name);
 
 /// 8-bit sRGB PNG. rgb8.size() == 3 * width * height, already display-encoded.

@@ -1,0 +1,143 @@
+#include "gi/scene/animation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace gi {
+namespace {
+
+dquat to_quaternion(float const* v)
+{
+    dquat const q{double(v[3]), double(v[0]), double(v[1]), double(v[2])};
+    double const length = glm::length(q);
+    return length > 0 ? q / length : dquat(1, 0, 0, 0);
+}
+
+void store(dquat const& q, float* out)
+{
+    out[0] = float(q.x);
+    out[1] = float(q.y);
+    out[2] = float(q.z);
+    out[3] = float(q.w);
+}
+
+/// The two keys around a time and how far between them, 0..1; `span` is their distance in s.
+struct KeyPair {
+    std::size_t first, second;
+    double fraction, span;
+};
+
+KeyPair find_keys(std::vector<float> const& times, double time)
+{
+    auto const after =
+        std::upper_bound(times.begin(), times.end(), time, [](double t, float key) { return t < double(key); });
+    if (after == times.begin()) return {0, 0, 0, 0};
+    auto const second = std::size_t(after - times.begin());
+    if (after == times.end()) return {second - 1, second - 1, 0, 0};
+    double const start = double(times[second - 1]), span = double(times[second]) - start;
+    return {second - 1, second, (time - start) / span, span};
+}
+
+dmat4 local_matrix(dvec3 translation, dquat rotation, dvec3 scale)
+{
+    dmat4 m = glm::mat4_cast(rotation);
+    for (int c = 0; c < 3; ++c) m[c] *= scale[c];
+    m[3] = glm::dvec4(translation, 1);
+    return m;
+}
+
+struct LocalTransform {
+    dvec3 translation, scale;
+    dquat rotation;
+    std::optional<dmat4> matrix;
+};
+
+} // namespace
+
+void sample_channel(AnimationChannel const& channel, double time_s, std::size_t count, float* out)
+{
+    KeyPair const k = find_keys(channel.times_s, time_s);
+    bool const cubic = channel.interpolation == Interpolation::cubic_spline;
+    std::size_t const stride = cubic ? 3 * count : count;
+    float const* const a = channel.values.data() + k.first * stride + (cubic ? count : 0);
+    float const* const b = channel.values.data() + k.second * stride + (cubic ? count : 0);
+    bool const rotation = channel.path == ChannelPath::rotation;
+    if (channel.interpolation == Interpolation::step || k.first == k.second) {
+        std::copy(a, a + count, out);
+    } else if (cubic) {
+        double const t = k.fraction, t2 = t * t, t3 = t2 * t;
+        for (std::size_t i = 0; i < count; ++i) {
+            double const leave = k.span * double(a[count + i]); // out-tangent of the first key
+            double const arrive =
+                k.span * double(b[std::ptrdiff_t(i) - std::ptrdiff_t(count)]); // in-tangent of the second
+            out[i] = float((2 * t3 - 3 * t2 + 1) * double(a[i]) + (t3 - 2 * t2 + t) * leave +
+                           (3 * t2 - 2 * t3) * double(b[i]) + (t3 - t2) * arrive);
+        }
+    } else if (rotation) {
+        store(glm::slerp(to_quaternion(a), to_quaternion(b), k.fraction), out);
+    } else {
+        for (std::size_t i = 0; i < count; ++i) out[i] = float(glm::mix(double(a[i]), double(b[i]), k.fraction));
+    }
+    if (rotation) store(to_quaternion(out), out);
+}
+
+double local_time(Playback const& playback, double duration_s, double time_s)
+{
+    double const t = playback.offset_s + playback.speed * time_s;
+    if (!(duration_s > 0)) return 0;
+    if (!playback.loop) return std::clamp(t, 0.0, duration_s);
+    return t - std::floor(t / duration_s) * duration_s;
+}
+
+Pose evaluate_pose(Scene const& scene, std::optional<double> time_s)
+{
+    std::size_t const n = scene.nodes.size();
+    Pose pose;
+    pose.morph_weights.resize(n);
+    std::vector<LocalTransform> local(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        Node const& node = scene.nodes[i];
+        local[i] = {node.translation, node.scale, node.rotation, node.matrix};
+        pose.morph_weights[i] = node.morph_weights;
+    }
+    if (time_s)
+        for (Playback const& playback : scene.playbacks) {
+            Animation const& clip = scene.animations[std::size_t(playback.animation)];
+            double const t = local_time(playback, clip.duration_s, *time_s);
+            for (AnimationChannel const& channel : clip.channels) {
+                LocalTransform& to = local[std::size_t(channel.node)];
+                float v[4];
+                switch (channel.path) {
+                case ChannelPath::translation:
+                    sample_channel(channel, t, 3, v);
+                    to.translation = {v[0], v[1], v[2]};
+                    break;
+                case ChannelPath::scale:
+                    sample_channel(channel, t, 3, v);
+                    to.scale = {v[0], v[1], v[2]};
+                    break;
+                case ChannelPath::rotation:
+                    sample_channel(channel, t, 4, v);
+                    to.rotation = to_quaternion(v);
+                    break;
+                case ChannelPath::morph_weights: {
+                    auto& weights = pose.morph_weights[std::size_t(channel.node)];
+                    sample_channel(channel, t, weights.size(), weights.data());
+                    break;
+                }
+                }
+                if (channel.path != ChannelPath::morph_weights) to.matrix.reset();
+            }
+        }
+    pose.world_from_node.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        LocalTransform const& t = local[i];
+        dmat4 const m = t.matrix ? *t.matrix : local_matrix(t.translation, t.rotation, t.scale);
+        std::int32_t const parent = scene.nodes[i].parent;
+        pose.world_from_node[i] = parent >= 0 ? pose.world_from_node[std::size_t(parent)] * m : m;
+    }
+    return pose;
+}
+
+} // namespace gi

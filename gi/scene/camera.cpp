@@ -1,0 +1,53 @@
+#include "gi/scene/camera.h"
+
+#include "gi/base/error.h"
+
+namespace gi {
+
+CameraRays camera_rays(Camera const& camera, int width, int height, dvec3 world_origin)
+{
+    dmat4 const& m = camera.world_from_camera;
+    dvec3 const right(m[0]), up(m[1]), back(m[2]), position(m[3]);
+    double const half_height = camera.orthographic ? camera.ymag_m : std::tan(0.5 * camera.yfov_rad);
+    double const half_width = half_height * width / height;
+    CameraRays rays;
+    rays.orthographic = camera.orthographic;
+    rays.origin = vec3(position - world_origin);
+    rays.forward = vec3(-back);
+    rays.step_x = vec3(right * (2 * half_width / width));
+    rays.step_y = vec3(-up * (2 * half_height / height));
+    rays.corner = vec3((camera.orthographic ? dvec3{0} : -back) - half_width * right + half_height * up);
+    return rays;
+}
+
+vec3 project(CameraRays const& camera, vec3 point)
+{
+    dvec3 const to = dvec3(point) - dvec3(camera.origin), forward(camera.forward);
+    dvec3 const step_x(camera.step_x), step_y(camera.step_y);
+    double const depth = glm::dot(to, forward);
+    dvec3 const on_plane = (camera.orthographic ? to : to / depth) - dvec3(camera.corner);
+    return {float(glm::dot(on_plane, step_x) / glm::dot(step_x, step_x)),
+            float(glm::dot(on_plane, step_y) / glm::dot(step_y, step_y)), float(depth)};
+}
+
+Camera look_at(dvec3 from, dvec3 at, double yfov_deg)
+{
+    dvec3 const back = from - at;
+    double const length = glm::length(back);
+    if (!(length > 0) || !std::isfinite(length) || !std::isfinite(glm::length(from)))
+        throw InputError("the camera has no direction", "it looks from a point at the same point or at no number",
+                         "give two different points");
+    if (!(yfov_deg > 0) || !(yfov_deg < 180))
+        throw InputError("the field of view is not between 0 and 180 degrees",
+                         "a perspective needs an opening angle", "45 is usual");
+    Camera camera;
+    camera.yfov_rad = glm::radians(yfov_deg);
+    dvec3 const z = back / length;
+    dvec3 const up = std::abs(z.y) < 1 - 1e-12 ? dvec3{0, 1, 0} : dvec3{0, 0, 1};
+    dvec3 const x = glm::normalize(glm::cross(up, z));
+    camera.world_from_camera =
+        dmat4(glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), glm::dvec4(from, 1));
+    return camera;
+}
+
+} // namespace gi
