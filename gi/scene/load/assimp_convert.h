@@ -1,0 +1,14 @@
+#pragma once
+#include "gi/base/report.h"
+#include "gi/scene/scene.h"
+
+#include <filesystem>
+
+struct aiScene;
+
+namespace gi {
+
+/// Nodes, meshes, materials, bones, clips, cameras and lights. @param file where textures are looked up beside
+Scene convert_assimp(aiScene const& source, std::filesystem::path const& file, Report& report);
+
+} // namespace gi

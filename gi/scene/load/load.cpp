@@ -1,0 +1,30 @@
+#include "gi/scene/load.h"
+
+#include "gi/base/error.h"
+#include "gi/scene/generate.h"
+
+#include <algorithm>
+
+namespace gi {
+
+Scene load_scene(std::string const& file_or_name, Report& report)
+{
+    std::filesystem::path const file = file_or_name;
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) {
+        if (file_or_name == "atrium") return generate_atrium({});
+        if (file_or_name == "cornell") return generate_cornell();
+        throw InputError("there is no scene '" + file_or_name + "'", "no such file, and no built-in scene of that name",
+                         "give a glTF, YAML, OBJ, PLY, FBX, ... file, or one of: atrium, cornell");
+    }
+    if (std::filesystem::is_directory(file, error))
+        throw InputError("'" + file_or_name + "' is a folder", "a scene is a file", "name the scene file in it");
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    if (extension == ".gltf" || extension == ".glb") return load_gltf(file, report);
+    if (extension == ".yaml" || extension == ".yml") return load_scene_file(file, report);
+    return load_assimp(file, report);
+}
+
+} // namespace gi

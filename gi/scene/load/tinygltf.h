@@ -1,0 +1,12 @@
+#pragma once
+// tinygltf parses the structure of a glTF file. Buffers and images are ours (gltf_document.h): every byte that a file points
+// to is checked before it is read.
+
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_INCLUDE_JSON
+#define TINYGLTF_NO_FS
+#pragma GCC system_header
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <tiny_gltf.h>
