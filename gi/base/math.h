@@ -28,10 +28,7 @@ inline constexpr float kInf = 3.402823466e+38f;
 GI_FN inline float luminance(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 GI_FN inline float max_component(vec3 c) { return glm::max(c.x, glm::max(c.y, c.z)); }
 GI_FN inline float square(float x) { return x * x; }
-GI_FN inline bool all_finite(vec3 v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
+GI_FN inline bool all_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 /// Right-handed orthonormal frame about a unit normal n (Duff et al. 2017, "Building an Orthonormal
 /// Basis, Revisited", listing 3: no branch, no singularity).
@@ -43,9 +40,7 @@ struct Frame {
         float const sign = std::copysign(1.0f, n.z);
         float const a = -1.0f / (sign + n.z);
         float const b = n.x * n.y * a;
-        return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x},
-                {b, sign + n.y * n.y * a, -n.y},
-                n};
+        return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
     }
     GI_FN vec3 to_local(vec3 v) const
     {

@@ -12,8 +12,8 @@ namespace gi {
 /// One named layer. data.size() == width * height * channels; channel c of pixel (x, y) is
 /// data[(y * width + x) * channels + c].
 struct Layer {
-    std::string name;  ///< "color", "L0", "albedo", "depth", ...
-    int channels = 3;  ///< 1 (Y), 3 (RGB or XYZ) or 4 (RGBA)
+    std::string name; ///< "color", "L0", "albedo", "depth", ...
+    int channels = 3; ///< 1 (Y), 3 (RGB or XYZ) or 4 (RGBA)
     std::vector<float> data;
 };
 

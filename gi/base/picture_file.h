@@ -28,8 +28,8 @@ Picture decode_exr(std::span<unsigned char const> bytes, std::string const& name
 /// Radiance RGBE (.hdr), old and new run-length encoding.
 Picture decode_hdr(std::span<unsigned char const> bytes, std::string const& name);
 
-/// OpenEXR, Radiance HDR, or PNG, JPEG, TIFF, ... through OpenCV, told apart by their first bytes. 8 and 16-bit files are
-/// sRGB-decoded to linear and give one layer "color"; HDR is taken as it is.
+/// OpenEXR, Radiance HDR, or PNG, JPEG, TIFF, ... through OpenCV, told apart by their first bytes. 8 and 16-bit
+/// files are sRGB-decoded to linear and give one layer "color"; HDR is taken as it is.
 Picture read_picture(std::filesystem::path const& file);
 /// As above from memory; `name` is used in messages.
 Picture decode_picture(std::span<unsigned char const> bytes, std::string const& name);

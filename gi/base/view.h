@@ -18,12 +18,8 @@ struct View {
     View() = default;
     GI_FN View(T* first, std::size_t n) : data(first), count(n) {}
     template <class U>
-        requires std::is_same_v<std::remove_const_t<T>, U>
-    View(std::vector<U> const& v)
-        requires std::is_const_v<T>
-        : data(v.data()), count(v.size())
-    {
-    }
+    requires std::is_same_v<std::remove_const_t<T>, U> View(std::vector<U> const& v)
+    requires std::is_const_v<T> : data(v.data()), count(v.size()) {}
     View(std::vector<std::remove_const_t<T>>& v) : data(v.data()), count(v.size()) {}
 
     GI_FN T& operator[](std::size_t i) const

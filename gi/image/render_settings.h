@@ -15,22 +15,22 @@ namespace gi {
 enum class PixelFilter : std::uint8_t { box, tent };
 
 struct RenderSettings {
-    int width = 512, height = 512;     ///< pixels, >= 1
-    std::uint32_t paths = 64;          ///< per pixel: the most that are traced
-    double budget_s = 0;               ///< stop when a pass would end later; 0 = none
-    double until_relmse = 0;           ///< stop when the estimated relMSE of the picture is below; 0 = none
-    int bounces = 64;                  ///< indirect bounces: 0 = emitted and direct light only
+    int width = 512, height = 512; ///< pixels, >= 1
+    std::uint32_t paths = 64;      ///< per pixel: the most that are traced
+    double budget_s = 0;           ///< stop when a pass would end later; 0 = none
+    double until_relmse = 0;       ///< stop when the estimated relMSE of the picture is below; 0 = none
+    int bounces = 64;              ///< indirect bounces: 0 = emitted and direct light only
     std::uint64_t seed = 0;
-    int threads = 0;                   ///< 0 = all
+    int threads = 0;                       ///< 0 = all
     PixelFilter filter = PixelFilter::box; ///< by filter importance sampling; tent has a radius of one pixel
-    std::filesystem::path checkpoint;  ///< exact state is kept here while unfinished; empty = no
-    bool resume = false;               ///< start from the checkpoint if it is there and fits
+    std::filesystem::path checkpoint;      ///< exact state is kept here while unfinished; empty = no
+    bool resume = false;                   ///< start from the checkpoint if it is there and fits
 };
 
 struct RenderStatus {
     double fraction = 0;
     std::uint32_t paths = 0; ///< per pixel so far
-    double relmse = 0;       ///< estimated from the variance: mean of var(mean) / (mean^2 + 0.01); 0 = not known yet
+    double relmse = 0; ///< estimated from the variance: mean of var(mean) / (mean^2 + 0.01); 0 = not known yet
 };
 
 /// Called between passes.
@@ -39,8 +39,9 @@ using RenderProgress = std::function<void(RenderStatus const&)>;
 /// Why a render ended.
 enum class RenderEnd : std::uint8_t { paths, budget, error_target, interrupted };
 
-/// Layers of `picture`: color, L0 (emitted, seen directly or through delta lobes), L1 (one scattering: direct light), L2 (two
-/// or more: indirect), albedo, normal, depth, position, variance (of the mean of color, per channel).
+/// Layers of `picture`: color, L0 (emitted, seen directly or through delta lobes), L1 (one scattering: direct
+/// light), L2 (two or more: indirect), albedo, normal, depth, position, variance (of the mean of color, per
+/// channel).
 struct RenderResult {
     Picture picture;
     RenderEnd end = RenderEnd::paths;

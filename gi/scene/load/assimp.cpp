@@ -1,5 +1,5 @@
-// OBJ, PLY, STL, FBX, COLLADA, ... through Assimp. Some damaged files make Assimp itself crash or hang, so every file is
-// first imported by a child process with limits; only if that ends well does this process read it.
+// OBJ, PLY, STL, FBX, COLLADA, ... through Assimp. Some damaged files make Assimp itself crash or hang, so every
+// file is first imported by a child process with limits; only if that ends well does this process read it.
 
 #include "gi/base/error.h"
 #include "gi/base/file.h"
@@ -54,11 +54,13 @@ void probe(std::filesystem::path const& file)
         _exit(0);
     }
     int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
     throw InputError("'" + file.string() + "' cannot be read",
-                     WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU ? "its reader (Assimp) did not come to an end"
-                                                                        : "its reader (Assimp) crashed on it",
+                     WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU
+                         ? "its reader (Assimp) did not come to an end"
+                         : "its reader (Assimp) crashed on it",
                      "convert it to glTF with another program");
 }
 
@@ -79,7 +81,8 @@ Scene load_assimp(std::filesystem::path const& file, Report& report)
         reason = e.what();
     }
     if (source == nullptr)
-        throw InputError("'" + file.string() + "' cannot be read", reason.empty() ? "Assimp gives no reason" : reason,
+        throw InputError("'" + file.string() + "' cannot be read",
+                         reason.empty() ? "Assimp gives no reason" : reason,
                          "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp knows");
     return convert_assimp(*source, file, report);
 }

@@ -44,7 +44,8 @@ public:
         add_cameras();
         add_lights();
         add_animations();
-        if (std::all_of(scene_.meshes.begin(), scene_.meshes.end(), [](Mesh const& m) { return m.triangles.empty(); }))
+        if (std::all_of(scene_.meshes.begin(), scene_.meshes.end(),
+                        [](Mesh const& m) { return m.triangles.empty(); }))
             throw InputError("'" + scene_.name + "' has no triangles", "points and lines cannot be seen",
                              "export its surfaces");
         return std::move(scene_);
@@ -199,7 +200,8 @@ private:
             node.name = v.node->mName.C_Str();
             node.parent = v.parent;
             node.matrix = to_matrix(v.node->mTransformation);
-            for (unsigned i = 0; i < v.node->mNumMeshes; ++i) node.meshes.push_back(std::int32_t(v.node->mMeshes[i]));
+            for (unsigned i = 0; i < v.node->mNumMeshes; ++i)
+                node.meshes.push_back(std::int32_t(v.node->mMeshes[i]));
             node_of_.try_emplace(node.name, index);
             scene_.nodes.push_back(std::move(node));
             for (unsigned i = v.node->mNumChildren; i > 0; --i) stack.push_back({v.node->mChildren[i - 1], index});
@@ -226,7 +228,8 @@ private:
             if (source.HasTextureCoords(set))
                 for (unsigned i = 0; i < n; ++i) {
                     aiVector3D const uv = source.mTextureCoords[set][i];
-                    (set == 0 ? mesh.uv0 : mesh.uv1).push_back({uv.x, 1 - uv.y}); // (0, 0) is the lower left corner
+                    (set == 0 ? mesh.uv0 : mesh.uv1)
+                        .push_back({uv.x, 1 - uv.y}); // (0, 0) is the lower left corner
                 }
         if (source.HasVertexColors(0))
             for (unsigned i = 0; i < n; ++i) {
@@ -407,16 +410,18 @@ private:
                     continue;
                 }
                 split_matrix(scene_.nodes[std::size_t(node->second)]);
-                auto const put_vector = [](std::vector<float>& to, aiVector3D v) { to.insert(to.end(), {v.x, v.y, v.z}); };
+                auto const put_vector = [](std::vector<float>& to, aiVector3D v) {
+                    to.insert(to.end(), {v.x, v.y, v.z});
+                };
                 auto const put_rotation = [](std::vector<float>& to, aiQuaternion q) {
                     to.insert(to.end(), {q.x, q.y, q.z, q.w});
                 };
                 add_channel(clip, node->second, ChannelPath::translation, channel.mPositionKeys,
                             channel.mNumPositionKeys, ticks, put_vector);
-                add_channel(clip, node->second, ChannelPath::rotation, channel.mRotationKeys, channel.mNumRotationKeys,
-                            ticks, put_rotation);
-                add_channel(clip, node->second, ChannelPath::scale, channel.mScalingKeys, channel.mNumScalingKeys, ticks,
-                            put_vector);
+                add_channel(clip, node->second, ChannelPath::rotation, channel.mRotationKeys,
+                            channel.mNumRotationKeys, ticks, put_rotation);
+                add_channel(clip, node->second, ChannelPath::scale, channel.mScalingKeys, channel.mNumScalingKeys,
+                            ticks, put_vector);
             }
             scene_.animations.push_back(std::move(clip));
         }
@@ -434,8 +439,8 @@ private:
         m.Decompose(scale, rotation, position);
         node.translation = dvec3(to_vec3(position));
         node.scale = dvec3(to_vec3(scale));
-        node.rotation = glm::normalize(
-            dquat{double(rotation.w), double(rotation.x), double(rotation.y), double(rotation.z)});
+        node.rotation =
+            glm::normalize(dquat{double(rotation.w), double(rotation.x), double(rotation.y), double(rotation.z)});
         node.matrix.reset();
     }
 

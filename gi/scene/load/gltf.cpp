@@ -21,7 +21,7 @@ std::optional<ChannelPath> to_path(std::string const& name)
 
 Interpolation to_interpolation(std::string const& name)
 {
-    return name == "STEP" ? Interpolation::step
+    return name == "STEP"          ? Interpolation::step
            : name == "CUBICSPLINE" ? Interpolation::cubic_spline
                                    : Interpolation::linear;
 }
@@ -42,7 +42,8 @@ void read_keys(GltfDocument& d, tinygltf::AnimationSampler const& sampler, std::
         throw d.error(fmt::format("{} has {} values", where, channel.values.size()),
                       fmt::format("{} keys of {} are needed", channel.times_s.size(), per_key));
     for (float const v : channel.values)
-        if (!std::isfinite(v)) throw d.error(where + " has a value that is not finite", "nothing can be placed with it");
+        if (!std::isfinite(v))
+            throw d.error(where + " has a value that is not finite", "nothing can be placed with it");
 }
 
 void read_animations(GltfDocument& d, std::vector<std::int32_t> const& place, Scene& scene, Report& report)
@@ -67,7 +68,8 @@ void read_animations(GltfDocument& d, std::vector<std::int32_t> const& place, Sc
             channel.path = *path;
             std::size_t const targets = scene.nodes[std::size_t(channel.node)].morph_weights.size();
             if (*path == ChannelPath::morph_weights && targets == 0) {
-                report.lose("animation channels ignored", 1, where + " moves weights of a node without morph targets");
+                report.lose("animation channels ignored", 1,
+                            where + " moves weights of a node without morph targets");
                 continue;
             }
             std::size_t const components = *path == ChannelPath::rotation        ? 4

@@ -38,20 +38,24 @@ T load(unsigned char const* p)
 float to_float(unsigned char const* p, int type, bool normalized)
 {
     switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return load<float>(p);
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+        return load<float>(p);
     case TINYGLTF_COMPONENT_TYPE_BYTE: {
         float const v = float(load<std::int8_t>(p));
         return normalized ? std::max(v / 127, -1.0f) : v;
     }
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return float(*p) * (normalized ? 1.0f / 255 : 1.0f);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return float(*p) * (normalized ? 1.0f / 255 : 1.0f);
     case TINYGLTF_COMPONENT_TYPE_SHORT: {
         float const v = float(load<std::int16_t>(p));
         return normalized ? std::max(v / 32767, -1.0f) : v;
     }
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
         return float(load<std::uint16_t>(p)) * (normalized ? 1.0f / 65535 : 1.0f);
-    case TINYGLTF_COMPONENT_TYPE_INT: return float(load<std::int32_t>(p));
-    default: return float(load<std::uint32_t>(p));
+    case TINYGLTF_COMPONENT_TYPE_INT:
+        return float(load<std::int32_t>(p));
+    default:
+        return float(load<std::uint32_t>(p));
     }
 }
 
@@ -73,7 +77,8 @@ public:
         if (accessor_->count < 1) throw bad("it is empty");
         // What a file holds once may be used a few times, but it may not grow without limit.
         d.elements_read += accessor_->count;
-        if (accessor_->count > (std::size_t(1) << 32) || d.elements_read > (std::size_t(1) << 22) + 64 * d.file_bytes)
+        if (accessor_->count > (std::size_t(1) << 32) ||
+            d.elements_read > (std::size_t(1) << 22) + 64 * d.file_bytes)
             throw bad(fmt::format("{} elements are more than a file of {} bytes can mean", accessor_->count,
                                   d.file_bytes));
     }
@@ -108,14 +113,13 @@ private:
         Bytes const bytes = d_.view_bytes(view);
         if (offset > bytes.size() || layout_.bytes() > bytes.size() - offset ||
             (count - 1) > (bytes.size() - offset - layout_.bytes()) / stride)
-            throw bad(fmt::format("{} elements of {} bytes lie outside a buffer view of {}", count, layout_.bytes(),
-                                  bytes.size()));
+            throw bad(fmt::format("{} elements of {} bytes lie outside a buffer view of {}", count,
+                                  layout_.bytes(), bytes.size()));
         std::size_t const rows = layout_.components / layout_.columns;
         for (std::size_t i = 0; i < count; ++i) {
             unsigned char const* const element = bytes.data() + offset + i * stride;
             for (std::size_t c = 0; c < layout_.components; ++c)
-                put(target(i), c,
-                    element + c / rows * layout_.column_bytes + c % rows * layout_.component_bytes);
+                put(target(i), c, element + c / rows * layout_.column_bytes + c % rows * layout_.component_bytes);
         }
     }
     template <class Put>

@@ -17,11 +17,11 @@ using nlohmann::json;
 constexpr int kDeepest = 64; ///< nesting of a file's JSON; deeper files would exhaust the stack of the parser
 
 constexpr std::array<std::string_view, 15> kKnownExtensions{
-    "KHR_draco_mesh_compression", "KHR_lights_punctual",       "KHR_materials_emissive_strength",
-    "KHR_materials_ior",          "KHR_materials_specular",    "KHR_materials_transmission",
-    "KHR_materials_volume",       "KHR_materials_unlit",       "KHR_materials_pbrSpecularGlossiness",
-    "KHR_mesh_quantization",      "KHR_texture_transform",     "EXT_meshopt_compression",
-    "EXT_texture_webp",           "KHR_materials_variants",    "KHR_xmp_json_ld"};
+    "KHR_draco_mesh_compression", "KHR_lights_punctual",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular", "KHR_materials_transmission",
+    "KHR_materials_volume",       "KHR_materials_unlit",    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_mesh_quantization",      "KHR_texture_transform",  "EXT_meshopt_compression",
+    "EXT_texture_webp",           "KHR_materials_variants", "KHR_xmp_json_ld"};
 
 struct Container {
     Bytes text, binary;
@@ -116,7 +116,8 @@ std::string text_member(json const& object, char const* key)
 std::int64_t index_member(json const& object, char const* key)
 {
     auto const it = object.find(key);
-    if (it == object.end() || !it->is_number_integer() || (it->is_number_unsigned() && it->get<std::uint64_t>() >> 62))
+    if (it == object.end() || !it->is_number_integer() ||
+        (it->is_number_unsigned() && it->get<std::uint64_t>() >> 62))
         return -1;
     return it->get<std::int64_t>();
 }
@@ -158,7 +159,8 @@ void open_buffers(GltfDocument& d, json const& list, Bytes binary, std::filesyst
             bytes = binary;
         bool const fallback = list[i].contains("extensions"); // of compressed data: may be left out
         if (std::uint64_t(length) > bytes.size() && !(bytes.empty() && fallback))
-            throw d.error(what + " is truncated", fmt::format("it should have {} bytes and has {}", length, bytes.size()));
+            throw d.error(what + " is truncated",
+                          fmt::format("it should have {} bytes and has {}", length, bytes.size()));
         d.buffers.push_back(bytes.empty() ? bytes : bytes.first(std::size_t(length)));
         d.file_bytes += uri.empty() ? 0 : bytes.size();
     }
@@ -170,7 +172,8 @@ void open_images(GltfDocument& d, json const& list, std::filesystem::path const&
         GltfImage image;
         std::string const uri = text_member(list[i], "uri");
         image.name = text_member(list[i], "name");
-        if (image.name.empty()) image.name = uri.empty() || uri.starts_with("data:") ? fmt::format("image {}", i) : uri;
+        if (image.name.empty())
+            image.name = uri.empty() || uri.starts_with("data:") ? fmt::format("image {}", i) : uri;
         std::int64_t const view = index_member(list[i], "bufferView");
         try {
             if (uri.starts_with("data:"))
@@ -210,7 +213,8 @@ Bytes GltfDocument::view_bytes(int index)
     if (auto const extension = v.extensions.find("EXT_meshopt_compression"); extension != v.extensions.end())
         return decoded_views[index] = own(decode_meshopt(*this, index, extension->second));
     if (v.buffer < 0 || std::size_t(v.buffer) >= buffers.size())
-        throw error(fmt::format("buffer {} does not exist", v.buffer), fmt::format("buffer view {} needs it", index));
+        throw error(fmt::format("buffer {} does not exist", v.buffer),
+                    fmt::format("buffer view {} needs it", index));
     Bytes const buffer = buffers[std::size_t(v.buffer)];
     if (v.byteLength > buffer.size() || v.byteOffset > buffer.size() - v.byteLength)
         throw error(fmt::format("buffer view {} lies outside its buffer", index),

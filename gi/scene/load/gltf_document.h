@@ -1,6 +1,6 @@
 #pragma once
-// A glTF file taken apart: its structure through tinygltf, its bytes as checked spans. Everything that is wrong with the
-// file as a whole is an InputError here.
+// A glTF file taken apart: its structure through tinygltf, its bytes as checked spans. Everything that is wrong
+// with the file as a whole is an InputError here.
 
 #include "gi/base/error.h"
 #include "gi/base/report.h"
@@ -27,10 +27,11 @@ struct GltfDocument {
     tinygltf::Model model;
     std::vector<Bytes> buffers;
     std::vector<GltfImage> images;
-    std::vector<std::unique_ptr<std::vector<unsigned char>>> storage; ///< of what was decoded or read from other files
-    std::map<int, Bytes> decoded_views;                               ///< of EXT_meshopt_compression
-    std::size_t file_bytes = 0;                                       ///< with all buffers
-    std::size_t elements_read = 0; ///< from accessors so far; a small file must not ask for a large scene
+    std::vector<std::unique_ptr<std::vector<unsigned char>>>
+        storage;                        ///< of what was decoded or read from other files
+    std::map<int, Bytes> decoded_views; ///< of EXT_meshopt_compression
+    std::size_t file_bytes = 0;         ///< with all buffers
+    std::size_t elements_read = 0;      ///< from accessors so far; a small file must not ask for a large scene
 
     InputError error(std::string const& problem, std::string const& why) const
     {
@@ -41,7 +42,8 @@ struct GltfDocument {
         storage.push_back(std::make_unique<std::vector<unsigned char>>(std::move(bytes)));
         return *storage.back();
     }
-    /// The bytes of a buffer view, decompressed where it is compressed. Throws InputError if it lies outside its buffer.
+    /// The bytes of a buffer view, decompressed where it is compressed. Throws InputError if it lies outside its
+    /// buffer.
     Bytes view_bytes(int view);
 };
 

@@ -12,7 +12,8 @@ namespace {
 /// Values of a JSON object with their defaults; anything of another type counts as missing.
 class Properties {
 public:
-    explicit Properties(tinygltf::Value const* object) : object_(object != nullptr && object->IsObject() ? object : nullptr)
+    explicit Properties(tinygltf::Value const* object)
+        : object_(object != nullptr && object->IsObject() ? object : nullptr)
     {
     }
     bool exist() const { return object_ != nullptr; }
@@ -85,7 +86,8 @@ public:
         Properties const specular(find_extension(source.extensions, "KHR_materials_specular"));
         m.specular = within(specular.number("specularFactor", 1), 0, 1, "specularFactor");
         auto const tint = specular.numbers("specularColorFactor", {1, 1, 1});
-        for (int c = 0; c < 3; ++c) m.specular_color[c] = within(tint[std::size_t(c)], 0, 1e3, "specularColorFactor");
+        for (int c = 0; c < 3; ++c)
+            m.specular_color[c] = within(tint[std::size_t(c)], 0, 1e3, "specularColorFactor");
         m.specular_map = texture(specular.find("specularTexture"), false);
         m.specular_color_map = texture(specular.find("specularColorTexture"), true);
         Properties const transmission(find_extension(source.extensions, "KHR_materials_transmission"));
@@ -96,7 +98,8 @@ public:
         if (volume.find("attenuationDistance") != nullptr)
             report_.lose("absorption inside of glass ignored", 1, where_);
 
-        read_specular_glossiness(m, Properties(find_extension(source.extensions, "KHR_materials_pbrSpecularGlossiness")));
+        read_specular_glossiness(
+            m, Properties(find_extension(source.extensions, "KHR_materials_pbrSpecularGlossiness")));
         if (find_extension(source.extensions, "KHR_materials_unlit") != nullptr) {
             m.specular = 0;
             m.metallic = 0;
@@ -149,8 +152,8 @@ private:
     TextureRef texture(Info const& info, bool srgb)
     {
         if (info.index < 0) return {};
-        return make_ref(info.index, info.texCoord, Properties(find_extension(info.extensions, "KHR_texture_transform")),
-                        srgb);
+        return make_ref(info.index, info.texCoord,
+                        Properties(find_extension(info.extensions, "KHR_texture_transform")), srgb);
     }
     /// Of an extension, where tinygltf leaves the JSON as it is.
     TextureRef texture(tinygltf::Value const* info, bool srgb)
@@ -189,8 +192,8 @@ private:
         tinygltf::Texture const& t = d_.model.textures[std::size_t(index)];
         int source = t.source;
         if (source < 0)
-            source = int(std::clamp(Properties(find_extension(t.extensions, "EXT_texture_webp")).number("source", -1), -1.0,
-                                    1e9));
+            source = int(std::clamp(
+                Properties(find_extension(t.extensions, "EXT_texture_webp")).number("source", -1), -1.0, 1e9));
         Texture sampling;
         if (t.sampler >= 0 && std::size_t(t.sampler) < d_.model.samplers.size()) {
             tinygltf::Sampler const& s = d_.model.samplers[std::size_t(t.sampler)];

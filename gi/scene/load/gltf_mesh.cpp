@@ -108,7 +108,8 @@ private:
 
     void read_skin(tinygltf::Primitive const& p, Mesh& mesh)
     {
-        if (p.attributes.contains("JOINTS_1")) report_.lose("joints beyond the fourth of a vertex ignored", 1, where_);
+        if (p.attributes.contains("JOINTS_1"))
+            report_.lose("joints beyond the fourth of a vertex ignored", 1, where_);
         auto const joints = p.attributes.find("JOINTS_0");
         if (joints == p.attributes.end() || !p.attributes.contains("WEIGHTS_0")) return;
         std::vector<std::uint32_t> indices;

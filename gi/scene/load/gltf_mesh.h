@@ -8,8 +8,8 @@ namespace gi {
 struct GltfMesh {
     std::vector<std::int32_t> meshes; ///< indices into Scene::meshes
     std::size_t morph_targets = 0;
-    std::vector<float> weights;       ///< default morph weights, one per target
-    std::uint32_t joints = 0;         ///< a skin must have this many
+    std::vector<float> weights; ///< default morph weights, one per target
+    std::uint32_t joints = 0;   ///< a skin must have this many
 };
 
 /// All meshes, in the order of the file. Points and lines are counted as lost.

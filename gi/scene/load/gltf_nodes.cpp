@@ -51,7 +51,8 @@ private:
         for (std::size_t i = 0; i < nodes.size(); ++i)
             for (int const child : nodes[i].children) {
                 if (!exists(child))
-                    throw d_.error(fmt::format("node {} does not exist", child), fmt::format("it is a child of node {}", i));
+                    throw d_.error(fmt::format("node {} does not exist", child),
+                                   fmt::format("it is a child of node {}", i));
                 if (has_parent_[std::size_t(child)])
                     throw d_.error(fmt::format("node {} has two parents", child), "the node graph must be a tree");
                 has_parent_[std::size_t(child)] = true;
@@ -66,7 +67,8 @@ private:
             stack.insert(stack.end(), children.begin(), children.end());
         }
         if (reached != nodes.size())
-            throw d_.error("its nodes form a loop", fmt::format("{} of {} have no root", nodes.size() - reached, nodes.size()));
+            throw d_.error("its nodes form a loop",
+                           fmt::format("{} of {} have no root", nodes.size() - reached, nodes.size()));
     }
 
     void add_tree(int root, bool shown)
@@ -79,7 +81,8 @@ private:
         while (!stack.empty()) {
             Visit const v = stack.back();
             stack.pop_back();
-            if (place_[std::size_t(v.node)] >= 0) continue; // a root that the scene names twice, or names below another
+            if (place_[std::size_t(v.node)] >= 0)
+                continue; // a root that the scene names twice, or names below another
             place_[std::size_t(v.node)] = std::int32_t(scene_.nodes.size());
             tinygltf::Node const& source = d_.model.nodes[std::size_t(v.node)];
             scene_.nodes.push_back(make_node(source, v.node, v.parent, shown));
@@ -94,7 +97,8 @@ private:
         node.name = source.name.empty() ? fmt::format("node {}", index) : source.name;
         std::string const where = "node '" + node.name + "'";
         node.parent = parent;
-        if (!finite(source.matrix) || !finite(source.translation) || !finite(source.rotation) || !finite(source.scale))
+        if (!finite(source.matrix) || !finite(source.translation) || !finite(source.rotation) ||
+            !finite(source.scale))
             throw d_.error(where + " has no finite transform", "nothing can be placed with it");
         if (source.matrix.size() == 16) {
             dmat4 m;
@@ -147,7 +151,9 @@ private:
         Camera camera;
         camera.name = node.name;
         camera.orthographic = source.type == "orthographic";
-        auto const bad = [&](std::string const& why) { return d_.error("camera '" + node.name + "' cannot see", why); };
+        auto const bad = [&](std::string const& why) {
+            return d_.error("camera '" + node.name + "' cannot see", why);
+        };
         if (camera.orthographic) {
             camera.ymag_m = std::abs(source.orthographic.ymag);
             if (!(camera.ymag_m > 0) || !std::isfinite(camera.ymag_m)) throw bad("its height is zero");
@@ -200,7 +206,8 @@ private:
             Skin skin;
             for (int const joint : source.joints) {
                 if (!exists(joint))
-                    throw d_.error(fmt::format("node {} does not exist", joint), fmt::format("it is a joint of skin {}", s));
+                    throw d_.error(fmt::format("node {} does not exist", joint),
+                                   fmt::format("it is a joint of skin {}", s));
                 skin.joints.push_back(place_[std::size_t(joint)]);
             }
             skin.inverse_bind.assign(skin.joints.size(), mat4(1));

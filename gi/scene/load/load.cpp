@@ -14,7 +14,8 @@ Scene load_scene(std::string const& file_or_name, Report& report)
     if (!std::filesystem::exists(file, error)) {
         if (file_or_name == "atrium") return generate_atrium({});
         if (file_or_name == "cornell") return generate_cornell();
-        throw InputError("there is no scene '" + file_or_name + "'", "no such file, and no built-in scene of that name",
+        throw InputError("there is no scene '" + file_or_name + "'",
+                         "no such file, and no built-in scene of that name",
                          "give a glTF, YAML, OBJ, PLY, FBX, ... file, or one of: atrium, cornell");
     }
     if (std::filesystem::is_directory(file, error))
