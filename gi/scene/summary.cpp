@@ -1,0 +1,84 @@
+#include "gi/scene/summary.h"
+
+#include "gi/scene/bsdf.h"
+
+#include <fmt/format.h>
+
+namespace gi {
+namespace {
+
+std::string material_kinds(World const& world)
+{
+    std::size_t phong = 0, metal = 0, mirror = 0, glass = 0, matt = 0, plastic = 0, light = 0;
+    for (Material const& m : world.scene->materials) {
+        light += emits(m);
+        if (m.model == MaterialModel::phong)
+            ++phong;
+        else if (m.transmission > 0)
+            ++glass;
+        else if (m.metallic > 0.5f)
+            ++(m.roughness * m.roughness < kSmoothAlpha ? mirror : metal);
+        else
+            ++(m.specular > 0 ? plastic : matt);
+    }
+    return fmt::format("{} ({} matt, {} coated, {} Phong, {} metal, {} mirror, {} glass; {} emit)",
+                       world.scene->materials.size(), matt, plastic, phong, metal, mirror, glass, light);
+}
+
+double emitting_area(World const& world)
+{
+    double area = 0;
+    for (std::uint32_t const i : world.emitters) {
+        uvec3 const t = world.triangles[i];
+        dvec3 const p(world.positions[t.x]);
+        area += 0.5 * glm::length(glm::cross(dvec3(world.positions[t.y]) - p, dvec3(world.positions[t.z]) - p));
+    }
+    return area;
+}
+
+template <class Items, class Text>
+std::string join(Items const& items, Text const& text)
+{
+    std::string out;
+    for (auto const& item : items) out += (out.empty() ? "" : ", ") + text(item);
+    return out.empty() ? "none" : out;
+}
+
+} // namespace
+
+SceneSummary summarise(World const& world)
+{
+    Scene const& scene = *world.scene;
+    SceneSummary s;
+    auto const add = [&](char const* what, std::string const& value) { s.lines.push_back({what, value}); };
+    add("nodes", std::to_string(scene.nodes.size()));
+    add("meshes", fmt::format("{} ({} placed)", scene.meshes.size(), world.instances));
+    add("triangles", std::to_string(world.triangles.size()));
+    add("vertices", std::to_string(world.positions.size()));
+    if (!world.bounds.empty()) {
+        dvec3 const low = dvec3(world.bounds.low) + world.origin, high = dvec3(world.bounds.high) + world.origin;
+        add("bounds", fmt::format("{:.6g}, {:.6g}, {:.6g} to {:.6g}, {:.6g}, {:.6g} m", low.x, low.y, low.z, high.x,
+                                  high.y, high.z));
+    }
+    add("materials", material_kinds(world));
+    add("textures", fmt::format("{} ({:.1f} MiB)", scene.textures.textures.size(),
+                                double(scene.textures.texels.size() * sizeof(Rgba8)) / (1 << 20)));
+    add("punctual lights", std::to_string(world.lights.size()));
+    add("emissive triangles", fmt::format("{} ({:.6g} m2)", world.emitters.size(), emitting_area(world)));
+    add("environment map", scene.environment
+                               ? fmt::format("{} x {}", scene.environment->width, scene.environment->height)
+                               : "none");
+    add("cameras", join(world.cameras, [](Camera const& c) { return c.name; }));
+    add("skins", join(scene.skins, [](Skin const& k) { return fmt::format("{} joints", k.joints.size()); }));
+    std::size_t targets = 0;
+    for (Mesh const& m : scene.meshes) targets += m.morph_targets.size();
+    add("morph targets", std::to_string(targets));
+    add("clips",
+        join(scene.animations, [](Animation const& a) { return fmt::format("{} ({:.3g} s)", a.name, a.duration_s); }));
+    add("playing", join(scene.playbacks, [&](Playback const& p) {
+            return scene.animations[std::size_t(p.animation)].name;
+        }));
+    return s;
+}
+
+} // namespace gi

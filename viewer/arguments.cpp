@@ -1,0 +1,91 @@
+#include "viewer/arguments.h"
+
+#include "gi/base/error.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace viewer {
+namespace {
+
+/// The whole text as a finite number, whatever the locale.
+std::optional<double> to_number(std::string_view text)
+{
+    double value = 0;
+    auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+        return std::nullopt;
+    return value;
+}
+
+gi::InputError bad(std::string const& option, std::string const& text, std::string const& why,
+                   std::string const& suggestion)
+{
+    return {option + " '" + text + "' is not understood", why, suggestion};
+}
+
+} // namespace
+
+std::pair<int, int> parse_size(std::string const& text)
+{
+    auto const cross = text.find('x');
+    auto const number = [&](std::string_view part) {
+        auto const v = to_number(part);
+        return v && *v >= 1 && *v <= 65536 && *v == std::floor(*v) ? int(*v) : 0;
+    };
+    if (cross != std::string::npos) {
+        int const width = number(std::string_view(text).substr(0, cross));
+        int const height = number(std::string_view(text).substr(cross + 1));
+        if (width > 0 && height > 0 && std::int64_t(width) * height <= (std::int64_t(1) << 28)) return {width, height};
+    }
+    throw bad("--size", text, "two whole numbers from 1 to 65536 and at most 2^28 pixels are needed", "write 512x384");
+}
+
+gi::dvec3 parse_point(std::string const& option, std::string const& text)
+{
+    gi::dvec3 point;
+    std::string_view rest = text;
+    for (int i = 0; i < 3; ++i) {
+        auto const comma = i < 2 ? rest.find(',') : rest.size();
+        auto const v = comma == std::string_view::npos ? std::nullopt : to_number(rest.substr(0, comma));
+        if (!v) throw bad(option, text, "three numbers with commas between them are needed", "write 1,1.6,-3");
+        point[i] = *v;
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+    }
+    return point;
+}
+
+double parse_duration(std::string const& option, std::string const& text)
+{
+    struct Unit {
+        std::string_view name;
+        double seconds;
+    };
+    for (Unit const unit : {Unit{"ms", 1e-3}, Unit{"min", 60}, Unit{"h", 3600}, Unit{"s", 1}, Unit{"", 1}}) {
+        if (!text.ends_with(unit.name)) continue;
+        auto const v = to_number(std::string_view(text).substr(0, text.size() - unit.name.size()));
+        if (v && *v > 0) return *v * unit.seconds;
+    }
+    throw bad(option, text, "a positive duration is needed", "write 500ms, 2s or 3min");
+}
+
+std::pair<std::string, double> parse_limit(std::string const& option, std::string const& text)
+{
+    auto const equals = text.find('=');
+    if (equals != std::string::npos && equals > 0)
+        if (auto const v = to_number(std::string_view(text).substr(equals + 1))) return {text.substr(0, equals), *v};
+    throw bad(option, text, "a name, '=' and a number are needed", "write flip=0.05");
+}
+
+double parse_target(std::string const& option, std::string const& text, std::string const& name)
+{
+    auto const [given, value] = parse_limit(option, text);
+    if (given != name || !(value > 0))
+        throw bad(option, text, "only " + name + " with a positive value can be waited for", "write " + name + "=0.001");
+    return value;
+}
+
+} // namespace viewer

@@ -1,0 +1,22 @@
+#pragma once
+// Values on the command line: each parser takes the text and the option it stands at, and throws InputError on nonsense.
+
+#include "gi/base/math.h"
+
+#include <string>
+#include <utility>
+
+namespace viewer {
+
+/// "512x384": 1..65536 each, at most 2^28 pixels.
+std::pair<int, int> parse_size(std::string const& text);
+/// "1,2.5,-3"
+gi::dvec3 parse_point(std::string const& option, std::string const& text);
+/// "500ms", "2s", "3min", or a plain number of seconds.
+double parse_duration(std::string const& option, std::string const& text);
+/// "relmse=0.001" for a known name; the value must be > 0.
+double parse_target(std::string const& option, std::string const& text, std::string const& name);
+/// "flip=0.05" of any name.
+std::pair<std::string, double> parse_limit(std::string const& option, std::string const& text);
+
+} // namespace viewer

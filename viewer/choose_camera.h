@@ -1,0 +1,25 @@
+#pragma once
+#include "gi/scene/world.h"
+
+#include <optional>
+#include <string>
+
+namespace viewer {
+
+/// What the command line says about the point of view; all may be empty.
+struct CameraChoice {
+    std::string name;
+    std::optional<gi::dvec3> look_from, look_at;
+    std::optional<double> fov_deg;
+};
+
+struct ChosenCamera {
+    gi::Camera camera;
+    std::string note; ///< what was decided for the user; empty = nothing
+};
+
+/// The named camera, or the one looked from, or the scene's first, or one that frames the whole scene.
+/// Throws InputError on unknown names (it lists the known ones) and half-given positions.
+ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice);
+
+} // namespace viewer

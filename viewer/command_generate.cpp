@@ -1,0 +1,72 @@
+#include "gi/scene/generate.h"
+#include "gi/scene/write_glb.h"
+#include "viewer/commands.h"
+#include "viewer/report_json.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <functional>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+struct GenerateOptions {
+    gi::AtriumOptions atrium;
+    std::uint32_t triangles = 20000;
+    std::uint64_t seed = 0;
+    bool no_figure = false;
+    std::string out;
+};
+
+int save(gi::Scene const& scene, std::string const& out)
+{
+    gi::Report report;
+    for (std::filesystem::path const& file : gi::write_scene_bundle(out, scene, report)) fmt::print("{}\n", file.string());
+    std::fflush(stdout);
+    print_losses(report);
+    return 0;
+}
+
+} // namespace
+
+void add_generate(CLI::App& app, int& exit_code)
+{
+    auto const o = std::make_shared<GenerateOptions>();
+    CLI::App* const c = app.add_subcommand("generate", "Save a scene that the program makes itself.");
+    c->require_subcommand(1);
+    c->footer(R"(Examples:
+  lightwell generate cornell --out cornell.glb
+  lightwell generate atrium --bays 3 --no-figure --out small_atrium.glb
+  lightwell generate boxes --triangles 20000 --seed 1 --out boxes.glb
+  lightwell generate sphere --triangles 20000 --out sphere.glb
+
+A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them.)");
+    using Make = std::function<gi::Scene()>;
+    auto const add = [&](char const* name, char const* help, Make const& make) {
+        CLI::App* const kind = c->add_subcommand(name, help);
+        kind->add_option("--out", o->out, "GLB to write")->required();
+        kind->callback([o, make, &exit_code] { exit_code = save(make(), o->out); });
+        return kind;
+    };
+    CLI::App* const atrium = add("atrium", "a colonnaded gallery, lit from outside", [o] {
+        o->atrium.figure = !o->no_figure;
+        return gi::generate_atrium(o->atrium);
+    });
+    atrium->add_option("--bays", o->atrium.bays, "arches along the gallery")->capture_default_str();
+    atrium->add_option("--detail", o->atrium.detail, "tessellation; 1 = about 50K triangles")->capture_default_str();
+    atrium->add_option("--sun-elevation", o->atrium.sun_elevation_deg, "degrees")->capture_default_str();
+    atrium->add_option("--sun-azimuth", o->atrium.sun_azimuth_deg, "degrees from -Z towards +X")->capture_default_str();
+    atrium->add_flag("--no-figure", o->no_figure, "leave out the walking figure");
+    add("cornell", "the Cornell box by its published measurements", [] { return gi::generate_cornell(); });
+    CLI::App* const boxes =
+        add("boxes", "randomly turned boxes on a grid", [o] { return gi::generate_boxes(o->triangles, o->seed); });
+    CLI::App* const sphere =
+        add("sphere", "a displaced sphere", [o] { return gi::generate_sphere(o->triangles, o->seed); });
+    for (CLI::App* const kind : {boxes, sphere}) {
+        kind->add_option("--triangles", o->triangles, "about so many")->capture_default_str();
+        kind->add_option("--seed", o->seed, "another seed, another scene")->capture_default_str();
+    }
+}
+
+} // namespace viewer

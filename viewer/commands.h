@@ -1,0 +1,15 @@
+#pragma once
+// One function per subcommand: it declares its options and, when called, does its work.
+
+namespace CLI {
+class App;
+}
+
+namespace viewer {
+
+void add_render(CLI::App& app, int& exit_code);
+void add_compare(CLI::App& app, int& exit_code);
+void add_info(CLI::App& app, int& exit_code);
+void add_generate(CLI::App& app, int& exit_code);
+
+} // namespace viewer

@@ -1,0 +1,15 @@
+#pragma once
+#include "gi/base/progress.h"
+
+namespace viewer {
+
+/// While this lives, Ctrl-C and SIGTERM ask for a stop; a second one ends the program at once.
+class InterruptGuard {
+public:
+    explicit InterruptGuard(gi::StopRequest& stop);
+    ~InterruptGuard();
+    InterruptGuard(InterruptGuard const&) = delete;
+    InterruptGuard& operator=(InterruptGuard const&) = delete;
+};
+
+} // namespace viewer

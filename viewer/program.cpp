@@ -1,0 +1,56 @@
+#include "viewer/program.h"
+
+#include "gi/base/error.h"
+#include "viewer/commands.h"
+#include "viewer/version.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fmt/format.h>
+#include <new>
+
+namespace viewer {
+
+int run_program(int argc, char const* const* argv)
+{
+    CLI::App app{"Lightwell: globally lit pictures with their error beside them."};
+    app.set_version_flag("--version", version_text());
+    app.require_subcommand(1);
+    app.get_formatter()->column_width(34);
+    app.footer(R"(Examples:
+  lightwell render atrium --size 160x100 --paths 16 --out atrium.exr --png atrium.png
+  lightwell info atrium
+  lightwell generate boxes --triangles 20000 --out boxes.glb
+
+Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130 interrupted.)");
+    int exit_code = 0;
+    add_render(app, exit_code);
+    add_compare(app, exit_code);
+    add_info(app, exit_code);
+    add_generate(app, exit_code);
+    try {
+        app.parse(argc, argv);
+        return exit_code;
+    } catch (CLI::Success const& e) { // --help and --version
+        return app.exit(e);
+    } catch (CLI::ParseError const& e) {
+        std::fputs(fmt::format("lightwell: {} (the call does not fit) see lightwell {}--help\n", e.what(),
+                               argc > 1 && argv[1][0] != '-' && app.got_subcommand(argv[1]) ? std::string(argv[1]) + " "
+                                                                                            : "")
+                       .c_str(),
+                   stderr);
+        return 2;
+    } catch (gi::InputError const& e) {
+        std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
+        return 2;
+    } catch (std::bad_alloc const&) {
+        std::fputs("lightwell: out of memory (the scene or the picture is too large for this machine) choose a smaller one\n",
+                   stderr);
+        return 2;
+    } catch (std::exception const& e) {
+        std::fputs(fmt::format("lightwell: internal error: {}\n", e.what()).c_str(), stderr);
+        return 1;
+    }
+}
+
+} // namespace viewer
