@@ -1,0 +1,47 @@
+#include "gi/base/error.h"
+#include "gi/base/picture_file.h"
+#include "gi/scene/load.h"
+
+#include <fmt/format.h>
+
+namespace gi {
+
+EnvironmentMap load_environment(std::filesystem::path const& file, Report& report)
+{
+    constexpr int kWidest = 32768;
+    Picture const picture = read_picture(file);
+    auto const bad = [&](std::string const& why) {
+        return InputError("'" + file.string() + "' is no environment map", why,
+                          "give a lat-long panorama as HDR or EXR, twice as wide as high");
+    };
+    Layer const* const color = picture.find("color");
+    if (!color) throw bad("it has no channels R, G, B");
+    if (picture.width < 2 || picture.height < 1)
+        throw bad(fmt::format("it has {} x {} pixels, at least 2 x 1 are needed", picture.width, picture.height));
+    if (picture.width > kWidest || picture.height > kWidest)
+        throw bad(fmt::format("it has {} x {} pixels, at most {} are read a side", picture.width, picture.height,
+                              kWidest));
+
+    EnvironmentMap map;
+    map.width = std::uint32_t(picture.width);
+    map.height = std::uint32_t(picture.height);
+    map.radiance.resize(picture.pixels());
+    std::uint64_t bad_texels = 0;
+    for (std::size_t i = 0; i < map.radiance.size(); ++i) {
+        vec3 const v = rgb(*color, i);
+        bool good = true;
+        for (int c = 0; c < 3; ++c) {
+            bool const usable = std::isfinite(v[c]) && v[c] >= 0;
+            map.radiance[i][c] = usable ? v[c] : 0.0f;
+            good &= usable;
+        }
+        bad_texels += !good;
+    }
+    report.lose("environment texels that are negative or not finite, set to 0", bad_texels, file.string());
+    if (picture.width != 2 * picture.height)
+        report.lose("environment maps that are not twice as wide as high, stretched over the sphere", 1,
+                    fmt::format("{}: {} x {}", file.string(), picture.width, picture.height));
+    return map;
+}
+
+} // namespace gi

@@ -1,0 +1,385 @@
+// The YAML scene file: models, environment, lights, cameras, overrides of materials. Schema: data/scene.schema.json.
+
+#include "gi/base/file.h"
+#include "gi/scene/generate.h"
+#include "gi/scene/load.h"
+#include "gi/scene/load/yaml_reader.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fnmatch.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace gi {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kDeepest = 8; ///< scene files that include scene files
+
+thread_local int t_depth = 0; ///< of this file below the first
+
+struct DepthGuard {
+    DepthGuard() { ++t_depth; }
+    ~DepthGuard() { --t_depth; }
+    DepthGuard(DepthGuard const&) = delete;
+    DepthGuard& operator=(DepthGuard const&) = delete;
+};
+
+class SceneFileReader {
+public:
+    SceneFileReader(YamlReader const& root, fs::path const& folder, Report& report)
+        : root_(root), folder_(folder), report_(report)
+    {
+    }
+
+    Scene read()
+    {
+        root_.only_keys({"models", "environment", "lights", "cameras", "materials"});
+        if (root_.has("models"))
+            for (YamlReader const& item : root_.at("models").items()) add_model(item);
+        if (root_.has("environment")) set_environment(root_.at("environment"));
+        if (root_.has("lights"))
+            for (YamlReader const& item : root_.at("lights").items()) add_light(item);
+        if (root_.has("cameras")) add_cameras(root_.at("cameras"));
+        if (root_.has("materials"))
+            for (YamlReader const& item : root_.at("materials").items()) override_material(item);
+        return std::move(scene_);
+    }
+
+private:
+    struct Model {
+        std::string name;
+        std::size_t first_material, end_material;
+    };
+
+    fs::path find_file(YamlReader const& at) const
+    {
+        if (folder_.empty())
+            throw at.error("no files may be read here", "the scene comes from memory", "use generate");
+        fs::path const file = at.text();
+        return file.is_absolute() ? file : folder_ / file;
+    }
+
+    Scene generate(YamlReader const& g) const
+    {
+        g.only_keys({"kind", "bays", "detail", "figure", "sun_elevation", "sun_azimuth", "triangles", "seed"});
+        if (!g.has("kind")) throw g.error("generate has no kind", "it is not known what to make", "kind: atrium");
+        std::string const kind = g.at("kind").text();
+        auto const triangles = [&] {
+            // A text from memory may not ask for a scene of any size.
+            return g.has("triangles") ? std::uint32_t(g.at("triangles").integer(12, folder_.empty() ? 10000 : 100'000'000))
+                                      : 20000u;
+        };
+        std::uint64_t const seed = g.has("seed") ? std::uint64_t(g.at("seed").integer(0, std::int64_t(1) << 53)) : 0;
+        if (kind == "boxes") return generate_boxes(triangles(), seed);
+        if (kind == "sphere") return generate_sphere(triangles(), seed);
+        if (kind == "cornell") return generate_cornell();
+        if (kind != "atrium")
+            throw g.at("kind").error("there is no built-in scene '" + kind.substr(0, 64) + "'", "it cannot be generated",
+                                     "choose atrium, cornell, boxes or sphere");
+        AtriumOptions o;
+        double const most = folder_.empty() ? 1 : 50;
+        if (g.has("bays")) o.bays = int(g.at("bays").integer(1, folder_.empty() ? 5 : 100));
+        if (g.has("detail")) o.detail = g.at("detail").number(0.1, most);
+        if (g.has("figure")) o.figure = g.at("figure").boolean();
+        if (g.has("sun_elevation")) o.sun_elevation_deg = g.at("sun_elevation").number(0, 90);
+        if (g.has("sun_azimuth")) o.sun_azimuth_deg = g.at("sun_azimuth").number(-360, 360);
+        return generate_atrium(o);
+    }
+
+    void add_model(YamlReader const& m)
+    {
+        m.only_keys({"name", "file", "generate", "translate", "rotate", "scale", "animation"});
+        if (m.has("file") == m.has("generate"))
+            throw m.error("a model needs either file or generate", "it has both or none", "keep one");
+        Scene part;
+        std::string name;
+        if (m.has("file")) {
+            fs::path const file = find_file(m.at("file"));
+            part = load_scene(file.string(), report_);
+            name = file.stem().string();
+        } else {
+            part = generate(m.at("generate"));
+            name = part.name;
+        }
+        if (m.has("name")) name = m.at("name").text();
+        if (m.has("animation")) choose_animation(m.at("animation"), part);
+
+        dmat4 transform(1);
+        if (m.has("translate")) transform = glm::translate(transform, m.at("translate").vector());
+        if (m.has("rotate")) transform *= rotation(m.at("rotate"));
+        if (m.has("scale")) transform = glm::scale(transform, m.at("scale").vector_or_number(-1e9, 1e9));
+        std::size_t const first = scene_.materials.size();
+        append(scene_, std::move(part), name, transform);
+        models_.push_back({name, first, scene_.materials.size()});
+    }
+
+    static dmat4 rotation(YamlReader const& r)
+    {
+        if (r.is_list()) { // about x, then y, then z
+            dvec3 const a = glm::radians(r.vector(-1e6, 1e6));
+            return glm::rotate(dmat4(1), a.z, dvec3{0, 0, 1}) * glm::rotate(dmat4(1), a.y, dvec3{0, 1, 0}) *
+                   glm::rotate(dmat4(1), a.x, dvec3{1, 0, 0});
+        }
+        r.only_keys({"axis", "degrees"});
+        dvec3 const axis = r.has("axis") ? r.at("axis").vector(-1e6, 1e6) : dvec3{0, 1, 0};
+        if (!(glm::length(axis) > 0)) throw r.error("the axis is zero", "nothing can turn about it", "axis: [0, 1, 0]");
+        if (!r.has("degrees")) throw r.error("a rotation needs degrees", "it is not known how far", "degrees: 90");
+        return glm::rotate(dmat4(1), glm::radians(r.at("degrees").number(-1e6, 1e6)), glm::normalize(axis));
+    }
+
+    static void choose_animation(YamlReader const& a, Scene& part)
+    {
+        Playback playback;
+        std::string clip;
+        if (a.is_text()) {
+            clip = a.text();
+            if (clip == "none") {
+                part.playbacks.clear();
+                return;
+            }
+        } else {
+            a.only_keys({"clip", "offset", "speed", "loop"});
+            if (!a.has("clip")) throw a.error("an animation needs a clip", "it is not known which one", "clip: Walk");
+            clip = a.at("clip").text();
+            if (a.has("offset")) playback.offset_s = a.at("offset").number(-1e6, 1e6);
+            if (a.has("speed")) playback.speed = a.at("speed").number(-1e3, 1e3);
+            if (a.has("loop")) playback.loop = a.at("loop").boolean();
+        }
+        std::string known;
+        for (std::size_t i = 0; i < part.animations.size(); ++i) {
+            if (part.animations[i].name == clip) playback.animation = std::int32_t(i);
+            known += (known.empty() ? "" : ", ") + part.animations[i].name;
+        }
+        if (playback.animation < 0)
+            throw a.error("there is no clip '" + clip.substr(0, 64) + "'", "the model does not have it",
+                          known.empty() ? "it has none" : "choose one of: " + known);
+        part.playbacks = {playback};
+    }
+
+    void set_environment(YamlReader const& e)
+    {
+        e.only_keys({"file", "color", "rotate", "scale"});
+        if (e.has("file") == e.has("color"))
+            throw e.error("an environment needs either file or color", "it has both or none", "keep one");
+        EnvironmentMap map;
+        if (e.has("file")) {
+            map = load_environment(find_file(e.at("file")), report_);
+        } else {
+            map.width = 4;
+            map.height = 2;
+            map.radiance.assign(8, vec3(e.at("color").vector_or_number(0, 1e9)));
+        }
+        if (e.has("rotate")) map.rotation_rad = float(glm::radians(e.at("rotate").number(-1e6, 1e6)));
+        if (e.has("scale")) map.scale = vec3(e.at("scale").vector_or_number(0, 1e9));
+        scene_.environment = std::move(map);
+    }
+
+    void add_light(YamlReader const& l)
+    {
+        if (!l.is_map() || !l.has("type"))
+            throw l.error("a light needs a type", "it is not known what it is", "type: point");
+        std::string const type = l.at("type").text();
+        if (type == "rectangle") return add_rectangle(l);
+        Light light;
+        if (type == "point") {
+            l.only_keys({"type", "position", "intensity", "range"});
+            light.type = LightType::point;
+        } else if (type == "spot") {
+            l.only_keys({"type", "position", "direction", "target", "intensity", "range", "cone"});
+            light.type = LightType::spot;
+        } else if (type == "directional") {
+            l.only_keys({"type", "direction", "intensity"});
+            light.type = LightType::directional;
+        } else {
+            throw l.at("type").error("there is no light type '" + type.substr(0, 64) + "'", "it is not known here",
+                                     "choose point, spot, directional or rectangle");
+        }
+        dvec3 const position = l.has("position") ? l.at("position").vector() : dvec3{0};
+        dvec3 direction{0, -1, 0};
+        if (l.has("direction")) direction = l.at("direction").vector();
+        if (l.has("target")) direction = l.at("target").vector() - position;
+        if (!(glm::length(direction) > 0))
+            throw l.error("the light has no direction", "it is zero", "direction: [0, -1, 0]");
+        if (l.has("intensity")) light.intensity = vec3(l.at("intensity").vector_or_number(0, 1e12));
+        if (l.has("range")) light.range = float(l.at("range").number(0, 1e12));
+        if (l.has("cone")) {
+            auto const angles = l.at("cone").items();
+            if (angles.size() != 2)
+                throw l.at("cone").error("a cone has two angles", "inner and outer, degrees", "cone: [20, 30]");
+            double const outer = angles[1].number(0.01, 90), inner = angles[0].number(0, outer);
+            light.cos_inner = float(std::cos(glm::radians(inner)));
+            light.cos_outer = float(std::cos(glm::radians(outer)));
+        }
+        Node node;
+        node.name = type + " light";
+        node.light = std::int32_t(scene_.lights.size());
+        dvec3 const z = -glm::normalize(direction);
+        Frame const frame = Frame::about(vec3(z));
+        node.matrix = dmat4(glm::dvec4(dvec3(frame.tangent), 0), glm::dvec4(dvec3(frame.bitangent), 0), glm::dvec4(z, 0),
+                            glm::dvec4(position, 1));
+        scene_.lights.push_back(light);
+        scene_.nodes.push_back(std::move(node));
+    }
+
+    /// An emissive quad that shines to the side of u x v.
+    void add_rectangle(YamlReader const& l)
+    {
+        l.only_keys({"type", "position", "u", "v", "radiance"});
+        for (char const* key : {"position", "u", "v", "radiance"})
+            if (!l.has(key))
+                throw l.error(fmt::format("a rectangle light needs {}", key), "its corner, edges and radiance are needed",
+                              "position: [0, 2, 0], u: [1, 0, 0], v: [0, 0, 1], radiance: 10");
+        dvec3 const corner = l.at("position").vector(), u = l.at("u").vector(), v = l.at("v").vector();
+        if (!(glm::length(glm::cross(u, v)) > 0))
+            throw l.error("the rectangle has no area", "u and v are parallel or zero", "give two different edges");
+        Material m;
+        m.base_color = vec3{0};
+        m.specular = 0;
+        m.emission = vec3(l.at("radiance").vector_or_number(0, 1e12));
+        Mesh mesh;
+        mesh.name = "rectangle light";
+        mesh.material = std::int32_t(scene_.materials.size());
+        mesh.positions = {vec3{0}, vec3(u), vec3(u + v), vec3(v)};
+        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+        Node node;
+        node.name = mesh.name;
+        node.translation = corner;
+        node.meshes = {std::int32_t(scene_.meshes.size())};
+        scene_.materials.push_back(m);
+        scene_.material_names.push_back(mesh.name);
+        scene_.meshes.push_back(std::move(mesh));
+        scene_.nodes.push_back(std::move(node));
+    }
+
+    /// The file's own cameras come first: they are what its author wants to see.
+    void add_cameras(YamlReader const& list)
+    {
+        std::vector<Node> nodes;
+        for (YamlReader const& c : list.items()) {
+            c.only_keys({"name", "from", "at", "fov", "height"});
+            for (char const* key : {"name", "from", "at"})
+                if (!c.has(key))
+                    throw c.error(fmt::format("a camera needs {}", key), "name, from and at are needed",
+                                  "name: front, from: [0, 1, 5], at: [0, 1, 0]");
+            Camera camera;
+            try {
+                camera = look_at(c.at("from").vector(), c.at("at").vector(), c.has("fov") ? c.at("fov").number(0.001, 179) : 45);
+            } catch (InputError const& e) {
+                throw c.error("the camera cannot see", e.what(), "change from or at");
+            }
+            if (c.has("height")) {
+                camera.orthographic = true;
+                camera.ymag_m = 0.5 * c.at("height").number(1e-9, 1e9);
+            }
+            camera.name = c.at("name").text();
+            Node node;
+            node.name = camera.name;
+            node.camera = std::int32_t(scene_.cameras.size());
+            node.matrix = camera.world_from_camera;
+            scene_.cameras.push_back(camera);
+            nodes.push_back(std::move(node));
+        }
+        auto const shift = std::int32_t(nodes.size());
+        for (Node& n : scene_.nodes)
+            if (n.parent >= 0) n.parent += shift;
+        for (Skin& s : scene_.skins)
+            for (std::int32_t& j : s.joints) j += shift;
+        for (Animation& a : scene_.animations)
+            for (AnimationChannel& c : a.channels) c.node += shift;
+        scene_.nodes.insert(scene_.nodes.begin(), nodes.begin(), nodes.end());
+    }
+
+    void override_material(YamlReader const& o)
+    {
+        o.only_keys({"match", "model", "base_color", "roughness", "metallic", "specular", "ior", "transmission", "emission",
+                     "alpha", "double_sided", "thin", "phong"});
+        if (!o.has("match")) throw o.error("an override needs match", "it is not known which material", "match: Wall");
+        std::string const pattern = o.at("match").text();
+        std::size_t first = 0, end = scene_.materials.size();
+        if (o.has("model")) {
+            std::string const name = o.at("model").text();
+            auto const it = std::find_if(models_.begin(), models_.end(), [&](Model const& m) { return m.name == name; });
+            if (it == models_.end())
+                throw o.at("model").error("there is no model '" + name.substr(0, 64) + "'", "no model has that name",
+                                          "check models");
+            first = it->first_material;
+            end = it->end_material;
+        }
+        bool found = false;
+        for (std::size_t i = first; i < end; ++i)
+            if (pattern.size() < 1000 && fnmatch(pattern.c_str(), scene_.material_names[i].c_str(), 0) == 0) {
+                change(o, scene_.materials[i]);
+                found = true;
+            }
+        if (found) return;
+        std::string known;
+        for (std::size_t i = first; i < std::min(end, first + 12); ++i)
+            known += (known.empty() ? "" : ", ") + scene_.material_names[i];
+        throw o.at("match").error("no material matches '" + pattern.substr(0, 64) + "'", "nothing would change",
+                                  known.empty() ? "there are none" : "some that exist: " + known);
+    }
+    static void change(YamlReader const& o, Material& m)
+    {
+        auto const number = [&](char const* key, float& to, double low, double high) {
+            if (o.has(key)) to = float(o.at(key).number(low, high));
+        };
+        if (o.has("base_color")) m.base_color = vec3(o.at("base_color").vector_or_number(0, 1));
+        if (o.has("emission")) m.emission = vec3(o.at("emission").vector_or_number(0, 1e12));
+        number("roughness", m.roughness, 0, 1);
+        number("metallic", m.metallic, 0, 1);
+        number("specular", m.specular, 0, 1);
+        number("ior", m.ior, 1, 100);
+        number("transmission", m.transmission, 0, 1);
+        if (o.has("alpha")) {
+            m.alpha = float(o.at("alpha").number(0, 1));
+            if (m.alpha < 1 && m.alpha_mode == AlphaMode::opaque) m.alpha_mode = AlphaMode::blend;
+        }
+        if (o.has("double_sided")) m.double_sided = o.at("double_sided").boolean();
+        if (o.has("thin")) m.thin = o.at("thin").boolean();
+        if (o.has("phong")) {
+            YamlReader const p = o.at("phong");
+            p.only_keys({"specular", "exponent"});
+            m.model = MaterialModel::phong;
+            if (p.has("specular")) m.phong_specular = vec3(p.at("specular").vector_or_number(0, 1));
+            if (p.has("exponent")) m.phong_exponent = float(p.at("exponent").number(0, 1e6));
+        }
+    }
+
+    YamlReader const& root_;
+    fs::path const& folder_;
+    Report& report_;
+    Scene scene_;
+    std::vector<Model> models_;
+};
+
+} // namespace
+
+Scene parse_scene_file(std::string const& text, fs::path const& folder, std::string const& name, Report& report)
+{
+    DepthGuard const guard;
+    if (t_depth > kDeepest)
+        throw InputError("'" + name + "' is not read", fmt::format("scene files include each other {} deep", kDeepest),
+                         "break the loop");
+    YamlReader const root = YamlReader::parse(text, name);
+    if (!root.is_map())
+        throw root.error("'" + name + "' is no scene file", "it has no keys", "start with models:");
+    try {
+        Scene scene = SceneFileReader(root, folder, report).read();
+        scene.name = name;
+        return scene;
+    } catch (YAML::Exception const& e) {
+        throw InputError({name, e.mark.line + 1, e.mark.column + 1}, "this value is not understood", e.msg,
+                         "check it against the schema");
+    }
+}
+
+Scene load_scene_file(fs::path const& yaml, Report& report)
+{
+    std::vector<unsigned char> const bytes = read_bytes(yaml, std::size_t(1) << 30);
+    fs::path const folder = yaml.has_parent_path() ? yaml.parent_path() : fs::path(".");
+    return parse_scene_file(std::string(bytes.begin(), bytes.end()), folder, yaml.string(), report);
+}
+
+} // namespace gi
