@@ -39,9 +39,11 @@ std::pair<int, int> parse_size(std::string const& text)
     if (cross != std::string::npos) {
         int const width = number(std::string_view(text).substr(0, cross));
         int const height = number(std::string_view(text).substr(cross + 1));
-        if (width > 0 && height > 0 && std::int64_t(width) * height <= (std::int64_t(1) << 28)) return {width, height};
+        if (width > 0 && height > 0 && std::int64_t(width) * height <= (std::int64_t(1) << 28))
+            return {width, height};
     }
-    throw bad("--size", text, "two whole numbers from 1 to 65536 and at most 2^28 pixels are needed", "write 512x384");
+    throw bad("--size", text, "two whole numbers from 1 to 65536 and at most 2^28 pixels are needed",
+              "write 512x384");
 }
 
 gi::dvec3 parse_point(std::string const& option, std::string const& text)
@@ -76,7 +78,8 @@ std::pair<std::string, double> parse_limit(std::string const& option, std::strin
 {
     auto const equals = text.find('=');
     if (equals != std::string::npos && equals > 0)
-        if (auto const v = to_number(std::string_view(text).substr(equals + 1))) return {text.substr(0, equals), *v};
+        if (auto const v = to_number(std::string_view(text).substr(equals + 1)))
+            return {text.substr(0, equals), *v};
     throw bad(option, text, "a name, '=' and a number are needed", "write flip=0.05");
 }
 
@@ -84,7 +87,8 @@ double parse_target(std::string const& option, std::string const& text, std::str
 {
     auto const [given, value] = parse_limit(option, text);
     if (given != name || !(value > 0))
-        throw bad(option, text, "only " + name + " with a positive value can be waited for", "write " + name + "=0.001");
+        throw bad(option, text, "only " + name + " with a positive value can be waited for",
+                  "write " + name + "=0.001");
     return value;
 }
 

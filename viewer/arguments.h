@@ -1,5 +1,6 @@
 #pragma once
-// Values on the command line: each parser takes the text and the option it stands at, and throws InputError on nonsense.
+// Values on the command line: each parser takes the text and the option it stands at, and throws InputError on
+// nonsense.
 
 #include "gi/base/math.h"
 

@@ -10,7 +10,8 @@ ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice)
     double const radius = world.bounds.empty() ? 1.0 : std::max(double(world.bounds.radius()), 1e-6);
     if (choice.look_from) {
         if (!choice.name.empty())
-            throw gi::InputError("--camera and --look-from are both given", "they contradict each other", "drop one");
+            throw gi::InputError("--camera and --look-from are both given", "they contradict each other",
+                                 "drop one");
         return {gi::look_at(*choice.look_from, choice.look_at.value_or(center), choice.fov_deg.value_or(45)), ""};
     }
     if (choice.look_at)
@@ -26,7 +27,8 @@ ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice)
             known += (known.empty() ? "" : ", ") + c.name;
         }
         throw gi::InputError("there is no camera '" + choice.name + "'", "the scene does not have it",
-                             known.empty() ? "it has none: give --look-from and --look-at" : "choose one of: " + known);
+                             known.empty() ? "it has none: give --look-from and --look-at"
+                                           : "choose one of: " + known);
     }
     if (!world.cameras.empty()) {
         ChosenCamera chosen{world.cameras.front(), ""};

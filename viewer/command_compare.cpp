@@ -27,7 +27,8 @@ int run(CompareOptions const& o)
     for (std::string const& text : o.limits) {
         limits.push_back(parse_limit("--fail-above", text));
         std::string const metric = limits.back().first.substr(0, limits.back().first.find('.'));
-        if (!o.metrics.empty() && std::find(names.begin(), names.end(), metric) == names.end()) names.push_back(metric);
+        if (!o.metrics.empty() && std::find(names.begin(), names.end(), metric) == names.end())
+            names.push_back(metric);
     }
     if (names.empty())
         for (gi::MetricInfo const& m : gi::metrics())
@@ -36,7 +37,8 @@ int run(CompareOptions const& o)
                 names.emplace_back(m.name);
     gi::Comparison const result = gi::compare(image, reference, names, o.layer);
     for (auto const& [name, value] : limits)
-        if (std::none_of(result.values.begin(), result.values.end(), [&](auto const& v) { return v.name == name; }))
+        if (std::none_of(result.values.begin(), result.values.end(),
+                         [&](auto const& v) { return v.name == name; }))
             throw gi::InputError("--fail-above knows no '" + name + "'", "no metric gives a value of that name",
                                  "see the names that compare prints");
     if (!o.difference.empty()) {

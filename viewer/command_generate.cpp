@@ -22,7 +22,8 @@ struct GenerateOptions {
 int save(gi::Scene const& scene, std::string const& out)
 {
     gi::Report report;
-    for (std::filesystem::path const& file : gi::write_scene_bundle(out, scene, report)) fmt::print("{}\n", file.string());
+    for (std::filesystem::path const& file : gi::write_scene_bundle(out, scene, report))
+        fmt::print("{}\n", file.string());
     std::fflush(stdout);
     print_losses(report);
     return 0;
@@ -54,9 +55,11 @@ A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them
         return gi::generate_atrium(o->atrium);
     });
     atrium->add_option("--bays", o->atrium.bays, "arches along the gallery")->capture_default_str();
-    atrium->add_option("--detail", o->atrium.detail, "tessellation; 1 = about 50K triangles")->capture_default_str();
+    atrium->add_option("--detail", o->atrium.detail, "tessellation; 1 = about 50K triangles")
+        ->capture_default_str();
     atrium->add_option("--sun-elevation", o->atrium.sun_elevation_deg, "degrees")->capture_default_str();
-    atrium->add_option("--sun-azimuth", o->atrium.sun_azimuth_deg, "degrees from -Z towards +X")->capture_default_str();
+    atrium->add_option("--sun-azimuth", o->atrium.sun_azimuth_deg, "degrees from -Z towards +X")
+        ->capture_default_str();
     atrium->add_flag("--no-figure", o->no_figure, "leave out the walking figure");
     add("cornell", "the Cornell box by its published measurements", [] { return gi::generate_cornell(); });
     CLI::App* const boxes =

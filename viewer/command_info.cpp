@@ -21,8 +21,7 @@ int run(InfoOptions const& o)
 {
     gi::Report report;
     auto const scene = std::make_shared<gi::Scene const>(gi::load_scene(o.scene, report));
-    gi::World const world =
-        gi::build_world(scene, o.has_time ? gi::SceneTime(o.time_s) : std::nullopt, report);
+    gi::World const world = gi::build_world(scene, o.has_time ? gi::SceneTime(o.time_s) : std::nullopt, report);
     gi::SceneSummary const summary = gi::summarise(world);
     gi::ScenePlan const plan = gi::plan_scene(world);
     if (o.json) {

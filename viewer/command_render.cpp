@@ -29,14 +29,15 @@ constexpr std::uint32_t kNoLimit = 0x7fffffff;
 constexpr int kInterrupted = 130;
 
 struct RenderOptions {
-    std::string scene, method = "reference", size = "512x512", camera, look_from, look_at, environment, budget, until,
-                filter = "box", out, png, stats, tone = "srgb";
+    std::string scene, method = "reference", size = "512x512", camera, look_from, look_at, environment, budget,
+                       until, filter = "box", out, png, stats, tone = "srgb";
     std::vector<std::string> layers;
     double fov_deg = 0, time_s = 0, environment_rotate_deg = 0, environment_scale = 1, exposure_ev = 0;
     std::uint32_t paths = 64;
     std::uint64_t seed = 0;
     int bounces = 64, threads = 0;
-    bool has_fov = false, has_time = false, has_paths = false, half = false, resume = false, json = false, quiet = false;
+    bool has_fov = false, has_time = false, has_paths = false, half = false, resume = false, json = false,
+         quiet = false;
 };
 
 gi::RenderSettings make_settings(RenderOptions const& o)
@@ -85,7 +86,8 @@ void set_environment(gi::Scene& scene, RenderOptions const& o, gi::Report& repor
         scene.environment->scale *= float(o.environment_scale);
         return;
     }
-    bool const lit = !scene.lights.empty() || std::any_of(scene.materials.begin(), scene.materials.end(), gi::emits);
+    bool const lit =
+        !scene.lights.empty() || std::any_of(scene.materials.begin(), scene.materials.end(), gi::emits);
     if (lit) return;
     say("the scene has no light: lit by a white sky of radiance 1");
     gi::EnvironmentMap white;
@@ -99,9 +101,10 @@ void set_environment(gi::Scene& scene, RenderOptions const& o, gi::Report& repor
 std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::RenderSettings const& s,
                                                  gi::RenderResult const& result)
 {
-    std::string command = fmt::format("lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} "
-                                      "--paths {}",
-                                      o.scene, o.method, s.width, s.height, s.bounces, o.filter, s.seed, result.paths);
+    std::string command =
+        fmt::format("lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} "
+                    "--paths {}",
+                    o.scene, o.method, s.width, s.height, s.bounces, o.filter, s.seed, result.paths);
     auto const add = [&](char const* option, std::string const& value) {
         if (!value.empty()) command += fmt::format(" {} {}", option, value);
     };
@@ -113,10 +116,16 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::Ren
     add("--envmap", o.environment);
     if (o.environment_rotate_deg != 0) add("--envmap-rotate", fmt::format("{}", o.environment_rotate_deg));
     if (o.environment_scale != 1) add("--envmap-scale", fmt::format("{}", o.environment_scale));
-    return {{"version", version_number()}, {"git", git_hash()},         {"command", command},
-            {"scene", o.scene},            {"method", o.method},        {"seed", std::to_string(s.seed)},
-            {"filter", o.filter},          {"bounces", std::to_string(s.bounces)},
-            {"paths", std::to_string(result.paths)}, {"units", "radiance, W/(m2 sr), linear Rec. 709"}};
+    return {{"version", version_number()},
+            {"git", git_hash()},
+            {"command", command},
+            {"scene", o.scene},
+            {"method", o.method},
+            {"seed", std::to_string(s.seed)},
+            {"filter", o.filter},
+            {"bounces", std::to_string(s.bounces)},
+            {"paths", std::to_string(result.paths)},
+            {"units", "radiance, W/(m2 sr), linear Rec. 709"}};
 }
 
 void keep_layers(gi::Picture& picture, std::vector<std::string> const& wanted)
@@ -130,10 +139,14 @@ void keep_layers(gi::Picture& picture, std::vector<std::string> const& wanted)
 char const* end_text(gi::RenderEnd end)
 {
     switch (end) {
-    case gi::RenderEnd::paths: return "paths";
-    case gi::RenderEnd::budget: return "budget";
-    case gi::RenderEnd::error_target: return "error target";
-    case gi::RenderEnd::interrupted: return "interrupted";
+    case gi::RenderEnd::paths:
+        return "paths";
+    case gi::RenderEnd::budget:
+        return "budget";
+    case gi::RenderEnd::error_target:
+        return "error target";
+    case gi::RenderEnd::interrupted:
+        return "interrupted";
     }
     return "";
 }
@@ -143,14 +156,11 @@ nlohmann::ordered_json stats(RenderOptions const& o, gi::RenderSettings const& s
 {
     nlohmann::ordered_json j;
     j["program"] = version_text();
-    j["settings"] = {{"scene", o.scene},     {"method", o.method},   {"width", s.width},   {"height", s.height},
-                     {"bounces", s.bounces}, {"filter", o.filter},   {"seed", s.seed},     {"threads", s.threads}};
-    j["result"] = {{"end", end_text(r.end)},
-                   {"paths_per_pixel", r.paths},
-                   {"seconds", r.seconds},
-                   {"relmse_estimate", r.relmse},
-                   {"rays", r.rays},
-                   {"rays_per_s", r.seconds > 0 ? r.rays / r.seconds : 0}};
+    j["settings"] = {{"scene", o.scene},     {"method", o.method}, {"width", s.width}, {"height", s.height},
+                     {"bounces", s.bounces}, {"filter", o.filter}, {"seed", s.seed},   {"threads", s.threads}};
+    j["result"] = {{"end", end_text(r.end)}, {"paths_per_pixel", r.paths},
+                   {"seconds", r.seconds},   {"relmse_estimate", r.relmse},
+                   {"rays", r.rays},         {"rays_per_s", r.seconds > 0 ? r.rays / r.seconds : 0}};
     for (gi::PlanItem const& item : plan.items)
         j["plan"].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
     j["report"] = to_json(report);
@@ -224,9 +234,9 @@ int run(RenderOptions o)
     } else {
         for (std::string const& file : {o.out, o.png, o.stats})
             if (!file.empty()) fmt::print("{}\n", file);
-        fmt::print("{} x {} pixels, {} paths each, {:.2f} s, {:.2f} Mrays/s, estimated relMSE {:.2g}\n", settings.width,
-                   settings.height, result.paths, result.seconds, result.rays / std::max(result.seconds, 1e-9) * 1e-6,
-                   result.relmse);
+        fmt::print("{} x {} pixels, {} paths each, {:.2f} s, {:.2f} Mrays/s, estimated relMSE {:.2g}\n",
+                   settings.width, settings.height, result.paths, result.seconds,
+                   result.rays / std::max(result.seconds, 1e-9) * 1e-6, result.relmse);
     }
     std::fflush(stdout);
     print_losses(report);
@@ -252,8 +262,8 @@ void add_render(CLI::App& app, int& exit_code)
     c->add_option("--camera", o->camera, "a camera of the scene (default: its first)");
     c->add_option("--look-from", o->look_from, "x,y,z, m");
     c->add_option("--look-at", o->look_at, "x,y,z, m (default: the middle of the scene)");
-    CLI::Option const* const fov = c->add_option("--fov", o->fov_deg, "vertical field of view, degrees")
-                                       ->check(CLI::Range(0.001, 179.0));
+    CLI::Option const* const fov =
+        c->add_option("--fov", o->fov_deg, "vertical field of view, degrees")->check(CLI::Range(0.001, 179.0));
     c->add_option("--envmap", o->environment, "lat-long environment map, HDR or EXR");
     c->add_option("--envmap-rotate", o->environment_rotate_deg, "degrees about +Y, counter-clockwise from above");
     c->add_option("--envmap-scale", o->environment_scale, "factor on its radiance")->check(CLI::Range(0.0, 1e9));
@@ -265,15 +275,20 @@ void add_render(CLI::App& app, int& exit_code)
     c->add_option("--bounces", o->bounces, "indirect bounces; 0 = direct light only")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
-    c->add_option("--filter", o->filter, "pixel filter")->check(CLI::IsMember({"box", "tent"}))->capture_default_str();
+    c->add_option("--filter", o->filter, "pixel filter")
+        ->check(CLI::IsMember({"box", "tent"}))
+        ->capture_default_str();
     c->add_option("--seed", o->seed, "another seed, another noise")->capture_default_str();
     c->add_option("--threads", o->threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c->add_option("--out", o->out, "EXR with all layers (default: the scene's name)");
     c->add_flag("--half", o->half, "half floats where they suffice");
     c->add_option("--png", o->png, "tone-mapped picture");
     c->add_option("--exposure", o->exposure_ev, "stops, for --png");
-    c->add_option("--tone", o->tone, "curve, for --png")->check(CLI::IsMember({"srgb", "filmic"}))->capture_default_str();
-    c->add_option("--aovs", o->layers, fmt::format("layers to keep beside color, of: {}", fmt::join(kLayers, ", ")))
+    c->add_option("--tone", o->tone, "curve, for --png")
+        ->check(CLI::IsMember({"srgb", "filmic"}))
+        ->capture_default_str();
+    c->add_option("--aovs", o->layers,
+                  fmt::format("layers to keep beside color, of: {}", fmt::join(kLayers, ", ")))
         ->delimiter(',');
     c->add_option("--stats", o->stats, "JSON: times, counts, memory, losses, plan");
     c->add_flag("--resume", o->resume, "go on from F.exr.state");

@@ -35,8 +35,9 @@ Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130
         return app.exit(e);
     } catch (CLI::ParseError const& e) {
         std::fputs(fmt::format("lightwell: {} (the call does not fit) see lightwell {}--help\n", e.what(),
-                               argc > 1 && argv[1][0] != '-' && app.got_subcommand(argv[1]) ? std::string(argv[1]) + " "
-                                                                                            : "")
+                               argc > 1 && argv[1][0] != '-' && app.got_subcommand(argv[1])
+                                   ? std::string(argv[1]) + " "
+                                   : "")
                        .c_str(),
                    stderr);
         return 2;
@@ -44,7 +45,8 @@ Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130
         std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
         return 2;
     } catch (std::bad_alloc const&) {
-        std::fputs("lightwell: out of memory (the scene or the picture is too large for this machine) choose a smaller one\n",
+        std::fputs("lightwell: out of memory (the scene or the picture is too large for this machine) choose a "
+                   "smaller one\n",
                    stderr);
         return 2;
     } catch (std::exception const& e) {

@@ -14,7 +14,8 @@ nlohmann::ordered_json to_json(gi::Report const& report)
     j["counts"] = nlohmann::ordered_json::object();
     for (auto const& [what, value] : report.counts()) j["counts"][what] = value;
     j["losses"] = nlohmann::ordered_json::object();
-    for (auto const& [what, loss] : report.losses()) j["losses"][what] = {{"count", loss.count}, {"first", loss.first}};
+    for (auto const& [what, loss] : report.losses())
+        j["losses"][what] = {{"count", loss.count}, {"first", loss.first}};
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     j["peak_memory_bytes"] = std::uint64_t(usage.ru_maxrss) * 1024;
@@ -24,7 +25,8 @@ nlohmann::ordered_json to_json(gi::Report const& report)
 void print_losses(gi::Report const& report)
 {
     for (auto const& [what, loss] : report.losses())
-        std::fputs(fmt::format("lost: {}: {}{}\n", what, loss.count, loss.first.empty() ? "" : " (first: " + loss.first + ")")
+        std::fputs(fmt::format("lost: {}: {}{}\n", what, loss.count,
+                               loss.first.empty() ? "" : " (first: " + loss.first + ")")
                        .c_str(),
                    stderr);
 }

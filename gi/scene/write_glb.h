@@ -1,13 +1,22 @@
 #pragma once
+// Scenes to binary glTF 2.
+
 #include "gi/base/report.h"
 #include "gi/scene/scene.h"
 
 #include <filesystem>
+#include <vector>
 
 namespace gi {
 
 /// Save a scene as binary glTF 2 (by rename): nodes, meshes, materials with their KHR extensions, textures (PNG),
-/// skins, morph targets, clips, cameras, lights. What glTF cannot hold (environment map, phong) is counted as lost.
+/// skins, morph targets, clips, cameras, lights. Phong materials keep their values in extras.lightwell_phong. What glTF
+/// cannot hold (the environment map) is counted as lost.
 void write_glb(std::filesystem::path const& file, Scene const& scene, Report& report);
+
+/// As above, and where the scene has an environment map also F_sky.exr and F.yaml, which joins the two.
+/// @return the files, in the order they were written
+std::vector<std::filesystem::path> write_scene_bundle(std::filesystem::path const& glb, Scene const& scene,
+                                                      Report& report);
 
 } // namespace gi

@@ -76,7 +76,8 @@ void SceneBuilder::lathe(int material, vec3 foot, std::vector<vec2> const& profi
         vec3 const out{std::sin(angle), 0, std::cos(angle)};
         vec2 const t = tangent(i);
         return GridVertex{foot + profile[i].x * out + vec3{0, profile[i].y, 0},
-                          glm::normalize(t.y * out - vec3{0, t.x, 0}), {4 * u, profile[i].y}};
+                          glm::normalize(t.y * out - vec3{0, t.x, 0}),
+                          {4 * u, profile[i].y}};
     });
 }
 

@@ -14,8 +14,8 @@ struct Spectrum {
     double at(double nm) const;
 };
 
-/// Linear Rec. 709 by the CIE 1931 observer (fit of Wyman et al. 2013), scaled so that the constant spectrum 1 gives (1, 1, 1):
-/// channels are relative to equal-energy white. Negative values become 0.
+/// Linear Rec. 709 by the CIE 1931 observer (fit of Wyman et al. 2013), scaled so that the constant spectrum 1
+/// gives (1, 1, 1): channels are relative to equal-energy white. Negative values become 0.
 vec3 to_rgb(Spectrum const& spectrum);
 
 } // namespace gi

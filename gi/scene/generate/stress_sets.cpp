@@ -18,8 +18,8 @@ constexpr float kHalf = 5; ///< m, half the room
 void check(std::uint32_t triangles)
 {
     if (triangles < 12 || triangles > kMost)
-        throw InputError(fmt::format("{} triangles cannot be made", triangles), fmt::format("12 to {} are possible", kMost),
-                         "choose a number in between");
+        throw InputError(fmt::format("{} triangles cannot be made", triangles),
+                         fmt::format("12 to {} are possible", kMost), "choose a number in between");
 }
 
 Material matt(vec3 albedo)
@@ -112,7 +112,8 @@ Scene generate_sphere(std::uint32_t triangles, std::uint64_t seed)
     std::array<Wave, 24> waves{};
     for (std::size_t i = 0; i < waves.size(); ++i) {
         float const frequency = 2 * std::exp2(float(i) / 5);
-        waves[i] = {frequency * (random_rotation(rng) * vec3{0, 0, 1}), 0.12f / frequency, 2 * kPi * rng.uniform()};
+        waves[i] = {frequency * (random_rotation(rng) * vec3{0, 0, 1}), 0.12f / frequency,
+                    2 * kPi * rng.uniform()};
     }
     auto const place = [&](float u, float v) {
         float const phi = u < 1 ? 2 * kPi * u : 0.0f, theta = kPi * (1 - v);

@@ -1,4 +1,5 @@
-// The YAML scene file: models, environment, lights, cameras, overrides of materials. Schema: data/scene.schema.json.
+// The YAML scene file: models, environment, lights, cameras, overrides of materials. Schema:
+// data/scene.schema.json.
 
 #include "gi/base/file.h"
 #include "gi/scene/generate.h"
@@ -68,16 +69,18 @@ private:
         std::string const kind = g.at("kind").text();
         auto const triangles = [&] {
             // A text from memory may not ask for a scene of any size.
-            return g.has("triangles") ? std::uint32_t(g.at("triangles").integer(12, folder_.empty() ? 10000 : 100'000'000))
-                                      : 20000u;
+            return g.has("triangles")
+                       ? std::uint32_t(g.at("triangles").integer(12, folder_.empty() ? 10000 : 100'000'000))
+                       : 20000u;
         };
-        std::uint64_t const seed = g.has("seed") ? std::uint64_t(g.at("seed").integer(0, std::int64_t(1) << 53)) : 0;
+        std::uint64_t const seed =
+            g.has("seed") ? std::uint64_t(g.at("seed").integer(0, std::int64_t(1) << 53)) : 0;
         if (kind == "boxes") return generate_boxes(triangles(), seed);
         if (kind == "sphere") return generate_sphere(triangles(), seed);
         if (kind == "cornell") return generate_cornell();
         if (kind != "atrium")
-            throw g.at("kind").error("there is no built-in scene '" + kind.substr(0, 64) + "'", "it cannot be generated",
-                                     "choose atrium, cornell, boxes or sphere");
+            throw g.at("kind").error("there is no built-in scene '" + kind.substr(0, 64) + "'",
+                                     "it cannot be generated", "choose atrium, cornell, boxes or sphere");
         AtriumOptions o;
         double const most = folder_.empty() ? 1 : 50;
         if (g.has("bays")) o.bays = int(g.at("bays").integer(1, folder_.empty() ? 5 : 100));
@@ -124,7 +127,8 @@ private:
         }
         r.only_keys({"axis", "degrees"});
         dvec3 const axis = r.has("axis") ? r.at("axis").vector(-1e6, 1e6) : dvec3{0, 1, 0};
-        if (!(glm::length(axis) > 0)) throw r.error("the axis is zero", "nothing can turn about it", "axis: [0, 1, 0]");
+        if (!(glm::length(axis) > 0))
+            throw r.error("the axis is zero", "nothing can turn about it", "axis: [0, 1, 0]");
         if (!r.has("degrees")) throw r.error("a rotation needs degrees", "it is not known how far", "degrees: 90");
         return glm::rotate(dmat4(1), glm::radians(r.at("degrees").number(-1e6, 1e6)), glm::normalize(axis));
     }
@@ -141,7 +145,8 @@ private:
             }
         } else {
             a.only_keys({"clip", "offset", "speed", "loop"});
-            if (!a.has("clip")) throw a.error("an animation needs a clip", "it is not known which one", "clip: Walk");
+            if (!a.has("clip"))
+                throw a.error("an animation needs a clip", "it is not known which one", "clip: Walk");
             clip = a.at("clip").text();
             if (a.has("offset")) playback.offset_s = a.at("offset").number(-1e6, 1e6);
             if (a.has("speed")) playback.speed = a.at("speed").number(-1e3, 1e3);
@@ -217,8 +222,8 @@ private:
         node.light = std::int32_t(scene_.lights.size());
         dvec3 const z = -glm::normalize(direction);
         Frame const frame = Frame::about(vec3(z));
-        node.matrix = dmat4(glm::dvec4(dvec3(frame.tangent), 0), glm::dvec4(dvec3(frame.bitangent), 0), glm::dvec4(z, 0),
-                            glm::dvec4(position, 1));
+        node.matrix = dmat4(glm::dvec4(dvec3(frame.tangent), 0), glm::dvec4(dvec3(frame.bitangent), 0),
+                            glm::dvec4(z, 0), glm::dvec4(position, 1));
         scene_.lights.push_back(light);
         scene_.nodes.push_back(std::move(node));
     }
@@ -229,7 +234,8 @@ private:
         l.only_keys({"type", "position", "u", "v", "radiance"});
         for (char const* key : {"position", "u", "v", "radiance"})
             if (!l.has(key))
-                throw l.error(fmt::format("a rectangle light needs {}", key), "its corner, edges and radiance are needed",
+                throw l.error(fmt::format("a rectangle light needs {}", key),
+                              "its corner, edges and radiance are needed",
                               "position: [0, 2, 0], u: [1, 0, 0], v: [0, 0, 1], radiance: 10");
         dvec3 const corner = l.at("position").vector(), u = l.at("u").vector(), v = l.at("v").vector();
         if (!(glm::length(glm::cross(u, v)) > 0))
@@ -265,7 +271,8 @@ private:
                                   "name: front, from: [0, 1, 5], at: [0, 1, 0]");
             Camera camera;
             try {
-                camera = look_at(c.at("from").vector(), c.at("at").vector(), c.has("fov") ? c.at("fov").number(0.001, 179) : 45);
+                camera = look_at(c.at("from").vector(), c.at("at").vector(),
+                                 c.has("fov") ? c.at("fov").number(0.001, 179) : 45);
             } catch (InputError const& e) {
                 throw c.error("the camera cannot see", e.what(), "change from or at");
             }
@@ -293,17 +300,19 @@ private:
 
     void override_material(YamlReader const& o)
     {
-        o.only_keys({"match", "model", "base_color", "roughness", "metallic", "specular", "ior", "transmission", "emission",
-                     "alpha", "double_sided", "thin", "phong"});
-        if (!o.has("match")) throw o.error("an override needs match", "it is not known which material", "match: Wall");
+        o.only_keys({"match", "model", "base_color", "roughness", "metallic", "specular", "ior", "transmission",
+                     "emission", "alpha", "double_sided", "thin", "phong"});
+        if (!o.has("match"))
+            throw o.error("an override needs match", "it is not known which material", "match: Wall");
         std::string const pattern = o.at("match").text();
         std::size_t first = 0, end = scene_.materials.size();
         if (o.has("model")) {
             std::string const name = o.at("model").text();
-            auto const it = std::find_if(models_.begin(), models_.end(), [&](Model const& m) { return m.name == name; });
+            auto const it =
+                std::find_if(models_.begin(), models_.end(), [&](Model const& m) { return m.name == name; });
             if (it == models_.end())
-                throw o.at("model").error("there is no model '" + name.substr(0, 64) + "'", "no model has that name",
-                                          "check models");
+                throw o.at("model").error("there is no model '" + name.substr(0, 64) + "'",
+                                          "no model has that name", "check models");
             first = it->first_material;
             end = it->end_material;
         }
@@ -360,8 +369,8 @@ Scene parse_scene_file(std::string const& text, fs::path const& folder, std::str
 {
     DepthGuard const guard;
     if (t_depth > kDeepest)
-        throw InputError("'" + name + "' is not read", fmt::format("scene files include each other {} deep", kDeepest),
-                         "break the loop");
+        throw InputError("'" + name + "' is not read",
+                         fmt::format("scene files include each other {} deep", kDeepest), "break the loop");
     YamlReader const root = YamlReader::parse(text, name);
     if (!root.is_map())
         throw root.error("'" + name + "' is no scene file", "it has no keys", "start with models:");

@@ -76,7 +76,8 @@ YamlReader YamlReader::parse(std::string const& text, std::string const& file)
     }
 }
 
-InputError YamlReader::error(std::string const& problem, std::string const& why, std::string const& suggestion) const
+InputError YamlReader::error(std::string const& problem, std::string const& why,
+                             std::string const& suggestion) const
 {
     YAML::Mark const mark = node_.Mark();
     return {{file_, mark.line + 1, mark.column + 1}, problem, why, suggestion};
@@ -95,7 +96,8 @@ void YamlReader::only_keys(std::set<std::string> const& known) const
             auto const nearest = std::min_element(known.begin(), known.end(), [&](auto const& a, auto const& b) {
                 return edit_distance(a, name.substr(0, 64)) < edit_distance(b, name.substr(0, 64));
             });
-            throw key.error(fmt::format("unknown key '{}' in {}", name.substr(0, 64), path_), "it would be ignored",
+            throw key.error(fmt::format("unknown key '{}' in {}", name.substr(0, 64), path_),
+                            "it would be ignored",
                             nearest == known.end() ? "remove it" : "did you mean '" + *nearest + "'?");
         }
         if (!seen.insert(name).second)
@@ -105,9 +107,11 @@ void YamlReader::only_keys(std::set<std::string> const& known) const
 
 std::vector<YamlReader> YamlReader::items() const
 {
-    if (!node_.IsSequence()) throw error(path_ + " is not a list", "a list is needed here", "start each item with '- '");
+    if (!node_.IsSequence())
+        throw error(path_ + " is not a list", "a list is needed here", "start each item with '- '");
     std::vector<YamlReader> out;
-    for (std::size_t i = 0; i < node_.size(); ++i) out.push_back({node_[i], file_, fmt::format("{}[{}]", path_, i)});
+    for (std::size_t i = 0; i < node_.size(); ++i)
+        out.push_back({node_[i], file_, fmt::format("{}[{}]", path_, i)});
     return out;
 }
 
@@ -120,8 +124,8 @@ double YamlReader::number(double low, double high) const
         auto const [end, failure] = std::from_chars(begin, s.data() + s.size(), v);
         if (failure == std::errc{} && end == s.data() + s.size() && !s.empty()) {
             if (v >= low && v <= high) return v;
-            throw error(fmt::format("{} is {}", path_, s), fmt::format("it must lie between {:g} and {:g}", low, high),
-                        "change it");
+            throw error(fmt::format("{} is {}", path_, s),
+                        fmt::format("it must lie between {:g} and {:g}", low, high), "change it");
         }
     }
     throw error(path_ + " is not a number", "a number is needed here", "write 1 or 0.5");
@@ -136,7 +140,8 @@ std::int64_t YamlReader::integer(std::int64_t low, std::int64_t high) const
 
 bool YamlReader::boolean() const
 {
-    if (node_.IsScalar() && (node_.Scalar() == "true" || node_.Scalar() == "false")) return node_.Scalar() == "true";
+    if (node_.IsScalar() && (node_.Scalar() == "true" || node_.Scalar() == "false"))
+        return node_.Scalar() == "true";
     throw error(path_ + " is neither true nor false", "one of them is needed here", "write true or false");
 }
 

@@ -1,0 +1,10 @@
+#pragma once
+#include "gi/scene/scene.h"
+
+namespace gi {
+
+/// A clear sky without its sun (which is a directional light): blue above, pale at the horizon, brighter towards
+/// the sun, and sunlit ground below. @param to_sun unit
+EnvironmentMap generate_sky(vec3 to_sun);
+
+} // namespace gi
