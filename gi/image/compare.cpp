@@ -29,7 +29,7 @@ Layer const& find_layer(Picture const& picture, std::string const& name, char co
 {
     if (Layer const* layer = picture.find(name)) return *layer;
     std::string known;
-    for (Layer const& l : picture.layers) known += (known.empty() ? "" : ", ") + l.name;
+    for (Layer const& l : picture.layers) known += l.name + " ";
     throw InputError(fmt::format("the {} has no layer '{}'", which, name), "that is the layer to compare",
                      "it has: " + known);
 }
@@ -186,7 +186,7 @@ Comparison compare(Picture const& image, Picture const& reference, std::vector<s
     for (std::string const& name : chosen)
         if (std::none_of(kMetrics.begin(), kMetrics.end(), [&](MetricInfo const& m) { return m.name == name; })) {
             std::string known;
-            for (MetricInfo const& m : kMetrics) known += (known.empty() ? "" : ", ") + std::string(m.name);
+            for (MetricInfo const& m : kMetrics) known += fmt::format("{} ", m.name);
             throw InputError("there is no metric '" + name + "'", "it is not known here", "choose from: " + known);
         }
     Pair p = make_pair(image, reference, layer);

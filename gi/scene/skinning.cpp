@@ -6,7 +6,15 @@ namespace {
 vec3 unit(dvec3 v)
 {
     double const length = glm::length(v);
-    return length > 0 ? vec3(v / length) : vec3{0};
+    return length > 0 && std::isfinite(length) ? vec3(v / length) : vec3{0};
+}
+
+/// The inverse transpose but for its length, which also exists where the transform flattens space.
+glm::dmat3 normal_matrix(dmat4 const& m)
+{
+    dvec3 const x(m[0]), y(m[1]), z(m[2]);
+    glm::dmat3 const cofactors(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
+    return glm::dot(x, glm::cross(y, z)) < 0 ? -cofactors : cofactors;
 }
 
 /// A vector field of the mesh with its morph targets added.
@@ -58,7 +66,6 @@ DeformedVertices deform(Scene const& scene, Pose const& pose, std::size_t node, 
     out.positions.resize(positions.size());
     out.normals.resize(normals.size());
     out.tangents.resize(tangents.size());
-    auto const normal_matrix = [](dmat4 const& m) { return glm::transpose(glm::inverse(glm::dmat3(m))); };
     glm::dmat3 const whole_normal = normal_matrix(whole);
     double mirroring = glm::determinant(glm::dmat3(whole));
     if (skinned && !positions.empty()) mirroring = glm::determinant(glm::dmat3(matrix_of(0)));

@@ -112,7 +112,7 @@ void copy_or_fill(std::vector<T> const& from, std::vector<T>& to, std::size_t fi
         std::copy(from.begin(), from.end(), to.begin() + std::ptrdiff_t(first));
 }
 
-void place_lights_and_cameras(World& world, Pose const& pose)
+void place_lights_and_cameras(World& world, Pose const& pose, Report& report)
 {
     Scene const& scene = *world.scene;
     for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
@@ -124,7 +124,10 @@ void place_lights_and_cameras(World& world, Pose const& pose)
             Light light = scene.lights[std::size_t(node.light)];
             light.position = vec3(dvec3(m[3]) - world.origin);
             light.direction = vec3(-z);
-            world.lights.push_back(light);
+            if (all_finite(light.position) && all_finite(light.direction))
+                world.lights.push_back(light);
+            else
+                report.lose("lights not at a finite place, skipped", 1, "node '" + node.name + "'");
         }
         if (node.camera >= 0) {
             Camera camera = scene.cameras[std::size_t(node.camera)];
@@ -190,12 +193,16 @@ World build_world(std::shared_ptr<Scene const> scene, SceneTime time_s, Report& 
             mesh.material >= 0 ? std::uint32_t(mesh.material) : std::uint32_t(s.materials.size());
         std::uint64_t not_finite = 0, no_area = 0;
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-            not_finite += e.states[t] == TriangleState::not_finite;
-            no_area += e.states[t] == TriangleState::no_area;
-            if (e.states[t] != TriangleState::good) continue;
-            uvec3 corner = mesh.triangles[t];
+            uvec3 corner = mesh.triangles[t] + std::uint32_t(first);
+            TriangleState state = e.states[t];
+            if (state == TriangleState::good) // rounding to float may have taken its area
+                state = judge(dvec3(world.positions[corner.x]), dvec3(world.positions[corner.y]),
+                              dvec3(world.positions[corner.z]));
+            not_finite += state == TriangleState::not_finite;
+            no_area += state == TriangleState::no_area;
+            if (state != TriangleState::good) continue;
             if (e.vertices.mirrored) std::swap(corner.y, corner.z);
-            world.triangles.push_back(corner + std::uint32_t(first));
+            world.triangles.push_back(corner);
             world.triangle_material.push_back(material);
             world.triangle_instance.push_back(std::uint32_t(i));
         }
@@ -203,7 +210,7 @@ World build_world(std::shared_ptr<Scene const> scene, SceneTime time_s, Report& 
         report.lose("triangles not finite or beyond 1e18 m, skipped", not_finite, where);
         report.lose("triangles without area, skipped", no_area, where);
     }
-    place_lights_and_cameras(world, pose);
+    place_lights_and_cameras(world, pose, report);
     build_light_tables(world, report);
     report.count("triangles", double(world.triangles.size()));
     report.count("vertices", double(world.positions.size()));

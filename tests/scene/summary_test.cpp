@@ -1,0 +1,72 @@
+// The summary says what is in the scene.
+
+#include "gi/scene/summary.h"
+#include "tests/support/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace gi::test {
+namespace {
+
+std::string line(SceneSummary const& summary, std::string const& what)
+{
+    for (SummaryLine const& l : summary.lines)
+        if (l.what == what) return l.value;
+    ADD_FAILURE() << "no line '" << what << "'";
+    return {};
+}
+
+TEST(Summary, CountsEverything)
+{
+    Scene scene;
+    add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, 3}, add_material(scene, emitter(vec3{1})));
+    add_quad(scene, {0, 1, 0}, {2, 0, 0}, {0, 0, 3}, add_material(scene, glass(1.5f, false)));
+    add_material(scene, mirror(vec3{1}));
+    add_light(scene, Light{});
+    set_environment(scene, vec3{1});
+    scene.textures.texels.resize(std::size_t(1) << 18);
+    scene.textures.textures = {Texture{0, 512, 512}};
+    scene.cameras.resize(1);
+    scene.cameras[0].name = "front";
+    Node eye;
+    eye.camera = 0;
+    scene.nodes.push_back(eye);
+    scene.skins.resize(1);
+    scene.skins[0].joints = {0, 1};
+    scene.skins[0].inverse_bind.resize(2);
+    scene.meshes[0].morph_targets.resize(3);
+    Animation clip;
+    clip.name = "Walk";
+    clip.duration_s = 1.5;
+    scene.animations = {clip, clip};
+    scene.animations[1].name = "Run";
+    scene.playbacks = {{1, 0, 1, true}};
+
+    SceneSummary const s = summarise(world_of(scene));
+    EXPECT_EQ(line(s, "nodes"), "4");
+    EXPECT_EQ(line(s, "meshes"), "2 (2 placed)");
+    EXPECT_EQ(line(s, "triangles"), "4");
+    EXPECT_EQ(line(s, "vertices"), "8");
+    EXPECT_EQ(line(s, "bounds"), "0, 0, 0 to 2, 1, 3 m");
+    EXPECT_EQ(line(s, "materials"), "3 (1 matt, 0 coated, 0 Phong, 0 metal, 1 mirror, 1 glass; 1 emit)");
+    EXPECT_EQ(line(s, "textures"), "1 (1.0 MiB)");
+    EXPECT_EQ(line(s, "punctual lights"), "1");
+    EXPECT_EQ(line(s, "emissive triangles"), "2 (6 m2)");
+    EXPECT_EQ(line(s, "environment map"), "16 x 8");
+    EXPECT_EQ(line(s, "cameras"), "front");
+    EXPECT_EQ(line(s, "skins"), "2 joints");
+    EXPECT_EQ(line(s, "morph targets"), "3");
+    EXPECT_EQ(line(s, "clips"), "Walk (1.5 s), Run (1.5 s)");
+    EXPECT_EQ(line(s, "playing"), "Run");
+}
+
+TEST(Summary, EmptyScenesHaveOneToo)
+{
+    SceneSummary const s = summarise(world_of({}));
+    EXPECT_EQ(line(s, "triangles"), "0");
+    EXPECT_EQ(line(s, "cameras"), "none");
+    EXPECT_EQ(line(s, "environment map"), "none");
+}
+
+} // namespace
+} // namespace gi::test
