@@ -10,6 +10,9 @@ target_compile_options(lightwell_options INTERFACE
   "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-restrict>"
   "$<$<COMPILE_LANGUAGE:CXX>:-march=${LIGHTWELL_MARCH}>"
   "$<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;-diag-suppress=20012;-Werror=all-warnings>")
+if(LIGHTWELL_FUZZ)
+  target_compile_options(lightwell_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 if(LIGHTWELL_SANITIZE)
   target_compile_options(lightwell_options INTERFACE -fsanitize=${LIGHTWELL_SANITIZE} -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(lightwell_options INTERFACE -fsanitize=${LIGHTWELL_SANITIZE})
@@ -20,6 +23,7 @@ endif()
 function(lightwell_library name)
   cmake_parse_arguments(arg "" "" "PUBLIC;PRIVATE" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
   if(LIGHTWELL_CUDA)
     file(GLOB cuda_sources CONFIGURE_DEPENDS *.cu)
   endif()

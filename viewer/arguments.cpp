@@ -69,7 +69,7 @@ double parse_duration(std::string const& option, std::string const& text)
     for (Unit const unit : {Unit{"ms", 1e-3}, Unit{"min", 60}, Unit{"h", 3600}, Unit{"s", 1}, Unit{"", 1}}) {
         if (!text.ends_with(unit.name)) continue;
         auto const v = to_number(std::string_view(text).substr(0, text.size() - unit.name.size()));
-        if (v && *v > 0) return *v * unit.seconds;
+        if (v && *v > 0 && std::isfinite(*v * unit.seconds)) return *v * unit.seconds;
     }
     throw bad(option, text, "a positive duration is needed", "write 500ms, 2s or 3min");
 }

@@ -2,43 +2,80 @@
 
 #include "gi/base/error.h"
 
+#include <algorithm>
+#include <fmt/format.h>
+
 namespace viewer {
+namespace {
+
+/// Rays in float from farther away are not finite once squared.
+constexpr double kFarthest_m = 1e12;
+
+gi::Camera with_fov(gi::Camera camera, std::optional<double> fov_deg)
+{
+    if (!fov_deg) return camera;
+    if (camera.orthographic)
+        throw gi::InputError("--fov is given for the camera '" + camera.name + "'",
+                             "it is orthographic and has no field of view", "drop it or choose another camera");
+    camera.yfov_rad = glm::radians(*fov_deg);
+    return camera;
+}
+
+void check_distance(gi::World const& world, gi::Camera const& camera)
+{
+    double const distance = glm::length(gi::dvec3(camera.world_from_camera[3]) - world.origin);
+    if (!(distance < kFarthest_m))
+        throw gi::InputError("the camera is too far away",
+                             fmt::format("{:.3g} m from the middle of the scene, at most {:.0e} m can be computed",
+                                         distance, kFarthest_m),
+                             "move it closer");
+}
+
+gi::Camera const& named_camera(gi::World const& world, std::string const& name)
+{
+    std::string known;
+    for (gi::Camera const& c : world.cameras) {
+        if (c.name == name) return c;
+        known += (known.empty() ? "" : ", ") + c.name;
+    }
+    throw gi::InputError("there is no camera '" + name + "'", "the scene does not have it",
+                         known.empty() ? "it has none: give --look-from and --look-at"
+                                       : "choose one of: " + known);
+}
+
+gi::Camera framing_camera(gi::dvec3 center, double radius, double fov_deg)
+{
+    double const distance = 1.05 * radius / std::sin(0.5 * glm::radians(fov_deg));
+    return gi::look_at(center + distance * glm::normalize(gi::dvec3{0.5, 0.35, 1}), center, fov_deg);
+}
+
+} // namespace
 
 ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice)
 {
-    gi::dvec3 const center = gi::dvec3(world.bounds.empty() ? gi::vec3{0} : world.bounds.center()) + world.origin;
-    double const radius = world.bounds.empty() ? 1.0 : std::max(double(world.bounds.radius()), 1e-6);
-    if (choice.look_from) {
-        if (!choice.name.empty())
-            throw gi::InputError("--camera and --look-from are both given", "they contradict each other",
-                                 "drop one");
-        return {gi::look_at(*choice.look_from, choice.look_at.value_or(center), choice.fov_deg.value_or(45)), ""};
-    }
-    if (choice.look_at)
+    if (choice.look_from && !choice.name.empty())
+        throw gi::InputError("--camera and --look-from are both given", "they contradict each other", "drop one");
+    if (choice.look_at && !choice.look_from)
         throw gi::InputError("--look-at is given alone", "it is not known from where", "add --look-from x,y,z");
-    if (!choice.name.empty()) {
-        std::string known;
-        for (gi::Camera const& c : world.cameras) {
-            if (c.name == choice.name) {
-                ChosenCamera chosen{c, ""};
-                if (choice.fov_deg) chosen.camera.yfov_rad = glm::radians(*choice.fov_deg);
-                return chosen;
-            }
-            known += (known.empty() ? "" : ", ") + c.name;
-        }
-        throw gi::InputError("there is no camera '" + choice.name + "'", "the scene does not have it",
-                             known.empty() ? "it has none: give --look-from and --look-at"
-                                           : "choose one of: " + known);
+
+    constexpr double kDefaultFov_deg = 45;
+    double const fov_deg = choice.fov_deg.value_or(kDefaultFov_deg);
+    bool const empty = world.bounds.empty();
+    gi::dvec3 const center = gi::dvec3(empty ? gi::vec3{0} : world.bounds.center()) + world.origin;
+    double const radius = empty ? 1.0 : std::max(double(world.bounds.radius()), 1e-6);
+    ChosenCamera chosen;
+    if (choice.look_from) {
+        chosen.camera = gi::look_at(*choice.look_from, choice.look_at.value_or(center), fov_deg);
+    } else if (!choice.name.empty()) {
+        chosen.camera = with_fov(named_camera(world, choice.name), choice.fov_deg);
+    } else if (!world.cameras.empty()) {
+        chosen.camera = with_fov(world.cameras.front(), choice.fov_deg);
+    } else {
+        chosen.camera = framing_camera(center, radius, fov_deg);
+        chosen.note = "the scene has no camera: looking at all of it from the front";
     }
-    if (!world.cameras.empty()) {
-        ChosenCamera chosen{world.cameras.front(), ""};
-        if (choice.fov_deg) chosen.camera.yfov_rad = glm::radians(*choice.fov_deg);
-        return chosen;
-    }
-    double const fov_deg = choice.fov_deg.value_or(45);
-    double const distance = 1.05 * radius / std::sin(0.5 * glm::radians(fov_deg));
-    gi::dvec3 const from = center + distance * glm::normalize(gi::dvec3{0.5, 0.35, 1});
-    return {gi::look_at(from, center, fov_deg), "the scene has no camera: looking at all of it from the front"};
+    check_distance(world, chosen.camera);
+    return chosen;
 }
 
 } // namespace viewer

@@ -19,7 +19,8 @@ struct ChosenCamera {
 };
 
 /// The named camera, or the one looked from, or the scene's first, or one that frames the whole scene.
-/// Throws InputError on unknown names (it lists the known ones) and half-given positions.
+/// Throws InputError on unknown names (it lists the known ones), half-given or contradictory positions, a field of
+/// view for an orthographic camera, and cameras too far away to compute with.
 ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice);
 
 } // namespace viewer

@@ -3,6 +3,7 @@
 #include "gi/image/compare.h"
 #include "viewer/arguments.h"
 #include "viewer/commands.h"
+#include "viewer/outputs.h"
 #include "viewer/report_json.h"
 
 #include <CLI/CLI.hpp>
@@ -21,6 +22,7 @@ struct CompareOptions {
 
 int run(CompareOptions const& o)
 {
+    check_outputs({o.difference}, {o.image, o.reference});
     gi::Picture const image = gi::read_picture(o.image), reference = gi::read_picture(o.reference);
     std::vector<std::pair<std::string, double>> limits;
     std::vector<std::string> names = o.metrics;
@@ -38,7 +40,7 @@ int run(CompareOptions const& o)
     gi::Comparison const result = gi::compare(image, reference, names, o.layer);
     for (auto const& [name, value] : limits)
         if (std::none_of(result.values.begin(), result.values.end(),
-                         [&](auto const& v) { return v.name == name; }))
+                         [&, wanted = name](auto const& v) { return v.name == wanted; }))
             throw gi::InputError("--fail-above knows no '" + name + "'", "no metric gives a value of that name",
                                  "see the names that compare prints");
     if (!o.difference.empty()) {
@@ -83,9 +85,13 @@ void add_compare(CLI::App& app, int& exit_code)
     c->add_option("REFERENCE", o->reference, "the truth; may be a whole multiple larger or smaller")->required();
     std::string known;
     for (gi::MetricInfo const& m : gi::metrics()) known += fmt::format("\n  {}: {}", m.name, m.meaning);
-    c->add_option("--metrics", o->metrics, "comma-separated, of:" + known)->delimiter(',');
+    c->add_option("--metrics", o->metrics, "comma-separated, of:" + known)
+        ->delimiter(',')
+        ->allow_extra_args(false);
     c->add_option("--layer", o->layer, "which layer to compare")->capture_default_str();
-    c->add_option("--fail-above", o->limits, "NAME=LIMIT: exit with 1 where a value is larger")->delimiter(',');
+    c->add_option("--fail-above", o->limits, "NAME=LIMIT: exit with 1 where a value is larger")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     c->add_option("--diff", o->difference, "PNG of the FLIP error, black = none");
     c->add_flag("--json", o->json, "print JSON");
     c->footer(R"(Examples:

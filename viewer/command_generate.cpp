@@ -1,6 +1,7 @@
 #include "gi/scene/generate.h"
 #include "gi/scene/write_glb.h"
 #include "viewer/commands.h"
+#include "viewer/outputs.h"
 #include "viewer/report_json.h"
 
 #include <CLI/CLI.hpp>
@@ -47,7 +48,10 @@ A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them
     auto const add = [&](char const* name, char const* help, Make const& make) {
         CLI::App* const kind = c->add_subcommand(name, help);
         kind->add_option("--out", o->out, "GLB to write")->required();
-        kind->callback([o, make, &exit_code] { exit_code = save(make(), o->out); });
+        kind->callback([o, make, &exit_code] {
+            check_outputs({o->out}, {});
+            exit_code = save(make(), o->out);
+        });
         return kind;
     };
     CLI::App* const atrium = add("atrium", "a colonnaded gallery, lit from outside", [o] {

@@ -3,6 +3,7 @@
 #include "gi/scene/summary.h"
 #include "viewer/commands.h"
 #include "viewer/report_json.h"
+#include "viewer/validators.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -13,15 +14,15 @@ namespace {
 
 struct InfoOptions {
     std::string scene;
-    double time_s = 0;
-    bool has_time = false, json = false;
+    std::optional<double> time_s;
+    bool json = false;
 };
 
 int run(InfoOptions const& o)
 {
     gi::Report report;
     auto const scene = std::make_shared<gi::Scene const>(gi::load_scene(o.scene, report));
-    gi::World const world = gi::build_world(scene, o.has_time ? gi::SceneTime(o.time_s) : std::nullopt, report);
+    gi::World const world = gi::build_world(scene, o.time_s, report);
     gi::SceneSummary const summary = gi::summarise(world);
     gi::ScenePlan const plan = gi::plan_scene(world);
     if (o.json) {
@@ -51,15 +52,12 @@ void add_info(CLI::App& app, int& exit_code)
     auto const o = std::make_shared<InfoOptions>();
     CLI::App* const c = app.add_subcommand("info", "What is in a scene, what will be built for it, and why.");
     c->add_option("SCENE", o->scene, "a scene file, or atrium, cornell")->required();
-    CLI::Option const* const time = c->add_option("--time", o->time_s, "moment of the animation, s");
+    c->add_option("--time", o->time_s, "moment of the animation, s")->check(in_range(-1e9, 1e9));
     c->add_flag("--json", o->json, "print JSON");
     c->footer(R"(Examples:
   lightwell info atrium
   lightwell info cornell --json)");
-    c->callback([o, time, &exit_code] {
-        o->has_time = time->count() > 0;
-        exit_code = run(*o);
-    });
+    c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 
 } // namespace viewer

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fmt/format.h>
 #include <new>
+#include <stdexcept>
 
 namespace viewer {
 
@@ -30,14 +31,15 @@ Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130
     add_generate(app, exit_code);
     try {
         app.parse(argc, argv);
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+            throw std::runtime_error("standard output could not be written");
         return exit_code;
     } catch (CLI::Success const& e) { // --help and --version
         return app.exit(e);
     } catch (CLI::ParseError const& e) {
+        auto const commands = app.get_subcommands(); // those that were given
         std::fputs(fmt::format("lightwell: {} (the call does not fit) see lightwell {}--help\n", e.what(),
-                               argc > 1 && argv[1][0] != '-' && app.got_subcommand(argv[1])
-                                   ? std::string(argv[1]) + " "
-                                   : "")
+                               commands.empty() ? "" : commands.front()->get_name() + " ")
                        .c_str(),
                    stderr);
         return 2;

@@ -1,3 +1,4 @@
+#include "gi/base/exr.h"
 #include "gi/base/error.h"
 #include "gi/base/file.h"
 #include "gi/base/picture_file.h"
@@ -8,43 +9,19 @@
 #include <ImfIO.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
-#include <ImfMultiPartOutputFile.h>
-#include <ImfOutputPart.h>
 #include <ImfPartType.h>
-#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <fmt/format.h>
-#include <half.h>
 #include <string_view>
 
 namespace gi {
 namespace {
 
-constexpr std::string_view kMetadataPrefix = "lightwell:";
 constexpr int kLargestSide = 65536;
 constexpr std::size_t kMostValues = std::size_t(1) << 31;
-constexpr float kLargestHalf = 65504;
-
-bool is_vector(std::string const& layer) { return layer == "normal" || layer == "position"; }
-
-bool needs_single(std::string const& layer)
-{
-    return layer == "depth" || layer == "position" || layer.starts_with("variance");
-}
-
-/// Suffix of channel c of a layer, in the order of its data.
-std::string channel_name(Layer const& layer, int c)
-{
-    static constexpr std::array kColor{"R", "G", "B", "A"}, kVector{"X", "Y", "Z", "W"};
-    auto const i = std::size_t(c);
-    bool const beauty = layer.name == "color";
-    if (layer.channels == 1) return beauty ? "Y" : layer.name + ".V";
-    std::string const suffix = is_vector(layer.name) ? kVector[i] : kColor[i];
-    return beauty ? suffix : layer.name + "." + suffix;
-}
 
 /// Where a channel belongs in its layer; -1 = after the known ones.
 int channel_order(std::string const& suffix)
@@ -54,22 +31,6 @@ int channel_order(std::string const& suffix)
         for (std::string_view const order : kOrders)
             if (auto const at = order.find(suffix[0]); at != std::string_view::npos) return int(at);
     return -1;
-}
-
-std::vector<half> to_half(Layer const& layer, Report& report)
-{
-    std::vector<half> values(layer.data.size());
-    std::uint64_t clamped = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        float v = layer.data[i];
-        if (std::abs(v) > kLargestHalf && std::isfinite(v)) {
-            v = std::copysign(kLargestHalf, v);
-            ++clamped;
-        }
-        values[i] = half(v);
-    }
-    report.lose("values clamped to half float", clamped, "layer '" + layer.name + "'");
-    return values;
 }
 
 class MemoryStream : public Imf::IStream {
@@ -97,11 +58,6 @@ private:
     std::uint64_t at_ = 0;
 };
 
-InputError bad_exr(std::string const& name, std::string const& why)
-{
-    return {"cannot read '" + name + "' as OpenEXR", why, "check the file with exrheader or save it again"};
-}
-
 /// A channel of a file and the layer it goes to.
 struct SourceChannel {
     std::string name, layer;
@@ -126,34 +82,68 @@ std::vector<SourceChannel> source_channels(Imf::Header const& header, std::strin
     return found;
 }
 
-/// A file may not ask for more than it can hold: the strongest compression seen is some 1000:1.
-void check_size(Imf::Header const& header, std::size_t channels, std::size_t file_bytes, std::string const& name)
+/// Raw bytes that one byte of a file can stand for: flat pictures of 4096 x 4096 half floats reach 715 (ZIP), 710
+/// (PIZ), 11 (B44A), 3,443 (DWAA) and 11,660 (DWAB).
+std::size_t largest_ratio(Imf::Compression compression)
 {
+    switch (compression) {
+    case Imf::NO_COMPRESSION:
+        return 1;
+    case Imf::RLE_COMPRESSION:
+        return 64;
+    case Imf::B44_COMPRESSION:
+    case Imf::B44A_COMPRESSION:
+        return 32;
+    case Imf::DWAA_COMPRESSION:
+    case Imf::DWAB_COMPRESSION:
+        return 16384;
+    default:
+        return 2048;
+    }
+}
+
+/// Bytes that a part needs at least. Throws where it is not a picture of a sane size.
+std::size_t least_bytes(Imf::Header const& header, std::string const& name)
+{
+    if (header.hasType() && Imf::isDeepData(header.type())) throw bad_exr(name, "it holds deep data");
     Imath::Box2i const& window = header.dataWindow();
     auto const width = std::int64_t(window.max.x) - window.min.x + 1;
     auto const height = std::int64_t(window.max.y) - window.min.y + 1;
     if (width < 1 || height < 1 || width > kLargestSide || height > kLargestSide)
         throw bad_exr(name, fmt::format("its size is {} x {}", width, height));
+    std::size_t channels = 0;
+    for (auto it = header.channels().begin(); it != header.channels().end(); ++it) ++channels;
+    std::size_t const ratio = largest_ratio(header.compression());
     std::size_t const values = std::size_t(width) * std::size_t(height) * channels;
-    if (values > kMostValues || values / 4096 > file_bytes)
-        throw bad_exr(name, fmt::format("{} x {} pixels of {} channels do not fit a file of {} bytes", width,
-                                        height, channels, file_bytes));
-    if (header.hasType() && Imf::isDeepData(header.type())) throw bad_exr(name, "it holds deep data");
+    if (values > kMostValues) throw bad_exr(name, fmt::format("it has {} values", values));
     if (header.hasTileDescription()) {
         Imf::TileDescription const& tiles = header.tileDescription();
+        std::size_t const tile = std::size_t(tiles.xSize) * tiles.ySize;
         if (tiles.xSize > unsigned(kLargestSide) || tiles.ySize > unsigned(kLargestSide) ||
-            std::size_t(tiles.xSize) * tiles.ySize > kMostValues / 16 ||
-            std::size_t(tiles.xSize) * tiles.ySize / 4096 > file_bytes)
+            tile * channels > kMostValues / 16)
             throw bad_exr(name, fmt::format("its tiles are {} x {}", tiles.xSize, tiles.ySize));
+    }
+    return values * sizeof(std::uint16_t) / ratio;
+}
+
+/// A damaged or hostile file is found out at its first or last row, before there is memory for the whole picture.
+void probe_rows(Imf::InputPart& input, std::vector<SourceChannel> const& channels, Imath::Box2i const& window)
+{
+    std::vector<float> row(std::size_t(window.max.x - window.min.x) + 1);
+    for (int const y : {window.max.y, window.min.y}) {
+        Imf::FrameBuffer buffer;
+        for (SourceChannel const& c : channels)
+            buffer.insert(c.name, Imf::Slice::Make(Imf::FLOAT, row.data(), {window.min.x, y}, int(row.size()), 1,
+                                                   sizeof(float), sizeof(float) * row.size()));
+        input.setFrameBuffer(buffer);
+        input.readPixels(y);
     }
 }
 
-void read_part(Imf::MultiPartInputFile& file, int part, std::string const& name, std::size_t file_bytes,
-               Picture& picture)
+void read_part(Imf::MultiPartInputFile& file, int part, std::string const& name, Picture& picture)
 {
     Imf::Header const& header = file.header(part);
     std::vector<SourceChannel> const channels = source_channels(header, name);
-    check_size(header, channels.size(), file_bytes, name);
     Imath::Box2i const window = header.dataWindow();
     int const width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
     if (part == 0) {
@@ -167,6 +157,8 @@ void read_part(Imf::MultiPartInputFile& file, int part, std::string const& name,
         throw bad_exr(name, "its parts differ in size");
     }
 
+    Imf::InputPart input(file, part);
+    probe_rows(input, channels, window);
     Imf::FrameBuffer buffer;
     for (std::size_t i = 0; i < channels.size();) {
         std::size_t end = i;
@@ -182,7 +174,6 @@ void read_part(Imf::MultiPartInputFile& file, int part, std::string const& name,
                                                              width, height, pixel, row));
         i = end;
     }
-    Imf::InputPart input(file, part);
     input.setFrameBuffer(buffer);
     input.readPixels(window.min.y, window.max.y);
 }
@@ -193,10 +184,14 @@ Picture decode_exr(std::span<unsigned char const> bytes, std::string const& name
 {
     Picture picture;
     try {
+        check_exr_header(bytes, name);
         MemoryStream stream(bytes, name);
         Imf::MultiPartInputFile file(stream, 0, false);
         if (file.parts() < 1) throw bad_exr(name, "it has no parts");
-        for (int part = 0; part < file.parts(); ++part) read_part(file, part, name, bytes.size(), picture);
+        std::size_t least = 0;
+        for (int part = 0; part < file.parts(); ++part) least += least_bytes(file.header(part), name);
+        if (least > bytes.size()) throw bad_exr(name, "it is far too short for the pixels it announces");
+        for (int part = 0; part < file.parts(); ++part) read_part(file, part, name, picture);
     } catch (InputError const&) {
         throw;
     } catch (std::exception const& e) {
@@ -207,47 +202,5 @@ Picture decode_exr(std::span<unsigned char const> bytes, std::string const& name
 }
 
 Picture read_exr(std::filesystem::path const& file) { return decode_exr(read_bytes(file), file.string()); }
-
-void write_exr(std::filesystem::path const& file, Picture const& picture, PixelType type, Report& report)
-{
-    std::vector<Imf::Header> headers;
-    std::vector<std::vector<half>> halves(picture.layers.size());
-    for (std::size_t l = 0; l < picture.layers.size(); ++l) {
-        Layer const& layer = picture.layers[l];
-        Imf::Header header(picture.width, picture.height);
-        header.setName(layer.name);
-        header.setType(Imf::SCANLINEIMAGE);
-        header.compression() = Imf::ZIP_COMPRESSION;
-        Imf::addChromaticities(header, Imf::Chromaticities()); // the default is Rec. 709
-        if (l == 0)
-            for (auto const& [key, value] : picture.metadata)
-                header.insert(std::string(kMetadataPrefix) + key, Imf::StringAttribute(value));
-        bool const single = type == PixelType::single || needs_single(layer.name);
-        if (!single) halves[l] = to_half(layer, report);
-        for (int c = 0; c < layer.channels; ++c)
-            header.channels().insert(channel_name(layer, c), Imf::Channel(single ? Imf::FLOAT : Imf::HALF));
-        headers.push_back(header);
-    }
-    write_by_rename(file, [&](std::filesystem::path const& temporary) {
-        Imf::MultiPartOutputFile out(temporary.c_str(), headers.data(), int(headers.size()), false, 0);
-        for (std::size_t l = 0; l < picture.layers.size(); ++l) {
-            Layer const& layer = picture.layers[l];
-            bool const single = halves[l].empty();
-            std::size_t const value = single ? sizeof(float) : sizeof(half);
-            std::size_t const pixel = value * std::size_t(layer.channels),
-                              row = pixel * std::size_t(picture.width);
-            char const* const base = single ? reinterpret_cast<char const*>(layer.data.data())
-                                            : reinterpret_cast<char const*>(halves[l].data());
-            Imf::FrameBuffer buffer;
-            for (int c = 0; c < layer.channels; ++c)
-                buffer.insert(channel_name(layer, c),
-                              Imf::Slice::Make(single ? Imf::FLOAT : Imf::HALF, base + std::size_t(c) * value,
-                                               Imath::V2i(0), picture.width, picture.height, pixel, row));
-            Imf::OutputPart part(out, int(l));
-            part.setFrameBuffer(buffer);
-            part.writePixels(picture.height);
-        }
-    });
-}
 
 } // namespace gi

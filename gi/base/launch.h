@@ -1,6 +1,6 @@
 #pragma once
 // Running a kernel over n items. A kernel is a trivially copyable struct with operator()(std::size_t i) const,
-// written once in a header; which space runs it is decided by the caller.
+// written once in a header; which space runs it is decided by the caller. Its views lie in that space.
 
 #include "gi/base/space.h"
 
@@ -10,12 +10,22 @@
 
 namespace gi {
 
+/// Defined in launch.cuh; instantiated for each kernel in a .cu file of its own. Ends when the device is done.
+template <class Kernel>
+void launch_device(char const* name, std::size_t n, Kernel const& kernel);
+
 /// @param name appears in errors and timings
 template <class Kernel>
 void launch(Space space, char const* name, std::size_t n, Kernel const& kernel)
 {
     static_assert(std::is_trivially_copyable_v<Kernel>);
-    if (space != Space::host) throw_no_cuda(name);
+    if (space == Space::device) {
+        if constexpr (kCudaBuild)
+            launch_device(name, n, kernel);
+        else
+            throw_no_cuda(name);
+        return;
+    }
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n), [&](auto const& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) kernel(i);
     });

@@ -136,7 +136,12 @@ void place_lights_and_cameras(World& world, Pose const& pose, Report& report)
             camera.world_from_camera =
                 dmat4(glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), m[3]);
             if (camera.name.empty()) camera.name = node.name;
-            world.cameras.push_back(std::move(camera));
+            bool finite = true;
+            for (int c = 0; c < 4; ++c) finite &= std::isfinite(glm::length(camera.world_from_camera[c]));
+            if (finite)
+                world.cameras.push_back(std::move(camera));
+            else
+                report.lose("cameras not at a finite place, skipped", 1, "node '" + node.name + "'");
         }
     }
 }

@@ -78,7 +78,7 @@ TEST_F(Environment, MissingFilesAreRefused)
 /// The outdoor map's sun stands about 75 degrees high.
 TEST_F(Environment, TheSunStandsWhereItShould)
 {
-    LIGHTWELL_NEED_DATA("envmaps/kloppenheim_05_1k.hdr");
+    LIGHTWELL_NEED_DATA(shared_data() / "envmaps/kloppenheim_05_1k.hdr");
     EnvironmentMap const map = load_environment(shared_data() / "envmaps/kloppenheim_05_1k.hdr", report_);
     ASSERT_EQ(map.width, 1024u);
     ASSERT_EQ(map.height, 512u);
@@ -92,7 +92,7 @@ TEST_F(Environment, TheSunStandsWhereItShould)
 
 TEST_F(Environment, DamagedPicturesGiveFiniteMaps)
 {
-    LIGHTWELL_NEED_DATA("hard_meshes/exr/BrightRingsNanInf.exr");
+    LIGHTWELL_NEED_DATA(shared_data() / "hard_meshes/exr/BrightRingsNanInf.exr");
     EnvironmentMap const map = load_environment(shared_data() / "hard_meshes/exr/BrightRingsNanInf.exr", report_);
     for (vec3 const& v : map.radiance) ASSERT_TRUE(all_finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0);
     EXPECT_FALSE(report_.losses().empty());

@@ -140,19 +140,19 @@ void expect_sequence(std::filesystem::path const& folder)
 
 TEST(Skinning, CesiumManWalks)
 {
-    LIGHTWELL_NEED_DATA("avatars/cesium_man_walk_expected/sequence.json");
+    LIGHTWELL_NEED_DATA(shared_data() / "avatars/cesium_man_walk_expected/sequence.json");
     expect_sequence(shared_data() / "avatars/cesium_man_walk_expected");
 }
 
 TEST(Skinning, FoxRuns)
 {
-    LIGHTWELL_NEED_DATA("avatars/fox_run_expected/sequence.json");
+    LIGHTWELL_NEED_DATA(shared_data() / "avatars/fox_run_expected/sequence.json");
     expect_sequence(shared_data() / "avatars/fox_run_expected");
 }
 
 TEST(Skinning, HorseGallops)
 {
-    LIGHTWELL_NEED_DATA("avatars/horse_gallop_seq/sequence.json");
+    LIGHTWELL_NEED_DATA(shared_data() / "avatars/horse_gallop_seq/sequence.json");
     expect_sequence(shared_data() / "avatars/horse_gallop_seq");
 }
 

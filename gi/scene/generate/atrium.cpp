@@ -49,6 +49,23 @@ vec3 tile_color(vec2 uv)
     return glm::mix(vec3{0.3f, 0.28f, 0.25f}, marble, joint);
 }
 
+/// Slabs of two sizes for the court.
+vec3 paving_color(vec2 uv)
+{
+    float const row = std::floor(uv.y * 3), x = uv.x * 2 + 0.37f * row;
+    vec2 const in_slab{x - std::floor(x), uv.y * 3 - row};
+    vec2 const edge = glm::min(in_slab, 1.0f - in_slab) * vec2{0.5f, 0.33f};
+    float const joint = glm::smoothstep(0.004f, 0.010f, glm::min(edge.x, edge.y));
+    float const worn = 0.8f + 0.3f * tileable_noise(uv, 6, 31) + 0.1f * tileable_noise(uv, 48, 32);
+    return vec3{0.50f, 0.44f, 0.36f} * worn * glm::mix(0.6f, 1.0f, joint);
+}
+
+vec3 plaster_color(vec2 uv)
+{
+    return vec3{0.74f, 0.69f, 0.60f} *
+           (0.88f + 0.2f * tileable_noise(uv, 3, 41) + 0.04f * tileable_noise(uv, 40, 42));
+}
+
 /// Grooves of the tiles' joints.
 vec3 tile_normal(vec2 uv)
 {
@@ -93,14 +110,18 @@ Materials add_materials(SceneBuilder& b)
     Material stone = matt(vec3{1});
     stone.base_color_map = ref(add_procedural_texture(pool, 256, true, opaque(stone_color)));
     out.stone = b.add_material("stone", stone);
-    out.plaster = b.add_material("plaster", matt({0.74f, 0.69f, 0.60f}));
+    Material plaster = matt(vec3{1});
+    plaster.base_color_map = ref(add_procedural_texture(pool, 256, true, opaque(plaster_color)));
+    out.plaster = b.add_material("plaster", plaster);
     Material tiles;
     tiles.base_color = vec3{1};
     tiles.roughness = 0.22f;
     tiles.base_color_map = ref(add_procedural_texture(pool, 256, true, opaque(tile_color)));
     tiles.normal_map = ref(add_procedural_texture(pool, 256, false, opaque(tile_normal)));
     out.tiles = b.add_material("polished tiles", tiles);
-    out.paving = b.add_material("paving", matt({0.52f, 0.45f, 0.36f}));
+    Material paving = matt(vec3{1});
+    paving.base_color_map = ref(add_procedural_texture(pool, 256, true, opaque(paving_color)));
+    out.paving = b.add_material("paving", paving);
     Material vase = matt({0.08f, 0.22f, 0.20f});
     vase.model = MaterialModel::phong;
     vase.phong_specular = vec3{0.35f};
@@ -155,11 +176,11 @@ void add_building(SceneBuilder& b, Materials const& m, int bays, float end, auto
     // Arcade below, smaller windows above.
     for (int i = 0; i < bays; ++i) {
         float const z1 = -kBay * float(i), z0 = z1 - kBay;
-        add_arch_wall(b, m.stone, {-0.28f, 0.28f, z0, z1, kSpring, kFloor1, 2.3f, kSpring, kSpring, n(20)});
+        add_arch_wall(b, m.stone, {-0.28f, 0.28f, z0, z1, kSpring, kFloor1, 2.3f, kSpring, kSpring, n(28)});
         add_arch_wall(b, m.stone,
                       {-0.28f, 0.28f, z0, z1, kFloor1, kTop, 1.2f, kFloor1 + 0.9f, kFloor1 + 2.0f, n(14)});
     }
-    for (int i = 0; i <= bays; ++i) add_column(b, m.stone, {0, 0, -kBay * float(i)}, kSpring, 0.21f, n(20));
+    for (int i = 0; i <= bays; ++i) add_column(b, m.stone, {0, 0, -kBay * float(i)}, kSpring, 0.21f, n(40));
     // Cornice between the storeys.
     b.box(m.stone, {-0.28f, kFloor1 - 0.12f, end}, {0.42f, kFloor1 + 0.1f, 0}, 0.5f);
     // The wall from the last columns to both ends.
@@ -168,23 +189,27 @@ void add_building(SceneBuilder& b, Materials const& m, int bays, float end, auto
 
     // Back wall, ends, roof of the gallery.
     b.box(m.plaster, {kBack - 0.5f, -0.05f, end - 0.5f}, {kBack, kTop, kNear + 0.5f}, 0.5f);
-    b.box(m.plaster, {kBack, -0.05f, kNear}, {kCourt + 0.5f, kTop, kNear + 0.5f}, 0.5f);
+    b.box(m.plaster, {kBack, -0.05f, kNear}, {0.28f, kTop, kNear + 0.5f}, 0.5f);
     b.box(m.stone, {kBack - 0.5f, kTop, end - 0.5f}, {0.5f, kTop + 0.3f, kNear + 0.5f}, 0.5f);
-    add_vault(b, m.plaster, kBack, -0.28f, kNear, end, 3.3f, 1.35f, n(28), n(14));
+    add_vault(b, m.plaster, kBack, -0.28f, kNear, end, 3.3f, 1.35f, n(44), n(40));
     b.box(m.stone, {kBack, kFloor1 - 0.12f, end}, {-0.28f, kFloor1, kNear}, 0.5f);
     for (int i = 0; i <= bays; ++i) { // ribs
         float const z = -kBay * float(i);
-        add_vault(b, m.stone, kBack + 0.05f, -0.30f, z + 0.16f, z - 0.16f, 3.25f, 1.33f, n(28), 1);
+        add_vault(b, m.stone, kBack + 0.05f, -0.30f, z + 0.16f, z - 0.16f, 3.25f, 1.33f, n(44), 1);
         b.box(m.stone, {kBack, 0, z - 0.2f}, {kBack + 0.1f, 3.3f, z + 0.2f}, 0.5f); // pilaster
     }
     // The far end: a door-sized opening with a lattice, towards the light.
     float const x = 0.5f * (kBack - 0.28f);
     b.box(m.plaster, {kBack, -0.05f, end - 0.5f}, {x - 0.8f, kTop, end}, 0.5f);
-    b.box(m.plaster, {x + 0.8f, -0.05f, end - 0.5f}, {kCourt + 0.5f, kTop, end}, 0.5f);
+    b.box(m.plaster, {x + 0.8f, -0.05f, end - 0.5f}, {0.28f, kTop, end}, 0.5f);
     b.box(m.plaster, {x - 0.8f, 2.6f, end - 0.5f}, {x + 0.8f, kTop, end}, 0.5f);
     b.quad(m.lattice, {x - 0.8f, 0, end - 0.25f}, {1.6f, 0, 0}, {0, 2.6f, 0}, 1 / 0.4f);
-    // The low wall across the court lets the sun in.
+    // Around the court, low enough to let the sun in.
     b.box(m.stone, {kCourt, -0.05f, end - 0.5f}, {kCourt + 0.5f, 2.2f, kNear + 0.5f}, 0.5f);
+    for (float const z : {end - 0.5f, kNear}) {
+        b.box(m.plaster, {0.28f, -0.05f, z}, {kCourt + 0.5f, kFloor1 - 0.12f, z + 0.5f}, 0.5f);
+        b.box(m.stone, {0.28f, kFloor1 - 0.12f, z - 0.1f}, {kCourt + 0.6f, kFloor1 + 0.1f, z + 0.6f}, 0.5f);
+    }
 }
 
 /// Hanging cloth with folds. @param top_left its upper corner, width along z
@@ -239,10 +264,10 @@ void add_objects(SceneBuilder& b, Materials const& m, int bays, auto const& n)
     }
     // Banners in the arcade.
     for (int i = 1; i < bays; i += 2) {
-        add_banner(b, i % 4 == 1 ? m.red : m.blue, {0.36f, kFloor1 - 0.2f, -kBay * float(i) + 0.55f}, 1.1f, 2.6f,
+        add_banner(b, i % 4 == 1 ? m.red : m.blue, {0.48f, kFloor1 - 0.2f, -kBay * float(i) + 0.55f}, 1.1f, 2.6f,
                    n(24), n(30));
-        b.box(m.iron, {0.34f, kFloor1 - 0.22f, -kBay * float(i) - 0.6f},
-              {0.38f, kFloor1 - 0.18f, -kBay * float(i) + 0.6f});
+        b.box(m.iron, {0.28f, kFloor1 - 0.22f, -kBay * float(i) - 0.6f},
+              {0.5f, kFloor1 - 0.18f, -kBay * float(i) + 0.6f});
     }
 }
 
@@ -261,7 +286,7 @@ Scene generate_atrium(AtriumOptions const& o)
     SceneBuilder b;
     b.add_camera("gallery", {-2.55, 1.62, 1.1}, {-1.55, 1.78, -8}, 56);
     b.add_camera("arches", {5.6, 1.7, 0.6}, {-1.2, 2.1, -6}, 52);
-    b.add_camera("courtyard", {5.9, 2.6, double(end) + 0.8}, {-0.5, 2.4, -3.2}, 60);
+    b.add_camera("courtyard", {6.2, 1.75, double(end) + 0.9}, {-0.6, 2.5, 0.36 * double(end)}, 62);
     Materials const m = add_materials(b);
     add_building(b, m, o.bays, end, n);
     add_objects(b, m, o.bays, n);
@@ -271,7 +296,7 @@ Scene generate_atrium(AtriumOptions const& o)
                        -std::cos(azimuth) * std::cos(elevation)};
     Light sun;
     sun.type = LightType::directional;
-    sun.intensity = vec3{7.0f, 6.3f, 5.2f};
+    sun.intensity = vec3{6.2f, 5.6f, 4.6f};
     b.add_light("sun", sun, dvec3{0, 20, 0}, -to_sun);
     Scene scene = b.finish("atrium");
     scene.environment = generate_sky(vec3(to_sun));

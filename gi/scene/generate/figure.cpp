@@ -251,7 +251,7 @@ void add_figure(Scene& scene, dmat4 const& world_from_root, double detail)
     skin.base_color = {0.62f, 0.42f, 0.32f};
     skin.roughness = 0.5f;
     std::array<Mesh, 2> meshes; // dressed, bare
-    int const segments = std::max(6, int(std::lround(14 * detail)));
+    int const segments = std::max(6, int(std::lround(20 * detail)));
     for (Limb const& limb : limbs()) add_limb(meshes[limb.dressed ? 0 : 1], limb, segments);
 
     auto const root = std::int32_t(scene.nodes.size());

@@ -26,7 +26,7 @@ json to_json(vec3 v) { return {v.x, v.y, v.z}; }
 
 class GlbWriter {
 public:
-    explicit GlbWriter(Scene const& scene) : scene_(scene) {}
+    GlbWriter(Scene const& scene, Report& report) : scene_(scene), report_(report) {}
 
     void write(std::filesystem::path const& file)
     {
@@ -133,6 +133,8 @@ private:
         if (t.row_u == vec2{1, 0} && t.row_v == vec2{0, 1} && t.offset == vec2{0}) return j;
         use("KHR_texture_transform");
         float const sx = std::hypot(t.row_u.x, t.row_v.x), sy = std::hypot(t.row_u.y, t.row_v.y);
+        if (std::abs(t.row_u.x * t.row_u.y + t.row_v.x * t.row_v.y) > 1e-4f * sx * sy)
+            report_.lose("shears of texture transforms that GLB cannot hold");
         bool const flipped = t.row_u.x * t.row_v.y - t.row_u.y * t.row_v.x < 0;
         j["extensions"]["KHR_texture_transform"] = {{"offset", {t.offset.x, t.offset.y}},
                                                     {"rotation", std::atan2(-t.row_v.x, t.row_u.x)},
@@ -233,7 +235,10 @@ private:
         for (Node const& node : scene_.nodes) {
             std::vector<std::int32_t> shown;
             for (std::int32_t const m : node.meshes)
-                if (!scene_.meshes[std::size_t(m)].triangles.empty()) shown.push_back(m);
+                if (scene_.meshes[std::size_t(m)].triangles.empty())
+                    report_.lose("meshes without triangles not written", 1, scene_.meshes[std::size_t(m)].name);
+                else
+                    shown.push_back(m);
             if (shown.empty() || mesh_of_.contains(node.meshes)) continue;
             json mesh{{"name", scene_.meshes[std::size_t(shown.front())].name}};
             for (std::int32_t const m : shown) {
@@ -351,6 +356,7 @@ private:
     }
 
     Scene const& scene_;
+    Report& report_;
     json root_;
     std::vector<unsigned char> binary_;
     std::set<std::string> used_;
@@ -369,13 +375,13 @@ std::string sky_yaml(EnvironmentMap const& map, std::string const& glb, std::str
 void write_glb(std::filesystem::path const& file, Scene const& scene, Report& report)
 {
     if (scene.environment) report.lose("environment maps that GLB cannot hold", 1, file.string());
-    GlbWriter(scene).write(file);
+    GlbWriter(scene, report).write(file);
 }
 
 std::vector<std::filesystem::path> write_scene_bundle(std::filesystem::path const& glb, Scene const& scene,
                                                       Report& report)
 {
-    GlbWriter(scene).write(glb);
+    GlbWriter(scene, report).write(glb);
     if (!scene.environment) return {glb};
     EnvironmentMap const& map = *scene.environment;
     Picture picture;

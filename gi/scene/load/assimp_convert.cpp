@@ -59,14 +59,14 @@ private:
         where_ = fmt::format("material '{}'", name.C_Str());
         aiColor3D diffuse(0.8f, 0.8f, 0.8f), specular(0, 0, 0), emissive(0, 0, 0);
         float shininess = 0, opacity = 1, ior = 1.5f;
-        int model = 0;
+        int illumination = 2;
         source.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse);
         source.Get(AI_MATKEY_COLOR_SPECULAR, specular);
         source.Get(AI_MATKEY_COLOR_EMISSIVE, emissive);
         source.Get(AI_MATKEY_SHININESS, shininess);
         source.Get(AI_MATKEY_OPACITY, opacity);
         source.Get(AI_MATKEY_REFRACTI, ior);
-        source.Get(AI_MATKEY_SHADING_MODEL, model);
+        source.Get("$mat.illum", 0, 0, illumination);
 
         Material m;
         m.specular = 0;
@@ -106,9 +106,36 @@ private:
             m.alpha = opacity;
         }
         if (ior >= 1 && ior <= 100) m.ior = ior;
+        if (illumination == 5) make_mirror(m, shine);
+        if (illumination == 6 || illumination == 7) make_glass(m, source);
         scene_.materials.push_back(m);
         scene_.material_names.push_back(name.C_Str());
     }
+    /// The ray-traced illumination models of MTL: 5 reflects, 6 and 7 refract as well.
+    static void make_mirror(Material& m, vec3 reflectance)
+    {
+        m.model = MaterialModel::metal_rough;
+        m.base_color = reflectance;
+        m.base_color_map = {};
+        m.metallic = 1;
+        m.roughness = 0;
+    }
+    void make_glass(Material& m, aiMaterial const& source)
+    {
+        aiColor3D filter(1, 1, 1);
+        source.Get(AI_MATKEY_COLOR_TRANSPARENT, filter);
+        m.model = MaterialModel::metal_rough;
+        m.alpha_mode = AlphaMode::opaque;
+        m.alpha = 1;
+        m.base_color = unit_color(to_vec3(filter));
+        m.base_color_map = {};
+        m.metallic = 0;
+        m.roughness = 0;
+        m.specular = 1;
+        m.transmission = 1;
+        m.thin = false;
+    }
+
     vec3 unit_color(vec3 v)
     {
         if (!all_finite(v)) v = vec3{0};
@@ -185,13 +212,27 @@ private:
         m.base_color_map.texture = std::int32_t(pool.textures.size()) - 1;
     }
 
+    /// FBX states its unit in centimetres and leaves the numbers as they are: everything hangs below a node that
+    /// scales.
+    void add_unit_node()
+    {
+        float centimetres = 100;
+        if (source_.mMetaData == nullptr || !source_.mMetaData->Get("UnitScaleFactor", centimetres)) return;
+        if (!(centimetres > 1e-6f) || !(centimetres < 1e9f)) return;
+        Node node;
+        node.name = "unit";
+        node.scale = dvec3(0.01 * double(centimetres));
+        scene_.nodes.push_back(std::move(node));
+    }
+
     void add_nodes()
     {
+        add_unit_node();
         struct Visit {
             aiNode const* node;
             std::int32_t parent;
         };
-        std::vector<Visit> stack{{source_.mRootNode, -1}};
+        std::vector<Visit> stack{{source_.mRootNode, std::int32_t(scene_.nodes.size()) - 1}};
         while (!stack.empty()) {
             Visit const v = stack.back();
             stack.pop_back();
@@ -215,8 +256,13 @@ private:
         where_ = "mesh '" + mesh.name + "'";
         unsigned const n = source.mNumVertices;
         // Assimp gives formats without materials one of its own.
-        bool const named = source.mMaterialIndex < source_.mNumMaterials;
+        bool const named = source.mMaterialIndex < source_.mNumMaterials &&
+                           scene_.material_names[source.mMaterialIndex] != AI_DEFAULT_MATERIAL_NAME;
         mesh.material = named ? std::int32_t(source.mMaterialIndex) : -1;
+        if (!source.HasPositions() || !source.HasFaces()) {
+            scene_.meshes.push_back(std::move(mesh));
+            return;
+        }
         for (unsigned i = 0; i < n; ++i) mesh.positions.push_back(to_vec3(source.mVertices[i]));
         if (source.HasNormals())
             for (unsigned i = 0; i < n; ++i) {

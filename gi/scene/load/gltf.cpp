@@ -28,8 +28,11 @@ Interpolation to_interpolation(std::string const& name)
 
 /// Keys of one channel. Throws InputError where times do not increase or values are missing.
 void read_keys(GltfDocument& d, tinygltf::AnimationSampler const& sampler, std::size_t components,
-               AnimationChannel& channel, std::string const& where)
+               AnimationChannel& channel, std::string const& where, Report& report)
 {
+    if (sampler.interpolation != "LINEAR" && sampler.interpolation != "STEP" &&
+        sampler.interpolation != "CUBICSPLINE")
+        report.lose("unknown interpolations taken as linear", 1, where);
     channel.interpolation = to_interpolation(sampler.interpolation);
     channel.times_s = read_floats(d, sampler.input, 1).values;
     for (std::size_t i = 0; i < channel.times_s.size(); ++i)
@@ -75,7 +78,7 @@ void read_animations(GltfDocument& d, std::vector<std::int32_t> const& place, Sc
             std::size_t const components = *path == ChannelPath::rotation        ? 4
                                            : *path == ChannelPath::morph_weights ? targets
                                                                                  : 3;
-            read_keys(d, source.samplers[std::size_t(c.sampler)], components, channel, where);
+            read_keys(d, source.samplers[std::size_t(c.sampler)], components, channel, where, report);
             clip.duration_s = std::max(clip.duration_s, double(channel.times_s.back()));
             clip.channels.push_back(std::move(channel));
         }

@@ -75,12 +75,9 @@ public:
         layout_ = element_layout(*accessor_);
         if (layout_.components == 0) throw bad("its type is not known");
         if (accessor_->count < 1) throw bad("it is empty");
-        // What a file holds once may be used a few times, but it may not grow without limit.
-        d.elements_read += accessor_->count;
-        if (accessor_->count > (std::size_t(1) << 32) ||
-            d.elements_read > (std::size_t(1) << 22) + 64 * d.file_bytes)
-            throw bad(fmt::format("{} elements are more than a file of {} bytes can mean", accessor_->count,
-                                  d.file_bytes));
+        if (accessor_->count > (std::size_t(1) << 32)) throw bad("it has more than 2^32 elements");
+        std::size_t const cost = accessor_->bufferView < 0 ? 4 : 1; // zeros need no bytes in the file
+        d.spend(cost * accessor_->count, fmt::format("accessor {}", index));
     }
     tinygltf::Accessor const& accessor() const { return *accessor_; }
     ElementLayout const& layout() const { return layout_; }

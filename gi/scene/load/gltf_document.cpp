@@ -90,6 +90,8 @@ json parse_json(Bytes text, GltfDocument const& d)
         int const line = 1 + int(std::count(text.begin(), end, '\n'));
         auto const start = std::find(std::make_reverse_iterator(end), text.rend(), '\n').base();
         throw InputError({d.name, line, int(end - start)}, "is not valid JSON", e.what(), "export the file again");
+    } catch (json::exception const& e) { // numbers beyond double
+        throw d.error("is not valid JSON", e.what());
     }
 }
 
@@ -203,6 +205,15 @@ void check_extensions(GltfDocument const& d, Report& report)
 }
 
 } // namespace
+
+void GltfDocument::spend(std::size_t elements, std::string const& what)
+{
+    std::size_t const limit = (std::size_t(1) << 22) + 64 * file_bytes;
+    if (elements > limit || elements_read > limit - elements)
+        throw error(what + " cannot be read",
+                    fmt::format("{} elements are more than a file of {} bytes can mean", elements, file_bytes));
+    elements_read += elements;
+}
 
 Bytes GltfDocument::view_bytes(int index)
 {

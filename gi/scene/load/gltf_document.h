@@ -31,12 +31,15 @@ struct GltfDocument {
         storage;                        ///< of what was decoded or read from other files
     std::map<int, Bytes> decoded_views; ///< of EXT_meshopt_compression
     std::size_t file_bytes = 0;         ///< with all buffers
-    std::size_t elements_read = 0;      ///< from accessors so far; a small file must not ask for a large scene
+    std::size_t elements_read = 0;
 
     InputError error(std::string const& problem, std::string const& why) const
     {
         return {name + ": " + problem, why, "check it with the glTF validator and export it again"};
     }
+    /// Counts array elements that are about to be made. Throws InputError where a small file asks for a large
+    /// scene: what a file holds may be used several times, but it may not grow without limit.
+    void spend(std::size_t elements, std::string const& what);
     Bytes own(std::vector<unsigned char> bytes)
     {
         storage.push_back(std::make_unique<std::vector<unsigned char>>(std::move(bytes)));

@@ -10,8 +10,9 @@
 
 namespace gi {
 
-DracoMesh decode_draco(GltfDocument& d, tinygltf::Value const& extension, std::string const& where)
+DracoMesh decode_draco(GltfDocument& d, tinygltf::Primitive const& primitive, std::string const& where)
 {
+    tinygltf::Value const& extension = primitive.extensions.at("KHR_draco_mesh_compression");
     auto const bad = [&](std::string const& why) {
         return d.error(where + " cannot be decompressed (KHR_draco_mesh_compression)", why);
     };
@@ -23,9 +24,16 @@ DracoMesh decode_draco(GltfDocument& d, tinygltf::Value const& extension, std::s
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<char const*>(bytes.data()), bytes.size());
     draco::Decoder decoder;
-    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok()) throw bad(decoded.status().error_msg_string());
-    std::unique_ptr<draco::Mesh> const mesh = std::move(decoded).value();
+    std::unique_ptr<draco::Mesh> mesh;
+    try {
+        auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+        if (!decoded.ok()) throw bad(decoded.status().error_msg_string());
+        mesh = std::move(decoded).value();
+    } catch (std::bad_alloc const&) {
+        throw bad("it asks for more memory than there is");
+    } catch (std::length_error const&) {
+        throw bad("it asks for more memory than there is");
+    }
 
     DracoMesh out;
     std::uint32_t const points = mesh->num_points();
@@ -38,12 +46,16 @@ DracoMesh decode_draco(GltfDocument& d, tinygltf::Value const& extension, std::s
     for (std::string const& name : ids.Keys()) {
         if (!ids.Get(name).IsInt()) throw bad("the id of " + name + " is no integer");
         auto const id = std::uint32_t(ids.Get(name).GetNumberAsInt());
-        draco::PointAttribute const* const attribute = mesh->GetAttributeByUniqueId(id);
+        draco::PointAttribute* const attribute = mesh->attribute(mesh->GetAttributeIdByUniqueId(id));
         if (attribute == nullptr) throw bad(fmt::format("it has no attribute {} for {}", id, name));
+        if (auto const it = primitive.attributes.find(name);
+            it != primitive.attributes.end() && std::size_t(it->second) < d.model.accessors.size())
+            attribute->set_normalized(d.model.accessors[std::size_t(it->second)].normalized);
         GltfArray array;
         array.count = points;
         array.components = std::size_t(attribute->num_components());
         if (array.components < 1 || array.components > 4) throw bad(name + " has a wrong number of components");
+        d.spend(points, name + " of " + where);
         array.values.resize(array.count * array.components);
         for (draco::PointIndex p(0); p < points; ++p) {
             draco::AttributeValueIndex const at = attribute->mapped_index(p);

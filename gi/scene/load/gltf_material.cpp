@@ -3,6 +3,7 @@
 #include "gi/scene/load.h"
 
 #include <algorithm>
+#include <cstring>
 #include <fmt/format.h>
 #include <tuple>
 
@@ -43,6 +44,15 @@ tinygltf::Value const* find_extension(tinygltf::ExtensionMap const& map, char co
 {
     auto const it = map.find(name);
     return it == map.end() ? nullptr : &it->second;
+}
+
+/// The other formats that OpenCV knows do not belong in glTF.
+bool is_image_of_gltf(Bytes b)
+{
+    auto const has = [&](std::size_t at, std::string_view magic) {
+        return b.size() >= at + magic.size() && std::memcmp(b.data() + at, magic.data(), magic.size()) == 0;
+    };
+    return has(0, "\x89PNG") || has(0, "\xff\xd8\xff") || (has(0, "RIFF") && has(8, "WEBP"));
 }
 
 Wrap to_wrap(int mode)
@@ -134,6 +144,7 @@ private:
         m.roughness = 1 - within(p.number("glossinessFactor", 1), 0, 1, "glossinessFactor");
         m.specular_color = color(p.numbers("specularFactor", {1, 1, 1}), "specularFactor") / 0.04f;
         m.specular_color_map = texture(p.find("specularGlossinessTexture"), true);
+        if (m.specular_color_map.texture >= 0) report_.lose("glossiness of textures ignored", 1, where_);
         m.metallic_roughness_map = {};
     }
 
@@ -181,6 +192,11 @@ private:
         ref.row_u = {float(c * scale[0]), float(s * scale[1])};
         ref.row_v = {float(-s * scale[0]), float(c * scale[1])};
         ref.offset = {float(offset[0]), float(offset[1])};
+        for (float const v : {ref.row_u.x, ref.row_u.y, ref.row_v.x, ref.row_v.y, ref.offset.x, ref.offset.y})
+            if (!(std::abs(v) < 1e6f)) {
+                report_.lose("texture transforms out of range ignored", 1, where_);
+                return {ref.texture, ref.uv_set};
+            }
         return ref;
     }
 
@@ -213,8 +229,12 @@ private:
         }
         GltfImage const& image = d_.images[std::size_t(source)];
         if (image.bytes.empty()) return -1; // counted when it was opened
+        if (!is_image_of_gltf(image.bytes)) {
+            report_.lose("textures that could not be read", 1, image.name + " is neither PNG, JPEG nor WebP");
+            return -1;
+        }
         // The texels of an image are shared by all its textures.
-        if (auto const it = texels_of_.find(source); it != texels_of_.end()) {
+        if (auto const it = texels_of_.find(image.bytes.data()); it != texels_of_.end()) {
             Texture t = scene_.textures.textures[std::size_t(it->second)];
             t.wrap_u = sampling.wrap_u;
             t.wrap_v = sampling.wrap_v;
@@ -230,7 +250,7 @@ private:
             t.wrap_u = sampling.wrap_u;
             t.wrap_v = sampling.wrap_v;
             t.nearest = sampling.nearest;
-            texels_of_[source] = index;
+            texels_of_[image.bytes.data()] = index;
             return index;
         } catch (InputError const& e) {
             report_.lose("textures that could not be read", 1, e.what());
@@ -243,7 +263,7 @@ private:
     Report& report_;
     std::string where_;
     std::map<std::tuple<int, Wrap, Wrap, bool, bool>, std::int32_t> known_;
-    std::map<int, std::int32_t> texels_of_;
+    std::map<unsigned char const*, std::int32_t> texels_of_;
 };
 
 } // namespace

@@ -10,6 +10,41 @@
 namespace gi {
 namespace {
 
+/// Some exporters let all primitives share the vertices of the whole file.
+void drop_unused_vertices(Mesh& mesh)
+{
+    constexpr std::uint32_t kUnused = ~0u;
+    std::vector<std::uint32_t> new_index(mesh.positions.size(), kUnused), used;
+    for (uvec3& t : mesh.triangles)
+        for (int k = 0; k < 3; ++k) {
+            std::uint32_t& to = new_index[t[k]];
+            if (to == kUnused) {
+                to = std::uint32_t(used.size());
+                used.push_back(t[k]);
+            }
+            t[k] = to;
+        }
+    auto const keep = [&](auto& values) {
+        if (values.empty()) return;
+        std::remove_reference_t<decltype(values)> kept(used.size());
+        for (std::size_t i = 0; i < used.size(); ++i) kept[i] = values[used[i]];
+        values = std::move(kept);
+    };
+    keep(mesh.positions);
+    keep(mesh.normals);
+    keep(mesh.tangents);
+    keep(mesh.uv0);
+    keep(mesh.uv1);
+    keep(mesh.colors);
+    keep(mesh.joints);
+    keep(mesh.weights);
+    for (MorphTarget& target : mesh.morph_targets) {
+        keep(target.positions);
+        keep(target.normals);
+        keep(target.tangents);
+    }
+}
+
 class PrimitiveReader {
 public:
     PrimitiveReader(GltfDocument& d, Report& report, std::string where)
@@ -28,8 +63,7 @@ public:
         }
         if (p.material >= 0 && std::size_t(p.material) >= d_.model.materials.size())
             throw d_.error(fmt::format("material {} does not exist", p.material), where_ + " uses it");
-        auto const draco = p.extensions.find("KHR_draco_mesh_compression");
-        if (draco != p.extensions.end()) draco_ = decode_draco(d_, draco->second, where_);
+        if (p.extensions.contains("KHR_draco_mesh_compression")) draco_ = decode_draco(d_, p, where_);
 
         Mesh mesh;
         mesh.material = p.material;
@@ -49,6 +83,7 @@ public:
             if (std::max({t.x, t.y, t.z}) >= vertices_)
                 throw d_.error(fmt::format("{} has an index out of range", where_),
                                fmt::format("it has {} vertices", vertices_));
+        if (vertices_ / 2 > 3 * mesh.triangles.size()) drop_unused_vertices(mesh);
         return mesh;
     }
 
@@ -78,6 +113,7 @@ private:
     {
         std::uint64_t repaired = 0;
         GltfArray const normals = attribute(p, "NORMAL", 3);
+        mesh.normals.reserve(normals.count);
         for (std::size_t i = 0; i < normals.count; ++i) {
             vec3 const n = normals.as_vec3(i);
             float const length = glm::length(n);
@@ -95,15 +131,28 @@ private:
         }
         for (auto [name, to] : {std::pair{"TEXCOORD_0", &mesh.uv0}, std::pair{"TEXCOORD_1", &mesh.uv1}}) {
             GltfArray const uv = attribute(p, name, 2);
-            for (std::size_t i = 0; i < uv.count; ++i) to->push_back(uv.as_vec2(i));
+            to->reserve(uv.count);
+            std::uint64_t bad = 0;
+            for (std::size_t i = 0; i < uv.count; ++i) {
+                vec2 const v = uv.as_vec2(i);
+                bool const good = std::isfinite(v.x) && std::isfinite(v.y);
+                bad += !good;
+                to->push_back(good ? v : vec2{0});
+            }
+            report_.lose("texture coordinates that are not finite, 0", bad, where_);
         }
+        if (p.attributes.contains("TEXCOORD_2"))
+            report_.lose("third and further texture coordinates ignored", 1, where_);
         GltfArray const colors = attribute(p, "COLOR_0", 0);
         if (colors.count > 0 && colors.components < 3)
             throw d_.error("COLOR_0 of " + where_ + " is damaged", "it has fewer than three components");
+        std::uint64_t transparent = 0;
         for (std::size_t i = 0; i < colors.count; ++i) {
+            transparent += colors.components == 4 && colors.as_vec4(i).w < 1;
             vec3 const c = colors.as_vec3(i);
             mesh.colors.push_back(all_finite(c) ? glm::clamp(c, vec3{0}, vec3{1}) : vec3{1});
         }
+        report_.lose("vertices with an alpha of their own, taken as opaque", transparent, where_);
     }
 
     void read_skin(tinygltf::Primitive const& p, Mesh& mesh)
@@ -114,7 +163,7 @@ private:
         if (joints == p.attributes.end() || !p.attributes.contains("WEIGHTS_0")) return;
         std::vector<std::uint32_t> indices;
         if (GltfArray const packed = draco_ ? attribute(p, "JOINTS_0", 4) : GltfArray{}; packed.count > 0)
-            indices.assign(packed.values.begin(), packed.values.end());
+            for (float const v : packed.values) indices.push_back(v >= 0 && v < 65536 ? std::uint32_t(v) : 65536);
         else
             indices = read_integers(d_, joints->second, 4);
         GltfArray const weights = attribute(p, "WEIGHTS_0", 4);

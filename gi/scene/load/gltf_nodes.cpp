@@ -33,7 +33,12 @@ public:
             for (int const r : roots)
                 if (!exists(r)) throw d_.error(fmt::format("node {} does not exist", r), "the scene names it");
         }
-        for (int const r : roots) add_tree(r, true);
+        for (int const r : roots) {
+            if (has_parent_[std::size_t(r)])
+                report_.lose("roots of the scene that have a parent, taken without it", 1,
+                             fmt::format("node {}", r));
+            add_tree(r, true);
+        }
         for (std::size_t i = 0; i < place_.size(); ++i)
             if (!has_parent_[i]) add_tree(int(i), scenes.empty());
         read_skins();
@@ -216,6 +221,10 @@ private:
                 if (matrices.count < skin.joints.size())
                     throw d_.error(fmt::format("skin {} has too few inverse bind matrices", s),
                                    fmt::format("{} for {} joints", matrices.count, skin.joints.size()));
+                if (!std::all_of(matrices.values.begin(), matrices.values.end(),
+                                 [](float v) { return std::isfinite(v); }))
+                    throw d_.error(fmt::format("skin {} has a matrix that is not finite", s),
+                                   "nothing can be placed with it");
                 for (std::size_t j = 0; j < skin.joints.size(); ++j)
                     for (std::size_t i = 0; i < 16; ++i)
                         skin.inverse_bind[j][int(i / 4)][int(i % 4)] = matrices.values[16 * j + i];

@@ -4,6 +4,7 @@
 #include "gi/base/file.h"
 #include "gi/scene/generate.h"
 #include "gi/scene/load.h"
+#include "gi/scene/load/scene_file_keys.h"
 #include "gi/scene/load/yaml_reader.h"
 
 #include <algorithm>
@@ -16,12 +17,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDeepest = 8; ///< scene files that include scene files
+constexpr int kDeepest = 8;        ///< scene files that include scene files
+constexpr int kMostModels = 10000; ///< of a file and all that it includes
 
-thread_local int t_depth = 0; ///< of this file below the first
+thread_local int t_depth = 0;  ///< of this file below the first
+thread_local int t_models = 0; ///< since the first file began
 
 struct DepthGuard {
-    DepthGuard() { ++t_depth; }
+    DepthGuard()
+    {
+        if (t_depth++ == 0) t_models = 0;
+    }
     ~DepthGuard() { --t_depth; }
     DepthGuard(DepthGuard const&) = delete;
     DepthGuard& operator=(DepthGuard const&) = delete;
@@ -36,7 +42,7 @@ public:
 
     Scene read()
     {
-        root_.only_keys({"models", "environment", "lights", "cameras", "materials"});
+        check_keys(root_, "scene");
         if (root_.has("models"))
             for (YamlReader const& item : root_.at("models").items()) add_model(item);
         if (root_.has("environment")) set_environment(root_.at("environment"));
@@ -54,6 +60,8 @@ private:
         std::size_t first_material, end_material;
     };
 
+    static void check_keys(YamlReader const& map, char const* kind) { map.only_keys(scene_file_keys().at(kind)); }
+
     fs::path find_file(YamlReader const& at) const
     {
         if (folder_.empty())
@@ -64,7 +72,7 @@ private:
 
     Scene generate(YamlReader const& g) const
     {
-        g.only_keys({"kind", "bays", "detail", "figure", "sun_elevation", "sun_azimuth", "triangles", "seed"});
+        check_keys(g, "generate");
         if (!g.has("kind")) throw g.error("generate has no kind", "it is not known what to make", "kind: atrium");
         std::string const kind = g.at("kind").text();
         auto const triangles = [&] {
@@ -93,7 +101,10 @@ private:
 
     void add_model(YamlReader const& m)
     {
-        m.only_keys({"name", "file", "generate", "translate", "rotate", "scale", "animation"});
+        check_keys(m, "model");
+        if (++t_models > kMostModels)
+            throw m.error(fmt::format("more than {} models", kMostModels),
+                          "those of included scene files are counted, too", "join them into one model file");
         if (m.has("file") == m.has("generate"))
             throw m.error("a model needs either file or generate", "it has both or none", "keep one");
         Scene part;
@@ -109,6 +120,10 @@ private:
         if (m.has("name")) name = m.at("name").text();
         if (m.has("animation")) choose_animation(m.at("animation"), part);
 
+        name_default_material(part);
+        if (part.environment && scene_.environment)
+            report_.lose("environment maps replaced by an earlier one", 1, "model '" + name + "'");
+
         dmat4 transform(1);
         if (m.has("translate")) transform = glm::translate(transform, m.at("translate").vector());
         if (m.has("rotate")) transform *= rotation(m.at("rotate"));
@@ -118,6 +133,21 @@ private:
         models_.push_back({name, first, scene_.materials.size()});
     }
 
+    /// So that overrides reach meshes without a material.
+    static void name_default_material(Scene& part)
+    {
+        auto const material = std::int32_t(part.materials.size());
+        bool used = false;
+        for (Mesh& mesh : part.meshes)
+            if (mesh.material < 0) {
+                mesh.material = material;
+                used = true;
+            }
+        if (!used) return;
+        part.materials.push_back({});
+        part.material_names.push_back("default");
+    }
+
     static dmat4 rotation(YamlReader const& r)
     {
         if (r.is_list()) { // about x, then y, then z
@@ -125,7 +155,7 @@ private:
             return glm::rotate(dmat4(1), a.z, dvec3{0, 0, 1}) * glm::rotate(dmat4(1), a.y, dvec3{0, 1, 0}) *
                    glm::rotate(dmat4(1), a.x, dvec3{1, 0, 0});
         }
-        r.only_keys({"axis", "degrees"});
+        check_keys(r, "rotation");
         dvec3 const axis = r.has("axis") ? r.at("axis").vector(-1e6, 1e6) : dvec3{0, 1, 0};
         if (!(glm::length(axis) > 0))
             throw r.error("the axis is zero", "nothing can turn about it", "axis: [0, 1, 0]");
@@ -144,7 +174,7 @@ private:
                 return;
             }
         } else {
-            a.only_keys({"clip", "offset", "speed", "loop"});
+            check_keys(a, "animation");
             if (!a.has("clip"))
                 throw a.error("an animation needs a clip", "it is not known which one", "clip: Walk");
             clip = a.at("clip").text();
@@ -165,7 +195,7 @@ private:
 
     void set_environment(YamlReader const& e)
     {
-        e.only_keys({"file", "color", "rotate", "scale"});
+        check_keys(e, "environment");
         if (e.has("file") == e.has("color"))
             throw e.error("an environment needs either file or color", "it has both or none", "keep one");
         EnvironmentMap map;
@@ -176,6 +206,7 @@ private:
             map.height = 2;
             map.radiance.assign(8, vec3(e.at("color").vector_or_number(0, 1e9)));
         }
+        if (scene_.environment) report_.lose("environment maps replaced by that of the scene file");
         if (e.has("rotate")) map.rotation_rad = float(glm::radians(e.at("rotate").number(-1e6, 1e6)));
         if (e.has("scale")) map.scale = vec3(e.at("scale").vector_or_number(0, 1e9));
         scene_.environment = std::move(map);
@@ -189,24 +220,20 @@ private:
         if (type == "rectangle") return add_rectangle(l);
         Light light;
         if (type == "point") {
-            l.only_keys({"type", "position", "intensity", "range"});
+            check_keys(l, "point_light");
             light.type = LightType::point;
         } else if (type == "spot") {
-            l.only_keys({"type", "position", "direction", "target", "intensity", "range", "cone"});
+            check_keys(l, "spot_light");
             light.type = LightType::spot;
         } else if (type == "directional") {
-            l.only_keys({"type", "direction", "intensity"});
+            check_keys(l, "directional_light");
             light.type = LightType::directional;
         } else {
             throw l.at("type").error("there is no light type '" + type.substr(0, 64) + "'", "it is not known here",
                                      "choose point, spot, directional or rectangle");
         }
         dvec3 const position = l.has("position") ? l.at("position").vector() : dvec3{0};
-        dvec3 direction{0, -1, 0};
-        if (l.has("direction")) direction = l.at("direction").vector();
-        if (l.has("target")) direction = l.at("target").vector() - position;
-        if (!(glm::length(direction) > 0))
-            throw l.error("the light has no direction", "it is zero", "direction: [0, -1, 0]");
+        dvec3 const direction = read_direction(l, position);
         if (l.has("intensity")) light.intensity = vec3(l.at("intensity").vector_or_number(0, 1e12));
         if (l.has("range")) light.range = float(l.at("range").number(0, 1e12));
         if (l.has("cone")) {
@@ -220,7 +247,7 @@ private:
         Node node;
         node.name = type + " light";
         node.light = std::int32_t(scene_.lights.size());
-        dvec3 const z = -glm::normalize(direction);
+        dvec3 const z = -direction;
         Frame const frame = Frame::about(vec3(z));
         node.matrix = dmat4(glm::dvec4(dvec3(frame.tangent), 0), glm::dvec4(dvec3(frame.bitangent), 0),
                             glm::dvec4(z, 0), glm::dvec4(position, 1));
@@ -228,16 +255,61 @@ private:
         scene_.nodes.push_back(std::move(node));
     }
 
+    /// Unit; down where nothing is said.
+    static dvec3 read_direction(YamlReader const& l, dvec3 position)
+    {
+        if (l.has("direction") && l.has("target"))
+            throw l.error("a light has both direction and target", "they contradict each other", "keep one");
+        dvec3 direction{0, -1, 0};
+        if (l.has("direction")) direction = l.at("direction").vector();
+        if (l.has("target")) direction = l.at("target").vector() - position;
+        double const length = glm::length(direction);
+        if (!(length > 0)) throw l.error("the light has no direction", "it is zero", "direction: [0, -1, 0]");
+        return direction / length;
+    }
+
+    struct Rectangle {
+        dvec3 corner, u, v;
+    };
+
+    /// By its corner and edges, or by its centre, size and direction (then the first edge is level).
+    static Rectangle read_rectangle(YamlReader const& l)
+    {
+        auto const need = [&](char const* key) {
+            if (!l.has(key))
+                throw l.error(
+                    fmt::format("a rectangle light needs {}", key),
+                    "it is given by corner and edges (position, u, v) or by centre (position, size, direction)",
+                    "position: [0, 2, 0], u: [1, 0, 0], v: [0, 0, 1], radiance: 10");
+        };
+        need("position");
+        need("radiance");
+        dvec3 const position = l.at("position").vector();
+        if (!l.has("size")) {
+            need("u");
+            need("v");
+            if (l.has("direction") || l.has("target"))
+                throw l.error("a rectangle with u and v has no direction", "it shines along u x v",
+                              "give size instead");
+            return {position, l.at("u").vector(), l.at("v").vector()};
+        }
+        if (l.has("u") || l.has("v"))
+            throw l.error("a rectangle has both size and edges", "they contradict each other", "keep one");
+        auto const size = l.at("size").items();
+        if (size.size() != 2)
+            throw l.at("size").error("a size has two numbers", "width and height, m", "size: [1, 0.5]");
+        double const width = size[0].number(1e-9, 1e9), height = size[1].number(1e-9, 1e9);
+        dvec3 const n = read_direction(l, position);
+        dvec3 const up = std::abs(n.y) < 0.999 ? dvec3{0, 1, 0} : dvec3{0, 0, 1};
+        dvec3 const u = width * glm::normalize(glm::cross(up, n)), v = height * glm::normalize(glm::cross(n, u));
+        return {position - 0.5 * (u + v), u, v};
+    }
+
     /// An emissive quad that shines to the side of u x v.
     void add_rectangle(YamlReader const& l)
     {
-        l.only_keys({"type", "position", "u", "v", "radiance"});
-        for (char const* key : {"position", "u", "v", "radiance"})
-            if (!l.has(key))
-                throw l.error(fmt::format("a rectangle light needs {}", key),
-                              "its corner, edges and radiance are needed",
-                              "position: [0, 2, 0], u: [1, 0, 0], v: [0, 0, 1], radiance: 10");
-        dvec3 const corner = l.at("position").vector(), u = l.at("u").vector(), v = l.at("v").vector();
+        check_keys(l, "rectangle_light");
+        auto const [corner, u, v] = read_rectangle(l);
         if (!(glm::length(glm::cross(u, v)) > 0))
             throw l.error("the rectangle has no area", "u and v are parallel or zero", "give two different edges");
         Material m;
@@ -264,7 +336,7 @@ private:
     {
         std::vector<Node> nodes;
         for (YamlReader const& c : list.items()) {
-            c.only_keys({"name", "from", "at", "fov", "height"});
+            check_keys(c, "camera");
             for (char const* key : {"name", "from", "at"})
                 if (!c.has(key))
                     throw c.error(fmt::format("a camera needs {}", key), "name, from and at are needed",
@@ -300,8 +372,7 @@ private:
 
     void override_material(YamlReader const& o)
     {
-        o.only_keys({"match", "model", "base_color", "roughness", "metallic", "specular", "ior", "transmission",
-                     "emission", "alpha", "double_sided", "thin", "phong"});
+        check_keys(o, "material");
         if (!o.has("match"))
             throw o.error("an override needs match", "it is not known which material", "match: Wall");
         std::string const pattern = o.at("match").text();
@@ -349,10 +420,13 @@ private:
         if (o.has("thin")) m.thin = o.at("thin").boolean();
         if (o.has("phong")) {
             YamlReader const p = o.at("phong");
-            p.only_keys({"specular", "exponent"});
+            check_keys(p, "phong");
             m.model = MaterialModel::phong;
             if (p.has("specular")) m.phong_specular = vec3(p.at("specular").vector_or_number(0, 1));
             if (p.has("exponent")) m.phong_exponent = float(p.at("exponent").number(0, 1e6));
+            if (max_component(m.base_color + m.phong_specular) > 1)
+                throw p.error("base_color and specular add up to more than 1", "the surface would make light",
+                              "make one of them darker");
         }
     }
 

@@ -9,7 +9,7 @@
 namespace gi {
 namespace {
 
-constexpr std::size_t kLongest = std::size_t(16) << 20;
+constexpr std::size_t kLongest = std::size_t(1) << 20; ///< the parser takes up to 300 times as much memory
 constexpr int kDeepest = 100;
 
 /// The parser calls itself for every level and every alias; this is counted before it starts.
@@ -18,7 +18,7 @@ void check_shape(std::string const& text, std::string const& file)
     auto const refuse = [&](std::string const& why) {
         return InputError({file, 1, 1}, "this YAML is not read", why, "a scene file is small and flat");
     };
-    if (text.size() > kLongest) throw refuse("it is larger than 16 MiB");
+    if (text.size() > kLongest) throw refuse("it is larger than 1 MiB");
     int flow = 0, line_depth = 0;
     std::size_t aliases = 0;
     bool at_start = true;

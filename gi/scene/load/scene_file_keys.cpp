@@ -1,0 +1,27 @@
+#include "gi/scene/load/scene_file_keys.h"
+
+namespace gi {
+
+std::map<std::string, std::set<std::string>> const& scene_file_keys()
+{
+    static std::map<std::string, std::set<std::string>> const keys{
+        {"scene", {"models", "environment", "lights", "cameras", "materials"}},
+        {"model", {"name", "file", "generate", "translate", "rotate", "scale", "animation"}},
+        {"generate", {"kind", "bays", "detail", "figure", "sun_elevation", "sun_azimuth", "triangles", "seed"}},
+        {"rotation", {"axis", "degrees"}},
+        {"animation", {"clip", "offset", "speed", "loop"}},
+        {"environment", {"file", "color", "rotate", "scale"}},
+        {"point_light", {"type", "position", "intensity", "range"}},
+        {"spot_light", {"type", "position", "direction", "target", "intensity", "range", "cone"}},
+        {"directional_light", {"type", "direction", "intensity"}},
+        {"rectangle_light", {"type", "position", "u", "v", "size", "direction", "target", "radiance"}},
+        {"camera", {"name", "from", "at", "fov", "height"}},
+        {"material",
+         {"match", "model", "base_color", "roughness", "metallic", "specular", "ior", "transmission", "emission",
+          "alpha", "double_sided", "thin", "phong"}},
+        {"phong", {"specular", "exponent"}},
+    };
+    return keys;
+}
+
+} // namespace gi

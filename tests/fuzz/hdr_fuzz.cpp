@@ -1,0 +1,13 @@
+// Any bytes as Radiance HDR: a picture or an InputError, never anything else.
+
+#include "gi/base/error.h"
+#include "gi/base/picture_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
+{
+    try {
+        gi::decode_hdr({data, size}, "fuzz");
+    } catch (gi::InputError const&) {
+    }
+    return 0;
+}

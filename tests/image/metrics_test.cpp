@@ -1,0 +1,160 @@
+#include "gi/base/error.h"
+#include "gi/base/rng.h"
+#include "gi/image/compare.h"
+#include "gi/image/flip.h"
+#include "gi/image/metrics.h"
+#include "gi/image/ssim.h"
+#include "gi/image/tone_map.h"
+#include "gi/image/ztest.h"
+
+#include <gtest/gtest.h>
+
+namespace gi::test {
+namespace {
+
+float value(NamedValue const& v) { return float(v.value); }
+
+double find(Comparison const& c, std::string const& name)
+{
+    for (NamedValue const& v : c.values)
+        if (v.name == name) return v.value;
+    ADD_FAILURE() << "no value " << name;
+    return 0;
+}
+
+Picture constant(int width, int height, vec3 c, float variance = 0)
+{
+    Picture p;
+    p.width = width;
+    p.height = height;
+    p.add("color", 3);
+    p.add("variance", 3);
+    for (std::size_t i = 0; i < 3 * p.pixels(); ++i) {
+        p.layers[0].data[i] = c[int(i % 3)];
+        p.layers[1].data[i] = variance;
+    }
+    return p;
+}
+
+TEST(Metrics, ClosedForms)
+{
+    Comparison const c = compare(constant(16, 12, {0.5f, 0.4f, 0.2f}), constant(16, 12, {0.4f, 0.4f, 0.4f}), {}, "color");
+    EXPECT_NEAR(find(c, "rmse"), std::sqrt((0.01 + 0 + 0.04) / 3), 1e-6);
+    EXPECT_NEAR(find(c, "relmse"), (0.01 + 0.04) / 3 / (0.16 + 0.01), 1e-6);
+    EXPECT_NEAR(find(c, "bias"), 1.1 / 1.2, 1e-6);
+    EXPECT_NEAR(find(c, "bias.r"), 1.25, 1e-6);
+    EXPECT_NEAR(find(c, "bias.b"), 0.5, 1e-6);
+    double mse = 0;
+    for (auto const& [x, r] : {std::pair{0.5f, 0.4f}, std::pair{0.2f, 0.4f}})
+        mse += std::pow(double(encode_srgb(x)) - double(encode_srgb(r)), 2) / 3;
+    EXPECT_NEAR(find(c, "psnr"), -10 * std::log10(mse), 1e-4);
+    EXPECT_GT(find(c, "flip"), 0.05);
+}
+
+TEST(Metrics, EqualPicturesHaveNoError)
+{
+    Picture const p = constant(20, 20, {0.3f, 0.6f, 0.1f});
+    Comparison const c = compare(p, p, {"rmse", "relmse", "bias", "psnr", "ssim", "flip", "hdrflip"}, "color");
+    EXPECT_EQ(find(c, "rmse"), 0);
+    EXPECT_EQ(find(c, "relmse"), 0);
+    EXPECT_EQ(find(c, "bias"), 1);
+    EXPECT_TRUE(std::isinf(find(c, "psnr")));
+    EXPECT_NEAR(find(c, "ssim"), 1, 1e-9);
+    EXPECT_EQ(find(c, "flip"), 0);
+    EXPECT_EQ(find(c, "hdrflip"), 0);
+}
+
+TEST(Metrics, ValuesThatAreNotFiniteAreLeftOutAndSaid)
+{
+    Picture a = constant(8, 8, vec3{0.5f});
+    a.layers[0].data[5] = std::nanf("");
+    Comparison const c = compare(a, constant(8, 8, vec3{0.5f}), {"rmse"}, "color");
+    EXPECT_EQ(find(c, "rmse"), 0);
+    ASSERT_EQ(c.notes.size(), 1u);
+    EXPECT_NE(c.notes[0].find("1 values that are not finite"), std::string::npos);
+}
+
+TEST(Metrics, AveragesALargerPictureDown)
+{
+    Picture large = constant(16, 8, vec3{0});
+    for (std::size_t i = 0; i < large.pixels(); ++i)
+        for (std::size_t k = 0; k < 3; ++k) large.layers[0].data[3 * i + k] = i % 2 == 0 ? 0.2f : 0.6f;
+    EXPECT_NEAR(find(compare(constant(8, 4, vec3{0.4f}), large, {"rmse"}, "color"), "rmse"), 0, 1e-6);
+    EXPECT_THROW(compare(constant(5, 4, vec3{0}), large, {"rmse"}, "color"), InputError);
+    EXPECT_THROW(compare(large, large, {"nonsense"}, "color"), InputError);
+    EXPECT_THROW(compare(large, large, {"rmse"}, "no layer"), InputError);
+    EXPECT_EQ(value(compare(large, large, {"rmse"}, "color").values[0]), 0);
+}
+
+TEST(Ssim, AgreesWithTheDefinitionTakenLiterally)
+{
+    int const w = 17, h = 14;
+    Pcg32 rng(2, 2);
+    std::vector<float> a, b;
+    for (int i = 0; i < w * h; ++i) {
+        a.push_back(rng.uniform());
+        b.push_back(0.7f * a.back() + 0.3f * rng.uniform());
+    }
+    double sum = 0;
+    int count = 0;
+    for (int y = 5; y < h - 5; ++y)
+        for (int x = 5; x < w - 5; ++x) {
+            double n = 0, ma = 0, mb = 0, aa = 0, bb = 0, ab = 0;
+            for (int j = -5; j <= 5; ++j)
+                for (int i = -5; i <= 5; ++i) {
+                    double const g = std::exp(-(i * i + j * j) / (2 * 1.5 * 1.5));
+                    double const p = double(a[std::size_t((y + j) * w + x + i)]), q = double(b[std::size_t((y + j) * w + x + i)]);
+                    n += g, ma += g * p, mb += g * q, aa += g * p * p, bb += g * q * q, ab += g * p * q;
+                }
+            ma /= n, mb /= n;
+            double const va = aa / n - ma * ma, vb = bb / n - mb * mb, cov = ab / n - ma * mb;
+            sum += (2 * ma * mb + 1e-4) * (2 * cov + 9e-4) / ((ma * ma + mb * mb + 1e-4) * (va + vb + 9e-4));
+            ++count;
+        }
+    EXPECT_NEAR(ssim(a, b, w, h), sum / count, 1e-9);
+}
+
+double normal(Pcg32& rng)
+{
+    double const u = std::max(1e-12, rng.uniform_double()), v = rng.uniform_double();
+    return std::sqrt(-2 * std::log(u)) * std::cos(2 * glm::pi<double>() * v);
+}
+
+TEST(ZTest, IsCalibratedOnGaussianNoise)
+{
+    Pcg32 rng(4, 4);
+    std::vector<float> x, var, r, none;
+    for (int i = 0; i < 200000; ++i) {
+        double const sigma = 0.1 + rng.uniform_double();
+        r.push_back(float(rng.uniform_double()));
+        x.push_back(float(double(r.back()) + sigma * normal(rng)));
+        var.push_back(float(sigma * sigma));
+    }
+    ZTest const z = z_test(x, var, r, none);
+    EXPECT_NEAR(z.mean_z, 0, 3 / std::sqrt(2e5));
+    EXPECT_NEAR(z.beyond_2, 0.0455, 0.0015);
+    EXPECT_NEAR(z.beyond_3, 0.0027, 0.0004);
+    EXPECT_GT(z.sidak_p, 0.001);
+    for (float& v : x) v += 0.02f;
+    EXPECT_LT(z_test(x, var, r, none).mean_p, 1e-6);
+    x[0] += 20;
+    EXPECT_LT(z_test(x, var, r, none).sidak_p, 1e-6);
+}
+
+TEST(ToneMap, CurvesAndOddValues)
+{
+    Layer layer{"color", 3, {0, 0.18f, 1, 5, -1, std::nanf("")}};
+    auto const out = tone_map(layer, {});
+    EXPECT_EQ(out[0], 0);
+    EXPECT_NEAR(out[1], 0.4613561, 1e-5);
+    EXPECT_EQ(out[2], 1);
+    EXPECT_EQ(out[3], 1);
+    EXPECT_EQ(out[4], 0);
+    EXPECT_EQ(out[5], 0);
+    EXPECT_NEAR(tone_map(layer, {1, ToneCurve::srgb})[1], encode_srgb(0.36f), 1e-6);
+    auto const bytes = tone_map_bytes({"depth", 1, {1.0f}}, {});
+    EXPECT_EQ(bytes, (std::vector<unsigned char>{255, 255, 255}));
+}
+
+} // namespace
+} // namespace gi::test

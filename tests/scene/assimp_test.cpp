@@ -1,0 +1,254 @@
+// OBJ, PLY, STL, ... through Assimp: what becomes of their materials, textures, bones and units.
+
+#include "gi/base/error.h"
+#include "gi/scene/animation.h"
+#include "gi/scene/load.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+#include <unistd.h>
+
+namespace gi::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AssimpFolder : public testing::Test {
+protected:
+    AssimpFolder() : folder_(fs::temp_directory_path() / ("lightwell_assimp_" + std::to_string(getpid())))
+    {
+        fs::create_directories(folder_);
+    }
+    ~AssimpFolder() override { fs::remove_all(folder_); }
+
+    std::string write(std::string const& name, std::string const& text) const
+    {
+        std::ofstream(folder_ / name, std::ios::binary) << text;
+        return (folder_ / name).string();
+    }
+    Scene load(std::string const& name, std::string const& text) { return load_scene(write(name, text), report_); }
+    /// A triangle of one material.
+    Material load_material(std::string const& mtl)
+    {
+        write("m.mtl", "newmtl m\n" + mtl);
+        Scene const scene = load(
+            "m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n");
+        textures_ = scene.textures;
+        return scene.materials.at(std::size_t(scene.meshes.at(0).material));
+    }
+    std::uint64_t lost(std::string const& what) const
+    {
+        auto const losses = report_.losses();
+        auto const it = losses.find(what);
+        return it == losses.end() ? 0 : it->second.count;
+    }
+
+    fs::path folder_;
+    Report report_;
+    TexturePool textures_;
+};
+
+TEST_F(AssimpFolder, PolygonsBecomeTriangles)
+{
+    Scene const scene = load("square.OBJ", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    ASSERT_EQ(scene.meshes.size(), 1u);
+    EXPECT_EQ(scene.meshes[0].triangles.size(), 2u);
+    EXPECT_EQ(scene.meshes[0].material, -1);
+}
+
+TEST_F(AssimpFolder, MtlBecomesPhongThatKeepsEnergy)
+{
+    Material const m = load_material("Kd 0.5 0.25 0\nKs 0.25 0.25 0.25\nNs 40\nKe 3 2 1\n");
+    EXPECT_EQ(m.model, MaterialModel::phong);
+    EXPECT_EQ(m.base_color, (vec3{0.5f, 0.25f, 0}));
+    EXPECT_EQ(m.phong_specular, vec3{0.25f});
+    EXPECT_EQ(m.phong_exponent, 40);
+    EXPECT_EQ(m.emission, (vec3{3, 2, 1}));
+    EXPECT_EQ(lost("materials that reflect more than they receive, scaled down"), 0u);
+    Material const bright = load_material("Kd 0.75 0.75 0.75\nKs 0.75 0.75 0.75\nNs 40\n");
+    EXPECT_FLOAT_EQ(bright.base_color.x, 0.5f);
+    EXPECT_FLOAT_EQ(bright.phong_specular.x, 0.5f);
+    EXPECT_EQ(lost("materials that reflect more than they receive, scaled down"), 1u);
+}
+
+TEST_F(AssimpFolder, MtlWithoutShineIsDiffuse)
+{
+    Material const m = load_material("Kd 0.5 0.5 0.5\nKs 0 0 0\nNs 10\n");
+    EXPECT_EQ(m.model, MaterialModel::metal_rough);
+    EXPECT_EQ(m.specular, 0);
+    EXPECT_EQ(m.metallic, 0);
+}
+
+TEST_F(AssimpFolder, MtlMirrorsGlassAndVeils)
+{
+    Material const mirror = load_material("Kd 0 0 0\nKs 0.9 0.8 0.7\nNs 1000\nillum 5\n");
+    EXPECT_EQ(mirror.model, MaterialModel::metal_rough);
+    EXPECT_EQ(mirror.metallic, 1);
+    EXPECT_EQ(mirror.roughness, 0);
+    EXPECT_EQ(mirror.base_color, (vec3{0.9f, 0.8f, 0.7f}));
+    Material const glass = load_material("Kd 0 0 0\nKs 1 1 1\nNs 1000\nNi 1.6\nd 0.1\nTf 1 0.9 0.8\nillum 7\n");
+    EXPECT_EQ(glass.transmission, 1);
+    EXPECT_FALSE(glass.thin);
+    EXPECT_FLOAT_EQ(glass.ior, 1.6f);
+    EXPECT_EQ(glass.alpha_mode, AlphaMode::opaque);
+    EXPECT_EQ(glass.base_color, (vec3{1, 0.9f, 0.8f}));
+    Material const veil = load_material("Kd 1 1 1\nd 0.25\n");
+    EXPECT_EQ(veil.alpha_mode, AlphaMode::blend);
+    EXPECT_FLOAT_EQ(veil.alpha, 0.25f);
+}
+
+TEST_F(AssimpFolder, MapsAreReadAndMasksBecomeAlpha)
+{
+    cv::imwrite((folder_ / "color.png").string(), cv::Mat(2, 2, CV_8UC3, cv::Scalar(10, 20, 30)));
+    cv::Mat mask(2, 2, CV_8UC1, cv::Scalar(0));
+    mask.at<unsigned char>(0, 1) = 255;
+    cv::imwrite((folder_ / "mask.png").string(), mask);
+    Material const m = load_material("Kd 1 1 1\nmap_Kd color.png\nmap_d mask.png\n");
+    EXPECT_EQ(m.alpha_mode, AlphaMode::mask);
+    Texture const& t = textures_.textures.at(std::size_t(m.base_color_map.texture));
+    EXPECT_TRUE(t.srgb);
+    Rgba8 const left = textures_.texels[t.first], right = textures_.texels[t.first + 1];
+    EXPECT_EQ(std::vector<int>({left.r, left.g, left.b, left.a}), std::vector<int>({30, 20, 10, 0}));
+    EXPECT_EQ(std::vector<int>({right.r, right.g, right.b, right.a}), std::vector<int>({30, 20, 10, 255}));
+}
+
+TEST_F(AssimpFolder, MissingTexturesAreCounted)
+{
+    EXPECT_EQ(load_material("Kd 1 1 1\nmap_Kd nowhere.png\n").base_color_map.texture, -1);
+    EXPECT_EQ(lost("textures that could not be read"), 1u);
+}
+
+TEST_F(AssimpFolder, TextureCoordinatesStartAtTheTop)
+{
+    Scene const scene = load("uv.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+    Mesh const& mesh = scene.meshes.at(0);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(mesh.uv0.at(i), (vec2{mesh.positions[i].x, 1 - mesh.positions[i].y}));
+}
+
+TEST_F(AssimpFolder, PlyStlAndOffAreRead)
+{
+    std::string const ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    std::string const stl = "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                            "endloop\nendfacet\nendsolid s\n";
+    std::string const off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    for (auto const& [name, text] :
+         {std::pair{"a.ply", ply}, std::pair{"a.stl", stl}, std::pair{"a.off", off}, std::pair{"A.PLY", ply}}) {
+        Scene const scene = load(name, text);
+        ASSERT_EQ(scene.meshes.size(), 1u) << name;
+        EXPECT_EQ(scene.meshes[0].triangles.size(), 1u) << name;
+        EXPECT_EQ(scene.meshes[0].material, -1) << name;
+    }
+}
+
+TEST_F(AssimpFolder, ColladaKeepsNodesCamerasLightsAndClips)
+{
+    Scene const scene = load("a.dae", R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="1"/><up_axis>Y_UP</up_axis></asset>
+<library_cameras><camera id="cam" name="cam"><optics><technique_common><perspective><yfov>40</yfov>
+<aspect_ratio>2</aspect_ratio><znear>0.1</znear><zfar>9</zfar></perspective></technique_common></optics></camera></library_cameras>
+<library_lights><light id="lamp" name="lamp"><technique_common><point><color>3 2 1</color></point></technique_common></light></library_lights>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common>
+<accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry></library_geometries>
+<library_animations><animation id="a">
+<source id="ti"><float_array id="tia" count="2">0 2</float_array><technique_common><accessor source="#tia" count="2" stride="1"><param name="TIME" type="float"/></accessor></technique_common></source>
+<source id="to"><float_array id="toa" count="6">0 0 0 4 0 0</float_array><technique_common><accessor source="#toa" count="2" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<sampler id="s"><input semantic="INPUT" source="#ti"/><input semantic="OUTPUT" source="#to"/></sampler>
+<channel source="#s" target="n/place"/></animation></library_animations>
+<library_visual_scenes><visual_scene id="vs"><node id="n" name="n"><translate sid="place">0 0 0</translate><instance_geometry url="#g"/></node>
+<node id="m" name="m"><translate>7 0 0</translate><instance_geometry url="#g"/></node>
+<node id="eye" name="eye"><translate>0 0 5</translate><instance_camera url="#cam"/></node>
+<node id="bulb" name="bulb"><translate>0 3 0</translate><instance_light url="#lamp"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#vs"/></scene></COLLADA>)");
+    std::vector<double> places;
+    ASSERT_EQ(scene.playbacks.size(), 1u);
+    Pose const pose = evaluate_pose(scene, 1.0);
+    for (std::size_t n = 0; n < scene.nodes.size(); ++n)
+        if (!scene.nodes[n].meshes.empty()) places.push_back(pose.world_from_node[n][3].x);
+    EXPECT_EQ(places, (std::vector<double>{2, 7}));
+    ASSERT_EQ(scene.cameras.size(), 1u);
+    EXPECT_NEAR(scene.cameras[0].yfov_rad, 40 * kPi / 180, 1e-4);
+    ASSERT_EQ(scene.lights.size(), 1u);
+    EXPECT_EQ(scene.lights[0].intensity, (vec3{3, 2, 1}));
+    for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+        if (scene.nodes[n].camera >= 0) {
+            EXPECT_NEAR(pose.world_from_node[n][3].z, 5, 1e-6);
+        }
+        if (scene.nodes[n].light >= 0) {
+            EXPECT_NEAR(pose.world_from_node[n][3].y, 3, 1e-6);
+        }
+    }
+}
+
+TEST_F(AssimpFolder, FbxCentimetresBecomeMetres)
+{
+    Scene const scene = load("a.fbx", R"(; FBX 7.4.0 project file
+FBXHeaderExtension:  {
+	FBXHeaderVersion: 1003
+	FBXVersion: 7400
+}
+GlobalSettings:  {
+	Version: 1000
+	Properties70:  {
+		P: "UnitScaleFactor", "double", "Number", "",1
+	}
+}
+Objects:  {
+	Geometry: 10, "Geometry::", "Mesh" {
+		Vertices: *9 {
+			a: 0,0,0,100,0,0,0,100,0
+		}
+		PolygonVertexIndex: *3 {
+			a: 0,1,-3
+		}
+		GeometryVersion: 124
+	}
+	Model: 20, "Model::tri", "Mesh" {
+		Version: 232
+	}
+}
+Connections:  {
+	C: "OO",20,0
+	C: "OO",10,20
+}
+)");
+    Pose const pose = evaluate_pose(scene, std::nullopt);
+    std::size_t found = 0;
+    for (std::size_t n = 0; n < scene.nodes.size(); ++n)
+        for (std::int32_t const m : scene.nodes[n].meshes)
+            for (vec3 const p : scene.meshes[std::size_t(m)].positions) {
+                double const x = (pose.world_from_node[n] * glm::dvec4(dvec3(p), 1)).x;
+                EXPECT_TRUE(std::abs(x) < 1e-6 || std::abs(x - 1) < 1e-6) << x;
+                ++found;
+            }
+    EXPECT_EQ(found, 3u);
+}
+
+TEST_F(AssimpFolder, WhatCannotBeASceneIsRefusedWithAReason)
+{
+    auto const refusal = [&](std::string const& file) -> std::string {
+        try {
+            load_scene(file, report_);
+        } catch (InputError const& e) {
+            return e.what();
+        }
+        return "accepted";
+    };
+    EXPECT_NE(refusal(write("empty.obj", "")).find("is empty"), std::string::npos);
+    EXPECT_NE(refusal(write("points.obj", "v 0 0 0\nv 1 0 0\n")).find("points.obj"), std::string::npos);
+    EXPECT_NE(refusal(write("what.xyzzy", "nothing known")).find("cannot be read"), std::string::npos);
+    EXPECT_NE(refusal(folder_.string()).find("folder"), std::string::npos);
+    EXPECT_NE(refusal("no_such_scene").find("atrium, cornell"), std::string::npos);
+    EXPECT_NE(refusal(write("loop.off", "OFF\n99999999 99999999 0\n")), "accepted");
+}
+
+} // namespace
+} // namespace gi::test

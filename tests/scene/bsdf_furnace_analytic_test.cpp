@@ -1,0 +1,238 @@
+// How much of the light of a uniform sky a surface sends on: directional albedo by quadrature and its closed forms.
+
+#include "tests/support/bsdf_cases.h"
+#include "tests/support/scenes.h"
+#include "tests/support/sphere_chi2.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace gi::test {
+namespace {
+
+constexpr double kPiD = 3.14159265358979323846;
+
+/// Share of the light that leaves through delta lobes, over all numbers that choose the lobe. Light that changes
+/// its medium is counted as power: without the eta^2 of radiance.
+struct DeltaAlbedo {
+    dvec3 reflected{0}, transmitted{0};
+};
+
+DeltaAlbedo delta_albedo(Bsdf const& b, vec3 wo, bool front)
+{
+    constexpr int kSteps = 1 << 15;
+    DeltaAlbedo a;
+    for (int i = 0; i < kSteps; ++i) {
+        BsdfSample const s = sample(b, wo, front, (float(i) + 0.5f) / kSteps, vec2{0.5f});
+        if (!s.delta) continue;
+        bool const refracted = s.transmitted && !b.thin;
+        double const eta = front ? 1 / double(b.ior) : double(b.ior);
+        dvec3 const power = dvec3(s.weight) / (refracted ? eta * eta : 1.0) / double(kSteps);
+        (s.transmitted ? a.transmitted : a.reflected) += power;
+    }
+    return a;
+}
+
+/// f cos, integrated over all directions, of one channel.
+double rough_albedo(Bsdf const& b, vec3 wo, int channel)
+{
+    SphereBins bins;
+    bins.columns = 16;
+    return integrate_all(
+        bins, [&](vec3 wi) { return wi.z > 0 ? double(evaluate(b, wo, wi)[channel] * wi.z) : 0.0; }, 1e-7);
+}
+
+/// Everything, the brightest channel.
+double total_albedo(Bsdf const& b, vec3 wo, bool front)
+{
+    DeltaAlbedo const d = delta_albedo(b, wo, front);
+    double most = 0;
+    for (int c = 0; c < 3; ++c) most = std::max(most, rough_albedo(b, wo, c) + d.reflected[c] + d.transmitted[c]);
+    return most;
+}
+
+Material white_metal(float roughness)
+{
+    Material m = mirror(vec3{1});
+    m.roughness = roughness;
+    return m;
+}
+
+/// Unpolarised reflectance of a smooth interface, n = n_transmitted / n_incident (Fresnel).
+double fresnel(double angle, double n)
+{
+    double const s = std::sin(angle) / n;
+    if (s >= 1) return 1;
+    double const c = std::cos(angle), t = std::sqrt(1 - s * s);
+    double const across = (c - n * t) / (c + n * t), along = (n * c - t) / (n * c + t);
+    return 0.5 * (across * across + along * along);
+}
+
+TEST(BsdfFurnace, NoMaterialMakesLight)
+{
+    std::vector<BsdfCase> all = scattering_materials();
+    for (BsdfCase const& c : delta_materials()) all.push_back(c);
+    for (BsdfCase const& c : all)
+        for (double const angle : view_angles()) {
+            double const albedo = total_albedo(make_bsdf(c.material), seen_at(angle), true);
+            EXPECT_LE(albedo, 1.0001) << c.name << " from " << angle << " degrees";
+            EXPECT_GE(albedo, 0) << c.name;
+        }
+}
+
+TEST(BsdfFurnace, LambertReflectsItsAlbedo)
+{
+    Bsdf const b = make_bsdf(lambert({0.9f, 0.5f, 0.1f}));
+    for (double const angle : view_angles())
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(rough_albedo(b, seen_at(angle), c), double(b.diffuse[c]), 1e-5) << angle;
+}
+
+TEST(BsdfFurnace, WhiteBaseUnderASmoothCoatReflectsEverything)
+{
+    Material plastic;
+    plastic.base_color = vec3{1};
+    plastic.roughness = 0;
+    for (double const angle : {0.0, 30.0, 60.0, 80.0, 89.5})
+        EXPECT_NEAR(total_albedo(make_bsdf(plastic), seen_at(angle), true), 1, 2e-4) << angle;
+}
+
+/// Integral of k_s (n + 1) / 2 pi cos^(n + 1) over the hemisphere = k_s (n + 1) / (n + 2).
+TEST(BsdfFurnace, PhongFromAboveHasItsClosedForm)
+{
+    Material m;
+    m.model = MaterialModel::phong;
+    m.base_color = {0.1f, 0.2f, 0.3f};
+    m.phong_specular = {0.5f, 0.6f, 0.7f};
+    for (float const n : {0.0f, 1.0f, 5.0f, 50.0f, 1000.0f}) {
+        m.phong_exponent = n;
+        Bsdf const b = make_bsdf(m);
+        for (int c = 0; c < 3; ++c) {
+            double const closed = double(m.base_color[c]) + double(m.phong_specular[c] * (n + 1) / (n + 2));
+            EXPECT_NEAR(rough_albedo(b, vec3{0, 0, 1}, c), closed, 1e-4) << "exponent " << n;
+        }
+    }
+}
+
+/// f cos = c / 2 pi (1 + c) for alpha = 1 seen from above; its integral is 1 - ln 2.
+TEST(BsdfFurnace, RoughestMetalFromAboveHasItsClosedForm)
+{
+    EXPECT_NEAR(rough_albedo(make_bsdf(white_metal(1)), {0, 0, 1}, 0), 1 - std::log(2.0), 1e-5);
+}
+
+/// Single scattering loses what bounces twice among the microfacets. The losses stated here are those of an
+/// independent quadrature of D G2 / 4 cos cos, in half-vector form, in double.
+TEST(BsdfFurnace, WhiteMetalLosesWhatIsMultiplyScattered)
+{
+    auto const independent = [](double alpha, double cos_o) {
+        double const a2 = alpha * alpha;
+        auto const lambda = [a2](double c) { return 0.5 * (std::sqrt(1 + a2 * (1 - c * c) / (c * c)) - 1); };
+        dvec3 const wo{std::sqrt(1 - cos_o * cos_o), 0, cos_o};
+        // h uniform in the distribution D cos; then f cos_i dwi = G2 (wo.h) / (cos_o cos_h) D cos_h dh.
+        constexpr int kRings = 800, kTurns = 800;
+        double sum = 0;
+        for (int i = 0; i < kRings; ++i)
+            for (int j = 0; j < kTurns; ++j) {
+                double const u = (i + 0.5) / kRings, phi = kPiD * (j + 0.5) / kTurns;
+                double const tan2 = a2 * u / (1 - u), c = 1 / std::sqrt(1 + tan2), s = std::sqrt(1 - c * c);
+                dvec3 const h{s * std::cos(phi), s * std::sin(phi), c};
+                double const along = glm::dot(wo, h), cos_i = 2 * along * h.z - wo.z;
+                if (along <= 0 || cos_i <= 0) continue;
+                sum += along / (cos_o * h.z) / (1 + lambda(cos_o) + lambda(cos_i));
+            }
+        return sum / (kRings * kTurns);
+    };
+    for (float const roughness : {0.1f, 0.3f, 0.5f, 0.7f, 1.0f})
+        for (double const angle : {0.0, 45.0, 80.0}) {
+            Bsdf const b = make_bsdf(white_metal(roughness));
+            double const albedo = rough_albedo(b, seen_at(angle), 0);
+            EXPECT_NEAR(albedo, independent(double(b.alpha), std::cos(glm::radians(angle))), 1e-3)
+                << "roughness " << roughness << ", " << angle << " degrees";
+        }
+    EXPECT_GT(rough_albedo(make_bsdf(white_metal(0.1f)), seen_at(45), 0), 0.999);
+    EXPECT_NEAR(rough_albedo(make_bsdf(white_metal(0.5f)), seen_at(45), 0), 0.957, 0.005);
+    EXPECT_NEAR(rough_albedo(make_bsdf(white_metal(1)), seen_at(45), 0), 0.4, 0.05);
+}
+
+TEST(BsdfFurnace, FresnelHasItsKnownValues)
+{
+    double const brewster = std::atan(1.5);
+    EXPECT_NEAR(fresnel_dielectric(1, 1 / 1.5f).reflectance, 0.04, 1e-6);
+    EXPECT_NEAR(fresnel_dielectric(float(std::cos(brewster)), 1 / 1.5f).reflectance,
+                0.5 * std::pow((1 - 2.25) / (1 + 2.25), 2), 1e-6);
+    EXPECT_NEAR(fresnel_dielectric(0, 1 / 1.5f).reflectance, 1, 1e-6);
+    for (double const n : {1.0, 1.33, 1.5, 2.42, 1 / 1.5, 1 / 2.42})
+        for (int degrees = 0; degrees < 90; ++degrees) {
+            double const angle = glm::radians(double(degrees));
+            DielectricInterface const face = fresnel_dielectric(float(std::cos(angle)), float(1 / n));
+            EXPECT_NEAR(face.reflectance, fresnel(angle, n), 2e-5) << n << " at " << degrees;
+            EXPECT_EQ(face.cos_transmitted > 0, std::sin(angle) < n) << n << " at " << degrees;
+        }
+}
+
+TEST(BsdfFurnace, GlassSplitsLightAsFresnelAndSnellSay)
+{
+    for (float const ior : {1.0f, 1.33f, 1.5f, 2.42f})
+        for (bool const front : {true, false}) {
+            Bsdf const b = make_bsdf(glass(ior, false));
+            double const n = front ? double(ior) : 1 / double(ior);
+            for (double const angle : view_angles()) {
+                vec3 const wo = seen_at(angle);
+                DeltaAlbedo const a = delta_albedo(b, wo, front);
+                double const r = fresnel(glm::radians(angle), n);
+                EXPECT_NEAR(a.reflected.x, r, 1e-4) << ior << " from " << angle;
+                EXPECT_NEAR(a.transmitted.x, 1 - r, 1e-4) << ior << " from " << angle;
+                if (r > 0.99) continue;
+                BsdfSample const through = sample(b, wo, front, 0.9999f, vec2{0.5f});
+                ASSERT_TRUE(through.transmitted);
+                EXPECT_NEAR(through.wi.x, -double(wo.x) / n, 1e-5);
+                EXPECT_NEAR(through.wi.y, -double(wo.y) / n, 1e-5);
+                EXPECT_LT(through.wi.z, 0);
+                EXPECT_NEAR(through.weight.x, 1 / (n * n), 1e-5) << "radiance is larger in the denser medium";
+            }
+        }
+}
+
+TEST(BsdfFurnace, LightBeyondTheCriticalAngleStaysInside)
+{
+    Bsdf const b = make_bsdf(glass(1.5f, false));
+    for (double const angle : {41.9, 60.0, 89.0}) // critical: 41.81 degrees
+        for (float const u : {0.0f, 0.5f, 0.99999994f}) {
+            BsdfSample const s = sample(b, seen_at(angle), false, u, vec2{0.5f});
+            EXPECT_FALSE(s.transmitted);
+            EXPECT_NEAR(s.weight.x, 1, 1e-6);
+        }
+    EXPECT_TRUE(sample(b, seen_at(41.7), false, 0.999f, vec2{0.5f}).transmitted);
+}
+
+/// All orders of reflection between two equal faces: R + (1 - R)^2 R + (1 - R)^2 R^3 + ... = 2 R / (1 + R).
+TEST(BsdfFurnace, ThinSheetSumsItsInnerReflections)
+{
+    Bsdf const b = make_bsdf(glass(1.5f, true));
+    for (bool const front : {true, false})
+        for (double const angle : view_angles()) {
+            vec3 const wo = seen_at(angle);
+            DeltaAlbedo const a = delta_albedo(b, wo, front);
+            double const r = fresnel(glm::radians(angle), 1.5), both = 2 * r / (1 + r);
+            EXPECT_NEAR(a.reflected.x, both, 1e-4) << angle;
+            EXPECT_NEAR(a.reflected.x + a.transmitted.x, 1, 1e-6) << angle;
+            BsdfSample const through = sample(b, wo, front, 0.99999f, vec2{0.5f});
+            if (through.transmitted) {
+                EXPECT_EQ(through.wi, -wo);
+            }
+        }
+}
+
+TEST(BsdfFurnace, MirrorsFollowSchlick)
+{
+    for (double const angle : view_angles()) {
+        DeltaAlbedo const a = delta_albedo(make_bsdf(mirror({1, 0.8f, 0.3f})), seen_at(angle), true);
+        double const w = std::pow(1 - std::cos(glm::radians(angle)), 5);
+        EXPECT_NEAR(a.reflected.x, 1, 1e-5);
+        EXPECT_NEAR(a.reflected.y, 0.8 + 0.2 * w, 1e-5);
+        EXPECT_NEAR(a.reflected.z, 0.3 + 0.7 * w, 1e-5);
+    }
+}
+
+} // namespace
+} // namespace gi::test

@@ -1,0 +1,134 @@
+// Files that broke other programs: each loads or is refused with an InputError, soon, and never anything else.
+
+#include "gi/base/error.h"
+#include "gi/scene/load.h"
+#include "tests/support/data.h"
+
+#include <chrono>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace gi::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class Outcome { loaded, refused };
+
+Outcome try_to_load(fs::path const& file)
+{
+    using Clock = std::chrono::steady_clock;
+    auto const start = Clock::now();
+    Report report;
+    Outcome outcome = Outcome::loaded;
+    try {
+        Scene const scene = load_scene(file.string(), report);
+        for (Mesh const& mesh : scene.meshes)
+            for (uvec3 const t : mesh.triangles)
+                EXPECT_LT(std::max({t.x, t.y, t.z}), mesh.positions.size()) << file;
+    } catch (InputError const& e) {
+        outcome = Outcome::refused;
+        EXPECT_NE(std::string(e.what()).find(file.filename().string()), std::string::npos) << e.what();
+    }
+    EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 5) << file;
+    return outcome;
+}
+
+bool is_scene(fs::path const& file)
+{
+    static std::set<std::string> const others{".json", ".bin", ".txt", ".md", ".png", ".jpg", ".mtl", ""};
+    return !others.contains(file.extension().string());
+}
+
+TEST(HardMeshes, EachLoadsOrIsRefused)
+{
+    fs::path const folder = shared_data() / "hard_meshes";
+    LIGHTWELL_NEED_DATA(folder);
+    std::size_t loaded = 0, refused = 0;
+    for (char const* const part : {"assimp", "draco", "manifold", "trimesh"})
+        for (auto const& entry : fs::recursive_directory_iterator(folder / part))
+            if (entry.is_regular_file() && is_scene(entry.path()))
+                ++(try_to_load(entry.path()) == Outcome::loaded ? loaded : refused);
+    EXPECT_GE(loaded, 25u);
+    EXPECT_GE(refused, 10u);
+}
+
+TEST(HardMeshes, PartlyBrokenFilesKeepWhatIsWhole)
+{
+    fs::path const folder = shared_data() / "hard_meshes";
+    LIGHTWELL_NEED_DATA(folder);
+    for (char const* const file :
+         {"manifold/Cray_right.obj", "manifold/openscad-nonmanifold-crash.obj", "manifold/self_intersectA.obj",
+          "trimesh/wallhole.obj", "trimesh/nancolor.obj", "trimesh/soup.stl", "assimp/OBJ/number_formats.obj",
+          "assimp/OBJ/box_longline.obj", "assimp/STL/sphereWithHole.stl",
+          "assimp/PLY/cube_binary_starts_with_nl.ply"})
+        EXPECT_EQ(try_to_load(folder / file), Outcome::loaded) << file;
+}
+
+TEST(HardMeshes, ContradictoryFilesAreRefused)
+{
+    fs::path const folder = shared_data() / "hard_meshes";
+    LIGHTWELL_NEED_DATA(folder);
+    for (char const* const file :
+         {"assimp/glTF2/IndexOutOfRange/IndexOutOfRange.gltf",
+          "assimp/glTF2/IndexOutOfRange/AllIndicesOutOfRange.gltf", "assimp/glTF2/MissingBin/BoxTextured.gltf",
+          "assimp/glTF2/RecursiveNodes/RecursiveNodes.gltf", "assimp/invalid/empty.obj",
+          "assimp/invalid/empty.ply", "assimp/invalid/OutOfMemory.off", "trimesh/empty.stl"})
+        EXPECT_EQ(try_to_load(folder / file), Outcome::refused) << file;
+}
+
+/// Issues that the validator calls errors and that leave no doubt that the data are damaged.
+std::set<std::string> const kDamage{"ACCESSOR_INDEX_OOB",
+                                    "ACCESSOR_JOINTS_INDEX_OOB",
+                                    "BUFFER_BYTE_LENGTH_MISMATCH",
+                                    "BUFFER_MISSING_GLB_DATA",
+                                    "BUFFER_VIEW_TOO_LONG",
+                                    "CAMERA_XMAG_YMAG_ZERO",
+                                    "GLB_CHUNK_TOO_BIG",
+                                    "GLB_EMPTY_CHUNK",
+                                    "GLB_INVALID_MAGIC",
+                                    "GLB_INVALID_VERSION",
+                                    "GLB_LENGTH_TOO_SMALL",
+                                    "GLB_UNEXPECTED_END_OF_CHUNK_DATA",
+                                    "GLB_UNEXPECTED_END_OF_CHUNK_HEADER",
+                                    "GLB_UNEXPECTED_END_OF_HEADER",
+                                    "GLB_UNEXPECTED_FIRST_CHUNK",
+                                    "MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT",
+                                    "MESH_PRIMITIVE_MORPH_TARGET_INVALID_ATTRIBUTE_COUNT",
+                                    "MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT",
+                                    "NODE_LOOP",
+                                    "NODE_PARENT_OVERRIDE",
+                                    "UNKNOWN_ASSET_MAJOR_VERSION"};
+
+TEST(HardMeshes, ValidatorModelsAreJudgedAsTheValidatorDoes)
+{
+    fs::path const folder = shared_data() / "hard_meshes" / "gltf_validator";
+    LIGHTWELL_NEED_DATA(folder);
+    std::size_t files = 0, damaged = 0, sound = 0;
+    for (auto const& entry : fs::recursive_directory_iterator(folder)) {
+        if (!entry.is_regular_file() || !is_scene(entry.path())) continue;
+        ++files;
+        Outcome const outcome = try_to_load(entry.path());
+        fs::path const report = entry.path().string() + ".report.json";
+        if (!fs::exists(report)) continue;
+        nlohmann::json const j = nlohmann::json::parse(std::ifstream(report));
+        std::string damage;
+        for (auto const& m : j["issues"]["messages"])
+            if (m["severity"] == 0 && kDamage.contains(m["code"])) damage = m["code"];
+        if (!damage.empty()) {
+            ++damaged;
+            EXPECT_EQ(outcome, Outcome::refused) << entry.path() << " has " << damage;
+        } else if (j["issues"]["numErrors"] == 0) {
+            ++sound;
+            EXPECT_EQ(outcome, Outcome::loaded) << entry.path() << " has no errors";
+        }
+    }
+    EXPECT_GE(files, 350u);
+    EXPECT_GE(damaged, 30u);
+    EXPECT_GE(sound, 100u);
+}
+
+} // namespace
+} // namespace gi::test

@@ -1,0 +1,75 @@
+// info, generate, --version, --help.
+
+#include "tests/viewer/run_program.h"
+
+#include <nlohmann/json.hpp>
+#include <regex>
+
+namespace viewer::test {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(OtherCommands, Version)
+{
+    TemporaryFolder const folder;
+    std::string const text = run_well("--version", folder.path()).out;
+    EXPECT_TRUE(std::regex_match(text, std::regex("lightwell [0-9]+\\.[0-9]+\\.[0-9]+ "
+                                                  "\\(git ([0-9a-f]{7,}(-dirty)?|unknown)\\)\n")))
+        << text;
+}
+
+TEST(OtherCommands, InfoTellsWhatIsBuiltAndWhy)
+{
+    TemporaryFolder const folder;
+    std::string const text = run_well("info cornell", folder.path()).out;
+    EXPECT_NE(text.find("triangles"), std::string::npos) << text;
+    auto const j = Json::parse(run_well("info cornell --json --time 0.5", folder.path()).out);
+    EXPECT_EQ(j["scene"], "cornell");
+    EXPECT_TRUE(j["content"].contains("triangles"));
+    ASSERT_FALSE(j["plan"].empty());
+    for (Json const& item : j["plan"]) EXPECT_FALSE(item["reason"].get<std::string>().empty()) << item;
+    EXPECT_TRUE(j["report"].contains("losses"));
+}
+
+TEST(OtherCommands, GeneratedScenesAreScenes)
+{
+    TemporaryFolder const folder;
+    std::string const listed = run_well("generate cornell --out room.glb", folder.path()).out;
+    EXPECT_EQ(listed, "room.glb\n");
+    auto const direct = Json::parse(run_well("info cornell --json", folder.path()).out)["content"];
+    auto const saved = Json::parse(run_well("info room.glb --json", folder.path()).out)["content"];
+    EXPECT_EQ(direct["triangles"], saved["triangles"]);
+    EXPECT_EQ(direct["cameras"], saved["cameras"]);
+}
+
+TEST(OtherCommands, GenerateIsDeterministic)
+{
+    TemporaryFolder const folder;
+    run_well("generate boxes --triangles 1200 --seed 3 --out a.glb", folder.path());
+    run_well("generate boxes --triangles 1200 --seed 3 --out b.glb", folder.path());
+    run_well("generate boxes --triangles 1200 --seed 4 --out c.glb", folder.path());
+    EXPECT_TRUE(file_text(folder / "a.glb") == file_text(folder / "b.glb"));
+    EXPECT_FALSE(file_text(folder / "a.glb") == file_text(folder / "c.glb"));
+}
+
+TEST(OtherCommands, SkyIsSavedBesideTheScene)
+{
+    TemporaryFolder const folder;
+    run_well("generate atrium --bays 1 --detail 0.1 --no-figure --out a.glb", folder.path());
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.glb", "a.yaml", "a_sky.exr"}));
+    run_well("info a.yaml", folder.path());
+}
+
+TEST(OtherCommands, StandardOutputThatIsFullIsNotSuccess)
+{
+    TemporaryFolder const folder;
+    if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "SKIPPED: no /dev/full here";
+    std::string const command =
+        "cd " + folder.path().string() + " && " LIGHTWELL_PROGRAM " info cornell > /dev/full 2> err";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+    EXPECT_NE(file_text(folder / "err").find("standard output"), std::string::npos);
+}
+
+} // namespace
+} // namespace viewer::test

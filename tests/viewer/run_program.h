@@ -1,0 +1,176 @@
+#pragma once
+// Runs the program as its users do: as a child, in a folder of its own.
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <memory>
+#include <spawn.h>
+#include <sstream>
+#include <string>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+namespace viewer::test {
+
+/// A new folder, deleted with all that is in it at the end.
+class TemporaryFolder {
+public:
+    TemporaryFolder()
+    {
+        std::string name = (std::filesystem::temp_directory_path() / "lightwell_test_XXXXXX").string();
+        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
+        path_ = name;
+    }
+    ~TemporaryFolder()
+    {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(TemporaryFolder const&) = delete;
+    TemporaryFolder& operator=(TemporaryFolder const&) = delete;
+
+    std::filesystem::path const& path() const { return path_; }
+    std::filesystem::path operator/(std::string const& name) const { return path_ / name; }
+    /// Names of all files, temporaries and hidden ones included, sorted.
+    std::vector<std::string> files() const
+    {
+        std::vector<std::string> names;
+        for (auto const& entry : std::filesystem::directory_iterator(path_))
+            names.push_back(entry.path().filename().string());
+        std::sort(names.begin(), names.end());
+        return names;
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+inline std::string file_text(std::filesystem::path const& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Split at blanks.
+inline std::vector<std::string> words(std::string const& text)
+{
+    std::istringstream in(text);
+    return {std::istream_iterator<std::string>(in), {}};
+}
+
+struct Outcome {
+    int code = -1;  ///< exit code; -1 where a signal ended it
+    int signal = 0; ///< that ended it
+    std::string out, err;
+};
+
+/// A running lightwell. Whatever still runs at the end is killed.
+class Program {
+public:
+    Program(std::vector<std::string> arguments, std::filesystem::path const& folder)
+        : out_(std::tmpfile(), &std::fclose), err_(std::tmpfile(), &std::fclose)
+    {
+        arguments.insert(arguments.begin(), LIGHTWELL_PROGRAM);
+        std::vector<char*> argv;
+        for (std::string& a : arguments) argv.push_back(a.data());
+        argv.push_back(nullptr);
+        posix_spawn_file_actions_t actions;
+        posix_spawn_file_actions_init(&actions);
+        posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+        posix_spawn_file_actions_adddup2(&actions, fileno(out_.get()), STDOUT_FILENO);
+        posix_spawn_file_actions_adddup2(&actions, fileno(err_.get()), STDERR_FILENO);
+        int const error = posix_spawn(&pid_, LIGHTWELL_PROGRAM, &actions, nullptr, argv.data(), environ);
+        posix_spawn_file_actions_destroy(&actions);
+        if (error != 0) throw std::runtime_error("cannot run " LIGHTWELL_PROGRAM ": build it first");
+    }
+    ~Program()
+    {
+        if (pid_ > 0) {
+            kill(pid_, SIGKILL);
+            waitpid(pid_, nullptr, 0);
+        }
+    }
+    Program(Program const&) = delete;
+    Program& operator=(Program const&) = delete;
+
+    void send(int signal) const { kill(pid_, signal); }
+
+    /// Waits until the program handles a signal itself (or no longer does); false if it ends before that.
+    bool wait_until_catches(int signal, bool catches) const
+    {
+        while (true) {
+            std::istringstream status(file_text("/proc/" + std::to_string(pid_) + "/status"));
+            std::string key, state;
+            unsigned long long caught = 0;
+            for (std::string line; std::getline(status, line);) {
+                if (line.starts_with("State:")) state = line.substr(7, 1);
+                if (line.starts_with("SigCgt:")) caught = std::stoull(line.substr(7), nullptr, 16);
+            }
+            if (state.empty() || state == "Z") return false;
+            if (((caught >> (signal - 1)) & 1) == (catches ? 1u : 0u)) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+
+    Outcome wait(std::chrono::seconds limit = std::chrono::seconds(120))
+    {
+        auto const end = std::chrono::steady_clock::now() + limit;
+        int status = 0;
+        while (waitpid(pid_, &status, WNOHANG) == 0) {
+            if (std::chrono::steady_clock::now() > end) {
+                ADD_FAILURE() << "still running after " << limit.count() << " s";
+                kill(pid_, SIGKILL);
+                waitpid(pid_, &status, 0);
+                break;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        pid_ = 0;
+        Outcome outcome;
+        if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
+        if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
+        outcome.out = text_of(out_.get());
+        outcome.err = text_of(err_.get());
+        return outcome;
+    }
+
+private:
+    using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+    static std::string text_of(std::FILE* file)
+    {
+        std::string text;
+        char chunk[4096];
+        std::rewind(file);
+        for (std::size_t n = 0; (n = std::fread(chunk, 1, sizeof chunk, file)) > 0;) text.append(chunk, n);
+        return text;
+    }
+
+    pid_t pid_ = 0;
+    File out_, err_;
+};
+
+/// Runs `lightwell ARGUMENTS` (split at blanks) to its end.
+inline Outcome run(std::string const& arguments, std::filesystem::path const& folder)
+{
+    return Program(words(arguments), folder).wait();
+}
+
+/// As above for calls that have to work.
+inline Outcome run_well(std::string const& arguments, std::filesystem::path const& folder)
+{
+    Outcome const o = run(arguments, folder);
+    EXPECT_EQ(o.code, 0) << "lightwell " << arguments << "\n" << o.err << "signal " << o.signal;
+    return o;
+}
+
+} // namespace viewer::test

@@ -1,0 +1,146 @@
+// A wrong call or input: exit code 2, one clear message, and no file left behind.
+
+#include "tests/viewer/run_program.h"
+
+namespace viewer::test {
+namespace {
+
+/// One line "lightwell: problem (why) suggestion" and nothing else.
+void expect_refused(std::string const& arguments, std::string const& mentions, std::filesystem::path const& folder)
+{
+    Outcome const o = run(arguments, folder);
+    EXPECT_EQ(o.code, 2) << arguments << "\nsignal " << o.signal << "\n" << o.err;
+    EXPECT_TRUE(o.out.empty()) << arguments << "\n" << o.out;
+    EXPECT_TRUE(o.err.starts_with("lightwell: ")) << arguments << "\n" << o.err;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << arguments << "\n" << o.err;
+    EXPECT_NE(o.err.find(mentions), std::string::npos) << arguments << "\n" << o.err;
+    EXPECT_NE(o.err.find('('), std::string::npos) << arguments << "\n" << o.err;
+}
+
+struct WrongCall {
+    char const* arguments;
+    char const* mentions;
+};
+
+TEST(WrongCalls, LeaveAMessageAndNoFiles)
+{
+    TemporaryFolder const folder;
+    for (WrongCall const call : {
+             WrongCall{"", "subcommand"},
+             {"paint", "--help"},
+             {"render", "SCENE"},
+             {"render cornell more", "more"},
+             {"render cornell --bogus", "--bogus"},
+             {"render nowhere.glb", "nowhere.glb"},
+             {"render .", "folder"},
+             {"render cornell --method magic", "magic"},
+             {"render cornell --size 0x5", "--size"},
+             {"render cornell --size 16384x16385", "--size"},
+             {"render cornell --camera nobody", "nobody"},
+             {"render cornell --look-at 0,0,0", "--look-from"},
+             {"render cornell --look-from 0,0", "--look-from"},
+             {"render cornell --look-from 1,1,1 --look-at 1,1,1", "direction"},
+             {"render cornell --look-from 1e30,0,0", "far"},
+             {"render cornell --camera camera --look-from 1,1,1", "--camera"},
+             {"render cornell --fov 0", "--fov"},
+             {"render cornell --fov nan", "--fov"},
+             {"render cornell --time nan", "--time"},
+             {"render cornell --time inf", "--time"},
+             {"render cornell --envmap nowhere.exr", "nowhere.exr"},
+             {"render cornell --envmap-scale nan", "--envmap-scale"},
+             {"render cornell --envmap-rotate nan", "--envmap-rotate"},
+             {"render cornell --paths 0", "--paths"},
+             {"render cornell --paths -1", "--paths"},
+             {"render cornell --paths 1.5", "--paths"},
+             {"render cornell --paths 4 --budget 1s", "--budget"},
+             {"render cornell --budget 1s --until relmse=1", "--until"},
+             {"render cornell --budget soon", "--budget"},
+             {"render cornell --until flip=0.1", "--until"},
+             {"render cornell --bounces -1", "--bounces"},
+             {"render cornell --filter sinc", "--filter"},
+             {"render cornell --seed -1", "--seed"},
+             {"render cornell --threads x", "--threads"},
+             {"render cornell --aovs L9", "L9"},
+             {"render cornell --tone neon --png a.png", "--tone"},
+             {"render cornell --exposure 1", "--png"},
+             {"render cornell --png a.png --exposure nan", "--exposure"},
+             {"render cornell --png a.png --resume", "--out"},
+             {"compare", "IMAGE"},
+             {"compare a.exr", "REFERENCE"},
+             {"compare a.exr b.exr", "a.exr"},
+             {"info", "SCENE"},
+             {"info nowhere.gltf", "nowhere.gltf"},
+             {"generate", "subcommand"},
+             {"generate teapot --out a.glb", "subcommand"},
+             {"generate cornell", "--out"},
+             {"generate atrium --bays 0 --out a.glb", "bays"},
+             {"generate atrium --detail nan --out a.glb", "detail"},
+             {"generate boxes --triangles 0 --out a.glb", "triangles"},
+             {"generate boxes --triangles 4294967295 --out a.glb", "triangles"},
+             {"generate sphere --triangles -3 --out a.glb", "--triangles"},
+             {"generate cornell --out nowhere/a.glb", "nowhere"},
+         })
+        expect_refused(call.arguments, call.mentions, folder.path());
+    EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
+}
+
+TEST(WrongCalls, OutputsAreCheckedBeforeTheWork)
+{
+    TemporaryFolder const folder;
+    std::filesystem::create_directory(folder / "sub");
+    std::ofstream(folder / "file") << "kept";
+    mkfifo((folder / "pipe").c_str(), 0600);
+    auto const before = folder.files();
+    auto const start = std::chrono::steady_clock::now();
+    for (WrongCall const call : {
+             WrongCall{"--out nowhere/a.exr", "nowhere"},
+             {"--out file/a.exr", "file"},
+             {"--out sub", "folder"},
+             {"--out pipe", "pipe"},
+             {"--out a.exr --png nowhere/a.png", "nowhere"},
+             {"--out a.exr --stats nowhere/a.json", "nowhere"},
+             {"--out a.exr --png ./a.exr", "two outputs"},
+             {"--out a.exr --stats a.exr.state", "two outputs"},
+         })
+        expect_refused(std::string("render atrium --budget 1h ") + call.arguments, call.mentions, folder.path());
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+    EXPECT_EQ(folder.files(), before);
+    EXPECT_EQ(file_text(folder / "file"), "kept");
+}
+
+TEST(WrongCalls, ReadOnlyFolder)
+{
+    if (geteuid() == 0) GTEST_SKIP() << "SKIPPED: the super-user can write to read-only folders";
+    TemporaryFolder const folder;
+    std::filesystem::create_directory(folder / "locked");
+    std::filesystem::permissions(folder / "locked", std::filesystem::perms::owner_read);
+    expect_refused("render atrium --budget 1h --out locked/a.exr", "read-only", folder.path());
+}
+
+TEST(WrongCalls, AnInputIsNotOverwritten)
+{
+    TemporaryFolder const folder;
+    run_well("generate cornell --out room.glb", folder.path());
+    std::string const before = file_text(folder / "room.glb");
+    expect_refused("render room.glb --size 8x8 --paths 1 --out ./room.glb", "read as well", folder.path());
+    EXPECT_EQ(file_text(folder / "room.glb"), before);
+}
+
+TEST(WrongCalls, DamagedScenes)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "a.gltf") << "{\"asset\":";
+    std::ofstream(folder / "b.glb") << "glTF";
+    std::ofstream(folder / "c.obj") << "";
+    std::ofstream(folder / "d.yaml") << "models: [";
+    std::ofstream(folder / "e.blend1") << "nothing that anybody knows";
+    auto const before = folder.files();
+    for (std::string const& name : before) {
+        expect_refused("info " + name, name, folder.path());
+        expect_refused("render " + name + " --paths 1 --size 8x8", name, folder.path());
+    }
+    EXPECT_EQ(folder.files(), before);
+}
+
+} // namespace
+} // namespace viewer::test

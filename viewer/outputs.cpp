@@ -1,0 +1,38 @@
+#include "viewer/outputs.h"
+
+#include "gi/base/error.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <unistd.h>
+
+namespace viewer {
+namespace fs = std::filesystem;
+
+void check_outputs(std::vector<std::string> const& files, std::vector<std::string> const& inputs)
+{
+    std::set<fs::path> seen;
+    for (std::string const& file : files) {
+        if (file.empty()) continue;
+        auto const cannot = [&](std::string const& why, std::string const& suggestion) {
+            return gi::InputError("cannot write '" + file + "'", why, suggestion);
+        };
+        fs::path const path = file, folder = path.has_parent_path() ? path.parent_path() : ".";
+        std::error_code error;
+        if (!fs::is_directory(folder, error))
+            throw cannot("there is no folder '" + folder.string() + "'", "create it first");
+        if (access(folder.c_str(), W_OK) != 0)
+            throw cannot("the folder '" + folder.string() + "' is read-only", "choose another");
+        if (fs::is_directory(path, error)) throw cannot("it is a folder", "name a file");
+        if (fs::exists(path, error) && !fs::is_regular_file(path, error))
+            throw cannot("it is a device or a pipe, which a file would replace", "name a file");
+        if (!seen.insert(fs::weakly_canonical(path, error)).second)
+            throw cannot("two outputs have this name", "give each its own");
+        if (std::any_of(inputs.begin(), inputs.end(),
+                        [&](std::string const& input) { return fs::equivalent(path, input, error); }))
+            throw cannot("it is read as well", "choose another name");
+    }
+}
+
+} // namespace viewer

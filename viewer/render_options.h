@@ -1,0 +1,34 @@
+#pragma once
+// What can be said on the command line of `lightwell render`.
+
+#include "gi/image/render_settings.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace viewer {
+
+struct RenderOptions {
+    std::string scene, method = "reference", size = "512x512", camera, look_from, look_at, environment, budget,
+                       until, filter = "box", out, png, stats, tone = "srgb";
+    std::vector<std::string> layers;
+    std::optional<double> fov_deg, time_s;
+    double environment_rotate_deg = 0, environment_scale = 1, exposure_ev = 0;
+    std::optional<std::uint32_t> paths;
+    std::uint64_t seed = 0;
+    int bounces = 64, threads = 0;
+    bool half = false, resume = false, json = false, quiet = false;
+};
+
+void declare_options(CLI::App& command, RenderOptions& options);
+
+/// Fills in the default name of the picture and checks what the options say together. Throws InputError.
+gi::RenderSettings make_settings(RenderOptions& options);
+
+} // namespace viewer

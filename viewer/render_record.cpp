@@ -1,0 +1,119 @@
+#include "viewer/render_record.h"
+
+#include "viewer/report_json.h"
+#include "viewer/version.h"
+
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kSchema = 1; // of the statistics: counts up when a key changes its meaning or goes
+
+/// Every option that decides the values of the picture, in one order and with the defaults written out.
+std::string normalised_command(RenderOptions const& o, gi::RenderSettings const& s, gi::RenderResult const& result)
+{
+    std::string command =
+        fmt::format("lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} --paths {}",
+                    o.scene, o.method, s.width, s.height, s.bounces, o.filter, s.seed, result.paths);
+    auto const add = [&](char const* option, std::string const& value) {
+        if (!value.empty()) command += fmt::format(" {} {}", option, value);
+    };
+    add("--camera", o.camera);
+    add("--look-from", o.look_from);
+    add("--look-at", o.look_at);
+    if (o.fov_deg) add("--fov", fmt::format("{}", *o.fov_deg));
+    if (o.time_s) add("--time", fmt::format("{}", *o.time_s));
+    add("--envmap", o.environment);
+    if (o.environment_rotate_deg != 0) add("--envmap-rotate", fmt::format("{}", o.environment_rotate_deg));
+    if (o.environment_scale != 1) add("--envmap-scale", fmt::format("{}", o.environment_scale));
+    return command;
+}
+
+char const* end_text(gi::RenderEnd end)
+{
+    switch (end) {
+    case gi::RenderEnd::paths:
+        return "paths";
+    case gi::RenderEnd::budget:
+        return "budget";
+    case gi::RenderEnd::error_target:
+        return "error target";
+    case gi::RenderEnd::interrupted:
+        return "interrupted";
+    }
+    return "";
+}
+
+/// One path says nothing about its variance.
+bool knows_error(gi::RenderResult const& r) { return r.paths >= 2; }
+
+double rays_per_second(gi::RenderResult const& r) { return r.seconds > 0 ? r.rays / r.seconds : 0; }
+
+} // namespace
+
+std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::RenderSettings const& s,
+                                                 gi::RenderResult const& result)
+{
+    return {{"version", version_number()},
+            {"git", git_hash()},
+            {"command", normalised_command(o, s, result)},
+            {"scene", o.scene},
+            {"method", o.method},
+            {"size", fmt::format("{}x{}", s.width, s.height)},
+            {"seed", std::to_string(s.seed)},
+            {"filter", o.filter},
+            {"bounces", std::to_string(s.bounces)},
+            {"paths", std::to_string(result.paths)},
+            {"units", "radiance, W/(m2 sr), linear Rec. 709"}};
+}
+
+Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePlan const& plan,
+                gi::RenderResult const& r, gi::Report const& report)
+{
+    auto const or_null = [](auto const& value) { return value ? Json(*value) : Json(); };
+    auto const name_or_null = [](std::string const& name) { return name.empty() ? Json() : Json(name); };
+    Json j;
+    j["schema"] = kSchema;
+    j["program"] = version_text();
+    j["command"] = normalised_command(o, s, r);
+    j["settings"] = {{"scene", o.scene},
+                     {"method", o.method},
+                     {"width", s.width},
+                     {"height", s.height},
+                     {"camera", name_or_null(o.camera)},
+                     {"look_from", name_or_null(o.look_from)},
+                     {"look_at", name_or_null(o.look_at)},
+                     {"fov_deg", or_null(o.fov_deg)},
+                     {"time_s", or_null(o.time_s)},
+                     {"envmap", name_or_null(o.environment)},
+                     {"paths_limit", s.paths},
+                     {"budget_s", s.budget_s > 0 ? Json(s.budget_s) : Json()},
+                     {"until_relmse", s.until_relmse > 0 ? Json(s.until_relmse) : Json()},
+                     {"bounces", s.bounces},
+                     {"filter", o.filter},
+                     {"seed", s.seed},
+                     {"threads", s.threads},
+                     {"resume", s.resume}};
+    j["outputs"] = {{"exr", name_or_null(o.out)}, {"png", name_or_null(o.png)}, {"stats", name_or_null(o.stats)}};
+    j["result"] = {{"end", end_text(r.end)}, {"paths_per_pixel", r.paths},
+                   {"seconds", r.seconds},   {"relmse_estimate", knows_error(r) ? Json(r.relmse) : Json()},
+                   {"rays", r.rays},         {"rays_per_s", rays_per_second(r)}};
+    j["plan"] = Json::array();
+    for (gi::PlanItem const& item : plan.items)
+        j["plan"].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
+    j["report"] = to_json(report);
+    return j;
+}
+
+std::string summary_line(gi::RenderSettings const& s, gi::RenderResult const& r)
+{
+    return fmt::format("{} x {} pixels, {} paths each, {:.2f} s, {:.2f} Mrays/s, {}", s.width, s.height, r.paths,
+                       r.seconds, rays_per_second(r) * 1e-6,
+                       knows_error(r) ? fmt::format("estimated relMSE {:.2g}", r.relmse)
+                                      : std::string("relMSE unknown from one path"));
+}
+
+} // namespace viewer
