@@ -116,8 +116,11 @@ private:
         }
         if (type == "chlist") {
             constexpr std::size_t kChannelBytes = 16;
-            while (at_ < end && !text().empty()) at_ = std::min(at_ + kChannelBytes, bytes_.size());
-            return at_ == end;
+            while (at_ < end) {
+                if (text().empty()) return at_ == end;
+                at_ = std::min(at_ + kChannelBytes, bytes_.size());
+            }
+            return false;
         }
         return true;
     }

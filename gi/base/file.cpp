@@ -22,7 +22,8 @@ void write_by_rename(fs::path const& file, std::function<void(fs::path const&)> 
     std::error_code error;
     if (!fs::is_directory(folder, error))
         throw cannot("there is no folder '" + folder.string() + "'", "create it first");
-    if (fs::is_directory(file, error)) throw cannot("it is a folder", "name a file");
+    if (fs::exists(file, error) && !fs::is_regular_file(file, error))
+        throw cannot("it is a folder or a device", "name a file");
     if (access(folder.c_str(), W_OK) != 0)
         throw cannot("the folder '" + folder.string() + "' is read-only", "choose another folder");
 
@@ -42,7 +43,8 @@ void write_by_rename(fs::path const& file, std::function<void(fs::path const&)> 
     } catch (InputError const&) {
         throw;
     } catch (std::exception const& e) {
-        if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EACCES || errno == EIO)
+        if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EACCES || errno == EIO ||
+            errno == EROFS || errno == ENAMETOOLONG)
             throw cannot(std::strerror(errno), "free some space or choose another folder");
         throw cannot(e.what(), "choose another folder");
     }

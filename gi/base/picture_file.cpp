@@ -1,5 +1,6 @@
 #include "gi/base/picture_file.h"
 
+#include "gi/base/claimed_size.h"
 #include "gi/base/error.h"
 #include "gi/base/file.h"
 
@@ -12,9 +13,21 @@
 namespace gi {
 namespace {
 
+constexpr std::size_t kMostPixels = std::size_t(1) << 29, kMostBytes = std::size_t(1) << 31;
+constexpr std::size_t kMostPixelsPerByte = 8 * 1032; ///< a one-bit PNG, deflated as far as that goes
+
 bool starts_with(std::span<unsigned char const> bytes, std::string_view magic)
 {
     return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
+
+/// The formats that go to OpenCV; it would try its many other decoders on unknown bytes.
+bool is_known(std::span<unsigned char const> bytes)
+{
+    using namespace std::string_view_literals;
+    for (std::string_view const magic : {"\x89PNG\r\n\x1a\n"sv, "\xff\xd8\xff"sv, "II*\0"sv, "MM\0*"sv, "BM"sv})
+        if (starts_with(bytes, magic)) return true;
+    return starts_with(bytes, "RIFF") && bytes.size() > 12 && starts_with(bytes.subspan(8), "WEBP");
 }
 
 float decode_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
@@ -27,9 +40,14 @@ Picture decode_picture(std::span<unsigned char const> bytes, std::string const& 
     if (starts_with(bytes, "#?")) return decode_hdr(bytes, name);
     auto const bad = [&](std::string const& why) {
         return InputError("cannot read '" + name + "' as a picture", why,
-                          "give OpenEXR, Radiance HDR, PNG, JPEG or TIFF");
+                          "give OpenEXR, Radiance HDR, PNG, JPEG, TIFF, BMP or WebP");
     };
     if (bytes.empty()) throw bad("it is empty");
+    if (!is_known(bytes)) throw bad("its first bytes are of no format that is read here");
+    if (bytes.size() >= kMostBytes) throw bad("it is larger than 2 GiB");
+    std::size_t const claimed = claimed_pixels(bytes);
+    if (claimed > kMostPixels || claimed / kMostPixelsPerByte > bytes.size())
+        throw bad("it announces " + std::to_string(claimed) + " pixels");
     cv::Mat image;
     try {
         cv::Mat const raw(1, int(bytes.size()), CV_8U, const_cast<unsigned char*>(bytes.data()));
@@ -37,7 +55,8 @@ Picture decode_picture(std::span<unsigned char const> bytes, std::string const& 
     } catch (cv::Exception const& e) {
         throw bad(e.what());
     }
-    if (image.empty()) throw bad("no decoder knows it, or it is damaged");
+    if (image.empty()) throw bad("it is damaged");
+    if (image.total() > kMostPixels) throw bad("it has more than 2^29 pixels");
 
     bool const encoded = image.depth() == CV_8U || image.depth() == CV_16U;
     double const scale = image.depth() == CV_8U ? 1.0 / 255 : image.depth() == CV_16U ? 1.0 / 65535 : 1.0;

@@ -26,7 +26,10 @@ ErrorSums measure_errors(std::vector<float> const& image, std::vector<float> con
         sum_image[c] += x;
         sum_reference[c] += r;
     }
-    if (n == 0) return e;
+    if (n == 0) {
+        double const unknown = std::numeric_limits<double>::quiet_NaN();
+        return {unknown, unknown, dvec3{unknown}, unknown, e.not_finite};
+    }
     e.rmse = std::sqrt(squares / double(n));
     e.relmse = relative / double(n);
     auto const ratio = [](double a, double b) {

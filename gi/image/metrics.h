@@ -10,6 +10,7 @@ namespace gi {
 
 inline constexpr double kRelativeFloor = 0.01; ///< of relMSE: keeps black pixels from deciding
 
+/// NaN where no pair is finite.
 struct ErrorSums {
     double rmse = 0;
     double relmse = 0;

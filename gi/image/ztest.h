@@ -13,6 +13,7 @@ struct ZTest {
     double largest = 0;    ///< |z|
     double sidak_p = 1;    ///< probability of such a largest |z| among `count` (Sidak)
     double mean_p = 1;     ///< probability of such a mean, values taken as independent
+    double chi2_p = 1;     ///< probability of such a sum of z^2 or a larger one, values taken as independent
 };
 
 /// Two-sided probability of |z| or more under a normal distribution.

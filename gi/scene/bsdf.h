@@ -11,18 +11,20 @@ namespace gi {
 inline constexpr float kSmoothAlpha = 1e-4f;
 
 /// A material after its textures have been looked up: what scatters at one point.
-///   metal_rough, opaque: the diffuse base below a Schlick coat + GGX reflection with Fresnel f0..f90
-///   metal_rough, transmitted > 0: the diffuse base + smooth dielectric (exact Fresnel; roughness and metal ignored)
+///   metal_rough: the diffuse base below a Schlick coat + GGX reflection with Fresnel f0..f90; a share `clear` of
+///   the
+///     surface is smooth dielectric instead (exact Fresnel, roughness ignored)
 ///   phong: Lambert + Phong lobe
 struct Bsdf {
     MaterialModel model = MaterialModel::metal_rough;
     bool thin = true;
-    vec3 diffuse{0};     ///< albedo of the base, already times (1 - metallic)(1 - transmission)
-    vec3 f0{0}, f90{0};  ///< reflectance at normal and grazing incidence; 0 = no specular lobe
+    vec3 diffuse{0};    ///< albedo of the base, already times (1 - metallic)(1 - transmission)
+    vec3 f0{0}, f90{0}; ///< reflectance at normal and grazing incidence, times 1 - clear; 0 = no specular lobe
     float coat_f0 = 0, coat_f90 = 0; ///< the same of the dielectric coat over the base, largest channel
-    float alpha = 1;     ///< GGX width; < kSmoothAlpha: delta
-    vec3 transmitted{0}; ///< tint of light that passes, 0 = opaque
-    float ior = 1.5f;    ///< inside over outside, seen from the front face
+    float alpha = 1;                 ///< GGX width; < kSmoothAlpha: delta
+    float clear = 0;                 ///< share that is glass, (1 - metallic) transmission; 0 = opaque
+    vec3 transmitted{0};             ///< tint of light that passes, times clear
+    float ior = 1.5f;                ///< inside over outside, seen from the front face
     vec3 phong_specular{0};
     float phong_exponent = 1;
 };
@@ -42,8 +44,8 @@ GI_FN Bsdf make_bsdf(Material const& material);
 
 struct BsdfSample {
     vec3 wi{0};
-    vec3 weight{0};     ///< f |cos| / pdf (for delta lobes the same limit); 0 = the path ends
-    float pdf = 0;      ///< of wi over all non-delta lobes together, 1/sr; 0 for delta
+    vec3 weight{0}; ///< f |cos| / pdf (for delta lobes the same limit); 0 = the path ends
+    float pdf = 0;  ///< of wi over all non-delta lobes together, 1/sr; 0 for delta
     bool delta = false;
     bool transmitted = false;
 };

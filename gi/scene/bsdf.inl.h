@@ -19,15 +19,16 @@ GI_FN inline Bsdf make_bsdf(Material const& m, MaterialFactors const& f)
         b.phong_exponent = m.phong_exponent;
         return b;
     }
-    float const dielectric = 1 - f.metallic;
-    b.diffuse = dielectric * (1 - f.transmission) * f.base_color;
-    b.transmitted = dielectric * f.transmission * f.base_color;
+    float const opaque = (1 - f.metallic) * (1 - f.transmission);
+    b.diffuse = opaque * f.base_color;
+    b.clear = (1 - f.metallic) * f.transmission;
+    b.transmitted = b.clear * f.base_color;
     float const r = square((m.ior - 1) / (m.ior + 1));
     vec3 const coat_f0 = glm::min(r * f.specular_color, vec3{1}) * f.specular;
     b.coat_f0 = max_component(coat_f0);
     b.coat_f90 = f.specular;
-    b.f0 = glm::mix(coat_f0, f.base_color, f.metallic);
-    b.f90 = vec3{glm::mix(f.specular, 1.0f, f.metallic)};
+    b.f0 = opaque * coat_f0 + f.metallic * f.base_color;
+    b.f90 = vec3{opaque * f.specular + f.metallic};
     return b;
 }
 
@@ -43,28 +44,30 @@ namespace bsdf_detail {
 GI_FN inline float through_coat(Bsdf const& b, float cos_o, float cos_i)
 {
     if (b.coat_f90 == 0) return 1;
-    return (1 - schlick(b.coat_f0, b.coat_f90, cos_o)) * (1 - schlick(b.coat_f0, b.coat_f90, cos_i)) /
-           (1 - schlick_mean(b.coat_f0, b.coat_f90));
+    float const mean = 1 - schlick_mean(b.coat_f0, b.coat_f90);
+    if (!(mean > 0)) return 0; // a coat that reflects everything
+    return (1 - schlick(b.coat_f0, b.coat_f90, cos_o)) * (1 - schlick(b.coat_f0, b.coat_f90, cos_i)) / mean;
 }
 
-GI_FN inline bool transmits(Bsdf const& b) { return max_component(b.transmitted) > 0; }
+/// Probabilities of sampling each lobe; all zero where everything is black.
+struct LobeChances {
+    float clear = 0, specular = 0, diffuse = 0;
+};
 
-/// Probability of sampling the specular lobe rather than the diffuse one: by what each can reflect at most.
-GI_FN inline float specular_share(Bsdf const& b, float cos_o)
+/// By what each lobe can reflect at most.
+GI_FN inline LobeChances lobe_chances(Bsdf const& b, float cos_o)
 {
     float diffuse = max_component(b.diffuse);
-    float specular;
+    float specular = 0;
     if (b.model == MaterialModel::phong) {
         specular = max_component(b.phong_specular);
-    } else if (transmits(b)) {
-        specular = 1;
-    } else {
-        if (b.f90.x == 0) return 0;
+    } else if (b.f90.x > 0) {
         specular = max_component(schlick(b.f0, b.f90, cos_o));
         diffuse *= 1 - schlick(b.coat_f0, b.coat_f90, cos_o);
     }
-    float const both = specular + diffuse;
-    return both > 0 ? specular / both : 0;
+    float const all = b.clear + specular + diffuse;
+    if (!(all > 0)) return {};
+    return {b.clear / all, specular / all, diffuse / all};
 }
 
 GI_FN inline vec3 reflect(vec3 wo, vec3 h) { return 2 * glm::dot(wo, h) * h - wo; }
@@ -72,33 +75,29 @@ GI_FN inline vec3 mirror(vec3 wo) { return {-wo.x, -wo.y, wo.z}; }
 
 GI_FN inline float phong_power(float cos_alpha, float exponent)
 {
-    return cos_alpha > 0 ? std::pow(cos_alpha, exponent) : (exponent == 0 ? 1.0f : 0.0f);
+    return cos_alpha > 0 ? std::pow(cos_alpha, exponent) : 0.0f;
 }
 
 GI_FN inline bool specular_is_delta(Bsdf const& b)
 {
-    return b.model == MaterialModel::metal_rough && (transmits(b) || b.alpha < kSmoothAlpha);
+    return b.model == MaterialModel::metal_rough && b.alpha < kSmoothAlpha;
 }
 
-/// The delta lobes: reflection, and transmission where there is one. @param share probability of being here
-GI_FN inline BsdfSample sample_delta(Bsdf const& b, vec3 wo, bool front, float u, float share)
+/// Smooth glass or a thin sheet. @param chance probability of being here
+GI_FN inline BsdfSample sample_clear(Bsdf const& b, vec3 wo, bool front, float u, float chance)
 {
     BsdfSample s;
     s.delta = true;
-    s.wi = mirror(wo);
-    if (!transmits(b)) {
-        s.weight = schlick(b.f0, b.f90, wo.z) / share;
-        return s;
-    }
     float const eta = front || b.thin ? 1 / b.ior : b.ior;
     DielectricInterface const face = fresnel_dielectric(wo.z, eta);
     float const reflectance = b.thin ? 2 * face.reflectance / (1 + face.reflectance) : face.reflectance;
     if (u < reflectance) {
-        s.weight = vec3{1 / share};
+        s.wi = mirror(wo);
+        s.weight = vec3{b.clear / chance};
         return s;
     }
     s.transmitted = true;
-    s.weight = b.transmitted / share;
+    s.weight = b.transmitted / chance;
     if (b.thin) {
         s.wi = -wo;
     } else {
@@ -106,6 +105,15 @@ GI_FN inline BsdfSample sample_delta(Bsdf const& b, vec3 wo, bool front, float u
         s.weight *= eta * eta;
     }
     return s;
+}
+
+/// Through the specular lobe, where it is not delta.
+GI_FN inline vec3 sample_specular(Bsdf const& b, vec3 wo, vec2 u)
+{
+    if (b.model == MaterialModel::metal_rough) return reflect(wo, sample_ggx_normal(wo, b.alpha, u));
+    float const cos_alpha = std::pow(1 - u.x, 1 / (b.phong_exponent + 1));
+    float const sin_alpha = std::sqrt(glm::max(0.0f, 1 - cos_alpha * cos_alpha));
+    return glm::normalize(Frame::about(mirror(wo)).to_world(vec3{sin_alpha * azimuth(u.y), cos_alpha}));
 }
 
 } // namespace bsdf_detail
@@ -137,14 +145,14 @@ GI_FN inline float pdf(Bsdf const& b, vec3 wo, vec3 wi)
 {
     using namespace bsdf_detail;
     if (!(wo.z > 0) || !(wi.z > 0)) return 0;
-    float const share = specular_share(b, wo.z);
-    float density = (1 - share) * wi.z * kInvPi;
-    if (share == 0 || specular_is_delta(b)) return density;
+    LobeChances const chance = lobe_chances(b, wo.z);
+    float const density = chance.diffuse * wi.z * kInvPi;
+    if (chance.specular == 0 || specular_is_delta(b)) return density;
     if (b.model == MaterialModel::phong) {
         float const lobe = phong_power(glm::dot(mirror(wo), wi), b.phong_exponent);
-        return density + share * (b.phong_exponent + 1) * (0.5f * kInvPi) * lobe;
+        return density + chance.specular * (b.phong_exponent + 1) * (0.5f * kInvPi) * lobe;
     }
-    return density + share * ggx_reflection_pdf(wo, glm::normalize(wo + wi), b.alpha);
+    return density + chance.specular * ggx_reflection_pdf(wo, glm::normalize(wo + wi), b.alpha);
 }
 
 GI_FN inline BsdfSample sample(Bsdf const& b, vec3 wo, bool front, float u_lobe, vec2 u)
@@ -152,23 +160,18 @@ GI_FN inline BsdfSample sample(Bsdf const& b, vec3 wo, bool front, float u_lobe,
     using namespace bsdf_detail;
     BsdfSample s;
     if (!(wo.z > 0)) return s;
-    float const share = specular_share(b, wo.z);
-    if (u_lobe < share) {
-        if (specular_is_delta(b)) return sample_delta(b, wo, front, u_lobe / share, share);
-        if (b.model == MaterialModel::phong) {
-            float const cos_alpha = std::pow(1 - u.x, 1 / (b.phong_exponent + 1));
-            float const sin_alpha = std::sqrt(glm::max(0.0f, 1 - cos_alpha * cos_alpha));
-            s.wi = glm::normalize(Frame::about(mirror(wo)).to_world(vec3{sin_alpha * azimuth(u.y), cos_alpha}));
-        } else {
-            s.wi = reflect(wo, sample_ggx_normal(wo, b.alpha, u));
-        }
-    } else {
-        s.wi = square_to_cosine_hemisphere(u);
-        if (share == 0) {
-            s.pdf = s.wi.z * kInvPi;
-            s.weight = s.pdf > 0 ? b.diffuse * through_coat(b, wo.z, s.wi.z) : vec3{0};
+    LobeChances const chance = lobe_chances(b, wo.z);
+    if (u_lobe < chance.clear) return sample_clear(b, wo, front, u_lobe / chance.clear, chance.clear);
+    if (u_lobe - chance.clear < chance.specular) {
+        if (specular_is_delta(b)) {
+            s.delta = true;
+            s.wi = mirror(wo);
+            s.weight = schlick(b.f0, b.f90, wo.z) / chance.specular;
             return s;
         }
+        s.wi = sample_specular(b, wo, u);
+    } else {
+        s.wi = square_to_cosine_hemisphere(u);
     }
     s.pdf = pdf(b, wo, s.wi);
     if (s.pdf > 0) s.weight = evaluate(b, wo, s.wi) * (s.wi.z / s.pdf);

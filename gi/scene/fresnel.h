@@ -34,9 +34,10 @@ struct DielectricInterface {
 /// Exact Fresnel equations. @param cos_incident in [0, 1]  @param eta n_incident / n_transmitted
 GI_FN inline DielectricInterface fresnel_dielectric(float cos_incident, float eta)
 {
-    float const sin2 = eta * eta * glm::max(0.0f, 1 - cos_incident * cos_incident);
-    if (sin2 >= 1) return {1, 0};
-    float const cos_t = std::sqrt(1 - sin2);
+    // In this order, equal media transmit everything at any angle.
+    float const cos2_t = (1 - eta * eta) + square(eta * cos_incident);
+    if (!(cos2_t > 0)) return {1, 0};
+    float const cos_t = glm::min(std::sqrt(cos2_t), 1.0f);
     float const parallel = (cos_incident - eta * cos_t) / (cos_incident + eta * cos_t);
     float const perpendicular = (eta * cos_incident - cos_t) / (eta * cos_incident + cos_t);
     return {0.5f * (parallel * parallel + perpendicular * perpendicular), cos_t};

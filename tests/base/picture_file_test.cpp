@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
 
 namespace gi::test {
 namespace {
@@ -102,7 +103,8 @@ TEST(Hdr, ReadsFlatAndRunLengthEncodedPixels)
     for (char const c : {'\x40', '\x20', '\x10', '\x80'}) text += std::string("\x88", 1) + c;
     Picture const q = decode_picture({reinterpret_cast<unsigned char const*>(text.data()), text.size()}, "x.hdr");
     EXPECT_EQ(q.layers[0].data[21], 0.25f);
-    EXPECT_THROW(decode_hdr({reinterpret_cast<unsigned char const*>(text.data()), text.size() - 1}, "x"), InputError);
+    EXPECT_THROW(decode_hdr({reinterpret_cast<unsigned char const*>(text.data()), text.size() - 1}, "x"),
+                 InputError);
 }
 
 TEST(Png, RoundTripsThroughTheSrgbCurve)
@@ -115,20 +117,98 @@ TEST(Png, RoundTripsThroughTheSrgbCurve)
     EXPECT_THROW(read_picture(scratch("missing.png")), InputError);
 }
 
+std::vector<unsigned char> encoded(char const* extension, cv::Mat const& picture,
+                                   std::vector<int> const& settings = {})
+{
+    std::vector<unsigned char> bytes;
+    cv::imencode(extension, picture, bytes, settings);
+    return bytes;
+}
+
+TEST(Pictures, DropAlphaAndReadSixteenBits)
+{
+    Picture const p =
+        decode_picture(encoded(".png", cv::Mat(2, 3, CV_8UC4, cv::Scalar(0, 128, 255, 10))), "a.png");
+    ASSERT_EQ(p.layers.size(), 1u);
+    ASSERT_EQ(p.layers[0].channels, 3);
+    EXPECT_NEAR(p.layers[0].data[0], 1, 1e-6);
+    EXPECT_NEAR(p.layers[0].data[1], 0.215861, 1e-5);
+    Picture const q = decode_picture(encoded(".png", cv::Mat(2, 3, CV_16UC1, cv::Scalar(32768))), "b.png");
+    EXPECT_NEAR(q.layers[0].data[2], 0.214049, 1e-5);
+    Picture const t = decode_picture(
+        encoded(".tiff", cv::Mat(2, 3, CV_32FC3, cv::Scalar(1, 2, 40)), {cv::IMWRITE_TIFF_COMPRESSION, 1}),
+        "c.tiff");
+    EXPECT_EQ(t.layers[0].data[0], 40);
+}
+
+TEST(Pictures, DamagedOrUnknownBytesAreInputErrors)
+{
+    cv::Mat const picture(16, 16, CV_8UC3, cv::Scalar(10, 120, 230));
+    Pcg32 rng(8, 8);
+    testing::internal::CaptureStderr(); // OpenCV and libpng complain there
+    for (char const* extension : {".png", ".jpg", ".tiff", ".bmp", ".webp"}) {
+        auto const bytes = encoded(extension, picture);
+        ASSERT_EQ(decode_picture(bytes, extension).width, 16);
+        for (int i = 0; i < 60; ++i) {
+            auto damaged = bytes;
+            damaged.resize(1 + rng.next() % damaged.size());
+            for (int k = 0; k < 4; ++k)
+                damaged[rng.next() % damaged.size()] = static_cast<unsigned char>(rng.next());
+            try {
+                decode_picture(damaged, extension);
+            } catch (InputError const&) {
+            }
+        }
+    }
+    testing::internal::GetCapturedStderr();
+    for (char const* text : {"", "P6 1 1 255 abc", "<svg/>", "RIFF", "#?", "#?RADIANCE\n\n-Y 60000 +X 60000\n"})
+        EXPECT_THROW(decode_picture({reinterpret_cast<unsigned char const*>(text), std::strlen(text)}, "t"),
+                     InputError)
+            << text;
+}
+
+TEST(Pictures, AJpegThatAnnouncesAGigapixelIsRefusedAtOnce)
+{
+    auto bytes = encoded(".jpg", cv::Mat(16, 16, CV_8UC3, cv::Scalar(1, 2, 3)));
+    std::size_t at = 2;
+    while (bytes[at + 1] != 0xc0) at += 2 + std::size_t(bytes[at + 2]) * 256 + bytes[at + 3];
+    bytes[at + 5] = bytes[at + 7] = 0x7d;
+    EXPECT_THROW(decode_picture(bytes, "x.jpg"), InputError);
+}
+
 TEST(WriteByRename, LeavesTheOldFileWhenWritingFails)
 {
     fs::path const file = scratch("r.txt");
     write_text(file, "old");
-    EXPECT_THROW(write_by_rename(file, [](fs::path const& t) {
-                     std::ofstream(t) << "half";
-                     throw std::runtime_error("broken");
-                 }),
+    EXPECT_THROW(write_by_rename(file,
+                                 [](fs::path const& t) {
+                                     std::ofstream(t) << "half";
+                                     throw std::runtime_error("broken");
+                                 }),
                  InputError);
     auto const bytes = read_bytes(file);
     EXPECT_EQ(std::string(bytes.begin(), bytes.end()), "old");
     for (auto const& entry : fs::directory_iterator(file.parent_path()))
         EXPECT_EQ(entry.path().filename().string().find(".lightwell_r.txt.tmp"), std::string::npos);
     EXPECT_THROW(write_text(scratch("no_such_folder") / "f", "x"), InputError);
+    EXPECT_THROW(write_text("/dev/null", "x"), InputError); // a rename would put a file there
+    EXPECT_THROW(write_text(file.parent_path(), "x"), InputError);
+}
+
+TEST(WriteByRename, NamesAFullDisk)
+{
+    if (!fs::exists("/dev/full")) GTEST_SKIP() << "SKIPPED: there is no /dev/full";
+    try {
+        write_by_rename(scratch("full.txt"), [](fs::path const&) {
+            std::ofstream out("/dev/full");
+            out.exceptions(std::ios::failbit | std::ios::badbit);
+            out << "x" << std::flush;
+        });
+        FAIL();
+    } catch (InputError const& e) {
+        EXPECT_NE(std::string(e.what()).find("No space left on device"), std::string::npos) << e.what();
+    }
+    EXPECT_FALSE(fs::exists(scratch("full.txt")));
 }
 
 TEST(SharedData, HardPicturesAndLightProbesAreRead)

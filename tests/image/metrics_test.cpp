@@ -6,6 +6,7 @@
 #include "gi/image/ssim.h"
 #include "gi/image/tone_map.h"
 #include "gi/image/ztest.h"
+#include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -38,7 +39,8 @@ Picture constant(int width, int height, vec3 c, float variance = 0)
 
 TEST(Metrics, ClosedForms)
 {
-    Comparison const c = compare(constant(16, 12, {0.5f, 0.4f, 0.2f}), constant(16, 12, {0.4f, 0.4f, 0.4f}), {}, "color");
+    Comparison const c =
+        compare(constant(16, 12, {0.5f, 0.4f, 0.2f}), constant(16, 12, {0.4f, 0.4f, 0.4f}), {}, "color");
     EXPECT_NEAR(find(c, "rmse"), std::sqrt((0.01 + 0 + 0.04) / 3), 1e-6);
     EXPECT_NEAR(find(c, "relmse"), (0.01 + 0.04) / 3 / (0.16 + 0.01), 1e-6);
     EXPECT_NEAR(find(c, "bias"), 1.1 / 1.2, 1e-6);
@@ -72,6 +74,12 @@ TEST(Metrics, ValuesThatAreNotFiniteAreLeftOutAndSaid)
     EXPECT_EQ(find(c, "rmse"), 0);
     ASSERT_EQ(c.notes.size(), 1u);
     EXPECT_NE(c.notes[0].find("1 values that are not finite"), std::string::npos);
+
+    Comparison const left_out = compare(a, constant(8, 8, vec3{0.3f}), {"rmse"}, "color");
+    EXPECT_NEAR(find(left_out, "rmse"), 0.2, 1e-6); // of the 191 others, not diluted by the one
+    for (float& v : a.layers[0].data) v = std::nanf("");
+    EXPECT_THROW(compare(a, constant(8, 8, vec3{0.5f}), {"flip"}, "color"), InputError);
+    EXPECT_TRUE(std::isnan(measure_errors(a.layers[0].data, a.layers[0].data, 3).rmse));
 }
 
 TEST(Metrics, AveragesALargerPictureDown)
@@ -103,7 +111,8 @@ TEST(Ssim, AgreesWithTheDefinitionTakenLiterally)
             for (int j = -5; j <= 5; ++j)
                 for (int i = -5; i <= 5; ++i) {
                     double const g = std::exp(-(i * i + j * j) / (2 * 1.5 * 1.5));
-                    double const p = double(a[std::size_t((y + j) * w + x + i)]), q = double(b[std::size_t((y + j) * w + x + i)]);
+                    double const p = double(a[std::size_t((y + j) * w + x + i)]),
+                                 q = double(b[std::size_t((y + j) * w + x + i)]);
                     n += g, ma += g * p, mb += g * q, aa += g * p * p, bb += g * q * q, ab += g * p * q;
                 }
             ma /= n, mb /= n;
@@ -141,19 +150,46 @@ TEST(ZTest, IsCalibratedOnGaussianNoise)
     EXPECT_LT(z_test(x, var, r, none).sidak_p, 1e-6);
 }
 
-TEST(ToneMap, CurvesAndOddValues)
+TEST(ZTest, PValuesAreUniformOverManyPictures)
 {
-    Layer layer{"color", 3, {0, 0.18f, 1, 5, -1, std::nanf("")}};
-    auto const out = tone_map(layer, {});
-    EXPECT_EQ(out[0], 0);
-    EXPECT_NEAR(out[1], 0.4613561, 1e-5);
-    EXPECT_EQ(out[2], 1);
-    EXPECT_EQ(out[3], 1);
-    EXPECT_EQ(out[4], 0);
-    EXPECT_EQ(out[5], 0);
-    EXPECT_NEAR(tone_map(layer, {1, ToneCurve::srgb})[1], encode_srgb(0.36f), 1e-6);
-    auto const bytes = tone_map_bytes({"depth", 1, {1.0f}}, {});
-    EXPECT_EQ(bytes, (std::vector<unsigned char>{255, 255, 255}));
+    constexpr int kPictures = 2000, kBins = 20;
+    std::vector<double> sidak(kBins, 0.0), of_mean(kBins, 0.0), of_squares(kBins, 0.0);
+    std::vector<float> const zero(300, 0.0f), var(300, 0.25f);
+    Pcg32 rng(6, 6);
+    for (int i = 0; i < kPictures; ++i) {
+        std::vector<float> x;
+        for (std::size_t k = 0; k < zero.size(); ++k) x.push_back(float(std::sqrt(0.5) * normal(rng)));
+        ZTest const z = z_test(x, var, zero, var);
+        ++sidak[std::min<std::size_t>(kBins - 1, std::size_t(z.sidak_p * kBins))];
+        ++of_mean[std::min<std::size_t>(kBins - 1, std::size_t(z.mean_p * kBins))];
+        ++of_squares[std::min<std::size_t>(kBins - 1, std::size_t(z.chi2_p * kBins))];
+    }
+    std::vector<double> const expected(kBins, double(kPictures) / kBins);
+    EXPECT_GT(chi_square_p(sidak, expected), 0.001);
+    EXPECT_GT(chi_square_p(of_mean, expected), 0.001);
+    EXPECT_GT(chi_square_p(of_squares, expected), 0.001);
+}
+
+TEST(ZTest, AWrongValueWithoutVarianceIsCertain)
+{
+    std::vector<float> const x{1, 2, 3}, r{1, 2, 4}, none(3, 0.0f);
+    ZTest const z = z_test(x, none, r, {});
+    EXPECT_EQ(z.count, 1u); // those that agree are left out
+    EXPECT_TRUE(std::isinf(z.largest));
+    EXPECT_LT(z.sidak_p, 1e-12);
+    EXPECT_EQ(z.chi2_p, 0);
+}
+
+TEST(DifferenceImage, IsBlackWhereThePicturesAgree)
+{
+    Picture const a = constant(32, 16, vec3{0.4f});
+    Picture b = a;
+    for (std::size_t k = 0; k < 3; ++k) b.layers[0].data[3 * (8 * 32 + 2) + k] = 1;
+    int width = 0, height = 0;
+    std::vector<unsigned char> const map = difference_image(a, b, "color", width, height);
+    ASSERT_EQ(map.size(), 3u * 32 * 16);
+    EXPECT_EQ(map[3 * (8 * 32 + 30)], 0); // far away
+    EXPECT_GT(map[3 * (8 * 32 + 2)], 20);
 }
 
 } // namespace

@@ -55,7 +55,7 @@ TEST(Atrium, OptionsDecide)
     finer.detail = 4;
     std::size_t const usual = count_triangles(generate_atrium({}));
     EXPECT_GT(count_triangles(generate_atrium(longer)), usual);
-    EXPECT_NEAR(double(count_triangles(generate_atrium(finer))) / double(usual), 4, 0.6);
+    EXPECT_GT(count_triangles(generate_atrium(finer)), 2.5 * double(usual));
 }
 
 TEST(Atrium, RefusesNonsense)
@@ -146,8 +146,8 @@ TEST(Figure, WalksOnTheGround)
     EXPECT_NEAR(rest.high.y, 1.75, 0.03);
     for (int k = 0; k < 12; ++k) {
         Bounds const b = figure_bounds(scene, 0.1 * k);
-        EXPECT_GT(b.low.y, -0.015) << 0.1 * k << " s";
-        EXPECT_LT(b.low.y, 0.03) << 0.1 * k << " s";
+        EXPECT_GT(b.low.y, -0.01) << 0.1 * k << " s";
+        EXPECT_LT(b.low.y, 0.02) << 0.1 * k << " s";
         EXPECT_NEAR(b.high.y, 1.73, 0.06);
         EXPECT_LT(b.high.x - b.low.x, 1.2f);
         EXPECT_LT(b.high.z - b.low.z, 1.4f);
@@ -159,12 +159,13 @@ TEST(Figure, LegsTakeTurns)
     Scene const scene = generate_atrium({});
     auto const stride = [&](double time_s) { // how far the left foot is before the right
         Pose const pose = evaluate_pose(scene, time_s);
-        double left = 0, right = 0;
-        for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-            if (scene.nodes[i].name == "foot_l") left = pose.world_from_node[i][3].z;
-            if (scene.nodes[i].name == "foot_r") right = pose.world_from_node[i][3].z;
-        }
-        return left - right;
+        auto const world_from = [&](char const* name) {
+            auto const it = std::find_if(scene.nodes.begin(), scene.nodes.end(),
+                                         [&](Node const& n) { return n.name == name; });
+            return pose.world_from_node.at(std::size_t(it - scene.nodes.begin()));
+        };
+        dvec3 const step = dvec3(world_from("foot_l")[3] - world_from("foot_r")[3]);
+        return glm::dot(step, dvec3(world_from("figure")[2]));
     };
     EXPECT_GT(stride(0.3), 0.4);
     EXPECT_LT(stride(0.9), -0.4);

@@ -25,7 +25,8 @@ std::vector<SamplerView> sampler_views()
     std::vector<SamplerView> all;
     for (BsdfCase const& c : scattering_materials())
         for (double const angle : view_angles()) {
-            SamplerView s{fmt::format("{} from {} degrees", c.name, angle), make_bsdf(c.material), seen_at(angle), {}};
+            SamplerView s{
+                fmt::format("{} from {} degrees", c.name, angle), make_bsdf(c.material), seen_at(angle), {}};
             all.push_back(s);
             if (c.name != "metal 0.1" && c.name != "phong 1000") continue;
             // Narrow lobes fit into few bins: look at them closely too.
@@ -50,10 +51,10 @@ TEST(BsdfChi2, SamplesFollowTheirDensity)
             if (drawn.delta || !(drawn.pdf > 0)) return std::nullopt;
             return drawn.wi;
         };
-        SphereChi2 const result =
-            test_sampler(s.bins, draw, [&](vec3 wi) { return double(pdf(s.bsdf, s.wo, wi)); }, kSamples);
-        EXPECT_GT(result.p, level) << s.name << ": integral of the pdf " << result.integral << ", rejected or delta "
-                                   << result.rejected;
+        SphereChi2 const result = test_sampler(
+            s.bins, draw, [&](vec3 wi) { return double(pdf(s.bsdf, s.wo, wi)); }, kSamples);
+        EXPECT_GT(result.p, level) << s.name << ": integral of the pdf " << result.integral
+                                   << ", rejected or delta " << result.rejected;
         double const sigma = std::sqrt(result.rejected * (1 - result.rejected) / kSamples);
         EXPECT_NEAR(result.integral, 1 - result.rejected, 4.5 * sigma + 1e-4) << s.name;
     }
@@ -75,8 +76,7 @@ TEST(BsdfChi2, WeightIsValueOverDensity)
             ASSERT_FALSE(drawn.transmitted) << s.name;
             ASSERT_NEAR(drawn.pdf, pdf(s.bsdf, s.wo, drawn.wi), 1e-4 * double(drawn.pdf)) << s.name;
             vec3 const value = evaluate(s.bsdf, s.wo, drawn.wi) * drawn.wi.z, again = drawn.weight * drawn.pdf;
-            for (int c = 0; c < 3; ++c)
-                ASSERT_NEAR(again[c], value[c], 1e-4 * double(value[c]) + 1e-12) << s.name;
+            for (int c = 0; c < 3; ++c) ASSERT_NEAR(again[c], value[c], 1e-4 * double(value[c]) + 1e-12) << s.name;
         }
 }
 

@@ -58,10 +58,10 @@ std::string describe(Material const& m, vec3 wo, vec3 wi)
 {
     return fmt::format("model {} thin {} base ({} {} {}) metallic {} roughness {} specular {} ({} {} {}) ior {} "
                        "transmission {} phong ({} {} {})^{} wo ({} {} {}) wi ({} {} {})",
-                       int(m.model), m.thin, m.base_color.x, m.base_color.y, m.base_color.z, m.metallic, m.roughness,
-                       m.specular, m.specular_color.x, m.specular_color.y, m.specular_color.z, m.ior, m.transmission,
-                       m.phong_specular.x, m.phong_specular.y, m.phong_specular.z, m.phong_exponent, wo.x, wo.y, wo.z,
-                       wi.x, wi.y, wi.z);
+                       int(m.model), m.thin, m.base_color.x, m.base_color.y, m.base_color.z, m.metallic,
+                       m.roughness, m.specular, m.specular_color.x, m.specular_color.y, m.specular_color.z, m.ior,
+                       m.transmission, m.phong_specular.x, m.phong_specular.y, m.phong_specular.z,
+                       m.phong_exponent, wo.x, wo.y, wo.z, wi.x, wi.y, wi.z);
 }
 
 bool sound(vec3 v) { return all_finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; }

@@ -69,9 +69,13 @@ void expect_same(Scene const& sa, Material const& a, Scene const& sb, Material c
     EXPECT_EQ(a.thin, b.thin);
     expect_close(a.base_color, b.base_color, "base_color");
     EXPECT_FLOAT_EQ(a.alpha, b.alpha);
-    if (a.alpha_mode == AlphaMode::mask) EXPECT_FLOAT_EQ(a.alpha_cutoff, b.alpha_cutoff);
+    if (a.alpha_mode == AlphaMode::mask) {
+        EXPECT_FLOAT_EQ(a.alpha_cutoff, b.alpha_cutoff);
+    }
     EXPECT_FLOAT_EQ(a.metallic, b.metallic);
-    if (a.model == MaterialModel::metal_rough) EXPECT_FLOAT_EQ(a.roughness, b.roughness);
+    if (a.model == MaterialModel::metal_rough) {
+        EXPECT_FLOAT_EQ(a.roughness, b.roughness);
+    }
     EXPECT_FLOAT_EQ(a.specular, b.specular);
     expect_close(a.specular_color, b.specular_color, "specular_color");
     EXPECT_FLOAT_EQ(a.ior, b.ior);
@@ -79,7 +83,9 @@ void expect_same(Scene const& sa, Material const& a, Scene const& sb, Material c
     expect_close(a.phong_specular, b.phong_specular, "phong_specular");
     EXPECT_FLOAT_EQ(a.phong_exponent, b.phong_exponent);
     expect_close(a.emission, b.emission, "emission");
-    if (a.normal_map.texture >= 0) EXPECT_FLOAT_EQ(a.normal_scale, b.normal_scale);
+    if (a.normal_map.texture >= 0) {
+        EXPECT_FLOAT_EQ(a.normal_scale, b.normal_scale);
+    }
     auto const map = [&](TextureRef Material::*ref, char const* what) {
         expect_same(sa.textures, a.*ref, sb.textures, b.*ref, what);
     };
@@ -98,7 +104,9 @@ void expect_same(Light const& a, Light const& b)
     expect_close(a.intensity, b.intensity, "intensity");
     expect_close(a.position, b.position, "light position");
     if (a.type != LightType::point) expect_close(a.direction, b.direction, "light direction");
-    if (a.type != LightType::directional) EXPECT_FLOAT_EQ(a.range, b.range);
+    if (a.type != LightType::directional) {
+        EXPECT_FLOAT_EQ(a.range, b.range);
+    }
     if (a.type == LightType::spot) {
         EXPECT_NEAR(a.cos_inner, b.cos_inner, 1e-6);
         EXPECT_NEAR(a.cos_outer, b.cos_outer, 1e-6);
@@ -109,11 +117,14 @@ void expect_same(Camera const& a, Camera const& b)
 {
     EXPECT_EQ(a.name, b.name);
     EXPECT_EQ(a.orthographic, b.orthographic);
-    if (a.orthographic)
+    if (a.orthographic) {
         EXPECT_DOUBLE_EQ(a.ymag_m, b.ymag_m);
-    else
+    } else {
         EXPECT_DOUBLE_EQ(a.yfov_rad, b.yfov_rad);
-    if (a.aspect > 0) EXPECT_NEAR(a.aspect, b.aspect, 1e-12);
+    }
+    if (a.aspect > 0) {
+        EXPECT_NEAR(a.aspect, b.aspect, 1e-12);
+    }
     for (int c = 0; c < 4; ++c)
         EXPECT_NEAR(glm::distance(a.world_from_camera[c], b.world_from_camera[c]), 0, 1e-12) << a.name;
 }
@@ -255,9 +266,6 @@ Scene everything()
     mesh.morph_targets = {up, side};
     s.nodes.front().name = "first";
     s.nodes.front().morph_weights = {0.25f, 0.5f};
-    add_quad(s, {5, 0, 0}, {1, 0, 0}, {0, 0, 2}, second);
-    s.nodes.back().name = "second";
-
     Node moved; // the same mesh again, below another node
     moved.name = "turned";
     moved.parent = 0;
@@ -268,6 +276,9 @@ Scene everything()
     moved.morph_weights = {0, 0};
     s.nodes.push_back(moved);
     auto const turned = std::int32_t(s.nodes.size()) - 1;
+
+    add_quad(s, {5, 0, 0}, {1, 0, 0}, {0, 0, 2}, second);
+    s.nodes.back().name = "second";
 
     Light point, spot;
     point.intensity = {1, 20, 3};
@@ -330,8 +341,13 @@ TEST_F(WriteGlb, KeepsAMillionBoxes)
 {
     Scene const scene = generate_boxes(1'000'000, 2);
     Scene const back = round_trip(scene);
-    EXPECT_EQ(count_triangles(back), count_triangles(scene));
-    EXPECT_EQ(hash(back), hash(scene));
+    ASSERT_EQ(back.meshes.size(), scene.meshes.size());
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+        EXPECT_EQ(back.meshes[i].positions, scene.meshes[i].positions);
+        EXPECT_EQ(back.meshes[i].triangles, scene.meshes[i].triangles);
+        EXPECT_EQ(back.meshes[i].uv0, scene.meshes[i].uv0);
+        EXPECT_EQ(back.meshes[i].material, scene.meshes[i].material);
+    }
 }
 
 TEST_F(WriteGlb, FileFollowsTheSpecification)
@@ -348,8 +364,8 @@ TEST_F(WriteGlb, FileFollowsTheSpecification)
     }
     std::set<std::string> const used = glb.root["extensionsUsed"];
     for (json const& material : glb.root["materials"]) {
-        for (auto const& [name, value] : material.value("extensions", json::object()).items())
-            EXPECT_TRUE(used.contains(name)) << name;
+        json const extensions = material.value("extensions", json::object());
+        for (auto const& [name, value] : extensions.items()) EXPECT_TRUE(used.contains(name)) << name;
         for (json const& channel : material.value("emissiveFactor", json::array())) EXPECT_LE(channel, 1);
     }
     for (json const& mesh : glb.root["meshes"])
@@ -369,7 +385,7 @@ TEST_F(WriteGlb, CountsWhatGlbCannotHold)
     scene.materials[0].base_color_map.row_v = scene.materials[0].base_color_map.row_u;
     Mesh empty;
     empty.name = "empty";
-    scene.nodes[1].meshes.push_back(std::int32_t(scene.meshes.size()));
+    scene.nodes.back().meshes.push_back(std::int32_t(scene.meshes.size()));
     scene.meshes.push_back(empty);
     write_glb(folder_ / "scene.glb", scene, report);
     auto const losses = report.losses();

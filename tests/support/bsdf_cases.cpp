@@ -68,12 +68,9 @@ std::vector<BsdfCase> scattering_materials()
 
 std::vector<BsdfCase> delta_materials()
 {
-    return {{"white mirror", mirror(vec3{1})},
-            {"gold mirror", mirror({1, 0.8f, 0.3f})},
-            {"glass", glass(1.5f, false)},
-            {"diamond", glass(2.42f, false)},
-            {"thin glass", glass(1.5f, true)},
-            {"nothing", glass(1, false)}};
+    return {{"white mirror", mirror(vec3{1})}, {"gold mirror", mirror({1, 0.8f, 0.3f})},
+            {"glass", glass(1.5f, false)},     {"diamond", glass(2.42f, false)},
+            {"thin glass", glass(1.5f, true)}, {"nothing", glass(1, false)}};
 }
 
 vec3 seen_at(double degrees, double azimuth_degrees)

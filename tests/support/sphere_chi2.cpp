@@ -71,7 +71,8 @@ std::size_t SphereBins::bin_of(vec3 d) const
 vec3 SphereBins::direction(double t, double azimuth) const
 {
     double const polar = 0.5 * kTwoPi * std::pow(t, focus), turn = kTwoPi * azimuth;
-    return vec3(std::sin(polar) * (std::cos(turn) * dvec3(frame.tangent) + std::sin(turn) * dvec3(frame.bitangent)) +
+    return vec3(std::sin(polar) *
+                    (std::cos(turn) * dvec3(frame.tangent) + std::sin(turn) * dvec3(frame.bitangent)) +
                 std::cos(polar) * dvec3(frame.normal));
 }
 

@@ -25,14 +25,14 @@ struct SphereBins {
     double jacobian(double t) const;
 };
 
-/// Integral of f over each bin by adaptive subdivision of 4 x 4 Gauss-Legendre points. These lie inside the cells, so
-/// that a jump at an edge (the horizon) does no harm. @param tolerance error that is accepted per bin
+/// Integral of f over each bin by adaptive subdivision of 4 x 4 Gauss-Legendre points. These lie inside the cells,
+/// so that a jump at an edge (the horizon) does no harm. @param tolerance error that is accepted per bin
 std::vector<double> integrate(SphereBins const& bins, std::function<double(vec3)> const& f, double tolerance);
 /// The sum over all bins.
 double integrate_all(SphereBins const& bins, std::function<double(vec3)> const& f, double tolerance);
 
 struct SphereChi2 {
-    double p;        ///< of observing what was drawn; what was rejected is one more bin, which expects 1 - integral
+    double p; ///< of observing what was drawn; what was rejected is one more bin, which expects 1 - integral
     double integral; ///< of the density
     double rejected; ///< share of the samples
 };

@@ -7,8 +7,8 @@
 namespace gi::test {
 namespace {
 
-/// Regularised upper incomplete gamma function Q(a, x): series below a + 1, continued fraction above (Press et al.,
-/// Numerical Recipes, sec. 6.2).
+/// Regularised upper incomplete gamma function Q(a, x): series below a + 1, continued fraction above (Press et
+/// al., Numerical Recipes, sec. 6.2).
 double upper_gamma(double a, double x)
 {
     if (x <= 0) return 1;

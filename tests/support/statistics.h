@@ -8,8 +8,8 @@ namespace gi::test {
 
 /// P(X >= statistic) of a chi-square distribution.
 double chi_square_tail(double statistic, double degrees_of_freedom);
-/// p-value of observed against expected counts (same sum up to noise). Bins are pooled, from the smallest on, until
-/// each group expects at least 5; 0 where more than one in 100,000 fell into bins that expect nothing.
+/// p-value of observed against expected counts (same sum up to noise). Bins are pooled, from the smallest on,
+/// until each group expects at least 5; 0 where more than one in 100,000 fell into bins that expect nothing.
 double chi_square_p(std::vector<double> const& observed, std::vector<double> const& expected);
 /// P(Z <= z) of the standard normal distribution.
 double normal_cdf(double z);

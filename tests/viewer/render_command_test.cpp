@@ -137,7 +137,7 @@ TEST(RenderCommand, SaysWhatIsLost)
 {
     TemporaryFolder const folder;
     std::ofstream(folder / "map.hdr") << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n"
-                                      << std::string("\xff\xff\xff\xff\x10\x10\x10\x80", 8);
+                                      << std::string("\xff\xff\xff\x92\x10\x10\x10\x80", 8);
     Outcome const o =
         run_well("render cornell --envmap map.hdr --look-from 0.3,0.3,-3 --look-at 0.3,5,-3 --size 8x8 --paths 2 "
                  "--half --out a.exr --stats a.json",

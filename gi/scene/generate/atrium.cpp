@@ -33,7 +33,7 @@ vec3 stone_color(vec2 uv)
     vec2 const in_block{x - std::floor(x), uv.y * 4 - row};
     vec2 const edge = glm::min(in_block, 1.0f - in_block) * vec2{0.5f, 0.25f};
     float const joint = glm::smoothstep(0.003f, 0.007f, glm::min(edge.x, edge.y));
-    return vec3{0.66f, 0.60f, 0.50f} * (0.8f + 0.25f * n + 0.08f * fine) * glm::mix(0.72f, 1.0f, joint);
+    return vec3{0.60f, 0.54f, 0.45f} * (0.8f + 0.25f * n + 0.08f * fine) * glm::mix(0.72f, 1.0f, joint);
 }
 
 vec3 tile_color(vec2 uv)
@@ -191,11 +191,11 @@ void add_building(SceneBuilder& b, Materials const& m, int bays, float end, auto
     b.box(m.plaster, {kBack - 0.5f, -0.05f, end - 0.5f}, {kBack, kTop, kNear + 0.5f}, 0.5f);
     b.box(m.plaster, {kBack, -0.05f, kNear}, {0.28f, kTop, kNear + 0.5f}, 0.5f);
     b.box(m.stone, {kBack - 0.5f, kTop, end - 0.5f}, {0.5f, kTop + 0.3f, kNear + 0.5f}, 0.5f);
-    add_vault(b, m.plaster, kBack, -0.28f, kNear, end, 3.3f, 1.35f, n(44), n(40));
+    add_vault(b, m.plaster, kBack, -0.28f, end, kNear, 3.3f, 1.35f, n(44), n(40));
     b.box(m.stone, {kBack, kFloor1 - 0.12f, end}, {-0.28f, kFloor1, kNear}, 0.5f);
     for (int i = 0; i <= bays; ++i) { // ribs
         float const z = -kBay * float(i);
-        add_vault(b, m.stone, kBack + 0.05f, -0.30f, z + 0.16f, z - 0.16f, 3.25f, 1.33f, n(44), 1);
+        add_vault(b, m.stone, kBack + 0.05f, -0.30f, z - 0.16f, z + 0.16f, 3.25f, 1.33f, n(44), 1);
         b.box(m.stone, {kBack, 0, z - 0.2f}, {kBack + 0.1f, 3.3f, z + 0.2f}, 0.5f); // pilaster
     }
     // The far end: a door-sized opening with a lattice, towards the light.
@@ -296,7 +296,7 @@ Scene generate_atrium(AtriumOptions const& o)
                        -std::cos(azimuth) * std::cos(elevation)};
     Light sun;
     sun.type = LightType::directional;
-    sun.intensity = vec3{6.2f, 5.6f, 4.6f};
+    sun.intensity = vec3{5.8f, 5.2f, 4.3f};
     b.add_light("sun", sun, dvec3{0, 20, 0}, -to_sun);
     Scene scene = b.finish("atrium");
     scene.environment = generate_sky(vec3(to_sun));

@@ -178,6 +178,11 @@ Stride stride(double phase)
     return {0.45 * std::sin(phase) + 0.05, 0.12 + 0.85 * std::pow(std::max(0.0, std::cos(phase - 0.25)), 2.0)};
 }
 
+constexpr double kSole = 0.075, kBall = 0.17; ///< m, of the foot: below its joint, and before it
+
+/// Toes down, rad, against the ground.
+double foot_pitch(Stride const& s) { return 0.25 * s.knee; }
+
 dquat about_x(double angle) { return glm::angleAxis(angle, dvec3{1, 0, 0}); }
 dquat about_y(double angle) { return glm::angleAxis(angle, dvec3{0, 1, 0}); }
 
@@ -205,10 +210,12 @@ Animation walk(std::int32_t first_joint)
     for (int k = 0; k <= kKeys; ++k) {
         double const phase = 2 * glm::pi<double>() * double(k % kKeys) / kKeys;
         Stride const left = stride(phase), right = stride(phase + glm::pi<double>());
-        auto const reach = [&](Stride const& s) {
-            return thigh * std::cos(s.hip) + shin * std::cos(s.hip - s.knee);
+        auto const reach = [&](Stride const& s) { // down to the ball of the foot
+            return thigh * std::cos(s.hip) + shin * std::cos(s.hip - s.knee) + kSole * std::cos(foot_pitch(s)) +
+                   kBall * std::sin(foot_pitch(s));
         };
-        double const drop = std::max(reach(left), reach(right)) - thigh - shin; // the longer leg stands
+        // The longer leg stands.
+        double const drop = std::max(reach(left), reach(right)) - thigh - shin - kSole;
         auto const set = [&](Joint j, dquat const& q) {
             rotation[j].times_s.push_back(float(kDuration * k / kKeys));
             push(rotation[j], q);
@@ -225,10 +232,10 @@ Animation walk(std::int32_t first_joint)
         // Rotation about +X turns what hangs down backwards, so forwards is negative.
         set(thigh_l, about_x(-left.hip));
         set(shin_l, about_x(left.knee));
-        set(foot_l, about_x(left.hip - left.knee + 0.25 * left.knee));
+        set(foot_l, about_x(left.hip - left.knee + foot_pitch(left)));
         set(thigh_r, about_x(-right.hip));
         set(shin_r, about_x(right.knee));
-        set(foot_r, about_x(right.hip - right.knee + 0.25 * right.knee));
+        set(foot_r, about_x(right.hip - right.knee + foot_pitch(right)));
         set(arm_l, about_x(0.38 * swing));
         set(forearm_l, about_x(-0.35 - 0.15 * std::max(0.0, -swing)));
         set(hand_l, dquat(1, 0, 0, 0));

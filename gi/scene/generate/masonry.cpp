@@ -38,13 +38,15 @@ void add_arch_wall(SceneBuilder& b, int material, ArchWall const& w)
     b.grid(material, w.segments, 1, [&](float u, float v) {
         float const a = kPi * u;
         return GridVertex{
-            {glm::mix(w.x0, w.x1, v), w.spring + radius * std::sin(a), middle - radius * std::cos(a)},
+            {glm::mix(w.x1, w.x0, v), w.spring + radius * std::sin(a), middle - radius * std::cos(a)},
             {0, -std::sin(a), std::cos(a)},
             kUvPerMetre * vec2{v * (w.x1 - w.x0), radius * a}};
     });
     float const jamb = w.spring - w.sill, depth = w.x1 - w.x0;
-    b.quad(material, {w.x0, w.sill, left}, {depth, 0, 0}, {0, jamb, 0}, kUvPerMetre);
-    b.quad(material, {w.x1, w.sill, right}, {-depth, 0, 0}, {0, jamb, 0}, kUvPerMetre);
+    if (jamb > 0) {
+        b.quad(material, {w.x0, w.sill, left}, {depth, 0, 0}, {0, jamb, 0}, kUvPerMetre);
+        b.quad(material, {w.x1, w.sill, right}, {-depth, 0, 0}, {0, jamb, 0}, kUvPerMetre);
+    }
     if (w.sill > w.y0) b.quad(material, {w.x0, w.sill, right}, {depth, 0, 0}, {0, 0, left - right}, kUvPerMetre);
 }
 
@@ -83,7 +85,7 @@ void add_vault(SceneBuilder& b, int material, float x0, float x1, float z0, floa
     float const middle = 0.5f * (x0 + x1), half = 0.5f * (x1 - x0);
     b.grid(material, across, along, [&](float u, float v) {
         float const a = kPi * u;
-        vec3 const normal{half > 0 ? std::cos(a) * rise : 0, -std::sin(a) * half, 0};
+        vec3 const normal{std::cos(a) * rise, -std::sin(a) * half, 0};
         float const z = glm::mix(z0, z1, v);
         return GridVertex{{middle - half * std::cos(a), spring + rise * std::sin(a), z},
                           glm::normalize(normal),

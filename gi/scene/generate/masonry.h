@@ -17,7 +17,7 @@ void add_arch_wall(SceneBuilder& b, int material, ArchWall const& wall);
 /// Base, shaft with entasis, capital and abacus; the top of the abacus is at `height`.
 void add_column(SceneBuilder& b, int material, vec3 foot, float height, float radius, int segments);
 
-/// A barrel vault along z between x0 and x1, seen from below.
+/// A barrel vault along z between x0 < x1 and z0 < z1, seen from below.
 void add_vault(SceneBuilder& b, int material, float x0, float x1, float z0, float z1, float spring, float rise,
                int across, int along);
 

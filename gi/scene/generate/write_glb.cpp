@@ -18,7 +18,7 @@
 namespace gi {
 namespace {
 
-using json = nlohmann::ordered_json;
+using json = nlohmann::json; // not the ordered one: references into it stay valid
 
 constexpr int kFloat = 5126, kUint32 = 5125, kUint16 = 5123;
 

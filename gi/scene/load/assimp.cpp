@@ -13,6 +13,7 @@
 #include <csignal>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fstream>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -21,7 +22,8 @@ namespace gi {
 namespace {
 
 constexpr rlim_t kProbeSeconds = 60;
-constexpr rlim_t kProbeBytes = rlim_t(16) << 30;
+constexpr rlim_t kProbeBytes = rlim_t(1) << 30,
+                 kProbeBytesPerByte = 64; ///< memory: some, and some per byte of file
 
 aiScene const* import(Assimp::Importer& importer, std::filesystem::path const& file)
 {
@@ -32,59 +34,87 @@ aiScene const* import(Assimp::Importer& importer, std::filesystem::path const& f
                                                 aiProcess_LimitBoneWeights | aiProcess_SortByPType);
 }
 
-/// Throws InputError where reading the file kills or stalls the reader.
-void probe(std::filesystem::path const& file)
+/// Address space of this process, bytes.
+rlim_t used_memory()
 {
-    pid_t const child = fork();
-    if (child < 0) return; // no child to be had: read it without a net
-    if (child == 0) {
-        rlimit const time{kProbeSeconds, kProbeSeconds}, memory{kProbeBytes, kProbeBytes}, none{0, 0};
-        setrlimit(RLIMIT_CPU, &time);
-#if !defined(__SANITIZE_ADDRESS__)
-        setrlimit(RLIMIT_AS, &memory);
-#endif
-        setrlimit(RLIMIT_CORE, &none);
-        if (int const null = open("/dev/null", O_WRONLY); null >= 0) dup2(null, STDERR_FILENO);
-        for (int const s : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGINT, SIGTERM}) signal(s, SIG_DFL);
-        try {
-            Assimp::Importer importer;
-            import(importer, file);
-        } catch (...) { // the parent will meet the exception itself
-        }
-        _exit(0);
+    rlim_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * rlim_t(sysconf(_SC_PAGESIZE));
+}
+
+/// Why the file cannot be imported; empty where it can.
+std::string try_import(Assimp::Importer& importer, std::filesystem::path const& file)
+{
+    try {
+        if (import(importer, file) != nullptr) return {};
+        std::string const reason = importer.GetErrorString();
+        return reason.empty() ? "Assimp gives no reason" : reason;
+    } catch (std::exception const& e) {
+        return e.what();
     }
+}
+
+[[noreturn]] void import_with_limits(std::filesystem::path const& file, rlim_t most_memory, int reason_pipe)
+{
+    rlimit const time{kProbeSeconds, kProbeSeconds}, none{0, 0};
+    setrlimit(RLIMIT_CPU, &time);
+    setrlimit(RLIMIT_CORE, &none);
+#if !defined(__SANITIZE_ADDRESS__)
+    rlimit const memory{most_memory, most_memory};
+    setrlimit(RLIMIT_AS, &memory);
+#else
+    static_cast<void>(most_memory);
+#endif
+    if (int const null = open("/dev/null", O_WRONLY); null >= 0) dup2(null, STDERR_FILENO);
+    for (int const s : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGINT, SIGTERM}) signal(s, SIG_DFL);
+    Assimp::Importer importer;
+    std::string const reason = try_import(importer, file).substr(0, 4096);
+    bool const told = write(reason_pipe, reason.data(), reason.size()) == ssize_t(reason.size());
+    _exit(reason.empty() && told ? 0 : 1);
+}
+
+/// Throws InputError where the file cannot be read within the limits, or reading it kills or stalls the reader.
+void probe(std::filesystem::path const& file, std::size_t file_bytes)
+{
+    auto const bad = [&](std::string const& why) {
+        return InputError("'" + file.string() + "' cannot be read", why,
+                          "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp knows");
+    };
+    rlim_t const most_memory = used_memory() + kProbeBytes + kProbeBytesPerByte * file_bytes;
+    int ends[2];
+    if (pipe(ends) != 0) throw bad("there is no pipe to be had for its reader");
+    pid_t const child = fork();
+    if (child == 0) import_with_limits(file, most_memory, ends[1]);
+    close(ends[1]);
+    std::string reason;
+    char chunk[4096];
+    for (ssize_t n; child > 0 && (n = read(ends[0], chunk, sizeof chunk)) != 0;) {
+        if (n > 0) reason.append(chunk, std::size_t(n));
+        if (n < 0 && errno != EINTR) break;
+    }
+    close(ends[0]);
+    if (child < 0) throw bad("there is no process to be had for its reader");
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
-    throw InputError("'" + file.string() + "' cannot be read",
-                     WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU
-                         ? "its reader (Assimp) did not come to an end"
-                         : "its reader (Assimp) crashed on it",
-                     "convert it to glTF with another program");
+    if (WIFSIGNALED(status))
+        throw bad(WTERMSIG(status) == SIGXCPU ? "its reader (Assimp) did not come to an end"
+                                              : "its reader (Assimp) crashed on it");
+    if (WEXITSTATUS(status) != 0) throw bad(reason);
 }
 
 } // namespace
 
 Scene load_assimp(std::filesystem::path const& file, Report& report)
 {
-    if (read_bytes(file).empty())
+    std::size_t const file_bytes = read_bytes(file).size();
+    if (file_bytes == 0)
         throw InputError("'" + file.string() + "' is empty", "there is nothing to load", "export it again");
-    probe(file);
+    probe(file, file_bytes);
     Assimp::Importer importer;
-    aiScene const* source = nullptr;
-    std::string reason;
-    try {
-        source = import(importer, file);
-        if (source == nullptr) reason = importer.GetErrorString();
-    } catch (std::exception const& e) {
-        reason = e.what();
-    }
-    if (source == nullptr)
-        throw InputError("'" + file.string() + "' cannot be read",
-                         reason.empty() ? "Assimp gives no reason" : reason,
-                         "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp knows");
-    return convert_assimp(*source, file, report);
+    std::string const reason = try_import(importer, file);
+    if (!reason.empty()) throw InputError("'" + file.string() + "' cannot be read", reason, "export it again");
+    return convert_assimp(*importer.GetScene(), file, report);
 }
 
 } // namespace gi

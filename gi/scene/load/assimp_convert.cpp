@@ -249,16 +249,21 @@ private:
         }
     }
 
+    /// Assimp gives formats without materials one of its own, of a certain name or none.
+    bool of_the_file(unsigned material) const
+    {
+        if (material >= scene_.material_names.size()) return false;
+        std::string const& name = scene_.material_names[material];
+        return name != AI_DEFAULT_MATERIAL_NAME && !(name.empty() && source_.mNumMaterials == 1);
+    }
+
     void add_mesh(aiMesh const& source)
     {
         Mesh mesh;
         mesh.name = source.mName.C_Str();
         where_ = "mesh '" + mesh.name + "'";
         unsigned const n = source.mNumVertices;
-        // Assimp gives formats without materials one of its own.
-        bool const named = source.mMaterialIndex < source_.mNumMaterials &&
-                           scene_.material_names[source.mMaterialIndex] != AI_DEFAULT_MATERIAL_NAME;
-        mesh.material = named ? std::int32_t(source.mMaterialIndex) : -1;
+        mesh.material = of_the_file(source.mMaterialIndex) ? std::int32_t(source.mMaterialIndex) : -1;
         if (!source.HasPositions() || !source.HasFaces()) {
             scene_.meshes.push_back(std::move(mesh));
             return;

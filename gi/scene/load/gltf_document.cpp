@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <fmt/format.h>
 
@@ -95,6 +96,49 @@ json parse_json(Bytes text, GltfDocument const& d)
     }
 }
 
+/// -1 where it is missing or no usable index.
+std::int64_t index_member(json const& object, char const* key)
+{
+    auto const it = object.find(key);
+    if (it == object.end() || !it->is_number_integer() ||
+        (it->is_number_unsigned() && it->get<std::uint64_t>() >> 62))
+        return -1;
+    return it->get<std::int64_t>();
+}
+
+/// 3.0 becomes 3: JSON knows no difference, tinygltf does.
+void make_whole_numbers_integers(json& j)
+{
+    if (j.is_structured()) {
+        for (json& item : j) make_whole_numbers_integers(item);
+    } else if (j.is_number_float()) {
+        double const v = j.get<double>();
+        if (std::abs(v) < 0x1p53 && v == std::floor(v)) j = std::int64_t(v);
+    }
+}
+
+/// The indices of all primitives, -1 = none. tinygltf refuses indices without a buffer view, as Draco leaves them,
+/// so they pass it by.
+std::vector<std::vector<int>> take_indices(json& root)
+{
+    std::vector<std::vector<int>> taken;
+    auto const meshes = root.find("meshes");
+    if (meshes == root.end() || !meshes->is_array()) return taken;
+    for (json& mesh : *meshes) {
+        taken.emplace_back();
+        if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array()) continue;
+        for (json& primitive : mesh["primitives"]) {
+            taken.back().push_back(-1);
+            if (!primitive.is_object() || !primitive.contains("indices")) continue;
+            std::int64_t const index = index_member(primitive, "indices");
+            bool const usable = index >= 0 && index < (1 << 30);
+            taken.back().back() = usable ? int(index) : 1 << 30; // which no file has: an error later on
+            primitive.erase("indices");
+        }
+    }
+    return taken;
+}
+
 /// Of an array member of the root; null where there is none.
 json take(json& root, char const* key, GltfDocument const& d)
 {
@@ -114,21 +158,14 @@ std::string text_member(json const& object, char const* key)
     return it != object.end() && it->is_string() ? it->get<std::string>() : std::string();
 }
 
-/// -1 where it is missing or no usable index.
-std::int64_t index_member(json const& object, char const* key)
-{
-    auto const it = object.find(key);
-    if (it == object.end() || !it->is_number_integer() ||
-        (it->is_number_unsigned() && it->get<std::uint64_t>() >> 62))
-        return -1;
-    return it->get<std::int64_t>();
-}
-
 std::vector<unsigned char> decode_data_uri(std::string const& uri, std::string const& what, GltfDocument const& d)
 {
     auto const comma = uri.find(',');
-    if (comma == std::string::npos || uri.rfind(";base64", comma) == std::string::npos)
-        throw d.error(what + " has an unreadable data URI", "it is not base64");
+    if (comma == std::string::npos) throw d.error(what + " has an unreadable data URI", "it has no data");
+    if (uri.rfind(";base64", comma) == std::string::npos) {
+        std::string const plain = decode_percent(std::string_view(uri).substr(comma + 1));
+        return {plain.begin(), plain.end()};
+    }
     auto bytes = decode_base64(std::string_view(uri).substr(comma + 1));
     if (!bytes) throw d.error(what + " has an unreadable data URI", "it is not base64");
     return std::move(*bytes);
@@ -142,7 +179,11 @@ std::vector<unsigned char> read_other_file(std::string const& uri, std::filesyst
     std::filesystem::path const file = decode_percent(uri);
     if (file.is_absolute() || uri.find("://") != std::string::npos)
         throw d.error(fmt::format("{} is at '{}'", what, uri), "only files beside the scene are read");
-    return read_bytes(folder / file);
+    try {
+        return read_bytes(folder / file);
+    } catch (InputError const& e) {
+        throw d.error(fmt::format("{} is in another file, '{}'", what, uri), e.what());
+    }
 }
 
 void open_buffers(GltfDocument& d, json const& list, Bytes binary, std::filesystem::path const& folder)
@@ -153,18 +194,30 @@ void open_buffers(GltfDocument& d, json const& list, Bytes binary, std::filesyst
         if (length < 1) throw d.error(what + " has no length", "byteLength must be at least 1");
         std::string const uri = text_member(list[i], "uri");
         Bytes bytes;
+        bool given = true;
         if (uri.starts_with("data:"))
             bytes = d.own(decode_data_uri(uri, what, d));
         else if (!uri.empty())
             bytes = d.own(read_other_file(uri, folder, what, d));
-        else if (i == 0)
+        else if (i == 0 && !binary.empty())
             bytes = binary;
-        bool const fallback = list[i].contains("extensions"); // of compressed data: may be left out
-        if (std::uint64_t(length) > bytes.size() && !(bytes.empty() && fallback))
+        else
+            given = false; // a placeholder, as of compressed data: an error only if it is used
+        if (given && std::uint64_t(length) > bytes.size())
             throw d.error(what + " is truncated",
                           fmt::format("it should have {} bytes and has {}", length, bytes.size()));
         d.buffers.push_back(bytes.empty() ? bytes : bytes.first(std::size_t(length)));
         d.file_bytes += uri.empty() ? 0 : bytes.size();
+    }
+}
+
+void check_views(GltfDocument& d)
+{
+    for (std::size_t i = 0; i < d.model.bufferViews.size(); ++i) {
+        tinygltf::BufferView const& v = d.model.bufferViews[i];
+        bool const placeholder =
+            v.buffer >= 0 && std::size_t(v.buffer) < d.buffers.size() && d.buffers[std::size_t(v.buffer)].empty();
+        if (!placeholder && !v.extensions.contains("EXT_meshopt_compression")) d.view_bytes(int(i));
     }
 }
 
@@ -190,6 +243,16 @@ void open_images(GltfDocument& d, json const& list, std::filesystem::path const&
             report.lose("textures that could not be read", 1, e.what());
         }
         d.images.push_back(image);
+    }
+}
+
+void restore_indices(GltfDocument& d, std::vector<std::vector<int>> const& indices)
+{
+    for (std::size_t m = 0; m < d.model.meshes.size(); ++m) {
+        auto& primitives = d.model.meshes[m].primitives;
+        if (m >= indices.size() || primitives.size() != indices[m].size())
+            throw d.error(fmt::format("a primitive of mesh {} is not valid", m), "it has no attributes");
+        for (std::size_t p = 0; p < primitives.size(); ++p) primitives[p].indices = indices[m][p];
     }
 }
 
@@ -240,7 +303,9 @@ GltfDocument open_gltf(Bytes bytes, std::filesystem::path const& folder, std::st
     d.file_bytes = bytes.size();
     Container const container = open_container(bytes, d);
     json root = parse_json(container.text, d);
+    make_whole_numbers_integers(root);
     json const buffers = take(root, "buffers", d), images = take(root, "images", d);
+    std::vector<std::vector<int>> const indices = take_indices(root);
 
     tinygltf::TinyGLTF parser;
     std::string errors, warnings;
@@ -257,8 +322,10 @@ GltfDocument open_gltf(Bytes bytes, std::filesystem::path const& folder, std::st
     if (!parsed) throw d.error("is not valid glTF", errors.empty() ? "the parser refused it" : errors);
     if (!d.model.asset.version.starts_with("2."))
         throw d.error("is not glTF 2", "its asset version is '" + d.model.asset.version + "'");
+    restore_indices(d, indices);
     check_extensions(d, report);
     open_buffers(d, buffers, container.binary, folder);
+    check_views(d);
     open_images(d, images, folder, report);
     return d;
 }

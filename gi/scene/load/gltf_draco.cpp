@@ -46,8 +46,9 @@ DracoMesh decode_draco(GltfDocument& d, tinygltf::Primitive const& primitive, st
     for (std::string const& name : ids.Keys()) {
         if (!ids.Get(name).IsInt()) throw bad("the id of " + name + " is no integer");
         auto const id = std::uint32_t(ids.Get(name).GetNumberAsInt());
-        draco::PointAttribute* const attribute = mesh->attribute(mesh->GetAttributeIdByUniqueId(id));
-        if (attribute == nullptr) throw bad(fmt::format("it has no attribute {} for {}", id, name));
+        int const number = mesh->GetAttributeIdByUniqueId(id);
+        if (number < 0) throw bad(fmt::format("it has no attribute {} for {}", id, name));
+        draco::PointAttribute* const attribute = mesh->attribute(number);
         if (auto const it = primitive.attributes.find(name);
             it != primitive.attributes.end() && std::size_t(it->second) < d.model.accessors.size())
             attribute->set_normalized(d.model.accessors[std::size_t(it->second)].normalized);
