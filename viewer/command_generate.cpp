@@ -72,7 +72,9 @@ A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them
         add("sphere", "a displaced sphere", [o] { return gi::generate_sphere(o->triangles, o->seed); });
     for (CLI::App* const kind : {boxes, sphere}) {
         kind->add_option("--triangles", o->triangles, "about so many")->capture_default_str();
-        kind->add_option("--seed", o->seed, "another seed, another scene")->capture_default_str();
+        kind->add_option("--seed", o->seed, "another seed, another scene")
+            ->check(CLI::NonNegativeNumber)
+            ->capture_default_str();
     }
 }
 

@@ -27,7 +27,7 @@ void check_outputs(std::vector<std::string> const& files, std::vector<std::strin
         if (fs::is_directory(path, error)) throw cannot("it is a folder", "name a file");
         if (fs::exists(path, error) && !fs::is_regular_file(path, error))
             throw cannot("it is a device or a pipe, which a file would replace", "name a file");
-        if (!seen.insert(fs::weakly_canonical(path, error)).second)
+        if (!seen.insert(fs::weakly_canonical(fs::absolute(path), error)).second)
             throw cannot("two outputs have this name", "give each its own");
         if (std::any_of(inputs.begin(), inputs.end(),
                         [&](std::string const& input) { return fs::equivalent(path, input, error); }))

@@ -88,7 +88,9 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_option("--filter", o.filter, "pixel filter")
         ->check(CLI::IsMember({"box", "tent"}))
         ->capture_default_str();
-    c.add_option("--seed", o.seed, "another seed, another noise")->capture_default_str();
+    c.add_option("--seed", o.seed, "another seed, another noise")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
     c.add_option("--threads", o.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c.add_option("--out", o.out, "EXR with all layers (default: the scene's name)");
     c.add_flag("--half", o.half, "half floats where they suffice");

@@ -101,7 +101,8 @@ void add_sphere(Scene& scene, vec3 center, float radius, int subdivisions, int m
                 if (glm::distance(points[i], points[j]) > edge || glm::distance(points[j], points[k]) > edge ||
                     glm::distance(points[i], points[k]) > edge)
                     continue;
-                bool const outward = glm::dot(glm::cross(points[j] - points[i], points[k] - points[i]), points[i]) > 0;
+                bool const outward =
+                    glm::dot(glm::cross(points[j] - points[i], points[k] - points[i]), points[i]) > 0;
                 triangles.push_back(outward ? uvec3{i, j, k} : uvec3{i, k, j});
             }
     for (int s = 0; s < subdivisions; ++s) {
