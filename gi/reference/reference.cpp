@@ -101,7 +101,7 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
     RenderResult result;
     auto const start = Clock::now();
     auto saved = start;
-    double relmse = 0;
+    double relmse = resumed > 0 ? sums.relative_mse() : 0;
     double per_path = 0;
     while (true) {
         double const spent = seconds_since(start);

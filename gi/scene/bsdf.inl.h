@@ -19,6 +19,10 @@ GI_FN inline Bsdf make_bsdf(Material const& m, MaterialFactors const& f)
         b.phong_exponent = m.phong_exponent;
         return b;
     }
+    if (f.specular == 0 && f.metallic == 0 && f.transmission == 0) { // most of a room
+        b.diffuse = f.base_color;
+        return b;
+    }
     float const opaque = (1 - f.metallic) * (1 - f.transmission);
     b.diffuse = opaque * f.base_color;
     b.clear = (1 - f.metallic) * f.transmission;

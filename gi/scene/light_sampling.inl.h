@@ -57,7 +57,7 @@ GI_FN inline LightSample sample_emitter(WorldView const& world, std::uint32_t tr
 {
     LightSample s;
     Material const& m = world.materials[world.triangle_material[triangle]];
-    shading_detail::SurfacePoint const on = shading_detail::surface_point(world, triangle, square_to_triangle(u));
+    shading_detail::SurfacePoint on = shading_detail::surface_point(world, triangle, square_to_triangle(u));
     vec3 const way = on.interpolate(world.positions) - point;
     s.distance = glm::length(way);
     if (!(s.distance > 0)) return s;
@@ -67,6 +67,7 @@ GI_FN inline LightSample sample_emitter(WorldView const& world, std::uint32_t tr
     if (!(facing > 0) && !m.double_sided) return s;
     s.pdf = 2 * s.distance * s.distance / std::abs(facing);
     if (!(s.pdf < kInf)) return {};
+    if (m.emissive_map.texture >= 0) shading_detail::interpolate_uv(world, on);
     s.radiance = shading_detail::look_up_emission(world, m, on);
     return s;
 }

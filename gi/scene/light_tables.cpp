@@ -36,7 +36,8 @@ double mean_emission(WorldView const& world, std::uint32_t triangle)
     double sum = 0;
     for (int i = 0; i < 16; ++i) {
         vec2 const u{(float(i % 4) + 0.5f) / 4, (float(i / 4) + 0.5f) / 4};
-        auto const at = shading_detail::surface_point(world, triangle, square_to_triangle(u));
+        auto at = shading_detail::surface_point(world, triangle, square_to_triangle(u));
+        shading_detail::interpolate_uv(world, at);
         sum += double(luminance(shading_detail::look_up_emission(world, m, at)));
     }
     return std::max(sum / 16, 0.01 * most);

@@ -6,7 +6,8 @@
 namespace gi {
 
 enum class MaterialModel : std::uint8_t {
-    metal_rough, ///< glTF 2: Lambert + GGX, metal, KHR specular / ior / transmission. Mirror: metallic 1, roughness 0
+    metal_rough, ///< glTF 2: Lambert + GGX, metal, KHR specular / ior / transmission. Mirror: metallic 1,
+                 ///< roughness 0
     phong,       ///< Lambert base_color + normalised Phong lobe (Chang et al., sec. 4.3)
 };
 
@@ -20,8 +21,8 @@ struct Material {
     bool double_sided = false;
     bool thin = true; ///< transmission through an infinitely thin sheet (no KHR_materials_volume): no refraction
 
-    vec3 base_color{0.8f};    ///< linear; phong: diffuse albedo k_d
-    float alpha = 1;          ///< base colour alpha
+    vec3 base_color{0.8f}; ///< linear; phong: diffuse albedo k_d
+    float alpha = 1;       ///< base colour alpha
     float alpha_cutoff = 0.5f;
     float metallic = 0;       ///< 0..1
     float roughness = 1;      ///< perceptual, GGX alpha = roughness^2; below kSmoothAlpha it is a perfect mirror
@@ -42,6 +43,13 @@ struct Material {
     TextureRef specular_color_map;     ///< sRGB, multiplies specular_color
     TextureRef transmission_map;       ///< R multiplies transmission
 };
+
+GI_FN inline bool has_textures(Material const& m)
+{
+    return m.base_color_map.texture >= 0 || m.metallic_roughness_map.texture >= 0 || m.normal_map.texture >= 0 ||
+           m.emissive_map.texture >= 0 || m.specular_map.texture >= 0 || m.specular_color_map.texture >= 0 ||
+           m.transmission_map.texture >= 0;
+}
 
 GI_FN inline bool emits(Material const& m) { return max_component(m.emission) > 0; }
 

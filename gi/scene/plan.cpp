@@ -15,14 +15,6 @@ bool delta(Material const& m)
             (m.roughness * m.roughness < kSmoothAlpha && (m.specular > 0 || m.metallic > 0)));
 }
 
-bool textured(Material const& m)
-{
-    for (TextureRef const* t : {&m.base_color_map, &m.metallic_roughness_map, &m.normal_map, &m.emissive_map,
-                                &m.specular_map, &m.specular_color_map, &m.transmission_map})
-        if (t->texture >= 0) return true;
-    return false;
-}
-
 } // namespace
 
 ScenePlan plan_scene(World const& world)
@@ -64,7 +56,7 @@ ScenePlan plan_scene(World const& world)
     std::size_t const glass = count([](Material const& m) { return m.transmission > 0; });
     plan.transmission = decide("transmission", glass > 0, of_materials(glass, "let light through"),
                                "no material lets light through");
-    std::size_t const maps = count(textured);
+    std::size_t const maps = count(has_textures);
     plan.textures =
         decide("texture lookups", maps > 0, of_materials(maps, "have textures"), "no material has a texture");
     std::size_t const bumps = count([](Material const& m) { return m.normal_map.texture >= 0; });

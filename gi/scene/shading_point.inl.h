@@ -15,6 +15,9 @@ GI_FN inline vec3 rescale(vec3 v)
 
 GI_FN inline vec3 triangle_normal(vec3 p0, vec3 p1, vec3 p2)
 {
+    vec3 const area = glm::cross(p1 - p0, p2 - p0);
+    float const squared = glm::dot(area, area);
+    if (squared > 1e-30f && squared < 1e30f) return area / std::sqrt(squared);
     return glm::normalize(rescale(glm::cross(rescale(p1 - p0), rescale(p2 - p0))));
 }
 
@@ -36,9 +39,14 @@ GI_FN inline SurfacePoint surface_point(WorldView const& world, std::uint32_t tr
     SurfacePoint s;
     s.vertex = world.triangles[triangle];
     s.weight = {1 - barycentric.x - barycentric.y, barycentric.x, barycentric.y};
+    return s;
+}
+
+/// Texture coordinates, for materials that have textures.
+GI_FN inline void interpolate_uv(WorldView const& world, SurfacePoint& s)
+{
     if (!world.uv0.empty()) s.uv0 = s.interpolate(world.uv0);
     if (!world.uv1.empty()) s.uv1 = s.interpolate(world.uv1);
-    return s;
 }
 
 /// dP/du of the coordinates that the map uses, and the handedness that makes the bitangent -dP/dv (v points down);
@@ -115,11 +123,12 @@ GI_FN inline ShadingPoint shading_point(WorldView const& world, std::uint32_t tr
                                         vec3 direction)
 {
     using namespace shading_detail;
-    SurfacePoint const s = surface_point(world, triangle, barycentric);
+    SurfacePoint s = surface_point(world, triangle, barycentric);
     ShadingPoint at;
     at.triangle = triangle;
     at.material = world.triangle_material[triangle];
     Material const& m = world.materials[at.material];
+    if (has_textures(m)) interpolate_uv(world, s);
     vec3 const p0 = world.positions[s.vertex.x], p1 = world.positions[s.vertex.y],
                p2 = world.positions[s.vertex.z];
     at.position = p0 + barycentric.x * (p1 - p0) + barycentric.y * (p2 - p0);
@@ -163,7 +172,8 @@ GI_FN inline float coverage(WorldView const& world, std::uint32_t triangle, vec2
     if (m.alpha_mode == AlphaMode::opaque) return 1;
     float alpha = m.alpha;
     if (m.base_color_map.texture >= 0) {
-        SurfacePoint const s = surface_point(world, triangle, barycentric);
+        SurfacePoint s = surface_point(world, triangle, barycentric);
+        interpolate_uv(world, s);
         alpha *= look_up(world.textures, m.base_color_map, s.uv0, s.uv1).w;
     }
     if (m.alpha_mode == AlphaMode::mask) return alpha >= m.alpha_cutoff ? 1.0f : 0.0f;

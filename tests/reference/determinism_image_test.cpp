@@ -87,6 +87,24 @@ TEST(Determinism, ResumedEqualsUninterrupted)
     std::filesystem::remove(state);
 }
 
+TEST(Determinism, AResumedRenderKnowsItsErrorBeforeItStops)
+{
+    World const world = room();
+    RenderSettings s = settings();
+    s.paths = 1u << 20;
+    s.until_relmse = 1e-3;
+    s.checkpoint = std::filesystem::temp_directory_path() / ("lightwell_until_" + std::to_string(getpid()) + ".state");
+    StopRequest stop;
+    stop.request();
+    s.budget_s = 0;
+    ASSERT_EQ(render(world, s, stop).end, RenderEnd::interrupted);
+    s.resume = true;
+    RenderResult const r = render(world, s);
+    EXPECT_EQ(r.end, RenderEnd::error_target);
+    EXPECT_GT(r.relmse, 0);
+    EXPECT_LT(r.relmse, 1e-3);
+}
+
 TEST(Determinism, SeedsDifferWithinTheirVariance)
 {
     World const world = room();
