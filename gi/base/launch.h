@@ -14,21 +14,25 @@ namespace gi {
 template <class Kernel>
 void launch_device(char const* name, std::size_t n, Kernel const& kernel);
 
+template <class Kernel>
+void launch_host(std::size_t n, Kernel const& kernel)
+{
+    static_assert(std::is_trivially_copyable_v<Kernel>);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n), [&](auto const& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) kernel(i);
+    });
+}
+
 /// @param name appears in errors and timings
 template <class Kernel>
 void launch(Space space, char const* name, std::size_t n, Kernel const& kernel)
 {
-    static_assert(std::is_trivially_copyable_v<Kernel>);
-    if (space == Space::device) {
-        if constexpr (kCudaBuild)
-            launch_device(name, n, kernel);
-        else
-            throw_no_cuda(name);
-        return;
-    }
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n), [&](auto const& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) kernel(i);
-    });
+    if (space == Space::host)
+        launch_host(n, kernel);
+    else if constexpr (kCudaBuild)
+        launch_device(name, n, kernel);
+    else
+        throw_no_cuda(name);
 }
 
 } // namespace gi

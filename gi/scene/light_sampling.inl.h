@@ -162,6 +162,7 @@ GI_FN inline float emitter_direction_pdf(WorldView const& world, std::uint32_t t
 {
     if (world.emitter_pdf.empty() || !(cos_light > 0)) return 0;
     float const doubled_area = glm::length(light_detail::area_vector(world, world.triangles[triangle]));
+    if (!(doubled_area > 0)) return 0;
     return world.emitter_pdf[triangle] * 2 * distance_m * distance_m / (doubled_area * cos_light);
 }
 

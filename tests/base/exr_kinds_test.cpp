@@ -13,6 +13,7 @@
 #include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace gi::test {
 namespace {
@@ -22,7 +23,11 @@ namespace fs = std::filesystem;
 constexpr int kWidth = 37, kHeight = 21;
 Imath::Box2i const kWindow{{-5, 11}, {-5 + kWidth - 1, 11 + kHeight - 1}};
 
-fs::path scratch() { return fs::path(testing::TempDir()) / "lightwell_kind.exr"; }
+/// Of this process alone: tests run side by side.
+fs::path scratch()
+{
+    return fs::path(testing::TempDir()) / ("lightwell_kind_" + std::to_string(getpid()) + ".exr");
+}
 
 std::vector<float> ramp()
 {

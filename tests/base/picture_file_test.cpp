@@ -8,13 +8,18 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
+#include <unistd.h>
 
 namespace gi::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path scratch(std::string const& name) { return fs::path(testing::TempDir()) / ("lightwell_" + name); }
+/// Of this process alone: tests run side by side.
+fs::path scratch(std::string const& name)
+{
+    return fs::path(testing::TempDir()) / ("lightwell_" + std::to_string(getpid()) + "_" + name);
+}
 
 Picture sample_picture(int width, int height)
 {
@@ -189,7 +194,8 @@ TEST(WriteByRename, LeavesTheOldFileWhenWritingFails)
     auto const bytes = read_bytes(file);
     EXPECT_EQ(std::string(bytes.begin(), bytes.end()), "old");
     for (auto const& entry : fs::directory_iterator(file.parent_path()))
-        EXPECT_EQ(entry.path().filename().string().find(".lightwell_r.txt.tmp"), std::string::npos);
+        EXPECT_EQ(entry.path().filename().string().find("." + file.filename().string() + ".tmp"),
+                  std::string::npos);
     EXPECT_THROW(write_text(scratch("no_such_folder") / "f", "x"), InputError);
     EXPECT_THROW(write_text("/dev/null", "x"), InputError); // a rename would put a file there
     EXPECT_THROW(write_text(file.parent_path(), "x"), InputError);

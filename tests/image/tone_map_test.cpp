@@ -49,5 +49,16 @@ TEST(ToneMap, TheDeviceAgreesWithTheHost)
     if (!device_present()) GTEST_SKIP() << "SKIPPED: no CUDA device (only the host side was checked)";
 }
 
+TEST(ToneMap, OnADeviceSaysWhatIsMissingWithoutCuda)
+{
+    if constexpr (kCudaBuild) GTEST_SKIP() << "SKIPPED: this build has CUDA";
+    try {
+        launch(Space::device, "tone map", 1, ToneMap{{}, {}, 1, ToneCurve::srgb});
+        FAIL();
+    } catch (std::runtime_error const& e) {
+        EXPECT_STREQ(e.what(), "tone map: built without CUDA (configure with the cuda preset)");
+    }
+}
+
 } // namespace
 } // namespace gi::test

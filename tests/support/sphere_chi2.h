@@ -17,7 +17,6 @@ struct SphereBins {
     int rows = 32, columns = 64;
     int focus = 1; ///< above 1 the bins shrink towards the axis, for narrow lobes
 
-    std::size_t count() const { return std::size_t(rows) * std::size_t(columns); }
     std::size_t bin_of(vec3 direction) const;
     /// @param t, azimuth  in [0, 1]
     vec3 direction(double t, double azimuth) const;

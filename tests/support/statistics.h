@@ -22,7 +22,6 @@ public:
     void add(double x);
     double mean() const { return mean_; }
     double sigma() const; ///< of the mean; needs two numbers
-    std::size_t count() const { return count_; }
 
 private:
     std::size_t count_ = 0;

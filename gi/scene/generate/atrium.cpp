@@ -49,7 +49,7 @@ vec3 tile_color(vec2 uv)
     return glm::mix(vec3{0.3f, 0.28f, 0.25f}, marble, joint);
 }
 
-/// Slabs of two sizes for the court.
+/// Slabs of the court, every row shifted.
 vec3 paving_color(vec2 uv)
 {
     float const row = std::floor(uv.y * 3), x = uv.x * 2 + 0.37f * row;
