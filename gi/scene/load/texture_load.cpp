@@ -1,3 +1,4 @@
+#include "gi/base/claimed_size.h"
 #include "gi/base/error.h"
 #include "gi/scene/load.h"
 
@@ -11,29 +12,6 @@ namespace {
 constexpr std::size_t kMostTexels = std::size_t(1) << 28;      ///< of one texture: 16384 x 16384
 constexpr std::size_t kMostTexelsOfAll = std::size_t(1) << 32; ///< of a pool: 16 GiB
 
-std::size_t big_endian(unsigned char const* p, int bytes)
-{
-    std::size_t v = 0;
-    for (int i = 0; i < bytes; ++i) v = v << 8 | p[i];
-    return v;
-}
-
-/// width * height as the header of a PNG or JPEG says, before a decoder makes room for that; 0 = not known.
-std::size_t claimed_texels(unsigned char const* bytes, std::size_t size)
-{
-    if (size >= 24 && std::memcmp(bytes, "\x89PNG", 4) == 0)
-        return big_endian(bytes + 16, 4) * big_endian(bytes + 20, 4);
-    if (size < 4 || bytes[0] != 0xff || bytes[1] != 0xd8) return 0;
-    for (std::size_t at = 2; at + 9 <= size && bytes[at] == 0xff;) { // the segments of a JPEG
-        unsigned const marker = bytes[at + 1];
-        bool const start_of_frame =
-            marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-        if (start_of_frame) return big_endian(bytes + at + 5, 2) * big_endian(bytes + at + 7, 2);
-        at += marker == 0xff ? 1 : 2 + big_endian(bytes + at + 2, 2);
-    }
-    return 0;
-}
-
 } // namespace
 
 std::int32_t add_texture(TexturePool& pool, unsigned char const* bytes, std::size_t size, bool srgb,
@@ -43,7 +21,7 @@ std::int32_t add_texture(TexturePool& pool, unsigned char const* bytes, std::siz
         return InputError("cannot read the texture '" + name + "'", why, "save it as PNG or JPEG");
     };
     if (size == 0 || size > (std::size_t(1) << 31)) throw bad("it is empty or larger than 2 GiB");
-    if (claimed_texels(bytes, size) > kMostTexels) throw bad("it is larger than 16384 x 16384");
+    if (claimed_pixels({bytes, size}) > kMostTexels) throw bad("it is larger than 16384 x 16384");
     cv::Mat image;
     try {
         cv::Mat const raw(1, int(size), CV_8U, const_cast<unsigned char*>(bytes));
