@@ -1,6 +1,5 @@
 #include "gi/reference/exact_visibility.h"
 
-#include "gi/base/error.h"
 #include "gi/base/rng.h"
 #include "gi/scene/shading_point.h"
 
@@ -8,20 +7,104 @@
 #include <fmt/format.h>
 
 namespace gi {
+namespace {
+
+/// Rays of a packet. Where the processor has no vectors of 16 floats, Embree takes a packet apart by itself.
+constexpr std::size_t kPacket = 16;
+
+struct alignas(64) PacketMask {
+    int valid[kPacket];
+};
+
+/// Fills a packet with up to kPacket queries.
+PacketMask fill(RTCRay16& packet, std::span<RayQuery const> queries)
+{
+    PacketMask mask;
+    for (std::size_t k = 0; k < kPacket; ++k) {
+        RayQuery const& q = queries[std::min(k, queries.size() - 1)];
+        mask.valid[k] = k < queries.size() ? -1 : 0;
+        packet.org_x[k] = q.ray.origin.x;
+        packet.org_y[k] = q.ray.origin.y;
+        packet.org_z[k] = q.ray.origin.z;
+        packet.dir_x[k] = q.ray.direction.x;
+        packet.dir_y[k] = q.ray.direction.y;
+        packet.dir_z[k] = q.ray.direction.z;
+        packet.tnear[k] = 0;
+        packet.tfar[k] = q.reach;
+        packet.time[k] = 0;
+        packet.mask[k] = 0xffffffffu;
+        packet.id[k] = q.seed;
+        packet.flags[k] = 0;
+    }
+    return mask;
+}
+
+} // namespace
+
+void ExactVisibility::nearest(std::span<RayQuery const> queries, std::span<Hit> hits) const
+{
+    Context context(*this);
+    for (std::size_t first = 0; first < queries.size(); first += kPacket) {
+        auto const some = queries.subspan(first, std::min(kPacket, queries.size() - first));
+        RTCRayHit16 packet;
+        PacketMask const mask = fill(packet.ray, some);
+        std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
+        rtcIntersect16(mask.valid, scene_.get(), &context.rtc, &packet);
+        for (std::size_t k = 0; k < some.size(); ++k)
+            hits[first + k] = packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
+                                  ? Hit{}
+                                  : Hit{world_triangle(packet.hit.geomID[k], packet.hit.primID[k]),
+                                        {packet.hit.u[k], packet.hit.v[k]},
+                                        packet.ray.tfar[k]};
+    }
+}
+
+void ExactVisibility::occluded(std::span<RayQuery const> queries, std::span<std::uint8_t> blocked) const
+{
+    Context context(*this);
+    for (std::size_t first = 0; first < queries.size(); first += kPacket) {
+        auto const some = queries.subspan(first, std::min(kPacket, queries.size() - first));
+        RTCRay16 packet;
+        PacketMask const mask = fill(packet, some);
+        rtcOccluded16(mask.valid, scene_.get(), &context.rtc, &packet);
+        for (std::size_t k = 0; k < some.size(); ++k) blocked[first + k] = packet.tfar[k] < 0;
+    }
+}
 
 void ExactVisibility::coverage_filter(RTCFilterFunctionNArguments const* a)
 {
-    auto const& world = *reinterpret_cast<Context const*>(a->context)->world;
+    ExactVisibility const& self = *reinterpret_cast<Context const*>(a->context)->owner;
     for (unsigned i = 0; i < a->N; ++i) {
         if (a->valid[i] == 0) continue;
-        std::uint32_t const triangle = RTCHitN_primID(a->hit, a->N, i);
+        std::uint32_t const triangle = self.world_triangle(kCutOut, RTCHitN_primID(a->hit, a->N, i));
         vec2 const uv{RTCHitN_u(a->hit, a->N, i), RTCHitN_v(a->hit, a->N, i)};
-        float const covered = coverage(world, triangle, uv);
+        float const covered = coverage(self.world_, triangle, uv);
         if (covered >= 1) continue;
         std::uint64_t const key = (std::uint64_t(RTCRayN_id(a->ray, a->N, i)) << 32) | triangle;
         float const u = float(mix_bits(key) >> 40) * 0x1p-24f;
         if (u >= covered) a->valid[i] = 0;
     }
+}
+
+void ExactVisibility::add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id)
+{
+    std::vector<std::uint32_t> const& chosen = triangles_[geometry_id];
+    std::size_t const count = chosen.empty() ? world.triangles.size() : chosen.size();
+    RTCGeometry const geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0, sizeof(vec3),
+                         world.positions.size());
+    auto* const triangles = static_cast<uvec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3), count));
+    if (triangles == nullptr) throw std::bad_alloc();
+    for (std::size_t i = 0; i < count; ++i)
+        triangles[i] = world.triangles[world_triangle(geometry_id, std::uint32_t(i))];
+    if (geometry_id == kCutOut) {
+        rtcSetGeometryIntersectFilterFunction(geometry, coverage_filter);
+        rtcSetGeometryOccludedFilterFunction(geometry, coverage_filter);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene_.get(), geometry, geometry_id);
+    rtcReleaseGeometry(geometry);
 }
 
 ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threads)
@@ -31,22 +114,21 @@ ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threa
     if (!device_) throw std::runtime_error("Embree could not be started");
     scene_.reset(rtcNewScene(device_.get()));
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-    if (!world.triangles.empty()) {
-        RTCGeometry const geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* const positions = static_cast<vec3*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3), world.positions.size()));
-        auto* const triangles = static_cast<uvec3*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3), world.triangles.size()));
-        if (positions == nullptr || triangles == nullptr) throw std::bad_alloc();
-        std::copy(world.positions.begin(), world.positions.end(), positions);
-        std::copy(world.triangles.begin(), world.triangles.end(), triangles);
-        if (alpha_tests) {
-            rtcSetGeometryIntersectFilterFunction(geometry, coverage_filter);
-            rtcSetGeometryOccludedFilterFunction(geometry, coverage_filter);
+    if (alpha_tests)
+        for (std::uint32_t t = 0; t < world.triangles.size(); ++t) {
+            bool const opaque = world.materials[world.triangle_material[t]].alpha_mode == AlphaMode::opaque;
+            triangles_[opaque ? kOpaque : kCutOut].push_back(t);
         }
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometryByID(scene_.get(), geometry, 0);
-        rtcReleaseGeometry(geometry);
+    if (!world.triangles.empty()) {
+        // Embree reads 16 bytes from every vertex, so the last one needs padding.
+        RTCBuffer const positions = rtcNewBuffer(device_.get(), (world.positions.size() + 1) * sizeof(vec3));
+        if (positions == nullptr) throw std::bad_alloc();
+        std::copy(world.positions.begin(), world.positions.end(),
+                  static_cast<vec3*>(rtcGetBufferData(positions)));
+        bool const all_cut_out = alpha_tests && triangles_[kOpaque].empty();
+        if (!all_cut_out) add_triangles(world, positions, kOpaque);
+        if (alpha_tests) add_triangles(world, positions, kCutOut);
+        rtcReleaseBuffer(positions);
     }
     rtcCommitScene(scene_.get());
     if (RTCError const e = rtcGetDeviceError(device_.get()); e != RTC_ERROR_NONE)

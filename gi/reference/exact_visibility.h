@@ -1,13 +1,15 @@
 #pragma once
-// Exact ray queries against a World through Embree 3 (robust, watertight mode).
-// Where the scene plan asks for alpha tests, a filter lets rays pass through uncovered texels; partial coverage is
-// a random decision per ray and triangle that does not depend on traversal order.
+// Exact ray queries against a World through Embree 3 (robust, watertight mode), in packets.
+// Only triangles whose material can be seen through pass the filter that tests coverage; partial coverage is a
+// random decision per ray and triangle that does not depend on traversal order.
 
+#include "gi/scene/camera.h"
 #include "gi/scene/world.h"
 
 #include <cstdint>
 #include <embree3/rtcore.h>
 #include <memory>
+#include <span>
 
 namespace gi {
 
@@ -19,59 +21,41 @@ struct Hit {
     float distance = kInf;
 };
 
+struct RayQuery {
+    static constexpr float kFar = 1e30f;
+
+    Ray ray;
+    float reach = kFar; ///< m; what lies beyond does not count
+    std::uint32_t seed; ///< decides partial coverage
+};
+
 class ExactVisibility {
 public:
     /// Copies the vertices; `world` must outlive this where alpha tests are on. threads 0 = all.
     ExactVisibility(World const& world, bool alpha_tests, int threads);
 
-    /// Nearest triangle beyond origin. @param seed decides partial coverage
-    Hit nearest(vec3 origin, vec3 direction, std::uint32_t seed) const
-    {
-        RTCRayHit query;
-        set_ray(query.ray, origin, direction, kFar, seed);
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        Context context(*this);
-        rtcIntersect1(scene_.get(), &context.rtc, &query);
-        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-        return {query.hit.primID, {query.hit.u, query.hit.v}, query.ray.tfar};
-    }
+    /// Nearest triangle beyond each origin. hits.size() == queries.size()
+    void nearest(std::span<RayQuery const> queries, std::span<Hit> hits) const;
+    /// Is anything between origin and origin + reach * direction? blocked.size() == queries.size(); 1 = yes
+    void occluded(std::span<RayQuery const> queries, std::span<std::uint8_t> blocked) const;
 
-    /// Is anything between origin and origin + distance * direction?
-    bool occluded(vec3 origin, vec3 direction, float distance, std::uint32_t seed) const
-    {
-        RTCRay ray;
-        set_ray(ray, origin, direction, distance, seed);
-        Context context(*this);
-        rtcOccluded1(scene_.get(), &context.rtc, &ray);
-        return ray.tfar < 0;
-    }
+    /// What a query needs to know for the filter; `rtc` first, so that the filter finds the rest behind it.
+    struct Context {
+        explicit Context(ExactVisibility const& visibility) : owner(&visibility) { rtcInitIntersectContext(&rtc); }
+        RTCIntersectContext rtc;
+        ExactVisibility const* owner;
+    };
+    RTCScene scene() const { return scene_.get(); }
 
 private:
-    static constexpr float kFar = 1e30f;
-
-    struct Context {
-        explicit Context(ExactVisibility const& owner) : world(&owner.world_) { rtcInitIntersectContext(&rtc); }
-        RTCIntersectContext rtc; // first, so that the filter finds `world` behind it
-        WorldView const* world;
-    };
-
-    static void set_ray(RTCRay& ray, vec3 o, vec3 d, float distance, std::uint32_t seed)
-    {
-        ray.org_x = o.x;
-        ray.org_y = o.y;
-        ray.org_z = o.z;
-        ray.tnear = 0;
-        ray.dir_x = d.x;
-        ray.dir_y = d.y;
-        ray.dir_z = d.z;
-        ray.time = 0;
-        ray.tfar = distance;
-        ray.mask = 0xffffffffu;
-        ray.id = seed;
-        ray.flags = 0;
-    }
+    static constexpr unsigned kOpaque = 0, kCutOut = 1; ///< Embree's geometry ids
 
     static void coverage_filter(RTCFilterFunctionNArguments const* arguments);
+    void add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id);
+    std::uint32_t world_triangle(unsigned geometry_id, std::uint32_t primitive) const
+    {
+        return triangles_[geometry_id].empty() ? primitive : triangles_[geometry_id][primitive];
+    }
 
     struct ReleaseDevice {
         void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
@@ -81,6 +65,7 @@ private:
     };
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice> device_;
     std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene> scene_;
+    std::vector<std::uint32_t> triangles_[2]; ///< of each geometry, as indices into World::triangles; empty = all
     WorldView world_;
 };
 

@@ -3,9 +3,9 @@
 // sec. 9.2.4), Russian roulette on throughput. The estimator is unbiased but for the limit on bounces; nothing is
 // clamped.
 //
-// Paths advance together, one surface at a time: all nearest hits, then all scatterings, then all shadow rays.
-// Each path draws from its own random stream, so how they are grouped does not change them; but work on one path
-// hides the cache misses of another.
+// Paths advance together, one surface at a time: all nearest hits, then all scatterings, then all shadow rays. So
+// rays travel in packets, and work on one path hides the cache misses of another. Each path draws from its own
+// random stream; what is grouped with what depends on the tile alone, not on threads.
 //
 // Light is sorted by the number of non-delta scatterings between the lamp and the eye: L0 emitted light seen
 // directly (also through mirrors and glass), L1 direct light, L2 all indirect light.
@@ -45,10 +45,8 @@ struct Path {
     float arrival_pdf =
         0;               ///< density of the direction we come along; 0 = camera or delta lobe: no other technique
     int scatterings = 0; ///< non-delta, so far
-    Hit hit;
     bool ended = false;
-    Ray shadow_ray;
-    float shadow_reach = 0; ///< m
+    RayQuery shadow;
     int shadow_bucket = 0;
     vec3 shadow_radiance{0}; ///< what arrives if nothing is between; 0 = no shadow ray wanted
     PathSample sample;
@@ -73,7 +71,7 @@ inline vec2 filter_offset(PixelFilter filter, vec2 u)
     return {tent(u.x), tent(u.y)};
 }
 
-/// @tparam Visibility answers nearest(origin, direction, seed) and occluded(origin, direction, distance, seed)
+/// @tparam Visibility answers nearest(queries, hits) and occluded(queries, blocked) as ExactVisibility does
 template <class Visibility>
 struct PathTracer {
     WorldView world;
@@ -96,25 +94,30 @@ struct PathTracer {
     void trace(std::span<Path> paths, PathCounts& counts) const;
 
 private:
-    /// More than the rounding error of the interpolated position, which scales with the coordinates of the
-    /// triangle it was interpolated from.
-    float clearance(ShadingPoint const& at) const
+    static vec3 leave(ShadingPoint const& at, vec3 direction)
     {
-        uvec3 const t = world.triangles[at.triangle];
-        vec3 const extent = glm::max(glm::abs(world.positions[t.x]),
-                                     glm::max(glm::abs(world.positions[t.y]), glm::abs(world.positions[t.z])));
-        return 2e-6f * max_component(extent);
+        float const offset = glm::dot(direction, at.geometric_normal) > 0 ? at.clearance : -at.clearance;
+        return at.position + offset * at.geometric_normal;
     }
-    vec3 leave(ShadingPoint const& at, vec3 direction) const
+    /// Fetch what shading will read: first the surface, a few paths later what the surface names.
+    void fetch_surface(Hit const& hit) const
     {
-        float const offset = clearance(at);
-        return at.position +
-               (glm::dot(direction, at.geometric_normal) > 0 ? offset : -offset) * at.geometric_normal;
+        if (hit.triangle != kNoTriangle) __builtin_prefetch(&world.surfaces[hit.triangle]);
+    }
+    void fetch_vertices(Hit const& hit) const
+    {
+        if (hit.triangle == kNoTriangle) return;
+        Surface const& s = world.surfaces[hit.triangle];
+        for (int k = 0; k < 3; ++k) {
+            if (s.is(Surface::kSmooth)) __builtin_prefetch(&world.normals[s.vertex[k]]);
+            if (s.is(Surface::kVaries) && !world.uv0.empty()) __builtin_prefetch(&world.uv0[s.vertex[k]]);
+        }
     }
     void collect_environment(Path& p) const;
-    void collect_emission(Path& p, ShadingPoint const& at) const;
+    void collect_emission(Path& p, Hit const& hit, ShadingPoint const& at) const;
     void aim_at_light(Path& p, ShadingPoint const& at, vec3 wo) const;
-    bool advance(Path& p, int vertex, PathCounts& counts) const;
+    [[gnu::flatten]] bool advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const;
+    void add_unshadowed(std::span<Path* const> paths, PathCounts& counts) const;
 };
 
 template <class Visibility>
@@ -128,13 +131,13 @@ void PathTracer<Visibility>::collect_environment(Path& p) const
 }
 
 template <class Visibility>
-void PathTracer<Visibility>::collect_emission(Path& p, ShadingPoint const& at) const
+void PathTracer<Visibility>::collect_emission(Path& p, Hit const& hit, ShadingPoint const& at) const
 {
     vec3 light = at.emission;
     if (p.arrival_pdf > 0) {
         float const cos_light = std::abs(glm::dot(p.ray.direction, at.geometric_normal));
         light *= power_heuristic(p.arrival_pdf,
-                                 emitter_direction_pdf(world, p.hit.triangle, p.hit.distance, cos_light));
+                                 emitter_direction_pdf(world, hit.triangle, hit.distance, cos_light));
     }
     p.bucket(p.scatterings) += p.throughput * light;
 }
@@ -147,41 +150,42 @@ void PathTracer<Visibility>::aim_at_light(Path& p, ShadingPoint const& at, vec3 
     if (!(light.pdf > 0)) return;
     vec3 const wi = at.frame.to_local(light.direction);
     if ((wi.z > 0) != (glm::dot(light.direction, at.geometric_normal) > 0)) return;
-    vec3 value = evaluate(at.bsdf, wo, wi) * light.radiance * (std::abs(wi.z) / light.pdf);
+    BsdfValue const bsdf = evaluate(at.bsdf, wo, wi);
+    vec3 value = bsdf.f * light.radiance * (std::abs(wi.z) / light.pdf);
     if (!(max_component(value) > 0)) return;
-    if (!light.delta) value *= power_heuristic(light.pdf, pdf(at.bsdf, wo, wi));
+    if (!light.delta) value *= power_heuristic(light.pdf, bsdf.pdf);
 
     p.shadow_radiance = p.throughput * value;
     p.shadow_bucket = p.scatterings + 1;
-    p.shadow_ray = {leave(at, light.direction), light.direction};
-    p.shadow_reach = light.distance;
+    p.shadow.ray = {leave(at, light.direction), light.direction};
+    p.shadow.reach = light.distance;
     if (light.distance == kInf) return;
     // Aim from where the ray starts, and stop short of the lamp's own surface by more than the rounding of both
     // ends.
-    vec3 const way = at.position + light.distance * light.direction - p.shadow_ray.origin;
+    vec3 const way = at.position + light.distance * light.direction - p.shadow.ray.origin;
     float const length = glm::length(way);
-    p.shadow_ray.direction = way / length;
-    p.shadow_reach = length * (1 - 2e-5f) - clearance(at);
+    p.shadow.ray.direction = way * (1 / length);
+    p.shadow.reach = length * (1 - 2e-5f) - at.clearance;
 }
 
 /// From a hit to the next ray. False where the path ends.
 template <class Visibility>
-bool PathTracer<Visibility>::advance(Path& p, int vertex, PathCounts& counts) const
+bool PathTracer<Visibility>::advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const
 {
     p.shadow_radiance = vec3{0};
-    if (p.hit.triangle == kNoTriangle) {
+    if (hit.triangle == kNoTriangle) {
         collect_environment(p);
         return false;
     }
-    ShadingPoint const at = shading_point(world, p.hit.triangle, p.hit.barycentric, p.ray.direction);
+    ShadingPoint const at = shading_point(world, hit.triangle, hit.barycentric, p.ray.direction);
     if (vertex == 0) {
         p.sample.hit = true;
-        p.sample.albedo = at.albedo;
+        p.sample.albedo = albedo(at.bsdf);
         p.sample.normal = at.frame.normal;
         p.sample.position = at.position;
         p.sample.depth = glm::dot(at.position - camera.origin, camera.forward);
     }
-    if (max_component(at.emission) > 0) collect_emission(p, at);
+    if (max_component(at.emission) > 0) collect_emission(p, hit, at);
     if (p.scatterings > bounces) return false;
     if (vertex == kLongestPath) {
         ++counts.cut_paths;
@@ -213,32 +217,21 @@ template <class Visibility>
 void PathTracer<Visibility>::trace(std::span<Path> paths, PathCounts& counts) const
 {
     std::vector<Path*> active;
+    std::vector<RayQuery> queries(paths.size());
+    std::vector<Hit> hits(paths.size());
     for (Path& p : paths) active.push_back(&p);
     for (int vertex = 0; !active.empty(); ++vertex) {
-        counts.nearest_rays += active.size();
-        for (Path* p : active) {
-            p->hit = visibility.nearest(p->ray.origin, p->ray.direction, p->rng.next());
-            if (p->hit.triangle == kNoTriangle) continue;
-            __builtin_prefetch(&world.triangles[p->hit.triangle]);
-            __builtin_prefetch(&world.triangle_material[p->hit.triangle]);
+        std::size_t const n = active.size();
+        counts.nearest_rays += n;
+        for (std::size_t i = 0; i < n; ++i) queries[i] = {.ray = active[i]->ray, .seed = active[i]->rng.next()};
+        visibility.nearest(std::span(queries).first(n), std::span(hits).first(n));
+        constexpr std::size_t kAhead = 4;
+        for (std::size_t i = 0; i < n; ++i) {
+            if (i + 2 * kAhead < n) fetch_surface(hits[i + 2 * kAhead]);
+            if (i + kAhead < n) fetch_vertices(hits[i + kAhead]);
+            active[i]->ended = !advance(*active[i], hits[i], vertex, counts);
         }
-        for (Path* p : active) {
-            if (p->hit.triangle == kNoTriangle) continue;
-            uvec3 const t = world.triangles[p->hit.triangle];
-            for (int k = 0; k < 3; ++k) {
-                __builtin_prefetch(&world.positions[t[k]]);
-                if (!world.normals.empty()) __builtin_prefetch(&world.normals[t[k]]);
-            }
-        }
-        for (Path* p : active) p->ended = !advance(*p, vertex, counts);
-        for (Path* p : active) {
-            if (!(max_component(p->shadow_radiance) > 0)) continue;
-            ++counts.shadow_rays;
-            bool const blocked =
-                p->shadow_reach > 0 &&
-                visibility.occluded(p->shadow_ray.origin, p->shadow_ray.direction, p->shadow_reach, p->rng.next());
-            if (!blocked) p->bucket(p->shadow_bucket) += p->shadow_radiance;
-        }
+        add_unshadowed(active, counts);
         std::erase_if(active, [](Path const* p) { return p->ended; });
     }
     for (Path& p : paths)
@@ -247,6 +240,24 @@ void PathTracer<Visibility>::trace(std::span<Path> paths, PathCounts& counts) co
                 part = vec3{0};
                 ++counts.invalid_paths;
             }
+}
+
+template <class Visibility>
+void PathTracer<Visibility>::add_unshadowed(std::span<Path* const> paths, PathCounts& counts) const
+{
+    std::vector<Path*> waiting;
+    std::vector<RayQuery> queries;
+    for (Path* p : paths) {
+        if (!(max_component(p->shadow_radiance) > 0)) continue;
+        p->shadow.seed = p->rng.next();
+        waiting.push_back(p);
+        queries.push_back(p->shadow);
+    }
+    counts.shadow_rays += waiting.size();
+    std::vector<std::uint8_t> blocked(waiting.size());
+    visibility.occluded(queries, blocked);
+    for (std::size_t i = 0; i < waiting.size(); ++i)
+        if (blocked[i] == 0) waiting[i]->bucket(waiting[i]->shadow_bucket) += waiting[i]->shadow_radiance;
 }
 
 } // namespace gi

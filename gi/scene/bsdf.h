@@ -50,10 +50,12 @@ struct BsdfSample {
     bool transmitted = false;
 };
 
-/// f(wo, wi) of all non-delta lobes.
-GI_FN vec3 evaluate(Bsdf const& bsdf, vec3 wo, vec3 wi);
-/// Density with which `sample` draws wi through a non-delta lobe (including the lobe's selection probability).
-GI_FN float pdf(Bsdf const& bsdf, vec3 wo, vec3 wi);
+struct BsdfValue {
+    vec3 f{0};     ///< of all non-delta lobes, 1/sr
+    float pdf = 0; ///< density with which `sample` draws wi through one of them (with its selection probability), 1/sr
+};
+
+GI_FN BsdfValue evaluate(Bsdf const& bsdf, vec3 wo, vec3 wi);
 /// @param front  wo is on the front face (decides which side of a dielectric is the inside)
 /// @param u_lobe selects the lobe, u the direction; uniform in [0, 1)
 GI_FN BsdfSample sample(Bsdf const& bsdf, vec3 wo, bool front, float u_lobe, vec2 u);

@@ -87,6 +87,12 @@ GI_FN inline bool specular_is_delta(Bsdf const& b)
     return b.model == MaterialModel::metal_rough && b.alpha < kSmoothAlpha;
 }
 
+/// Nothing but a diffuse base: most surfaces of most rooms.
+GI_FN inline bool is_matt(Bsdf const& b)
+{
+    return b.model == MaterialModel::metal_rough && b.f90.x == 0 && b.clear == 0;
+}
+
 /// Smooth glass or a thin sheet. @param chance probability of being here
 GI_FN inline BsdfSample sample_clear(Bsdf const& b, vec3 wo, bool front, float u, float chance)
 {
@@ -129,34 +135,27 @@ GI_FN inline bool only_delta(Bsdf const& b)
     return !specular_seen && !(max_component(b.diffuse) > 0);
 }
 
-GI_FN inline vec3 evaluate(Bsdf const& b, vec3 wo, vec3 wi)
+GI_FN inline BsdfValue evaluate(Bsdf const& b, vec3 wo, vec3 wi)
 {
     using namespace bsdf_detail;
-    if (!(wo.z > 0) || !(wi.z > 0)) return vec3{0};
-    vec3 f = b.diffuse * kInvPi;
-    if (b.model == MaterialModel::phong) {
-        float const lobe = phong_power(glm::dot(mirror(wo), wi), b.phong_exponent);
-        return f + b.phong_specular * ((b.phong_exponent + 1) * (0.5f * kInvPi) * lobe);
-    }
-    f *= through_coat(b, wo.z, wi.z);
-    if (specular_is_delta(b) || b.f90.x == 0) return f;
-    vec3 const h = glm::normalize(wo + wi);
-    float const microfacets = ggx_normals(h, b.alpha) * ggx_visibility(wo.z, wi.z, b.alpha);
-    return f + schlick(b.f0, b.f90, glm::dot(wo, h)) * microfacets;
-}
-
-GI_FN inline float pdf(Bsdf const& b, vec3 wo, vec3 wi)
-{
-    using namespace bsdf_detail;
-    if (!(wo.z > 0) || !(wi.z > 0)) return 0;
+    if (!(wo.z > 0) || !(wi.z > 0)) return {};
+    if (is_matt(b)) return {b.diffuse * kInvPi, wi.z * kInvPi};
     LobeChances const chance = lobe_chances(b, wo.z);
-    float const density = chance.diffuse * wi.z * kInvPi;
-    if (chance.specular == 0 || specular_is_delta(b)) return density;
+    BsdfValue v{b.diffuse * kInvPi, chance.diffuse * wi.z * kInvPi};
     if (b.model == MaterialModel::phong) {
-        float const lobe = phong_power(glm::dot(mirror(wo), wi), b.phong_exponent);
-        return density + chance.specular * (b.phong_exponent + 1) * (0.5f * kInvPi) * lobe;
+        float const lobe =
+            (b.phong_exponent + 1) * (0.5f * kInvPi) * phong_power(glm::dot(mirror(wo), wi), b.phong_exponent);
+        v.f += b.phong_specular * lobe;
+        v.pdf += chance.specular * lobe;
+        return v;
     }
-    return density + chance.specular * ggx_reflection_pdf(wo, glm::normalize(wo + wi), b.alpha);
+    v.f *= through_coat(b, wo.z, wi.z);
+    if (specular_is_delta(b) || b.f90.x == 0) return v;
+    vec3 const h = glm::normalize(wo + wi);
+    float const normals = ggx_normals(h, b.alpha);
+    v.f += schlick(b.f0, b.f90, glm::dot(wo, h)) * (normals * ggx_visibility(wo.z, wi.z, b.alpha));
+    v.pdf += chance.specular * ggx_reflection_pdf(wo, normals, b.alpha);
+    return v;
 }
 
 GI_FN inline BsdfSample sample(Bsdf const& b, vec3 wo, bool front, float u_lobe, vec2 u)
@@ -164,6 +163,12 @@ GI_FN inline BsdfSample sample(Bsdf const& b, vec3 wo, bool front, float u_lobe,
     using namespace bsdf_detail;
     BsdfSample s;
     if (!(wo.z > 0)) return s;
+    if (is_matt(b)) {
+        s.wi = square_to_cosine_hemisphere(u);
+        s.pdf = s.wi.z * kInvPi;
+        if (s.pdf > 0) s.weight = b.diffuse;
+        return s;
+    }
     LobeChances const chance = lobe_chances(b, wo.z);
     if (u_lobe < chance.clear) return sample_clear(b, wo, front, u_lobe / chance.clear, chance.clear);
     if (u_lobe - chance.clear < chance.specular) {
@@ -177,8 +182,9 @@ GI_FN inline BsdfSample sample(Bsdf const& b, vec3 wo, bool front, float u_lobe,
     } else {
         s.wi = square_to_cosine_hemisphere(u);
     }
-    s.pdf = pdf(b, wo, s.wi);
-    if (s.pdf > 0) s.weight = evaluate(b, wo, s.wi) * (s.wi.z / s.pdf);
+    BsdfValue const value = evaluate(b, wo, s.wi);
+    s.pdf = value.pdf;
+    if (s.pdf > 0) s.weight = value.f * (s.wi.z / s.pdf);
     return s;
 }
 

@@ -27,10 +27,10 @@ GI_FN inline float ggx_visibility(float cos_o, float cos_i, float alpha)
     return 0.5f / (cos_i * ggx_root(cos_o, alpha) + cos_o * ggx_root(cos_i, alpha));
 }
 
-/// Density of wi = reflect(wo, h) for h drawn by sample_ggx_normal.
-GI_FN inline float ggx_reflection_pdf(vec3 wo, vec3 h, float alpha)
+/// Density of wi = reflect(wo, h) for h drawn by sample_ggx_normal. @param normals ggx_normals(h, alpha)
+GI_FN inline float ggx_reflection_pdf(vec3 wo, float normals, float alpha)
 {
-    return 0.5f * ggx_normals(h, alpha) / (wo.z + ggx_root(wo.z, alpha));
+    return 0.5f * normals / (wo.z + ggx_root(wo.z, alpha));
 }
 
 /// A normal visible from wo (Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps").

@@ -47,26 +47,23 @@ GI_FN inline LightSample sample_punctual(Light const& light, vec3 point)
 }
 
 /// Twice the area vector of a triangle.
-GI_FN inline vec3 area_vector(WorldView const& world, uvec3 t)
-{
-    vec3 const p0 = world.positions[t.x];
-    return glm::cross(world.positions[t.y] - p0, world.positions[t.z] - p0);
-}
+GI_FN inline vec3 area_vector(Surface const& surface) { return glm::cross(surface.edge1, surface.edge2); }
 
 GI_FN inline LightSample sample_emitter(WorldView const& world, std::uint32_t triangle, vec3 point, vec2 u)
 {
     LightSample s;
-    Material const& m = world.materials[world.triangle_material[triangle]];
-    shading_detail::SurfacePoint on = shading_detail::surface_point(world, triangle, square_to_triangle(u));
-    vec3 const way = on.interpolate(world.positions) - point;
-    s.distance = glm::length(way);
-    if (!(s.distance > 0)) return s;
-    s.direction = way / s.distance;
-    vec3 const area = area_vector(world, on.vertex);
-    float const facing = -glm::dot(area, s.direction); // 2 * area * cos at the lamp
-    if (!(facing > 0) && !m.double_sided) return s;
-    s.pdf = 2 * s.distance * s.distance / std::abs(facing);
+    Surface const& surface = world.surfaces[triangle];
+    shading_detail::SurfacePoint on{surface, square_to_triangle(u)};
+    vec3 const way = on.position() - point;
+    float const squared = glm::dot(way, way);
+    if (!(squared > 0)) return s;
+    s.distance = std::sqrt(squared);
+    s.direction = way * (1 / s.distance);
+    float const facing = -glm::dot(area_vector(surface), s.direction); // 2 * area * cos at the lamp
+    if (!(facing > 0) && !surface.is(Surface::kDoubleSided)) return s;
+    s.pdf = 2 * squared / std::abs(facing);
     if (!(s.pdf < kInf)) return {};
+    Material const& m = world.materials[surface.material];
     if (m.emissive_map.texture >= 0) shading_detail::interpolate_uv(world, on);
     s.radiance = shading_detail::look_up_emission(world, m, on);
     return s;
@@ -161,7 +158,7 @@ GI_FN inline float emitter_direction_pdf(WorldView const& world, std::uint32_t t
                                          float cos_light)
 {
     if (world.emitter_pdf.empty() || !(cos_light > 0)) return 0;
-    float const doubled_area = glm::length(light_detail::area_vector(world, world.triangles[triangle]));
+    float const doubled_area = glm::length(light_detail::area_vector(world.surfaces[triangle]));
     if (!(doubled_area > 0)) return 0;
     return world.emitter_pdf[triangle] * 2 * distance_m * distance_m / (doubled_area * cos_light);
 }
@@ -172,8 +169,8 @@ GI_FN inline float environment_direction_pdf(WorldView const& world, vec3 direct
     if (world.environment_select.empty()) return 0;
     MapPoint const at = map_point(world, direction);
     if (!(at.sin_theta > 0)) return 0;
-    std::uint32_t const x = wrap_texel(std::floor(at.position.x), world.environment_width, Wrap::repeat);
-    std::uint32_t const y = wrap_texel(std::floor(at.position.y), world.environment_height, Wrap::clamp);
+    std::uint32_t const x = glm::min(std::uint32_t(at.position.x), world.environment_width - 1);
+    std::uint32_t const y = glm::min(std::uint32_t(at.position.y), world.environment_height - 1);
     float const p = world.environment_select.probability(y * world.environment_width + x);
     return world.environment_pdf * texel_pdf(world, p, at.sin_theta);
 }

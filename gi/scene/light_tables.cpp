@@ -30,13 +30,14 @@ double power(Light const& light, double disc)
 /// are all dark keeps a hundredth of the material's emission, for there may be light between them.
 double mean_emission(WorldView const& world, std::uint32_t triangle)
 {
-    Material const& m = world.materials[world.triangle_material[triangle]];
+    Surface const& surface = world.surfaces[triangle];
+    Material const& m = world.materials[surface.material];
     double const most = double(luminance(m.emission));
     if (m.emissive_map.texture < 0) return most;
     double sum = 0;
     for (int i = 0; i < 16; ++i) {
         vec2 const u{(float(i % 4) + 0.5f) / 4, (float(i / 4) + 0.5f) / 4};
-        auto at = shading_detail::surface_point(world, triangle, square_to_triangle(u));
+        shading_detail::SurfacePoint at{surface, square_to_triangle(u)};
         shading_detail::interpolate_uv(world, at);
         sum += double(luminance(shading_detail::look_up_emission(world, m, at)));
     }
@@ -91,7 +92,7 @@ void build_light_tables(World& world, Report& report)
     for (std::uint32_t i = 0; i < world.triangles.size(); ++i) {
         Material const& m = world.materials[world.triangle_material[i]];
         if (!emits(m)) continue;
-        double const triangle_area = 0.5 * double(glm::length(light_detail::area_vector(v, world.triangles[i])));
+        double const triangle_area = 0.5 * double(glm::length(light_detail::area_vector(world.surfaces[i])));
         double const p = mean_emission(v, i) * triangle_area * double(kPi) * (m.double_sided ? 2 : 1);
         if (!(p > 0)) continue;
         world.emitters.push_back(i);

@@ -12,14 +12,17 @@ struct ShadingPoint {
     Frame frame;            ///< about the shading normal (interpolated, normal-mapped), same side
     bool front;             ///< viewer is on the counter-clockwise side
     Bsdf bsdf;
-    vec3 albedo;            ///< total directional-free albedo for the AOV: diffuse + f0 (+ transmitted)
     vec3 emission;          ///< radiance leaving towards the viewer (0 on the dark side)
-    std::uint32_t triangle, material;
+    float clearance;        ///< m; by how much rays have to start off the surface
+    std::uint32_t triangle;
 };
 
 /// @param barycentric  weights of vertices 1 and 2 (Embree's u, v)
 /// @param direction    of the ray that arrived, unit
 GI_FN ShadingPoint shading_point(WorldView const& world, std::uint32_t triangle, vec2 barycentric, vec3 direction);
+
+/// For the layer of that name: diffuse + normal reflectance + transmitted, without regard to directions.
+GI_FN vec3 albedo(Bsdf const& bsdf);
 
 /// Coverage of the surface there, 0..1: 1 for opaque materials, 0 or 1 for masks, alpha for blend.
 GI_FN float coverage(WorldView const& world, std::uint32_t triangle, vec2 barycentric);

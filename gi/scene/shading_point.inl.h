@@ -13,34 +13,31 @@ GI_FN inline vec3 rescale(vec3 v)
     return m > 0 ? v / m : v;
 }
 
-GI_FN inline vec3 triangle_normal(vec3 p0, vec3 p1, vec3 p2)
+/// Unit, on the counter-clockwise side.
+GI_FN inline vec3 triangle_normal(Surface const& s)
 {
-    vec3 const area = glm::cross(p1 - p0, p2 - p0);
-    float const squared = glm::dot(area, area);
-    if (squared > 1e-30f && squared < 1e30f) return area / std::sqrt(squared);
-    return glm::normalize(rescale(glm::cross(rescale(p1 - p0), rescale(p2 - p0))));
+    if (s.normal_scale > 0) return glm::cross(s.edge1, s.edge2) * s.normal_scale;
+    return glm::normalize(rescale(glm::cross(rescale(s.edge1), rescale(s.edge2))));
 }
 
-/// Attributes of one triangle at one point.
+/// One point of a triangle.
 struct SurfacePoint {
-    uvec3 vertex;
-    vec3 weight; ///< of the three vertices
+    Surface const& surface;
+    vec2 barycentric; ///< weights of vertices 1 and 2
     vec2 uv0{0}, uv1{0};
 
     template <class T>
     GI_FN T interpolate(View<T const> const& attribute) const
     {
-        return weight.x * attribute[vertex.x] + weight.y * attribute[vertex.y] + weight.z * attribute[vertex.z];
+        uvec3 const v = surface.vertex;
+        return (1 - barycentric.x - barycentric.y) * attribute[v.x] + barycentric.x * attribute[v.y] +
+               barycentric.y * attribute[v.z];
+    }
+    GI_FN vec3 position() const
+    {
+        return surface.corner + barycentric.x * surface.edge1 + barycentric.y * surface.edge2;
     }
 };
-
-GI_FN inline SurfacePoint surface_point(WorldView const& world, std::uint32_t triangle, vec2 barycentric)
-{
-    SurfacePoint s;
-    s.vertex = world.triangles[triangle];
-    s.weight = {1 - barycentric.x - barycentric.y, barycentric.x, barycentric.y};
-    return s;
-}
 
 /// Texture coordinates, for materials that have textures.
 GI_FN inline void interpolate_uv(WorldView const& world, SurfacePoint& s)
@@ -55,11 +52,11 @@ GI_FN inline vec4 tangent_from_uv(WorldView const& world, SurfacePoint const& s,
 {
     View<vec2 const> const& uv = uv_set == 0 ? world.uv0 : world.uv1;
     if (uv.empty()) return vec4{0};
-    vec2 const a = uv[s.vertex.y] - uv[s.vertex.x], b = uv[s.vertex.z] - uv[s.vertex.x];
+    uvec3 const v = s.surface.vertex;
+    vec2 const a = uv[v.y] - uv[v.x], b = uv[v.z] - uv[v.x];
     float const determinant = a.x * b.y - a.y * b.x;
     if (determinant == 0) return vec4{0};
-    vec3 const p = world.positions[s.vertex.x];
-    vec3 const tangent = b.y * (world.positions[s.vertex.y] - p) - a.y * (world.positions[s.vertex.z] - p);
+    vec3 const tangent = b.y * s.surface.edge1 - a.y * s.surface.edge2;
     return determinant > 0 ? vec4{tangent, -1} : vec4{-tangent, 1};
 }
 
@@ -123,56 +120,61 @@ GI_FN inline ShadingPoint shading_point(WorldView const& world, std::uint32_t tr
                                         vec3 direction)
 {
     using namespace shading_detail;
-    SurfacePoint s = surface_point(world, triangle, barycentric);
+    Surface const& surface = world.surfaces[triangle];
+    SurfacePoint s{surface, barycentric};
+    bool const varies = surface.is(Surface::kVaries);
+    if (varies) interpolate_uv(world, s);
     ShadingPoint at;
     at.triangle = triangle;
-    at.material = world.triangle_material[triangle];
-    Material const& m = world.materials[at.material];
-    if (has_textures(m)) interpolate_uv(world, s);
-    vec3 const p0 = world.positions[s.vertex.x], p1 = world.positions[s.vertex.y],
-               p2 = world.positions[s.vertex.z];
-    at.position = p0 + barycentric.x * (p1 - p0) + barycentric.y * (p2 - p0);
-    vec3 const winding_normal = triangle_normal(p0, p1, p2);
+    at.clearance = surface.clearance;
+    at.position = s.position();
+    vec3 const winding_normal = triangle_normal(surface);
     at.front = glm::dot(direction, winding_normal) < 0;
-    at.geometric_normal = at.front ? winding_normal : -winding_normal;
+    float const side = at.front ? 1.0f : -1.0f;
+    at.geometric_normal = side * winding_normal;
 
-    vec3 n = winding_normal;
+    Material const& m = world.materials[surface.material];
+    vec3 n = side * winding_normal;
     bool bent = false;
-    if (!world.normals.empty()) {
+    if (surface.is(Surface::kSmooth)) {
         vec3 const smooth = s.interpolate(world.normals);
-        float const length = glm::length(smooth);
-        if (length > 1e-6f) {
-            n = smooth / length;
+        float const squared = glm::dot(smooth, smooth);
+        if (squared > 1e-12f) {
+            n = smooth * (1 / std::sqrt(squared));
             bent = true;
         }
     }
-    if (m.normal_map.texture >= 0) {
-        n = apply_normal_map(world, s, m, n);
+    if (varies && m.normal_map.texture >= 0) {
+        n = apply_normal_map(world, s, m, bent ? n : winding_normal);
         bent = true;
     }
     if (bent) {
         if (glm::dot(n, at.geometric_normal) < 0) n = -n;
         n = face_viewer(n, -direction);
-    } else {
-        n = at.geometric_normal;
     }
     at.frame = Frame::about(n);
-
-    at.bsdf = make_bsdf(m, look_up_factors(world, m, s));
-    vec3 const reflected = at.bsdf.model == MaterialModel::phong ? at.bsdf.phong_specular : at.bsdf.f0;
-    at.albedo = glm::min(at.bsdf.diffuse + reflected + at.bsdf.transmitted, vec3{1});
-    at.emission = emits(m) && (at.front || m.double_sided) ? look_up_emission(world, m, s) : vec3{0};
+    at.bsdf = varies ? make_bsdf(m, look_up_factors(world, m, s)) : world.bsdfs[surface.material];
+    at.emission = vec3{0};
+    if (surface.is(Surface::kEmits) && (at.front || surface.is(Surface::kDoubleSided)))
+        at.emission = look_up_emission(world, m, s);
     return at;
+}
+
+GI_FN inline vec3 albedo(Bsdf const& b)
+{
+    vec3 const reflected = b.model == MaterialModel::phong ? b.phong_specular : b.f0;
+    return glm::min(b.diffuse + reflected + b.transmitted, vec3{1});
 }
 
 GI_FN inline float coverage(WorldView const& world, std::uint32_t triangle, vec2 barycentric)
 {
     using namespace shading_detail;
-    Material const& m = world.materials[world.triangle_material[triangle]];
+    Surface const& surface = world.surfaces[triangle];
+    Material const& m = world.materials[surface.material];
     if (m.alpha_mode == AlphaMode::opaque) return 1;
     float alpha = m.alpha;
     if (m.base_color_map.texture >= 0) {
-        SurfacePoint s = surface_point(world, triangle, barycentric);
+        SurfacePoint s{surface, barycentric};
         interpolate_uv(world, s);
         alpha *= look_up(world.textures, m.base_color_map, s.uv0, s.uv1).w;
     }

@@ -5,15 +5,25 @@
 
 namespace gi {
 
+/// (cos, sin) of q * pi/4, |q| <= 1: Taylor polynomials, errors below 2e-7. A library's functions would spend most
+/// of their time on the range of their argument.
+GI_FN inline vec2 eighth_turn(float q)
+{
+    float const a = 0.25f * kPi * q, a2 = a * a;
+    float const c = 1 + a2 * (-1.0f / 2 + a2 * (1.0f / 24 + a2 * (-1.0f / 720 + a2 * (1.0f / 40320))));
+    float const s = a * (1 + a2 * (-1.0f / 6 + a2 * (1.0f / 120 + a2 * (-1.0f / 5040 + a2 * (1.0f / 362880)))));
+    return {c, s};
+}
+
 /// Area-preserving map of the square to the unit disk (Shirley & Chiu 1997).
 GI_FN inline vec2 square_to_disk(vec2 u)
 {
     vec2 const p = 2.0f * u - 1.0f;
-    if (p.x == 0 && p.y == 0) return vec2{0};
     bool const wide = std::abs(p.x) > std::abs(p.y);
     float const radius = wide ? p.x : p.y;
-    float const angle = wide ? 0.25f * kPi * (p.y / p.x) : 0.5f * kPi - 0.25f * kPi * (p.x / p.y);
-    return {radius * std::cos(angle), radius * std::sin(angle)};
+    if (radius == 0) return vec2{0};
+    vec2 const d = radius * eighth_turn((wide ? p.y : p.x) / radius);
+    return {wide ? d.x : d.y, wide ? d.y : d.x};
 }
 
 /// Density cos(theta) / pi about +z.
@@ -27,15 +37,18 @@ GI_FN inline vec3 square_to_cosine_hemisphere(vec2 u)
 /// Square").
 GI_FN inline vec2 square_to_triangle(vec2 u)
 {
-    if (u.y > u.x) {
-        float const x = 0.5f * u.x;
-        return {x, u.y - x};
-    }
-    float const y = 0.5f * u.y;
-    return {u.x - y, y};
+    float const half = 0.5f * glm::min(u.x, u.y);
+    return {u.x - half, u.y - half};
 }
 
-/// The rotation of a direction about +z that an azimuth in [0, 1) stands for.
-GI_FN inline vec2 azimuth(float u) { return {std::cos(2 * kPi * u), std::sin(2 * kPi * u)}; }
+/// (cos, sin) of u turns, u in [0, 1].
+GI_FN inline vec2 azimuth(float u)
+{
+    float const quarter = std::floor(4 * u + 0.5f);
+    vec2 const d = eighth_turn(2 * (4 * u - quarter));
+    int const turns = int(quarter) & 3;
+    vec2 const turned = (turns & 1) != 0 ? vec2{-d.y, d.x} : d;
+    return (turns & 2) != 0 ? -turned : turned;
+}
 
 } // namespace gi

@@ -7,6 +7,7 @@
 
 #include "gi/base/alias_table.h"
 #include "gi/base/report.h"
+#include "gi/scene/bsdf.h"
 #include "gi/scene/scene.h"
 
 #include <memory>
@@ -18,6 +19,22 @@ struct Bounds {
     bool empty() const { return !(low.x <= high.x); }
     vec3 center() const { return 0.5f * (low + high); }
     float radius() const { return empty() ? 0.0f : 0.5f * glm::length(high - low); }
+};
+
+/// What shading reads of one triangle, gathered on one cache line. Derived from the arrays of World.
+struct alignas(64) Surface {
+    static constexpr std::uint32_t kSmooth = 1;  ///< its vertex normals differ from the triangle's
+    static constexpr std::uint32_t kVaries = 2;  ///< textures or vertex colours change the material across it
+    static constexpr std::uint32_t kEmits = 4;
+    static constexpr std::uint32_t kDoubleSided = 8;
+
+    vec3 corner, edge1, edge2; ///< vertex 0, and from it to vertices 1 and 2, m
+    float normal_scale;        ///< 1 / |edge1 x edge2|; 0 where that is too large or too small for floats
+    float clearance;           ///< m; more than the rounding error of a position interpolated on it
+    std::uint32_t material, flags;
+    uvec3 vertex;
+
+    GI_FN bool is(std::uint32_t flag) const { return (flags & flag) != 0; }
 };
 
 struct World {
@@ -36,8 +53,10 @@ struct World {
     std::vector<std::uint32_t> triangle_material; ///< index into materials
     std::vector<std::uint32_t> triangle_instance; ///< 0-based number of the node-mesh pair it came from
     std::uint32_t instances = 0;
+    std::vector<Surface> surfaces; ///< per triangle
 
     std::vector<Material> materials; ///< the scene's, and the default material last
+    std::vector<Bsdf> bsdfs;         ///< per material, without its textures
     std::vector<Light> lights;       ///< in this frame
     std::vector<Camera> cameras;     ///< world_from_camera without origin removed (absolute, double)
 
@@ -64,7 +83,9 @@ struct WorldView {
     View<vec3 const> colors;
     View<uvec3 const> triangles;
     View<std::uint32_t const> triangle_material, triangle_instance;
+    View<Surface const> surfaces;
     View<Material const> materials;
+    View<Bsdf const> bsdfs;
     TexturePoolView textures;
     View<Light const> lights;
     View<std::uint32_t const> emitters;

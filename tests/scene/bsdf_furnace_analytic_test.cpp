@@ -41,7 +41,7 @@ double rough_albedo(Bsdf const& b, vec3 wo, int channel)
     bins.rows = 16;
     bins.columns = 8;
     return integrate_all(
-        bins, [&](vec3 wi) { return wi.z > 0 ? double(evaluate(b, wo, wi)[channel] * wi.z) : 0.0; }, 1e-6);
+        bins, [&](vec3 wi) { return wi.z > 0 ? double(evaluate(b, wo, wi).f[channel] * wi.z) : 0.0; }, 1e-6);
 }
 
 Material white_metal(float roughness)

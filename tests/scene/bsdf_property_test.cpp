@@ -71,8 +71,8 @@ void expect_sound(Material const& m, RandomMaterials& random, bool front)
     Bsdf const b = make_bsdf(m);
     for (int i = 0; i < 30; ++i) {
         vec3 const wo = random.direction(), wi = random.direction();
-        ASSERT_TRUE(sound(evaluate(b, wo, wi))) << describe(m, wo, wi);
-        float const density = pdf(b, wo, wi);
+        ASSERT_TRUE(sound(evaluate(b, wo, wi).f)) << describe(m, wo, wi);
+        float const density = evaluate(b, wo, wi).pdf;
         ASSERT_TRUE(std::isfinite(density) && density >= 0) << density << " " << describe(m, wo, wi);
         float const u_lobe = random.rng().uniform();
         BsdfSample const s = sample(b, wo, front, u_lobe, random.rng().uniform2());
@@ -100,8 +100,8 @@ TEST(BsdfProperty, FieldsSlightlyOutOfRangeGiveFiniteNumbers)
         Material const m = random.next();
         Bsdf const b = make_bsdf(m);
         vec3 const wo = random.direction(), wi = random.direction();
-        ASSERT_TRUE(all_finite(evaluate(b, wo, wi))) << describe(m, wo, wi);
-        ASSERT_TRUE(std::isfinite(pdf(b, wo, wi))) << describe(m, wo, wi);
+        ASSERT_TRUE(all_finite(evaluate(b, wo, wi).f)) << describe(m, wo, wi);
+        ASSERT_TRUE(std::isfinite(evaluate(b, wo, wi).pdf)) << describe(m, wo, wi);
         float const u_lobe = random.rng().uniform();
         BsdfSample const s = sample(b, wo, true, u_lobe, random.rng().uniform2());
         ASSERT_TRUE(all_finite(s.weight) && std::isfinite(s.pdf)) << describe(m, wo, s.wi);

@@ -23,7 +23,7 @@ TEST(BsdfReciprocity, ValuesAreTheSameBothWays)
         Bsdf const b = make_bsdf(c.material);
         for (int i = 0; i < 2000; ++i) {
             vec3 const wo = random_direction(rng), wi = random_direction(rng);
-            vec3 const there = evaluate(b, wo, wi), back = evaluate(b, wi, wo);
+            vec3 const there = evaluate(b, wo, wi).f, back = evaluate(b, wi, wo).f;
             // (r . w)^1000 multiplies the rounding of its base by 1000.
             double const tolerance = c.name == "phong 1000" ? 1e-3 : 1e-5;
             for (int k = 0; k < 3; ++k)
@@ -54,7 +54,7 @@ TEST(BsdfValue, MetalIsGgx)
             for (int k = 0; k < 3; ++k) {
                 double const f0 = double(m.base_color[k]), f = f0 + (1 - f0) * weight;
                 double const expected = d * g2 * f / (4 * cos_o * cos_i);
-                ASSERT_NEAR(evaluate(b, wo, wi)[k], expected, 2e-4 * expected) << roughness;
+                ASSERT_NEAR(evaluate(b, wo, wi).f[k], expected, 2e-4 * expected) << roughness;
             }
         }
     }
@@ -75,7 +75,7 @@ TEST(BsdfValue, PlasticIsABaseBelowACoat)
             through(double(wo.z)) * through(double(wi.z)) / (0.96 * 20 / 21) / glm::pi<double>();
         for (int k = 0; k < 3; ++k) {
             double const value = expected * double(m.base_color[k]);
-            ASSERT_NEAR(evaluate(b, wo, wi)[k], value, 1e-4 * value);
+            ASSERT_NEAR(evaluate(b, wo, wi).f[k], value, 1e-4 * value);
         }
     }
 }
@@ -97,7 +97,7 @@ TEST(BsdfValue, PhongIsNormalisedAboutTheMirrorDirection)
             double const cosine = glm::dot(dvec3{-wo.x, -wo.y, wo.z}, dvec3(wi));
             if (std::abs(cosine) < 1e-3) continue;
             double const lobe = cosine > 0 ? std::pow(cosine, double(n)) : 0;
-            ASSERT_NEAR(evaluate(b, wo, wi).x, 0.3 / pi + 0.6 * (double(n) + 1) / (2 * pi) * lobe, 1e-4)
+            ASSERT_NEAR(evaluate(b, wo, wi).f.x, 0.3 / pi + 0.6 * (double(n) + 1) / (2 * pi) * lobe, 1e-4)
                 << "exponent " << n << ", cosine " << cosine;
         }
     }

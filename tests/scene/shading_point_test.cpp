@@ -57,7 +57,6 @@ TEST(ShadingPoint, BarycentricsWeighVerticesOneAndTwo)
     expect_near(at.position, {0.5f, 0.5f, 0});
     expect_near(at.bsdf.diffuse, {0.125f, 0.125f, 0.25f}, "colours multiply");
     EXPECT_EQ(at.triangle, 0u);
-    EXPECT_EQ(at.material, 0u);
 }
 
 TEST(ShadingPoint, BothSidesFaceTheirViewer)
