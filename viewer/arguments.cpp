@@ -92,4 +92,9 @@ double parse_target(std::string const& option, std::string const& text, std::str
     return value;
 }
 
+std::string refuse_negative(std::string const& text)
+{
+    return text.starts_with('-') ? "'" + text + "' is negative" : std::string();
+}
+
 } // namespace viewer

@@ -1,11 +1,14 @@
+#include "gi/base/error.h"
 #include "gi/scene/generate.h"
 #include "gi/scene/write_glb.h"
+#include "viewer/arguments.h"
 #include "viewer/commands.h"
 #include "viewer/outputs.h"
 #include "viewer/report_json.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fstream>
 #include <functional>
 #include <memory>
 
@@ -20,8 +23,22 @@ struct GenerateOptions {
     std::string out;
 };
 
+/// Refuses before anything is written, also where a scene file of somebody's own would be replaced.
+void check_bundle(gi::Scene const& scene, std::string const& out)
+{
+    std::vector<std::string> names;
+    for (std::filesystem::path const& file : gi::scene_bundle_files(out, scene)) names.push_back(file.string());
+    check_outputs(names, {});
+    std::string const& last = names.back();
+    std::ifstream in(last);
+    std::string line;
+    if (names.size() > 1 && in && (!std::getline(in, line) || line != gi::kBundleMark))
+        throw gi::InputError("'" + last + "' is not replaced", "it was not generated", "choose another --out");
+}
+
 int save(gi::Scene const& scene, std::string const& out)
 {
+    check_bundle(scene, out);
     gi::Report report;
     for (std::filesystem::path const& file : gi::write_scene_bundle(out, scene, report))
         fmt::print("{}\n", file.string());
@@ -73,7 +90,7 @@ A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them
     for (CLI::App* const kind : {boxes, sphere}) {
         kind->add_option("--triangles", o->triangles, "about so many")->capture_default_str();
         kind->add_option("--seed", o->seed, "another seed, another scene")
-            ->check(CLI::NonNegativeNumber)
+            ->check(refuse_negative)
             ->capture_default_str();
     }
 }

@@ -1,3 +1,4 @@
+#include "gi/base/error.h"
 #include "gi/base/file.h"
 #include "gi/base/picture_file.h"
 #include "gi/image/tone_map.h"
@@ -34,15 +35,27 @@ CameraChoice camera_choice(RenderOptions const& o)
     return choice;
 }
 
+/// By its sky, by a lamp at some node or by a material of a mesh at some node.
+bool is_lit(gi::Scene const& scene)
+{
+    if (scene.environment) return true;
+    for (gi::Node const& node : scene.nodes) {
+        if (node.light >= 0 && gi::max_component(scene.lights[std::size_t(node.light)].intensity) > 0) return true;
+        for (std::int32_t const m : node.meshes) {
+            std::int32_t const material = scene.meshes[std::size_t(m)].material;
+            if (material >= 0 && gi::emits(scene.materials[std::size_t(material)])) return true;
+        }
+    }
+    return false;
+}
+
 void set_environment(gi::Scene& scene, RenderOptions const& o, gi::Report& report)
 {
     if (!o.environment.empty()) {
         if (scene.environment) say("--envmap replaces the scene's environment map");
         scene.environment = gi::load_environment(o.environment, report);
     }
-    bool const lit = scene.environment || !scene.lights.empty() ||
-                     std::any_of(scene.materials.begin(), scene.materials.end(), gi::emits);
-    if (!lit) {
+    if (!is_lit(scene)) {
         say("the scene has no light: lit by a white sky of radiance 1");
         gi::EnvironmentMap& white = scene.environment.emplace();
         white.width = 4;
@@ -86,17 +99,17 @@ void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::Render
     gi::StageTimer const timer(report, "save");
     gi::Picture& picture = result.picture;
     picture.metadata = make_metadata(o, settings, result);
-    if (!o.png.empty()) {
-        gi::ToneMapSettings const tone{float(o.exposure_ev),
-                                       o.tone == "filmic" ? gi::ToneCurve::filmic : gi::ToneCurve::srgb};
-        gi::write_png(o.png, picture.width, picture.height, gi::tone_map_bytes(*picture.find("color"), tone));
+    if (!o.out.empty()) {
+        if (!o.layers.empty())
+            std::erase_if(picture.layers, [&](gi::Layer const& l) {
+                return l.name != "color" && std::find(o.layers.begin(), o.layers.end(), l.name) == o.layers.end();
+            });
+        gi::write_exr(o.out, picture, o.half ? gi::PixelType::half : gi::PixelType::single, report);
     }
-    if (o.out.empty()) return;
-    if (!o.layers.empty())
-        std::erase_if(picture.layers, [&](gi::Layer const& l) {
-            return l.name != "color" && std::find(o.layers.begin(), o.layers.end(), l.name) == o.layers.end();
-        });
-    gi::write_exr(o.out, picture, o.half ? gi::PixelType::half : gi::PixelType::single, report);
+    if (o.png.empty()) return;
+    gi::ToneMapSettings const tone{float(o.exposure_ev),
+                                   o.tone == "filmic" ? gi::ToneCurve::filmic : gi::ToneCurve::srgb};
+    gi::write_png(o.png, picture.width, picture.height, gi::tone_map_bytes(*picture.find("color"), tone));
 }
 
 int run(RenderOptions o)
@@ -105,8 +118,11 @@ int run(RenderOptions o)
     gi::RenderSettings const settings = make_settings(o);
     CameraChoice const choice = camera_choice(o);
     check_outputs({o.out, o.png, o.stats, settings.checkpoint.string()}, {o.scene, o.environment});
-    if (o.resume && !std::filesystem::exists(settings.checkpoint))
-        say("there is no '" + settings.checkpoint.string() + "': starting afresh");
+    bool const has_state = !settings.checkpoint.empty() && std::filesystem::exists(settings.checkpoint);
+    if (o.resume && !has_state) say("there is no '" + settings.checkpoint.string() + "': starting afresh");
+    if (!o.resume && has_state)
+        throw gi::InputError("'" + settings.checkpoint.string() + "' holds an unfinished render",
+                             "a new one would replace it", "add --resume to go on, or delete it");
 
     gi::Report report;
     gi::World const world = load_world(o, report);
@@ -114,6 +130,7 @@ int run(RenderOptions o)
     if (!chosen.note.empty()) say(chosen.note);
     gi::RenderResult result = trace(o, settings, world, chosen.camera, report);
     save(o, settings, result, report);
+    if (!settings.checkpoint.empty() && !result.resumable) std::filesystem::remove(settings.checkpoint);
 
     nlohmann::ordered_json const stats = make_stats(o, settings, gi::plan_scene(world), result, report);
     if (!o.stats.empty()) gi::write_text(o.stats, to_text(stats));

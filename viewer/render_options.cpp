@@ -89,7 +89,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
         ->check(CLI::IsMember({"box", "tent"}))
         ->capture_default_str();
     c.add_option("--seed", o.seed, "another seed, another noise")
-        ->check(CLI::NonNegativeNumber)
+        ->check(refuse_negative)
         ->capture_default_str();
     c.add_option("--threads", o.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c.add_option("--out", o.out, "EXR with all layers (default: the scene's name)");
@@ -104,7 +104,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
         ->delimiter(',')
         ->allow_extra_args(false);
     c.add_option("--stats", o.stats, "JSON file: what was asked, built, lost and measured");
-    c.add_flag("--resume", o.resume, "go on from F.exr.state, which an interrupted render leaves");
+    c.add_flag("--resume", o.resume, "go on from F.exr.state, which a render leaves that was interrupted, or stopped early with --resume");
     c.add_flag("--json", o.json, "print the statistics instead of text");
     c.add_flag("--quiet", o.quiet, "no progress bar");
     c.footer(R"(Examples:

@@ -89,6 +89,8 @@ Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePl
                      {"fov_deg", or_null(o.fov_deg)},
                      {"time_s", or_null(o.time_s)},
                      {"envmap", name_or_null(o.environment)},
+                     {"envmap_rotate_deg", o.environment_rotate_deg},
+                     {"envmap_scale", o.environment_scale},
                      {"paths_limit", s.paths},
                      {"budget_s", s.budget_s > 0 ? Json(s.budget_s) : Json()},
                      {"until_relmse", s.until_relmse > 0 ? Json(s.until_relmse) : Json()},
@@ -96,7 +98,11 @@ Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePl
                      {"filter", o.filter},
                      {"seed", s.seed},
                      {"threads", s.threads},
-                     {"resume", s.resume}};
+                     {"resume", s.resume},
+                     {"aovs", o.layers},
+                     {"half", o.half},
+                     {"exposure_ev", o.exposure_ev},
+                     {"tone", o.tone}};
     j["outputs"] = {{"exr", name_or_null(o.out)}, {"png", name_or_null(o.png)}, {"stats", name_or_null(o.stats)}};
     j["result"] = {{"end", end_text(r.end)}, {"paths_per_pixel", r.paths},
                    {"seconds", r.seconds},   {"relmse_estimate", knows_error(r) ? Json(r.relmse) : Json()},

@@ -1,6 +1,7 @@
 // Radiance RGBE pictures (Ward, "Real Pixels", Graphics Gems II 1991), old and new run-length encoding.
 
 #include "gi/base/error.h"
+#include "gi/base/math.h"
 #include "gi/base/picture_file.h"
 
 #include <charconv>
@@ -13,6 +14,7 @@ namespace gi {
 namespace {
 
 constexpr int kLargestSide = 65536;
+constexpr std::size_t kMostPixels = std::size_t(1) << 29;
 
 class HdrReader {
 public:
@@ -30,7 +32,7 @@ public:
             for (std::size_t x = 0; x < std::size_t(picture.width); ++x, out += 3) {
                 unsigned char const* const p = row.data() + 4 * x;
                 float const scale = p[3] == 0 ? 0.0f : std::ldexp(1.0f, int(p[3]) - (128 + 8));
-                for (int c = 0; c < 3; ++c) out[c] = float(p[c]) * scale;
+                for (int c = 0; c < 3; ++c) out[c] = float(p[c]) * scale / multiplied_[c];
             }
         }
         return picture;
@@ -67,16 +69,33 @@ private:
         if (line.starts_with(' ')) line.remove_prefix(1);
         return value;
     }
+    /// EXPOSURE and COLORCORR say by what the radiances were multiplied, each line once more.
+    void read_variable(std::string_view line)
+    {
+        if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
+            fail(fmt::format("'{}' is not RGB", line));
+        bool const exposure = line.starts_with("EXPOSURE="), color = line.starts_with("COLORCORR=");
+        if (!exposure && !color) return;
+        line.remove_prefix(line.find('=') + 1);
+        vec3 factor{1};
+        for (int c = 0; c < (color ? 3 : 1); ++c) {
+            line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+            auto const [end, error] = std::from_chars(line.data(), line.data() + line.size(), factor[c]);
+            if (error != std::errc{} || !(factor[c] > 1e-20f) || !(factor[c] < 1e20f))
+                fail("its exposure is not a positive number");
+            line.remove_prefix(std::size_t(end - line.data()));
+        }
+        multiplied_ *= color ? factor : vec3{factor.x};
+    }
     void read_header(Picture& picture)
     {
         if (std::string_view const magic = next_line(); !magic.starts_with("#?"))
             fail("it does not start with '#?'");
-        for (std::string_view line = next_line(); !line.empty(); line = next_line())
-            if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
-                fail(fmt::format("'{}' is not RGB", line));
+        for (std::string_view line = next_line(); !line.empty(); line = next_line()) read_variable(line);
         std::string_view size = next_line();
         picture.height = read_side(size, "-Y ");
         picture.width = read_side(size, "+X ");
+        if (picture.pixels() > kMostPixels) fail("it has more than 512 M pixels");
         // New run-length encoding holds at most 127 values in two bytes; flat rows in the old one reach some more.
         if (picture.pixels() / 512 > bytes_.size()) fail("it is too short for its size");
     }
@@ -125,6 +144,7 @@ private:
     std::span<unsigned char const> bytes_;
     std::string const& name_;
     std::size_t at_ = 0;
+    vec3 multiplied_{1};
 };
 
 } // namespace

@@ -23,7 +23,9 @@ struct RenderSettings {
     std::uint64_t seed = 0;
     int threads = 0;                       ///< 0 = all
     PixelFilter filter = PixelFilter::box; ///< by filter importance sampling; tent has a radius of one pixel
-    std::filesystem::path checkpoint;      ///< exact state is kept here while unfinished; empty = no
+    std::filesystem::path checkpoint;      ///< exact state is kept here while unfinished, and where a
+                                           ///< render that resumes stops early; empty = never. Whoever saves the
+                                           ///< picture deletes it afterwards unless RenderResult::resumable
     bool resume = false;                   ///< start from the checkpoint if it is there and fits
 };
 
@@ -46,8 +48,9 @@ struct RenderResult {
     Picture picture;
     RenderEnd end = RenderEnd::paths;
     std::uint32_t paths = 0;
-    double seconds = 0;
+    double seconds = 0; ///< for all its paths, those before an interruption too
     double relmse = 0;
+    bool resumable = false; ///< settings.checkpoint holds what is needed to go on
     double rays = 0; ///< closest-hit and shadow rays, or look-ups
 };
 

@@ -61,10 +61,12 @@ Picture Accumulator::picture(dvec3 world_origin) const
 namespace {
 
 struct CheckpointHeader {
-    char magic[8] = {'L', 'W', 'S', 'T', 'A', 'T', 'E', '1'};
+    char magic[8] = {'L', 'W', 'S', 'T', 'A', 'T', 'E', '2'};
     std::uint64_t fingerprint = 0;
     std::int32_t width = 0, height = 0;
     std::uint32_t paths = 0, pixel_bytes = sizeof(PixelSums);
+    PathCounts counts;
+    double seconds = 0;
 };
 static_assert(std::is_trivially_copyable_v<CheckpointHeader> && std::is_trivially_copyable_v<PixelSums>);
 
@@ -77,6 +79,8 @@ void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, st
     header.width = a.width;
     header.height = a.height;
     header.paths = a.paths;
+    header.counts = a.counts;
+    header.seconds = a.seconds;
     write_by_rename(file, [&](std::filesystem::path const& temporary) {
         std::ofstream out(temporary, std::ios::binary);
         out.exceptions(std::ios::failbit | std::ios::badbit);
@@ -106,6 +110,8 @@ bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uin
                          "delete it to start afresh");
     std::memcpy(a.pixels.data(), bytes.data() + sizeof header, a.pixels.size() * sizeof(PixelSums));
     a.paths = header.paths;
+    a.counts = header.counts;
+    a.seconds = header.seconds;
     return true;
 }
 

@@ -36,6 +36,8 @@ struct Accumulator {
     int width = 0, height = 0;
     std::uint32_t paths = 0; ///< per pixel
     std::vector<PixelSums> pixels;
+    PathCounts counts;  ///< of all paths so far
+    double seconds = 0; ///< that they took
 
     Accumulator(int w, int h) : width(w), height(h), pixels(std::size_t(w) * std::size_t(h)) {}
     dvec3 mean(PixelSums const& p) const

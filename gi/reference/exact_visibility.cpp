@@ -125,9 +125,8 @@ ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threa
         if (positions == nullptr) throw std::bad_alloc();
         std::copy(world.positions.begin(), world.positions.end(),
                   static_cast<vec3*>(rtcGetBufferData(positions)));
-        bool const all_cut_out = alpha_tests && triangles_[kOpaque].empty();
-        if (!all_cut_out) add_triangles(world, positions, kOpaque);
-        if (alpha_tests) add_triangles(world, positions, kCutOut);
+        if (triangles_[kCutOut].empty() || !triangles_[kOpaque].empty()) add_triangles(world, positions, kOpaque);
+        if (!triangles_[kCutOut].empty()) add_triangles(world, positions, kCutOut);
         rtcReleaseBuffer(positions);
     }
     rtcCommitScene(scene_.get());

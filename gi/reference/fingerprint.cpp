@@ -37,6 +37,23 @@ private:
     std::uint64_t state_ = 0;
 };
 
+void add(Hash& h, TextureRef const& t)
+{
+    h.add(std::uint64_t(std::uint32_t(t.texture)) * 2 + t.uv_set);
+    for (vec2 const v : {t.row_u, t.row_v, t.offset}) {
+        h.add(v.x);
+        h.add(v.y);
+    }
+}
+
+void add(Hash& h, Texture const& t)
+{
+    for (std::uint64_t const v :
+         {t.first, std::uint64_t(t.width), std::uint64_t(t.height), std::uint64_t(t.wrap_u),
+          std::uint64_t(t.wrap_v), std::uint64_t(t.nearest) * 2 + std::uint64_t(t.srgb)})
+        h.add(v);
+}
+
 void add(Hash& h, Material const& m)
 {
     for (vec3 const v : {m.base_color, m.specular_color, m.phong_specular, m.emission}) h.add(v);
@@ -48,7 +65,7 @@ void add(Hash& h, Material const& m)
     h.add(std::uint64_t(m.double_sided) * 2 + std::uint64_t(m.thin));
     for (TextureRef const* t : {&m.base_color_map, &m.metallic_roughness_map, &m.normal_map, &m.emissive_map,
                                 &m.specular_map, &m.specular_color_map, &m.transmission_map})
-        h.add(std::uint64_t(std::uint32_t(t->texture)));
+        add(h, *t);
 }
 
 } // namespace
@@ -58,10 +75,15 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
     Hash h;
     h.add_array(world.positions);
     h.add_array(world.normals);
+    h.add_array(world.tangents);
     h.add_array(world.uv0);
+    h.add_array(world.uv1);
+    h.add_array(world.colors);
+    for (int i = 0; i < 3; ++i) h.add(world.origin[i]);
     h.add_array(world.triangles);
     h.add_array(world.triangle_material);
     h.add_array(world.scene->textures.texels);
+    for (Texture const& t : world.scene->textures.textures) add(h, t);
     for (Material const& m : world.materials) add(h, m);
     for (Light const& l : world.lights) {
         h.add(std::uint64_t(l.type));
@@ -69,6 +91,7 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
         for (float const v : {l.cos_inner, l.cos_outer, l.range}) h.add(v);
     }
     if (auto const& e = world.scene->environment) {
+        h.add(std::uint64_t(e->width));
         h.add_array(e->radiance);
         h.add(e->rotation_rad);
         h.add(e->scale);

@@ -23,6 +23,9 @@
 
 namespace gi {
 
+/// Sides of the tiles whose paths advance together, px.
+inline constexpr int kTile = 16;
+
 /// Longest chain of surfaces a path may visit, delta lobes included. Reaching it is counted.
 inline constexpr int kLongestPath = 1024;
 
@@ -35,6 +38,15 @@ struct PathSample {
 
 struct PathCounts {
     std::uint64_t nearest_rays = 0, shadow_rays = 0, cut_paths = 0, invalid_paths = 0;
+
+    PathCounts& operator+=(PathCounts const& o)
+    {
+        nearest_rays += o.nearest_rays;
+        shadow_rays += o.shadow_rays;
+        cut_paths += o.cut_paths;
+        invalid_paths += o.invalid_paths;
+        return *this;
+    }
 };
 
 /// One path on its way.
@@ -186,17 +198,18 @@ bool PathTracer<Visibility>::advance(Path& p, Hit const& hit, int vertex, PathCo
         p.sample.depth = glm::dot(at.position - camera.origin, camera.forward);
     }
     if (max_component(at.emission) > 0) collect_emission(p, hit, at);
-    if (p.scatterings > bounces) return false;
     if (vertex == kLongestPath) {
         ++counts.cut_paths;
         return false;
     }
 
     vec3 const wo = at.frame.to_local(-p.ray.direction);
-    if (!world.light_select.empty() && !only_delta(at.bsdf)) aim_at_light(p, at, wo);
+    bool const last = p.scatterings > bounces; // mirrors and glass do not count
+    if (!last && !world.light_select.empty() && !only_delta(at.bsdf)) aim_at_light(p, at, wo);
 
     float const u_lobe = p.rng.uniform();
     BsdfSample const next = gi::sample(at.bsdf, wo, at.front, u_lobe, p.rng.uniform2());
+    if (last && !next.delta) return false;
     p.throughput *= next.weight;
     float const survival = max_component(p.throughput);
     if (!(survival > 0)) return false;
@@ -249,6 +262,10 @@ void PathTracer<Visibility>::add_unshadowed(std::span<Path* const> paths, PathCo
     std::vector<RayQuery> queries;
     for (Path* p : paths) {
         if (!(max_component(p->shadow_radiance) > 0)) continue;
+        if (!(p->shadow.reach > 0)) { // the lamp lies on the surface
+            p->bucket(p->shadow_bucket) += p->shadow_radiance;
+            continue;
+        }
         p->shadow.seed = p->rng.next();
         waiting.push_back(p);
         queries.push_back(p->shadow);

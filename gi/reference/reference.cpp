@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <pmmintrin.h>
-#include <tbb/blocked_range2d.h>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -34,30 +33,29 @@ private:
     unsigned saved_;
 };
 
-constexpr int kTile = 16; // px; the paths of a tile advance together
-
-void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t paths,
-                tbb::combinable<PathCounts>& counts)
+void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t paths)
 {
-    tbb::parallel_for(tbb::blocked_range2d<int>(0, sums.height, kTile, 0, sums.width, kTile),
-                      [&](auto const& tile) {
-                          FlushDenormals const guard;
-                          PathCounts& local = counts.local();
-                          std::vector<Path> batch;
-                          for (std::uint32_t i = 0; i < paths; ++i) {
-                              batch.clear();
-                              for (int y = tile.rows().begin(); y < tile.rows().end(); ++y)
-                                  for (int x = tile.cols().begin(); x < tile.cols().end(); ++x)
-                                      batch.push_back(tracer.start(x, y, sums.paths + i));
-                              tracer.trace(batch, local);
-                              auto next = batch.begin();
-                              for (int y = tile.rows().begin(); y < tile.rows().end(); ++y)
-                                  for (int x = tile.cols().begin(); x < tile.cols().end(); ++x)
-                                      sums.pixels[std::size_t(y) * std::size_t(sums.width) + std::size_t(x)].add(
-                                          (next++)->sample);
-                          }
-                      });
+    tbb::combinable<PathCounts> counts;
+    int const columns = (sums.width + kTile - 1) / kTile, rows = (sums.height + kTile - 1) / kTile;
+    tbb::parallel_for(0, columns * rows, [&](int tile) {
+        FlushDenormals const guard;
+        PathCounts& local = counts.local();
+        int const left = tile % columns * kTile, right = std::min(left + kTile, sums.width);
+        int const top = tile / columns * kTile, bottom = std::min(top + kTile, sums.height);
+        std::vector<Path> batch;
+        for (std::uint32_t i = 0; i < paths; ++i) {
+            batch.clear();
+            for (int y = top; y < bottom; ++y)
+                for (int x = left; x < right; ++x) batch.push_back(tracer.start(x, y, sums.paths + i));
+            tracer.trace(batch, local);
+            auto next = batch.begin();
+            for (int y = top; y < bottom; ++y)
+                for (int x = left; x < right; ++x)
+                    sums.pixels[std::size_t(y) * std::size_t(sums.width) + std::size_t(x)].add((next++)->sample);
+        }
+    });
     sums.paths += paths;
+    sums.counts += counts.combine([](PathCounts a, PathCounts const& b) { return a += b; });
 }
 
 /// How many paths the next pass takes: short enough to answer Ctrl-C, the budget and the progress bar, long enough
@@ -97,7 +95,7 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
     std::uint32_t const resumed = sums.paths;
 
     tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
-    tbb::combinable<PathCounts> counts;
+    double const earlier = sums.seconds;
     RenderResult result;
     auto const start = Clock::now();
     auto saved = start;
@@ -118,8 +116,9 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
             result.end = RenderEnd::error_target;
             break;
         }
-        arena.execute([&] { trace_pass(tracer, sums, next_pass(settings, sums.paths, per_path, spent), counts); });
+        arena.execute([&] { trace_pass(tracer, sums, next_pass(settings, sums.paths, per_path, spent)); });
         double const now = seconds_since(start);
+        sums.seconds = earlier + now;
         per_path = now / double(sums.paths - resumed);
         relmse = sums.relative_mse();
         if (progress) {
@@ -134,17 +133,13 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
             saved = Clock::now();
         }
     }
-    if (keeps_state && result.end == RenderEnd::interrupted)
-        save_checkpoint(settings.checkpoint, sums, print);
-    else if (keeps_state)
-        std::filesystem::remove(settings.checkpoint);
+    result.resumable = keeps_state && (result.end == RenderEnd::interrupted ||
+                                       (settings.resume && result.end != RenderEnd::paths));
+    if (result.resumable) save_checkpoint(settings.checkpoint, sums, print);
 
-    PathCounts const total = counts.combine([](PathCounts a, PathCounts const& b) {
-        return PathCounts{a.nearest_rays + b.nearest_rays, a.shadow_rays + b.shadow_rays,
-                          a.cut_paths + b.cut_paths, a.invalid_paths + b.invalid_paths};
-    });
-    result.seconds = seconds_since(start);
-    report.add_time("trace", result.seconds);
+    PathCounts const& total = sums.counts;
+    result.seconds = sums.seconds;
+    report.add_time("trace", seconds_since(start));
     report.count("closest-hit rays", double(total.nearest_rays));
     report.count("shadow rays", double(total.shadow_rays));
     report.lose("paths cut at 1024 surfaces", total.cut_paths);

@@ -12,7 +12,7 @@ struct Camera {
     bool orthographic = false;
     double yfov_rad = 0.8;   ///< perspective: full vertical field of view
     double ymag_m = 1;       ///< orthographic: half the height of the view
-    double aspect = 0;       ///< width / height the file asks for; 0 = follow the picture
+    double aspect = 0;       ///< width / height the file states, 0 = none; kept for saving, pictures follow --size
     dmat4 world_from_camera{1};
 };
 

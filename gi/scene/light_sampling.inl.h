@@ -66,6 +66,8 @@ GI_FN inline LightSample sample_emitter(WorldView const& world, std::uint32_t tr
     Material const& m = world.materials[surface.material];
     if (m.emissive_map.texture >= 0) shading_detail::interpolate_uv(world, on);
     s.radiance = shading_detail::look_up_emission(world, m, on);
+    // Rays that hit the lamp pass through what is cut out of it.
+    if (m.alpha_mode != AlphaMode::opaque) s.radiance *= coverage(world, triangle, on.barycentric);
     return s;
 }
 

@@ -111,11 +111,15 @@ void build_light_tables(World& world, Report& report)
     std::array<double, classes> total{};
     for (std::size_t i = 0; i < powers.size(); ++i) total[class_of[i]] += powers[i];
     double all = 0;
-    for (double const t : total) all += t;
+    int present = 0;
+    for (double const t : total) {
+        all += t;
+        present += t > 0;
+    }
     std::vector<float> weights(powers.size());
     for (std::size_t i = 0; i < powers.size(); ++i) {
         double const t = total[class_of[i]];
-        weights[i] = t > 0 ? float(powers[i] / t * (kLeastShare + (1 - kLeastShare) * t / all)) : 0.0f;
+        weights[i] = t > 0 ? float(powers[i] / t * (kLeastShare + (1 - present * kLeastShare) * t / all)) : 0.0f;
     }
     world.light_select = make_alias_table(weights);
     if (world.light_select.empty()) {

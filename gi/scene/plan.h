@@ -1,6 +1,6 @@
 #pragma once
-// The scene plan: what is built for this scene and what is left out, each with its reason. Renderers obey it;
-// `lightwell info` prints it.
+// The scene plan: what is built for this scene and what is left out, each with its reason; `lightwell info` prints it.
+// Tables (lights, sky, normals) are built where the world has what they hold; alpha tests where the plan says so.
 
 #include "gi/scene/world.h"
 

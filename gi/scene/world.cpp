@@ -224,7 +224,6 @@ World build_world(std::shared_ptr<Scene const> scene, SceneTime time_s, Report& 
     if (layout.colors) world.colors.resize(layout.vertices);
     world.triangles.reserve(layout.triangles);
     world.triangle_material.reserve(layout.triangles);
-    world.triangle_instance.reserve(layout.triangles);
     world.instances = std::uint32_t(n);
     for (std::size_t i = 0; i < n; ++i) {
         Instance const& instance = layout.instances[i];
@@ -254,7 +253,6 @@ World build_world(std::shared_ptr<Scene const> scene, SceneTime time_s, Report& 
             if (e.vertices.mirrored) std::swap(corner.y, corner.z);
             world.triangles.push_back(corner);
             world.triangle_material.push_back(material);
-            world.triangle_instance.push_back(std::uint32_t(i));
         }
         std::string const where = "mesh '" + mesh.name + "'";
         report.lose("triangles not finite or beyond 1e18 m, skipped", not_finite, where);
@@ -283,7 +281,6 @@ WorldView view(World const& world)
     v.colors = world.colors;
     v.triangles = world.triangles;
     v.triangle_material = world.triangle_material;
-    v.triangle_instance = world.triangle_instance;
     v.surfaces = world.surfaces;
     v.bsdfs = world.bsdfs;
     v.materials = world.materials;

@@ -51,7 +51,6 @@ struct World {
     // Triangles
     std::vector<uvec3> triangles;
     std::vector<std::uint32_t> triangle_material; ///< index into materials
-    std::vector<std::uint32_t> triangle_instance; ///< 0-based number of the node-mesh pair it came from
     std::uint32_t instances = 0;
     std::vector<Surface> surfaces; ///< per triangle
 
@@ -82,7 +81,7 @@ struct WorldView {
     View<vec2 const> uv0, uv1;
     View<vec3 const> colors;
     View<uvec3 const> triangles;
-    View<std::uint32_t const> triangle_material, triangle_instance;
+    View<std::uint32_t const> triangle_material;
     View<Surface const> surfaces;
     View<Material const> materials;
     View<Bsdf const> bsdfs;

@@ -112,6 +112,19 @@ TEST(Hdr, ReadsFlatAndRunLengthEncodedPixels)
                  InputError);
 }
 
+TEST(Hdr, UndoesTheExposuresOfItsHeader)
+{
+    std::string const text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=4\nEXPOSURE= 0.5\nCOLORCORR=1 2 4\n\n"
+                             "-Y 1 +X 1\n" +
+                             std::string("\x80\x80\x80\x82", 4);
+    Picture const p = decode_picture({reinterpret_cast<unsigned char const*>(text.data()), text.size()}, "x.hdr");
+    EXPECT_EQ(rgb(*p.find("color"), 0), (vec3{2.0f / 2, 2.0f / 4, 2.0f / 8}));
+    std::string const dark = "#?RADIANCE\nEXPOSURE=0\n\n-Y 1 +X 1\n" + std::string("\x80\x80\x80\x82", 4);
+    EXPECT_THROW(decode_hdr({reinterpret_cast<unsigned char const*>(dark.data()), dark.size()}, "x"), InputError);
+    std::string const huge = "#?RADIANCE\n\n-Y 65536 +X 65536\n" + std::string(std::size_t(9) << 20, '\1');
+    EXPECT_THROW(decode_hdr({reinterpret_cast<unsigned char const*>(huge.data()), huge.size()}, "x"), InputError);
+}
+
 TEST(Png, RoundTripsThroughTheSrgbCurve)
 {
     std::vector<unsigned char> const pixels{0, 128, 255, 10, 20, 30};

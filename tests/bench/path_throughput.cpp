@@ -43,7 +43,6 @@ struct RecordingVisibility {
 template <class Visibility>
 double trace_all(PathTracer<Visibility> const& tracer, int size, std::uint32_t paths)
 {
-    constexpr int kTile = 16;
     PathCounts counts;
     double sum = 0;
     std::vector<Path> batch;

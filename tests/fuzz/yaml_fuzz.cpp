@@ -2,12 +2,14 @@
 
 #include "gi/base/error.h"
 #include "gi/scene/load.h"
+#include "gi/scene/world.h"
 
 extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
 {
     gi::Report report;
     try {
-        gi::parse_scene_file(std::string(reinterpret_cast<char const*>(data), size), {}, "fuzz", report);
+        std::string const text(reinterpret_cast<char const*>(data), size);
+        gi::build_world(std::make_shared<gi::Scene const>(gi::parse_scene_file(text, {}, "fuzz", report)), 0.3, report);
     } catch (gi::InputError const&) {
     }
     return 0;

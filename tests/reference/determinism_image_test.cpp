@@ -52,6 +52,9 @@ TEST(Determinism, ThreadsDoNotMatter)
 {
     World const world = room();
     RenderSettings s = settings();
+    s.width = 333; // many tiles, the last ones cut
+    s.height = 205;
+    s.paths = 4;
     s.threads = 1;
     Picture const one = render(world, s).picture;
     s.threads = 2;
@@ -79,12 +82,58 @@ TEST(Determinism, ResumedEqualsUninterrupted)
     other.seed = 4;
     EXPECT_THROW(render(world, other), InputError);
     s.resume = true;
-    expect_same_bits(whole, render(world, s).picture);
-    EXPECT_FALSE(std::filesystem::exists(state));
+    RenderResult const rest = render(world, s);
+    expect_same_bits(whole, rest.picture);
+    EXPECT_FALSE(rest.resumable);
+    EXPECT_GT(rest.rays, 2.0 * s.width * s.height * s.paths) << "those before the interruption count, too";
 
     std::ofstream(state) << "not a checkpoint";
     EXPECT_THROW(render(world, s), InputError);
     std::filesystem::remove(state);
+}
+
+/// Whatever changes the picture makes a state unusable.
+TEST(Determinism, StatesOfOtherScenesAreRefused)
+{
+    auto const scene = [](vec3 color, vec2 offset) {
+        Scene s;
+        add_quad(s, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add_material(s, lambert(vec3{1})));
+        s.meshes[0].colors.assign(4, color);
+        s.materials[0].normal_map.offset = offset;
+        set_environment(s, vec3{1});
+        return world_of(s);
+    };
+    std::filesystem::path const state =
+        std::filesystem::temp_directory_path() / ("lightwell_other_" + std::to_string(getpid()) + ".state");
+    RenderSettings s = settings();
+    s.checkpoint = state;
+    StopRequest stop;
+    stop.request();
+    ASSERT_TRUE(render(scene({1, 0, 0}, {0, 0}), s, stop).resumable);
+    s.resume = true;
+    EXPECT_THROW(render(scene({0, 1, 0}, {0, 0}), s), InputError);
+    EXPECT_THROW(render(scene({1, 0, 0}, {0.5f, 0}), s), InputError);
+    EXPECT_NO_THROW(render(scene({1, 0, 0}, {0, 0}), s));
+    std::filesystem::remove(state);
+}
+
+/// Without bounces there is still all light that came by mirrors alone before and after its one scattering.
+TEST(Determinism, BouncesDoNotCountMirrors)
+{
+    Scene scene;
+    add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, add_material(scene, lambert(vec3{0.5f})));
+    add_quad(scene, {-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, add_material(scene, mirror(vec3{1})));
+    add_quad(scene, {-0.2f, 1, 0.2f}, {0, 0, 0.4f}, {0.4f, 0, 0}, add_material(scene, emitter(vec3{9}, true)));
+    RenderSettings s = settings();
+    s.paths = 512;
+    Camera const camera = orthographic({0, 3, 0.5}, {0, 0, 0.5}, 0.5);
+    auto const direct = [&](int bounces) {
+        s.bounces = bounces;
+        Report report;
+        return mean_of(render_reference(world_of(scene), camera, s, {}, {}, report).picture, "L1");
+    };
+    Estimate const none = direct(0), many = direct(8);
+    EXPECT_NEAR(none.mean, many.mean, 1e-6 * many.mean) << "the same paths";
 }
 
 TEST(Determinism, AResumedRenderKnowsItsErrorBeforeItStops)

@@ -26,7 +26,7 @@ RenderResult render(World const& world, Camera const& camera, int size, std::uin
 struct Case {
     char const* name;
     Material material;
-    double albedo; ///< expected radiance in a field of 1
+    double albedo; ///< radiance in a field of 1
 };
 
 std::vector<Case> cases()
@@ -39,7 +39,6 @@ std::vector<Case> cases()
             {"lambert grey", lambert(vec3{0.5f}), 0.5},
             {"black", rough_plastic_black, 0},
             {"mirror", mirror(vec3{1}), 1},
-            {"coloured mirror, Schlick at normal incidence 0.5", mirror(vec3{0.5f}), -1},
             {"solid glass", glass(1.5f, false), 1},
             {"diamond", glass(2.42f, false), 1},
             {"no glass", glass(1.0f, false), 1},
@@ -50,7 +49,6 @@ std::vector<Case> cases()
 TEST(Furnace, SphereInUniformEnvironment)
 {
     for (Case const& c : cases()) {
-        if (c.albedo < 0) continue;
         Scene scene;
         add_sphere(scene, vec3{0}, 1, 4, add_material(scene, c.material), false);
         set_environment(scene, vec3{1});
@@ -63,7 +61,7 @@ TEST(Furnace, SphereInUniformEnvironment)
     }
 }
 
-TEST(Furnace, EveryLightKindAloneInARoom)
+TEST(Furnace, RoomOfGlowingWalls)
 {
     // A closed white room whose walls emit E and reflect rho everywhere shows E / (1 - rho).
     for (float const rho : {0.0f, 0.3f, 0.8f}) {
@@ -80,6 +78,36 @@ TEST(Furnace, EveryLightKindAloneInARoom)
             EXPECT_NEAR(mean_of(r.picture, "L1").mean, 0.5 * rho, 0.005 * 0.5 * rho);
             EXPECT_NEAR(mean_of(r.picture, "L2").mean, 0.5 * rho * rho / (1 - rho), 0.01 * 0.5 * rho * rho / (1 - rho));
         }
+    }
+}
+
+/// What a plane under a uniform sky sends towards an eye at `degrees` from its normal.
+Estimate plane_under_sky(Material const& material, double degrees)
+{
+    Scene scene;
+    add_quad(scene, {-50, 0, 50}, {100, 0, 0}, {0, 0, -100}, add_material(scene, material));
+    set_environment(scene, vec3{1});
+    dvec3 const eye{std::sin(glm::radians(degrees)), std::cos(glm::radians(degrees)), 0};
+    Estimate e = mean_of(render(world_of(scene), orthographic(eye, {0, 0, 0}, 1e-3), 16, 4096).picture);
+    e.sigma = std::max(e.sigma, 2e-4 / 3);
+    return e;
+}
+
+TEST(Furnace, LobesWithClosedForms)
+{
+    for (double const degrees : {0.0, 30.0, 60.0, 80.0}) {
+        double const schlick = 0.5 + 0.5 * std::pow(1 - std::cos(glm::radians(degrees)), 5);
+        expect_estimate(plane_under_sky(mirror(vec3{0.5f}), degrees), schlick, fmt::format("mirror at {}", degrees));
+    }
+    Material metal = mirror(vec3{1});
+    metal.roughness = 1; // GGX with alpha 1 loses ln 2 to masking where it is looked at along its normal
+    expect_estimate(plane_under_sky(metal, 0), 1 - std::log(2.0), "rough metal");
+    Material phong = lambert(vec3{0.3f});
+    phong.model = MaterialModel::phong;
+    phong.phong_specular = vec3{0.6f};
+    for (float const n : {1.0f, 10.0f, 100.0f}) {
+        phong.phong_exponent = n;
+        expect_estimate(plane_under_sky(phong, 0), 0.3 + 0.6 * (n + 1) / (n + 2), fmt::format("phong {}", n));
     }
 }
 

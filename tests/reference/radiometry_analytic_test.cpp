@@ -55,6 +55,29 @@ TEST(Radiometry, RectangleLightIrradiance)
     }
 }
 
+/// What is cut out of a lamp does not shine, whichever technique finds it.
+TEST(Radiometry, LampWithHoles)
+{
+    vec3 const corner{-0.5f, 1, -0.3f}, u{1, 0, 0}, v{0, 0, 0.6f};
+    double const irradiance = polygon_irradiance(
+        {dvec3(corner), dvec3(corner + u), dvec3(corner + u + v), dvec3(corner + v)}, {0, 0, 0}, {0, 1, 0}, 4);
+    for (float const alpha : {0.25f, 0.75f}) {
+        Scene scene;
+        Material lamp = emitter(vec3{4});
+        lamp.alpha_mode = AlphaMode::blend;
+        lamp.alpha = alpha;
+        add_quad(scene, corner, u, v, add_material(scene, lamp));
+        expect_estimate(floor_radiance(scene, {0, 0, 0}), double(alpha) * kAlbedo / glm::pi<double>() * irradiance,
+                        fmt::format("alpha {}", alpha));
+    }
+    Scene scene;
+    Material lamp = emitter(vec3{4});
+    lamp.alpha_mode = AlphaMode::mask;
+    lamp.alpha = 0.25f;
+    add_quad(scene, corner, u, v, add_material(scene, lamp));
+    EXPECT_EQ(floor_radiance(scene, {0, 0, 0}).mean, 0);
+}
+
 TEST(Radiometry, OneSidedLampIsDarkFromBehind)
 {
     Scene scene;

@@ -3,6 +3,7 @@
 #include "gi/base/error.h"
 #include "gi/scene/animation.h"
 #include "gi/scene/load.h"
+#include "gi/scene/world.h"
 
 #include <fstream>
 #include <gtest/gtest.h>
@@ -186,6 +187,77 @@ TEST_F(AssimpFolder, ColladaKeepsNodesCamerasLightsAndClips)
             EXPECT_NEAR(pose.world_from_node[n][3].y, 3, 1e-6);
         }
     }
+}
+
+/// One triangle that hangs on five bones with the weights 0.1 ... 0.3 per vertex.
+std::string skinned_collada()
+{
+    std::string joints, matrices, nodes, pairs;
+    for (int b = 0; b < 5; ++b) {
+        std::string const name = "bone" + std::to_string(b);
+        joints += name + " ";
+        matrices += "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 ";
+        nodes += "<node id='" + name + "' sid='" + name + "' name='" + name + "' type='JOINT'><translate>0 " +
+                 std::to_string(b) + " 0</translate></node>";
+    }
+    for (int v = 0; v < 3; ++v)
+        for (int b = 0; b < 5; ++b) pairs += std::to_string(b) + " " + std::to_string(b) + " ";
+    return "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'>"
+           "<library_geometries><geometry id='g'><mesh>"
+           "<source id='p'><float_array id='pa' count='9'>0 0 0 1 0 0 0 1 0</float_array><technique_common>"
+           "<accessor source='#pa' count='3' stride='3'><param name='X' type='float'/><param name='Y' "
+           "type='float'/>"
+           "<param name='Z' type='float'/></accessor></technique_common></source>"
+           "<vertices id='v'><input semantic='POSITION' source='#p'/></vertices>"
+           "<triangles count='1'><input semantic='VERTEX' source='#v' offset='0'/><p>0 1 2</p></triangles>"
+           "</mesh></geometry></library_geometries><library_controllers><controller id='c'><skin source='#g'>"
+           "<bind_shape_matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</bind_shape_matrix>"
+           "<source id='j'><Name_array id='ja' count='5'>" +
+           joints +
+           "</Name_array><technique_common><accessor source='#ja' count='5' stride='1'>"
+           "<param name='JOINT' type='name'/></accessor></technique_common></source>"
+           "<source id='b'><float_array id='ba' count='80'>" +
+           matrices +
+           "</float_array><technique_common><accessor source='#ba' count='5' stride='16'>"
+           "<param name='TRANSFORM' type='float4x4'/></accessor></technique_common></source>"
+           "<source id='w'><float_array id='wa' count='5'>0.15 0.3 0.1 0.25 0.2</float_array><technique_common>"
+           "<accessor source='#wa' count='5' stride='1'><param name='WEIGHT' type='float'/></accessor>"
+           "</technique_common></source>"
+           "<joints><input semantic='JOINT' source='#j'/><input semantic='INV_BIND_MATRIX' source='#b'/></joints>"
+           "<vertex_weights count='3'><input semantic='JOINT' source='#j' offset='0'/>"
+           "<input semantic='WEIGHT' source='#w' offset='1'/><vcount>5 5 5</vcount><v>" +
+           pairs +
+           "</v></vertex_weights></skin></controller></library_controllers>"
+           "<library_visual_scenes><visual_scene id='s'><node id='rig'>" +
+           nodes +
+           "</node><node id='body'><instance_controller url='#c'><skeleton>#bone0</skeleton></instance_controller>"
+           "</node></visual_scene></library_visual_scenes><scene><instance_visual_scene "
+           "url='#s'/></scene></COLLADA>";
+}
+
+TEST_F(AssimpFolder, BonesBecomeASkinOfTheFourLargestWeights)
+{
+    Scene const scene = load("skinned.dae", skinned_collada());
+    ASSERT_EQ(scene.skins.size(), 1u);
+    EXPECT_EQ(scene.skins[0].joints.size(), 5u);
+    Mesh const& mesh = scene.meshes.at(0);
+    ASSERT_EQ(mesh.weights.size(), mesh.positions.size());
+    double height = 0, all = 0;
+    for (int k = 0; k < 4; ++k) {
+        std::string const& bone =
+            scene.nodes[std::size_t(scene.skins[0].joints[mesh.joints[0][std::size_t(k)]])].name;
+        EXPECT_NE(bone, "bone2") << "the smallest";
+        height += double(mesh.weights[0][k]) * (bone.back() - '0');
+        all += double(mesh.weights[0][k]);
+    }
+    EXPECT_NEAR(all, 0.9, 1e-6);
+    EXPECT_NEAR(height, 0.3 * 1 + 0.25 * 3 + 0.2 * 4, 1e-6);
+    EXPECT_EQ(lost("bone weights beyond the largest four of a vertex, dropped"), mesh.positions.size());
+
+    Report report;
+    World const world = build_world(std::make_shared<Scene const>(scene), std::nullopt, report);
+    EXPECT_NEAR(double(world.positions[0].y) + world.origin.y, height / all, 1e-5)
+        << "each bone is lifted by its number";
 }
 
 TEST_F(AssimpFolder, FbxCentimetresBecomeMetres)

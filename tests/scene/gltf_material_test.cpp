@@ -1,6 +1,7 @@
 // Materials and textures of glTF: every extension that is read, and what is counted where something is not.
 
 #include "gi/base/error.h"
+#include "gi/scene/bsdf.h"
 #include "tests/scene/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -77,12 +78,21 @@ TEST(GltfMaterial, ValuesOutOfRangeAreClampedAndCounted)
 {
     Report report;
     Material const m = read_material({{"pbrMetallicRoughness", {{"roughnessFactor", 3}, {"metallicFactor", -1}}},
-                                      {"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}},
+                                      {"extensions", {{"KHR_materials_ior", {{"ior", 0.5}}}}}},
                                      report);
     EXPECT_EQ(m.roughness, 1);
     EXPECT_EQ(m.metallic, 0);
     EXPECT_EQ(m.ior, 1);
     EXPECT_EQ(lost(report, "material values clamped"), 3u);
+}
+
+/// KHR_materials_ior: "the value 0 ... Fresnel term evaluated as 1".
+TEST(GltfMaterial, AnIndexOfZeroReflectsEverything)
+{
+    Report report;
+    Material const m = read_material({{"extensions", {{"KHR_materials_ior", {{"ior", 0}}}}}}, report);
+    EXPECT_NEAR(make_bsdf(m).f0.x, 1, 1e-4);
+    EXPECT_EQ(lost(report, "material values clamped"), 0u);
 }
 
 TEST(GltfMaterial, PhongComesFromExtras)

@@ -231,6 +231,10 @@ TEST(SceneFile, MistakesAreNamedWithTheirPlace)
         "models: [{generate: {kind: cornell}}]\nmaterials: [{match: red, base_color: 0.9, phong: {specular: "
         "0.2}}]",
         {"more than 1"});
+    expect_refusal(
+        "models: [{generate: {kind: cornell}}]\nmaterials: [{match: red, base_color: 0.5, phong: {specular: "
+        "0.4}}, {match: red, base_color: 0.9}]",
+        {"more than 1"});
     expect_refusal("models: [\n  {a: 1", {"test.yaml:", "not YAML"});
     expect_refusal("", {"test.yaml"});
     expect_refusal("just words", {"test.yaml"});

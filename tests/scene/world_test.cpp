@@ -58,7 +58,6 @@ TEST(World, NodesOfOneMeshAreInstances)
     EXPECT_EQ(w.instances, 2u);
     EXPECT_EQ(w.triangles.size(), 4u);
     EXPECT_EQ(w.positions.size(), 8u);
-    EXPECT_EQ(w.triangle_instance, (std::vector<std::uint32_t>{0, 0, 1, 1}));
     EXPECT_EQ(w.bounds.high, (vec3{6, 1, 0}));
 }
 
@@ -200,7 +199,6 @@ TEST(World, DamagedTrianglesAreSkippedAndCounted)
     World const w = build(scene, report);
     EXPECT_EQ(w.triangles.size(), 2u);
     EXPECT_EQ(w.triangle_material.size(), 2u);
-    EXPECT_EQ(w.triangle_instance.size(), 2u);
     EXPECT_EQ(lost(report, "not finite"), 3u);
     EXPECT_EQ(lost(report, "without area"), 2u);
     for (auto const& [what, loss] : report.losses()) EXPECT_EQ(loss.first, "mesh 'door'") << what;

@@ -18,6 +18,9 @@ void interrupt_and_resume(int signal)
     EXPECT_EQ(o.code, 130) << o.err;
     EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "a.exr.state"}));
     EXPECT_NE(o.err.find("--resume"), std::string::npos) << o.err;
+    Outcome const again = run(kLong, folder.path());
+    EXPECT_EQ(again.code, 2) << "would destroy what is unfinished";
+    EXPECT_NE(again.err.find("--resume"), std::string::npos) << again.err;
     std::string const part = file_text(folder / "a.exr");
     EXPECT_TRUE(part.starts_with("\x76\x2f\x31\x01"));
 

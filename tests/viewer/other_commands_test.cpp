@@ -61,6 +61,21 @@ TEST(OtherCommands, SkyIsSavedBesideTheScene)
     run_well("info a.yaml", folder.path());
 }
 
+TEST(OtherCommands, GenerateReplacesNothingOfOnesOwn)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "x.yaml") << "models: []\n";
+    std::string const call = "generate atrium --bays 1 --detail 0.2 --no-figure --out ";
+    Outcome const o = run(call + "x.glb", folder.path());
+    EXPECT_EQ(o.code, 2);
+    EXPECT_NE(o.err.find("x.yaml"), std::string::npos) << o.err;
+    std::filesystem::create_directory(folder / "y.yaml");
+    EXPECT_EQ(run(call + "y.glb", folder.path()).code, 2);
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"x.yaml", "y.yaml"}));
+    run_well(call + "z.glb", folder.path());
+    run_well(call + "z.glb", folder.path());
+}
+
 TEST(OtherCommands, StandardOutputThatIsFullIsNotSuccess)
 {
     TemporaryFolder const folder;

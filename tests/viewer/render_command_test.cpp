@@ -163,6 +163,27 @@ TEST(RenderCommand, NegativeValuesAreValues)
              folder.path());
 }
 
+TEST(RenderCommand, GoesOnInInstalments)
+{
+    TemporaryFolder const folder, whole;
+    std::string const call = "render cornell --size 64x64 --out a.exr";
+    run_well(call + " --resume --until relmse=0.05", folder.path());
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "a.exr.state"}));
+    run_well(call + " --resume --paths 96", folder.path());
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"a.exr"});
+    run_well(call + " --paths 96", whole.path());
+    EXPECT_TRUE(file_text(folder / "a.exr") == file_text(whole / "a.exr"));
+}
+
+TEST(RenderCommand, LightsThatNothingHoldsLightNothing)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "a.obj") << "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wall\nf 1 2 3\n";
+    std::ofstream(folder / "a.mtl") << "newmtl lamp\nKe 9 9 9\nnewmtl wall\nKd 0.5 0.5 0.5\n";
+    Outcome const o = run_well("render a.obj --size 8x8 --paths 1 --out a.exr", folder.path());
+    EXPECT_TRUE(contains(o.err, "white sky")) << o.err;
+}
+
 TEST(RenderCommand, StopsAtItsBudget)
 {
     TemporaryFolder const folder;

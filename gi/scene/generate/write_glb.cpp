@@ -366,7 +366,7 @@ private:
 std::string sky_yaml(EnvironmentMap const& map, std::string const& glb, std::string const& sky)
 {
     return fmt::format(
-        "models:\n  - file: \"{}\"\nenvironment:\n  file: \"{}\"\n  rotate: {}\n  scale: [{}, {}, {}]\n", glb, sky,
+        "{}\nmodels:\n  - file: \"{}\"\nenvironment:\n  file: \"{}\"\n  rotate: {}\n  scale: [{}, {}, {}]\n", kBundleMark, glb, sky,
         glm::degrees(map.rotation_rad), map.scale.x, map.scale.y, map.scale.z);
 }
 
@@ -378,11 +378,19 @@ void write_glb(std::filesystem::path const& file, Scene const& scene, Report& re
     GlbWriter(scene, report).write(file);
 }
 
+std::vector<std::filesystem::path> scene_bundle_files(std::filesystem::path const& glb, Scene const& scene)
+{
+    if (!scene.environment) return {glb};
+    std::string const stem = (glb.parent_path() / glb.stem()).string();
+    return {glb, stem + "_sky.exr", stem + ".yaml"};
+}
+
 std::vector<std::filesystem::path> write_scene_bundle(std::filesystem::path const& glb, Scene const& scene,
                                                       Report& report)
 {
+    auto const files = scene_bundle_files(glb, scene);
     GlbWriter(scene, report).write(glb);
-    if (!scene.environment) return {glb};
+    if (!scene.environment) return files;
     EnvironmentMap const& map = *scene.environment;
     Picture picture;
     picture.width = int(map.width);
@@ -390,11 +398,9 @@ std::vector<std::filesystem::path> write_scene_bundle(std::filesystem::path cons
     Layer& layer = picture.add("color", 3);
     for (std::size_t i = 0; i < map.radiance.size(); ++i)
         for (int c = 0; c < 3; ++c) layer.data[3 * i + std::size_t(c)] = map.radiance[i][c];
-    std::filesystem::path const stem = glb.parent_path() / glb.stem();
-    std::filesystem::path const sky = stem.string() + "_sky.exr", yaml = stem.string() + ".yaml";
-    write_exr(sky, picture, PixelType::single, report);
-    write_text(yaml, sky_yaml(map, glb.filename().string(), sky.filename().string()));
-    return {glb, sky, yaml};
+    write_exr(files[1], picture, PixelType::single, report);
+    write_text(files[2], sky_yaml(map, glb.filename().string(), files[1].filename().string()));
+    return files;
 }
 
 } // namespace gi

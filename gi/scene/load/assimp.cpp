@@ -30,8 +30,8 @@ aiScene const* import(Assimp::Importer& importer, std::filesystem::path const& f
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     importer.SetPropertyInteger(AI_CONFIG_PP_LBW_MAX_WEIGHTS, 4);
-    return importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
-                                                aiProcess_LimitBoneWeights | aiProcess_SortByPType);
+    return importer.ReadFile(file.string(),
+                             aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
 }
 
 /// Address space of this process, bytes.

@@ -92,7 +92,8 @@ public:
             m.emission[c] = times * within(source.emissiveFactor[std::size_t(c)], 0, 1e18, "emissiveFactor");
 
         Properties const ior(find_extension(source.extensions, "KHR_materials_ior"));
-        m.ior = within(ior.number("ior", 1.5), 1, 100, "ior");
+        double const index = ior.number("ior", 1.5);
+        m.ior = index == 0 ? 1e6f : within(index, 1, 100, "ior"); // 0 stands for a reflectance of 1 (its README)
         Properties const specular(find_extension(source.extensions, "KHR_materials_specular"));
         m.specular = within(specular.number("specularFactor", 1), 0, 1, "specularFactor");
         auto const tint = specular.numbers("specularColorFactor", {1, 1, 1});

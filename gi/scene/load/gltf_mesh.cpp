@@ -146,12 +146,14 @@ private:
         GltfArray const colors = attribute(p, "COLOR_0", 0);
         if (colors.count > 0 && colors.components < 3)
             throw d_.error("COLOR_0 of " + where_ + " is damaged", "it has fewer than three components");
-        std::uint64_t transparent = 0;
+        std::uint64_t transparent = 0, clamped = 0;
         for (std::size_t i = 0; i < colors.count; ++i) {
             transparent += colors.components == 4 && colors.as_vec4(i).w < 1;
             vec3 const c = colors.as_vec3(i);
             mesh.colors.push_back(all_finite(c) ? glm::clamp(c, vec3{0}, vec3{1}) : vec3{1});
+            clamped += mesh.colors.back() != c;
         }
+        report_.lose("vertex colours not within 0..1, clamped", clamped, where_);
         report_.lose("vertices with an alpha of their own, taken as opaque", transparent, where_);
     }
 

@@ -5,6 +5,8 @@
 #include "gi/scene/generate.h"
 #include "gi/scene/load.h"
 #include "gi/scene/load/scene_file_keys.h"
+#include "gi/scene/load/scene_file_light.h"
+#include "gi/scene/load/scene_file_material.h"
 #include "gi/scene/load/yaml_reader.h"
 
 #include <algorithm>
@@ -47,7 +49,7 @@ public:
             for (YamlReader const& item : root_.at("models").items()) add_model(item);
         if (root_.has("environment")) set_environment(root_.at("environment"));
         if (root_.has("lights"))
-            for (YamlReader const& item : root_.at("lights").items()) add_light(item);
+            for (YamlReader const& item : root_.at("lights").items()) add_scene_file_light(item, scene_);
         if (root_.has("cameras")) add_cameras(root_.at("cameras"));
         if (root_.has("materials"))
             for (YamlReader const& item : root_.at("materials").items()) override_material(item);
@@ -59,8 +61,6 @@ private:
         std::string name;
         std::size_t first_material, end_material;
     };
-
-    static void check_keys(YamlReader const& map, char const* kind) { map.only_keys(scene_file_keys().at(kind)); }
 
     fs::path find_file(YamlReader const& at) const
     {
@@ -212,125 +212,6 @@ private:
         scene_.environment = std::move(map);
     }
 
-    void add_light(YamlReader const& l)
-    {
-        if (!l.is_map() || !l.has("type"))
-            throw l.error("a light needs a type", "it is not known what it is", "type: point");
-        std::string const type = l.at("type").text();
-        if (type == "rectangle") return add_rectangle(l);
-        Light light;
-        if (type == "point") {
-            check_keys(l, "point_light");
-            light.type = LightType::point;
-        } else if (type == "spot") {
-            check_keys(l, "spot_light");
-            light.type = LightType::spot;
-        } else if (type == "directional") {
-            check_keys(l, "directional_light");
-            light.type = LightType::directional;
-        } else {
-            throw l.at("type").error("there is no light type '" + type.substr(0, 64) + "'", "it is not known here",
-                                     "choose point, spot, directional or rectangle");
-        }
-        dvec3 const position = l.has("position") ? l.at("position").vector() : dvec3{0};
-        dvec3 const direction = read_direction(l, position);
-        if (l.has("intensity")) light.intensity = vec3(l.at("intensity").vector_or_number(0, 1e12));
-        if (l.has("range")) light.range = float(l.at("range").number(0, 1e12));
-        if (l.has("cone")) {
-            auto const angles = l.at("cone").items();
-            if (angles.size() != 2)
-                throw l.at("cone").error("a cone has two angles", "inner and outer, degrees", "cone: [20, 30]");
-            double const outer = angles[1].number(0.01, 90), inner = angles[0].number(0, outer);
-            light.cos_inner = float(std::cos(glm::radians(inner)));
-            light.cos_outer = float(std::cos(glm::radians(outer)));
-        }
-        Node node;
-        node.name = type + " light";
-        node.light = std::int32_t(scene_.lights.size());
-        dvec3 const z = -direction;
-        Frame const frame = Frame::about(vec3(z));
-        node.matrix = dmat4(glm::dvec4(dvec3(frame.tangent), 0), glm::dvec4(dvec3(frame.bitangent), 0),
-                            glm::dvec4(z, 0), glm::dvec4(position, 1));
-        scene_.lights.push_back(light);
-        scene_.nodes.push_back(std::move(node));
-    }
-
-    /// Unit; down where nothing is said.
-    static dvec3 read_direction(YamlReader const& l, dvec3 position)
-    {
-        if (l.has("direction") && l.has("target"))
-            throw l.error("a light has both direction and target", "they contradict each other", "keep one");
-        dvec3 direction{0, -1, 0};
-        if (l.has("direction")) direction = l.at("direction").vector();
-        if (l.has("target")) direction = l.at("target").vector() - position;
-        double const length = glm::length(direction);
-        if (!(length > 0)) throw l.error("the light has no direction", "it is zero", "direction: [0, -1, 0]");
-        return direction / length;
-    }
-
-    struct Rectangle {
-        dvec3 corner, u, v;
-    };
-
-    /// By its corner and edges, or by its centre, size and direction (then the first edge is level).
-    static Rectangle read_rectangle(YamlReader const& l)
-    {
-        auto const need = [&](char const* key) {
-            if (!l.has(key))
-                throw l.error(
-                    fmt::format("a rectangle light needs {}", key),
-                    "it is given by corner and edges (position, u, v) or by centre (position, size, direction)",
-                    "position: [0, 2, 0], u: [1, 0, 0], v: [0, 0, 1], radiance: 10");
-        };
-        need("position");
-        need("radiance");
-        dvec3 const position = l.at("position").vector();
-        if (!l.has("size")) {
-            need("u");
-            need("v");
-            if (l.has("direction") || l.has("target"))
-                throw l.error("a rectangle with u and v has no direction", "it shines along u x v",
-                              "give size instead");
-            return {position, l.at("u").vector(), l.at("v").vector()};
-        }
-        if (l.has("u") || l.has("v"))
-            throw l.error("a rectangle has both size and edges", "they contradict each other", "keep one");
-        auto const size = l.at("size").items();
-        if (size.size() != 2)
-            throw l.at("size").error("a size has two numbers", "width and height, m", "size: [1, 0.5]");
-        double const width = size[0].number(1e-9, 1e9), height = size[1].number(1e-9, 1e9);
-        dvec3 const n = read_direction(l, position);
-        dvec3 const up = std::abs(n.y) < 0.999 ? dvec3{0, 1, 0} : dvec3{0, 0, 1};
-        dvec3 const u = width * glm::normalize(glm::cross(up, n)), v = height * glm::normalize(glm::cross(n, u));
-        return {position - 0.5 * (u + v), u, v};
-    }
-
-    /// An emissive quad that shines to the side of u x v.
-    void add_rectangle(YamlReader const& l)
-    {
-        check_keys(l, "rectangle_light");
-        auto const [corner, u, v] = read_rectangle(l);
-        if (!(glm::length(glm::cross(u, v)) > 0))
-            throw l.error("the rectangle has no area", "u and v are parallel or zero", "give two different edges");
-        Material m;
-        m.base_color = vec3{0};
-        m.specular = 0;
-        m.emission = vec3(l.at("radiance").vector_or_number(0, 1e12));
-        Mesh mesh;
-        mesh.name = "rectangle light";
-        mesh.material = std::int32_t(scene_.materials.size());
-        mesh.positions = {vec3{0}, vec3(u), vec3(u + v), vec3(v)};
-        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-        Node node;
-        node.name = mesh.name;
-        node.translation = corner;
-        node.meshes = {std::int32_t(scene_.meshes.size())};
-        scene_.materials.push_back(m);
-        scene_.material_names.push_back(mesh.name);
-        scene_.meshes.push_back(std::move(mesh));
-        scene_.nodes.push_back(std::move(node));
-    }
-
     /// The file's own cameras come first: they are what its author wants to see.
     void add_cameras(YamlReader const& list)
     {
@@ -341,6 +222,8 @@ private:
                 if (!c.has(key))
                     throw c.error(fmt::format("a camera needs {}", key), "name, from and at are needed",
                                   "name: front, from: [0, 1, 5], at: [0, 1, 0]");
+            if (c.has("fov") && c.has("height"))
+                throw c.error("a camera has both fov and height", "height makes it orthographic", "keep one");
             Camera camera;
             try {
                 camera = look_at(c.at("from").vector(), c.at("at").vector(),
@@ -390,7 +273,7 @@ private:
         bool found = false;
         for (std::size_t i = first; i < end; ++i)
             if (pattern.size() < 1000 && fnmatch(pattern.c_str(), scene_.material_names[i].c_str(), 0) == 0) {
-                change(o, scene_.materials[i]);
+                change_material(o, scene_.materials[i]);
                 found = true;
             }
         if (found) return;
@@ -400,36 +283,6 @@ private:
         throw o.at("match").error("no material matches '" + pattern.substr(0, 64) + "'", "nothing would change",
                                   known.empty() ? "there are none" : "some that exist: " + known);
     }
-    static void change(YamlReader const& o, Material& m)
-    {
-        auto const number = [&](char const* key, float& to, double low, double high) {
-            if (o.has(key)) to = float(o.at(key).number(low, high));
-        };
-        if (o.has("base_color")) m.base_color = vec3(o.at("base_color").vector_or_number(0, 1));
-        if (o.has("emission")) m.emission = vec3(o.at("emission").vector_or_number(0, 1e12));
-        number("roughness", m.roughness, 0, 1);
-        number("metallic", m.metallic, 0, 1);
-        number("specular", m.specular, 0, 1);
-        number("ior", m.ior, 1, 100);
-        number("transmission", m.transmission, 0, 1);
-        if (o.has("alpha")) {
-            m.alpha = float(o.at("alpha").number(0, 1));
-            if (m.alpha < 1 && m.alpha_mode == AlphaMode::opaque) m.alpha_mode = AlphaMode::blend;
-        }
-        if (o.has("double_sided")) m.double_sided = o.at("double_sided").boolean();
-        if (o.has("thin")) m.thin = o.at("thin").boolean();
-        if (o.has("phong")) {
-            YamlReader const p = o.at("phong");
-            check_keys(p, "phong");
-            m.model = MaterialModel::phong;
-            if (p.has("specular")) m.phong_specular = vec3(p.at("specular").vector_or_number(0, 1));
-            if (p.has("exponent")) m.phong_exponent = float(p.at("exponent").number(0, 1e6));
-            if (max_component(m.base_color + m.phong_specular) > 1)
-                throw p.error("base_color and specular add up to more than 1", "the surface would make light",
-                              "make one of them darker");
-        }
-    }
-
     YamlReader const& root_;
     fs::path const& folder_;
     Report& report_;

@@ -1,4 +1,6 @@
 #pragma once
+#include "gi/scene/load/yaml_reader.h"
+
 #include <map>
 #include <set>
 #include <string>
@@ -7,5 +9,7 @@ namespace gi {
 
 /// The keys of every kind of mapping in a scene file, by the name that data/scene.schema.json gives to it.
 std::map<std::string, std::set<std::string>> const& scene_file_keys();
+/// Throws unless all keys of the mapping belong to its kind.
+inline void check_keys(YamlReader const& map, char const* kind) { map.only_keys(scene_file_keys().at(kind)); }
 
 } // namespace gi

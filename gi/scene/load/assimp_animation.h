@@ -1,0 +1,11 @@
+#pragma once
+#include "gi/base/report.h"
+#include "gi/scene/load/assimp_types.h"
+#include "gi/scene/scene.h"
+
+namespace gi {
+
+/// Clips with their channels. Nodes that move get their matrix split into translation, rotation and scale.
+void convert_animations(aiScene const& source, NodeOfName const& node_of, Scene& scene, Report& report);
+
+} // namespace gi

@@ -1,0 +1,211 @@
+#include "gi/scene/load/assimp_material.h"
+
+#include "gi/base/error.h"
+#include "gi/base/file.h"
+#include "gi/scene/load.h"
+
+#include <algorithm>
+#include <assimp/material.h>
+#include <fmt/format.h>
+#include <map>
+#include <opencv2/core/mat.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+namespace gi {
+namespace {
+
+class Materials {
+public:
+    Materials(aiScene const& source, std::filesystem::path const& folder, Scene& scene, Report& report)
+        : source_(source), folder_(folder), scene_(scene), report_(report)
+    {
+    }
+
+    void add(aiMaterial const& source)
+    {
+        aiString name;
+        source.Get(AI_MATKEY_NAME, name);
+        where_ = fmt::format("material '{}'", name.C_Str());
+        aiColor3D diffuse(0.8f, 0.8f, 0.8f), specular(0, 0, 0), emissive(0, 0, 0);
+        float shininess = 0, opacity = 1, ior = 1.5f;
+        int illumination = 2;
+        source.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse);
+        source.Get(AI_MATKEY_COLOR_SPECULAR, specular);
+        source.Get(AI_MATKEY_COLOR_EMISSIVE, emissive);
+        source.Get(AI_MATKEY_SHININESS, shininess);
+        source.Get(AI_MATKEY_OPACITY, opacity);
+        source.Get(AI_MATKEY_REFRACTI, ior);
+        source.Get("$mat.illum", 0, 0, illumination);
+
+        Material m;
+        m.specular = 0;
+        m.base_color = unit_color(to_vec3(diffuse));
+        m.emission = positive(to_vec3(emissive));
+        vec3 const shine = unit_color(to_vec3(specular));
+        float metallic = -1, roughness = -1;
+        source.Get(AI_MATKEY_METALLIC_FACTOR, metallic);
+        source.Get(AI_MATKEY_ROUGHNESS_FACTOR, roughness);
+        if (metallic >= 0 && roughness >= 0) {
+            m.metallic = std::min(metallic, 1.0f);
+            m.roughness = std::min(roughness, 1.0f);
+            m.specular = 1;
+        } else if (max_component(shine) > 0 && shininess > 0) {
+            m.model = MaterialModel::phong;
+            m.phong_specular = shine;
+            m.phong_exponent = std::clamp(shininess, 0.0f, 1e6f);
+            float const most = max_component(m.base_color + m.phong_specular);
+            if (most > 1) {
+                m.base_color /= most;
+                m.phong_specular /= most;
+                report_.lose("materials that reflect more than they receive, scaled down", 1, where_);
+            }
+        }
+        m.base_color_map = texture(source, aiTextureType_DIFFUSE, true);
+        if (m.base_color_map.texture < 0) m.base_color_map = texture(source, aiTextureType_BASE_COLOR, true);
+        // With a map, black means "not set" in many exporters.
+        if (m.base_color_map.texture >= 0 && m.base_color == vec3{0}) m.base_color = vec3{1};
+        m.emissive_map = texture(source, aiTextureType_EMISSIVE, true);
+        m.normal_map = texture(source, aiTextureType_NORMALS, false);
+        bool const mask = source.GetTextureCount(aiTextureType_OPACITY) > 0;
+        if (mask) {
+            m.alpha_mode = AlphaMode::mask;
+            add_mask(source, m);
+        } else if (opacity < 1 && opacity >= 0) {
+            m.alpha_mode = AlphaMode::blend;
+            m.alpha = opacity;
+        }
+        if (ior >= 1 && ior <= 100) m.ior = ior;
+        if (illumination == 5) make_mirror(m, shine);
+        if (illumination == 6 || illumination == 7) make_glass(m, source);
+        count_other_maps(source);
+        scene_.materials.push_back(m);
+        scene_.material_names.push_back(name.C_Str());
+    }
+
+private:
+    void count_other_maps(aiMaterial const& source)
+    {
+        constexpr aiTextureType kRead[] = {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR, aiTextureType_EMISSIVE,
+                                           aiTextureType_NORMALS, aiTextureType_OPACITY};
+        for (int type = aiTextureType_NONE + 1; type <= AI_TEXTURE_TYPE_MAX; ++type)
+            if (std::find(std::begin(kRead), std::end(kRead), aiTextureType(type)) == std::end(kRead))
+                report_.lose("texture maps other than diffuse, emissive, normal and opacity, ignored",
+                             source.GetTextureCount(aiTextureType(type)), where_);
+    }
+    /// The ray-traced illumination models of MTL: 5 reflects, 6 and 7 refract as well.
+    static void make_mirror(Material& m, vec3 reflectance)
+    {
+        m.model = MaterialModel::metal_rough;
+        m.base_color = reflectance;
+        m.base_color_map = {};
+        m.metallic = 1;
+        m.roughness = 0;
+    }
+    void make_glass(Material& m, aiMaterial const& source)
+    {
+        aiColor3D filter(1, 1, 1);
+        source.Get(AI_MATKEY_COLOR_TRANSPARENT, filter);
+        m.model = MaterialModel::metal_rough;
+        m.alpha_mode = AlphaMode::opaque;
+        m.alpha = 1;
+        m.base_color = unit_color(to_vec3(filter));
+        m.base_color_map = {};
+        m.metallic = 0;
+        m.roughness = 0;
+        m.specular = 1;
+        m.transmission = 1;
+        m.thin = false;
+    }
+
+    vec3 unit_color(vec3 v)
+    {
+        if (!all_finite(v)) v = vec3{0};
+        vec3 const clamped = glm::clamp(v, vec3{0}, vec3{1});
+        if (clamped != v) report_.lose("material values clamped", 1, where_);
+        return clamped;
+    }
+
+    std::vector<unsigned char> texture_bytes(std::string path, std::string& name)
+    {
+        if (aiTexture const* embedded = source_.GetEmbeddedTexture(path.c_str())) {
+            name = fmt::format("embedded {}", path);
+            if (embedded->mHeight == 0) {
+                auto const* p = reinterpret_cast<unsigned char const*>(embedded->pcData);
+                return {p, p + embedded->mWidth};
+            }
+            cv::Mat const pixels(int(embedded->mHeight), int(embedded->mWidth), CV_8UC4, embedded->pcData);
+            std::vector<unsigned char> png;
+            cv::imencode(".png", pixels, png); // aiTexel is BGRA, as OpenCV wants it
+            return png;
+        }
+        std::replace(path.begin(), path.end(), '\\', '/');
+        std::filesystem::path file = path;
+        if (file.is_absolute() || !std::filesystem::exists(folder_ / file)) file = file.filename();
+        name = (folder_ / file).string();
+        return read_bytes(folder_ / file);
+    }
+    TextureRef texture(aiMaterial const& source, aiTextureType type, bool srgb)
+    {
+        TextureRef ref;
+        aiString path;
+        unsigned uv_set = 0;
+        if (source.GetTexture(type, 0, &path, nullptr, &uv_set) != AI_SUCCESS) return ref;
+        auto const key = std::pair(std::string(path.C_Str()), srgb);
+        auto [it, fresh] = textures_.try_emplace(key, -1);
+        if (fresh) try {
+                std::string name;
+                std::vector<unsigned char> const bytes = texture_bytes(path.C_Str(), name);
+                it->second = add_texture(scene_.textures, bytes.data(), bytes.size(), srgb, name);
+            } catch (InputError const& e) {
+                report_.lose("textures that could not be read", 1, e.what());
+            }
+        ref.texture = it->second;
+        ref.uv_set = uv_set == 1 ? 1 : 0;
+        return ref;
+    }
+    /// Puts the brightness of an opacity map into the alpha of the base colour.
+    void add_mask(aiMaterial const& source, Material& m)
+    {
+        TextureRef const mask = texture(source, aiTextureType_OPACITY, false);
+        if (mask.texture < 0) return;
+        TexturePool& pool = scene_.textures;
+        Texture combined = pool.textures[std::size_t(mask.texture)];
+        Texture const from = combined;
+        Texture const* color =
+            m.base_color_map.texture >= 0 ? &pool.textures[std::size_t(m.base_color_map.texture)] : nullptr;
+        if (color != nullptr && color->first == from.first) return; // one picture with its own alpha
+        combined.first = pool.texels.size();
+        combined.srgb = true;
+        for (std::uint32_t y = 0; y < from.height; ++y)
+            for (std::uint32_t x = 0; x < from.width; ++x) {
+                Rgba8 texel{255, 255, 255, pool.texels[from.first + std::uint64_t(y) * from.width + x].r};
+                if (color != nullptr) {
+                    std::uint64_t const cx = std::uint64_t(x) * color->width / from.width,
+                                        cy = std::uint64_t(y) * color->height / from.height;
+                    Rgba8 const c = pool.texels[color->first + cy * color->width + cx];
+                    texel = {c.r, c.g, c.b, texel.a};
+                }
+                pool.texels.push_back(texel);
+            }
+        pool.textures.push_back(combined);
+        m.base_color_map = mask;
+        m.base_color_map.texture = std::int32_t(pool.textures.size()) - 1;
+    }
+
+    aiScene const& source_;
+    std::filesystem::path const& folder_;
+    Scene& scene_;
+    Report& report_;
+    std::string where_;
+    std::map<std::pair<std::string, bool>, std::int32_t> textures_;
+};
+
+} // namespace
+
+void convert_materials(aiScene const& source, std::filesystem::path const& folder, Scene& scene, Report& report)
+{
+    Materials materials(source, folder, scene, report);
+    for (unsigned i = 0; i < source.mNumMaterials; ++i) materials.add(*source.mMaterials[i]);
+}
+
+} // namespace gi

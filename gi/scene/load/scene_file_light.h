@@ -1,0 +1,10 @@
+#pragma once
+#include "gi/scene/load/yaml_reader.h"
+#include "gi/scene/scene.h"
+
+namespace gi {
+
+/// A punctual light with its node, or for a rectangle an emissive mesh.
+void add_scene_file_light(YamlReader const& light, Scene& scene);
+
+} // namespace gi
