@@ -25,9 +25,6 @@ GI_FN float environment_direction_pdf(WorldView const& world, vec3 direction);
 /// Radiance from the environment (bilinear), 0 if there is none.
 GI_FN vec3 environment_radiance(WorldView const& world, vec3 direction);
 
-/// Fill World::emitters, emitter_pdf, light_select, environment_select, environment_pdf from its geometry and lights.
-void build_light_tables(World& world, Report& report);
-
 } // namespace gi
 
 #include "gi/scene/light_sampling.inl.h"

@@ -1,4 +1,5 @@
 #include "gi/scene/light_sampling.h"
+#include "gi/scene/world_tables.h"
 
 #include <array>
 

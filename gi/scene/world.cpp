@@ -1,10 +1,8 @@
 #include "gi/scene/world.h"
 
 #include "gi/base/error.h"
-#include "gi/base/huge_pages.h"
-#include "gi/scene/light_sampling.h"
-#include "gi/scene/shading_point.h"
 #include "gi/scene/skinning.h"
+#include "gi/scene/world_tables.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -112,49 +110,6 @@ void copy_or_fill(std::vector<T> const& from, std::vector<T>& to, std::size_t fi
         std::fill_n(to.begin() + std::ptrdiff_t(first), count, fill);
     else
         std::copy(from.begin(), from.end(), to.begin() + std::ptrdiff_t(first));
-}
-
-/// The rounding of the three vertices and of the interpolation between them scales with the coordinates.
-constexpr float kClearance = 2e-6f;
-
-Surface surface_of(World const& world, std::size_t triangle)
-{
-    Surface s;
-    s.vertex = world.triangles[triangle];
-    s.corner = world.positions[s.vertex.x];
-    s.edge1 = world.positions[s.vertex.y] - s.corner;
-    s.edge2 = world.positions[s.vertex.z] - s.corner;
-    vec3 const area = glm::cross(s.edge1, s.edge2);
-    float const squared = glm::dot(area, area);
-    s.normal_scale = squared > 1e-30f && squared < 1e30f ? 1 / std::sqrt(squared) : 0;
-    s.clearance = 0;
-    for (int k = 0; k < 3; ++k)
-        s.clearance =
-            std::max(s.clearance, kClearance * max_component(glm::abs(world.positions[s.vertex[k]])));
-    s.material = world.triangle_material[triangle];
-    s.flags = 0;
-    Material const& m = world.materials[s.material];
-    if (has_textures(m) || !world.colors.empty()) s.flags |= Surface::kVaries;
-    if (emits(m)) s.flags |= Surface::kEmits;
-    if (m.double_sided) s.flags |= Surface::kDoubleSided;
-    if (world.normals.empty()) return s;
-    constexpr float kFlat = 1e-4f; // rad; more than positions in floats leave of a small box
-    vec3 const n = shading_detail::triangle_normal(s);
-    for (int k = 0; k < 3; ++k) {
-        vec3 const given = world.normals[s.vertex[k]];
-        float const length = glm::length(given);
-        if (length > 0 && glm::length(glm::cross(n, given)) > kFlat * length) s.flags |= Surface::kSmooth;
-    }
-    return s;
-}
-
-void build_surfaces(World& world)
-{
-    for (Material const& m : world.materials) world.bsdfs.push_back(make_bsdf(m));
-    reserve_huge_pages(world.surfaces, world.triangles.size());
-    world.surfaces.resize(world.triangles.size());
-    tbb::parallel_for(std::size_t(0), world.triangles.size(),
-                      [&](std::size_t t) { world.surfaces[t] = surface_of(world, t); });
 }
 
 void place_lights_and_cameras(World& world, Pose const& pose, Report& report)
