@@ -1,7 +1,12 @@
+#include "gi/base/error.h"
+#include "gi/base/picture_file.h"
 #include "gi/scene/load.h"
 #include "gi/scene/plan.h"
 #include "gi/scene/summary.h"
+#include "gi/slhb/direction_picture.h"
+#include "gi/slhb/direction_quality.h"
 #include "viewer/commands.h"
+#include "viewer/outputs.h"
 #include "viewer/report_json.h"
 #include "viewer/validators.h"
 
@@ -13,13 +18,70 @@ namespace viewer {
 namespace {
 
 struct InfoOptions {
-    std::string scene;
+    std::string scene, directions, png;
     std::optional<double> time_s;
     bool json = false;
 };
 
+/// A set of directions, how even it is, and its maps.
+int run_directions(InfoOptions const& o)
+{
+    constexpr std::size_t kSamples = std::size_t(1) << 18;
+    check_outputs({o.png}, {});
+    gi::DirectionSet const set = gi::make_directions(o.directions);
+    gi::DirectionQuality const q = gi::measure(set, kSamples);
+    nlohmann::ordered_json j;
+    j["directions"] = set.name;
+    j["count"] = set.size();
+    j["axes"] = set.axes.size();
+    j["largest_gap_deg"] = glm::degrees(q.largest_gap_rad);
+    j["mean_gap_deg"] = glm::degrees(q.mean_gap_rad);
+    j["solid_angle_smallest"] = q.smallest_solid_angle;
+    j["solid_angle_largest"] = q.largest_solid_angle;
+    j["solid_angle_deviation"] = q.solid_angle_deviation;
+    for (auto const& [name, mapping] :
+         {std::pair{"octahedral", gi::SphereMapping::octahedral}, {"lat_long", gi::SphereMapping::lat_long}})
+        for (std::uint32_t const size : {64u, 256u, 1024u}) {
+            gi::DirectionMap const map = gi::make_direction_map(set, mapping, size);
+            gi::MapQuality const m = gi::measure(view(map), set, kSamples);
+            j["maps"].push_back({{"mapping", name},
+                                 {"width", map.width},
+                                 {"height", map.height},
+                                 {"wrong_share", m.wrong_share},
+                                 {"mean_excess_deg", glm::degrees(m.mean_excess_rad)},
+                                 {"largest_excess_deg", glm::degrees(m.largest_excess_rad)}});
+        }
+    if (!o.png.empty()) {
+        gi::DirectionPicture const picture = gi::draw(set);
+        gi::write_png(o.png, picture.width, picture.height, picture.rgb);
+        j["png"] = o.png;
+    }
+    if (o.json) {
+        std::fputs(to_text(j).c_str(), stdout);
+        return 0;
+    }
+    fmt::print("{}\n  {:<22} {} on {} axes\n", set.name, "directions", set.size(), set.axes.size());
+    fmt::print("  {:<22} {:.3f} at most, {:.3f} on average, degrees\n", "gap to the nearest",
+               glm::degrees(q.largest_gap_rad), glm::degrees(q.mean_gap_rad));
+    fmt::print("  {:<22} {:.3f} to {:.3f} of the mean, standard deviation {:.3f}\n", "solid angle",
+               q.smallest_solid_angle, q.largest_solid_angle, q.solid_angle_deviation);
+    fmt::print("Map against brute force      not the nearest     farther by, on average / at most, degrees\n");
+    for (auto const& m : j["maps"])
+        fmt::print("  {:<12} {:>5} x {:<5} {:>13.3f} % {:>18.5f} / {:.4f}\n", m["mapping"].get<std::string>(),
+                   m["width"].get<int>(), m["height"].get<int>(), 100 * m["wrong_share"].get<double>(),
+                   m["mean_excess_deg"].get<double>(), m["largest_excess_deg"].get<double>());
+    if (!o.png.empty()) fmt::print("{}\n", o.png);
+    std::fflush(stdout);
+    return 0;
+}
+
 int run(InfoOptions const& o)
 {
+    if (o.scene.empty() == o.directions.empty())
+        throw gi::InputError("info needs a SCENE or --directions", "it was given both or none",
+                             "give one of them");
+    if (!o.directions.empty()) return run_directions(o);
+    if (!o.png.empty()) throw gi::InputError("--png is for --directions", "a scene has no drawing", "use render");
     gi::Report report;
     auto const scene = std::make_shared<gi::Scene const>(gi::load_scene(o.scene, report));
     gi::World const world = gi::build_world(scene, o.time_s, report);
@@ -51,12 +113,17 @@ void add_info(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<InfoOptions>();
     CLI::App* const c = app.add_subcommand("info", "What is in a scene, what will be built for it, and why.");
-    c->add_option("SCENE", o->scene, "a scene file, or atrium, cornell")->required();
+    c->add_option("SCENE", o->scene, "a scene file, or atrium, cornell");
+    c->add_option("--directions", o->directions,
+                  "instead of a scene: FAMILY:COUNT, a set of directions; families are\n"
+                  "icosahedron, octahedron, tetrahedron, uv_grid, halton, fibonacci");
+    c->add_option("--png", o->png, "with --directions: a drawing of them");
     c->add_option("--time", o->time_s, "moment of the animation, s")->check(in_range(-1e9, 1e9));
     c->add_flag("--json", o->json, "print JSON");
     c->footer(R"(Examples:
   lightwell info atrium
-  lightwell info cornell --json)");
+  lightwell info cornell --json
+  lightwell info --directions icosahedron:320 --png icosahedron.png)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 
