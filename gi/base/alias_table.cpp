@@ -1,5 +1,7 @@
 #include "gi/base/alias_table.h"
 
+#include "gi/base/huge_pages.h"
+
 namespace gi {
 
 AliasTable make_alias_table(View<float const> weights)
@@ -13,7 +15,7 @@ AliasTable make_alias_table(View<float const> weights)
     if (!(table.total > 0)) return table;
 
     std::size_t const n = weights.size();
-    table.entries.resize(n);
+    resize_on_huge_pages(table.entries, n);
     std::vector<double> scaled(n);
     std::vector<std::uint32_t> small, large;
     for (std::size_t i = 0; i < n; ++i) {

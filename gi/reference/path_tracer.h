@@ -57,6 +57,7 @@ struct Path {
     float arrival_pdf =
         0;               ///< density of the direction we come along; 0 = camera or delta lobe: no other technique
     int scatterings = 0; ///< non-delta, so far
+    LightChoice light;   ///< for the coming surface
     bool ended = false;
     RayQuery shadow;
     int shadow_bucket = 0;
@@ -129,6 +130,7 @@ private:
     void collect_emission(Path& p, Hit const& hit, ShadingPoint const& at) const;
     void aim_at_light(Path& p, ShadingPoint const& at, vec3 wo) const;
     [[gnu::flatten]] bool advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const;
+    void choose_lights(std::span<Path* const> paths, std::span<Hit const> hits) const;
     void add_unshadowed(std::span<Path* const> paths, PathCounts& counts) const;
 };
 
@@ -148,8 +150,8 @@ void PathTracer<Visibility>::collect_emission(Path& p, Hit const& hit, ShadingPo
     vec3 light = at.emission;
     if (p.arrival_pdf > 0) {
         float const cos_light = std::abs(glm::dot(p.ray.direction, at.geometric_normal));
-        light *= power_heuristic(p.arrival_pdf,
-                                 emitter_direction_pdf(world, hit.triangle, hit.distance, cos_light));
+        light *=
+            power_heuristic(p.arrival_pdf, emitter_direction_pdf(world, hit.triangle, hit.distance, cos_light));
     }
     p.bucket(p.scatterings) += p.throughput * light;
 }
@@ -157,8 +159,7 @@ void PathTracer<Visibility>::collect_emission(Path& p, Hit const& hit, ShadingPo
 template <class Visibility>
 void PathTracer<Visibility>::aim_at_light(Path& p, ShadingPoint const& at, vec3 wo) const
 {
-    double const u_select = p.rng.uniform_double();
-    LightSample const light = sample_light(world, at.position, u_select, p.rng.uniform2());
+    LightSample const light = sample_light(world, p.light, at.position, p.rng.uniform2());
     if (!(light.pdf > 0)) return;
     vec3 const wi = at.frame.to_local(light.direction);
     if ((wi.z > 0) != (glm::dot(light.direction, at.geometric_normal) > 0)) return;
@@ -238,6 +239,7 @@ void PathTracer<Visibility>::trace(std::span<Path> paths, PathCounts& counts) co
         counts.nearest_rays += n;
         for (std::size_t i = 0; i < n; ++i) queries[i] = {.ray = active[i]->ray, .seed = active[i]->rng.next()};
         visibility.nearest(std::span(queries).first(n), std::span(hits).first(n));
+        choose_lights(std::span(active).first(n), std::span<Hit const>(hits).first(n));
         constexpr std::size_t kAhead = 4;
         for (std::size_t i = 0; i < n; ++i) {
             if (i + 2 * kAhead < n) fetch_surface(hits[i + 2 * kAhead]);
@@ -253,6 +255,24 @@ void PathTracer<Visibility>::trace(std::span<Path> paths, PathCounts& counts) co
                 part = vec3{0};
                 ++counts.invalid_paths;
             }
+}
+
+/// In a loop of its own, so that the cache misses of many choices overlap: the tables of a sky are large.
+template <class Visibility>
+void PathTracer<Visibility>::choose_lights(std::span<Path* const> paths, std::span<Hit const> hits) const
+{
+    if (world.light_select.empty()) return;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        if (hits[i].triangle == kNoTriangle) continue;
+        LightChoice const choice = choose_light(world, paths[i]->rng.uniform_double());
+        paths[i]->light = choice;
+        if (!light_detail::is_environment(world, choice)) continue;
+        vec3 const* const texel = &world.environment_radiance[choice.texel]; // the sample lies within half a texel
+        std::size_t const row = world.environment_width;
+        __builtin_prefetch(texel);
+        if (choice.texel >= row) __builtin_prefetch(texel - row);
+        if (choice.texel + row < world.environment_radiance.size()) __builtin_prefetch(texel + row);
+    }
 }
 
 template <class Visibility>

@@ -15,11 +15,21 @@ struct LightSample {
     bool delta = false;
 };
 
-/// @param u_select, u uniform in [0, 1); u_select chooses among all lights and texels and needs its 53 bits
-GI_FN LightSample sample_light(WorldView const& world, vec3 point, double u_select, vec2 u);
+/// One of all lights and texels; it does not depend on the point that is lit, so it can be made ahead of time.
+struct LightChoice {
+    std::uint32_t light = 0; ///< index into World::light_select
+    std::uint32_t texel = 0; ///< of the environment map, where that is the light
+    float probability = 0;   ///< of light and texel together; 0 = there is no light
+};
+
+/// @param u uniform in [0, 1), all 53 bits of it
+GI_FN LightChoice choose_light(WorldView const& world, double u);
+/// @param u uniform in [0, 1)^2
+GI_FN LightSample sample_light(WorldView const& world, LightChoice choice, vec3 point, vec2 u);
 /// Density with which sample_light draws the direction to a point on an emissive triangle.
 /// @param distance_m to that point, cos_light = |cos| between the triangle's normal and the direction
-GI_FN float emitter_direction_pdf(WorldView const& world, std::uint32_t triangle, float distance_m, float cos_light);
+GI_FN float emitter_direction_pdf(WorldView const& world, std::uint32_t triangle, float distance_m,
+                                  float cos_light);
 /// Density with which sample_light draws a direction to the environment.
 GI_FN float environment_direction_pdf(WorldView const& world, vec3 direction);
 /// Radiance from the environment (bilinear), 0 if there is none.

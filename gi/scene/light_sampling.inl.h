@@ -120,10 +120,10 @@ GI_FN inline vec3 map_radiance(WorldView const& world, vec2 position)
     return world.environment_scale * glm::mix(top, bottom, v.weight);
 }
 
-GI_FN inline LightSample sample_environment(WorldView const& world, double u_texel, vec2 u)
+/// @param p probability of the texel, and of the environment among the lights
+GI_FN inline LightSample sample_environment(WorldView const& world, std::uint32_t texel, float p, vec2 u)
 {
     LightSample s;
-    std::uint32_t const texel = world.environment_select.sample(u_texel);
     vec2 const corner{float(texel % world.environment_width), float(texel / world.environment_width)};
     vec2 const position = corner + u;
     float const phi = (position.x / float(world.environment_width) - 0.5f) * 2 * kPi;
@@ -133,26 +133,38 @@ GI_FN inline LightSample sample_environment(WorldView const& world, double u_tex
     s.direction = from_map(world, {sin_theta * std::sin(phi), std::cos(theta), -sin_theta * std::cos(phi)});
     s.distance = kInf;
     s.radiance = map_radiance(world, position);
-    s.pdf = texel_pdf(world, world.environment_select.probability(texel), sin_theta);
+    s.pdf = texel_pdf(world, p, sin_theta);
     return s;
+}
+
+GI_FN inline bool is_environment(WorldView const& world, LightChoice choice)
+{
+    return choice.light >= world.lights.size() + world.emitters.size();
 }
 
 } // namespace light_detail
 
-GI_FN inline LightSample sample_light(WorldView const& world, vec3 point, double u_select, vec2 u)
+GI_FN inline LightChoice choose_light(WorldView const& world, double u)
+{
+    LightChoice c;
+    if (world.light_select.empty()) return c;
+    c.light = world.light_select.sample(u);
+    c.probability = world.light_select.probability(c.light);
+    if (!light_detail::is_environment(world, c)) return c;
+    c.texel = world.environment_select.sample(u);
+    c.probability *= world.environment_select.probability(c.texel);
+    return c;
+}
+
+GI_FN inline LightSample sample_light(WorldView const& world, LightChoice choice, vec3 point, vec2 u)
 {
     using namespace light_detail;
-    if (world.light_select.empty()) return {};
-    std::uint32_t const chosen = world.light_select.sample(u_select);
-    auto const lights = std::uint32_t(world.lights.size()), emitters = std::uint32_t(world.emitters.size());
-    LightSample s;
-    if (chosen < lights)
-        s = sample_punctual(world.lights[chosen], point);
-    else if (chosen < lights + emitters)
-        s = sample_emitter(world, world.emitters[chosen - lights], point, u);
-    else
-        s = sample_environment(world, u_select, u);
-    s.pdf *= world.light_select.probability(chosen);
+    if (!(choice.probability > 0)) return {};
+    if (is_environment(world, choice)) return sample_environment(world, choice.texel, choice.probability, u);
+    LightSample s = choice.light < world.lights.size()
+                        ? sample_punctual(world.lights[choice.light], point)
+                        : sample_emitter(world, world.emitters[choice.light - world.lights.size()], point, u);
+    s.pdf *= choice.probability;
     return s;
 }
 

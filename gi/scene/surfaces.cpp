@@ -47,8 +47,7 @@ Surface surface_of(World const& world, std::size_t triangle)
 void build_surfaces(World& world)
 {
     for (Material const& m : world.materials) world.bsdfs.push_back(make_bsdf(m));
-    reserve_huge_pages(world.surfaces, world.triangles.size());
-    world.surfaces.resize(world.triangles.size());
+    resize_on_huge_pages(world.surfaces, world.triangles.size());
     tbb::parallel_for(std::size_t(0), world.triangles.size(),
                       [&](std::size_t t) { world.surfaces[t] = surface_of(world, t); });
 }

@@ -1,6 +1,7 @@
 #include "gi/scene/world.h"
 
 #include "gi/base/error.h"
+#include "gi/base/huge_pages.h"
 #include "gi/scene/skinning.h"
 #include "gi/scene/world_tables.h"
 
@@ -172,11 +173,11 @@ World build_world(std::shared_ptr<Scene const> scene, SceneTime time_s, Report& 
     }
 
     world.positions.resize(layout.vertices);
-    if (layout.normals) world.normals.resize(layout.vertices);
-    if (layout.tangents) world.tangents.resize(layout.vertices);
-    if (layout.uv0) world.uv0.resize(layout.vertices);
-    if (layout.uv1) world.uv1.resize(layout.vertices);
-    if (layout.colors) world.colors.resize(layout.vertices);
+    if (layout.normals) resize_on_huge_pages(world.normals, layout.vertices);
+    if (layout.tangents) resize_on_huge_pages(world.tangents, layout.vertices);
+    if (layout.uv0) resize_on_huge_pages(world.uv0, layout.vertices);
+    if (layout.uv1) resize_on_huge_pages(world.uv1, layout.vertices);
+    if (layout.colors) resize_on_huge_pages(world.colors, layout.vertices);
     world.triangles.reserve(layout.triangles);
     world.triangle_material.reserve(layout.triangles);
     world.instances = std::uint32_t(n);

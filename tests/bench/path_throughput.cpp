@@ -1,6 +1,6 @@
-// How much of the time of the reference path tracer is not Embree: the same rays, traced by the path tracer, replayed
-// in a bare loop of single rays, and replayed in the path tracer's packets; by turns in one process on one thread.
-// Prints medians over the rounds and their ratios.
+// How much of the time of the reference path tracer is not Embree: the same rays, traced by the path tracer,
+// replayed in a bare loop of single rays, and replayed in the path tracer's packets; by turns in one process on
+// one thread. Prints medians over the rounds and their ratios.
 //   bench_path_throughput [SCENE...]      default: boxes of 1M triangles, atrium, cornell
 
 #include "gi/base/report.h"
@@ -103,7 +103,8 @@ std::uint64_t replay_packets(ExactVisibility const& exact, std::vector<Wave> con
             hits += std::accumulate(blocked.begin(), blocked.end(), std::uint64_t(0));
         } else {
             exact.nearest(wave.queries, hit);
-            hits += std::uint64_t(std::ranges::count_if(hit, [](Hit const& h) { return h.triangle != kNoTriangle; }));
+            hits +=
+                std::uint64_t(std::ranges::count_if(hit, [](Hit const& h) { return h.triangle != kNoTriangle; }));
         }
     }
     return hits;
@@ -130,7 +131,8 @@ void measure(std::string const& name, Scene scene)
     Report report;
     World const world = build_world(std::make_shared<Scene const>(std::move(scene)), std::nullopt, report);
     ExactVisibility const exact(world, plan_scene(world).alpha_tests, 1);
-    CameraRays const camera = camera_rays(world.cameras.at(0), kSize, kSize, world.origin);
+    if (world.cameras.empty()) throw std::runtime_error(name + " has no camera");
+    CameraRays const camera = camera_rays(world.cameras[0], kSize, kSize, world.origin);
 
     std::vector<Wave> waves;
     RecordingVisibility const recorder{exact, waves};
@@ -155,8 +157,8 @@ void measure(std::string const& name, Scene scene)
     }
     auto const mega_per_s = [&](std::vector<double> const& s) { return n / median(s) * 1e-6; };
     auto const [low, high] = std::minmax_element(to_single.begin(), to_single.end());
-    fmt::print("{:<28} {:>9} {:>9.0f} {:>8.3f} {:>8.3f} {:>8.3f} {:>7.3f} [{:.3f}, {:.3f}] {:>8.3f} {:>7.0f}\n", name,
-               world.triangles.size(), n, mega_per_s(traced), mega_per_s(single), mega_per_s(packets),
+    fmt::print("{:<28} {:>9} {:>9.0f} {:>8.3f} {:>8.3f} {:>8.3f} {:>7.3f} [{:.3f}, {:.3f}] {:>8.3f} {:>7.0f}\n",
+               name, world.triangles.size(), n, mega_per_s(traced), mega_per_s(single), mega_per_s(packets),
                median(to_single), *low, *high, median(to_packets), (median(traced) - median(packets)) / n * 1e9);
     if (double(hits) != double(packet_hits))
         fmt::print("  {} hits by single rays, {} in packets\n", hits, packet_hits);
@@ -167,8 +169,8 @@ void measure(std::string const& name, Scene scene)
 int main(int argc, char** argv)
 {
     fmt::print("{:<48} {:^26} {:^31} {:>7}\n", "", "Mray/s", "time of the paths over", "shading");
-    fmt::print("{:<28} {:>9} {:>9} {:>8} {:>8} {:>8} {:>7} {:^14} {:>8} {:>7}\n", "scene", "triangles", "rays", "paths",
-               "single", "packets", "single", "[min, max]", "packets", "ns/ray");
+    fmt::print("{:<28} {:>9} {:>9} {:>8} {:>8} {:>8} {:>7} {:^14} {:>8} {:>7}\n", "scene", "triangles", "rays",
+               "paths", "single", "packets", "single", "[min, max]", "packets", "ns/ray");
     if (argc == 1) {
         measure("boxes, 1M triangles", generate_boxes(1'000'000, 0));
         measure("atrium", generate_atrium({}));

@@ -21,7 +21,7 @@ RunningMean irradiance(World const& world, vec3 point, vec3 normal, std::uint64_
     RunningMean mean;
     for (int i = 0; i < paths; ++i) {
         double const u_select = rng.uniform_double();
-        LightSample const s = sample_light(v, point, u_select, rng.uniform2());
+        LightSample const s = sample_light(v, choose_light(v, u_select), point, rng.uniform2());
         double const cosine = std::max(0.0, double(glm::dot(s.direction, normal)));
         mean.add(s.pdf > 0 ? double(s.radiance.x) * cosine / double(s.pdf) : 0.0);
     }
@@ -216,7 +216,7 @@ TEST(LightSampling, DensitiesAgreeWithWhatPathsAsk)
     int lamp = 0, sky = 0, at_border = 0;
     for (int i = 0; i < 20000; ++i) {
         double const u_select = rng.uniform_double();
-        LightSample const s = sample_light(v, point, u_select, rng.uniform2());
+        LightSample const s = sample_light(v, choose_light(v, u_select), point, rng.uniform2());
         if (!(s.pdf > 0)) continue;
         ASSERT_FALSE(s.delta);
         ASSERT_NEAR(glm::length(s.direction), 1, 1e-5);
@@ -264,7 +264,7 @@ TEST(LightSampling, EnvironmentSamplesFollowTheirDensity)
         Pcg32 rng(3004, i);
         auto const draw = [&]() -> std::optional<vec3> {
             double const u_select = rng.uniform_double();
-            LightSample const s = sample_light(v, vec3{0}, u_select, rng.uniform2());
+            LightSample const s = sample_light(v, choose_light(v, u_select), vec3{0}, rng.uniform2());
             return s.pdf > 0 ? std::optional(s.direction) : std::nullopt;
         };
         auto const density = [&](vec3 d) { return double(environment_direction_pdf(v, d)); };
@@ -287,11 +287,15 @@ TEST(LightSampling, OnlyWhatShinesIsChosen)
     Pcg32 rng(3005, 0);
     for (int i = 0; i < 1000; ++i) {
         double const u_select = rng.uniform_double();
-        LightSample const s = sample_light(v, vec3{0}, u_select, rng.uniform2());
+        LightSample const s = sample_light(v, choose_light(v, u_select), vec3{0}, rng.uniform2());
         ASSERT_GT(s.radiance.x, 0);
         ASSERT_EQ(s.pdf, 1);
     }
-    EXPECT_EQ(sample_light(view(world_of(dark_room())), vec3{0}, 0.5, vec2{0.5f}).pdf, 0) << "no light at all";
+    EXPECT_EQ(sample_light(view(world_of(dark_room())), choose_light(view(world_of(dark_room())), 0.5), vec3{0},
+                           vec2{0.5f})
+                  .pdf,
+              0)
+        << "no light at all";
 }
 
 TEST(LightSampling, TinyAndFarTrianglesGiveFiniteNumbers)
@@ -305,7 +309,7 @@ TEST(LightSampling, TinyAndFarTrianglesGiveFiniteNumbers)
         for (float const distance : {0.0f, size, 1.0f, 1e6f})
             for (int i = 0; i < 100; ++i) {
                 double const u_select = rng.uniform_double();
-                LightSample const s = sample_light(v, {0, distance, 0}, u_select, rng.uniform2());
+                LightSample const s = sample_light(v, choose_light(v, u_select), {0, distance, 0}, rng.uniform2());
                 ASSERT_TRUE(std::isfinite(s.pdf) && s.pdf >= 0 && all_finite(s.radiance))
                     << size << " " << distance;
                 ASSERT_TRUE(std::isfinite(s.radiance.x / s.pdf) || s.pdf == 0) << size << " " << distance;

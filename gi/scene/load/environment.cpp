@@ -1,4 +1,5 @@
 #include "gi/base/error.h"
+#include "gi/base/huge_pages.h"
 #include "gi/base/picture_file.h"
 #include "gi/scene/load.h"
 
@@ -25,7 +26,7 @@ EnvironmentMap load_environment(std::filesystem::path const& file, Report& repor
     EnvironmentMap map;
     map.width = std::uint32_t(picture.width);
     map.height = std::uint32_t(picture.height);
-    map.radiance.resize(picture.pixels());
+    resize_on_huge_pages(map.radiance, picture.pixels());
     std::uint64_t bad_texels = 0;
     for (std::size_t i = 0; i < map.radiance.size(); ++i) {
         vec3 const v = rgb(*color, i);

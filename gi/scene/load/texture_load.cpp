@@ -1,4 +1,5 @@
 #include "gi/base/claimed_size.h"
+#include "gi/base/huge_pages.h"
 #include "gi/base/error.h"
 #include "gi/scene/load.h"
 
@@ -46,7 +47,7 @@ std::int32_t add_texture(TexturePool& pool, unsigned char const* bytes, std::siz
     t.width = std::uint32_t(image.cols);
     t.height = std::uint32_t(image.rows);
     t.srgb = srgb;
-    pool.texels.resize(pool.texels.size() + std::size_t(t.width) * t.height);
+    resize_on_huge_pages(pool.texels, pool.texels.size() + std::size_t(t.width) * t.height);
     for (int y = 0; y < image.rows; ++y)
         std::memcpy(pool.texels.data() + t.first + std::size_t(y) * t.width, image.ptr(y),
                     sizeof(Rgba8) * std::size_t(t.width));
