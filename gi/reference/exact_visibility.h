@@ -25,8 +25,8 @@ struct RayQuery {
     static constexpr float kFar = 1e30f;
 
     Ray ray;
-    float reach = kFar; ///< m; what lies beyond does not count
-    std::uint32_t seed; ///< decides partial coverage
+    float reach = kFar;     ///< m; what lies beyond does not count
+    std::uint32_t seed = 0; ///< decides partial coverage
 };
 
 class ExactVisibility {

@@ -129,7 +129,7 @@ private:
     void collect_environment(Path& p) const;
     void collect_emission(Path& p, Hit const& hit, ShadingPoint const& at) const;
     void aim_at_light(Path& p, ShadingPoint const& at, vec3 wo) const;
-    /// All in one function, so that vectors stay in registers: a fifth to a third less time.
+    /// All in one function, so that vectors stay in registers: measured, 3 to 16 % less time for a path.
     [[gnu::flatten]] bool advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const;
     void choose_lights(std::span<Path* const> paths, std::span<Hit const> hits) const;
     void add_unshadowed(std::span<Path* const> paths, PathCounts& counts) const;

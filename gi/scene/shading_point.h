@@ -14,7 +14,6 @@ struct ShadingPoint {
     Bsdf bsdf;
     vec3 emission;          ///< radiance leaving towards the viewer (0 on the dark side)
     float clearance;        ///< m; by how much rays have to start off the surface
-    std::uint32_t triangle;
 };
 
 /// @param barycentric  weights of vertices 1 and 2 (Embree's u, v)

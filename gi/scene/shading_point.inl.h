@@ -125,7 +125,6 @@ GI_FN inline ShadingPoint shading_point(WorldView const& world, std::uint32_t tr
     bool const varies = surface.is(Surface::kVaries);
     if (varies) interpolate_uv(world, s);
     ShadingPoint at;
-    at.triangle = triangle;
     at.clearance = surface.clearance;
     at.position = s.position();
     vec3 const winding_normal = triangle_normal(surface);

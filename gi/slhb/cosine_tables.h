@@ -41,8 +41,8 @@ struct CosineTables {
     std::uint32_t bins_across = 0;
 };
 
-/// @param bins_across with 64 the weights deviate from 1 by less than 0.06 (root mean square); axes at grazing
-/// angles, which are rarely drawn, by more
+/// @param bins_across with 64 the weights of icosahedron:320 deviate from 1 by 0.052 (root mean square); axes at
+/// grazing angles, which are rarely drawn, by more
 CosineTables make_cosine_tables(DirectionSet const& directions, std::uint32_t bins_across);
 
 inline CosineTablesView view(CosineTables const& t) { return {t.entries, t.axes, t.solid_angles, t.bins_across}; }

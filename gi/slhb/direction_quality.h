@@ -6,7 +6,7 @@
 namespace gi {
 
 /// Solid angle nearer to each axis' direction than to any other, sr, by counting `samples` points of a Fibonacci
-/// lattice (relative error about sqrt(size / samples) / 2). One value per axis; their sum is 2 pi.
+/// lattice. One value per axis; their sum is 2 pi.
 std::vector<double> solid_angles(DirectionSet const& directions, std::size_t samples);
 
 struct DirectionQuality {
