@@ -1,0 +1,34 @@
+#pragma once
+// What a rasteriser leaves: one fragment for each triangle over each texel centre, in no order of texels.
+
+#include "gi/raster/grid.h"
+
+#include <memory>
+
+namespace gi {
+
+/// Three arrays of `count` fragments. The arrays grow by doubling and are never initialised.
+struct Fragments {
+    std::unique_ptr<std::uint32_t[]> texel;     ///< j * width + i
+    std::unique_ptr<float[]> depth;             ///< along the axis, m
+    std::unique_ptr<std::uint32_t[]> primitive; ///< index of the triangle, and kAlongAxis
+    std::size_t count = 0, capacity = 0;
+
+    /// Room for `more` fragments beyond those that are there.
+    void reserve(std::size_t more)
+    {
+        if (count + more > capacity) grow(count + more);
+    }
+    void append(std::uint32_t at, float depth_m, std::uint32_t id)
+    {
+        reserve(1);
+        texel[count] = at;
+        depth[count] = depth_m;
+        primitive[count++] = id;
+    }
+
+private:
+    void grow(std::size_t needed);
+};
+
+} // namespace gi

@@ -1,0 +1,25 @@
+#pragma once
+// Triangle corners as nine arrays, so that a vector register holds one coordinate of several triangles. Indices are
+// those of the world's triangles. Padded with points to a whole number of vectors.
+
+#include "gi/scene/world.h"
+
+#include <array>
+
+namespace gi {
+
+struct TriangleSoup {
+    static constexpr std::size_t kPadding = 16;
+
+    std::array<std::vector<float>, 9> corner; ///< [3 * vertex + coordinate][triangle], m
+    std::size_t count = 0;                    ///< without the padding
+
+    vec3 vertex(std::size_t triangle, std::size_t k) const
+    {
+        return {corner[3 * k][triangle], corner[3 * k + 1][triangle], corner[3 * k + 2][triangle]};
+    }
+};
+
+TriangleSoup make_soup(World const& world);
+
+} // namespace gi

@@ -1,0 +1,42 @@
+#pragma once
+// A layered hit buffer: every surface under every texel centre of an orthographic view along one axis (Yu 2012, sec.
+// 3.4 and 4.3). Exact storage: nothing is dropped, however many layers a texel has.
+//
+// Layout: the layers of texel t are layers[offset[t]] .. layers[offset[t + 1] - 1], by rising depth (equal depths by
+// primitive). offset has texels + 1 entries.
+
+#include "gi/raster/deep_raster.h"
+
+namespace gi {
+
+struct Layer {
+    float depth;             ///< along the axis, m
+    std::uint32_t primitive; ///< triangle of the world, and kAlongAxis
+};
+
+struct HitBufferView {
+    RasterGrid grid;
+    View<std::uint32_t const> offset;
+    View<Layer const> layers;
+};
+
+struct HitBuffer {
+    RasterGrid grid;
+    std::vector<std::uint32_t> offset;
+    std::vector<Layer> layers;
+    std::uint64_t lost = 0; ///< layers beyond a limit that was asked for
+
+    std::size_t bytes() const { return offset.size() * sizeof(std::uint32_t) + layers.size() * sizeof(Layer); }
+};
+
+inline HitBufferView view(HitBuffer const& b) { return {b.grid, b.offset, b.layers}; }
+
+/// Count, scan, fill, sort. Reuses the memory of `out`.
+/// @param most_layers per texel, the nearest along the axis are kept and the others counted; 0 = all
+void fill_hit_buffer(Fragments const& fragments, RasterGrid const& grid, std::uint32_t most_layers, HitBuffer& out);
+
+/// From triangles to layers on the calling thread.
+HitBuffer make_hit_buffer(TriangleSoup const& soup, RasterGrid const& grid,
+                          MacroPath macro = MacroPath::edge_table, std::uint32_t most_layers = 0);
+
+} // namespace gi
