@@ -1,5 +1,8 @@
 #include "gi/raster/deep_raster.h"
 
+#include "gi/raster/clip.h"
+#include "gi/raster/nearest_map.h"
+
 #include <algorithm>
 #include <hwy/highway.h>
 
@@ -23,33 +26,143 @@ struct Queue {
     std::size_t count = 0;
 };
 
+/// Corners of one vector of triangles on the raster.
+struct Projected {
+    V x[3], y[3]; ///< subpixels
+    V z[3];       ///< depth
+    Mask clip;    ///< these need clipping; their other values mean nothing
+};
+
+struct Corners {
+    V x[3], y[3], z[3]; ///< m
+};
+
+struct OrthographicLanes {
+    RasterGrid const& grid;
+    V to_x[3], to_y[3], to_z[3], x_zero, y_zero;
+
+    explicit OrthographicLanes(RasterGrid const& g) : grid(g)
+    {
+        Floats const d;
+        for (glm::length_t c = 0; c < 3; ++c) {
+            to_x[c] = hn::Set(d, g.to_x[c]);
+            to_y[c] = hn::Set(d, g.to_y[c]);
+            to_z[c] = hn::Set(d, g.axis[c]);
+        }
+        x_zero = hn::Set(d, g.x0);
+        y_zero = hn::Set(d, g.y0);
+    }
+    void project(Corners const& p, Projected& out) const
+    {
+        auto const row = [&](V const* to, V zero, std::size_t k) {
+            return hn::Round(hn::MulAdd(p.z[k], to[2], hn::MulAdd(p.y[k], to[1], hn::MulAdd(p.x[k], to[0], zero))));
+        };
+        for (std::size_t k = 0; k < 3; ++k) {
+            out.x[k] = row(to_x, x_zero, k);
+            out.y[k] = row(to_y, y_zero, k);
+        }
+        out.clip = hn::FirstN(Floats(), 0);
+    }
+    /// Apart, because most triangles are gone before it is wanted.
+    void add_depth(Corners const& p, Projected& out) const
+    {
+        for (std::size_t k = 0; k < 3; ++k)
+            out.z[k] = hn::MulAdd(p.z[k], to_z[2], hn::MulAdd(p.y[k], to_z[1], hn::Mul(p.x[k], to_z[0])));
+    }
+    template <class Emit>
+    void clip(vec3 const*, Emit const&) const
+    {
+    }
+};
+
+struct PerspectiveLanes {
+    PerspectiveGrid const& grid;
+    V to_x[3], to_y[3], to_w[3], eye[3];
+
+    explicit PerspectiveLanes(PerspectiveGrid const& g) : grid(g)
+    {
+        Floats const d;
+        for (glm::length_t c = 0; c < 3; ++c) {
+            to_x[c] = hn::Set(d, g.to_x[c]);
+            to_y[c] = hn::Set(d, g.to_y[c]);
+            to_w[c] = hn::Set(d, g.forward[c]);
+            eye[c] = hn::Set(d, g.eye[c]);
+        }
+    }
+    void project(Corners const& p, Projected& out) const
+    {
+        Floats const d;
+        V const near = hn::Set(d, grid.near_m), guard = hn::Set(d, PerspectiveGrid::kGuard), one = hn::Set(d, 1);
+        V nearest = hn::Set(d, kInf), farthest = hn::Set(d, -kInf), widest = hn::Zero(d);
+        for (std::size_t k = 0; k < 3; ++k) {
+            V const v[3] = {hn::Sub(p.x[k], eye[0]), hn::Sub(p.y[k], eye[1]), hn::Sub(p.z[k], eye[2])};
+            auto const row = [&](V const* to) {
+                return hn::MulAdd(v[2], to[2], hn::MulAdd(v[1], to[1], hn::Mul(v[0], to[0])));
+            };
+            V const w = row(to_w);
+            nearest = hn::Min(nearest, w);
+            farthest = hn::Max(farthest, w);
+            out.z[k] = hn::Div(one, w);
+            out.x[k] = hn::Round(hn::Mul(row(to_x), out.z[k]));
+            out.y[k] = hn::Round(hn::Mul(row(to_y), out.z[k]));
+            widest = hn::Max(widest, hn::Max(hn::Abs(out.x[k]), hn::Abs(out.y[k])));
+        }
+        Mask const behind = hn::Le(farthest, near);
+        Mask const plain = hn::And(hn::Gt(nearest, near), hn::Le(widest, guard));
+        out.clip = hn::Not(hn::Or(behind, plain));
+        // What is behind has no samples.
+        V const nowhere = hn::Set(d, -grid.subpixels);
+        Mask const gone = hn::Not(plain);
+        for (std::size_t k = 0; k < 3; ++k) {
+            out.x[k] = hn::IfThenElse(gone, nowhere, out.x[k]);
+            out.y[k] = hn::IfThenElse(gone, nowhere, out.y[k]);
+        }
+    }
+    void add_depth(Corners const&, Projected&) const {}
+    template <class Emit>
+    void clip(vec3 const* corner, Emit const& emit) const
+    {
+        clip_triangle(grid, corner, emit);
+    }
+};
+
 /// One range of triangles over one grid.
+template <class Lanes>
 class VectorRaster {
 public:
-    VectorRaster(RasterGrid const& grid, MacroPath macro, Fragments& out) : grid_(grid), macro_(macro), out_(out) {}
+    template <class Grid>
+    VectorRaster(Grid const& grid, MacroPath macro, Fragments& out)
+        : lanes_(grid), macro_(macro), out_(out), subpixels_(grid.subpixels), width_(grid.width), height_(grid.height)
+    {
+    }
 
+    /// Some may wait for more until finish.
     void run(TriangleSoup const& soup, std::size_t first, std::size_t last);
+    void finish();
 
 private:
-    struct Bounds {
+    struct Samples {
         V first_i, last_i, first_j, last_j;
     };
 
-    Bounds sample_bounds(V x0, V x1, V x2, V y0, V y1, V y2) const;
+    Samples sample_bounds(V x0, V x1, V x2, V y0, V y1, V y2) const;
     void empty_queue(Queue& queue, std::size_t lanes);
     void scan_large(SnappedTriangle const& t, vec3 depth, std::uint32_t triangle);
     void test_exactly(Queue const& queue, std::size_t at, std::uint32_t i, std::uint32_t j);
 
-    RasterGrid const& grid_;
+    Lanes lanes_;
     MacroPath macro_;
     Fragments& out_;
+    float subpixels_;
+    std::uint32_t width_, height_;
     Queue single_, few_;
 };
 
-VectorRaster::Bounds VectorRaster::sample_bounds(V x0, V x1, V x2, V y0, V y1, V y2) const
+template <class Lanes>
+typename VectorRaster<Lanes>::Samples VectorRaster<Lanes>::sample_bounds(V x0, V x1, V x2, V y0, V y1, V y2) const
 {
     Floats const d;
-    V const per_texel = hn::Set(d, 1 / grid_.subpixels), half = hn::Set(d, 0.5f), zero = hn::Zero(d);
+    V const per_texel = hn::Set(d, 1 / subpixels_), half = hn::Set(d, 0.5f), zero = hn::Zero(d);
     auto const first = [&](V a, V b, V c) {
         return hn::Max(hn::Ceil(hn::MulSub(hn::Min(a, hn::Min(b, c)), per_texel, half)), zero);
     };
@@ -57,14 +170,15 @@ VectorRaster::Bounds VectorRaster::sample_bounds(V x0, V x1, V x2, V y0, V y1, V
         return hn::Min(hn::Floor(hn::MulSub(hn::Max(a, hn::Max(b, c)), per_texel, half)),
                        hn::Set(d, float(count) - 1));
     };
-    return {first(x0, x1, x2), last(x0, x1, x2, grid_.width), first(y0, y1, y2), last(y0, y1, y2, grid_.height)};
+    return {first(x0, x1, x2), last(x0, x1, x2, width_), first(y0, y1, y2), last(y0, y1, y2, height_)};
 }
 
-void VectorRaster::scan_large(SnappedTriangle const& t, vec3 depth, std::uint32_t triangle)
+template <class Lanes>
+void VectorRaster<Lanes>::scan_large(SnappedTriangle const& t, vec3 depth, std::uint32_t triangle)
 {
-    TriangleScan const s = start_scan(t, std::int32_t(grid_.subpixels), grid_.width, grid_.height);
+    TriangleScan const s = start_scan(t, std::int32_t(subpixels_), width_, height_);
     if (s.empty) return;
-    DepthPlane const plane = depth_plane(t, std::int32_t(grid_.subpixels), depth);
+    DepthPlane const plane = depth_plane(t, std::int32_t(subpixels_), depth);
     std::uint32_t const id = triangle | (s.along ? kAlongAxis : 0);
     scan(s, macro_, [&](std::uint32_t j, std::uint32_t first, std::uint32_t last) {
         std::size_t const n = last - first + 1;
@@ -73,7 +187,7 @@ void VectorRaster::scan_large(SnappedTriangle const& t, vec3 depth, std::uint32_
         float* const z = out_.depth.get() + out_.count;
         std::uint32_t* const primitive = out_.primitive.get() + out_.count;
         for (std::uint32_t k = 0; k < n; ++k) {
-            texel[k] = j * grid_.width + first + k;
+            texel[k] = j * width_ + first + k;
             z[k] = plane.at(first + k, j);
             primitive[k] = id;
         }
@@ -82,22 +196,24 @@ void VectorRaster::scan_large(SnappedTriangle const& t, vec3 depth, std::uint32_
 }
 
 /// For the rare lanes whose sample lies so near to an edge that floats cannot tell the side.
-void VectorRaster::test_exactly(Queue const& queue, std::size_t at, std::uint32_t i, std::uint32_t j)
+template <class Lanes>
+void VectorRaster<Lanes>::test_exactly(Queue const& queue, std::size_t at, std::uint32_t i, std::uint32_t j)
 {
     auto const integer = [&](Queue::Column c) { return std::int32_t(queue.values[c][at]); };
     SnappedTriangle const t{{integer(Queue::x0), integer(Queue::x1), integer(Queue::x2)},
                             {integer(Queue::y0), integer(Queue::y1), integer(Queue::y2)}};
-    TriangleScan const s = start_scan(t, std::int32_t(grid_.subpixels), grid_.width, grid_.height);
+    TriangleScan const s = start_scan(t, std::int32_t(subpixels_), width_, height_);
     if (s.empty) return;
     for (HalfPlane const& e : s.edge)
         if (e.value(i, j) < 0) return;
     vec3 const depth{queue.values[Queue::z0][at], queue.values[Queue::z1][at], queue.values[Queue::z2][at]};
-    out_.append(j * grid_.width + i, depth_plane(t, std::int32_t(grid_.subpixels), depth).at(i, j),
+    out_.append(j * width_ + i, depth_plane(t, std::int32_t(subpixels_), depth).at(i, j),
                 queue.triangle[at] | (s.along ? kAlongAxis : 0));
 }
 
 /// Tests the last `lanes` triangles of the queue against the samples within their bounds, and removes them.
-void VectorRaster::empty_queue(Queue& queue, std::size_t lanes)
+template <class Lanes>
+void VectorRaster<Lanes>::empty_queue(Queue& queue, std::size_t lanes)
 {
     Floats const d;
     Words const words;
@@ -109,9 +225,9 @@ void VectorRaster::empty_queue(Queue& queue, std::size_t lanes)
     V const z0 = column(Queue::z0), z1 = column(Queue::z1), z2 = column(Queue::z2);
     auto const triangle = hn::LoadU(words, queue.triangle + first);
     Mask const used = hn::FirstN(d, lanes);
-    Bounds const b = sample_bounds(x0, x1, x2, y0, y1, y2);
-    V const one = hn::Set(d, 1), half = hn::Set(d, 0.5f), subpixels = hn::Set(d, grid_.subpixels);
-    V const width = hn::Set(d, float(grid_.width)), zero = hn::Zero(d);
+    Samples const b = sample_bounds(x0, x1, x2, y0, y1, y2);
+    V const one = hn::Set(d, 1), half = hn::Set(d, 0.5f), subpixels = hn::Set(d, subpixels_);
+    V const width = hn::Set(d, float(width_)), zero = hn::Zero(d);
     for (V j = b.first_j;; j = hn::Add(j, one)) {
         Mask const row = hn::And(used, hn::Le(j, b.last_j));
         if (hn::AllFalse(d, row)) break;
@@ -162,33 +278,42 @@ void VectorRaster::empty_queue(Queue& queue, std::size_t lanes)
     }
 }
 
-void VectorRaster::run(TriangleSoup const& soup, std::size_t first, std::size_t last)
+template <class Lanes>
+void VectorRaster<Lanes>::run(TriangleSoup const& soup, std::size_t first, std::size_t last)
 {
     Floats const d;
     Words const words;
     std::size_t const lanes = hn::Lanes(d);
-    auto const load = [&](std::size_t c, std::size_t t) { return hn::LoadU(d, soup.corner[c].data() + t); };
-    auto const rows = [&](vec3 to) { return std::array{hn::Set(d, to.x), hn::Set(d, to.y), hn::Set(d, to.z)}; };
-    auto const to_x = rows(grid_.to_x), to_y = rows(grid_.to_y), to_z = rows(grid_.axis);
-    V const x_zero = hn::Set(d, grid_.x0), y_zero = hn::Set(d, grid_.y0);
     V const most_micro = hn::Set(d, float(kMicroSide - 1)), zero = hn::Zero(d);
 
     for (std::size_t t = first; t < last; t += lanes) {
-        V x[3], y[3];
+        Corners p;
         for (std::size_t k = 0; k < 3; ++k) {
-            V const px = load(3 * k, t), py = load(3 * k + 1, t), pz = load(3 * k + 2, t);
-            x[k] = hn::Round(hn::MulAdd(pz, to_x[2], hn::MulAdd(py, to_x[1], hn::MulAdd(px, to_x[0], x_zero))));
-            y[k] = hn::Round(hn::MulAdd(pz, to_y[2], hn::MulAdd(py, to_y[1], hn::MulAdd(px, to_y[0], y_zero))));
+            p.x[k] = hn::LoadU(d, soup.corner[3 * k].data() + t);
+            p.y[k] = hn::LoadU(d, soup.corner[3 * k + 1].data() + t);
+            p.z[k] = hn::LoadU(d, soup.corner[3 * k + 2].data() + t);
         }
-        Bounds const b = sample_bounds(x[0], x[1], x[2], y[0], y[1], y[2]);
+        Mask const there = hn::FirstN(d, std::min(lanes, last - t));
+        Projected q;
+        lanes_.project(p, q);
+        V const *const x = q.x, *const y = q.y, *const z = q.z;
+        Samples const b = sample_bounds(x[0], x[1], x[2], y[0], y[1], y[2]);
         V const across = hn::Sub(b.last_i, b.first_i), down = hn::Sub(b.last_j, b.first_j);
-        Mask const any = hn::And(hn::Ge(hn::Min(across, down), zero), hn::FirstN(d, std::min(lanes, last - t)));
+        Mask const clipped = hn::And(there, q.clip);
+        if (!hn::AllFalse(d, clipped)) {
+            std::uint8_t clip_bits[8] = {};
+            hn::StoreMaskBits(d, clipped, clip_bits);
+            for (std::size_t k = 0; k < lanes; ++k) {
+                if ((clip_bits[k / 8] >> (k % 8) & 1) == 0) continue;
+                vec3 const corner[3] = {soup.vertex(t + k, 0), soup.vertex(t + k, 1), soup.vertex(t + k, 2)};
+                lanes_.clip(corner, [&](SnappedTriangle const& part, vec3 depth) {
+                    scan_large(part, depth, std::uint32_t(t + k));
+                });
+            }
+        }
+        Mask const any = hn::And(hn::Ge(hn::Min(across, down), zero), there);
         if (hn::AllFalse(d, any)) continue;
-
-        V z[3];
-        for (std::size_t k = 0; k < 3; ++k)
-            z[k] = hn::MulAdd(load(3 * k + 2, t), to_z[2],
-                              hn::MulAdd(load(3 * k + 1, t), to_z[1], hn::Mul(load(3 * k, t), to_z[0])));
+        lanes_.add_depth(p, q);
         auto const triangle = hn::Iota(words, std::uint32_t(t));
         V const side = hn::Max(across, down);
         Mask const micro = hn::Le(side, most_micro), one = hn::Le(side, zero);
@@ -219,6 +344,12 @@ void VectorRaster::run(TriangleSoup const& soup, std::size_t first, std::size_t 
                        {corners[6][k], corners[7][k], corners[8][k]}, std::uint32_t(t + k));
         }
     }
+}
+
+template <class Lanes>
+void VectorRaster<Lanes>::finish()
+{
+    std::size_t const lanes = hn::Lanes(Floats());
     while (single_.count > 0) empty_queue(single_, std::min(lanes, single_.count));
     while (few_.count > 0) empty_queue(few_, std::min(lanes, few_.count));
 }
@@ -228,7 +359,22 @@ void VectorRaster::run(TriangleSoup const& soup, std::size_t first, std::size_t 
 void rasterize(TriangleSoup const& soup, std::size_t first, std::size_t last, RasterGrid const& grid,
                MacroPath macro, Fragments& out)
 {
-    VectorRaster(grid, macro, out).run(soup, first, last);
+    VectorRaster<OrthographicLanes> raster(grid, macro, out);
+    raster.run(soup, first, last);
+    raster.finish();
+}
+
+void rasterize(TriangleSoup const& soup, std::size_t first, std::size_t last, PerspectiveGrid const& grid,
+               Fragments& out)
+{
+    VectorRaster<PerspectiveLanes> raster(grid, MacroPath::edge_table, out);
+    for (std::size_t at = first; at < last;) {
+        std::size_t const chunk = at / TriangleSoup::kChunk;
+        std::size_t const end = std::min(last, (chunk + 1) * TriangleSoup::kChunk);
+        if (sees(grid, soup.chunks[chunk])) raster.run(soup, at, end);
+        at = end;
+    }
+    raster.finish();
 }
 
 void rasterize_plain(TriangleSoup const& soup, std::size_t first, std::size_t last, RasterGrid const& grid,

@@ -34,6 +34,7 @@ RasterGrid make_grid(Bounds const& bounds, vec3 axis, std::uint32_t resolution, 
     g.to_y = scale * g.up;
     g.x0 = -scale * g.corner.x;
     g.y0 = -scale * g.corner.y;
+    g.rounding = 1e-6f * (glm::length(center) + bounds.radius());
     return g;
 }
 

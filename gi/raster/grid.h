@@ -20,6 +20,7 @@ struct RasterGrid {
     float subpixels = 1;                             ///< per texel, a power of two
     vec3 to_x{0}, to_y{0};                           ///< world to subpixels
     float x0 = 0, y0 = 0;
+    float rounding = 0;                              ///< m; depths that differ by less are equal
 
     std::size_t texels() const { return std::size_t(width) * height; }
     GI_FN float project_x(vec3 p) const
@@ -99,6 +100,6 @@ GI_FN inline SampleRange samples_between(std::int32_t low, std::int32_t high, st
 
 /// Bit of a fragment's or layer's primitive: its normal (counter-clockwise side) points along the axis.
 inline constexpr std::uint32_t kAlongAxis = 0x80000000u;
-inline constexpr std::uint32_t kPrimitiveMask = 0x7fffffffu;
+inline constexpr std::uint32_t kPrimitiveMask = 0x3fffffffu;
 
 } // namespace gi

@@ -2,6 +2,7 @@
 
 #include "gi/base/huge_pages.h"
 
+#include <algorithm>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -12,11 +13,16 @@ TriangleSoup make_soup(World const& world)
     soup.count = world.triangles.size();
     std::size_t const padded = (soup.count + TriangleSoup::kPadding - 1) / TriangleSoup::kPadding * TriangleSoup::kPadding;
     for (auto& values : soup.corner) resize_on_huge_pages(values, padded);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, soup.count, 4096), [&](auto const& range) {
-        for (std::size_t t = range.begin(); t != range.end(); ++t)
+    soup.chunks.resize((soup.count + TriangleSoup::kChunk - 1) / TriangleSoup::kChunk);
+    tbb::parallel_for(std::size_t(0), soup.chunks.size(), [&](std::size_t chunk) {
+        std::size_t const first = chunk * TriangleSoup::kChunk;
+        Bounds& bounds = soup.chunks[chunk];
+        for (std::size_t t = first; t < std::min(first + TriangleSoup::kChunk, soup.count); ++t)
             for (glm::length_t k = 0; k < 3; ++k) {
                 vec3 const p = world.positions[world.triangles[t][k]];
                 for (glm::length_t c = 0; c < 3; ++c) soup.corner[std::size_t(3 * k + c)][t] = p[c];
+                bounds.low = glm::min(bounds.low, p);
+                bounds.high = glm::max(bounds.high, p);
             }
     });
     return soup;

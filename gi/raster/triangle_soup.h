@@ -9,10 +9,11 @@
 namespace gi {
 
 struct TriangleSoup {
-    static constexpr std::size_t kPadding = 16;
+    static constexpr std::size_t kPadding = 16, kChunk = 256;
 
     std::array<std::vector<float>, 9> corner; ///< [3 * vertex + coordinate][triangle], m
     std::size_t count = 0;                    ///< without the padding
+    std::vector<Bounds> chunks;               ///< of kChunk triangles each, to skip what a view cannot see
 
     vec3 vertex(std::size_t triangle, std::size_t k) const
     {

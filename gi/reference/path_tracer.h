@@ -11,13 +11,13 @@
 // directly (also through mirrors and glass), L1 direct light, L2 all indirect light.
 
 #include "gi/base/rng.h"
-#include "gi/image/render_settings.h"
-#include "gi/reference/exact_visibility.h"
 #include "gi/scene/camera.h"
 #include "gi/scene/light_sampling.h"
 #include "gi/scene/shading_point.h"
+#include "gi/transport/exact_visibility.h"
+#include "gi/transport/path_sample.h"
+#include "gi/transport/sampling.h"
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -25,29 +25,6 @@ namespace gi {
 
 /// Sides of the tiles whose paths advance together, px.
 inline constexpr int kTile = 16;
-
-/// Longest chain of surfaces a path may visit, delta lobes included. Reaching it is counted.
-inline constexpr int kLongestPath = 1024;
-
-struct PathSample {
-    std::array<vec3, 3> radiance{vec3{0}, vec3{0}, vec3{0}}; ///< L0, L1, L2
-    vec3 albedo{0}, normal{0}, position{0};                  ///< at the first surface
-    float depth = 0;                                         ///< m along the camera's axis
-    bool hit = false;
-};
-
-struct PathCounts {
-    std::uint64_t nearest_rays = 0, shadow_rays = 0, cut_paths = 0, invalid_paths = 0;
-
-    PathCounts& operator+=(PathCounts const& o)
-    {
-        nearest_rays += o.nearest_rays;
-        shadow_rays += o.shadow_rays;
-        cut_paths += o.cut_paths;
-        invalid_paths += o.invalid_paths;
-        return *this;
-    }
-};
 
 /// One path on its way.
 struct Path {
@@ -66,23 +43,6 @@ struct Path {
 
     vec3& bucket(int scattered) { return sample.radiance[std::size_t(std::min(scattered, 2))]; }
 };
-
-/// Veach's power heuristic with exponent 2.
-inline float power_heuristic(float pdf, float other)
-{
-    float const ratio = other / pdf; // squares of the densities themselves would overflow near small lamps
-    return 1.0f / (1.0f + ratio * ratio);
-}
-
-/// Filter importance sampling: where in the plane the path of a pixel starts, relative to the pixel's centre (px).
-inline vec2 filter_offset(PixelFilter filter, vec2 u)
-{
-    if (filter == PixelFilter::box) return u - 0.5f;
-    auto const tent = [](float v) {
-        return v < 0.5f ? std::sqrt(2 * v) - 1 : 1 - std::sqrt(std::max(0.0f, 2 - 2 * v));
-    };
-    return {tent(u.x), tent(u.y)};
-}
 
 /// @tparam Visibility answers nearest(queries, hits) and occluded(queries, blocked) as ExactVisibility does
 template <class Visibility>

@@ -1,37 +1,16 @@
 #include "gi/reference/reference.h"
 
-#include "gi/reference/accumulator.h"
-#include "gi/reference/fingerprint.h"
+#include "gi/reference/path_tracer.h"
 #include "gi/scene/plan.h"
+#include "gi/transport/fingerprint.h"
+#include "gi/transport/flush_denormals.h"
+#include "gi/transport/pass_loop.h"
 
-#include <algorithm>
-#include <chrono>
-#include <pmmintrin.h>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 namespace gi {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start)
-{
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Denormals cost hundreds of cycles each and carry no light.
-class FlushDenormals {
-public:
-    FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON); }
-    ~FlushDenormals() { _mm_setcsr(saved_); }
-    FlushDenormals(FlushDenormals const&) = delete;
-    FlushDenormals& operator=(FlushDenormals const&) = delete;
-
-private:
-    unsigned saved_;
-};
 
 void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t paths)
 {
@@ -58,25 +37,12 @@ void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, st
     sums.counts += counts.combine([](PathCounts a, PathCounts const& b) { return a += b; });
 }
 
-/// How many paths the next pass takes: short enough to answer Ctrl-C, the budget and the progress bar, long enough
-/// that the overhead of a pass does not show.
-std::uint32_t next_pass(RenderSettings const& s, std::uint32_t done, double seconds_per_path, double spent)
-{
-    constexpr double kPassSeconds = 0.5;
-    double paths = seconds_per_path > 0 ? kPassSeconds / seconds_per_path : 1;
-    if (s.budget_s > 0 && seconds_per_path > 0) paths = std::min(paths, (s.budget_s - spent) / seconds_per_path);
-    if (s.until_relmse > 0) paths = std::min(paths, std::max(16.0, 0.25 * double(done)));
-    return std::uint32_t(std::clamp(paths, 1.0, double(s.paths - done)));
-}
-
 } // namespace
 
 RenderResult render_reference(World const& world, Camera const& camera, RenderSettings const& settings,
                               StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
-    constexpr double kCheckpointSeconds = 30;
-    constexpr std::uint32_t kPathsForVariance = 16;
-
+    PassLoop loop(settings, stop, progress, report);
     ScenePlan const plan = plan_scene(world);
     std::unique_ptr<ExactVisibility> visibility;
     {
@@ -87,67 +53,14 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
         view(world),      *visibility,   camera_rays(camera, settings.width, settings.height, world.origin),
         settings.bounces, settings.seed, settings.filter,
         settings.width};
-
-    Accumulator sums(settings.width, settings.height);
-    bool const keeps_state = !settings.checkpoint.empty();
-    std::uint64_t const print = keeps_state ? fingerprint(world, camera, settings) : 0;
-    if (settings.resume) load_checkpoint(settings.checkpoint, sums, print);
-    std::uint32_t const resumed = sums.paths;
-
-    tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
-    double const earlier = sums.seconds;
-    RenderResult result;
-    auto const start = Clock::now();
-    auto saved = start;
-    double relmse = resumed > 0 ? sums.relative_mse() : 0;
-    double per_path = 0;
-    while (true) {
-        double const spent = seconds_since(start);
-        if (sums.paths >= settings.paths) break;
-        if (sums.paths > 0 && stop.requested()) {
-            result.end = RenderEnd::interrupted;
-            break;
-        }
-        if (settings.budget_s > 0 && sums.paths > resumed && spent + per_path > settings.budget_s) {
-            result.end = RenderEnd::budget;
-            break;
-        }
-        if (settings.until_relmse > 0 && sums.paths >= kPathsForVariance && relmse < settings.until_relmse) {
-            result.end = RenderEnd::error_target;
-            break;
-        }
-        arena.execute([&] { trace_pass(tracer, sums, next_pass(settings, sums.paths, per_path, spent)); });
-        double const now = seconds_since(start);
-        sums.seconds = earlier + now;
-        per_path = now / double(sums.paths - resumed);
-        relmse = sums.relative_mse();
-        if (progress) {
-            double fraction = double(sums.paths) / double(settings.paths);
-            if (settings.budget_s > 0) fraction = std::max(fraction, now / settings.budget_s);
-            if (settings.until_relmse > 0 && relmse > 0)
-                fraction = std::max(fraction, settings.until_relmse / relmse);
-            progress({std::min(1.0, fraction), sums.paths, relmse});
-        }
-        if (keeps_state && seconds_since(saved) > kCheckpointSeconds) {
-            save_checkpoint(settings.checkpoint, sums, print);
-            saved = Clock::now();
-        }
-    }
-    result.resumable = keeps_state && (result.end == RenderEnd::interrupted ||
-                                       (settings.resume && result.end != RenderEnd::paths));
-    if (result.resumable) save_checkpoint(settings.checkpoint, sums, print);
-
-    PathCounts const& total = sums.counts;
-    result.seconds = sums.seconds;
-    report.add_time("trace", seconds_since(start));
+    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, "reference") : 0;
+    RenderResult result =
+        loop.run(print, [&](Accumulator& sums, std::uint32_t paths) { trace_pass(tracer, sums, paths); });
+    PathCounts const& total = loop.sums().counts;
     report.count("closest-hit rays", double(total.nearest_rays));
     report.count("shadow rays", double(total.shadow_rays));
-    report.lose("paths cut at 1024 surfaces", total.cut_paths);
-    report.lose("path terms that were not finite, dropped", total.invalid_paths);
     result.rays = double(total.nearest_rays + total.shadow_rays);
-    result.paths = sums.paths;
-    result.relmse = relmse;
-    result.picture = sums.picture(world.origin);
+    result.picture = loop.sums().picture(world.origin);
     return result;
 }
 

@@ -1,4 +1,4 @@
-#include "gi/reference/accumulator.h"
+#include "gi/transport/accumulator.h"
 
 #include "gi/base/error.h"
 #include "gi/base/file.h"

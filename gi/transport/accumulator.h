@@ -3,7 +3,7 @@
 // interruption change the picture. A checkpoint stores them exactly.
 
 #include "gi/base/picture.h"
-#include "gi/reference/path_tracer.h"
+#include "gi/transport/path_sample.h"
 
 #include <filesystem>
 #include <vector>

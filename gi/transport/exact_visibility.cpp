@@ -1,4 +1,4 @@
-#include "gi/reference/exact_visibility.h"
+#include "gi/transport/exact_visibility.h"
 
 #include "gi/base/rng.h"
 #include "gi/scene/shading_point.h"

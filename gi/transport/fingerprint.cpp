@@ -1,4 +1,4 @@
-#include "gi/reference/fingerprint.h"
+#include "gi/transport/fingerprint.h"
 
 #include "gi/base/rng.h"
 
@@ -70,9 +70,11 @@ void add(Hash& h, Material const& m)
 
 } // namespace
 
-std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettings const& s)
+std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettings const& s,
+                          std::string_view method)
 {
     Hash h;
+    for (char const c : method) h.add(std::uint64_t(c));
     h.add_array(world.positions);
     h.add_array(world.normals);
     h.add_array(world.tangents);

@@ -1,0 +1,85 @@
+#pragma once
+// Triangles that reach out of what a pinhole raster can hold, cut to it (Sutherland & Hodgman 1974), and boxes that
+// it cannot see. Cuts are made between the corners of an edge in a fixed order, so that neighbours cut alike.
+
+#include "gi/raster/perspective_grid.h"
+
+#include <array>
+
+namespace gi {
+namespace clip_detail {
+
+struct Corner {
+    dvec3 raster; ///< subpixels times w, and w in z
+};
+
+/// Inside where weights . (x, y, w) >= limit.
+struct Plane {
+    dvec3 weights;
+    double limit;
+
+    double distance(Corner const& c) const { return glm::dot(weights, c.raster) - limit; }
+};
+
+inline bool before(dvec3 a, dvec3 b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
+
+inline Corner cut(Corner const& a, Corner const& b, Plane const& plane)
+{
+    if (before(b.raster, a.raster)) return cut(b, a, plane);
+    double const da = plane.distance(a), db = plane.distance(b);
+    return {a.raster + (da / (da - db)) * (b.raster - a.raster)};
+}
+
+inline Corner corner(PerspectiveGrid const& g, vec3 p)
+{
+    dvec3 const v = dvec3(p) - dvec3(g.eye);
+    return {{glm::dot(v, dvec3(g.to_x)), glm::dot(v, dvec3(g.to_y)), glm::dot(v, dvec3(g.forward))}};
+}
+
+} // namespace clip_detail
+
+/// Calls emit(SnappedTriangle, depths) for the parts of a triangle within the guard and in front of the eye.
+template <class Emit>
+void clip_triangle(PerspectiveGrid const& g, vec3 const* corners, Emit const& emit)
+{
+    using namespace clip_detail;
+    constexpr std::size_t kMost = 16;
+    double const guard = 0.5 * double(PerspectiveGrid::kGuard);
+    std::array<Plane, 5> const planes{Plane{{0, 0, 1}, double(g.near_m)}, Plane{{1, 0, guard}, 0}, Plane{{-1, 0, guard}, 0},
+                                      Plane{{0, 1, guard}, 0}, Plane{{0, -1, guard}, 0}};
+    std::array<Corner, kMost> polygon{corner(g, corners[0]), corner(g, corners[1]), corner(g, corners[2])}, kept;
+    std::size_t n = 3;
+    for (Plane const& plane : planes) {
+        std::size_t m = 0;
+        for (std::size_t k = 0; k < n; ++k) {
+            Corner const &a = polygon[k], &b = polygon[(k + 1) % n];
+            bool const a_in = plane.distance(a) >= 0, b_in = plane.distance(b) >= 0;
+            if (a_in) kept[m++] = a;
+            if (a_in != b_in) kept[m++] = cut(a, b, plane);
+        }
+        polygon = kept;
+        n = m;
+        if (n < 3) return;
+    }
+    auto const x = [&](std::size_t k) { return std::int32_t(std::rint(polygon[k].raster.x / polygon[k].raster.z)); };
+    auto const y = [&](std::size_t k) { return std::int32_t(std::rint(polygon[k].raster.y / polygon[k].raster.z)); };
+    auto const depth = [&](std::size_t k) { return float(1 / polygon[k].raster.z); };
+    for (std::size_t k = 1; k + 1 < n; ++k)
+        emit(SnappedTriangle{{x(0), x(k), x(k + 1)}, {y(0), y(k), y(k + 1)}}, vec3{depth(0), depth(k), depth(k + 1)});
+}
+
+/// False only where no point of the box is in view.
+inline bool sees(PerspectiveGrid const& g, Bounds const& box)
+{
+    if (box.empty()) return false;
+    vec3 const center = box.center() - g.eye, half = 0.5f * (box.high - box.low);
+    float const right = float(g.width) * g.subpixels, bottom = float(g.height) * g.subpixels;
+    auto const outside = [&](vec3 inwards) { // of the plane through the eye
+        return glm::dot(inwards, center) + glm::dot(glm::abs(inwards), half) < 0;
+    };
+    if (glm::dot(g.forward, center) + glm::dot(glm::abs(g.forward), half) < g.near_m) return false;
+    return !outside(g.to_x) && !outside(right * g.forward - g.to_x) && !outside(g.to_y) &&
+           !outside(bottom * g.forward - g.to_y);
+}
+
+} // namespace gi

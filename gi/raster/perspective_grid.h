@@ -1,0 +1,31 @@
+#pragma once
+// The raster of a pinhole view: a camera's picture or one face of the cube around a lamp. Depth is the reciprocal of
+// the distance along the view, 1/m, which is linear over the raster; larger is nearer. Triangles that reach behind
+// the eye, or so far beside the raster that subpixels would overflow, are clipped one by one; the others are exact on
+// snapped vertices as in grid.h.
+
+#include "gi/raster/grid.h"
+#include "gi/scene/camera.h"
+
+namespace gi {
+
+struct PerspectiveGrid {
+    /// Beyond this many subpixels from zero a corner is clipped.
+    static constexpr float kGuard = 4194304; // 2^22
+
+    vec3 eye{0};
+    vec3 to_x{1, 0, 0}, to_y{0, 1, 0}, forward{0, 0, 1}; ///< rows: (to_x . v) / (forward . v) is in subpixels, v from the eye
+    float near_m = 0;
+    float subpixels = 1;
+    std::uint32_t width = 1, height = 1;
+
+    std::size_t texels() const { return std::size_t(width) * height; }
+};
+
+/// @param at  position within its pixel, [0, 1)^2, that every pixel looks through   @param near_m > 0
+PerspectiveGrid camera_grid(CameraRays const& camera, int width, int height, vec2 at, float near_m);
+
+/// Face 0..5 (+X, -X, +Y, -Y, +Z, -Z) of the cube about a point, resolution^2 texels over 90 degrees.
+PerspectiveGrid cube_face(vec3 eye, int face, std::uint32_t resolution, float near_m);
+
+} // namespace gi

@@ -1,0 +1,414 @@
+#include "gi/slhb/query_batch.h"
+
+#include "gi/base/error.h"
+#include "gi/base/huge_pages.h"
+
+#include <algorithm>
+#include <bit>
+#include <hwy/highway.h>
+
+namespace gi {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Floats = hn::ScalableTag<float>;
+using Words = hn::RebindToUnsigned<Floats>;
+using Integers = hn::RebindToSigned<Floats>;
+using Pairs = hn::Repartition<std::int64_t, Integers>;
+using HalfIntegers = hn::Half<Integers>;
+using V = hn::Vec<Floats>;
+using I = hn::Vec<Integers>;
+using W = hn::Vec<Words>;
+using M = hn::Mask<Floats>;
+constexpr std::size_t kMostLanes = HWY_MAX_BYTES / sizeof(float);
+
+struct TwoWords {
+    W first, second;
+};
+
+/// Records of two words at index * 2^kStrideLog2 bytes: one load of 64 bits a lane instead of two of 32.
+template <int kStrideLog2>
+TwoWords gather_pairs(void const* base, I index)
+{
+    Words const words;
+    Pairs const pairs;
+    HalfIntegers const half;
+    auto const* const from = static_cast<std::int64_t const*>(base);
+    auto const offset = [&](auto part) { return hn::ShiftLeft<kStrideLog2>(hn::PromoteTo(pairs, part)); };
+    auto const low = hn::BitCast(words, hn::GatherOffset(pairs, from, offset(hn::LowerHalf(half, index))));
+    auto const high = hn::BitCast(words, hn::GatherOffset(pairs, from, offset(hn::UpperHalf(half, index))));
+    return {hn::ConcatEven(words, high, low), hn::ConcatOdd(words, high, low)};
+}
+
+/// The numbers of a grid, the same in all lanes or each lane's own.
+struct GridLanes {
+    V right[3], up[3], axis[3], corner_x, corner_y, texel, per_texel, last_i, last_j, width, rounding;
+    I first_offset, first_layer;
+};
+
+GridLanes same_grid(AxisPool const& pool, std::size_t a)
+{
+    RasterGrid const& g = pool.grids[a];
+    Floats const d;
+    Integers const integers;
+    auto const set = [&](float v) { return hn::Set(d, v); };
+    return {{set(g.right.x), set(g.right.y), set(g.right.z)},
+            {set(g.up.x), set(g.up.y), set(g.up.z)},
+            {set(g.axis.x), set(g.axis.y), set(g.axis.z)},
+            set(g.corner.x),
+            set(g.corner.y),
+            set(g.texel),
+            set(1 / g.texel),
+            set(float(g.width) - 1),
+            set(float(g.height) - 1),
+            set(float(g.width)),
+            set(g.rounding),
+            hn::Set(integers, std::int32_t(pool.first_offset[a])),
+            hn::Set(integers, std::int32_t(pool.first_layer[a]))};
+}
+
+GridLanes own_grids(AxisPool const& pool, std::uint32_t const* axes)
+{
+    Floats const d;
+    Integers const integers;
+    // Beyond the last query of a batch there may be anything.
+    W const most = hn::Set(Words(), std::uint32_t(pool.size() - 1));
+    I const a = hn::BitCast(integers, hn::Min(hn::LoadU(Words(), axes), most));
+    I const at = hn::Mul(a, hn::Set(integers, std::int32_t(sizeof(RasterGrid) / sizeof(float))));
+    static_assert(sizeof(RasterGrid) % sizeof(float) == 0);
+    RasterGrid const& g = pool.grids[0];
+    auto const real = [&](float const& member) { return hn::GatherIndex(d, &member, at); };
+    auto const whole = [&](std::uint32_t const& member) {
+        return hn::ConvertTo(d, hn::GatherIndex(integers, reinterpret_cast<std::int32_t const*>(&member), at));
+    };
+    auto const of_axis = [&](std::vector<std::uint32_t> const& v) {
+        return hn::GatherIndex(integers, reinterpret_cast<std::int32_t const*>(v.data()), a);
+    };
+    V const one = hn::Set(d, 1), texel = real(g.texel), width = whole(g.width);
+    return {{real(g.right.x), real(g.right.y), real(g.right.z)},
+            {real(g.up.x), real(g.up.y), real(g.up.z)},
+            {real(g.axis.x), real(g.axis.y), real(g.axis.z)},
+            real(g.corner.x),
+            real(g.corner.y),
+            texel,
+            hn::Div(one, texel),
+            hn::Sub(width, one),
+            hn::Sub(whole(g.height), one),
+            width,
+            real(g.rounding),
+            of_axis(pool.first_offset),
+            of_axis(pool.first_layer)};
+}
+
+/// Texel coordinates (whole numbers) of the column that is asked at an attempt: the nearest centre; then across the
+/// nearer border of its texel, across the other, and across both.
+struct Cell {
+    V i, j;
+};
+
+Cell choose_cell(V x, V y, GridLanes const& g, int attempt)
+{
+    Floats const d;
+    V const zero = hn::Zero(d), one = hn::Set(d, 1), half = hn::Set(d, 0.5f);
+    Cell const c{hn::Max(hn::Min(hn::Floor(x), g.last_i), zero), hn::Max(hn::Min(hn::Floor(y), g.last_j), zero)};
+    if (attempt == 0) return c;
+    V const off_x = hn::Sub(x, hn::Add(c.i, half)), off_y = hn::Sub(y, hn::Add(c.j, half));
+    auto const other = [&](V at, V off, V last) {
+        V const next = hn::Add(at, hn::IfThenElse(hn::Lt(off, zero), hn::Set(d, -1), one));
+        return hn::IfThenElse(hn::Or(hn::Lt(next, zero), hn::Gt(next, last)), at, next);
+    };
+    V const i = other(c.i, off_x, g.last_i), j = other(c.j, off_y, g.last_j);
+    if (attempt == 3) return {i, j};
+    M const x_first = hn::Gt(hn::Abs(off_x), hn::Abs(off_y));
+    M const to_x = attempt == 1 ? x_first : hn::Not(x_first);
+    return {hn::IfThenElse(to_x, i, c.i), hn::IfThenElse(to_x, c.j, j)};
+}
+
+struct Answer {
+    std::uint32_t unsure; ///< bit per lane: its column does not speak for its origin
+    std::uint32_t near;   ///< bit per lane: it does if the hit lies ahead
+};
+
+std::uint32_t bits_of(M mask)
+{
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(Floats(), mask, bytes);
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < (kMostLanes + 7) / 8; ++k) bits |= std::uint32_t(bytes[k]) << (8 * k);
+    return bits;
+}
+
+/// Which columns a block of queries looks into. Found for the whole block before any is walked, so that the cache
+/// misses of all of them overlap.
+struct Columns {
+    static constexpr std::size_t kBlock = 16 * kMostLanes;
+
+    alignas(64) float i[kBlock];
+    alignas(64) float j[kBlock];
+    alignas(64) std::int32_t texel[kBlock];       ///< into the pool's offsets
+    alignas(64) std::int32_t first_layer[kBlock]; ///< of the axis
+};
+
+void find_columns(AxisPool const& pool, GridLanes const& g, int attempt, QueryBatch const& b, std::size_t first,
+                  std::size_t at, Columns& columns)
+{
+    Floats const d;
+    Integers const integers;
+    V const x = hn::LoadU(d, b.x.data() + first), y = hn::LoadU(d, b.y.data() + first),
+            z = hn::LoadU(d, b.z.data() + first);
+    auto const along = [&](V const* to) { return hn::MulAdd(z, to[2], hn::MulAdd(y, to[1], hn::Mul(x, to[0]))); };
+    Cell const cell = choose_cell(hn::Mul(hn::Sub(along(g.right), g.corner_x), g.per_texel),
+                                  hn::Mul(hn::Sub(along(g.up), g.corner_y), g.per_texel), g, attempt);
+    I const texel = hn::Add(hn::ConvertTo(integers, hn::MulAdd(cell.j, g.width, cell.i)), g.first_offset);
+    hn::Store(cell.i, d, columns.i + at);
+    hn::Store(cell.j, d, columns.j + at);
+    hn::Store(texel, integers, columns.texel + at);
+    hn::Store(g.first_layer, integers, columns.first_layer + at);
+    for (std::size_t k = at; k < at + hn::Lanes(d); ++k) __builtin_prefetch(&pool.offset[std::size_t(columns.texel[k])]);
+}
+
+void fetch_layers(AxisPool const& pool, Columns const& columns, QueryBatch const& b, std::size_t first, std::size_t n)
+{
+    for (std::size_t k = 0; k < n; ++k) {
+        auto const t = std::size_t(columns.texel[k]);
+        bool const up = (b.triangle[first + k] & kWalkUp) != 0;
+        __builtin_prefetch(pool.layers.data() + std::size_t(columns.first_layer[k]) + pool.offset[t + (up ? 0 : 1)] -
+                           (up ? 0 : 1));
+    }
+}
+
+/// One vector of queries; query_detail::look_into in lanes.
+Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, QueryBatch& b, std::size_t first,
+                     Columns const& columns, std::size_t column)
+{
+    Floats const d;
+    Words const words;
+    Integers const integers;
+    auto const set = [&](float v) { return hn::Set(d, v); };
+    V const x = hn::LoadU(d, b.x.data() + first), y = hn::LoadU(d, b.y.data() + first),
+            z = hn::LoadU(d, b.z.data() + first);
+    auto const along = [&](V const* to) { return hn::MulAdd(z, to[2], hn::MulAdd(y, to[1], hn::Mul(x, to[0]))); };
+    Cell const cell{hn::Load(d, columns.i + column), hn::Load(d, columns.j + column)};
+    I const texel = hn::Load(integers, columns.texel + column);
+    TwoWords const range = gather_pairs<2>(pool.offset.data(), texel);
+    I const begin = hn::BitCast(integers, range.first), end = hn::BitCast(integers, range.second);
+
+    W const primitive = hn::LoadU(words, b.triangle.data() + first);
+    W const own = hn::And(primitive, hn::Set(words, kPrimitiveMask));
+    W const facing_bit = hn::Set(words, kAlongAxis);
+    W const own_facing = hn::And(primitive, facing_bit);
+    M const is_up = hn::RebindMask(d, hn::TestBit(primitive, hn::Set(words, kWalkUp)));
+    // Layers that face the walk have this facing.
+    W const towards = hn::IfThenElseZero(hn::Not(hn::RebindMask(words, is_up)), facing_bit);
+    V const sign = hn::IfThenElse(is_up, set(1), set(-1));
+    V const origin = hn::Mul(sign, along(g.axis));
+    V const margin = hn::Mul(g.texel, hn::Add(set(1), hn::LoadU(d, b.slope.data() + first)));
+
+    I const one = hn::Set(integers, 1), zero = hn::Zero(integers);
+    I const step = hn::ConvertTo(integers, sign);
+    I at = hn::Add(g.first_layer, hn::IfThenElse(hn::RebindMask(integers, is_up), begin, hn::Sub(end, one)));
+    I left = hn::Sub(end, begin);
+    V best = margin, own_depth = hn::Zero(d), depth = hn::Zero(d), gap = hn::Zero(d), plain_depth = hn::Zero(d);
+    M found = hn::FirstN(d, 0), hit = found, plain_hit = found;
+    W answer = hn::Set(words, kNoLayerHit), plain = answer;
+    for (M running = hn::RebindMask(d, hn::Gt(left, zero)); !hn::AllFalse(d, running);) {
+        TwoWords const record =
+            gather_pairs<3>(pool.layers.data(), hn::IfThenElseZero(hn::RebindMask(integers, running), at));
+        V const layer_depth = hn::BitCast(d, record.first);
+        W const layer = record.second, facing = hn::And(layer, facing_bit);
+        V const from_origin = hn::MulSub(sign, layer_depth, origin), distance = hn::Abs(from_origin);
+        M const same = hn::RebindMask(d, hn::Eq(hn::And(layer, hn::Set(words, kPrimitiveMask)), own));
+        M const alike = hn::And(hn::RebindMask(d, hn::Eq(facing, own_facing)), hn::Le(distance, best));
+        M const is_own = hn::And(running, hn::Or(same, alike));
+        best = hn::IfThenElse(is_own, hn::IfThenElse(same, set(-1), distance), best);
+        own_depth = hn::IfThenElse(is_own, from_origin, own_depth);
+        found = hn::Or(found, is_own);
+        hit = hn::AndNot(is_own, hit);
+        M const other = hn::AndNot(is_own, running);
+        V const beyond = hn::Sub(from_origin, own_depth);
+        M const new_hit = hn::And(hn::AndNot(hit, hn::And(other, found)), hn::Gt(beyond, g.rounding));
+        hit = hn::Or(hit, new_hit);
+        depth = hn::IfThenElse(new_hit, layer_depth, depth);
+        gap = hn::IfThenElse(new_hit, beyond, gap);
+        answer = hn::IfThenElse(hn::RebindMask(words, new_hit), layer, answer);
+        if (attempt == 0) {
+            M const faces = hn::RebindMask(d, hn::Eq(facing, towards));
+            M const new_plain = hn::And(hn::AndNot(plain_hit, hn::And(other, faces)), hn::Gt(from_origin, g.rounding));
+            plain_hit = hn::Or(plain_hit, new_plain);
+            plain_depth = hn::IfThenElse(new_plain, layer_depth, plain_depth);
+            plain = hn::IfThenElse(hn::RebindMask(words, new_plain), layer, plain);
+        }
+        M const answered = hn::Or(hn::And(found, hit), hn::AndNot(found, plain_hit));
+        M const over = hn::And(answered, hn::Or(hn::Lt(best, hn::Zero(d)), hn::Gt(from_origin, margin)));
+        at = hn::Add(at, step);
+        left = hn::Sub(left, one);
+        running = hn::AndNot(over, hn::And(running, hn::RebindMask(d, hn::Gt(left, zero))));
+    }
+    M const near = hn::And(hn::And(found, hit), hn::Lt(gap, hn::Mul(set(4), g.texel)));
+    depth = hn::IfThenElse(found, depth, plain_depth);
+    answer = hn::IfThenElse(hn::RebindMask(words, found),
+                            hn::IfThenElse(hn::RebindMask(words, hit), answer, hn::Set(words, kNoLayerHit)), plain);
+    V const u = hn::MulAdd(hn::Add(cell.i, set(0.5f)), g.texel, g.corner_x);
+    V const v = hn::MulAdd(hn::Add(cell.j, set(0.5f)), g.texel, g.corner_y);
+    auto const store = [&](std::size_t k, std::vector<float>& to) {
+        hn::StoreU(hn::MulAdd(depth, g.axis[k], hn::MulAdd(v, g.up[k], hn::Mul(u, g.right[k]))), d, to.data() + first);
+    };
+    store(0, b.hit_x);
+    store(1, b.hit_y);
+    store(2, b.hit_z);
+    hn::StoreU(answer, words, b.hit.data() + first);
+    return {bits_of(hn::Not(found)), bits_of(near)};
+}
+
+/// Rounded up to whole vectors, which the arrays are made for.
+std::size_t padded(std::size_t n) { return (n + kMostLanes - 1) / kMostLanes * kMostLanes; }
+
+void copy_query(QueryBatch const& from, std::size_t i, QueryBatch& to, std::size_t k)
+{
+    to.x[k] = from.x[i];
+    to.y[k] = from.y[i];
+    to.z[k] = from.z[i];
+    to.triangle[k] = from.triangle[i];
+    to.slope[k] = from.slope[i];
+    to.axis[k] = from.axis[i];
+}
+
+/// Asks all queries of the batch at one attempt; indices of those that have no good answer yet go to `unsure`.
+template <class Grids>
+void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces, int attempt, QueryBatch& b,
+         std::vector<std::uint32_t>& unsure)
+{
+    std::size_t const lanes = hn::Lanes(Floats()), n = b.size();
+    unsure.clear();
+    thread_local Columns columns;
+    thread_local std::vector<std::uint32_t> near;
+    near.clear();
+    for (std::size_t i = 0; i < n; i += lanes) {
+        std::size_t const column = i % Columns::kBlock;
+        if (column == 0) {
+            std::size_t const block = std::min(Columns::kBlock, n - i);
+            for (std::size_t k = 0; k < block; k += lanes) find_columns(pool, grids(i + k), attempt, b, i + k, k, columns);
+            fetch_layers(pool, columns, b, i, block);
+        }
+        Answer answer = answer_vector(pool, grids(i), attempt, b, i, columns, column);
+        if (n - i < lanes) {
+            std::uint32_t const there = (1u << (n - i)) - 1;
+            answer = {answer.unsure & there, answer.near & there};
+        }
+        for (std::uint32_t bits = answer.near; bits != 0; bits &= bits - 1) {
+            std::uint32_t const q = std::uint32_t(i) + std::uint32_t(std::countr_zero(bits));
+            __builtin_prefetch(&surfaces[b.hit[q] & kPrimitiveMask]);
+            near.push_back(q);
+        }
+        for (std::uint32_t bits = answer.unsure; bits != 0; bits &= bits - 1)
+            unsure.push_back(std::uint32_t(i) + std::uint32_t(std::countr_zero(bits)));
+        if (column + lanes < Columns::kBlock && i + lanes < n) continue;
+        for (std::uint32_t const q : near) // their surfaces have come meanwhile
+            if (!query_detail::lies_ahead(surfaces[b.hit[q] & kPrimitiveMask], b.hit[q], b.origin(q)))
+                unsure.push_back(q);
+        near.clear();
+    }
+    std::ranges::sort(unsure);
+}
+
+template <class MakeGrids>
+void answer_all(AxisPool const& pool, MakeGrids const& make_grids, View<Surface const> surfaces, QueryBatch& b)
+{
+    thread_local std::vector<std::uint32_t> waiting, unsure;
+    thread_local QueryBatch again;
+    b.resize(b.size());
+    ask(pool, make_grids(b), surfaces, 0, b, waiting);
+    for (int attempt = 1; attempt < 4 && !waiting.empty(); ++attempt) {
+        again.resize(waiting.size());
+        for (std::size_t k = 0; k < waiting.size(); ++k) copy_query(b, waiting[k], again, k);
+        ask(pool, make_grids(again), surfaces, attempt, again, unsure);
+        std::size_t left = 0, next = 0;
+        for (std::uint32_t k = 0; k < waiting.size(); ++k) {
+            if (next < unsure.size() && unsure[next] == k) {
+                ++next;
+                waiting[left++] = waiting[k];
+                continue;
+            }
+            std::uint32_t const i = waiting[k];
+            b.hit[i] = again.hit[k];
+            b.hit_x[i] = again.hit_x[k];
+            b.hit_y[i] = again.hit_y[k];
+            b.hit_z[i] = again.hit_z[k];
+        }
+        waiting.resize(left);
+    }
+}
+
+} // namespace
+
+AxisView AxisPool::axis(std::size_t a) const
+{
+    std::uint32_t const* const offsets = offset.data() + first_offset[a];
+    std::size_t const texels = grids[a].texels();
+    return {{{grids[a], {offsets, texels + 1}, {layers.data() + first_layer[a], offsets[texels]}}, {}}};
+}
+
+AxisPool make_pool(std::vector<HitBuffer> const& buffers)
+{
+    AxisPool pool;
+    std::size_t offsets = 0, layers = 0;
+    for (HitBuffer const& b : buffers) {
+        offsets += b.offset.size();
+        layers += b.layers.size();
+    }
+    constexpr std::size_t kMost = 0x7fffffff;
+    if (offsets > kMost || layers > kMost)
+        throw InputError("the hit buffers have more than 2^31 layers", "they are indexed with 32 bits",
+                         "lower the resolution or the number of directions");
+    resize_on_huge_pages(pool.offset, offsets);
+    resize_on_huge_pages(pool.layers, layers);
+    std::size_t offset = 0, layer = 0;
+    for (HitBuffer const& b : buffers) {
+        pool.grids.push_back(b.grid);
+        pool.first_offset.push_back(std::uint32_t(offset));
+        pool.first_layer.push_back(std::uint32_t(layer));
+        std::ranges::copy(b.offset, pool.offset.data() + pool.first_offset.back());
+        std::ranges::copy(b.layers, pool.layers.data() + pool.first_layer.back());
+        offset += b.offset.size();
+        layer += b.layers.size();
+    }
+    if (pool.layers.empty()) pool.layers.push_back({}); // vectors read something where they have nothing to read
+    return pool;
+}
+
+void QueryBatch::resize(std::size_t n)
+{
+    for (auto* a : {&x, &y, &z, &slope, &hit_x, &hit_y, &hit_z}) {
+        a->reserve(padded(n));
+        a->resize(n);
+    }
+    for (auto* a : {&triangle, &axis, &hit}) {
+        a->reserve(padded(n));
+        a->resize(n);
+    }
+}
+
+void QueryBatch::set(std::size_t i, WalkOrigin const& o, std::uint32_t along_axis)
+{
+    x[i] = o.position.x;
+    y[i] = o.position.y;
+    z[i] = o.position.z;
+    triangle[i] = o.triangle | (o.along ? kAlongAxis : 0) | (o.up ? kWalkUp : 0);
+    slope[i] = o.slope;
+    axis[i] = along_axis;
+}
+
+void nearest_layers(AxisPool const& pool, View<Surface const> surfaces, QueryBatch& batch)
+{
+    answer_all(pool, [&](QueryBatch const& b) { return [&](std::size_t i) { return own_grids(pool, b.axis.data() + i); }; },
+               surfaces, batch);
+}
+
+void nearest_layers(AxisPool const& pool, std::size_t a, View<Surface const> surfaces, QueryBatch& batch)
+{
+    GridLanes const grid = same_grid(pool, a);
+    answer_all(pool, [&](QueryBatch const&) { return [&](std::size_t) -> GridLanes const& { return grid; }; }, surfaces,
+               batch);
+}
+
+} // namespace gi

@@ -1,0 +1,18 @@
+#pragma once
+#include <pmmintrin.h>
+
+namespace gi {
+
+/// Denormals cost hundreds of cycles each and carry no light.
+class FlushDenormals {
+public:
+    FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON); }
+    ~FlushDenormals() { _mm_setcsr(saved_); }
+    FlushDenormals(FlushDenormals const&) = delete;
+    FlushDenormals& operator=(FlushDenormals const&) = delete;
+
+private:
+    unsigned saved_;
+};
+
+} // namespace gi

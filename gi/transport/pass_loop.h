@@ -1,0 +1,46 @@
+#pragma once
+// The loop that every method renders in: pass after pass until the paths, the time or the error that was asked for,
+// or an interruption; with progress, checkpoints and the losses of all paths.
+
+#include "gi/image/render_settings.h"
+#include "gi/transport/accumulator.h"
+
+#include <chrono>
+#include <functional>
+
+namespace gi {
+
+class PassLoop {
+public:
+    /// Time counts from here on: make it before the structures that the method builds.
+    PassLoop(RenderSettings const& settings, StopRequest const& stop, RenderProgress const& progress, Report& report);
+
+    /// Traces that many more paths for every pixel, into the sums.
+    using Pass = std::function<void(Accumulator&, std::uint32_t paths)>;
+
+    /// Everything of the result but picture and rays. Runs the passes in an arena of settings.threads.
+    /// @param print see fingerprint.h; only read where there is a checkpoint
+    /// Throws InputError if the checkpoint does not belong to this render.
+    RenderResult run(std::uint64_t print, Pass const& pass);
+
+    bool keeps_state() const { return !settings_.checkpoint.empty(); }
+    Accumulator const& sums() const { return sums_; }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    double seconds_since(Clock::time_point start) const
+    {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    }
+    std::uint32_t next_pass(double seconds_per_path) const;
+
+    RenderSettings const& settings_;
+    StopRequest const& stop_;
+    RenderProgress const& progress_;
+    Report& report_;
+    Accumulator sums_;
+    Clock::time_point start_ = Clock::now();
+};
+
+} // namespace gi

@@ -1,0 +1,34 @@
+#pragma once
+// What one path brings to its pixel.
+
+#include "gi/base/math.h"
+
+#include <array>
+#include <cstdint>
+
+namespace gi {
+
+/// Longest chain of surfaces a path may visit, delta lobes included. Reaching it is counted.
+inline constexpr int kLongestPath = 1024;
+
+struct PathSample {
+    std::array<vec3, 3> radiance{vec3{0}, vec3{0}, vec3{0}}; ///< L0, L1, L2
+    vec3 albedo{0}, normal{0}, position{0};                  ///< at the first surface
+    float depth = 0;                                         ///< m along the camera's axis
+    bool hit = false;
+};
+
+struct PathCounts {
+    std::uint64_t nearest_rays = 0, shadow_rays = 0, cut_paths = 0, invalid_paths = 0;
+
+    PathCounts& operator+=(PathCounts const& o)
+    {
+        nearest_rays += o.nearest_rays;
+        shadow_rays += o.shadow_rays;
+        cut_paths += o.cut_paths;
+        invalid_paths += o.invalid_paths;
+        return *this;
+    }
+};
+
+} // namespace gi
