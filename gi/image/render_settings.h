@@ -9,15 +9,39 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 namespace gi {
 
 enum class PixelFilter : std::uint8_t { box, tent };
 
+/// Where the axes of a pass come from.
+enum class Schedule : std::uint8_t {
+    automatic,
+    stored,   ///< one set for all passes, built once
+    streamed, ///< fresh axes for every pass
+    temporal, ///< a set of which some axes are replaced in every pass
+};
+
+/// For the method slhb; 0 or empty = what the scene plan chooses.
+struct SlhbSettings {
+    Schedule schedule = Schedule::automatic;
+    std::string directions;        ///< "icosahedron:320", of the stored schedule
+    int resolution = 0;            ///< texels of a hit buffer, about resolution x resolution
+    int axes = 0;                  ///< of a pass, streamed and temporal
+    int fresh_axes = 0;            ///< of these, replaced in a pass, temporal
+    int lamps = 0;                 ///< light samples with a shadow map per pass
+    int shadow_resolution = 0;     ///< texels of a shadow map, squared
+    int most_layers = 0;           ///< per texel; 0 = all
+    bool packed = false;           ///< layers of 32 bits: 12 bits of depth, 20 bits of facing and primitive
+    float cone = 0;                ///< texels; radius of the disk of columns that a query may ask (Yu 2012, fig. 5.6)
+    bool gather = false;           ///< first bounce over all axes in turn instead of at random
+};
+
 struct RenderSettings {
     int width = 512, height = 512; ///< pixels, >= 1
     std::uint32_t paths = 64;      ///< per pixel: the most that are traced
-    double budget_s = 0;           ///< stop when a pass would end later; 0 = none
+    double budget_s = 0;           ///< from the start of building structures; stop when a pass would end later; 0 = none
     double until_relmse = 0;       ///< stop when the estimated relMSE of the picture is below; 0 = none
     int bounces = 64;              ///< indirect bounces: 0 = emitted and direct light only
     std::uint64_t seed = 0;
@@ -26,6 +50,7 @@ struct RenderSettings {
     std::filesystem::path checkpoint;      ///< exact state is kept here while unfinished, and where a
                                            ///< render that resumes stops early; empty = never. Whoever saves the
                                            ///< picture deletes it afterwards unless RenderResult::resumable
+    SlhbSettings slhb;
     bool resume = false;                   ///< start from the checkpoint if it is there and fits
 };
 

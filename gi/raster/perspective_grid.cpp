@@ -12,6 +12,12 @@ float subpixels_for(std::uint32_t width, std::uint32_t height)
     return float(1u << std::max(2, 20 - bits));
 }
 
+void add_inverse(PerspectiveGrid& g)
+{
+    using glm::dmat3;
+    g.inverse = mat3(glm::inverse(glm::transpose(dmat3(g.to_x, g.to_y, g.forward))));
+}
+
 } // namespace
 
 PerspectiveGrid camera_grid(CameraRays const& camera, int width, int height, vec2 at, float near_m)
@@ -30,6 +36,7 @@ PerspectiveGrid camera_grid(CameraRays const& camera, int width, int height, vec
     };
     g.to_x = row(camera.step_x, 0.5f - at.x);
     g.to_y = row(camera.step_y, 0.5f - at.y);
+    add_inverse(g);
     return g;
 }
 
@@ -49,6 +56,7 @@ PerspectiveGrid cube_face(vec3 eye, int face, std::uint32_t resolution, float ne
     v[(axis + 2) % 3] = half;
     g.to_x = u + half * g.forward;
     g.to_y = v + half * g.forward;
+    add_inverse(g);
     return g;
 }
 

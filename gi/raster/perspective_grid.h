@@ -19,7 +19,16 @@ struct PerspectiveGrid {
     float subpixels = 1;
     std::uint32_t width = 1, height = 1;
 
+    mat3 inverse{1}; ///< from (x, y, w) with x and y in subpixels times w to the world
+
     std::size_t texels() const { return std::size_t(width) * height; }
+    /// Through the centre of texel (i, j), not normalised: one metre along the view.
+    GI_FN vec3 direction(std::uint32_t i, std::uint32_t j) const
+    {
+        return inverse * vec3{(float(i) + 0.5f) * subpixels, (float(j) + 0.5f) * subpixels, 1};
+    }
+    /// @param depth 1 / distance along the view, 1/m
+    GI_FN vec3 point(std::uint32_t i, std::uint32_t j, float depth) const { return eye + direction(i, j) / depth; }
 };
 
 /// @param at  position within its pixel, [0, 1)^2, that every pixel looks through   @param near_m > 0

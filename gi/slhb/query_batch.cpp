@@ -348,9 +348,11 @@ AxisView AxisPool::axis(std::size_t a) const
     return {{{grids[a], {offsets, texels + 1}, {layers.data() + first_layer[a], offsets[texels]}}, {}}};
 }
 
-AxisPool make_pool(std::vector<HitBuffer> const& buffers)
+void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool)
 {
-    AxisPool pool;
+    pool.grids.clear();
+    pool.first_offset.clear();
+    pool.first_layer.clear();
     std::size_t offsets = 0, layers = 0;
     for (HitBuffer const& b : buffers) {
         offsets += b.offset.size();
@@ -373,7 +375,6 @@ AxisPool make_pool(std::vector<HitBuffer> const& buffers)
         layer += b.layers.size();
     }
     if (pool.layers.empty()) pool.layers.push_back({}); // vectors read something where they have nothing to read
-    return pool;
 }
 
 void QueryBatch::resize(std::size_t n)

@@ -19,8 +19,8 @@ struct AxisPool {
     std::size_t bytes() const { return offset.size() * sizeof(std::uint32_t) + layers.size() * sizeof(Layer); }
 };
 
-/// Throws InputError where 32-bit indices do not suffice.
-AxisPool make_pool(std::vector<HitBuffer> const& buffers);
+/// Reuses the memory of `pool`. Throws InputError where 32-bit indices do not suffice.
+void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool);
 
 /// Origins and answers of queries in arrays of equal length.
 struct QueryBatch {

@@ -1,0 +1,52 @@
+#pragma once
+// What a lamp sees: a cube of six pinhole views about a point, or one orthographic view along a direction.
+//
+// Look-up: the plane of the lit surface is compared with the stored depth at the same texel centre, so that flat
+// surfaces never shadow themselves; curved ones are kept from it by a tolerance of one texel.
+// Percentage-closer filtering: the texel is chosen among the four around by random numbers, which in the mean over
+// paths is the bilinear filter.
+
+#include "gi/raster/nearest_map.h"
+#include "gi/scene/light_sampling.h"
+#include "gi/slhb/cut_outs.h"
+
+#include <array>
+
+namespace gi {
+
+struct ShadowMap {
+    bool parallel = false; ///< all light comes along axis; else from the eye of the faces
+    RasterGrid grid;
+    std::array<PerspectiveGrid, 6> faces;
+    std::array<NearestMap, 6> maps; ///< [0] alone where parallel
+
+    /// @param normal  unit, of the lit triangle  @param u uniform in [0, 1)^2
+    bool lit(vec3 position, vec3 normal, std::uint32_t triangle, vec2 u) const;
+};
+
+/// Everything that decides a shadow map.
+struct ShadowView {
+    bool parallel = false;
+    vec3 at{0};     ///< position of the lamp, or direction towards it
+    vec3 facing{0}; ///< a lamp that shines to one side only: its normal, else 0
+};
+
+class ShadowMapBuilder {
+public:
+    ShadowMapBuilder(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t resolution)
+        : bounds_(world.bounds), soup_(soup), cut_outs_(cut_outs), resolution_(resolution)
+    {
+    }
+    /// Prepares all grids of a map.
+    void start(ShadowView const& view, vec2 jitter, float turn_rad, ShadowMap& map) const;
+    /// Face 0..5 of it; parallel maps have only face 0. Faces are independent of each other.
+    void build(ShadowView const& view, int face, std::uint32_t seed, ShadowMap& map) const;
+
+private:
+    Bounds bounds_;
+    TriangleSoup const& soup_;
+    CutOuts const& cut_outs_;
+    std::uint32_t resolution_;
+};
+
+} // namespace gi
