@@ -94,6 +94,16 @@ gi::RenderResult trace(RenderOptions const& o, gi::RenderSettings const& setting
     return gi::find_method(o.method).render(world, camera, settings, stop, show, report);
 }
 
+void denoise(gi::Picture& picture, gi::DenoiseSettings const& settings, gi::Report& report)
+{
+    if (settings.denoiser == gi::Denoiser::none) return;
+    gi::StageTimer const timer(report, "denoise");
+    gi::DenoiseReport const done = gi::denoise(picture, settings);
+    if (done.no_variance) say("--denoise atrous does nothing: nothing in the picture has a variance");
+    report.count("pixels without a surface to filter on", double(done.without_surface));
+    if (done.not_finite > 0) report.lose("pixels not filtered, as a value is not finite", done.not_finite);
+}
+
 void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::RenderResult& result, gi::Report& report)
 {
     gi::StageTimer const timer(report, "save");
@@ -116,6 +126,7 @@ int run(RenderOptions o)
 {
     gi::find_method(o.method);
     gi::RenderSettings const settings = make_settings(o);
+    gi::DenoiseSettings const denoise_settings = make_denoise_settings(o, settings);
     CameraChoice const choice = camera_choice(o);
     check_outputs({o.out, o.png, o.stats, settings.checkpoint.string()}, {o.scene, o.environment});
     bool const has_state = !settings.checkpoint.empty() && std::filesystem::exists(settings.checkpoint);
@@ -129,6 +140,7 @@ int run(RenderOptions o)
     ChosenCamera const chosen = choose_camera(world, choice);
     if (!chosen.note.empty()) say(chosen.note);
     gi::RenderResult result = trace(o, settings, world, chosen.camera, report);
+    denoise(result.picture, denoise_settings, report);
     save(o, settings, result, report);
     if (!settings.checkpoint.empty() && !result.resumable) std::filesystem::remove(settings.checkpoint);
 
@@ -139,7 +151,7 @@ int run(RenderOptions o)
     } else {
         for (std::string const& file : {o.out, o.png, o.stats})
             if (!file.empty()) fmt::print("{}\n", file);
-        fmt::print("{}\n", summary_line(settings, result));
+        fmt::print("{}\n", summary_line(o, settings, result));
     }
     std::fflush(stdout);
     print_losses(report);

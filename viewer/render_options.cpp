@@ -62,6 +62,20 @@ gi::RenderSettings make_settings(RenderOptions& o)
     return s;
 }
 
+gi::DenoiseSettings make_denoise_settings(RenderOptions const& o, gi::RenderSettings const& s)
+{
+    gi::DenoiseSettings d;
+    d.denoiser = o.denoise == "atrous"          ? gi::Denoiser::atrous
+                 : o.denoise == "discontinuity" ? gi::Denoiser::discontinuity
+                                                : gi::Denoiser::none;
+    d.threads = s.threads;
+    if (d.denoiser == gi::Denoiser::atrous && s.paths < 2)
+        throw gi::InputError("--denoise atrous with --paths 1",
+                             "it goes by the variance, which one path does not tell",
+                             "trace two paths or more, or choose --denoise discontinuity");
+    return d;
+}
+
 void declare_options(CLI::App& c, RenderOptions& o)
 {
     c.add_option("SCENE", o.scene, "glTF, YAML, OBJ, PLY, FBX, ... file, or atrium, cornell")->required();
@@ -88,9 +102,15 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_option("--filter", o.filter, "pixel filter")
         ->check(CLI::IsMember({"box", "tent"}))
         ->capture_default_str();
-    c.add_option("--seed", o.seed, "another seed, another noise")
-        ->check(refuse_negative)
+    c.add_option(
+         "--denoise", o.denoise,
+         "filter of the finished picture, which stops at edges; changes color, L1 and L2, while variance and "
+         "the estimated error stay those of the unfiltered picture:"
+         "\n  atrous: wavelet that goes by the variance, 2 paths or more"
+         "\n  discontinuity: mean over 4 x 4 pixels of one surface")
+        ->check(CLI::IsMember({"none", "atrous", "discontinuity"}))
         ->capture_default_str();
+    c.add_option("--seed", o.seed, "another seed, another noise")->check(refuse_negative)->capture_default_str();
     c.add_option("--threads", o.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c.add_option("--out", o.out, "EXR with all layers (default: the scene's name)");
     c.add_flag("--half", o.half, "half floats where they suffice");
@@ -104,7 +124,9 @@ void declare_options(CLI::App& c, RenderOptions& o)
         ->delimiter(',')
         ->allow_extra_args(false);
     c.add_option("--stats", o.stats, "JSON file: what was asked, built, lost and measured");
-    c.add_flag("--resume", o.resume, "go on from F.exr.state, which a render leaves that was interrupted, or stopped early with --resume");
+    c.add_flag(
+        "--resume", o.resume,
+        "go on from F.exr.state, which a render leaves that was interrupted, or stopped early with --resume");
     c.add_flag("--json", o.json, "print the statistics instead of text");
     c.add_flag("--quiet", o.quiet, "no progress bar");
     c.footer(R"(Examples:
@@ -112,6 +134,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
   lightwell render atrium --camera courtyard --time 0.4 --size 96x64 --budget 500ms --out walk.exr --stats walk.json
   lightwell render cornell --look-from 0.278,0.273,-0.4 --look-at 0.278,0.2,0.3 --fov 60 --size 64x64 --out close.exr
   lightwell render cornell --until relmse=0.05 --size 48x48 --aovs L1,L2,variance --out cornell.exr
+  lightwell render atrium --size 64x64 --paths 4 --denoise atrous --out smooth.exr
 
 --stats and --json hold: schema, program, command, settings, outputs, result (end, paths_per_pixel, seconds,
 relmse_estimate, rays, rays_per_s), plan (what, build, reason), report (stages_s, counts, losses,

@@ -1,6 +1,7 @@
 #pragma once
 // What can be said on the command line of `lightwell render`.
 
+#include "gi/image/denoise.h"
 #include "gi/image/render_settings.h"
 
 #include <optional>
@@ -16,7 +17,7 @@ namespace viewer {
 
 struct RenderOptions {
     std::string scene, method = "reference", size = "512x512", camera, look_from, look_at, environment, budget,
-                       until, filter = "box", out, png, stats, tone = "srgb";
+                       until, filter = "box", denoise = "none", out, png, stats, tone = "srgb";
     std::vector<std::string> layers;
     std::optional<double> fov_deg, time_s;
     double environment_rotate_deg = 0, environment_scale = 1, exposure_ev = 0;
@@ -30,5 +31,8 @@ void declare_options(CLI::App& command, RenderOptions& options);
 
 /// Fills in the default name of the picture and checks what the options say together. Throws InputError.
 gi::RenderSettings make_settings(RenderOptions& options);
+
+/// Throws InputError where the denoiser cannot work with these settings.
+gi::DenoiseSettings make_denoise_settings(RenderOptions const& options, gi::RenderSettings const& settings);
 
 } // namespace viewer

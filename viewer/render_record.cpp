@@ -29,6 +29,7 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
     add("--envmap", o.environment);
     if (o.environment_rotate_deg != 0) add("--envmap-rotate", fmt::format("{}", o.environment_rotate_deg));
     if (o.environment_scale != 1) add("--envmap-scale", fmt::format("{}", o.environment_scale));
+    if (o.denoise != "none") add("--denoise", o.denoise);
     return command;
 }
 
@@ -65,6 +66,7 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::Ren
             {"size", fmt::format("{}x{}", s.width, s.height)},
             {"seed", std::to_string(s.seed)},
             {"filter", o.filter},
+            {"denoise", o.denoise},
             {"bounces", std::to_string(s.bounces)},
             {"paths", std::to_string(result.paths)},
             {"units", "radiance, W/(m2 sr), linear Rec. 709"}};
@@ -96,6 +98,7 @@ Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePl
                      {"until_relmse", s.until_relmse > 0 ? Json(s.until_relmse) : Json()},
                      {"bounces", s.bounces},
                      {"filter", o.filter},
+                     {"denoise", o.denoise},
                      {"seed", s.seed},
                      {"threads", s.threads},
                      {"resume", s.resume},
@@ -114,11 +117,12 @@ Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePl
     return j;
 }
 
-std::string summary_line(gi::RenderSettings const& s, gi::RenderResult const& r)
+std::string summary_line(RenderOptions const& o, gi::RenderSettings const& s, gi::RenderResult const& r)
 {
     return fmt::format("{} x {} pixels, {} paths each, {:.2f} s, {:.2f} Mrays/s, {}", s.width, s.height, r.paths,
                        r.seconds, rays_per_second(r) * 1e-6,
-                       knows_error(r) ? fmt::format("estimated relMSE {:.2g}", r.relmse)
+                       knows_error(r) ? fmt::format("estimated relMSE {:.2g}{}", r.relmse,
+                                                    o.denoise == "none" ? "" : " before the filter")
                                       : std::string("relMSE unknown from one path"));
 }
 

@@ -20,6 +20,7 @@ nlohmann::ordered_json make_stats(RenderOptions const& options, gi::RenderSettin
                                   gi::Report const& report);
 
 /// One line for people.
-std::string summary_line(gi::RenderSettings const& settings, gi::RenderResult const& result);
+std::string summary_line(RenderOptions const& options, gi::RenderSettings const& settings,
+                         gi::RenderResult const& result);
 
 } // namespace viewer

@@ -120,6 +120,34 @@ TEST(RenderCommand, OnePathKnowsNoError)
     EXPECT_TRUE(Json::parse(run_well(call + " --json", folder.path()).out)["result"]["relmse_estimate"].is_null());
 }
 
+TEST(RenderCommand, DenoisesAndSaysSo)
+{
+    TemporaryFolder const folder;
+    std::string const call = std::string(kSmall) + "--stats a.json --out ";
+    run_well(call + "noisy.exr", folder.path());
+    for (std::string const name : {"atrous", "discontinuity"}) {
+        Outcome const o = run_well(call + "smooth.exr --denoise " + name, folder.path());
+        EXPECT_TRUE(contains(o.out, "before the filter")) << o.out;
+        Json const j = Json::parse(file_text(folder / "a.json"));
+        EXPECT_EQ(j["settings"]["denoise"], name);
+        EXPECT_TRUE(j["report"]["stages_s"].contains("denoise"));
+        gi::Picture const noisy = gi::read_picture(folder / "noisy.exr"),
+                          smooth = gi::read_picture(folder / "smooth.exr");
+        EXPECT_EQ(smooth.metadata.at("denoise"), name);
+        EXPECT_TRUE(contains(smooth.metadata.at("command"), "--denoise " + name));
+        for (char const* layer : {"color", "L1", "L2"})
+            EXPECT_NE(smooth.find(layer)->data, noisy.find(layer)->data) << layer;
+        for (char const* layer : {"L0", "albedo", "position", "variance"})
+            EXPECT_EQ(smooth.find(layer)->data, noisy.find(layer)->data) << layer;
+    }
+    EXPECT_TRUE(contains(
+        run_well(
+            "render cornell --look-from 0.3,0.3,-3 --look-at 0.3,0.3,-9 --denoise atrous --size 8x8 --out a.exr",
+            folder.path())
+            .err,
+        "does nothing"));
+}
+
 TEST(RenderCommand, SaysWhatItDecidesForADarkSceneWithoutCamera)
 {
     TemporaryFolder const folder;

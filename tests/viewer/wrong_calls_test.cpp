@@ -58,6 +58,8 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"render cornell --until flip=0.1", "--until"},
              {"render cornell --bounces -1", "--bounces"},
              {"render cornell --filter sinc", "--filter"},
+             {"render cornell --denoise median", "--denoise"},
+             {"render cornell --denoise atrous --paths 1", "--denoise"},
              {"render cornell --seed -1", "--seed"},
              {"render cornell --threads x", "--threads"},
              {"render cornell --aovs L9", "L9"},

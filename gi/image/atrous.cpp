@@ -1,0 +1,130 @@
+#include "gi/image/atrous.h"
+
+#include "gi/image/split_variance.h"
+
+#include <array>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+constexpr std::array<float, 3> kSpline{3.0f / 8, 1.0f / 4, 1.0f / 16};
+constexpr float kNormal = 12;           // 1 / (1 - cosine) of the angle, 23 degrees, from which on weights are 0
+constexpr float kAlbedo = 3;            // 1 / difference of luminances from which on weights are 0
+constexpr float kLuminance = 10;        // standard deviations from which on weights are 0
+constexpr float kTinyVariance = 1e-12f; // of light without noise
+
+struct Iteration {
+    Planes const& guides;
+    Planes const& in;
+    Planes& out; ///< its luminances hold the sums of the weights meanwhile
+    int step;    ///< pixels between taps
+    float plane_scale;
+};
+
+/// Adds the taps of row y + dy * step to the sums of row y. The middle row starts the sums with its central tap,
+/// whose weight is the spline's even where nothing is like it.
+template <bool kMiddle>
+void add_row(Iteration const& it, int y, int dy)
+{
+    Planes const& g = it.guides;
+    int const there = y + dy * it.step, width = g.width(), step = it.step;
+    auto const normal = g.row3(guide::normal, y), q_normal = g.row3(guide::normal, there);
+    auto const position = g.row3(guide::position, y), q_position = g.row3(guide::position, there);
+    auto const q_direct = it.in.row3(light::direct, there), q_indirect = it.in.row3(light::indirect, there);
+    auto const direct = it.out.row3(light::direct, y), indirect = it.out.row3(light::indirect, y);
+    float const *albedo = g.row(guide::albedo, y), *q_albedo = g.row(guide::albedo, there);
+    float const* const footprint = g.row(guide::inverse_footprint2, y);
+    float const *l1 = it.in.row(light::luminance, y), *q_l1 = it.in.row(light::luminance, there);
+    float const *l2 = it.in.row(light::luminance + 1, y), *q_l2 = it.in.row(light::luminance + 1, there);
+    float const *v1 = it.in.row(light::variance, y), *q_v1 = it.in.row(light::variance, there);
+    float const *v2 = it.in.row(light::variance + 1, y), *q_v2 = it.in.row(light::variance + 1, there);
+    float *weight1 = it.out.row(light::luminance, y), *weight2 = it.out.row(light::luminance + 1, y);
+    float *variance1 = it.out.row(light::variance, y), *variance2 = it.out.row(light::variance + 1, y);
+    float const share = kSpline[std::size_t(std::abs(dy))], centre = share * kSpline[0];
+    float const plane_scale = it.plane_scale;
+
+#pragma GCC ivdep
+    for (int x = 0; x < width; ++x) {
+        vec3 const n = normal[x];
+        float const plane = glm::dot(n, position[x]), by_plane = footprint[x] * plane_scale;
+        float const by_l1 = 1 / (kLuminance * kLuminance * v1[x] + kTinyVariance);
+        float const by_l2 = 1 / (kLuminance * kLuminance * v2[x] + kTinyVariance);
+        vec3 sum1 = kMiddle ? centre * q_direct[x] : direct[x],
+             sum2 = kMiddle ? centre * q_indirect[x] : indirect[x];
+        float w1 = kMiddle ? centre : weight1[x], w2 = kMiddle ? centre : weight2[x];
+        float s1 = kMiddle ? centre * centre * v1[x] : variance1[x];
+        float s2 = kMiddle ? centre * centre * v2[x] : variance2[x];
+        auto const tap = [&](int i, float spline) {
+            float const off_plane = glm::dot(n, q_position[i]) - plane, da = q_albedo[i] - albedo[x];
+            float const d1 = q_l1[i] - l1[x], d2 = q_l2[i] - l2[x];
+            float const like = 1 - kNormal * (1 - glm::dot(n, q_normal[i])) - by_plane * off_plane * off_plane -
+                               kAlbedo * kAlbedo * da * da;
+            float const like1 = like - by_l1 * d1 * d1, like2 = like - by_l2 * d2 * d2;
+            float const some1 = like1 > 0 ? like1 : 0, some2 = like2 > 0 ? like2 : 0;
+            float const a = share * spline * some1 * some1, b = share * spline * some2 * some2;
+            sum1 += a * q_direct[i];
+            sum2 += b * q_indirect[i];
+            s1 += a * a * q_v1[i];
+            s2 += b * b * q_v2[i];
+            w1 += a;
+            w2 += b;
+        };
+        tap(x - 2 * step, kSpline[2]);
+        tap(x - step, kSpline[1]);
+        if constexpr (!kMiddle) tap(x, kSpline[0]);
+        tap(x + step, kSpline[1]);
+        tap(x + 2 * step, kSpline[2]);
+        direct.set(x, sum1);
+        indirect.set(x, sum2);
+        weight1[x] = w1;
+        weight2[x] = w2;
+        variance1[x] = s1;
+        variance2[x] = s2;
+    }
+}
+
+/// Turns sums into means.
+void divide_row(Planes& out, int y)
+{
+    for (int k = 0; k < 2; ++k) {
+        auto const color = out.row3(light::direct + 3 * k, y);
+        float *const weight = out.row(light::luminance + k, y), *const variance = out.row(light::variance + k, y);
+#pragma GCC ivdep
+        for (int x = 0; x < out.width(); ++x) {
+            float const scale = 1 / weight[x];
+            vec3 const mean = scale * color[x];
+            color.set(x, mean);
+            variance[x] *= scale * scale;
+            weight[x] = luminance(mean);
+        }
+    }
+}
+
+void filter_row(Iteration const& it, int y)
+{
+    add_row<true>(it, y, 0);
+    for (int const dy : {-2, -1, 1, 2})
+        if (int const there = y + dy * it.step; there >= 0 && there < it.in.height()) add_row<false>(it, y, dy);
+    divide_row(it.out, y);
+}
+
+} // namespace
+
+Planes filter_atrous(FilterInput& input, int iterations)
+{
+    split_variance(input);
+    int const height = input.light.height();
+    Planes other(light::count, input.light.width(), height);
+    for (int i = 0; i < iterations; ++i) {
+        int const step = 1 << i;
+        // Pixels of distance from the plane from which on weights are 0: what is far away may curve more.
+        float const reach = 1 + 0.2f * float(step);
+        Iteration const it{input.guides, input.light, other, step, 1 / square(reach)};
+        tbb::parallel_for(0, height, [&](int y) { filter_row(it, y); });
+        std::swap(input.light, other);
+    }
+    return std::move(input.light);
+}
+
+} // namespace gi

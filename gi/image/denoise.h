@@ -1,0 +1,37 @@
+#pragma once
+// Filters for noisy pictures of any light-transport method. They average the illumination, that is L1 and L2
+// divided by the albedo, over neighbours that lie on the same surface; so textures and outlines stay as sharp as
+// they were.
+
+#include "gi/base/picture.h"
+
+namespace gi {
+
+enum class Denoiser : std::uint8_t {
+    none,
+    atrous,       ///< edge-avoiding a-trous wavelet with variance (Dammertz et al. 2010, Schied et al. 2017)
+    discontinuity ///< mean over a window of one surface (Keller & Heidrich 2001, Wald et al. 2002)
+};
+
+inline constexpr int kMaxIterations = 5, kMaxWindow = 32;
+
+struct DenoiseSettings {
+    Denoiser denoiser = Denoiser::atrous;
+    int iterations = kMaxIterations; ///< of a-trous: 1 to 5; the last one reaches 2^iterations pixels to each side
+    int window = 4;                  ///< of discontinuity: pixels across, 1 to 32
+    int threads = 0;                 ///< 0 = all
+};
+
+/// Pixels that keep their values for want of something to go by.
+struct DenoiseReport {
+    std::size_t without_surface = 0; ///< nothing was hit, or something black
+    std::size_t not_finite = 0;      ///< NaN, infinite or beyond 1e18 in a layer that is needed
+    bool no_variance = false;        ///< a-trous had nothing to go by anywhere and changed next to nothing
+};
+
+/// Replaces L1, L2 and color = L0 + L1 + L2. Needs the layers color, L0, L1, L2, albedo, normal and position, and
+/// a-trous variance too; throws InputError where one is missing. `variance` stays that of the unfiltered picture.
+/// The result does not depend on the number of threads.
+DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings);
+
+} // namespace gi

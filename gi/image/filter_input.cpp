@@ -1,0 +1,145 @@
+#include "gi/image/filter_input.h"
+
+#include "gi/base/error.h"
+
+#include <atomic>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+constexpr float kLargest = 1e18f; // its square is still finite
+
+struct Layers {
+    Layer const *l1, *l2, *albedo, *normal, *position, *variance;
+};
+
+Layer const& needed(Picture const& picture, char const* name)
+{
+    Layer const* const layer = picture.find(name);
+    if (layer == nullptr || layer->channels != 3)
+        throw InputError(std::string("the picture has no layer '") + name + "'",
+                         "the filters divide by the albedo and stop at edges of the surface",
+                         "keep all layers until it is filtered");
+    return *layer;
+}
+
+/// False for NaN too.
+bool in_range(vec3 v) { return std::abs(v.x) < kLargest && std::abs(v.y) < kLargest && std::abs(v.z) < kLargest; }
+
+vec3 over_albedo(vec3 value, vec3 albedo)
+{
+    return {albedo.x < kDarkest ? 0 : value.x / albedo.x, albedo.y < kDarkest ? 0 : value.y / albedo.y,
+            albedo.z < kDarkest ? 0 : value.z / albedo.z};
+}
+
+/// Apart by more than 1 where other channels are dark.
+float albedo_guide(vec3 a)
+{
+    return luminance(a) + 4.0f * float((a.x < kDarkest) + 2 * (a.y < kDarkest) + 4 * (a.z < kDarkest));
+}
+
+/// Noise of the three channels mostly rises and falls together, so that deviations add.
+float luminance_variance(vec3 variance, vec3 albedo)
+{
+    return square(luminance(over_albedo(glm::sqrt(glm::max(variance, vec3{0})), albedo)));
+}
+
+/// Positions count from here, so that products with them round less.
+vec3 first_position(Layers const& layers, std::size_t pixels)
+{
+    for (std::size_t i = 0; i < pixels; ++i)
+        if (rgb(*layers.normal, i) != vec3{0} && in_range(rgb(*layers.position, i)))
+            return rgb(*layers.position, i);
+    return vec3{0};
+}
+
+void fill_row(Layers const& layers, vec3 origin, int y, FilterInput& in, DenoiseReport& report)
+{
+    auto const normal = in.guides.row3(guide::normal, y), position = in.guides.row3(guide::position, y),
+               direct = in.light.row3(light::direct, y), indirect = in.light.row3(light::indirect, y);
+    float *const surface = in.guides.row(guide::surface, y), *const variance = in.guides.row(guide::variance, y);
+    float* const albedo = in.guides.row(guide::albedo, y);
+    float *const l1 = in.light.row(light::luminance, y), *const l2 = in.light.row(light::luminance + 1, y);
+    for (int x = 0; x < in.light.width(); ++x) {
+        std::size_t const i = std::size_t(y) * std::size_t(in.light.width()) + std::size_t(x);
+        vec3 const n = rgb(*layers.normal, i), p = rgb(*layers.position, i), a = rgb(*layers.albedo, i);
+        vec3 const direct_light = rgb(*layers.l1, i), indirect_light = rgb(*layers.l2, i);
+        vec3 const var = layers.variance ? rgb(*layers.variance, i) : vec3{0};
+        vec3 const e1 = over_albedo(direct_light, a), e2 = over_albedo(indirect_light, a);
+        float const v = luminance_variance(var, a);
+        bool const finite = in_range(n) && in_range(p) && in_range(a) && in_range(direct_light) &&
+                            in_range(indirect_light) && in_range(var) && in_range(e1) && in_range(e2) &&
+                            v < kLargest;
+        bool const known = finite && n != vec3{0} && max_component(a) >= kDarkest;
+        report.not_finite += !finite;
+        report.without_surface += finite && !known;
+        report.no_variance &= !(known && v > 0);
+        normal.set(x, known ? n / std::max(1.0f, glm::length(n)) : vec3{0});
+        position.set(x, known ? p - origin : vec3{0});
+        direct.set(x, known ? e1 : vec3{0});
+        indirect.set(x, known ? e2 : vec3{0});
+        surface[x] = known;
+        albedo[x] = known ? albedo_guide(a) : 0;
+        variance[x] = known ? v : 0;
+        l1[x] = known ? luminance(e1) : 0;
+        l2[x] = known ? luminance(e2) : 0;
+    }
+}
+
+/// Distance to the nearest of the four neighbours: on a surface seen at a glancing angle that is the distance
+/// across the line of sight. Not below the rounding of the coordinates.
+void measure_footprints(Layer const& positions, int y, Planes& guides)
+{
+    auto const here = guides.row3(guide::position, y);
+    float* const out = guides.row(guide::inverse_footprint2, y);
+    int const width = guides.width();
+    std::fill(out, out + width, kLargest);
+    auto const look = [&](int dx, int dy) {
+        if (y + dy < 0 || y + dy >= guides.height()) return;
+        auto const there = guides.row3(guide::position, y + dy);
+        float const* const surface = guides.row(guide::surface, y + dy);
+#pragma GCC ivdep
+        for (int x = 0; x < width; ++x) {
+            vec3 const d = there[x + dx] - here[x];
+            float const distance2 = surface[x + dx] > 0 ? glm::dot(d, d) : kLargest;
+            out[x] = distance2 < out[x] ? distance2 : out[x];
+        }
+    };
+    look(-1, 0);
+    look(1, 0);
+    look(0, -1);
+    look(0, 1);
+    for (int x = 0; x < width; ++x) {
+        vec3 const p = glm::abs(rgb(positions, std::size_t(y) * std::size_t(width) + std::size_t(x)));
+        float const rounding = 2.4e-7f * max_component(p);
+        bool const known = guides.row(guide::surface, y)[x] > 0;
+        out[x] = known ? 1 / std::max({out[x], square(rounding), 1e-30f}) : 0;
+    }
+}
+
+} // namespace
+
+FilterInput make_filter_input(Picture const& picture, bool with_variance)
+{
+    Layers const layers{&needed(picture, "L1"),       &needed(picture, "L2"),
+                        &needed(picture, "albedo"),   &needed(picture, "normal"),
+                        &needed(picture, "position"), with_variance ? &needed(picture, "variance") : nullptr};
+    FilterInput in{
+        {guide::count, picture.width, picture.height}, {light::count, picture.width, picture.height}, {}};
+    vec3 const origin = first_position(layers, picture.pixels());
+    std::atomic<std::size_t> without_surface = 0, not_finite = 0;
+    std::atomic<bool> no_variance = true;
+    tbb::parallel_for(0, picture.height, [&](int y) {
+        DenoiseReport row{0, 0, true};
+        fill_row(layers, origin, y, in, row);
+        without_surface += row.without_surface;
+        not_finite += row.not_finite;
+        if (!row.no_variance) no_variance = false;
+    });
+    tbb::parallel_for(0, picture.height, [&](int y) { measure_footprints(*layers.position, y, in.guides); });
+    in.report = {without_surface, not_finite, with_variance && no_variance};
+    return in;
+}
+
+} // namespace gi

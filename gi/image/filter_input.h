@@ -1,0 +1,45 @@
+#pragma once
+// What the filters see of a picture: the surface at each pixel and the light that falls on it.
+
+#include "gi/image/denoise.h"
+#include "gi/image/planes.h"
+
+namespace gi {
+
+/// Planes of the surfaces. Where there is none, or a black one, all are 0; a normal of 0 agrees with no other.
+namespace guide {
+enum : int {
+    normal = 0,             ///< 3 planes
+    position = 3,           ///< 3 planes, m, from a point of the scene
+    inverse_footprint2 = 6, ///< 1 / (distance of neighbouring pixels)^2, 1/m2
+    surface = 7,            ///< 1 where there is one
+    variance = 8,           ///< of the luminance of all light
+    albedo = 9,             ///< its luminance; apart by more than 1 where other channels are too dark
+    count = 10
+};
+} // namespace guide
+
+/// Planes of the light, all finite. Luminance and variance: first direct, then indirect.
+namespace light {
+enum : int {
+    direct = 0,    ///< 3 planes, L1 over albedo
+    indirect = 3,  ///< 3 planes, L2 over albedo
+    luminance = 6, ///< 2 planes
+    variance = 8,  ///< 2 planes, of the luminance
+    count = 10
+};
+} // namespace light
+
+struct FilterInput {
+    Planes guides, light; ///< the variance of the light is not filled in
+    DenoiseReport report;
+};
+
+/// Throws InputError where a layer is missing.
+FilterInput make_filter_input(Picture const& picture, bool with_variance);
+
+/// Channels with less albedo tell nothing of the light: they keep their values, and so do pixels without any
+/// other.
+inline constexpr float kDarkest = 0.01f;
+
+} // namespace gi
