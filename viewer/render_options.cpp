@@ -31,6 +31,38 @@ void check_memory(gi::RenderSettings const& s)
             "choose a smaller one");
 }
 
+gi::Schedule schedule_of(std::string const& name)
+{
+    return name == "stored"     ? gi::Schedule::stored
+           : name == "streamed" ? gi::Schedule::streamed
+           : name == "temporal" ? gi::Schedule::temporal
+                                : gi::Schedule::automatic;
+}
+
+void declare_slhb(CLI::App& c, RenderOptions& o)
+{
+    gi::SlhbSettings& s = o.slhb;
+    auto const number = [&](char const* name, int& value, int low, int high, char const* meaning) {
+        return c.add_option(name, value, meaning)->check(CLI::Range(low, high))->group("Method slhb");
+    };
+    c.add_option("--schedule", o.schedule, "stored: one set of axes; streamed: new ones in every pass; temporal: some new")
+        ->check(CLI::IsMember({"auto", "stored", "streamed", "temporal"}))
+        ->capture_default_str()
+        ->group("Method slhb");
+    c.add_option("--directions", s.directions, "FAMILY:COUNT of the stored set (default icosahedron:320)")
+        ->group("Method slhb");
+    number("--hit-buffer", s.resolution, 2, 8192, "texels of a hit buffer on a side (default: by the plan)");
+    number("--axes", s.axes, 1, 64, "of a pass, streamed and temporal");
+    number("--fresh-axes", s.fresh_axes, 1, 64, "of these, replaced in a pass, temporal");
+    number("--lamps", s.lamps, 1, 64, "points on lights that get a shadow map in a pass");
+    number("--shadow-map", s.shadow_resolution, 2, 8192, "texels of a shadow map on a side");
+    number("--max-layers", s.most_layers, 0, 1 << 20, "kept per texel, others are counted; 0 = all");
+    c.add_option("--cone", s.cone, "texels, radius of the cone approximation")
+        ->check(in_range(0, 64))
+        ->group("Method slhb");
+    c.add_flag("--gather", s.gather, "first bounce along all axes in turn instead of by chance")->group("Method slhb");
+}
+
 } // namespace
 
 gi::RenderSettings make_settings(RenderOptions& o)
@@ -57,6 +89,8 @@ gi::RenderSettings make_settings(RenderOptions& o)
     s.seed = o.seed;
     s.threads = o.threads;
     s.filter = o.filter == "tent" ? gi::PixelFilter::tent : gi::PixelFilter::box;
+    s.slhb = o.slhb;
+    s.slhb.schedule = schedule_of(o.schedule);
     s.resume = o.resume;
     if (!o.out.empty()) s.checkpoint = o.out + ".state";
     return s;
@@ -129,6 +163,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
         "go on from F.exr.state, which a render leaves that was interrupted, or stopped early with --resume");
     c.add_flag("--json", o.json, "print the statistics instead of text");
     c.add_flag("--quiet", o.quiet, "no progress bar");
+    declare_slhb(c, o);
     c.footer(R"(Examples:
   lightwell render atrium --size 160x100 --paths 16 --png atrium.png --out atrium.exr
   lightwell render atrium --camera courtyard --time 0.4 --size 96x64 --budget 500ms --out walk.exr --stats walk.json

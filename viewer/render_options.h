@@ -24,6 +24,8 @@ struct RenderOptions {
     std::optional<std::uint32_t> paths;
     std::uint64_t seed = 0;
     int bounces = 64, threads = 0;
+    std::string schedule = "auto";
+    gi::SlhbSettings slhb;
     bool half = false, resume = false, json = false, quiet = false;
 };
 

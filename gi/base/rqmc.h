@@ -1,8 +1,8 @@
 #pragma once
 // Randomised quasi-Monte Carlo: the van der Corput sequence with an Owen scramble of its own for every stream and
 // dimension (Owen 1995; hashed as in Burley 2020, "Practical Hash-based Owen Scrambling", with Vegdahl's constants).
-// Any run of 2^k consecutive indices that starts at a multiple of 2^k is stratified in each dimension; scrambles are
-// independent, so that no two dimensions and no two bounces are paired.
+// Any run of 2^k consecutive indices that starts at a multiple of 2^k is stratified in each dimension; scrambles and
+// orders are independent, so that no two dimensions and no two bounces are paired.
 
 #include "gi/base/rng.h"
 
@@ -28,7 +28,38 @@ GI_FN inline std::uint32_t permute_upwards(std::uint32_t v, std::uint32_t seed)
     return v;
 }
 
-struct RqmcStream {
+/// Direction numbers of the first four Sobol dimensions (Joe & Kuo 2008), by their recurrence.
+struct SobolMatrices {
+    std::uint32_t column[4][32];
+};
+
+constexpr SobolMatrices make_sobol()
+{
+    constexpr int degree[4] = {0, 1, 2, 3};
+    constexpr std::uint32_t polynomial[4] = {0, 0, 1, 1}, first[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 3, 0}, {1, 3, 1}};
+    SobolMatrices s{};
+    for (int d = 0; d < 4; ++d)
+        for (int k = 0; k < 32; ++k) {
+            if (k < degree[d] || d == 0) {
+                s.column[d][k] = (d == 0 ? 1u : first[d][k]) << (31 - k);
+                continue;
+            }
+            std::uint32_t v = s.column[d][k - degree[d]];
+            v ^= v >> degree[d];
+            for (int j = 1; j < degree[d]; ++j)
+                if ((polynomial[d] >> (degree[d] - 1 - j) & 1) != 0) v ^= s.column[d][k - j];
+            s.column[d][k] = v;
+        }
+    return s;
+}
+
+inline constexpr SobolMatrices kSobol = make_sobol();
+
+class RqmcStream {
+public:
+    RqmcStream() = default;
+    GI_FN RqmcStream(std::uint32_t stream_seed, std::uint32_t path) : seed(stream_seed), index(path) {}
+
     std::uint32_t seed = 0;  ///< of the pixel, say
     std::uint32_t index = 0; ///< of the path
 
@@ -36,10 +67,32 @@ struct RqmcStream {
     GI_FN float sample(std::uint32_t dimension) const
     {
         std::uint64_t const key = mix_bits((std::uint64_t(seed) << 32) | dimension);
-        std::uint32_t const word = permute_upwards(index, std::uint32_t(key)) ;
+        std::uint32_t const word = permute_upwards(shuffled(std::uint32_t(key >> 32)), std::uint32_t(key));
         return float(reverse_bits(word) >> 8) * 0x1p-24f;
     }
     GI_FN vec2 sample2(std::uint32_t dimension) const { return {sample(dimension), sample(dimension + 1)}; }
+    /// Four numbers that are stratified together (Sobol), for one decision; on the host.
+    vec4 sample_together(std::uint32_t dimension) const
+    {
+        vec4 out{0};
+        std::uint32_t const at = shuffled(std::uint32_t(mix_bits((std::uint64_t(seed) << 32) | dimension) >> 32));
+        for (std::uint32_t d = 0; d < 4; ++d) {
+            std::uint32_t word = 0;
+            for (int k = 0; k < 32; ++k)
+                if ((at >> k & 1) != 0) word ^= kSobol.column[d][k];
+            std::uint64_t const key = mix_bits((std::uint64_t(seed) << 32) | (dimension + d));
+            out[glm::length_t(d)] = float(reverse_bits(permute_upwards(reverse_bits(word), std::uint32_t(key))) >> 8) * 0x1p-24f;
+        }
+        return out;
+    }
+
+private:
+    /// The index in an order of its own for every decision, in which runs of 2^k stay together. Without it the top bits of
+    /// all dimensions would follow the same bit of the index.
+    GI_FN std::uint32_t shuffled(std::uint32_t key) const
+    {
+        return reverse_bits(permute_upwards(reverse_bits(index), key));
+    }
 };
 
 } // namespace gi

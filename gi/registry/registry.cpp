@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 #include "gi/reference/reference.h"
+#include "gi/slhb/slhb.h"
 
 #include <array>
 #include <string>
@@ -11,6 +12,7 @@ namespace {
 
 constexpr std::array kMethods{
     Method{"reference", "path tracing with exact rays (Embree): slow, unbiased, judges the others", render_reference},
+    Method{"slhb", "path tracing through spherical layered hit buffers: look-ups instead of rays", render_slhb},
 };
 
 } // namespace

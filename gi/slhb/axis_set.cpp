@@ -1,6 +1,6 @@
 #include "gi/slhb/axis_set.h"
 
-#include "gi/base/rng.h"
+#include "gi/base/rqmc.h"
 
 #include <algorithm>
 #include <tbb/parallel_for.h>
@@ -11,21 +11,11 @@ namespace {
 /// Bins of normals across the octahedral square.
 constexpr std::uint32_t kNormalBins = 64;
 
-/// Uniform over all rotations (Shoemake 1992).
-glm::quat random_rotation(Pcg32& rng)
+/// Uniform over the half sphere. @param u in [0, 1)^2
+vec3 half_sphere(vec2 u)
 {
-    float const u = rng.uniform(), a = 2 * kPi * rng.uniform(), c = 2 * kPi * rng.uniform();
-    float const r0 = std::sqrt(1 - u), r1 = std::sqrt(u);
-    return {r1 * std::cos(c), r0 * std::sin(a), r0 * std::cos(a), r1 * std::sin(c)};
-}
-
-/// Axis k of a spherical Fibonacci lattice on the half sphere.
-vec3 fibonacci_axis(std::uint32_t k, std::uint32_t count)
-{
-    constexpr float kGolden = 0.61803398874989f;
-    float const z = (float(k) + 0.5f) / float(count), phi = 2 * kPi * (float(k) * kGolden - std::floor(float(k) * kGolden));
-    float const r = std::sqrt(1 - z * z);
-    return {r * std::cos(phi), r * std::sin(phi), z};
+    float const z = 1 - u.x, r = std::sqrt(glm::max(0.0f, 1 - z * z));
+    return {r * std::cos(2 * kPi * u.y), r * std::sin(2 * kPi * u.y), z};
 }
 
 } // namespace
@@ -37,12 +27,15 @@ AxisSample FewAxes::sample(vec3 normal, float u) const
     std::array<float, kMost / kBlock> block;
     float total = 0;
     for (std::size_t first = 0, b = 0; first < count; first += kBlock, ++b) {
-        float sum = 0;
-        for (std::size_t k = first; k < first + kBlock; ++k)
-            weight[k] = std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]) * solid_angle[k];
-        for (std::size_t k = first; k < first + kBlock; ++k) sum += weight[k];
-        block[b] = sum;
-        total += sum;
+        std::array<float, kBlock> sums;
+        for (std::size_t k = 0; k < kBlock; ++k) {
+            std::size_t const a = first + k;
+            sums[k] = weight[a] = std::abs(normal.x * x[a] + normal.y * y[a] + normal.z * z[a]);
+        }
+        for (std::size_t half = kBlock / 2; half > 0; half /= 2)
+            for (std::size_t k = 0; k < half; ++k) sums[k] += sums[k + half];
+        block[b] = sums[0];
+        total += sums[0];
     }
     float left = u * total;
     std::size_t b = 0;
@@ -51,15 +44,15 @@ AxisSample FewAxes::sample(vec3 normal, float u) const
     while (k + 1 < (b + 1) * kBlock && left >= weight[k]) left -= weight[k++];
     while (k > 0 && weight[k] == 0) --k; // rounding may end on the padding
     vec3 const axis{x[k], y[k], z[k]};
-    return {std::uint32_t(k), glm::dot(axis, normal) < 0 ? -axis : axis, total * kInvPi};
+    return {std::uint32_t(k), glm::dot(axis, normal) < 0 ? -axis : axis, 2 * total / float(count)};
 }
 
-void AxisSet::build(std::vector<std::size_t> const& which, std::vector<vec3> const& axes, std::uint32_t pass)
+void AxisSet::build(std::vector<std::size_t> const& which, std::vector<vec3> const& axes)
 {
     tbb::parallel_for(std::size_t(0), which.size(), [&](std::size_t k) {
         thread_local Fragments fragments;
         std::size_t const a = which[k];
-        Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(a), pass);
+        Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(built_ + k), 0);
         vec2 const jitter = rng.uniform2();
         RasterGrid const grid = make_grid(source_.bounds, axes[k], source_.resolution, jitter, 2 * kPi * rng.uniform());
         fragments.count = 0;
@@ -85,38 +78,37 @@ void AxisSet::store(DirectionSet const& directions)
         which.push_back(axes.size());
         axes.push_back(vec3(a));
     }
-    build(which, axes, 0);
+    build(which, axes);
     buffers_.clear();
     buffers_.shrink_to_fit();
 }
 
-void AxisSet::refresh(std::uint32_t count, std::uint32_t fresh, std::uint32_t pass)
+void AxisSet::refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh)
 {
-    if (buffers_.size() != count) {
-        buffers_.resize(count);
+    if (buffers_.empty()) {
+        buffers_.resize(std::size_t(sequences) * count);
+        few_.resize(sequences);
+        few_count_ = count;
         fresh = count;
-        next_ = 0;
     }
-    Pcg32 rng = Pcg32::for_path(source_.seed ^ 0xa8e5, 0, pass);
-    glm::quat const turn = random_rotation(rng);
     std::vector<std::size_t> which;
     std::vector<vec3> axes;
-    few_.count = (count + 15) / 16 * 16;
-    for (std::uint32_t k = 0; k < fresh; ++k) {
-        std::uint32_t const a = (next_ + k) % count;
-        vec3 const axis = glm::normalize(turn * fibonacci_axis(a, count));
-        which.push_back(a);
-        axes.push_back(axis);
-        few_.x[a] = axis.x;
-        few_.y[a] = axis.y;
-        few_.z[a] = axis.z;
+    for (std::uint32_t s = 0; s < sequences; ++s) {
+        FewAxes& few = few_[s];
+        few.count = count;
+        for (std::uint32_t k = 0; k < fresh; ++k) {
+            RqmcStream const stream{std::uint32_t(mix_bits(source_.seed ^ (0xa8e5 + s))), drawn_ + k};
+            vec3 const axis = half_sphere(vec2(stream.sample_together(0)));
+            std::uint32_t const a = (drawn_ + k) % count;
+            which.push_back(std::size_t(s) * count + a);
+            axes.push_back(axis);
+            few.x[a] = axis.x;
+            few.y[a] = axis.y;
+            few.z[a] = axis.z;
+        }
     }
-    for (std::uint32_t k = 0; k < few_.count; ++k) {
-        few_.solid_angle[k] = k < count ? 2 * kPi / float(count) : 0.0f;
-        if (k >= count) few_.x[k] = few_.y[k] = few_.z[k] = 0;
-    }
-    next_ = (next_ + fresh) % count;
-    build(which, axes, pass);
+    drawn_ += fresh;
+    build(which, axes);
 }
 
 } // namespace gi

@@ -11,9 +11,8 @@ namespace gi {
 struct FewAxes {
     static constexpr std::size_t kMost = 64;
 
-    std::uint32_t count = 0;                       ///< padded with weight 0 to a multiple of 16
-    alignas(64) std::array<float, kMost> x, y, z;
-    alignas(64) std::array<float, kMost> solid_angle; ///< sr, of one direction of each axis
+    std::uint32_t count = 0;                     ///< all of one solid angle
+    alignas(64) std::array<float, kMost> x{}, y{}, z{}; ///< zero beyond count
 
     AxisSample sample(vec3 normal, float u) const;
 };
@@ -34,31 +33,42 @@ public:
 
     /// All axes of the set, once.
     void store(DirectionSet const& directions);
-    /// `count` axes (2..FewAxes::kMost), of which the next `fresh` ones are replaced by those of a randomly turned
-    /// spherical Fibonacci lattice of `count` axes; all when called first.
-    void refresh(std::uint32_t count, std::uint32_t fresh, std::uint32_t pass);
+    /// Bounces that have axes of their own. Axes of one low-discrepancy sequence must not be paired along a path: they
+    /// avoid each other, which is a bias that does not go away. Bounce b shares its axes with b + kSequences.
+    static constexpr std::uint32_t kSequences = 3;
 
-    /// @param normal unit  @param u uniform in [0, 1)
-    AxisSample sample(vec3 normal, float u) const
+    /// For each of `sequences` bounces `count` axes (up to FewAxes::kMost), of which the next `fresh` ones are replaced
+    /// by the next of a scrambled Sobol sequence over the half sphere; all when called first.
+    void refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh);
+
+    /// @param bounce  0 = the first  @param normal unit  @param u uniform in [0, 1)
+    AxisSample sample(std::uint32_t bounce, vec3 normal, float u) const
     {
-        return tables_.axes.empty() ? few_.sample(normal, u) : view(tables_).sample(normal, double(u));
+        if (!tables_.axes.empty()) return view(tables_).sample(normal, double(u));
+        std::uint32_t const sequence = bounce % std::uint32_t(few_.size());
+        AxisSample s = few_[sequence].sample(normal, u);
+        s.axis += sequence * few_count_;
+        return s;
     }
+    /// Axes that the first bounce chooses from: the first ones of the pool.
+    std::size_t first_bounce_axes() const { return tables_.axes.empty() ? few_count_ : tables_.axes.size(); }
     AxisPool const& pool() const { return pool_; }
     vec3 axis(std::size_t a) const { return pool_.grids[a].axis; }
-    float solid_angle(std::size_t a) const { return tables_.axes.empty() ? few_.solid_angle[a] : tables_.solid_angles[a]; }
+    float solid_angle(std::size_t a) const { return tables_.axes.empty() ? 2 * kPi / float(few_count_) : tables_.solid_angles[a]; }
     std::uint64_t built() const { return built_; }   ///< axes, so far
     std::uint64_t lost() const { return lost_; }     ///< layers beyond most_layers
     std::uint64_t layers() const { return layers_; } ///< of all axes built so far
 
 private:
-    void build(std::vector<std::size_t> const& which, std::vector<vec3> const& axes, std::uint32_t pass);
+    void build(std::vector<std::size_t> const& which, std::vector<vec3> const& axes);
 
     Source source_;
     std::vector<HitBuffer> buffers_;
     AxisPool pool_;
     CosineTables tables_;
-    FewAxes few_;
-    std::uint32_t next_ = 0;
+    std::vector<FewAxes> few_; ///< per sequence
+    std::uint32_t few_count_ = 0;
+    std::uint32_t drawn_ = 0; ///< from each sequence
     std::uint64_t built_ = 0, lost_ = 0, layers_ = 0;
 };
 

@@ -5,21 +5,21 @@
 namespace gi {
 namespace {
 
-bool before(Layer const& a, Layer const& b)
+bool before(HitLayer const& a, HitLayer const& b)
 {
     return a.depth < b.depth || (a.depth == b.depth && a.primitive < b.primitive);
 }
 
-void sort_layers(Layer* first, Layer* last)
+void sort_layers(HitLayer* first, HitLayer* last)
 {
     constexpr std::ptrdiff_t kFew = 24;
     if (last - first > kFew) {
         std::sort(first, last, before);
         return;
     }
-    for (Layer* i = first + 1; i < last; ++i) {
-        Layer const moved = *i;
-        Layer* to = i;
+    for (HitLayer* i = first + 1; i < last; ++i) {
+        HitLayer const moved = *i;
+        HitLayer* to = i;
         for (; to > first && before(moved, to[-1]); --to) *to = to[-1];
         *to = moved;
     }

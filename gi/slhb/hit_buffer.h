@@ -9,7 +9,7 @@
 
 namespace gi {
 
-struct Layer {
+struct HitLayer {
     float depth;             ///< along the axis, m
     std::uint32_t primitive; ///< triangle of the world, and kAlongAxis
 };
@@ -17,16 +17,16 @@ struct Layer {
 struct HitBufferView {
     RasterGrid grid;
     View<std::uint32_t const> offset;
-    View<Layer const> layers;
+    View<HitLayer const> layers;
 };
 
 struct HitBuffer {
     RasterGrid grid;
     std::vector<std::uint32_t> offset;
-    std::vector<Layer> layers;
+    std::vector<HitLayer> layers;
     std::uint64_t lost = 0; ///< layers beyond a limit that was asked for
 
-    std::size_t bytes() const { return offset.size() * sizeof(std::uint32_t) + layers.size() * sizeof(Layer); }
+    std::size_t bytes() const { return offset.size() * sizeof(std::uint32_t) + layers.size() * sizeof(HitLayer); }
 };
 
 inline HitBufferView view(HitBuffer const& b) { return {b.grid, b.offset, b.layers}; }

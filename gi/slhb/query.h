@@ -61,7 +61,7 @@ struct Column {
 
 /// The layers of a texel in the order of the walk, both parts merged.
 struct Walk {
-    Layer const* at[2];
+    HitLayer const* at[2];
     std::ptrdiff_t left[2] = {0, 0};
     int step;
 
@@ -75,7 +75,7 @@ struct Walk {
             left[k] = std::ptrdiff_t(end) - std::ptrdiff_t(begin);
         }
     }
-    GI_FN bool next(Layer& layer)
+    GI_FN bool next(HitLayer& layer)
     {
         if (left[0] == 0 && left[1] == 0) return false;
         int const k = left[0] == 0                          ? 1
@@ -97,7 +97,7 @@ GI_FN inline Column look_into(AxisView const& axis, std::size_t texel, WalkOrigi
     float best = margin;
     Column with_own, without; // without: the first face towards the walk
     Walk walk(axis, texel, o.up);
-    for (Layer layer; walk.next(layer);) {
+    for (HitLayer layer; walk.next(layer);) {
         float const z = sign * layer.depth - origin;
         bool const along = (layer.primitive & kAlongAxis) != 0;
         bool const same = (layer.primitive & kPrimitiveMask) == o.triangle;

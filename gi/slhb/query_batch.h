@@ -11,12 +11,12 @@ struct AxisPool {
     std::vector<RasterGrid> grids;
     std::vector<std::uint32_t> first_offset, first_layer; ///< of each axis
     std::vector<std::uint32_t> offset; ///< per axis texels + 1 entries, from the axis' first layer on
-    std::vector<Layer> layers;
+    std::vector<HitLayer> layers;
 
     std::size_t size() const { return grids.size(); }
     /// Axis `a` by itself.
     AxisView axis(std::size_t a) const;
-    std::size_t bytes() const { return offset.size() * sizeof(std::uint32_t) + layers.size() * sizeof(Layer); }
+    std::size_t bytes() const { return offset.size() * sizeof(std::uint32_t) + layers.size() * sizeof(HitLayer); }
 };
 
 /// Reuses the memory of `pool`. Throws InputError where 32-bit indices do not suffice.

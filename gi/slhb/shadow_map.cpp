@@ -21,40 +21,49 @@ int face_of(vec3 d)
 
 } // namespace
 
-bool ShadowMap::lit(vec3 position, vec3 normal, std::uint32_t triangle, vec2 u) const
+ShadowMap::Place ShadowMap::look(vec3 position, vec3 normal, vec2 u) const
 {
     // Where the surface is met by the line through the texel's centre, no farther from the point than a surface that
     // is grazed steeply would be.
     constexpr float kSteepest = 8;
+    auto const shift = [&](vec3 off, vec3 line, float texel) {
+        float const cosine = glm::dot(normal, line), most = kSteepest * texel;
+        return cosine != 0 ? glm::clamp(glm::dot(normal, off) / cosine, -most, most) : 0.0f;
+    };
     if (parallel) {
         float const x = (glm::dot(position, grid.right) - grid.corner.x) / grid.texel;
         float const y = (glm::dot(position, grid.up) - grid.corner.y) / grid.texel;
         std::uint32_t const i = pick(x, u.x, grid.width), j = pick(y, u.y, grid.height);
-        NearestTexel const& stored = maps[0].texels[std::size_t(j) * grid.width + i];
-        if (stored.primitive == triangle || stored.primitive == kNoPrimitive) return true;
         float const here = grid.depth(position);
-        vec3 const off = position - grid.point(i, j, here);
-        float const cosine = glm::dot(normal, grid.axis), most = kSteepest * grid.texel;
-        float const shift = cosine != 0 ? glm::clamp(glm::dot(normal, off) / cosine, -most, most) : 0.0f;
-        return -stored.key > here + shift - grid.texel;
+        return {&maps[0].texels[std::size_t(j) * grid.width + i],
+                here + shift(position - grid.point(i, j, here), grid.axis, grid.texel), grid.texel};
     }
     vec3 const way = position - faces[0].eye;
-    int const f = face_of(way);
-    PerspectiveGrid const& g = faces[std::size_t(f)];
-    NearestMap const& map = maps[std::size_t(f)];
-    if (map.texels.empty()) return true; // behind a lamp that shines to one side
+    auto const f = std::size_t(face_of(way));
+    PerspectiveGrid const& g = faces[f];
     float const w = glm::dot(g.forward, way);
-    if (!(w > g.near_m)) return true;
+    if (maps[f].texels.empty() || !(w > g.near_m)) return {}; // behind a lamp that shines to one side, or at the lamp
     float const per_subpixel = 1 / (w * g.subpixels);
     std::uint32_t const i = pick(glm::dot(g.to_x, way) * per_subpixel, u.x, g.width);
     std::uint32_t const j = pick(glm::dot(g.to_y, way) * per_subpixel, u.y, g.height);
-    NearestTexel const& stored = map.texels[std::size_t(j) * g.width + i];
-    if (stored.primitive == triangle || stored.primitive == kNoPrimitive) return true;
     vec3 const line = g.direction(i, j);
-    float const texel = 2 * w / float(g.width), most = kSteepest * texel;
-    float const cosine = glm::dot(normal, line);
-    float const shift = cosine != 0 ? glm::clamp(glm::dot(normal, way - w * line) / cosine, -most, most) : 0.0f;
-    return stored.key * (w + shift - texel) < 1;
+    float const texel = 2 * w / float(g.width);
+    return {&maps[f].texels[std::size_t(j) * g.width + i], w + shift(way - w * line, line, texel), texel};
+}
+
+bool ShadowMap::lit(Place const& place, View<Surface const> surfaces, vec3 position, std::uint32_t triangle) const
+{
+    constexpr float kRounding = 1e-5f, kNear = 4; // of the depth; texels
+    if (place.texel == nullptr || place.texel->primitive == triangle || place.texel->primitive == kNoPrimitive) return true;
+    float const stored = parallel ? -place.texel->key : 1 / place.texel->key;
+    float const gap = place.depth - stored;
+    if (gap <= kRounding * std::abs(place.depth)) return true;
+    if (gap > kNear * place.side) return false;
+    Surface const& s = surfaces[place.texel->primitive];
+    vec3 const normal = glm::cross(s.edge1, s.edge2);
+    float const here = glm::dot(normal, position - s.corner);
+    float const lamp = parallel ? -glm::dot(normal, grid.axis) : glm::dot(normal, faces[0].eye - s.corner);
+    return (here < 0) == (lamp < 0) || std::abs(here) <= s.clearance * glm::length(normal);
 }
 
 void ShadowMapBuilder::start(ShadowView const& view, vec2 jitter, float turn_rad, ShadowMap& map) const

@@ -1,8 +1,9 @@
 #pragma once
 // What a lamp sees: a cube of six pinhole views about a point, or one orthographic view along a direction.
 //
-// Look-up: the plane of the lit surface is compared with the stored depth at the same texel centre, so that flat
-// surfaces never shadow themselves; curved ones are kept from it by a tolerance of one texel.
+// Look-up: the plane of the lit surface is compared with the stored depth at the same texel centre, so that flat and convex
+// surfaces never shadow themselves. What lies nearer to the lamp by a few texels only, as the wall does beside a
+// floor, casts a shadow if the lit point is behind its plane: no bias, no tolerance.
 // Percentage-closer filtering: the texel is chosen among the four around by random numbers, which in the mean over
 // paths is the bilinear filter.
 
@@ -20,8 +21,16 @@ struct ShadowMap {
     std::array<PerspectiveGrid, 6> faces;
     std::array<NearestMap, 6> maps; ///< [0] alone where parallel
 
+    /// A texel for a point.
+    struct Place {
+        NearestTexel const* texel = nullptr; ///< null = nothing can be in the way
+        float depth = 0;                     ///< of the lit surface at the texel's centre, m
+        float side = 0;                      ///< of the texel there, m
+    };
     /// @param normal  unit, of the lit triangle  @param u uniform in [0, 1)^2
-    bool lit(vec3 position, vec3 normal, std::uint32_t triangle, vec2 u) const;
+    Place look(vec3 position, vec3 normal, vec2 u) const;
+    /// @param triangle  that is lit, at `position`
+    bool lit(Place const& place, View<Surface const> surfaces, vec3 position, std::uint32_t triangle) const;
 };
 
 /// Everything that decides a shadow map.

@@ -1,0 +1,88 @@
+#include "gi/slhb/lamps.h"
+
+#include "gi/base/rng.h"
+#include "gi/base/rqmc.h"
+#include "gi/scene/warp.h"
+
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+ShadowView view_from(World const& world, LightChoice const& choice, vec2 u)
+{
+    WorldView const w = view(world);
+    ShadowView v;
+    if (choice.light < world.lights.size()) {
+        Light const& light = world.lights[choice.light];
+        v.parallel = light.type == LightType::directional;
+        v.at = v.parallel ? -light.direction : light.position;
+    } else if (light_detail::is_environment(w, choice)) {
+        v.parallel = true;
+        v.at = light_detail::sample_environment(w, choice.texel, choice.probability, u).direction;
+    } else {
+        std::uint32_t const triangle = world.emitters[choice.light - world.lights.size()];
+        Surface const& s = world.surfaces[triangle];
+        v.at = shading_detail::SurfacePoint{s, square_to_triangle(u)}.position();
+        if (!s.is(Surface::kDoubleSided)) v.facing = shading_detail::triangle_normal(s);
+    }
+    return v;
+}
+
+} // namespace
+
+Lamps::Lamps(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t count,
+             std::uint32_t resolution, std::uint64_t seed)
+    : world_(world), builder_(world, soup, cut_outs, resolution), seed_(seed)
+{
+    if (world.light_select.empty()) return;
+    std::size_t const lights = world.lights.size();
+    fixed_ = world.emitters.empty() && world.environment_select.empty() && lights <= count;
+    if (!fixed_) {
+        lamps_.resize(count);
+        return;
+    }
+    std::vector<float> weights;
+    for (std::uint32_t k = 0; k < lights; ++k) {
+        Lamp& lamp = lamps_.emplace_back();
+        lamp.choice = {k, 0, view(world.light_select).probability(k)};
+        lamp.view = view_from(world, lamp.choice, {});
+        weights.push_back(lamp.choice.probability);
+    }
+    chances_ = make_alias_table(weights);
+    build(0);
+}
+
+void Lamps::refresh(std::uint32_t pass)
+{
+    if (fixed_ || none()) return;
+    WorldView const world = view(world_);
+    std::uint64_t const key = mix_bits(seed_ ^ 0x1a395);
+    for (std::uint32_t k = 0; k < lamps_.size(); ++k) {
+        // Stratified over the lamps of all passes.
+        RqmcStream const stream{std::uint32_t(key), pass * std::uint32_t(lamps_.size()) + k};
+        Lamp& lamp = lamps_[k];
+        vec4 const u = stream.sample_together(0);
+        lamp.choice = choose_light(world, double(u.x) + double(stream.sample(4)) * 0x1p-24);
+        lamp.u = {u.y, u.z};
+        lamp.view = view_from(world_, lamp.choice, lamp.u);
+    }
+    build(pass);
+}
+
+void Lamps::build(std::uint32_t pass)
+{
+    Pcg32 rng = Pcg32::for_path(seed_, 0x1a395, pass);
+    for (Lamp& lamp : lamps_) {
+        vec2 const jitter = rng.uniform2();
+        builder_.start(lamp.view, jitter, 2 * kPi * rng.uniform(), lamp.shadow);
+    }
+    std::uint32_t const seed = rng.next();
+    tbb::parallel_for(std::size_t(0), 6 * lamps_.size(), [&](std::size_t job) {
+        Lamp& lamp = lamps_[job / 6];
+        builder_.build(lamp.view, int(job % 6), seed, lamp.shadow);
+    });
+    built_ += lamps_.size();
+}
+
+} // namespace gi

@@ -1,0 +1,45 @@
+#pragma once
+// Direct light by the area formulation (Yu 2012, eq. 5.3): in every pass a few points on lamps (or directions to the sky)
+// are chosen by power, each gets a shadow map, and all paths of the pass are lit by them. Neighbouring pixels take
+// different ones (interleaved sampling), other passes others.
+
+#include "gi/slhb/shadow_map.h"
+
+namespace gi {
+
+struct Lamp {
+    LightChoice choice;
+    vec2 u{0}; ///< where on the light
+    ShadowView view;
+    ShadowMap shadow;
+};
+
+class Lamps {
+public:
+    /// @param count per pass; where all lights are points or parallel and no more than this, all of them, and they
+    /// keep their maps from pass to pass
+    Lamps(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t count,
+          std::uint32_t resolution, std::uint64_t seed);
+
+    /// New points and shadow maps.
+    void refresh(std::uint32_t pass);
+    std::vector<Lamp> const& lamps() const { return lamps_; }
+    bool none() const { return lamps_.empty(); }
+    /// Probability of picking lamp k for a path vertex; their sum is 1.
+    AliasTableView chances() const { return view(chances_); }
+    bool fixed() const { return fixed_; }
+    std::uint64_t maps_built() const { return built_; }
+
+private:
+    void build(std::uint32_t pass);
+
+    World const& world_;
+    ShadowMapBuilder builder_;
+    std::uint64_t seed_;
+    bool fixed_ = false;
+    std::vector<Lamp> lamps_;
+    AliasTable chances_; ///< where they are fixed
+    std::uint64_t built_ = 0;
+};
+
+} // namespace gi

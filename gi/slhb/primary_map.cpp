@@ -1,0 +1,44 @@
+#include "gi/slhb/primary_map.h"
+
+#include "gi/transport/sampling.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace gi {
+
+PrimaryMap::PrimaryMap(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, CameraRays const& camera,
+                       RenderSettings const& settings)
+    : soup_(soup), cut_outs_(cut_outs), camera_(camera), width_(settings.width), height_(settings.height),
+      filter_(settings.filter), seed_(settings.seed), near_m_(1e-5f * glm::max(world.bounds.radius(), 1e-30f))
+{
+}
+
+void PrimaryMap::refresh(std::uint32_t pass)
+{
+    RqmcStream const stream{std::uint32_t(mix_bits(seed_ ^ 0xca3e7a)), pass};
+    at_ = 0.5f + filter_offset(filter_, vec2(stream.sample_together(0)));
+    PerspectiveGrid const grid = camera_grid(camera_, width_, height_, at_, near_m_);
+    // Parts in a fixed order, whoever computes them: the picture does not depend on threads.
+    std::size_t const part = std::max<std::size_t>(TriangleSoup::kChunk, (soup_.count / 16 + TriangleSoup::kChunk - 1) /
+                                                                             TriangleSoup::kChunk * TriangleSoup::kChunk);
+    parts_.resize((soup_.count + part - 1) / part);
+    tbb::parallel_for(std::size_t(0), parts_.size(), [&](std::size_t k) {
+        parts_[k].count = 0;
+        rasterize(soup_, k * part, std::min(soup_.count, (k + 1) * part), grid, parts_[k]);
+        cut_outs_.remove(parts_[k], grid, std::uint32_t(mix_bits(seed_) + pass));
+    });
+    clear(map_, std::uint32_t(width_), std::uint32_t(height_));
+    for (Fragments const& f : parts_) resolve(f, 1, map_);
+}
+
+void PrimaryMap::hits(std::size_t first, std::size_t last, std::vector<PrimaryHit>& out) const
+{
+    out.clear();
+    for (std::size_t p = first; p < last; ++p) {
+        vec2 const place{float(p % std::size_t(width_)), float(p / std::size_t(width_))};
+        out.push_back({std::uint32_t(p), map_.texels[p].primitive, camera_.through(place + at_)});
+    }
+}
+
+} // namespace gi

@@ -1,0 +1,33 @@
+#pragma once
+// The first surfaces of a pass: one G-buffer of the whole picture, every pixel seen through the same point of it; passes
+// differ in that point, so that their mean has the pixel filter.
+
+#include "gi/slhb/cut_outs.h"
+#include "gi/slhb/tracer.h"
+
+namespace gi {
+
+class PrimaryMap {
+public:
+    PrimaryMap(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, CameraRays const& camera,
+               RenderSettings const& settings);
+
+    /// Rasterises the view of a pass.
+    void refresh(std::uint32_t pass);
+    /// Of pixels first..last - 1, in rows.
+    void hits(std::size_t first, std::size_t last, std::vector<PrimaryHit>& out) const;
+
+private:
+    TriangleSoup const& soup_;
+    CutOuts const& cut_outs_;
+    CameraRays camera_;
+    int width_, height_;
+    PixelFilter filter_;
+    std::uint64_t seed_;
+    float near_m_;
+    vec2 at_{0.5f}; ///< position in the pixel
+    NearestMap map_;
+    std::vector<Fragments> parts_;
+};
+
+} // namespace gi

@@ -1,0 +1,62 @@
+#include "gi/slhb/settings.h"
+
+#include "gi/base/error.h"
+#include "gi/slhb/axis_set.h"
+#include "gi/slhb/narrow_lobes.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace gi {
+namespace {
+
+bool narrow_somewhere(World const& world)
+{
+    std::vector<bool> used(world.materials.size(), false);
+    for (std::uint32_t const m : world.triangle_material) used[m] = true;
+    for (std::size_t m = 0; m < used.size(); ++m) {
+        if (!used[m]) continue;
+        Material const& material = world.materials[m];
+        if (has_narrow_lobe(world.bsdfs[m])) return true;
+        bool const textured = material.metallic_roughness_map.texture >= 0 || material.transmission_map.texture >= 0 ||
+                              material.specular_map.texture >= 0;
+        // A roughness map can make any roughness smaller.
+        if (textured && (material.specular > 0 || material.metallic > 0 || material.transmission > 0)) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+bool needs_exact_rays(World const& world, Camera const& camera)
+{
+    return camera.orthographic || narrow_somewhere(world);
+}
+
+SlhbSettings choose_settings(RenderSettings const& asked, World const& world)
+{
+    SlhbSettings s = asked.slhb;
+    if (s.schedule == Schedule::automatic) s.schedule = Schedule::streamed;
+    if (s.directions.empty()) s.directions = "icosahedron:320";
+    if (s.resolution == 0) s.resolution = 128;
+    // What a pass builds should cost a share of what its paths cost, or be shared by too few of them.
+    double const paths = double(asked.width) * asked.height, triangles = double(world.triangles.size());
+    auto const worth = [&](double seconds_each, int least, int most) {
+        constexpr double kPath = 0.5e-6, kShare = 0.3;
+        return std::clamp(int(kShare * kPath * paths / seconds_each), least, most);
+    };
+    double const axis = 2e-9 * triangles + 2e-8 * double(s.resolution) * s.resolution;
+    if (s.axes == 0) s.axes = s.schedule == Schedule::temporal ? 16 : worth(axis, 2, 8);
+    if (s.axes > int(FewAxes::kMost))
+        throw InputError(fmt::format("{} axes in a pass", s.axes), fmt::format("there is room for {}", FewAxes::kMost),
+                         "use --schedule stored for more");
+    if (s.fresh_axes == 0) s.fresh_axes = s.schedule == Schedule::temporal ? std::max(1, s.axes / 8) : s.axes;
+    s.fresh_axes = std::min(s.fresh_axes, s.axes);
+    bool const from_points = world.emitters.empty() && world.environment_select.empty();
+    if (s.shadow_resolution == 0) s.shadow_resolution = from_points ? 1024 : 256;
+    double const map = 5e-9 * triangles + 1e-8 * double(s.shadow_resolution) * s.shadow_resolution;
+    if (s.lamps == 0) s.lamps = from_points ? 16 : worth(map, 1, 4);
+    return s;
+}
+
+} // namespace gi

@@ -1,0 +1,16 @@
+#pragma once
+// What the plan of a scene chooses for the method slhb, where nothing was asked for, and why.
+
+#include "gi/image/render_settings.h"
+#include "gi/scene/plan.h"
+
+namespace gi {
+
+/// Every number of SlhbSettings chosen. Throws InputError on values that cannot work together.
+SlhbSettings choose_settings(RenderSettings const& asked, World const& world);
+
+/// Whether some path of the scene has to continue with an exact ray, or the camera needs them (orthographic ones have
+/// no raster yet).
+bool needs_exact_rays(World const& world, Camera const& camera);
+
+} // namespace gi

@@ -1,0 +1,131 @@
+#include "gi/slhb/slhb.h"
+
+#include "gi/slhb/primary_map.h"
+#include "gi/slhb/settings.h"
+#include "gi/transport/fingerprint.h"
+#include "gi/transport/flush_denormals.h"
+#include "gi/transport/pass_loop.h"
+#include "gi/transport/sampling.h"
+
+#include <memory>
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+/// Pixels whose paths advance together on one thread.
+constexpr std::size_t kBlock = 16384;
+
+struct WorkCounts {
+    PathCounts paths;
+    SlhbCounts slhb;
+};
+
+/// Primary hits through exact rays, for the cameras that have no raster.
+void exact_hits(ExactVisibility const& exact, CameraRays const& camera, RenderSettings const& s, std::uint32_t pass,
+                std::size_t first, std::size_t last, std::vector<PrimaryHit>& out)
+{
+    std::vector<RayQuery> rays;
+    out.clear();
+    for (std::size_t p = first; p < last; ++p) {
+        RqmcStream const stream{std::uint32_t(mix_bits(s.seed + p)), pass};
+        vec2 const place{float(p % std::size_t(s.width)) + 0.5f, float(p / std::size_t(s.width)) + 0.5f};
+        Ray const ray = camera.through(place + filter_offset(s.filter, stream.sample2(0)));
+        out.push_back({std::uint32_t(p), kNoPrimitive, ray});
+        rays.push_back({.ray = ray, .seed = stream.seed + pass});
+    }
+    std::vector<Hit> hits(rays.size());
+    exact.nearest(rays, hits);
+    for (std::size_t k = 0; k < hits.size(); ++k) out[k].triangle = hits[k].triangle;
+}
+
+} // namespace
+
+RenderResult render_slhb(World const& world, Camera const& camera, RenderSettings const& settings,
+                         StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    PassLoop loop(settings, stop, progress, report);
+    ScenePlan const plan = plan_scene(world);
+    SlhbSettings const slhb = choose_settings(settings, world);
+    CameraRays const rays = camera_rays(camera, settings.width, settings.height, world.origin);
+    std::unique_ptr<ExactVisibility> exact;
+    if (needs_exact_rays(world, camera)) {
+        StageTimer const timer(report, "build (Embree BVH)");
+        exact = std::make_unique<ExactVisibility>(world, plan.alpha_tests, settings.threads);
+    }
+    CutOuts const cut_outs(world);
+    TriangleSoup const soup = make_soup(world);
+    AxisSet axes({world.bounds, soup, cut_outs, std::uint32_t(slhb.resolution), std::uint32_t(slhb.most_layers), settings.seed});
+    if (slhb.schedule == Schedule::stored) {
+        StageTimer const timer(report, "build (hit buffers)");
+        axes.store(make_directions(slhb.directions));
+    }
+    Lamps lamps(world, soup, cut_outs, std::uint32_t(slhb.lamps), std::uint32_t(slhb.shadow_resolution), settings.seed);
+    PrimaryMap primary(world, soup, cut_outs, rays, settings);
+    SlhbTracer const tracer(world, rays, settings, slhb);
+
+    // Surfaces that a path may leave along an axis: the last one only where the sky or exact rays count.
+    bool const to_the_end = exact != nullptr || !view(world).environment_radiance.empty();
+    auto const sequences =
+        std::uint32_t(std::clamp(settings.bounces + (to_the_end ? 1 : 0), 1, int(AxisSet::kSequences)));
+    WorkCounts total;
+    auto const pass = [&](Accumulator& sums) {
+        std::uint32_t const index = sums.paths;
+        {
+            StageTimer const timer(report, "hit buffers of a pass");
+            if (slhb.schedule != Schedule::stored)
+                axes.refresh(sequences, std::uint32_t(slhb.axes), std::uint32_t(slhb.fresh_axes));
+        }
+        {
+            StageTimer const timer(report, "shadow maps");
+            lamps.refresh(index);
+        }
+        if (!camera.orthographic) {
+            StageTimer const timer(report, "G-buffer");
+            primary.refresh(index);
+        }
+        StageTimer const timer(report, "paths");
+        std::uint32_t const gathered = slhb.gather ? index % std::uint32_t(axes.first_bounce_axes()) : kNoPrimitive;
+        SlhbTracer::Pass const now{axes, lamps, exact.get(), index, gathered};
+        std::size_t const pixels = sums.pixels.size();
+        tbb::combinable<WorkCounts> counts;
+        tbb::parallel_for(std::size_t(0), (pixels + kBlock - 1) / kBlock, [&](std::size_t block) {
+            FlushDenormals const guard;
+            thread_local std::vector<PrimaryHit> hits;
+            thread_local std::vector<PathSample> samples;
+            std::size_t const first = block * kBlock, last = std::min(pixels, first + kBlock);
+            if (camera.orthographic)
+                exact_hits(*exact, rays, settings, index, first, last, hits);
+            else
+                primary.hits(first, last, hits);
+            samples.resize(hits.size());
+            WorkCounts& local = counts.local();
+            tracer.trace(now, hits, samples, local.paths, local.slhb);
+            for (std::size_t k = 0; k < hits.size(); ++k) sums.pixels[hits[k].pixel].add(samples[k]);
+        });
+        counts.combine_each([&](WorkCounts const& c) {
+            sums.counts += c.paths;
+            total.slhb.queries += c.slhb.queries;
+            total.slhb.exact_rays += c.slhb.exact_rays;
+            total.slhb.shadow_lookups += c.slhb.shadow_lookups;
+        });
+        ++sums.paths;
+    };
+    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, "slhb") : 0;
+    RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
+        for (std::uint32_t i = 0; i < paths; ++i) pass(sums);
+    });
+    report.count("hit-buffer queries", double(total.slhb.queries));
+    report.count("shadow-map look-ups", double(total.slhb.shadow_lookups));
+    report.count("exact rays", double(total.slhb.exact_rays));
+    report.count("axes built", double(axes.built()));
+    report.count("layers per texel, mean", axes.built() > 0 ? double(axes.layers()) / double(axes.built()) / (double(slhb.resolution) * slhb.resolution) : 0);
+    report.count("shadow maps built", double(lamps.maps_built()));
+    report.lose("layers beyond the limit of a texel", axes.lost());
+    result.rays = double(total.slhb.queries + total.slhb.shadow_lookups + total.slhb.exact_rays);
+    result.picture = loop.sums().picture(world.origin);
+    return result;
+}
+
+} // namespace gi

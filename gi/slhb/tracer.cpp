@@ -1,0 +1,315 @@
+#include "gi/slhb/tracer.h"
+
+#include "gi/scene/shading_point.h"
+#include "gi/scene/warp.h"
+#include "gi/slhb/narrow_lobes.h"
+#include "gi/transport/sampling.h"
+
+#include <algorithm>
+
+namespace gi {
+namespace {
+
+/// Random numbers of one path: dimensions of vertex v start at v * kPerVertex + 2 (the camera has two).
+enum Dimension : std::uint32_t { axis, lobe, lobe_u, lobe_v, roulette, lamp, shadow_u, shadow_v, cone_u, cone_v, kPerVertex };
+
+} // namespace
+
+/// One path on its way: how it arrived at a surface.
+struct SlhbTracer::State {
+    RqmcStream random;
+    std::uint32_t triangle;
+    vec2 barycentric;
+    vec3 position;  ///< only read where has_position
+    bool has_position = false;
+    vec3 direction; ///< of arrival
+    vec3 throughput{1};
+    float arrival_pdf = 0; ///< of the direction, for the sky; 0 = camera or delta lobe
+    float exact_pdf = 0;   ///< of the direction among exact rays, for lamps; 0 as above
+    bool by_axis = false;  ///< came by a query: lamps do not count
+    int scatterings = 0, vertex = 0;
+    PathSample* sample;
+
+    std::uint32_t dimension(Dimension d) const { return std::uint32_t(vertex) * kPerVertex + 2 + d; }
+    vec3& bucket(int scattered) const { return sample->radiance[std::size_t(std::min(scattered, 2))]; }
+};
+
+/// Where a path wants to go from its surface.
+struct SlhbTracer::Vertex {
+    std::uint32_t path;
+    bool exact;
+    Ray ray;            ///< exact
+    WalkOrigin origin;  ///< else
+    std::uint32_t axis;
+    LayerHit hit;       ///< answer of a query
+};
+
+/// Direct light that waits for its shadow map.
+struct SlhbTracer::Unshadowed {
+    ShadowMap const* map;
+    ShadowMap::Place place;
+    vec3 position;
+    std::uint32_t triangle;
+    vec3 radiance;
+    vec3* to;
+};
+
+void SlhbTracer::add_sky(State& s) const
+{
+    if (world_.environment_radiance.empty()) return;
+    vec3 light = environment_radiance(world_, s.direction);
+    if (s.arrival_pdf > 0) light *= power_heuristic(s.arrival_pdf, environment_direction_pdf(world_, s.direction));
+    s.bucket(s.scatterings) += s.throughput * light;
+}
+
+void SlhbTracer::add_direct(Pass const& pass, State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                            std::vector<Unshadowed>& direct) const
+{
+    std::vector<Lamp> const& lamps = pass.lamps.lamps();
+    std::size_t k = 0;
+    if (pass.lamps.fixed()) {
+        double u = double(s.random.sample(s.dimension(lamp)));
+        k = pass.lamps.chances().sample(u);
+    } else {
+        // Interleaved: neighbours take different lamps, and each pixel all of them in turn.
+        std::uint32_t const pixel = s.random.seed;
+        k = (pixel + pass.index + std::uint32_t(s.vertex)) % lamps.size();
+    }
+    Lamp const& l = lamps[k];
+    LightSample const light = sample_light(world_, l.choice, at.position, l.u);
+    if (!(light.pdf > 0)) return;
+    vec3 const wi = at.frame.to_local(light.direction);
+    float const side = glm::dot(light.direction, at.geometric_normal);
+    if ((wi.z > 0) != (side > 0)) return;
+    BsdfValue const bsdf = evaluate(at.bsdf, wo, wi);
+    vec3 value = bsdf.f * light.radiance * (std::abs(wi.z) / light.pdf);
+    if (!(max_component(value) > 0)) return;
+    if (!light.delta && light.distance == kInf)
+        value *= power_heuristic(light.pdf, narrow ? bsdf.pdf : std::abs(wi.z) * kInvPi);
+    else if (!light.delta && narrow)
+        value *= power_heuristic(light.pdf, narrow_pdf(at.bsdf, wo, wi, bsdf.pdf));
+    ShadowMap::Place const place =
+        l.shadow.look(at.position, at.geometric_normal, s.random.sample2(s.dimension(shadow_u)));
+    __builtin_prefetch(place.texel);
+    direct.push_back({&l.shadow, place, at.position, s.triangle, s.throughput * value, &s.bucket(s.scatterings + 1)});
+}
+
+/// False where the path ends.
+bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Unshadowed>& direct,
+                       PathCounts& paths) const
+{
+    if (s.triangle == kNoPrimitive) {
+        add_sky(s);
+        return false;
+    }
+    Surface const& surface = world_.surfaces[s.triangle];
+    if (s.has_position && (surface.is(Surface::kSmooth) || surface.is(Surface::kVaries)))
+        s.barycentric = barycentric_at(surface, s.position);
+    ShadingPoint at = shading_point(world_, s.triangle, s.barycentric, s.direction);
+    if (s.has_position) at.position = s.position;
+    if (s.vertex == 0) {
+        s.sample->hit = true;
+        s.sample->albedo = albedo(at.bsdf);
+        s.sample->normal = at.frame.normal;
+        s.sample->position = at.position;
+        s.sample->depth = glm::dot(at.position - camera_.origin, camera_.forward);
+    }
+    if (!s.by_axis && max_component(at.emission) > 0) {
+        vec3 light = at.emission;
+        if (s.exact_pdf > 0) {
+            float const cos_light = std::abs(glm::dot(s.direction, at.geometric_normal));
+            float const distance = glm::length(at.position - next.ray.origin);
+            light *= power_heuristic(s.exact_pdf, emitter_direction_pdf(world_, s.triangle, distance, cos_light));
+        }
+        s.bucket(s.scatterings) += s.throughput * light;
+    }
+    if (s.vertex == kLongestPath) {
+        ++paths.cut_paths;
+        return false;
+    }
+
+    vec3 const wo = at.frame.to_local(-s.direction);
+    bool const last = s.scatterings > bounces_; // mirrors and glass do not count
+    bool const narrow = pass.exact != nullptr && has_narrow_lobe(at.bsdf);
+    if (!last && !pass.lamps.none() && !only_delta(at.bsdf)) add_direct(pass, s, at, wo, narrow, direct);
+
+    vec3 direction;
+    bool delta = false;
+    next.exact = false;
+    float const u_lobe = narrow ? s.random.sample(s.dimension(lobe)) : 1;
+    if (narrow && takes_narrow_lobe(at.bsdf, wo, u_lobe)) {
+        BsdfSample const sampled = gi::sample(at.bsdf, wo, at.front, u_lobe, s.random.sample2(s.dimension(lobe_u)));
+        if (last && !sampled.delta) return false;
+        s.throughput *= sampled.weight;
+        delta = sampled.delta;
+        direction = at.frame.to_world(sampled.wi);
+        if ((glm::dot(direction, at.geometric_normal) > 0) != (sampled.wi.z > 0)) return false;
+        s.arrival_pdf = delta ? 0 : sampled.pdf;
+        s.exact_pdf = delta ? 0 : narrow_pdf(at.bsdf, wo, sampled.wi, sampled.pdf);
+        next.exact = true;
+    } else {
+        if (last || !(wo.z > 0)) return false;
+        // The last surface would only bring light that exact rays or the sky can bring.
+        if (s.scatterings == bounces_ && pass.exact == nullptr && world_.environment_radiance.empty()) return false;
+        AxisSample a;
+        if (s.vertex == 0 && pass.gather_axis != kNoPrimitive) {
+            vec3 const along = pass.axes.axis(pass.gather_axis);
+            float const cosine = glm::dot(along, at.frame.normal);
+            a = {pass.gather_axis, cosine < 0 ? -along : along,
+                 std::abs(cosine) * pass.axes.solid_angle(pass.gather_axis) * float(pass.axes.first_bounce_axes()) * kInvPi};
+        } else {
+            a = pass.axes.sample(std::uint32_t(s.scatterings), at.frame.normal, s.random.sample(s.dimension(axis)));
+        }
+        direction = a.direction;
+        vec3 const wi = at.frame.to_local(direction);
+        float const side = glm::dot(direction, at.geometric_normal);
+        if (!(wi.z > 0) || !(side > 0)) return false;
+        BsdfValue const value = evaluate(at.bsdf, wo, wi);
+        float const pdf = narrow ? value.pdf : wi.z * kInvPi;
+        if (!(pdf > 0)) return false;
+        s.throughput *= value.f * (wi.z * a.weight / pdf);
+        s.arrival_pdf = pdf;
+        next.axis = a.axis;
+        vec3 const normal = glm::cross(surface.edge1, surface.edge2);
+        vec3 const along_axis = pass.axes.axis(a.axis);
+        next.origin = {at.position, s.triangle, glm::dot(normal, along_axis) > 0, glm::dot(direction, along_axis) > 0,
+                       std::sqrt(std::max(0.0f, 1 - side * side)) / side};
+        if (cone_ > 0) {
+            RasterGrid const& grid = pass.axes.pool().grids[a.axis];
+            vec2 const off = cone_ * grid.texel * square_to_disk(s.random.sample2(s.dimension(cone_u)));
+            vec3 const shift = off.x * grid.right + off.y * grid.up;
+            // Along the axis as the surface goes.
+            next.origin.position += shift - (glm::dot(at.geometric_normal, shift) / side) * direction;
+        }
+    }
+    float const survival = max_component(s.throughput);
+    if (!(survival > 0)) return false;
+    if (s.scatterings >= 3 && survival < 0.95f) {
+        if (s.random.sample(s.dimension(roulette)) >= survival) return false;
+        s.throughput /= survival;
+    }
+    if (next.exact) {
+        float const offset = glm::dot(direction, at.geometric_normal) > 0 ? at.clearance : -at.clearance;
+        next.ray = {at.position + offset * at.geometric_normal, direction};
+    }
+    s.by_axis = !next.exact;
+    s.direction = direction;
+    if (!delta) ++s.scatterings;
+    ++s.vertex;
+    return true;
+}
+
+/// Axis after axis, so that the buffers of one stay in the cache.
+void SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
+{
+    thread_local std::vector<std::uint32_t> first, order;
+    thread_local QueryBatch batch;
+    AxisPool const& pool = pass.axes.pool();
+    first.assign(pool.size() + 1, 0);
+    std::size_t n = 0;
+    for (Vertex const& v : vertices)
+        if (!v.exact) {
+            ++first[v.axis + 1];
+            ++n;
+        }
+    for (std::size_t a = 0; a < pool.size(); ++a) first[a + 1] += first[a];
+    order.resize(n);
+    for (std::uint32_t k = 0; k < vertices.size(); ++k)
+        if (!vertices[k].exact) order[first[vertices[k].axis]++] = k;
+    auto const answer = [&](std::size_t from, std::size_t to, auto const& ask) {
+        batch.resize(to - from);
+        for (std::size_t k = from; k < to; ++k) batch.set(k - from, vertices[order[k]].origin, vertices[order[k]].axis);
+        ask();
+        for (std::size_t k = from; k < to; ++k) {
+            std::uint32_t const hit = batch.hit[k - from];
+            LayerHit& to_fill = vertices[order[k]].hit;
+            to_fill = {};
+            if (hit == kNoLayerHit) continue;
+            to_fill = {hit & kPrimitiveMask, {batch.hit_x[k - from], batch.hit_y[k - from], batch.hit_z[k - from]}, (hit & kAlongAxis) != 0};
+            __builtin_prefetch(&world_.surfaces[to_fill.triangle]);
+        }
+    };
+    constexpr std::size_t kWorthwhile = 64; // queries of one axis
+    if (n >= kWorthwhile * pool.size()) {
+        std::size_t from = 0;
+        for (std::size_t a = 0; a < pool.size(); ++a) { // first[a] has become the end of a
+            answer(from, first[a], [&] { nearest_layers(pool, a, world_.surfaces, batch); });
+            from = first[a];
+        }
+    } else {
+        answer(0, n, [&] { nearest_layers(pool, world_.surfaces, batch); });
+    }
+}
+
+void SlhbTracer::trace(Pass const& pass, std::span<PrimaryHit const> hits, std::span<PathSample> samples,
+                       PathCounts& paths, SlhbCounts& counts) const
+{
+    thread_local std::vector<State> states;
+    thread_local std::vector<Vertex> vertices;
+    thread_local std::vector<RayQuery> rays;
+    thread_local std::vector<Hit> ray_hits;
+    thread_local std::vector<Unshadowed> direct;
+    states.resize(hits.size());
+    vertices.resize(hits.size());
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+        PrimaryHit const& h = hits[k];
+        State s;
+        samples[k] = {};
+        s.sample = &samples[k];
+        s.random = {std::uint32_t(mix_bits((seed_ << 32) + h.pixel + (seed_ >> 32))), pass.index};
+        s.triangle = h.triangle;
+        s.direction = h.ray.direction;
+        if (h.triangle != kNoPrimitive) {
+            // The raster says which triangle; the ray says where on its plane.
+            Surface const& surface = world_.surfaces[h.triangle];
+            vec3 const normal = glm::cross(surface.edge1, surface.edge2);
+            float const t = glm::dot(normal, surface.corner - h.ray.origin) / glm::dot(normal, h.ray.direction);
+            s.barycentric = std::isfinite(t) ? barycentric_at(surface, h.ray.origin + t * h.ray.direction) : vec2{1.0f / 3};
+        }
+        states[k] = s;
+        vertices[k].path = std::uint32_t(k);
+    }
+    std::size_t active = hits.size();
+    while (active > 0) {
+        std::size_t going = 0;
+        for (std::size_t k = 0; k < active; ++k) {
+            Vertex v = vertices[k];
+            if (shade(pass, states[v.path], v, direct, paths)) vertices[going++] = v;
+        }
+        counts.shadow_lookups += direct.size();
+        for (Unshadowed const& d : direct)
+            if (d.map->lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
+        direct.clear();
+        active = going;
+        std::span<Vertex> const now(vertices.data(), active);
+        rays.clear();
+        for (Vertex const& v : now)
+            if (v.exact) rays.push_back({.ray = v.ray, .seed = states[v.path].random.seed + std::uint32_t(states[v.path].vertex)});
+        if (rays.size() < active) ask_axes(pass, now);
+        ray_hits.resize(rays.size());
+        if (!rays.empty()) pass.exact->nearest(rays, ray_hits);
+        counts.exact_rays += rays.size();
+        counts.queries += active - rays.size();
+        std::size_t ray = 0;
+        for (Vertex const& v : now) {
+            State& s = states[v.path];
+            s.has_position = !v.exact;
+            if (v.exact) {
+                s.triangle = ray_hits[ray].triangle;
+                s.barycentric = ray_hits[ray++].barycentric;
+            } else {
+                s.triangle = v.hit.triangle;
+                s.position = v.hit.position;
+                s.barycentric = vec2{1.0f / 3};
+            }
+        }
+    }
+    for (PathSample& s : samples)
+        for (vec3& part : s.radiance)
+            if (!all_finite(part)) {
+                part = vec3{0};
+                ++paths.invalid_paths;
+            }
+}
+
+} // namespace gi

@@ -1,0 +1,72 @@
+#pragma once
+// Paths through layered hit buffers. Primary surfaces come from a G-buffer, direct light from shadow maps; a diffuse or
+// broad lobe continues along one of the axes of the pass (hemisphere formulation, Yu 2012, eq. 5.7), a mirror, glass or
+// narrow lobe with an exact ray. Paths of a block advance together, one surface at a time: all shadings, then all queries.
+//
+// Estimators. Axis k is drawn with chance p_k in proportion to solid angle times cosine; the factor of a path is
+// f cos w_k / p_k, times the balance heuristic against the narrow lobes where there are some (one-sample model, Veach 1997, sec. 9.2.4).
+// Lamps are found by light sampling alone, except by exact rays; the sky by both, with the power heuristic.
+
+#include "gi/base/rqmc.h"
+#include "gi/image/render_settings.h"
+#include "gi/slhb/axis_set.h"
+#include "gi/slhb/lamps.h"
+#include "gi/transport/exact_visibility.h"
+#include "gi/transport/path_sample.h"
+
+#include <span>
+
+namespace gi {
+
+/// Work done, for --stats.
+struct SlhbCounts {
+    std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0;
+};
+
+struct PrimaryHit {
+    std::uint32_t pixel;
+    std::uint32_t triangle; ///< kNoPrimitive = none
+    Ray ray;
+};
+
+class SlhbTracer {
+public:
+    /// What stays the same over a pass. `exact` may be null where nothing needs exact rays.
+    struct Pass {
+        AxisSet const& axes;
+        Lamps const& lamps;
+        ExactVisibility const* exact;
+        std::uint32_t index;      ///< of the path of each pixel
+        std::uint32_t gather_axis; ///< taken by every first bounce; kNoPrimitive = by chance
+    };
+
+    SlhbTracer(World const& world, CameraRays const& camera, RenderSettings const& settings, SlhbSettings const& slhb)
+        : world_(view(world)), camera_(camera), bounces_(settings.bounces), seed_(settings.seed), width_(settings.width),
+          cone_(slhb.cone)
+    {
+    }
+
+    /// @param samples one per hit, overwritten
+    void trace(Pass const& pass, std::span<PrimaryHit const> hits, std::span<PathSample> samples, PathCounts& paths,
+               SlhbCounts& counts) const;
+
+private:
+    struct State;
+    struct Vertex;
+    struct Unshadowed;
+
+    bool shade(Pass const& pass, State& s, Vertex& next, std::vector<Unshadowed>& direct, PathCounts& paths) const;
+    void add_direct(Pass const& pass, State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                    std::vector<Unshadowed>& direct) const;
+    void add_sky(State& s) const;
+    void ask_axes(Pass const& pass, std::span<Vertex> vertices) const;
+
+    WorldView world_;
+    CameraRays camera_;
+    int bounces_;
+    std::uint64_t seed_;
+    int width_;
+    float cone_;
+};
+
+} // namespace gi
