@@ -28,6 +28,15 @@ GI_FN inline std::uint32_t permute_upwards(std::uint32_t v, std::uint32_t seed)
     return v;
 }
 
+/// 32-bit hash of two words (finaliser by Wellons 2018, "lowbias32").
+GI_FN inline std::uint32_t hash_words(std::uint32_t a, std::uint32_t b)
+{
+    std::uint32_t h = a ^ (b * 0x9e3779b9u);
+    h = (h ^ (h >> 16)) * 0x7feb352du;
+    h = (h ^ (h >> 15)) * 0x846ca68bu;
+    return h ^ (h >> 16);
+}
+
 /// Direction numbers of the first four Sobol dimensions (Joe & Kuo 2008), by their recurrence.
 struct SobolMatrices {
     std::uint32_t column[4][32];
@@ -66,22 +75,28 @@ public:
     /// Uniform in [0, 1), a multiple of 2^-24.
     GI_FN float sample(std::uint32_t dimension) const
     {
-        std::uint64_t const key = mix_bits((std::uint64_t(seed) << 32) | dimension);
-        std::uint32_t const word = permute_upwards(shuffled(std::uint32_t(key >> 32)), std::uint32_t(key));
+        std::uint32_t const key = hash_words(seed, dimension);
+        std::uint32_t const word = permute_upwards(shuffled(key), key * 0x2c1b3c6du + 0x297a2d39u);
         return float(reverse_bits(word) >> 8) * 0x1p-24f;
     }
     GI_FN vec2 sample2(std::uint32_t dimension) const { return {sample(dimension), sample(dimension + 1)}; }
+    /// Two numbers without any order, for decisions that matter little.
+    GI_FN vec2 noise2(std::uint32_t dimension) const
+    {
+        std::uint32_t const h = hash_words(seed + 0x68bc21ebu * index, dimension);
+        return {float(h >> 16) * 0x1p-16f, float(h & 0xffffu) * 0x1p-16f};
+    }
     /// Four numbers that are stratified together (Sobol), for one decision; on the host.
     vec4 sample_together(std::uint32_t dimension) const
     {
         vec4 out{0};
-        std::uint32_t const at = shuffled(std::uint32_t(mix_bits((std::uint64_t(seed) << 32) | dimension) >> 32));
+        std::uint32_t const at = shuffled(hash_words(seed, dimension));
         for (std::uint32_t d = 0; d < 4; ++d) {
             std::uint32_t word = 0;
             for (int k = 0; k < 32; ++k)
                 if ((at >> k & 1) != 0) word ^= kSobol.column[d][k];
-            std::uint64_t const key = mix_bits((std::uint64_t(seed) << 32) | (dimension + d));
-            out[glm::length_t(d)] = float(reverse_bits(permute_upwards(reverse_bits(word), std::uint32_t(key))) >> 8) * 0x1p-24f;
+            std::uint32_t const key = hash_words(~seed, dimension + d);
+            out[glm::length_t(d)] = float(reverse_bits(permute_upwards(reverse_bits(word), key)) >> 8) * 0x1p-24f;
         }
         return out;
     }

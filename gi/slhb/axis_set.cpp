@@ -22,29 +22,20 @@ vec3 half_sphere(vec2 u)
 
 AxisSample FewAxes::sample(vec3 normal, float u) const
 {
-    constexpr std::size_t kBlock = 16;
     alignas(64) std::array<float, kMost> weight;
-    std::array<float, kMost / kBlock> block;
     float total = 0;
-    for (std::size_t first = 0, b = 0; first < count; first += kBlock, ++b) {
-        std::array<float, kBlock> sums;
-        for (std::size_t k = 0; k < kBlock; ++k) {
-            std::size_t const a = first + k;
-            sums[k] = weight[a] = std::abs(normal.x * x[a] + normal.y * y[a] + normal.z * z[a]);
-        }
-        for (std::size_t half = kBlock / 2; half > 0; half /= 2)
-            for (std::size_t k = 0; k < half; ++k) sums[k] += sums[k + half];
-        block[b] = sums[0];
-        total += sums[0];
+    for (std::size_t k = 0; k < count; ++k) weight[k] = std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
+    for (std::size_t k = 0; k < count; ++k) total += weight[k];
+    // The first axis up to which the weights sum to more than u of all: no branch on what is random.
+    float const wanted = u * total;
+    float sum = 0;
+    std::uint32_t k = 0;
+    for (std::size_t a = 0; a + 1 < count; ++a) {
+        sum += weight[a];
+        k += sum <= wanted ? 1 : 0;
     }
-    float left = u * total;
-    std::size_t b = 0;
-    while (kBlock * (b + 1) < count && left >= block[b]) left -= block[b++];
-    std::size_t k = b * kBlock;
-    while (k + 1 < (b + 1) * kBlock && left >= weight[k]) left -= weight[k++];
-    while (k > 0 && weight[k] == 0) --k; // rounding may end on the padding
     vec3 const axis{x[k], y[k], z[k]};
-    return {std::uint32_t(k), glm::dot(axis, normal) < 0 ? -axis : axis, 2 * total / float(count)};
+    return {k, glm::dot(axis, normal) < 0 ? -axis : axis, 2 * total / float(count)};
 }
 
 void AxisSet::build(std::vector<std::size_t> const& which, std::vector<vec3> const& axes)

@@ -38,7 +38,8 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world)
     SlhbSettings s = asked.slhb;
     if (s.schedule == Schedule::automatic) s.schedule = Schedule::streamed;
     if (s.directions.empty()) s.directions = "icosahedron:320";
-    if (s.resolution == 0) s.resolution = 128;
+    constexpr std::size_t kDetailed = 50'000; // triangles
+    if (s.resolution == 0) s.resolution = world.triangles.size() < kDetailed ? 128 : 256;
     // What a pass builds should cost a share of what its paths cost, or be shared by too few of them.
     double const paths = double(asked.width) * asked.height, triangles = double(world.triangles.size());
     auto const worth = [&](double seconds_each, int least, int most) {

@@ -15,7 +15,7 @@ namespace gi {
 namespace {
 
 /// Pixels whose paths advance together on one thread.
-constexpr std::size_t kBlock = 16384;
+constexpr std::size_t kBlock = 4096;
 
 struct WorkCounts {
     PathCounts paths;

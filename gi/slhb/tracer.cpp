@@ -11,7 +11,7 @@ namespace gi {
 namespace {
 
 /// Random numbers of one path: dimensions of vertex v start at v * kPerVertex + 2 (the camera has two).
-enum Dimension : std::uint32_t { axis, lobe, lobe_u, lobe_v, roulette, lamp, shadow_u, shadow_v, cone_u, cone_v, kPerVertex };
+enum Dimension : std::uint32_t { axis, lobe, lobe_u, lobe_v, roulette, lamp, shadow, cone, kPerVertex };
 
 } // namespace
 
@@ -89,7 +89,7 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, ShadingPoint const
     else if (!light.delta && narrow)
         value *= power_heuristic(light.pdf, narrow_pdf(at.bsdf, wo, wi, bsdf.pdf));
     ShadowMap::Place const place =
-        l.shadow.look(at.position, at.geometric_normal, s.random.sample2(s.dimension(shadow_u)));
+        l.shadow.look(at.position, at.geometric_normal, s.random.noise2(s.dimension(shadow)));
     __builtin_prefetch(place.texel);
     direct.push_back({&l.shadow, place, at.position, s.triangle, s.throughput * value, &s.bucket(s.scatterings + 1)});
 }
@@ -176,7 +176,7 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
                        std::sqrt(std::max(0.0f, 1 - side * side)) / side};
         if (cone_ > 0) {
             RasterGrid const& grid = pass.axes.pool().grids[a.axis];
-            vec2 const off = cone_ * grid.texel * square_to_disk(s.random.sample2(s.dimension(cone_u)));
+            vec2 const off = cone_ * grid.texel * square_to_disk(s.random.noise2(s.dimension(cone)));
             vec3 const shift = off.x * grid.right + off.y * grid.up;
             // Along the axis as the surface goes.
             next.origin.position += shift - (glm::dot(at.geometric_normal, shift) / side) * direction;

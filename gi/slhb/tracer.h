@@ -55,7 +55,8 @@ private:
     struct Vertex;
     struct Unshadowed;
 
-    bool shade(Pass const& pass, State& s, Vertex& next, std::vector<Unshadowed>& direct, PathCounts& paths) const;
+    /// All in one function, so that vectors stay in registers.
+    [[gnu::flatten]] bool shade(Pass const& pass, State& s, Vertex& next, std::vector<Unshadowed>& direct, PathCounts& paths) const;
     void add_direct(Pass const& pass, State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
                     std::vector<Unshadowed>& direct) const;
     void add_sky(State& s) const;
