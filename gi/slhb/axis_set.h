@@ -53,6 +53,12 @@ public:
     /// Axes that the first bounce chooses from: the first ones of the pool.
     std::size_t first_bounce_axes() const { return tables_.axes.empty() ? few_count_ : tables_.axes.size(); }
     AxisPool const& pool() const { return pool_; }
+    /// Layers of these axes: the first ones of the pool.
+    std::size_t first_bounce_layers() const
+    {
+        std::size_t const n = first_bounce_axes();
+        return n < pool_.size() ? pool_.first_layer[n] : pool_.layers.size();
+    }
     vec3 axis(std::size_t a) const { return pool_.grids[a].axis; }
     float solid_angle(std::size_t a) const { return tables_.axes.empty() ? 2 * kPi / float(few_count_) : tables_.solid_angles[a]; }
     std::uint64_t built() const { return built_; }   ///< axes, so far

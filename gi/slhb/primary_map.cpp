@@ -32,7 +32,7 @@ void PrimaryMap::refresh(std::uint32_t pass)
     for (Fragments const& f : parts_) resolve(f, 1, map_);
 }
 
-void PrimaryMap::hits(std::size_t first, std::size_t last, std::vector<PrimaryHit>& out) const
+void PrimaryMap::hits(std::size_t first, std::size_t last, std::vector<PathStart>& out) const
 {
     out.clear();
     for (std::size_t p = first; p < last; ++p) {

@@ -15,7 +15,7 @@ public:
     /// Rasterises the view of a pass.
     void refresh(std::uint32_t pass);
     /// Of pixels first..last - 1, in rows.
-    void hits(std::size_t first, std::size_t last, std::vector<PrimaryHit>& out) const;
+    void hits(std::size_t first, std::size_t last, std::vector<PathStart>& out) const;
 
 private:
     TriangleSoup const& soup_;

@@ -211,6 +211,7 @@ Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, Quer
     V best = margin, own_depth = hn::Zero(d), depth = hn::Zero(d), gap = hn::Zero(d), plain_depth = hn::Zero(d);
     M found = hn::FirstN(d, 0), hit = found, plain_hit = found;
     W answer = hn::Set(words, kNoLayerHit), plain = answer;
+    I answer_at = zero, plain_at = zero;
     for (M running = hn::RebindMask(d, hn::Gt(left, zero)); !hn::AllFalse(d, running);) {
         TwoWords const record =
             gather_pairs<3>(pool.layers.data(), hn::IfThenElseZero(hn::RebindMask(integers, running), at));
@@ -231,12 +232,14 @@ Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, Quer
         depth = hn::IfThenElse(new_hit, layer_depth, depth);
         gap = hn::IfThenElse(new_hit, beyond, gap);
         answer = hn::IfThenElse(hn::RebindMask(words, new_hit), layer, answer);
+        answer_at = hn::IfThenElse(hn::RebindMask(integers, new_hit), at, answer_at);
         if (attempt == 0) {
             M const faces = hn::RebindMask(d, hn::Eq(facing, towards));
             M const new_plain = hn::And(hn::AndNot(plain_hit, hn::And(other, faces)), hn::Gt(from_origin, g.rounding));
             plain_hit = hn::Or(plain_hit, new_plain);
             plain_depth = hn::IfThenElse(new_plain, layer_depth, plain_depth);
             plain = hn::IfThenElse(hn::RebindMask(words, new_plain), layer, plain);
+            plain_at = hn::IfThenElse(hn::RebindMask(integers, new_plain), at, plain_at);
         }
         M const answered = hn::Or(hn::And(found, hit), hn::AndNot(found, plain_hit));
         M const over = hn::And(answered, hn::Or(hn::Lt(best, hn::Zero(d)), hn::Gt(from_origin, margin)));
@@ -257,6 +260,8 @@ Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, Quer
     store(1, b.hit_y);
     store(2, b.hit_z);
     hn::StoreU(answer, words, b.hit.data() + first);
+    hn::StoreU(hn::BitCast(words, hn::IfThenElse(hn::RebindMask(integers, found), answer_at, plain_at)), words,
+               b.hit_layer.data() + first);
     return {bits_of(hn::Not(found)), bits_of(near)};
 }
 
@@ -281,16 +286,20 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
     std::size_t const lanes = hn::Lanes(Floats()), n = b.size();
     unsure.clear();
     thread_local Columns columns;
+    thread_local GridLanes grids_of_block[Columns::kBlock / 4]; // vectors have at least 4 lanes
     thread_local std::vector<std::uint32_t> near;
     near.clear();
     for (std::size_t i = 0; i < n; i += lanes) {
         std::size_t const column = i % Columns::kBlock;
         if (column == 0) {
             std::size_t const block = std::min(Columns::kBlock, n - i);
-            for (std::size_t k = 0; k < block; k += lanes) find_columns(pool, grids(i + k), attempt, b, i + k, k, columns);
+            for (std::size_t k = 0; k < block; k += lanes) {
+                grids_of_block[k / lanes] = grids(i + k);
+                find_columns(pool, grids_of_block[k / lanes], attempt, b, i + k, k, columns);
+            }
             fetch_layers(pool, columns, b, i, block);
         }
-        Answer answer = answer_vector(pool, grids(i), attempt, b, i, columns, column);
+        Answer answer = answer_vector(pool, grids_of_block[column / lanes], attempt, b, i, columns, column);
         if (n - i < lanes) {
             std::uint32_t const there = (1u << (n - i)) - 1;
             answer = {answer.unsure & there, answer.near & there};
@@ -331,6 +340,7 @@ void answer_all(AxisPool const& pool, MakeGrids const& make_grids, View<Surface 
             }
             std::uint32_t const i = waiting[k];
             b.hit[i] = again.hit[k];
+            b.hit_layer[i] = again.hit_layer[k];
             b.hit_x[i] = again.hit_x[k];
             b.hit_y[i] = again.hit_y[k];
             b.hit_z[i] = again.hit_z[k];
@@ -383,7 +393,7 @@ void QueryBatch::resize(std::size_t n)
         a->reserve(padded(n));
         a->resize(n);
     }
-    for (auto* a : {&triangle, &axis, &hit}) {
+    for (auto* a : {&triangle, &axis, &hit, &hit_layer}) {
         a->reserve(padded(n));
         a->resize(n);
     }

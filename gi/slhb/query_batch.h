@@ -30,6 +30,7 @@ struct QueryBatch {
     std::vector<std::uint32_t> axis;     ///< of the pool; not read where all walk along one axis
     std::vector<float> hit_x, hit_y, hit_z;
     std::vector<std::uint32_t> hit;      ///< triangle with kAlongAxis, or kNoLayerHit
+    std::vector<std::uint32_t> hit_layer; ///< index into the pool's layers where there is a hit
 
     void resize(std::size_t n);
     std::size_t size() const { return x.size(); }

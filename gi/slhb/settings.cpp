@@ -47,7 +47,7 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world)
         return std::clamp(int(kShare * kPath * paths / seconds_each), least, most);
     };
     double const axis = 2e-9 * triangles + 2e-8 * double(s.resolution) * s.resolution;
-    if (s.axes == 0) s.axes = s.schedule == Schedule::temporal ? 16 : worth(axis, 2, 8);
+    if (s.axes == 0) s.axes = s.schedule == Schedule::temporal ? 16 : worth(axis, 2, 4);
     if (s.axes > int(FewAxes::kMost))
         throw InputError(fmt::format("{} axes in a pass", s.axes), fmt::format("there is room for {}", FewAxes::kMost),
                          "use --schedule stored for more");

@@ -2,6 +2,7 @@
 
 #include "gi/slhb/primary_map.h"
 #include "gi/slhb/settings.h"
+#include "gi/slhb/shared_endings.h"
 #include "gi/transport/fingerprint.h"
 #include "gi/transport/flush_denormals.h"
 #include "gi/transport/pass_loop.h"
@@ -24,7 +25,7 @@ struct WorkCounts {
 
 /// Primary hits through exact rays, for the cameras that have no raster.
 void exact_hits(ExactVisibility const& exact, CameraRays const& camera, RenderSettings const& s, std::uint32_t pass,
-                std::size_t first, std::size_t last, std::vector<PrimaryHit>& out)
+                std::size_t first, std::size_t last, std::vector<PathStart>& out)
 {
     std::vector<RayQuery> rays;
     out.clear();
@@ -70,6 +71,9 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     auto const sequences =
         std::uint32_t(std::clamp(settings.bounces + (to_the_end ? 1 : 0), 1, int(AxisSet::kSequences)));
     WorkCounts total;
+    SharedEndings shared;
+    std::vector<PathSample> samples;
+    std::vector<Ending> endings;
     auto const pass = [&](Accumulator& sums) {
         std::uint32_t const index = sums.paths;
         {
@@ -89,20 +93,42 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
         std::uint32_t const gathered = slhb.gather ? index % std::uint32_t(axes.first_bounce_axes()) : kNoPrimitive;
         SlhbTracer::Pass const now{axes, lamps, exact.get(), index, gathered};
         std::size_t const pixels = sums.pixels.size();
+        // Where many paths end on few layers, what a layer sends back is computed once.
+        bool const sharing = settings.bounces > 0 && slhb.cone == 0 && axes.first_bounce_layers() < pixels;
+        shared.start(sharing ? axes.first_bounce_layers() : 0);
+        samples.resize(pixels);
+        endings.resize(sharing ? pixels : 0);
         tbb::combinable<WorkCounts> counts;
-        tbb::parallel_for(std::size_t(0), (pixels + kBlock - 1) / kBlock, [&](std::size_t block) {
-            FlushDenormals const guard;
-            thread_local std::vector<PrimaryHit> hits;
-            thread_local std::vector<PathSample> samples;
-            std::size_t const first = block * kBlock, last = std::min(pixels, first + kBlock);
+        auto const in_blocks = [&](std::size_t n, auto const& work) {
+            tbb::parallel_for(std::size_t(0), (n + kBlock - 1) / kBlock, [&](std::size_t block) {
+                FlushDenormals const guard;
+                work(block * kBlock, std::min(n, (block + 1) * kBlock), counts.local());
+            });
+        };
+        in_blocks(pixels, [&](std::size_t first, std::size_t last, WorkCounts& local) {
+            thread_local std::vector<PathStart> starts;
             if (camera.orthographic)
-                exact_hits(*exact, rays, settings, index, first, last, hits);
+                exact_hits(*exact, rays, settings, index, first, last, starts);
             else
-                primary.hits(first, last, hits);
-            samples.resize(hits.size());
-            WorkCounts& local = counts.local();
-            tracer.trace(now, hits, samples, local.paths, local.slhb);
-            for (std::size_t k = 0; k < hits.size(); ++k) sums.pixels[hits[k].pixel].add(samples[k]);
+                primary.hits(first, last, starts);
+            std::span const block(samples.data() + first, last - first);
+            std::span const ends = sharing ? std::span(endings.data() + first, last - first) : std::span<Ending>();
+            tracer.trace(now, starts, block, ends, local.paths, local.slhb);
+            if (sharing) shared.note(ends, std::uint32_t(first));
+        });
+        shared.collect(endings, axes.pool());
+        in_blocks(shared.starts().size(), [&](std::size_t first, std::size_t last, WorkCounts& local) {
+            thread_local std::vector<PathSample> sent;
+            sent.resize(last - first);
+            tracer.trace(now, std::span(shared.starts()).subspan(first, last - first), sent, {}, local.paths, local.slhb);
+            shared.keep(first, sent);
+        });
+        in_blocks(pixels, [&](std::size_t first, std::size_t last, WorkCounts&) {
+            for (std::size_t p = first; p < last; ++p) {
+                if (sharing && endings[p].layer != kNoLayerHit)
+                    samples[p].radiance[2] += endings[p].throughput * shared.radiance(endings[p]);
+                sums.pixels[p].add(samples[p]);
+            }
         });
         counts.combine_each([&](WorkCounts const& c) {
             sums.counts += c.paths;
@@ -119,6 +145,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     report.count("hit-buffer queries", double(total.slhb.queries));
     report.count("shadow-map look-ups", double(total.slhb.shadow_lookups));
     report.count("exact rays", double(total.slhb.exact_rays));
+    report.count("layers shaded for several paths", double(shared.shaded()));
     report.count("axes built", double(axes.built()));
     report.count("layers per texel, mean", axes.built() > 0 ? double(axes.layers()) / double(axes.built()) / (double(slhb.resolution) * slhb.resolution) : 0);
     report.count("shadow maps built", double(lamps.maps_built()));

@@ -42,6 +42,7 @@ struct SlhbTracer::Vertex {
     WalkOrigin origin;  ///< else
     std::uint32_t axis;
     LayerHit hit;       ///< answer of a query
+    std::uint32_t layer;
 };
 
 /// Direct light that waits for its shadow map.
@@ -226,6 +227,7 @@ void SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
             to_fill = {};
             if (hit == kNoLayerHit) continue;
             to_fill = {hit & kPrimitiveMask, {batch.hit_x[k - from], batch.hit_y[k - from], batch.hit_z[k - from]}, (hit & kAlongAxis) != 0};
+            vertices[order[k]].layer = batch.hit_layer[k - from];
             __builtin_prefetch(&world_.surfaces[to_fill.triangle]);
         }
     };
@@ -241,35 +243,41 @@ void SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
     }
 }
 
-void SlhbTracer::trace(Pass const& pass, std::span<PrimaryHit const> hits, std::span<PathSample> samples,
-                       PathCounts& paths, SlhbCounts& counts) const
+void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
+                       std::span<Ending> endings, PathCounts& paths, SlhbCounts& counts) const
 {
     thread_local std::vector<State> states;
     thread_local std::vector<Vertex> vertices;
     thread_local std::vector<RayQuery> rays;
     thread_local std::vector<Hit> ray_hits;
     thread_local std::vector<Unshadowed> direct;
-    states.resize(hits.size());
-    vertices.resize(hits.size());
-    for (std::size_t k = 0; k < hits.size(); ++k) {
-        PrimaryHit const& h = hits[k];
+    states.resize(starts.size());
+    vertices.resize(starts.size());
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+        PathStart const& start = starts[k];
         State s;
         samples[k] = {};
         s.sample = &samples[k];
-        s.random = {std::uint32_t(mix_bits((seed_ << 32) + h.pixel + (seed_ >> 32))), pass.index};
-        s.triangle = h.triangle;
-        s.direction = h.ray.direction;
-        if (h.triangle != kNoPrimitive) {
+        s.random = {hash_words(std::uint32_t(seed_) ^ std::uint32_t(seed_ >> 32), start.stream), pass.index};
+        s.triangle = start.triangle;
+        s.direction = start.ray.direction;
+        if (start.on_layer) {
+            s.position = start.ray.origin;
+            s.has_position = s.by_axis = true;
+            s.scatterings = s.vertex = 1;
+        } else if (start.triangle != kNoPrimitive) {
             // The raster says which triangle; the ray says where on its plane.
-            Surface const& surface = world_.surfaces[h.triangle];
+            Surface const& surface = world_.surfaces[start.triangle];
             vec3 const normal = glm::cross(surface.edge1, surface.edge2);
-            float const t = glm::dot(normal, surface.corner - h.ray.origin) / glm::dot(normal, h.ray.direction);
-            s.barycentric = std::isfinite(t) ? barycentric_at(surface, h.ray.origin + t * h.ray.direction) : vec2{1.0f / 3};
+            float const t = glm::dot(normal, surface.corner - start.ray.origin) / glm::dot(normal, start.ray.direction);
+            s.barycentric =
+                std::isfinite(t) ? barycentric_at(surface, start.ray.origin + t * start.ray.direction) : vec2{1.0f / 3};
         }
         states[k] = s;
         vertices[k].path = std::uint32_t(k);
     }
-    std::size_t active = hits.size();
+    for (Ending& e : endings) e.layer = kNoLayerHit;
+    std::size_t active = starts.size();
     while (active > 0) {
         std::size_t going = 0;
         for (std::size_t k = 0; k < active; ++k) {
@@ -290,10 +298,16 @@ void SlhbTracer::trace(Pass const& pass, std::span<PrimaryHit const> hits, std::
         if (!rays.empty()) pass.exact->nearest(rays, ray_hits);
         counts.exact_rays += rays.size();
         counts.queries += active - rays.size();
-        std::size_t ray = 0;
+        std::size_t ray = 0, left = 0;
         for (Vertex const& v : now) {
             State& s = states[v.path];
             s.has_position = !v.exact;
+            if (!endings.empty() && !v.exact && s.vertex == 1 && v.hit.triangle != kNoLayerHit &&
+                bsdf_detail::is_matt(world_.bsdfs[world_.surfaces[v.hit.triangle].material])) {
+                endings[v.path] = {v.layer, v.hit.triangle, v.origin.up, v.hit.position, s.throughput};
+                continue;
+            }
+            vertices[left++] = v;
             if (v.exact) {
                 s.triangle = ray_hits[ray].triangle;
                 s.barycentric = ray_hits[ray++].barycentric;
@@ -303,6 +317,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PrimaryHit const> hits, std::
                 s.barycentric = vec2{1.0f / 3};
             }
         }
+        active = left;
     }
     for (PathSample& s : samples)
         for (vec3& part : s.radiance)

@@ -23,10 +23,21 @@ struct SlhbCounts {
     std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0;
 };
 
-struct PrimaryHit {
-    std::uint32_t pixel;
+/// Where a path begins: at what the camera sees, or on a layer that several paths have met.
+struct PathStart {
+    std::uint32_t stream;   ///< of random numbers; the pixel
     std::uint32_t triangle; ///< kNoPrimitive = none
-    Ray ray;
+    Ray ray;                ///< that arrived; from a layer, its origin is the point on the triangle
+    bool on_layer = false;  ///< the first scattering has been
+};
+
+/// The rest of a path that ends on a matt layer: what the layer sends back is the same for all paths that met its side.
+struct Ending {
+    std::uint32_t layer = kNoLayerHit; ///< of the pool; kNoLayerHit = none
+    std::uint32_t triangle;
+    bool up;        ///< the walk that met it
+    vec3 position;
+    vec3 throughput;
 };
 
 class SlhbTracer {
@@ -46,9 +57,10 @@ public:
     {
     }
 
-    /// @param samples one per hit, overwritten
-    void trace(Pass const& pass, std::span<PrimaryHit const> hits, std::span<PathSample> samples, PathCounts& paths,
-               SlhbCounts& counts) const;
+    /// @param samples one per start, overwritten
+    /// @param endings empty, or one per start: paths end on the first matt layer and say so here
+    void trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
+               std::span<Ending> endings, PathCounts& paths, SlhbCounts& counts) const;
 
 private:
     struct State;

@@ -36,11 +36,11 @@ TEST(SlhbFurnace, ClosedRoomOfGlowingWalls)
         add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, wall), true);
         World const world = world_of(scene);
         for (int const bounces : {0, 2, 8}) {
-            RenderSettings s = small_settings(16, 2048, bounces);
+            RenderSettings s = small_settings(12, 1024, bounces);
             s.slhb.axes = 8;
-            s.slhb.lamps = 8;
+            s.slhb.lamps = 32;
             s.slhb.resolution = 32;
-            s.slhb.shadow_resolution = 64;
+            s.slhb.shadow_resolution = 128;
             // E (1 + rho + ... + rho^(bounces + 1))
             double const truth = 0.5 * (1 - std::pow(double(rho), bounces + 2)) / (1 - double(rho));
             expect_mean(render_with_slhb(world, look_at({0.3, 0.1, 0.2}, {-1, -0.5, -0.7}, 70), s).result.picture, truth,
