@@ -110,13 +110,8 @@ gi::DenoiseSettings make_denoise_settings(RenderOptions const& o, gi::RenderSett
     return d;
 }
 
-void declare_options(CLI::App& c, RenderOptions& o)
+void declare_view_options(CLI::App& c, RenderOptions& o)
 {
-    c.add_option("SCENE", o.scene, "glTF, YAML, OBJ, PLY, FBX, ... file, or atrium, cornell")->required();
-    std::string known;
-    for (gi::Method const& m : gi::methods()) known += fmt::format("\n  {}: {}", m.name, m.summary);
-    c.add_option("--method", o.method, "how light is computed:" + known)->capture_default_str();
-    c.add_option("--size", o.size, "width x height, pixels")->capture_default_str();
     c.add_option("--camera", o.camera, "a camera of the scene (default: its first)");
     c.add_option("--look-from", o.look_from, "x,y,z, m");
     c.add_option("--look-at", o.look_at, "x,y,z, m (default: the middle of the scene)");
@@ -126,9 +121,19 @@ void declare_options(CLI::App& c, RenderOptions& o)
         ->check(in_range(-1e6, 1e6));
     c.add_option("--envmap-scale", o.environment_scale, "factor on its radiance")->check(in_range(0, 1e9));
     c.add_option("--time", o.time_s, "moment of the animation, s")->check(in_range(-1e9, 1e9));
+}
+
+void declare_options(CLI::App& c, RenderOptions& o)
+{
+    c.add_option("SCENE", o.scene, "glTF, YAML, OBJ, PLY, FBX, ... file, or atrium, cornell")->required();
+    std::string known;
+    for (gi::Method const& m : gi::methods()) known += fmt::format("\n  {}: {}", m.name, m.summary);
+    c.add_option("--method", o.method, "how light is computed:" + known)->capture_default_str();
+    c.add_option("--size", o.size, "width x height, pixels")->capture_default_str();
+    declare_view_options(c, o);
     c.add_option("--paths", o.paths, fmt::format("per pixel (default {})", kDefaultPaths))
         ->check(CLI::Range(1u, kNoLimit));
-    c.add_option("--budget", o.budget, "time to trace: 500ms, 2s, 3min");
+    c.add_option("--budget", o.budget, "time for structures and paths: 500ms, 2s, 3min");
     c.add_option("--until", o.until, "relmse=E: until the estimated relative error is below");
     c.add_option("--bounces", o.bounces, "indirect bounces; 0 = direct light only")
         ->check(CLI::Range(0, 1000))

@@ -29,6 +29,8 @@ struct RenderOptions {
     bool half = false, resume = false, json = false, quiet = false;
 };
 
+/// Those of the camera, the sky and the moment, for every command that renders.
+void declare_view_options(CLI::App& command, RenderOptions& options);
 void declare_options(CLI::App& command, RenderOptions& options);
 
 /// Fills in the default name of the picture and checks what the options say together. Throws InputError.

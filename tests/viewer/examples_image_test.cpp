@@ -36,9 +36,13 @@ TEST_P(HelpExamples, Run)
     EXPECT_GT(run_examples(lines(help), "  lightwell "), 0) << help;
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, HelpExamples, testing::Values("", "render", "compare", "info", "generate"),
+INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
+                         testing::Values("", "render", "compare", "info", "generate", "bench", "bench sweep",
+                                         "bench report"),
                          [](auto const& example) {
-                             return *example.param == '\0' ? std::string("program") : std::string(example.param);
+                             std::string name = *example.param == '\0' ? "program" : example.param;
+                             std::replace(name.begin(), name.end(), ' ', '_');
+                             return name;
                          });
 
 TEST(ReadmeExamples, Run)

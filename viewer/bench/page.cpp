@@ -1,0 +1,92 @@
+#include "viewer/bench/page.h"
+
+#include "viewer/bench/html.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+std::string cell_html(Cell const& cell)
+{
+    if (std::holds_alternative<std::string>(cell)) return "<td>" + escaped(to_text(cell)) + "</td>";
+    auto const* m = std::get_if<Measured>(&cell);
+    std::string spread;
+    if (m != nullptr) {
+        std::string const min = fmt::format("{:.3g}", m->min), max = fmt::format("{:.3g}", m->max);
+        if (min != max) spread = " <small>" + min + "–" + max + "</small>";
+    }
+    return "<td class=\"number\">" + to_text(m != nullptr ? Cell(m->median) : cell) + spread + "</td>";
+}
+
+bool holds_text(BenchTable const& t, std::size_t column)
+{
+    return std::any_of(t.rows.begin(), t.rows.end(),
+                       [&](auto const& row) { return std::holds_alternative<std::string>(row[column]); });
+}
+
+std::string rows_html(BenchTable const& t)
+{
+    std::string html = "<div class=\"wide\"><table>\n<thead><tr>";
+    for (std::size_t c = 0; c < t.columns.size(); ++c)
+        if (!names_file(t.columns[c]))
+            html += fmt::format("<th scope=\"col\"{}>{}</th>", holds_text(t, c) ? "" : " class=\"number\"",
+                                escaped(readable(t.columns[c])));
+    html += "</tr></thead>\n<tbody>\n";
+    for (auto const& row : t.rows) {
+        html += "<tr>";
+        for (std::size_t c = 0; c < row.size(); ++c)
+            if (!names_file(t.columns[c])) html += cell_html(row[c]);
+        html += "</tr>\n";
+    }
+    return html + "</tbody></table></div>\n";
+}
+
+bool has_spread(BenchTable const& t)
+{
+    auto const spreads = [](Cell const& cell) {
+        auto const* m = std::get_if<Measured>(&cell);
+        return m != nullptr && m->repeats > 1;
+    };
+    return std::any_of(t.rows.begin(), t.rows.end(),
+                       [&](auto const& row) { return std::any_of(row.begin(), row.end(), spreads); });
+}
+
+std::string origin_html(BenchTable const& t)
+{
+    std::string html = "<dl>\n";
+    auto const entry = [&](std::string const& what, std::string const& value) {
+        html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(what), escaped(value));
+    };
+    entry("machine", to_text(t.machine));
+    entry("program", t.program);
+    entry("date", t.date);
+    for (auto const& [what, value] : t.facts) entry(what, value);
+    return html + "</dl>\n<p>To repeat it:</p>\n<pre><code>" + escaped(t.command) + "</code></pre>\n";
+}
+
+std::string section(BenchTable const& t, std::filesystem::path const& folder)
+{
+    std::string html = fmt::format("<section>\n<h2>{}</h2>\n", escaped(t.title.empty() ? t.name : t.title));
+    html += origin_html(t) + sweep_figures(t, folder) + "<h3>Rows</h3>\n";
+    if (has_spread(t))
+        html += "<p class=\"note\">Medians; below them the least and the most that was measured.</p>\n";
+    return html + rows_html(t) + "</section>\n";
+}
+
+} // namespace
+
+std::string make_page(std::vector<BenchTable> const& tables, std::filesystem::path const& folder)
+{
+    std::string html =
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<meta name=\"color-scheme\" content=\"light dark\">\n<title>Lightwell bench</title>\n<style>\n";
+    html += page_style();
+    html += "</style>\n</head>\n<body>\n<header><h1>Lightwell bench</h1></header>\n<main>\n";
+    for (BenchTable const& table : tables) html += section(table, folder);
+    return html + "</main>\n</body>\n</html>\n";
+}
+
+} // namespace viewer

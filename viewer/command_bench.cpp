@@ -1,0 +1,18 @@
+#include "viewer/commands.h"
+
+#include <CLI/CLI.hpp>
+
+namespace viewer {
+
+void add_bench(CLI::App& app, int& exit_code)
+{
+    CLI::App* const c = app.add_subcommand("bench", "Measure methods against each other, and report on it.");
+    c->require_subcommand(1);
+    add_bench_sweep(*c, exit_code);
+    add_bench_report(*c, exit_code);
+    c->footer(R"(Examples:
+  lightwell bench sweep --scene cornell --budgets 20ms,80ms --size 48x48 --reference-paths 64 --out sweep
+  lightwell bench report sweep)");
+}
+
+} // namespace viewer

@@ -1,0 +1,77 @@
+#include "gi/registry/registry.h"
+#include "viewer/bench_record.h"
+#include "viewer/commands.h"
+#include "viewer/sweep.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+constexpr int kInterrupted = 130;
+
+int run(SweepOptions const& o)
+{
+    SweepResult const result = run_sweep(o);
+    show(result.table, o.out, o.render.json);
+    if (!result.interrupted) return 0;
+    std::fputs(
+        "note: interrupted: the rows so far are saved; the same command starts again, but for the reference "
+        "pictures\n",
+        stderr);
+    return kInterrupted;
+}
+
+} // namespace
+
+void add_bench_sweep(CLI::App& bench, int& exit_code)
+{
+    auto const o = std::make_shared<SweepOptions>();
+    std::string known;
+    for (gi::Method const& m : gi::methods()) {
+        o->methods.emplace_back(m.name);
+        known += fmt::format("\n  {}: {}", m.name, m.summary);
+    }
+    o->budgets = {"30ms", "100ms", "300ms", "1s", "3s", "10s"};
+    CLI::App* const c = bench.add_subcommand("sweep", "The error that methods leave after budgets of time.");
+    auto const list = [&](char const* name, std::vector<std::string>& values, std::string const& help) {
+        return c->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
+    };
+    list("--scene", o->scenes, "files or names, comma-separated")->required();
+    list("--methods", o->methods, "comma-separated, of:" + known)->capture_default_str();
+    list("--budgets", o->budgets, "times to trace, comma-separated")->capture_default_str();
+    RenderOptions& r = o->render;
+    c->add_option("--size", r.size, "width x height, pixels")->capture_default_str();
+    declare_view_options(*c, r);
+    c->add_option("--bounces", r.bounces, "indirect bounces; 0 = direct light only")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    CLI::Option* const paths = c->add_option("--reference-paths", o->reference_paths,
+                                             "paths per pixel of the reference picture, which is kept in DIR")
+                                   ->check(CLI::Range(2, 1 << 24))
+                                   ->capture_default_str();
+    c->add_option("--reference", o->reference, "a picture to take as reference, for one scene")->excludes(paths);
+    c->add_option("--repeats", o->repeats, "renders per row, each with its own seed; rows hold medians")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    c->add_option("--threads", r.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
+    c->add_option("--out", o->out, "folder for sweep.json, sweep.csv and the pictures")->required();
+    c->add_flag("--json", r.json, "print the table as JSON");
+    c->add_flag("--quiet", r.quiet, "no progress bar");
+    c->footer(R"(Examples:
+  lightwell bench sweep --scene cornell --methods reference --budgets 20ms --repeats 2 --size 32x32 --reference-paths 32 --out sweep
+  lightwell bench sweep --scene cornell,atrium --budgets 20ms --repeats 1 --size 24x24 --reference-paths 8 --out both --json
+
+Columns: budget_s, what was asked for; frame_s, the whole call with all that the method builds for it (a method
+finishes at least one path per pixel, so it may be more); trace_s, the tracing alone; paths per pixel; Mrays_per_s;
+relmse, flip and bias against the reference, which is rendered with a seed of its own; reference_relmse, what the
+noise of the reference adds to relmse.
+
+Ctrl-C drops the render at hand, saves the rows so far and exits with 130; a second one ends at once.)");
+    c->callback([o, &exit_code] { exit_code = run(*o); });
+}
+
+} // namespace viewer

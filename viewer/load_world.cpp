@@ -1,0 +1,74 @@
+#include "viewer/load_world.h"
+
+#include "gi/scene/load.h"
+#include "viewer/arguments.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+void say(std::string const& text) { std::fputs(("note: " + text + "\n").c_str(), stderr); }
+
+/// By its sky, by a lamp at some node or by a material of a mesh at some node.
+bool is_lit(gi::Scene const& scene)
+{
+    if (scene.environment) return true;
+    for (gi::Node const& node : scene.nodes) {
+        if (node.light >= 0 && gi::max_component(scene.lights[std::size_t(node.light)].intensity) > 0) return true;
+        for (std::int32_t const m : node.meshes) {
+            std::int32_t const material = scene.meshes[std::size_t(m)].material;
+            if (material >= 0 && gi::emits(scene.materials[std::size_t(material)])) return true;
+        }
+    }
+    return false;
+}
+
+void set_environment(gi::Scene& scene, RenderOptions const& o, gi::Report& report)
+{
+    if (!o.environment.empty()) {
+        if (scene.environment) say("--envmap replaces the scene's environment map");
+        scene.environment = gi::load_environment(o.environment, report);
+    }
+    if (!is_lit(scene)) {
+        say("the scene has no light: lit by a white sky of radiance 1");
+        gi::EnvironmentMap& white = scene.environment.emplace();
+        white.width = 4;
+        white.height = 2;
+        white.radiance.assign(8, gi::vec3{1});
+    }
+    if (scene.environment) {
+        scene.environment->rotation_rad += float(glm::radians(o.environment_rotate_deg));
+        scene.environment->scale *= float(o.environment_scale);
+    } else if (o.environment_rotate_deg != 0 || o.environment_scale != 1) {
+        say("--envmap-rotate and --envmap-scale do nothing: the scene has no environment map");
+    }
+}
+
+} // namespace
+
+CameraChoice camera_choice(RenderOptions const& o)
+{
+    CameraChoice choice;
+    choice.name = o.camera;
+    if (!o.look_from.empty()) choice.look_from = parse_point("--look-from", o.look_from);
+    if (!o.look_at.empty()) choice.look_at = parse_point("--look-at", o.look_at);
+    choice.fov_deg = o.fov_deg;
+    return choice;
+}
+
+gi::World load_world(RenderOptions const& o, gi::Report& report)
+{
+    gi::Scene scene;
+    {
+        gi::StageTimer const timer(report, "load");
+        scene = gi::load_scene(o.scene, report);
+        set_environment(scene, o, report);
+    }
+    gi::StageTimer const timer(report, "world");
+    return gi::build_world(std::make_shared<gi::Scene const>(std::move(scene)), o.time_s, report);
+}
+
+} // namespace viewer

@@ -1,0 +1,16 @@
+#pragma once
+// From what the command line says of scene, sky and point of view to a world and a camera.
+
+#include "gi/scene/world.h"
+#include "viewer/choose_camera.h"
+#include "viewer/render_options.h"
+
+namespace viewer {
+
+/// Throws InputError on nonsense in the options; the world is not needed for that.
+CameraChoice camera_choice(RenderOptions const& options);
+
+/// Loads the scene, sets or replaces its sky, and lights it where it has no light; says on stderr what it decided.
+gi::World load_world(RenderOptions const& options, gi::Report& report);
+
+} // namespace viewer

@@ -1,0 +1,201 @@
+#include "viewer/sweep.h"
+
+#include "gi/base/picture_file.h"
+#include "gi/image/compare.h"
+#include "gi/image/tone_map.h"
+#include "viewer/bench/table_file.h"
+#include "viewer/bench_record.h"
+#include "viewer/interrupt.h"
+#include "viewer/render_record.h"
+#include "viewer/report_json.h"
+#include "viewer/sweep_reference.h"
+
+#include <cmath>
+#include <cstdio>
+#include <fmt/format.h>
+#include <set>
+
+namespace viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the repeats of one method with one budget gave.
+struct Samples {
+    std::vector<double> frame_s, trace_s, paths, mrays_per_s, relmse, flip, bias;
+    std::string picture, flip_map;
+};
+
+class Sweep {
+public:
+    Sweep(SweepOptions const& options, SweepPlan const& plan, gi::StopRequest const& stop, gi::Report& report)
+        : o_(options), plan_(plan), stop_(stop), report_(report), bar_("sweep", !options.render.quiet)
+    {
+        for (double const budget : plan.budgets_s) total_s_ += budget;
+        total_s_ *= double(plan.scenes.size() * plan.methods.size()) * o_.repeats;
+    }
+
+    /// @return false where it was interrupted
+    bool run(SweepScene const& scene, SweepReference const& reference, BenchTable& table);
+
+    std::set<std::string> const& notes() const { return notes_; }
+
+private:
+    gi::RenderSettings settings(double budget_s, int repeat) const;
+    void warm_up(SweepScene const& scene);
+    bool measure(SweepScene const& scene, SweepReference const& reference, std::size_t method, std::size_t budget,
+                 int repeat, Samples& into);
+    void save(SweepScene const& scene, gi::Method const& method, std::string const& budget,
+              gi::RenderSettings const& settings, gi::RenderResult& result, SweepReference const& reference,
+              Samples& into);
+
+    SweepOptions const& o_;
+    SweepPlan const& plan_;
+    gi::StopRequest const& stop_;
+    gi::Report& report_;
+    gi::ProgressBar bar_;
+    double total_s_ = 0, done_s_ = 0;
+    std::set<std::string> notes_; ///< of the comparisons
+};
+
+gi::RenderSettings Sweep::settings(double budget_s, int repeat) const
+{
+    gi::RenderSettings s = plan_.settings;
+    s.budget_s = budget_s;
+    s.seed = std::uint64_t(repeat) + 1;
+    return s;
+}
+
+/// The first render of a program also starts threads and fills caches; that is nobody's fault.
+void Sweep::warm_up(SweepScene const& scene)
+{
+    gi::RenderSettings s = settings(0, 0);
+    s.paths = 1;
+    gi::Report unused;
+    for (gi::Method const& method : plan_.methods)
+        if (!stop_.requested()) method.render(scene.world, scene.camera, s, stop_, {}, unused);
+}
+
+bool Sweep::measure(SweepScene const& scene, SweepReference const& reference, std::size_t m, std::size_t b,
+                    int repeat, Samples& into)
+{
+    gi::Method const& method = plan_.methods[m];
+    gi::RenderSettings const s = settings(plan_.budgets_s[b], repeat);
+    auto const show = [&](gi::RenderStatus const& status) {
+        bar_.update(
+            (done_s_ + s.budget_s * status.fraction) / total_s_,
+            fmt::format("{}, {}, {}, {}/{}", scene.name, method.name, o_.budgets[b], repeat + 1, o_.repeats));
+    };
+    gi::RenderResult result;
+    double const frame_s =
+        seconds_of([&] { result = method.render(scene.world, scene.camera, s, stop_, show, report_); });
+    if (result.end == gi::RenderEnd::interrupted) return false;
+    done_s_ += s.budget_s;
+
+    into.frame_s.push_back(frame_s);
+    into.trace_s.push_back(result.seconds);
+    into.paths.push_back(result.paths);
+    into.mrays_per_s.push_back(result.seconds > 0 ? result.rays / result.seconds * 1e-6 : std::nan(""));
+    gi::Comparison const c = gi::compare(result.picture, reference.picture, {"relmse", "flip", "bias"}, "color");
+    notes_.insert(c.notes.begin(), c.notes.end());
+    for (gi::NamedValue const& v : c.values) {
+        if (v.name == "relmse") into.relmse.push_back(v.value);
+        if (v.name == "flip") into.flip.push_back(v.value);
+        if (v.name == "bias") into.bias.push_back(v.value);
+    }
+    if (repeat == 0) save(scene, method, o_.budgets[b], s, result, reference, into);
+    return true;
+}
+
+void Sweep::save(SweepScene const& scene, gi::Method const& method, std::string const& budget,
+                 gi::RenderSettings const& s, gi::RenderResult& result, SweepReference const& reference,
+                 Samples& into)
+{
+    gi::Picture& picture = result.picture;
+    fs::path const folder = o_.out;
+    std::string const stem = picture_stem(scene.name, method.name, budget);
+    into.picture = stem + ".png";
+    into.flip_map = stem + "_flip.png";
+    int width = 0, height = 0;
+    auto const difference = gi::difference_image(picture, reference.picture, "color", width, height);
+    gi::write_png(folder / into.flip_map, width, height, difference);
+    gi::write_png(folder / into.picture, picture.width, picture.height,
+                  gi::tone_map_bytes(*picture.find("color"), {}));
+    RenderOptions options = scene.options;
+    options.method = method.name;
+    picture.metadata = make_metadata(options, s, result);
+    std::erase_if(picture.layers, [](gi::Layer const& l) { return l.name != "color" && l.name != "variance"; });
+    gi::write_exr(folder / (stem + ".exr"), picture, gi::PixelType::single, report_);
+}
+
+bool Sweep::run(SweepScene const& scene, SweepReference const& reference, BenchTable& table)
+{
+    warm_up(scene);
+    std::size_t const n = plan_.methods.size();
+    for (std::size_t b = 0; b < plan_.budgets_s.size(); ++b) {
+        std::vector<Samples> samples(n);
+        bool goes_on = !stop_.requested();
+        // In turns, so that a machine that slows down slows everybody.
+        for (int repeat = 0; repeat < o_.repeats && goes_on; ++repeat)
+            for (std::size_t i = 0; i < n && goes_on; ++i) {
+                std::size_t const m = (std::size_t(repeat) + i) % n;
+                goes_on = measure(scene, reference, m, b, repeat, samples[m]) && !stop_.requested();
+            }
+        for (std::size_t m = 0; m < n; ++m) {
+            Samples const& s = samples[m];
+            if (s.frame_s.empty()) continue;
+            table.add({scene.name, std::string(plan_.methods[m].name), plan_.budgets_s[b], summarise(s.frame_s),
+                       summarise(s.trace_s), summarise(s.paths), summarise(s.mrays_per_s), summarise(s.relmse),
+                       summarise(s.flip), summarise(s.bias), double(s.frame_s.size()), reference.relmse, s.picture,
+                       s.flip_map, reference.png_file});
+        }
+        write(table, o_.out);
+        if (!goes_on) return false;
+    }
+    return true;
+}
+
+BenchTable empty_table(SweepOptions const& o, SweepPlan const& plan)
+{
+    BenchTable table =
+        start_table("sweep", "Error over time, method against method",
+                    {"scene", "method", "budget_s", "frame_s", "trace_s", "paths", "Mrays_per_s", "relmse", "flip",
+                     "bias", "repeats", "reference_relmse", "picture_file", "flip_file", "reference_file"});
+    gi::RenderSettings const& s = plan.settings;
+    table.facts = {{"size", fmt::format("{}x{}", s.width, s.height)},
+                   {"bounces", std::to_string(s.bounces)},
+                   {"threads", s.threads == 0 ? "all" : std::to_string(s.threads)},
+                   {"reference", o.reference.empty()
+                                     ? fmt::format("path tracing, {} paths per pixel", o.reference_paths)
+                                     : o.reference}};
+    return table;
+}
+
+} // namespace
+
+SweepResult run_sweep(SweepOptions const& o)
+{
+    gi::Report report;
+    SweepPlan const plan = plan_sweep(o, report);
+    make_folder(o.out);
+    SweepResult result{empty_table(o, plan)};
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    Sweep sweep(o, plan, stop, report);
+    for (SweepScene const& scene : plan.scenes) {
+        std::optional<SweepReference> const reference =
+            plan.reference ? keep_reference(*plan.reference, o.out, "reference_" + scene.name)
+                           : find_reference(scene, plan.settings, o.reference_paths, o.out, stop, report);
+        result.interrupted = !reference || !sweep.run(scene, *reference, result.table);
+        if (result.interrupted) break;
+    }
+    if (result.interrupted) {
+        result.table.facts.emplace_back("interrupted", "rows and repeats are missing");
+        write(result.table, o.out);
+    }
+    for (std::string const& note : sweep.notes()) std::fputs(("note: " + note + "\n").c_str(), stderr);
+    print_losses(report);
+    return result;
+}
+
+} // namespace viewer

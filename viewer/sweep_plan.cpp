@@ -1,0 +1,102 @@
+#include "viewer/sweep_plan.h"
+
+#include "gi/base/error.h"
+#include "gi/base/picture_file.h"
+#include "viewer/arguments.h"
+#include "viewer/bench_record.h"
+#include "viewer/load_world.h"
+#include "viewer/outputs.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+template <class T>
+void refuse_twins(std::string const& option, std::vector<T> const& values, std::vector<std::string> const& texts)
+{
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (std::find(values.begin(), values.begin() + std::ptrdiff_t(i), values[i]) !=
+            values.begin() + std::ptrdiff_t(i))
+            throw gi::InputError(fmt::format("{} names '{}' twice", option, texts[i]),
+                                 "its rows and pictures would be mixed up", "name it once");
+}
+
+/// The time to trace is each budget in turn, and no number of paths stops it before.
+gi::RenderSettings common_settings(RenderOptions options)
+{
+    options.budget = "1s";
+    options.png = "unused";
+    return make_settings(options);
+}
+
+gi::Picture read_reference(std::string const& file, gi::RenderSettings const& s)
+{
+    gi::Picture picture = gi::read_picture(file);
+    if (picture.find("color") == nullptr)
+        throw gi::InputError("'" + file + "' is no reference", "it has no layer 'color'", "choose another");
+    if (picture.width != s.width || picture.height != s.height)
+        throw gi::InputError(fmt::format("'{}' is {}x{}", file, picture.width, picture.height),
+                             fmt::format("the pictures to judge are {}x{}", s.width, s.height),
+                             fmt::format("add --size {}x{}", picture.width, picture.height));
+    return picture;
+}
+
+SweepScene load(std::string const& scene, RenderOptions options, CameraChoice const& choice, gi::Report& report)
+{
+    options.scene = scene;
+    std::string const name = std::filesystem::path(scene).stem().string();
+    gi::World world = load_world(options, report);
+    ChosenCamera const chosen = choose_camera(world, choice);
+    if (!chosen.note.empty()) std::fputs(fmt::format("note: {}: {}\n", name, chosen.note).c_str(), stderr);
+    return {std::move(options), name, std::move(world), chosen.camera};
+}
+
+/// A second sweep may replace what a first one wrote, but not what it reads itself.
+void check_pictures(SweepOptions const& o, std::vector<std::string> const& names)
+{
+    if (!std::filesystem::exists(o.out)) return;
+    std::vector<std::string> files, inputs = o.scenes;
+    for (std::string const& scene : names)
+        for (std::string const& method : o.methods)
+            for (std::string const& budget : o.budgets)
+                for (char const* end : {".exr", ".png", "_flip.png"})
+                    files.push_back(
+                        (std::filesystem::path(o.out) / (picture_stem(scene, method, budget) + end)).string());
+    inputs.push_back(o.reference);
+    inputs.push_back(o.render.environment);
+    check_outputs(files, inputs);
+}
+
+} // namespace
+
+std::string picture_stem(std::string const& scene, std::string_view method, std::string const& budget)
+{
+    return fmt::format("{}_{}_{}", scene, method, budget);
+}
+
+SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
+{
+    SweepPlan plan;
+    for (std::string const& name : o.methods) plan.methods.push_back(gi::find_method(name));
+    refuse_twins("--methods", o.methods, o.methods);
+    for (std::string const& text : o.budgets) plan.budgets_s.push_back(parse_duration("--budgets", text));
+    refuse_twins("--budgets", plan.budgets_s, o.budgets);
+    std::vector<std::string> names;
+    for (std::string const& scene : o.scenes) names.push_back(std::filesystem::path(scene).stem().string());
+    refuse_twins("--scene", names, names);
+    plan.settings = common_settings(o.render);
+    CameraChoice const choice = camera_choice(o.render);
+    if (!o.reference.empty() && o.scenes.size() > 1)
+        throw gi::InputError("--reference is given for several scenes", "one picture cannot judge them all",
+                             "sweep one scene at a time, or drop it");
+    check_folder(o.out);
+    check_pictures(o, names);
+    if (!o.reference.empty()) plan.reference = read_reference(o.reference, plan.settings);
+    for (std::string const& scene : o.scenes) plan.scenes.push_back(load(scene, o.render, choice, report));
+    return plan;
+}
+
+} // namespace viewer

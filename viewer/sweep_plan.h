@@ -1,0 +1,32 @@
+#pragma once
+// What a sweep does, checked before it is begun.
+
+#include "gi/registry/registry.h"
+#include "viewer/sweep.h"
+
+#include <optional>
+
+namespace viewer {
+
+struct SweepScene {
+    RenderOptions options;
+    std::string name; ///< in tables and names of files
+    gi::World world;
+    gi::Camera camera;
+};
+
+struct SweepPlan {
+    gi::RenderSettings settings; ///< the same for all, but for budget and seed
+    std::vector<double> budgets_s;
+    std::vector<gi::Method> methods;
+    std::vector<SweepScene> scenes;
+    std::optional<gi::Picture> reference; ///< that was given
+};
+
+/// Of the pictures of a row, without extension.
+std::string picture_stem(std::string const& scene, std::string_view method, std::string const& budget);
+
+/// Loads every scene. Throws InputError on all that is wrong with the call.
+SweepPlan plan_sweep(SweepOptions const& options, gi::Report& report);
+
+} // namespace viewer
