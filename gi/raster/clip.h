@@ -1,6 +1,6 @@
 #pragma once
-// Triangles that reach out of what a pinhole raster can hold, cut to it (Sutherland & Hodgman 1974), and boxes that
-// it cannot see. Cuts are made between the corners of an edge in a fixed order, so that neighbours cut alike.
+// Triangles that reach out of what a pinhole raster can hold, cut to it (Sutherland & Hodgman 1974), and boxes
+// that it cannot see. Cuts are made between the corners of an edge in a fixed order, so that neighbours cut alike.
 
 #include "gi/raster/perspective_grid.h"
 
@@ -45,8 +45,8 @@ void clip_triangle(PerspectiveGrid const& g, vec3 const* corners, Emit const& em
     using namespace clip_detail;
     constexpr std::size_t kMost = 16;
     double const guard = 0.5 * double(PerspectiveGrid::kGuard);
-    std::array<Plane, 5> const planes{Plane{{0, 0, 1}, double(g.near_m)}, Plane{{1, 0, guard}, 0}, Plane{{-1, 0, guard}, 0},
-                                      Plane{{0, 1, guard}, 0}, Plane{{0, -1, guard}, 0}};
+    std::array<Plane, 5> const planes{Plane{{0, 0, 1}, double(g.near_m)}, Plane{{1, 0, guard}, 0},
+                                      Plane{{-1, 0, guard}, 0}, Plane{{0, 1, guard}, 0}, Plane{{0, -1, guard}, 0}};
     std::array<Corner, kMost> polygon{corner(g, corners[0]), corner(g, corners[1]), corner(g, corners[2])}, kept;
     std::size_t n = 3;
     for (Plane const& plane : planes) {
@@ -61,11 +61,16 @@ void clip_triangle(PerspectiveGrid const& g, vec3 const* corners, Emit const& em
         n = m;
         if (n < 3) return;
     }
-    auto const x = [&](std::size_t k) { return std::int32_t(std::rint(polygon[k].raster.x / polygon[k].raster.z)); };
-    auto const y = [&](std::size_t k) { return std::int32_t(std::rint(polygon[k].raster.y / polygon[k].raster.z)); };
+    auto const x = [&](std::size_t k) {
+        return std::int32_t(std::rint(polygon[k].raster.x / polygon[k].raster.z));
+    };
+    auto const y = [&](std::size_t k) {
+        return std::int32_t(std::rint(polygon[k].raster.y / polygon[k].raster.z));
+    };
     auto const depth = [&](std::size_t k) { return float(1 / polygon[k].raster.z); };
     for (std::size_t k = 1; k + 1 < n; ++k)
-        emit(SnappedTriangle{{x(0), x(k), x(k + 1)}, {y(0), y(k), y(k + 1)}}, vec3{depth(0), depth(k), depth(k + 1)});
+        emit(SnappedTriangle{{x(0), x(k), x(k + 1)}, {y(0), y(k), y(k + 1)}},
+             vec3{depth(0), depth(k), depth(k + 1)});
 }
 
 /// False only where no point of the box is in view.

@@ -12,8 +12,9 @@ namespace gi {
 enum class MacroPath : std::uint8_t {
     edge_table,    ///< per row, where it meets the edges (fig. 4.9)
     linear_blocks, ///< rows of the bounding box in runs of 16 samples (fig. 4.8)
-    square_blocks, ///< blocks of 4 x 4: outside, inside, or sample by sample (fig. 4.7). Edges are judged by the corner
-                   ///< farthest inside, so that a triangle within a block that touches none of its corners is found
+    square_blocks, ///< blocks of 4 x 4: outside, inside, or sample by sample (fig. 4.7). Edges are judged by the
+                   ///< corner farthest inside, so that a triangle within a block that touches none of its corners
+                   ///< is found
 };
 
 /// A triangle ready for scanning.
@@ -77,8 +78,8 @@ GI_FN void scan_linear_blocks(TriangleScan const& s, Run const& run)
             std::int64_t const e0 = s.edge[0].value(i, j), e1 = s.edge[1].value(i, j), e2 = s.edge[2].value(i, j);
             std::uint8_t outside[kBlock];
             for (int k = 0; k < kBlock; ++k)
-                outside[k] = std::uint8_t(((e0 + k * s.edge[0].step_i) | (e1 + k * s.edge[1].step_i) |
-                                           (e2 + k * s.edge[2].step_i)) < 0);
+                outside[k] = std::uint8_t(
+                    ((e0 + k * s.edge[0].step_i) | (e1 + k * s.edge[1].step_i) | (e2 + k * s.edge[2].step_i)) < 0);
             int const count = int(glm::min(std::int64_t(kBlock), s.columns.last - i + 1));
             int first = 0, last = count - 1;
             while (first < count && outside[first] != 0) ++first;
@@ -130,8 +131,8 @@ GI_FN void scan(TriangleScan const& s, MacroPath path, Run const& run)
         scan_square_blocks(s, run);
 }
 
-/// Depth over the samples of a triangle: its plane, held between its lowest and highest corner, which is what keeps
-/// triangles seen edge-on from flying off.
+/// Depth over the samples of a triangle: its plane, held between its lowest and highest corner, which is what
+/// keeps triangles seen edge-on from flying off.
 struct DepthPlane {
     double at_zero, step_i, step_j; ///< at sample (0, 0), per sample
     float low, high;

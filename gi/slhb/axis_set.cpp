@@ -24,7 +24,8 @@ AxisSample FewAxes::sample(vec3 normal, float u) const
 {
     alignas(64) std::array<float, kMost> weight;
     float total = 0;
-    for (std::size_t k = 0; k < count; ++k) weight[k] = std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
+    for (std::size_t k = 0; k < count; ++k)
+        weight[k] = std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
     for (std::size_t k = 0; k < count; ++k) total += weight[k];
     // The first axis up to which the weights sum to more than u of all: no branch on what is random.
     float const wanted = u * total;
@@ -45,7 +46,8 @@ void AxisSet::build(std::vector<std::size_t> const& which, std::vector<vec3> con
         std::size_t const a = which[k];
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(built_ + k), 0);
         vec2 const jitter = rng.uniform2();
-        RasterGrid const grid = make_grid(source_.bounds, axes[k], source_.resolution, jitter, 2 * kPi * rng.uniform());
+        RasterGrid const grid =
+            make_grid(source_.bounds, axes[k], source_.resolution, jitter, 2 * kPi * rng.uniform());
         fragments.count = 0;
         rasterize(source_.soup, 0, source_.soup.count, grid, MacroPath::edge_table, fragments);
         source_.cut_outs.remove(fragments, grid, rng.next());
@@ -56,7 +58,7 @@ void AxisSet::build(std::vector<std::size_t> const& which, std::vector<vec3> con
         layers_ += buffers_[a].layers.size();
     }
     built_ += which.size();
-    fill_pool(buffers_, pool_);
+    fill_pool(buffers_, pool_, source_.packed);
 }
 
 void AxisSet::store(DirectionSet const& directions)

@@ -1,6 +1,6 @@
 #pragma once
-// What is cut out of surfaces (alpha masks, blending) is taken out of the buffers when they are built, so that no query
-// has to ask. Partial coverage is a random decision per fragment.
+// What is cut out of surfaces (alpha masks, blending) is taken out of the buffers when they are built, so that no
+// query has to ask. Partial coverage is a random decision per fragment.
 
 #include "gi/raster/nearest_map.h"
 
@@ -26,7 +26,8 @@ public:
     explicit CutOuts(World const& world);
 
     bool none() const { return marked_.empty(); }
-    /// Drops fragments where the surface is not. @param seed another one, another decision where coverage is partial
+    /// Drops fragments where the surface is not. @param seed another one, another decision where coverage is
+    /// partial
     void remove(Fragments& fragments, RasterGrid const& grid, std::uint32_t seed) const;
     void remove(Fragments& fragments, PerspectiveGrid const& grid, std::uint32_t seed) const;
 

@@ -1,7 +1,7 @@
 #pragma once
-// Direct light by the area formulation (Yu 2012, eq. 5.3): in every pass a few points on lamps (or directions to the sky)
-// are chosen by power, each gets a shadow map, and all paths of the pass are lit by them. Neighbouring pixels take
-// different ones (interleaved sampling), other passes others.
+// Direct light by the area formulation (Yu 2012, eq. 5.3): in every pass a few points on lamps (or directions to
+// the sky) are chosen by power, each gets a shadow map, and all paths of the pass are lit by them. Neighbouring
+// pixels take different ones (interleaved sampling), other passes others.
 
 #include "gi/slhb/shadow_map.h"
 

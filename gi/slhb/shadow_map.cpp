@@ -23,8 +23,8 @@ int face_of(vec3 d)
 
 ShadowMap::Place ShadowMap::look(vec3 position, vec3 normal, vec2 u) const
 {
-    // Where the surface is met by the line through the texel's centre, no farther from the point than a surface that
-    // is grazed steeply would be.
+    // Where the surface is met by the line through the texel's centre, no farther from the point than a surface
+    // that is grazed steeply would be.
     constexpr float kSteepest = 8;
     auto const shift = [&](vec3 off, vec3 line, float texel) {
         float const cosine = glm::dot(normal, line), most = kSteepest * texel;
@@ -42,7 +42,8 @@ ShadowMap::Place ShadowMap::look(vec3 position, vec3 normal, vec2 u) const
     auto const f = std::size_t(face_of(way));
     PerspectiveGrid const& g = faces[f];
     float const w = glm::dot(g.forward, way);
-    if (maps[f].texels.empty() || !(w > g.near_m)) return {}; // behind a lamp that shines to one side, or at the lamp
+    if (maps[f].texels.empty() || !(w > g.near_m))
+        return {}; // behind a lamp that shines to one side, or at the lamp
     float const per_subpixel = 1 / (w * g.subpixels);
     std::uint32_t const i = pick(glm::dot(g.to_x, way) * per_subpixel, u.x, g.width);
     std::uint32_t const j = pick(glm::dot(g.to_y, way) * per_subpixel, u.y, g.height);
@@ -54,7 +55,8 @@ ShadowMap::Place ShadowMap::look(vec3 position, vec3 normal, vec2 u) const
 bool ShadowMap::lit(Place const& place, View<Surface const> surfaces, vec3 position, std::uint32_t triangle) const
 {
     constexpr float kRounding = 1e-5f, kNear = 4; // of the depth; texels
-    if (place.texel == nullptr || place.texel->primitive == triangle || place.texel->primitive == kNoPrimitive) return true;
+    if (place.texel == nullptr || place.texel->primitive == triangle || place.texel->primitive == kNoPrimitive)
+        return true;
     float const stored = parallel ? -place.texel->key : 1 / place.texel->key;
     float const gap = place.depth - stored;
     if (gap <= kRounding * std::abs(place.depth)) return true;
@@ -95,7 +97,8 @@ void ShadowMapBuilder::build(ShadowView const& view, int face, std::uint32_t see
     // A face whose every direction points behind the lamp sees nothing that it could light.
     if (view.facing != vec3{0}) {
         float const within = glm::dot(view.facing, g.forward);
-        float const across = std::abs(view.facing.x) + std::abs(view.facing.y) + std::abs(view.facing.z) - std::abs(within);
+        float const across =
+            std::abs(view.facing.x) + std::abs(view.facing.y) + std::abs(view.facing.z) - std::abs(within);
         if (within + across <= 0) return;
     }
     rasterize(soup_, 0, soup_.count, g, fragments);

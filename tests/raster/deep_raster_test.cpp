@@ -175,7 +175,8 @@ TEST(DeepRaster, DepthIsThatOfThePlane)
         World const world = world_of(scene);
         TriangleSoup const soup = make_soup(world);
         RasterGrid const grid = random_grid(world, rng, 3u << (k % 6));
-        vec3 const n = glm::normalize(glm::cross(soup.vertex(0, 1) - soup.vertex(0, 0), soup.vertex(0, 2) - soup.vertex(0, 0)));
+        vec3 const n = glm::normalize(
+            glm::cross(soup.vertex(0, 1) - soup.vertex(0, 0), soup.vertex(0, 2) - soup.vertex(0, 0)));
         float const steep = 1 / std::abs(glm::dot(n, grid.axis));
         Fragments f;
         rasterize(soup, 0, soup.count, grid, MacroPath::edge_table, f);
