@@ -57,8 +57,8 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     }
     CutOuts const cut_outs(world);
     TriangleSoup const soup = make_soup(world);
-    AxisSet axes({world.bounds, soup, cut_outs, std::uint32_t(slhb.resolution), std::uint32_t(slhb.most_layers), slhb.packed,
-                  settings.seed});
+    AxisSet axes({world.bounds, soup, cut_outs, std::uint32_t(slhb.resolution), std::uint32_t(slhb.most_layers),
+                  slhb.packed, settings.seed});
     if (slhb.schedule == Schedule::stored) {
         StageTimer const timer(report, "build (hit buffers)");
         axes.store(make_directions(slhb.directions));
