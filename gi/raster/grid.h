@@ -20,9 +20,9 @@ struct RasterGrid {
     float subpixels = 1;                             ///< per texel, a power of two
     vec3 to_x{0}, to_y{0};                           ///< world to subpixels
     float x0 = 0, y0 = 0;
-    float rounding = 0;                              ///< m; depths that differ by less are equal
+    float rounding = 0; ///< m; depths that differ by less are equal
 
-    std::size_t texels() const { return std::size_t(width) * height; }
+    GI_FN std::size_t texels() const { return std::size_t(width) * height; }
     GI_FN float project_x(vec3 p) const
     {
         return std::fma(p.z, to_x.z, std::fma(p.y, to_x.y, std::fma(p.x, to_x.x, x0)));
@@ -49,7 +49,8 @@ RasterGrid make_grid(Bounds const& bounds, vec3 axis, std::uint32_t resolution, 
 struct SnappedTriangle {
     std::int32_t x[3], y[3];
 
-    /// Twice the area; positive if it winds counter-clockwise in (right, up), i.e. its normal points along the axis.
+    /// Twice the area; positive if it winds counter-clockwise in (right, up), i.e. its normal points along the
+    /// axis.
     GI_FN std::int64_t doubled_area() const
     {
         return std::int64_t(x[1] - x[0]) * (y[2] - y[0]) - std::int64_t(x[2] - x[0]) * (y[1] - y[0]);
@@ -81,7 +82,8 @@ GI_FN inline HalfPlane half_plane(std::int32_t ax, std::int32_t ay, std::int32_t
     return {dx * (half - ay) - dy * (half - ax) - (owns_edge ? 0 : 1), -dy * subpixels, dx * subpixels};
 }
 
-/// Samples first..last whose centres lie within [low, high] subpixels, held in 0..count - 1; empty if first > last.
+/// Samples first..last whose centres lie within [low, high] subpixels, held in 0..count - 1; empty if first >
+/// last.
 struct SampleRange {
     std::int32_t first, last;
 };

@@ -1,8 +1,8 @@
 #pragma once
-// The raster of a pinhole view: a camera's picture or one face of the cube around a lamp. Depth is the reciprocal of
-// the distance along the view, 1/m, which is linear over the raster; larger is nearer. Triangles that reach behind
-// the eye, or so far beside the raster that subpixels would overflow, are clipped one by one; the others are exact on
-// snapped vertices as in grid.h.
+// The raster of a pinhole view: a camera's picture or one face of the cube around a lamp. Depth is the reciprocal
+// of the distance along the view, 1/m, which is linear over the raster; larger is nearer. Triangles that reach
+// behind the eye, or so far beside the raster that subpixels would overflow, are clipped one by one; the others
+// are exact on snapped vertices as in grid.h.
 
 #include "gi/raster/grid.h"
 #include "gi/scene/camera.h"
@@ -14,14 +14,15 @@ struct PerspectiveGrid {
     static constexpr float kGuard = 4194304; // 2^22
 
     vec3 eye{0};
-    vec3 to_x{1, 0, 0}, to_y{0, 1, 0}, forward{0, 0, 1}; ///< rows: (to_x . v) / (forward . v) is in subpixels, v from the eye
+    vec3 to_x{1, 0, 0}, to_y{0, 1, 0},
+        forward{0, 0, 1}; ///< rows: (to_x . v) / (forward . v) is in subpixels, v from the eye
     float near_m = 0;
     float subpixels = 1;
     std::uint32_t width = 1, height = 1;
 
     mat3 inverse{1}; ///< from (x, y, w) with x and y in subpixels times w to the world
 
-    std::size_t texels() const { return std::size_t(width) * height; }
+    GI_FN std::size_t texels() const { return std::size_t(width) * height; }
     /// Through the centre of texel (i, j), not normalised: one metre along the view.
     GI_FN vec3 direction(std::uint32_t i, std::uint32_t j) const
     {
