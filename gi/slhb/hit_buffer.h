@@ -1,18 +1,14 @@
 #pragma once
-// A layered hit buffer: every surface under every texel centre of an orthographic view along one axis (Yu 2012, sec.
-// 3.4 and 4.3). Exact storage: nothing is dropped, however many layers a texel has.
+// A layered hit buffer: every surface under every texel centre of an orthographic view along one axis (Yu 2012,
+// sec. 3.4 and 4.3). Exact storage: nothing is dropped, however many layers a texel has.
 //
-// Layout: the layers of texel t are layers[offset[t]] .. layers[offset[t + 1] - 1], by rising depth (equal depths by
-// primitive). offset has texels + 1 entries.
+// Layout: the layers of texel t are layers[offset[t]] .. layers[offset[t + 1] - 1], by rising depth (equal depths
+// by primitive). offset has texels + 1 entries.
 
 #include "gi/raster/deep_raster.h"
+#include "gi/raster/hit_layer.h"
 
 namespace gi {
-
-struct HitLayer {
-    float depth;             ///< along the axis, m
-    std::uint32_t primitive; ///< triangle of the world, and kAlongAxis
-};
 
 struct HitBufferView {
     RasterGrid grid;
@@ -33,7 +29,8 @@ inline HitBufferView view(HitBuffer const& b) { return {b.grid, b.offset, b.laye
 
 /// Count, scan, fill, sort. Reuses the memory of `out`.
 /// @param most_layers per texel, the nearest along the axis are kept and the others counted; 0 = all
-void fill_hit_buffer(Fragments const& fragments, RasterGrid const& grid, std::uint32_t most_layers, HitBuffer& out);
+void fill_hit_buffer(Fragments const& fragments, RasterGrid const& grid, std::uint32_t most_layers,
+                     HitBuffer& out);
 
 /// From triangles to layers on the calling thread.
 HitBuffer make_hit_buffer(TriangleSoup const& soup, RasterGrid const& grid,
