@@ -4,6 +4,7 @@
 #include "gi/base/picture.h"
 #include "gi/base/progress.h"
 #include "gi/base/report.h"
+#include "gi/base/space.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -35,6 +36,7 @@ struct SlhbSettings {
     int most_layers = 0;           ///< per texel; 0 = all
     bool packed = false;           ///< layers of 32 bits: 12 bits of depth, 20 bits of facing and primitive
     float cone = 0;                ///< texels; radius of the disk of columns that a query may ask (Yu 2012, fig. 5.6)
+    Space space = Space::host;     ///< device: all by CUDA kernels, see gi/slhb/kernel_render.h
     bool gather = false;           ///< first bounce over all axes in turn instead of at random
 };
 

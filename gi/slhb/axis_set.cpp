@@ -20,37 +20,27 @@ vec3 half_sphere(vec2 u)
 
 } // namespace
 
-AxisSample FewAxes::sample(vec3 normal, float u) const
-{
-    alignas(64) std::array<float, kMost> weight;
-    float total = 0;
-    for (std::size_t k = 0; k < count; ++k) weight[k] = std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
-    for (std::size_t k = 0; k < count; ++k) total += weight[k];
-    // The first axis up to which the weights sum to more than u of all: no branch on what is random.
-    float const wanted = u * total;
-    float sum = 0;
-    std::uint32_t k = 0;
-    for (std::size_t a = 0; a + 1 < count; ++a) {
-        sum += weight[a];
-        k += sum <= wanted ? 1 : 0;
-    }
-    vec3 const axis{x[k], y[k], z[k]};
-    return {k, glm::dot(axis, normal) < 0 ? -axis : axis, 2 * total / float(count)};
-}
-
 void AxisSet::build(std::vector<std::size_t> const& which, std::vector<vec3> const& axes)
 {
-    tbb::parallel_for(std::size_t(0), which.size(), [&](std::size_t k) {
+    auto const build_one = [&](std::size_t k) {
         thread_local Fragments fragments;
         std::size_t const a = which[k];
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(built_ + k), 0);
         vec2 const jitter = rng.uniform2();
         RasterGrid const grid = make_grid(source_.bounds, axes[k], source_.resolution, jitter, 2 * kPi * rng.uniform());
+        if (source_.elsewhere) {
+            source_.elsewhere(a, grid, rng.next());
+            return;
+        }
         fragments.count = 0;
         rasterize(source_.soup, 0, source_.soup.count, grid, MacroPath::edge_table, fragments);
         source_.cut_outs.remove(fragments, grid, rng.next());
         fill_hit_buffer(fragments, grid, source_.most_layers, buffers_[a]);
-    });
+    };
+    if (source_.elsewhere)
+        for (std::size_t k = 0; k < which.size(); ++k) build_one(k);
+    else
+        tbb::parallel_for(std::size_t(0), which.size(), build_one);
     for (std::size_t const a : which) {
         lost_ += buffers_[a].lost;
         layers_ += buffers_[a].layers.size();

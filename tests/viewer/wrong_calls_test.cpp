@@ -34,6 +34,8 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"render nowhere.glb", "nowhere.glb"},
              {"render .", "folder"},
              {"render cornell --method magic", "magic"},
+             {"render cornell --device tpu", "--device"},
+             {"render cornell --device cuda", "--method reference"},
              {"render cornell --size 0x5", "--size"},
              {"render cornell --size 16384x16385", "--size"},
              {"render cornell --camera nobody", "nobody"},
