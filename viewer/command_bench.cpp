@@ -8,6 +8,10 @@ void add_bench(CLI::App& app, int& exit_code)
 {
     CLI::App* const c = app.add_subcommand("bench", "Measure methods against each other, and report on it.");
     c->require_subcommand(1);
+    add_bench_raster(*c, exit_code);
+    add_bench_rays(*c, exit_code);
+    add_bench_accuracy(*c, exit_code);
+    add_bench_thesis(*c, exit_code);
     add_bench_sweep(*c, exit_code);
     add_bench_report(*c, exit_code);
     c->footer(R"(Examples:

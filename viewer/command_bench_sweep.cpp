@@ -57,6 +57,8 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
     c->add_option("--repeats", o->repeats, "renders per row, each with its own seed; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
+    declare_denoise(*c, r);
+    declare_slhb(*c, r);
     c->add_option("--threads", r.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c->add_option("--out", o->out, "folder for sweep.json, sweep.csv and the pictures")->required();
     c->add_flag("--json", r.json, "print the table as JSON");
@@ -65,7 +67,7 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
   lightwell bench sweep --scene cornell --methods reference --budgets 20ms --repeats 2 --size 32x32 --reference-paths 32 --out sweep
   lightwell bench sweep --scene cornell,atrium --budgets 20ms --repeats 1 --size 24x24 --reference-paths 8 --out both --json
 
-Columns: budget_s, what was asked for; frame_s, the whole call with all that the method builds for it (a method
+Columns: budget_s, what was asked for, structures, paths and filter together; frame_s, the whole call with all that the method builds for it (a method
 finishes at least one path per pixel, so it may be more); trace_s, the tracing alone; paths per pixel; Mrays_per_s;
 relmse, flip and bias against the reference, which is rendered with a seed of its own; reference_relmse, what the
 noise of the reference adds to relmse.

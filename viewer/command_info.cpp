@@ -3,6 +3,7 @@
 #include "gi/scene/load.h"
 #include "gi/scene/plan.h"
 #include "gi/scene/summary.h"
+#include "gi/slhb/settings.h"
 #include "gi/slhb/direction_picture.h"
 #include "gi/slhb/direction_quality.h"
 #include "viewer/commands.h"
@@ -87,10 +88,14 @@ int run(InfoOptions const& o)
     gi::World const world = gi::build_world(scene, o.time_s, report);
     gi::SceneSummary const summary = gi::summarise(world);
     gi::ScenePlan const plan = gi::plan_scene(world);
+    bool const orthographic = !world.cameras.empty() && world.cameras.front().orthographic;
+    std::vector<gi::PlanItem> const slhb = gi::explain_settings({}, world, orthographic);
     if (o.json) {
         nlohmann::ordered_json j;
         j["scene"] = o.scene;
         for (gi::SummaryLine const& line : summary.lines) j["content"][line.what] = line.value;
+        for (gi::PlanItem const& item : slhb)
+            j["plan_slhb"].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
         for (gi::PlanItem const& item : plan.items)
             j["plan"].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
         j["report"] = to_json(report);
@@ -99,9 +104,13 @@ int run(InfoOptions const& o)
     }
     fmt::print("{}\n", o.scene);
     for (gi::SummaryLine const& line : summary.lines) fmt::print("  {:<22} {}\n", line.what, line.value);
-    fmt::print("What is built for it\n");
-    for (gi::PlanItem const& item : plan.items)
-        fmt::print("  {:<4} {:<38} {}\n", item.build ? "yes" : "no", item.what, item.reason);
+    auto const print_plan = [](char const* title, std::vector<gi::PlanItem> const& items) {
+        fmt::print("{}\n", title);
+        for (gi::PlanItem const& item : items)
+            fmt::print("  {:<4} {:<38} {}\n", item.build ? "yes" : "no", item.what, item.reason);
+    };
+    print_plan("What is built for it", plan.items);
+    print_plan("By the method slhb, at 512 x 512 pixels", slhb);
     std::fflush(stdout);
     print_losses(report);
     return 0;

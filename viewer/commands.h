@@ -15,5 +15,9 @@ void add_bench(CLI::App& app, int& exit_code);
 // Within bench
 void add_bench_sweep(CLI::App& bench, int& exit_code);
 void add_bench_report(CLI::App& bench, int& exit_code);
+void add_bench_rays(CLI::App& bench, int& exit_code);
+void add_bench_raster(CLI::App& bench, int& exit_code);
+void add_bench_accuracy(CLI::App& bench, int& exit_code);
+void add_bench_thesis(CLI::App& bench, int& exit_code);
 
 } // namespace viewer

@@ -48,34 +48,6 @@ gi::Schedule schedule_of(std::string const& name)
                                 : gi::Schedule::automatic;
 }
 
-void declare_slhb(CLI::App& c, RenderOptions& o)
-{
-    gi::SlhbSettings& s = o.slhb;
-    auto const number = [&](char const* name, int& value, int low, int high, char const* meaning) {
-        return c.add_option(name, value, meaning)->check(CLI::Range(low, high))->group("Method slhb");
-    };
-    c.add_option("--device", o.device, "cpu, or cuda: all by kernels; paths end at mirrors, glass and narrow lobes, which is counted")
-        ->check(CLI::IsMember({"cpu", "cuda"}))
-        ->capture_default_str()
-        ->group("Method slhb");
-    c.add_option("--schedule", o.schedule, "stored: one set of axes; streamed: new ones in every pass; temporal: some new")
-        ->check(CLI::IsMember({"auto", "stored", "streamed", "temporal"}))
-        ->capture_default_str()
-        ->group("Method slhb");
-    c.add_option("--directions", s.directions, "FAMILY:COUNT of the stored set (default icosahedron:320)")
-        ->group("Method slhb");
-    number("--hit-buffer", s.resolution, 2, 8192, "texels of a hit buffer on a side (default: by the plan)");
-    number("--axes", s.axes, 1, 64, "of a pass, streamed and temporal");
-    number("--fresh-axes", s.fresh_axes, 1, 64, "of these, replaced in a pass, temporal");
-    number("--lamps", s.lamps, 1, 64, "points on lights that get a shadow map in a pass");
-    number("--shadow-map", s.shadow_resolution, 2, 8192, "texels of a shadow map on a side");
-    number("--max-layers", s.most_layers, 0, 1 << 20, "kept per texel, others are counted; 0 = all");
-    c.add_option("--cone", s.cone, "texels, radius of the cone approximation")
-        ->check(in_range(0, 64))
-        ->group("Method slhb");
-    c.add_flag("--gather", s.gather, "first bounce along all axes in turn instead of by chance")->group("Method slhb");
-}
-
 } // namespace
 
 gi::RenderSettings make_settings(RenderOptions& o)
@@ -138,6 +110,59 @@ void declare_view_options(CLI::App& c, RenderOptions& o)
     c.add_option("--time", o.time_s, "moment of the animation, s")->check(in_range(-1e9, 1e9));
 }
 
+void declare_denoise(CLI::App& c, RenderOptions& o)
+{
+    c.add_option(
+         "--denoise", o.denoise,
+         "filter of the finished picture, which stops at edges; changes color, L1 and L2, while variance and "
+         "the estimated error stay those of the unfiltered picture:"
+         "\n  atrous: wavelet that goes by the variance, 2 paths or more"
+         "\n  discontinuity: mean over 4 x 4 pixels of one surface")
+        ->check(CLI::IsMember({"none", "atrous", "discontinuity"}))
+        ->capture_default_str();
+}
+
+void slhb_number(CLI::App& c, char const* name, int& value, int low, int high, char const* meaning)
+{
+    c.add_option(name, value, meaning)->check(CLI::Range(low, high))->group("Method slhb");
+}
+
+void declare_slhb_quality(CLI::App& c, RenderOptions& o)
+{
+    gi::SlhbSettings& s = o.slhb;
+    slhb_number(c, "--axes", s.axes, 1, 64, "per bounce in a pass, streamed and temporal");
+    slhb_number(c, "--fresh-axes", s.fresh_axes, 1, 64, "of these, replaced in a pass, temporal");
+    slhb_number(c, "--lamps", s.lamps, 1, 64, "points on lights that get a shadow map in a pass");
+    slhb_number(c, "--shadow-map", s.shadow_resolution, 2, 8192, "texels of a shadow map on a side");
+    slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "kept per texel, others are counted; 0 = all");
+    c.add_option("--cone", s.cone, "texels, radius of the cone approximation")
+        ->check(in_range(0, 64))
+        ->group("Method slhb");
+    c.add_flag("--packed", s.packed, "layers of 32 bits instead of 64, for up to 524288 triangles")
+        ->group("Method slhb");
+    c.add_flag("--gather", s.gather, "first bounce along all axes in turn instead of by chance")
+        ->group("Method slhb");
+}
+
+void declare_slhb(CLI::App& c, RenderOptions& o)
+{
+    c.add_option("--device", o.device,
+                 "cpu; or cuda: all by kernels, paths end at mirrors, glass and narrow lobes, which is counted")
+        ->check(CLI::IsMember({"cpu", "cuda"}))
+        ->capture_default_str()
+        ->group("Method slhb");
+    c.add_option("--schedule", o.schedule,
+                 "stored: one set of axes; streamed: new ones in every pass; temporal: some new")
+        ->check(CLI::IsMember({"auto", "stored", "streamed", "temporal"}))
+        ->capture_default_str()
+        ->group("Method slhb");
+    c.add_option("--directions", o.slhb.directions, "FAMILY:COUNT of the stored set (default icosahedron:320)")
+        ->group("Method slhb");
+    slhb_number(c, "--hit-buffer", o.slhb.resolution, 2, 8192,
+                "texels of a hit buffer on a side (default: by the plan)");
+    declare_slhb_quality(c, o);
+}
+
 void declare_options(CLI::App& c, RenderOptions& o)
 {
     c.add_option("SCENE", o.scene, "glTF, YAML, OBJ, PLY, FBX, ... file, or atrium, cornell")->required();
@@ -156,14 +181,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_option("--filter", o.filter, "pixel filter")
         ->check(CLI::IsMember({"box", "tent"}))
         ->capture_default_str();
-    c.add_option(
-         "--denoise", o.denoise,
-         "filter of the finished picture, which stops at edges; changes color, L1 and L2, while variance and "
-         "the estimated error stay those of the unfiltered picture:"
-         "\n  atrous: wavelet that goes by the variance, 2 paths or more"
-         "\n  discontinuity: mean over 4 x 4 pixels of one surface")
-        ->check(CLI::IsMember({"none", "atrous", "discontinuity"}))
-        ->capture_default_str();
+    declare_denoise(c, o);
     c.add_option("--seed", o.seed, "another seed, another noise")->check(refuse_negative)->capture_default_str();
     c.add_option("--threads", o.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c.add_option("--out", o.out, "EXR with all layers (default: the scene's name)");

@@ -31,6 +31,10 @@ struct RenderOptions {
 
 /// Those of the camera, the sky and the moment, for every command that renders.
 void declare_view_options(CLI::App& command, RenderOptions& options);
+void declare_denoise(CLI::App& command, RenderOptions& options);
+/// All of method slhb; those that decide quality but not axes and buffers.
+void declare_slhb(CLI::App& command, RenderOptions& options);
+void declare_slhb_quality(CLI::App& command, RenderOptions& options);
 void declare_options(CLI::App& command, RenderOptions& options);
 
 /// Fills in the default name of the picture and checks what the options say together. Throws InputError.

@@ -2,6 +2,7 @@
 
 #include "gi/base/picture_file.h"
 #include "gi/image/compare.h"
+#include "gi/image/denoise.h"
 #include "gi/image/tone_map.h"
 #include "viewer/bench/table_file.h"
 #include "viewer/bench_record.h"
@@ -10,6 +11,7 @@
 #include "viewer/report_json.h"
 #include "viewer/sweep_reference.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fmt/format.h>
@@ -42,6 +44,8 @@ public:
 
 private:
     gi::RenderSettings settings(double budget_s, int repeat) const;
+    gi::RenderResult frame(gi::Method const& method, SweepScene const& scene, gi::RenderSettings const& s,
+                           gi::RenderProgress const& progress, gi::Report& report) const;
     void warm_up(SweepScene const& scene);
     bool measure(SweepScene const& scene, SweepReference const& reference, std::size_t method, std::size_t budget,
                  int repeat, Samples& into);
@@ -55,25 +59,42 @@ private:
     gi::Report& report_;
     gi::ProgressBar bar_;
     double total_s_ = 0, done_s_ = 0;
+    double filter_s_ = 0;         ///< that the filter takes of a frame
     std::set<std::string> notes_; ///< of the comparisons
 };
 
 gi::RenderSettings Sweep::settings(double budget_s, int repeat) const
 {
     gi::RenderSettings s = plan_.settings;
-    s.budget_s = budget_s;
+    constexpr double kLeast = 1e-4; // s; a budget of 0 would be none
+    if (budget_s > 0) s.budget_s = std::max(kLeast, budget_s - filter_s_);
     s.seed = std::uint64_t(repeat) + 1;
     return s;
 }
 
-/// The first render of a program also starts threads and fills caches; that is nobody's fault.
+/// All that makes a picture: structures, paths and the filter.
+gi::RenderResult Sweep::frame(gi::Method const& method, SweepScene const& scene, gi::RenderSettings const& s,
+                              gi::RenderProgress const& progress, gi::Report& report) const
+{
+    gi::RenderResult result = method.render(scene.world, scene.camera, s, stop_, progress, report);
+    if (plan_.filter.denoiser != gi::Denoiser::none) gi::denoise(result.picture, plan_.filter);
+    return result;
+}
+
+/// The first render of a program also starts threads and fills caches; that is nobody's fault. Tells what the
+/// filter takes.
 void Sweep::warm_up(SweepScene const& scene)
 {
+    filter_s_ = 0;
     gi::RenderSettings s = settings(0, 0);
-    s.paths = 1;
+    s.paths = 2;
     gi::Report unused;
-    for (gi::Method const& method : plan_.methods)
-        if (!stop_.requested()) method.render(scene.world, scene.camera, s, stop_, {}, unused);
+    for (gi::Method const& method : plan_.methods) {
+        if (stop_.requested()) return;
+        gi::RenderResult result = frame(method, scene, s, {}, unused);
+        if (plan_.filter.denoiser != gi::Denoiser::none)
+            filter_s_ = seconds_of([&] { gi::denoise(result.picture, plan_.filter); });
+    }
 }
 
 bool Sweep::measure(SweepScene const& scene, SweepReference const& reference, std::size_t m, std::size_t b,
@@ -87,8 +108,7 @@ bool Sweep::measure(SweepScene const& scene, SweepReference const& reference, st
             fmt::format("{}, {}, {}, {}/{}", scene.name, method.name, o_.budgets[b], repeat + 1, o_.repeats));
     };
     gi::RenderResult result;
-    double const frame_s =
-        seconds_of([&] { result = method.render(scene.world, scene.camera, s, stop_, show, report_); });
+    double const frame_s = seconds_of([&] { result = frame(method, scene, s, show, report_); });
     if (result.end == gi::RenderEnd::interrupted) return false;
     done_s_ += s.budget_s;
 
@@ -164,6 +184,7 @@ BenchTable empty_table(SweepOptions const& o, SweepPlan const& plan)
     gi::RenderSettings const& s = plan.settings;
     table.facts = {{"size", fmt::format("{}x{}", s.width, s.height)},
                    {"bounces", std::to_string(s.bounces)},
+                   {"filter", o.render.denoise + ", in the frame's time"},
                    {"threads", s.threads == 0 ? "all" : std::to_string(s.threads)},
                    {"reference", o.reference.empty()
                                      ? fmt::format("path tracing, {} paths per pixel", o.reference_paths)

@@ -88,6 +88,7 @@ SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
     for (std::string const& scene : o.scenes) names.push_back(std::filesystem::path(scene).stem().string());
     refuse_twins("--scene", names, names);
     plan.settings = common_settings(o.render);
+    plan.filter = make_denoise_settings(o.render, plan.settings);
     CameraChoice const choice = camera_choice(o.render);
     if (!o.reference.empty() && o.scenes.size() > 1)
         throw gi::InputError("--reference is given for several scenes", "one picture cannot judge them all",

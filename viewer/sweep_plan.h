@@ -1,6 +1,7 @@
 #pragma once
 // What a sweep does, checked before it is begun.
 
+#include "gi/image/denoise.h"
 #include "gi/registry/registry.h"
 #include "viewer/sweep.h"
 
@@ -17,6 +18,7 @@ struct SweepScene {
 
 struct SweepPlan {
     gi::RenderSettings settings; ///< the same for all, but for budget and seed
+    gi::DenoiseSettings filter;  ///< of every picture
     std::vector<double> budgets_s;
     std::vector<gi::Method> methods;
     std::vector<SweepScene> scenes;

@@ -4,7 +4,7 @@
 #include "gi/base/rng.h"
 #include "gi/image/metrics.h"
 #include "gi/image/tone_map.h"
-#include "gi/reference/fingerprint.h"
+#include "gi/transport/fingerprint.h"
 #include "viewer/render_record.h"
 #include "viewer/version.h"
 
@@ -30,7 +30,7 @@ double relative_variance(gi::Picture const& picture)
 
 std::string hash(SweepScene const& scene, gi::RenderSettings const& s)
 {
-    std::uint64_t h = gi::fingerprint(scene.world, scene.camera, s);
+    std::uint64_t h = gi::fingerprint(scene.world, scene.camera, s, "reference");
     auto const add = [&](std::uint64_t v) { h = gi::mix_bits(h ^ (v + 0x9e3779b97f4a7c15ULL)); };
     add(s.paths);
     for (char const c : scene.options.scene + '\n' + git_hash()) add(static_cast<unsigned char>(c));

@@ -1,8 +1,8 @@
 #pragma once
 // Randomised quasi-Monte Carlo: the van der Corput sequence with an Owen scramble of its own for every stream and
-// dimension (Owen 1995; hashed as in Burley 2020, "Practical Hash-based Owen Scrambling", with Vegdahl's constants).
-// Any run of 2^k consecutive indices that starts at a multiple of 2^k is stratified in each dimension; scrambles and
-// orders are independent, so that no two dimensions and no two bounces are paired.
+// dimension (Owen 1995; hashed as in Burley 2020, "Practical Hash-based Owen Scrambling", with Vegdahl's
+// constants). Any run of 2^k consecutive indices that starts at a multiple of 2^k is stratified in each dimension;
+// scrambles and orders are independent, so that no two dimensions and no two bounces are paired.
 
 #include "gi/base/rng.h"
 
@@ -45,7 +45,8 @@ struct SobolMatrices {
 constexpr SobolMatrices make_sobol()
 {
     constexpr int degree[4] = {0, 1, 2, 3};
-    constexpr std::uint32_t polynomial[4] = {0, 0, 1, 1}, first[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 3, 0}, {1, 3, 1}};
+    constexpr std::uint32_t polynomial[4] = {0, 0, 1, 1},
+                            first[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 3, 0}, {1, 3, 1}};
     SobolMatrices s{};
     for (int d = 0; d < 4; ++d)
         for (int k = 0; k < 32; ++k) {
@@ -102,8 +103,8 @@ public:
     }
 
 private:
-    /// The index in an order of its own for every decision, in which runs of 2^k stay together. Without it the top bits of
-    /// all dimensions would follow the same bit of the index.
+    /// The index in an order of its own for every decision, in which runs of 2^k stay together. Without it the top
+    /// bits of all dimensions would follow the same bit of the index.
     GI_FN std::uint32_t shuffled(std::uint32_t key) const
     {
         return reverse_bits(permute_upwards(reverse_bits(index), key));

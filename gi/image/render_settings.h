@@ -34,7 +34,7 @@ struct SlhbSettings {
     int lamps = 0;                 ///< light samples with a shadow map per pass
     int shadow_resolution = 0;     ///< texels of a shadow map, squared
     int most_layers = 0;           ///< per texel; 0 = all
-    bool packed = false;           ///< layers of 32 bits: 12 bits of depth, 20 bits of facing and primitive
+    bool packed = false;           ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
     float cone = 0;                ///< texels; radius of the disk of columns that a query may ask (Yu 2012, fig. 5.6)
     Space space = Space::host;     ///< device: all by CUDA kernels, see gi/slhb/kernel_render.h
     bool gather = false;           ///< first bounce over all axes in turn instead of at random

@@ -55,7 +55,8 @@ struct OrthographicLanes {
     void project(Corners const& p, Projected& out) const
     {
         auto const row = [&](V const* to, V zero, std::size_t k) {
-            return hn::Round(hn::MulAdd(p.z[k], to[2], hn::MulAdd(p.y[k], to[1], hn::MulAdd(p.x[k], to[0], zero))));
+            return hn::Round(
+                hn::MulAdd(p.z[k], to[2], hn::MulAdd(p.y[k], to[1], hn::MulAdd(p.x[k], to[0], zero))));
         };
         for (std::size_t k = 0; k < 3; ++k) {
             out.x[k] = row(to_x, x_zero, k);
@@ -132,7 +133,12 @@ class VectorRaster {
 public:
     template <class Grid>
     VectorRaster(Grid const& grid, MacroPath macro, Fragments& out)
-        : lanes_(grid), macro_(macro), out_(out), subpixels_(grid.subpixels), width_(grid.width), height_(grid.height)
+        : lanes_(grid),
+          macro_(macro),
+          out_(out),
+          subpixels_(grid.subpixels),
+          width_(grid.width),
+          height_(grid.height)
     {
     }
 
@@ -322,7 +328,8 @@ void VectorRaster<Lanes>::run(TriangleSoup const& soup, std::size_t first, std::
             V const all[] = {x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2]};
             for (std::size_t c = 0; c < Queue::kColumns; ++c)
                 hn::CompressStore(all[c], mask, d, queue.values[c] + queue.count);
-            queue.count += hn::CompressStore(triangle, hn::RebindMask(words, mask), words, queue.triangle + queue.count);
+            queue.count +=
+                hn::CompressStore(triangle, hn::RebindMask(words, mask), words, queue.triangle + queue.count);
             if (queue.count >= lanes) empty_queue(queue, lanes);
         };
         push(single_, hn::And(any, one));

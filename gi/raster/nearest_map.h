@@ -10,8 +10,8 @@ namespace gi {
 inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
 
 struct NearestTexel {
-    float key = -kInf;                        ///< larger is nearer: 1 / distance (perspective) or -depth (orthographic)
-    std::uint32_t primitive = kNoPrimitive;   ///< triangle of the world
+    float key = -kInf; ///< larger is nearer: 1 / distance (perspective) or -depth (orthographic)
+    std::uint32_t primitive = kNoPrimitive; ///< triangle of the world
 };
 
 struct NearestMap {

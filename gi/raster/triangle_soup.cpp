@@ -11,7 +11,8 @@ TriangleSoup make_soup(World const& world)
 {
     TriangleSoup soup;
     soup.count = world.triangles.size();
-    std::size_t const padded = (soup.count + TriangleSoup::kPadding - 1) / TriangleSoup::kPadding * TriangleSoup::kPadding;
+    std::size_t const padded =
+        (soup.count + TriangleSoup::kPadding - 1) / TriangleSoup::kPadding * TriangleSoup::kPadding;
     for (auto& values : soup.corner) resize_on_huge_pages(values, padded);
     soup.chunks.resize((soup.count + TriangleSoup::kChunk - 1) / TriangleSoup::kChunk);
     tbb::parallel_for(std::size_t(0), soup.chunks.size(), [&](std::size_t chunk) {

@@ -1,6 +1,6 @@
 #pragma once
-// Triangle corners as nine arrays, so that a vector register holds one coordinate of several triangles. Indices are
-// those of the world's triangles. Padded with points to a whole number of vectors.
+// Triangle corners as nine arrays, so that a vector register holds one coordinate of several triangles. Indices
+// are those of the world's triangles. Padded with points to a whole number of vectors.
 
 #include "gi/scene/world.h"
 

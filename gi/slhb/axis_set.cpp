@@ -27,7 +27,8 @@ void AxisSet::build(std::vector<std::size_t> const& which, std::vector<vec3> con
         std::size_t const a = which[k];
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(built_ + k), 0);
         vec2 const jitter = rng.uniform2();
-        RasterGrid const grid = make_grid(source_.bounds, axes[k], source_.resolution, jitter, 2 * kPi * rng.uniform());
+        RasterGrid const grid =
+            make_grid(source_.bounds, axes[k], source_.resolution, jitter, 2 * kPi * rng.uniform());
         if (source_.elsewhere) {
             source_.elsewhere(a, grid, rng.next());
             return;
@@ -46,7 +47,7 @@ void AxisSet::build(std::vector<std::size_t> const& which, std::vector<vec3> con
         layers_ += buffers_[a].layers.size();
     }
     built_ += which.size();
-    fill_pool(buffers_, pool_);
+    fill_pool(buffers_, pool_, source_.packed);
 }
 
 void AxisSet::store(DirectionSet const& directions)

@@ -1,5 +1,6 @@
 #pragma once
-// The axes that the paths of a pass may take, with their buffers, and the choice among them by the cosine with a normal.
+// The axes that the paths of a pass may take, with their buffers, and the choice among them by the cosine with a
+// normal.
 
 #include "gi/slhb/cosine_tables.h"
 #include "gi/slhb/cut_outs.h"
@@ -13,14 +14,15 @@ namespace gi {
 struct FewAxes {
     static constexpr std::size_t kMost = 64;
 
-    std::uint32_t count = 0;                     ///< all of one solid angle
+    std::uint32_t count = 0;                            ///< all of one solid angle
     alignas(64) std::array<float, kMost> x{}, y{}, z{}; ///< zero beyond count
 
     GI_FN AxisSample sample(vec3 normal, float u) const
     {
         alignas(64) std::array<float, kMost> weight;
         float total = 0;
-        for (std::size_t k = 0; k < count; ++k) weight[k] = std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
+        for (std::size_t k = 0; k < count; ++k)
+            weight[k] = std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
         for (std::size_t k = 0; k < count; ++k) total += weight[k];
         // The first axis up to which the weights sum to more than u of all: no branch on what is random.
         float const wanted = u * total;
@@ -60,9 +62,10 @@ public:
         CutOuts const& cut_outs;
         std::uint32_t resolution;
         std::uint32_t most_layers;
+        bool packed;
         std::uint64_t seed;
-        /// Where it is not empty, buffers are not built here but there: index of the axis, its grid, a seed for the
-        /// cut-outs. Axes come one after the other.
+        /// Where it is not empty, buffers are not built here but there: index of the axis, its grid, a seed for
+        /// the cut-outs. Axes come one after the other.
         std::function<void(std::size_t, RasterGrid const&, std::uint32_t)> elsewhere = {};
     };
 
@@ -70,12 +73,12 @@ public:
 
     /// All axes of the set, once.
     void store(DirectionSet const& directions);
-    /// Bounces that have axes of their own. Axes of one low-discrepancy sequence must not be paired along a path: they
-    /// avoid each other, which is a bias that does not go away. Bounce b shares its axes with b + kSequences.
+    /// Bounces that have axes of their own. Axes of one low-discrepancy sequence must not be paired along a path:
+    /// they avoid each other, which is a bias that does not go away. Bounce b shares its axes with b + kSequences.
     static constexpr std::uint32_t kSequences = 3;
 
-    /// For each of `sequences` bounces `count` axes (up to FewAxes::kMost), of which the next `fresh` ones are replaced
-    /// by the next of a scrambled Sobol sequence over the half sphere; all when called first.
+    /// For each of `sequences` bounces `count` axes (up to FewAxes::kMost), of which the next `fresh` ones are
+    /// replaced by the next of a scrambled Sobol sequence over the half sphere; all when called first.
     void refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh);
 
     /// @param bounce  0 = the first  @param normal unit  @param u uniform in [0, 1)
@@ -94,10 +97,13 @@ public:
     std::size_t first_bounce_layers() const
     {
         std::size_t const n = first_bounce_axes();
-        return n < pool_.size() ? pool_.first_layer[n] : pool_.layers.size();
+        return n < pool_.size() ? pool_.first_layer[n] : pool_.layers.size() + pool_.packed.size();
     }
     vec3 axis(std::size_t a) const { return pool_.grids[a].axis; }
-    float solid_angle(std::size_t a) const { return tables_.axes.empty() ? 2 * kPi / float(few_count_) : tables_.solid_angles[a]; }
+    float solid_angle(std::size_t a) const
+    {
+        return tables_.axes.empty() ? 2 * kPi / float(few_count_) : tables_.solid_angles[a];
+    }
     std::vector<FewAxes> const& few() const { return few_; }
     CosineTables const& tables() const { return tables_; }
     std::uint64_t built() const { return built_; }   ///< axes, so far

@@ -1,6 +1,6 @@
 #pragma once
-// What is cut out of surfaces (alpha masks, blending) is taken out of the buffers when they are built, so that no query
-// has to ask. Partial coverage is a random decision per fragment.
+// What is cut out of surfaces (alpha masks, blending) is taken out of the buffers when they are built, so that no
+// query has to ask. Partial coverage is a random decision per fragment.
 
 #include "gi/base/rng.h"
 #include "gi/raster/nearest_map.h"
@@ -52,7 +52,8 @@ public:
 
     bool none() const { return marked_.empty(); }
     std::vector<std::uint8_t> const& marked() const { return marked_; }
-    /// Drops fragments where the surface is not. @param seed another one, another decision where coverage is partial
+    /// Drops fragments where the surface is not. @param seed another one, another decision where coverage is
+    /// partial
     void remove(Fragments& fragments, RasterGrid const& grid, std::uint32_t seed) const;
     void remove(Fragments& fragments, PerspectiveGrid const& grid, std::uint32_t seed) const;
 

@@ -141,6 +141,8 @@ void check_kernels_can(Camera const& camera, SlhbSettings const& s)
                          "what it sees first takes exact rays, which the device lacks",
                          "choose a perspective camera, or --device cpu");
     if (s.cone > 0) throw InputError("--device cuda with --cone", "its kernels know one column only", suggestion);
+    if (s.packed)
+        throw InputError("--device cuda with --packed", "its kernels read plain layers only", suggestion);
     if (s.gather) throw InputError("--device cuda with --gather", "its kernels choose axes by chance", suggestion);
 }
 
@@ -155,7 +157,7 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
     TriangleSoup const soup = make_soup(world);
     KernelScene<S> scene(world, soup, cut_outs, slhb);
     AxisSet axes({world.bounds, soup, cut_outs, std::uint32_t(slhb.resolution), std::uint32_t(slhb.most_layers),
-                  settings.seed, [&](std::size_t a, RasterGrid const& grid, std::uint32_t seed) {
+                  false, settings.seed, [&](std::size_t a, RasterGrid const& grid, std::uint32_t seed) {
                       scene.build_axis(a, grid, seed);
                   }});
     if (slhb.schedule == Schedule::stored) {

@@ -1,7 +1,7 @@
 #pragma once
-// Direct light by the area formulation (Yu 2012, eq. 5.3): in every pass a few points on lamps (or directions to the sky)
-// are chosen by power, each gets a shadow map, and all paths of the pass are lit by them. Neighbouring pixels take
-// different ones (interleaved sampling), other passes others.
+// Direct light by the area formulation (Yu 2012, eq. 5.3): in every pass a few points on lamps (or directions to
+// the sky) are chosen by power, each gets a shadow map, and all paths of the pass are lit by them. Neighbouring
+// pixels take different ones (interleaved sampling), other passes others.
 
 #include "gi/slhb/shadow_map.h"
 
@@ -20,8 +20,8 @@ class Lamps {
 public:
     /// @param count per pass; where all lights are points or parallel and no more than this, all of them, and they
     /// keep their maps from pass to pass
-    /// @param elsewhere where it is not empty, shadow maps only get their grids here and are drawn there; with a seed
-    /// for the cut-outs
+    /// @param elsewhere where it is not empty, shadow maps only get their grids here and are drawn there; with a
+    /// seed for the cut-outs
     using DrawElsewhere = std::function<void(std::vector<Lamp> const&, std::uint32_t)>;
     Lamps(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t count,
           std::uint32_t resolution, std::uint64_t seed, DrawElsewhere elsewhere = {});

@@ -13,7 +13,8 @@ inline constexpr float kNarrowExponent = 40;
 /// Whether some lobe is narrow, smooth or clear.
 GI_FN inline bool has_narrow_lobe(Bsdf const& b)
 {
-    if (b.model == MaterialModel::phong) return max_component(b.phong_specular) > 0 && b.phong_exponent > kNarrowExponent;
+    if (b.model == MaterialModel::phong)
+        return max_component(b.phong_specular) > 0 && b.phong_exponent > kNarrowExponent;
     return b.clear > 0 || (b.f90.x > 0 && b.alpha < kNarrowAlpha);
 }
 

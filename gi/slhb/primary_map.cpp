@@ -13,10 +13,16 @@ vec2 place_in_pixel(PixelFilter filter, std::uint64_t seed, std::uint32_t pass)
     return 0.5f + filter_offset(filter, vec2(stream.sample_together(0)));
 }
 
-PrimaryMap::PrimaryMap(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, CameraRays const& camera,
-                       RenderSettings const& settings)
-    : soup_(soup), cut_outs_(cut_outs), camera_(camera), width_(settings.width), height_(settings.height),
-      filter_(settings.filter), seed_(settings.seed), near_m_(near_plane(world.bounds))
+PrimaryMap::PrimaryMap(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs,
+                       CameraRays const& camera, RenderSettings const& settings)
+    : soup_(soup),
+      cut_outs_(cut_outs),
+      camera_(camera),
+      width_(settings.width),
+      height_(settings.height),
+      filter_(settings.filter),
+      seed_(settings.seed),
+      near_m_(near_plane(world.bounds))
 {
 }
 
@@ -25,8 +31,9 @@ void PrimaryMap::refresh(std::uint32_t pass)
     at_ = place_in_pixel(filter_, seed_, pass);
     PerspectiveGrid const grid = camera_grid(camera_, width_, height_, at_, near_m_);
     // Parts in a fixed order, whoever computes them: the picture does not depend on threads.
-    std::size_t const part = std::max<std::size_t>(TriangleSoup::kChunk, (soup_.count / 16 + TriangleSoup::kChunk - 1) /
-                                                                             TriangleSoup::kChunk * TriangleSoup::kChunk);
+    std::size_t const part =
+        std::max<std::size_t>(TriangleSoup::kChunk, (soup_.count / 16 + TriangleSoup::kChunk - 1) /
+                                                        TriangleSoup::kChunk * TriangleSoup::kChunk);
     parts_.resize((soup_.count + part - 1) / part);
     tbb::parallel_for(std::size_t(0), parts_.size(), [&](std::size_t k) {
         parts_[k].count = 0;

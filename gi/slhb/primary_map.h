@@ -1,6 +1,6 @@
 #pragma once
-// The first surfaces of a pass: one G-buffer of the whole picture, every pixel seen through the same point of it; passes
-// differ in that point, so that their mean has the pixel filter.
+// The first surfaces of a pass: one G-buffer of the whole picture, every pixel seen through the same point of it;
+// passes differ in that point, so that their mean has the pixel filter.
 
 #include "gi/slhb/cut_outs.h"
 #include "gi/slhb/tracer.h"

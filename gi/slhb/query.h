@@ -1,17 +1,18 @@
 #pragma once
 // The nearest surface beyond a point along an axis: a look-up in a layered hit buffer instead of a ray.
 //
-// A query starts on a triangle of the scene and leaves it along the axis (up) or against it. In the column of layers
-// under the nearest texel centre it finds the layer of the surface it starts from, and the next layer is the answer;
-// its position is the one on the polygon at the texel centre (guide: any other point lies off the surface).
+// A query starts on a triangle of the scene and leaves it along the axis (up) or against it. In the column of
+// layers under the nearest texel centre it finds the layer of the surface it starts from, and the next layer is
+// the answer; its position is the one on the polygon at the texel centre (guide: any other point lies off the
+// surface).
 //
-// Which layer is the origin's own: that of its triangle; else, as the centre may lie beside it, the nearest one of the same
-// facing within `margin`, which is how far the origin's own slope can carry a surface up over a texel. So thin walls, contacts
-// and coplanar twins need no epsilon that fits all: layers are in their true order.
-// A column speaks for the origin if it has the own layer, and if the origin is on the right side of the plane that is
-// hit; the latter is looked at only near by, where it can fail. If not, the other three of the four texel centres
-// around the origin are asked (across an edge, or beyond a wall, the centre sees another world). If none will do, the
-// nearest column counts, from the origin's depth on and for faces towards the walk.
+// Which layer is the origin's own: that of its triangle; else, as the centre may lie beside it, the nearest one of
+// the same facing within `margin`, which is how far the origin's own slope can carry a surface up over a texel. So
+// thin walls, contacts and coplanar twins need no epsilon that fits all: layers are in their true order. A column
+// speaks for the origin if it has the own layer, and if the origin is on the right side of the plane that is hit;
+// the latter is looked at only near by, where it can fail. If not, the other three of the four texel centres
+// around the origin are asked (across an edge, or beyond a wall, the centre sees another world). If none will do,
+// the nearest column counts, from the origin's depth on and for faces towards the walk.
 
 #include "gi/slhb/hit_buffer.h"
 
@@ -78,10 +79,7 @@ struct Walk {
     GI_FN bool next(HitLayer& layer)
     {
         if (left[0] == 0 && left[1] == 0) return false;
-        int const k = left[0] == 0                          ? 1
-                      : left[1] == 0                        ? 0
-                      : (at[1]->depth < at[0]->depth) == (step > 0) ? 1
-                                                            : 0;
+        int const k = left[0] == 0 ? 1 : left[1] == 0 ? 0 : (at[1]->depth < at[0]->depth) == (step > 0) ? 1 : 0;
         layer = *at[k];
         at[k] += step;
         --left[k];

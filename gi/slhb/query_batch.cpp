@@ -44,6 +44,7 @@ TwoWords gather_pairs(void const* base, I index)
 struct GridLanes {
     V right[3], up[3], axis[3], corner_x, corner_y, texel, per_texel, last_i, last_j, width, rounding;
     I first_offset, first_layer;
+    V low, step; ///< of packed depths
 };
 
 GridLanes same_grid(AxisPool const& pool, std::size_t a)
@@ -64,7 +65,9 @@ GridLanes same_grid(AxisPool const& pool, std::size_t a)
             set(float(g.width)),
             set(g.rounding),
             hn::Set(integers, std::int32_t(pool.first_offset[a])),
-            hn::Set(integers, std::int32_t(pool.first_layer[a]))};
+            hn::Set(integers, std::int32_t(pool.first_layer[a])),
+            set(pool.packed.empty() ? 0 : pool.packed_low[a]),
+            set(pool.packed.empty() ? 0 : pool.packed_step[a])};
 }
 
 GridLanes own_grids(AxisPool const& pool, std::uint32_t const* axes)
@@ -97,11 +100,13 @@ GridLanes own_grids(AxisPool const& pool, std::uint32_t const* axes)
             width,
             real(g.rounding),
             of_axis(pool.first_offset),
-            of_axis(pool.first_layer)};
+            of_axis(pool.first_layer),
+            pool.packed.empty() ? hn::Zero(d) : hn::GatherIndex(d, pool.packed_low.data(), a),
+            pool.packed.empty() ? hn::Zero(d) : hn::GatherIndex(d, pool.packed_step.data(), a)};
 }
 
-/// Texel coordinates (whole numbers) of the column that is asked at an attempt: the nearest centre; then across the
-/// nearer border of its texel, across the other, and across both.
+/// Texel coordinates (whole numbers) of the column that is asked at an attempt: the nearest centre; then across
+/// the nearer border of its texel, across the other, and across both.
 struct Cell {
     V i, j;
 };
@@ -149,8 +154,8 @@ struct Columns {
     alignas(64) std::int32_t first_layer[kBlock]; ///< of the axis
 };
 
-void find_columns(AxisPool const& pool, GridLanes const& g, int attempt, QueryBatch const& b, std::size_t first,
-                  std::size_t at, Columns& columns)
+void find_columns(GridLanes const& g, int attempt, QueryBatch const& b, std::size_t first, std::size_t at,
+                  Columns& columns)
 {
     Floats const d;
     Integers const integers;
@@ -164,20 +169,45 @@ void find_columns(AxisPool const& pool, GridLanes const& g, int attempt, QueryBa
     hn::Store(cell.j, d, columns.j + at);
     hn::Store(texel, integers, columns.texel + at);
     hn::Store(g.first_layer, integers, columns.first_layer + at);
-    for (std::size_t k = at; k < at + hn::Lanes(d); ++k) __builtin_prefetch(&pool.offset[std::size_t(columns.texel[k])]);
 }
 
-void fetch_layers(AxisPool const& pool, Columns const& columns, QueryBatch const& b, std::size_t first, std::size_t n)
+/// Worth it where queries walk along many axes, whose buffers lie in no cache.
+void fetch(AxisPool const& pool, Columns const& columns, QueryBatch const& b, std::size_t first, std::size_t n)
 {
+    for (std::size_t k = 0; k < n; ++k) __builtin_prefetch(&pool.offset[std::size_t(columns.texel[k])]);
     for (std::size_t k = 0; k < n; ++k) {
         auto const t = std::size_t(columns.texel[k]);
         bool const up = (b.triangle[first + k] & kWalkUp) != 0;
-        __builtin_prefetch(pool.layers.data() + std::size_t(columns.first_layer[k]) + pool.offset[t + (up ? 0 : 1)] -
-                           (up ? 0 : 1));
+        __builtin_prefetch(pool.layers.data() + std::size_t(columns.first_layer[k]) +
+                           pool.offset[t + (up ? 0 : 1)] - (up ? 0 : 1));
+    }
+}
+
+struct LayerLanes {
+    V depth;
+    W primitive; ///< with its facing
+};
+
+template <bool kPacked>
+LayerLanes load_layers(AxisPool const& pool, GridLanes const& g, I index)
+{
+    Floats const d;
+    Words const words;
+    if constexpr (kPacked) {
+        Integers const integers;
+        W const word = hn::BitCast(
+            words, hn::GatherIndex(integers, reinterpret_cast<std::int32_t const*>(pool.packed.data()), index));
+        V const step = hn::ConvertTo(d, hn::BitCast(integers, hn::ShiftRight<20>(word)));
+        W const facing = hn::And(hn::ShiftLeft<12>(word), hn::Set(words, kAlongAxis));
+        return {hn::MulAdd(step, g.step, g.low), hn::Or(facing, hn::And(word, hn::Set(words, kPackedTriangles - 1)))};
+    } else {
+        TwoWords const record = gather_pairs<3>(pool.layers.data(), index);
+        return {hn::BitCast(d, record.first), record.second};
     }
 }
 
 /// One vector of queries; query_detail::look_into in lanes.
+template <bool kPacked>
 Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, QueryBatch& b, std::size_t first,
                      Columns const& columns, std::size_t column)
 {
@@ -213,10 +243,10 @@ Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, Quer
     W answer = hn::Set(words, kNoLayerHit), plain = answer;
     I answer_at = zero, plain_at = zero;
     for (M running = hn::RebindMask(d, hn::Gt(left, zero)); !hn::AllFalse(d, running);) {
-        TwoWords const record =
-            gather_pairs<3>(pool.layers.data(), hn::IfThenElseZero(hn::RebindMask(integers, running), at));
-        V const layer_depth = hn::BitCast(d, record.first);
-        W const layer = record.second, facing = hn::And(layer, facing_bit);
+        // Not by `running`: so the next layers can be under way while these are judged.
+        LayerLanes const record = load_layers<kPacked>(pool, g, hn::IfThenElseZero(hn::Gt(left, zero), at));
+        V const layer_depth = record.depth;
+        W const layer = record.primitive, facing = hn::And(layer, facing_bit);
         V const from_origin = hn::MulSub(sign, layer_depth, origin), distance = hn::Abs(from_origin);
         M const same = hn::RebindMask(d, hn::Eq(hn::And(layer, hn::Set(words, kPrimitiveMask)), own));
         M const alike = hn::And(hn::RebindMask(d, hn::Eq(facing, own_facing)), hn::Le(distance, best));
@@ -235,7 +265,8 @@ Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, Quer
         answer_at = hn::IfThenElse(hn::RebindMask(integers, new_hit), at, answer_at);
         if (attempt == 0) {
             M const faces = hn::RebindMask(d, hn::Eq(facing, towards));
-            M const new_plain = hn::And(hn::AndNot(plain_hit, hn::And(other, faces)), hn::Gt(from_origin, g.rounding));
+            M const new_plain =
+                hn::And(hn::AndNot(plain_hit, hn::And(other, faces)), hn::Gt(from_origin, g.rounding));
             plain_hit = hn::Or(plain_hit, new_plain);
             plain_depth = hn::IfThenElse(new_plain, layer_depth, plain_depth);
             plain = hn::IfThenElse(hn::RebindMask(words, new_plain), layer, plain);
@@ -249,12 +280,14 @@ Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, Quer
     }
     M const near = hn::And(hn::And(found, hit), hn::Lt(gap, hn::Mul(set(4), g.texel)));
     depth = hn::IfThenElse(found, depth, plain_depth);
-    answer = hn::IfThenElse(hn::RebindMask(words, found),
-                            hn::IfThenElse(hn::RebindMask(words, hit), answer, hn::Set(words, kNoLayerHit)), plain);
+    answer =
+        hn::IfThenElse(hn::RebindMask(words, found),
+                       hn::IfThenElse(hn::RebindMask(words, hit), answer, hn::Set(words, kNoLayerHit)), plain);
     V const u = hn::MulAdd(hn::Add(cell.i, set(0.5f)), g.texel, g.corner_x);
     V const v = hn::MulAdd(hn::Add(cell.j, set(0.5f)), g.texel, g.corner_y);
     auto const store = [&](std::size_t k, std::vector<float>& to) {
-        hn::StoreU(hn::MulAdd(depth, g.axis[k], hn::MulAdd(v, g.up[k], hn::Mul(u, g.right[k]))), d, to.data() + first);
+        hn::StoreU(hn::MulAdd(depth, g.axis[k], hn::MulAdd(v, g.up[k], hn::Mul(u, g.right[k]))), d,
+                   to.data() + first);
     };
     store(0, b.hit_x);
     store(1, b.hit_y);
@@ -295,11 +328,12 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
             std::size_t const block = std::min(Columns::kBlock, n - i);
             for (std::size_t k = 0; k < block; k += lanes) {
                 grids_of_block[k / lanes] = grids(i + k);
-                find_columns(pool, grids_of_block[k / lanes], attempt, b, i + k, k, columns);
+                find_columns(grids_of_block[k / lanes], attempt, b, i + k, k, columns);
             }
-            fetch_layers(pool, columns, b, i, block);
+            if constexpr (Grids::kMany) fetch(pool, columns, b, i, block);
         }
-        Answer answer = answer_vector(pool, grids_of_block[column / lanes], attempt, b, i, columns, column);
+        auto const answer_lanes = pool.packed.empty() ? answer_vector<false> : answer_vector<true>;
+        Answer answer = answer_lanes(pool, grids_of_block[column / lanes], attempt, b, i, columns, column);
         if (n - i < lanes) {
             std::uint32_t const there = (1u << (n - i)) - 1;
             answer = {answer.unsure & there, answer.near & there};
@@ -320,17 +354,17 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
     std::ranges::sort(unsure);
 }
 
-template <class MakeGrids>
-void answer_all(AxisPool const& pool, MakeGrids const& make_grids, View<Surface const> surfaces, QueryBatch& b)
+template <class Grids>
+void answer_all(AxisPool const& pool, std::size_t a, View<Surface const> surfaces, QueryBatch& b)
 {
     thread_local std::vector<std::uint32_t> waiting, unsure;
     thread_local QueryBatch again;
     b.resize(b.size());
-    ask(pool, make_grids(b), surfaces, 0, b, waiting);
+    ask(pool, Grids(pool, a, b), surfaces, 0, b, waiting);
     for (int attempt = 1; attempt < 4 && !waiting.empty(); ++attempt) {
         again.resize(waiting.size());
         for (std::size_t k = 0; k < waiting.size(); ++k) copy_query(b, waiting[k], again, k);
-        ask(pool, make_grids(again), surfaces, attempt, again, unsure);
+        ask(pool, Grids(pool, a, again), surfaces, attempt, again, unsure);
         std::size_t left = 0, next = 0;
         for (std::uint32_t k = 0; k < waiting.size(); ++k) {
             if (next < unsure.size() && unsure[next] == k) {
@@ -358,7 +392,31 @@ AxisView AxisPool::axis(std::size_t a) const
     return {{{grids[a], {offsets, texels + 1}, {layers.data() + first_layer[a], offsets[texels]}}, {}}};
 }
 
-void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool)
+namespace {
+
+void pack(HitBuffer const& b, AxisPool& pool, std::uint32_t* to)
+{
+    float low = kInf, high = -kInf;
+    for (HitLayer const& l : b.layers) {
+        low = std::min(low, l.depth);
+        high = std::max(high, l.depth);
+    }
+    constexpr float kSteps = 4095;
+    float const step = high > low ? (high - low) / kSteps : 1;
+    pool.packed_low.push_back(b.layers.empty() ? 0 : low);
+    pool.packed_step.push_back(step);
+    for (HitLayer const& l : b.layers) {
+        std::uint32_t const triangle = l.primitive & kPrimitiveMask;
+        if (triangle >= kPackedTriangles)
+            throw InputError("packed layers hold 524288 triangles", "the scene has more", "leave out --packed");
+        auto const depth = std::uint32_t(std::min(kSteps, std::round((l.depth - low) / step)));
+        *to++ = depth << 20 | ((l.primitive & kAlongAxis) != 0 ? kPackedTriangles : 0) | triangle;
+    }
+}
+
+} // namespace
+
+void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool, bool packed)
 {
     pool.grids.clear();
     pool.first_offset.clear();
@@ -373,18 +431,25 @@ void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool)
         throw InputError("the hit buffers have more than 2^31 layers", "they are indexed with 32 bits",
                          "lower the resolution or the number of directions");
     resize_on_huge_pages(pool.offset, offsets);
-    resize_on_huge_pages(pool.layers, layers);
+    resize_on_huge_pages(pool.layers, packed ? 0 : layers);
+    resize_on_huge_pages(pool.packed, packed ? layers : 0);
+    pool.packed_low.clear();
+    pool.packed_step.clear();
     std::size_t offset = 0, layer = 0;
     for (HitBuffer const& b : buffers) {
         pool.grids.push_back(b.grid);
         pool.first_offset.push_back(std::uint32_t(offset));
         pool.first_layer.push_back(std::uint32_t(layer));
         std::ranges::copy(b.offset, pool.offset.data() + pool.first_offset.back());
-        std::ranges::copy(b.layers, pool.layers.data() + pool.first_layer.back());
+        if (packed)
+            pack(b, pool, pool.packed.data() + pool.first_layer.back());
+        else
+            std::ranges::copy(b.layers, pool.layers.data() + pool.first_layer.back());
         offset += b.offset.size();
         layer += b.layers.size();
     }
-    if (pool.layers.empty()) pool.layers.push_back({}); // vectors read something where they have nothing to read
+    if (packed && pool.packed.empty()) pool.packed.push_back(0);
+    if (!packed && pool.layers.empty()) pool.layers.push_back({}); // vectors read something where they have nothing to read
 }
 
 void QueryBatch::resize(std::size_t n)
@@ -409,17 +474,35 @@ void QueryBatch::set(std::size_t i, WalkOrigin const& o, std::uint32_t along_axi
     axis[i] = along_axis;
 }
 
+namespace {
+
+struct ManyGrids {
+    static constexpr bool kMany = true;
+    AxisPool const& pool;
+    std::uint32_t const* axes;
+
+    ManyGrids(AxisPool const& p, std::size_t, QueryBatch const& b) : pool(p), axes(b.axis.data()) {}
+    GridLanes operator()(std::size_t i) const { return own_grids(pool, axes + i); }
+};
+
+struct OneGrid {
+    static constexpr bool kMany = false;
+    GridLanes grid;
+
+    OneGrid(AxisPool const& p, std::size_t a, QueryBatch const&) : grid(same_grid(p, a)) {}
+    GridLanes const& operator()(std::size_t) const { return grid; }
+};
+
+} // namespace
+
 void nearest_layers(AxisPool const& pool, View<Surface const> surfaces, QueryBatch& batch)
 {
-    answer_all(pool, [&](QueryBatch const& b) { return [&](std::size_t i) { return own_grids(pool, b.axis.data() + i); }; },
-               surfaces, batch);
+    answer_all<ManyGrids>(pool, 0, surfaces, batch);
 }
 
 void nearest_layers(AxisPool const& pool, std::size_t a, View<Surface const> surfaces, QueryBatch& batch)
 {
-    GridLanes const grid = same_grid(pool, a);
-    answer_all(pool, [&](QueryBatch const&) { return [&](std::size_t) -> GridLanes const& { return grid; }; }, surfaces,
-               batch);
+    answer_all<OneGrid>(pool, a, surfaces, batch);
 }
 
 } // namespace gi

@@ -18,8 +18,8 @@ bool narrow_somewhere(World const& world)
         if (!used[m]) continue;
         Material const& material = world.materials[m];
         if (has_narrow_lobe(world.bsdfs[m])) return true;
-        bool const textured = material.metallic_roughness_map.texture >= 0 || material.transmission_map.texture >= 0 ||
-                              material.specular_map.texture >= 0;
+        bool const textured = material.metallic_roughness_map.texture >= 0 ||
+                              material.transmission_map.texture >= 0 || material.specular_map.texture >= 0;
         // A roughness map can make any roughness smaller.
         if (textured && (material.specular > 0 || material.metallic > 0 || material.transmission > 0)) return true;
     }
@@ -28,10 +28,7 @@ bool narrow_somewhere(World const& world)
 
 } // namespace
 
-bool needs_exact_rays(World const& world, Camera const& camera)
-{
-    return camera.orthographic || narrow_somewhere(world);
-}
+bool needs_exact_rays(World const& world, bool orthographic) { return orthographic || narrow_somewhere(world); }
 
 SlhbSettings choose_settings(RenderSettings const& asked, World const& world)
 {
@@ -49,8 +46,8 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world)
     double const axis = 2e-9 * triangles + 2e-8 * double(s.resolution) * s.resolution;
     if (s.axes == 0) s.axes = s.schedule == Schedule::temporal ? 16 : worth(axis, 2, 4);
     if (s.axes > int(FewAxes::kMost))
-        throw InputError(fmt::format("{} axes in a pass", s.axes), fmt::format("there is room for {}", FewAxes::kMost),
-                         "use --schedule stored for more");
+        throw InputError(fmt::format("{} axes in a pass", s.axes),
+                         fmt::format("there is room for {}", FewAxes::kMost), "use --schedule stored for more");
     if (s.fresh_axes == 0) s.fresh_axes = s.schedule == Schedule::temporal ? std::max(1, s.axes / 8) : s.axes;
     s.fresh_axes = std::min(s.fresh_axes, s.axes);
     bool const from_points = world.emitters.empty() && world.environment_select.empty();
@@ -58,6 +55,33 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world)
     double const map = 5e-9 * triangles + 1e-8 * double(s.shadow_resolution) * s.shadow_resolution;
     if (s.lamps == 0) s.lamps = from_points ? 16 : worth(map, 1, 4);
     return s;
+}
+
+std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, bool orthographic)
+{
+    SlhbSettings const s = choose_settings(asked, world);
+    std::vector<PlanItem> items;
+    char const* const names[] = {"automatic", "stored", "streamed", "temporal"};
+    items.push_back({fmt::format("schedule {}", names[int(s.schedule)]), true,
+                     s.schedule == Schedule::streamed ? "no set of directions limits how far the error falls"
+                                                      : "asked for"});
+    if (s.schedule == Schedule::stored)
+        items.push_back({"directions " + s.directions, true, "built once, all paths draw from them"});
+    else
+        items.push_back({fmt::format("{} axes for each bounce of a pass", s.axes), true,
+                         fmt::format("for {} triangles and {} x {} pixels", world.triangles.size(), asked.width,
+                                     asked.height)});
+    items.push_back({fmt::format("hit buffers of {0} x {0} texels", s.resolution), true,
+                     fmt::format("{} triangles", world.triangles.size())});
+    bool const lit = !world.light_select.empty();
+    items.push_back({fmt::format("{} shadow maps of {} x {}", s.lamps, s.shadow_resolution, s.shadow_resolution), lit,
+                     lit ? "points on lights that light a pass" : "nothing shines"});
+    bool const exact = needs_exact_rays(world, orthographic);
+    items.push_back({"exact rays (Embree) beside look-ups", exact,
+                     orthographic ? "the camera is orthographic"
+                     : exact      ? "mirrors, glass or narrow lobes cannot live on a set of axes"
+                                  : "every lobe is broad"});
+    return items;
 }
 
 } // namespace gi

@@ -9,8 +9,11 @@ namespace gi {
 /// Every number of SlhbSettings chosen. Throws InputError on values that cannot work together.
 SlhbSettings choose_settings(RenderSettings const& asked, World const& world);
 
-/// Whether some path of the scene has to continue with an exact ray, or the camera needs them (orthographic ones have
-/// no raster yet).
-bool needs_exact_rays(World const& world, Camera const& camera);
+/// What choose_settings decides for a scene and why, as lines of the plan.
+std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, bool orthographic);
+
+/// Whether some path of the scene has to continue with an exact ray, or the camera needs them (orthographic ones
+/// have no raster yet).
+bool needs_exact_rays(World const& world, bool orthographic);
 
 } // namespace gi

@@ -18,7 +18,8 @@ bool sees_only_dark(ShadowView const& view, PerspectiveGrid const& face)
 {
     if (view.facing == vec3{0}) return false;
     float const within = glm::dot(view.facing, face.forward);
-    float const across = std::abs(view.facing.x) + std::abs(view.facing.y) + std::abs(view.facing.z) - std::abs(within);
+    float const across =
+        std::abs(view.facing.x) + std::abs(view.facing.y) + std::abs(view.facing.z) - std::abs(within);
     return within + across <= 0;
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 // What a lamp sees: a cube of six pinhole views about a point, or one orthographic view along a direction.
 //
-// Look-up: the plane of the lit surface is compared with the stored depth at the same texel centre, so that flat and convex
-// surfaces never shadow themselves. What lies nearer to the lamp by a few texels only, as the wall does beside a
-// floor, casts a shadow if the lit point is behind its plane: no bias, no tolerance.
-// Percentage-closer filtering: the texel is chosen among the four around by random numbers, which in the mean over
-// paths is the bilinear filter.
+// Look-up: the plane of the lit surface is compared with the stored depth at the same texel centre, so that flat
+// and convex surfaces never shadow themselves. What lies nearer to the lamp by a few texels only, as the wall does
+// beside a floor, casts a shadow if the lit point is behind its plane: no bias, no tolerance. Percentage-closer
+// filtering: the texel is chosen among the four around by random numbers, which in the mean over paths is the
+// bilinear filter.
 
 #include "gi/scene/light_sampling.h"
 #include "gi/slhb/cut_outs.h"
@@ -45,7 +45,8 @@ bool sees_only_dark(ShadowView const& view, PerspectiveGrid const& face);
 
 class ShadowMapBuilder {
 public:
-    ShadowMapBuilder(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t resolution)
+    ShadowMapBuilder(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs,
+                     std::uint32_t resolution)
         : bounds_(world.bounds), soup_(soup), cut_outs_(cut_outs), resolution_(resolution)
     {
     }

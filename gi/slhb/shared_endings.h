@@ -1,6 +1,7 @@
 #pragma once
-// Paths of one pass that end on the same side of the same layer: what it sends back is computed once, by one path that
-// goes on from there, and added to all of them. Each pixel's estimate is what it would be alone; neighbours share noise.
+// Paths of one pass that end on the same side of the same layer: what it sends back is computed once, by one path
+// that goes on from there, and added to all of them. Each pixel's estimate is what it would be alone; neighbours
+// share noise.
 
 #include "gi/slhb/tracer.h"
 
@@ -24,7 +25,8 @@ public:
 private:
     static std::size_t key(Ending const& e) { return 2 * std::size_t(e.layer) + (e.up ? 1 : 0); }
 
-    std::vector<std::uint32_t> slots_; ///< per layer and side: the first pixel that ends there; then the index of its start
+    std::vector<std::uint32_t>
+        slots_; ///< per layer and side: the first pixel that ends there; then the index of its start
     std::vector<PathStart> starts_;
     std::vector<vec3> radiance_;
     std::uint64_t shaded_ = 0;

@@ -25,8 +25,8 @@ struct WorkCounts {
 };
 
 /// Primary hits through exact rays, for the cameras that have no raster.
-void exact_hits(ExactVisibility const& exact, CameraRays const& camera, RenderSettings const& s, std::uint32_t pass,
-                std::size_t first, std::size_t last, std::vector<PathStart>& out)
+void exact_hits(ExactVisibility const& exact, CameraRays const& camera, RenderSettings const& s,
+                std::uint32_t pass, std::size_t first, std::size_t last, std::vector<PathStart>& out)
 {
     std::vector<RayQuery> rays;
     out.clear();
@@ -56,18 +56,20 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     SlhbSettings const slhb = choose_settings(settings, world);
     CameraRays const rays = camera_rays(camera, settings.width, settings.height, world.origin);
     std::unique_ptr<ExactVisibility> exact;
-    if (needs_exact_rays(world, camera)) {
+    if (needs_exact_rays(world, camera.orthographic)) {
         StageTimer const timer(report, "build (Embree BVH)");
         exact = std::make_unique<ExactVisibility>(world, plan.alpha_tests, settings.threads);
     }
     CutOuts const cut_outs(world);
     TriangleSoup const soup = make_soup(world);
-    AxisSet axes({world.bounds, soup, cut_outs, std::uint32_t(slhb.resolution), std::uint32_t(slhb.most_layers), settings.seed});
+    AxisSet axes({world.bounds, soup, cut_outs, std::uint32_t(slhb.resolution), std::uint32_t(slhb.most_layers),
+                  slhb.packed, settings.seed});
     if (slhb.schedule == Schedule::stored) {
         StageTimer const timer(report, "build (hit buffers)");
         axes.store(make_directions(slhb.directions));
     }
-    Lamps lamps(world, soup, cut_outs, std::uint32_t(slhb.lamps), std::uint32_t(slhb.shadow_resolution), settings.seed);
+    Lamps lamps(world, soup, cut_outs, std::uint32_t(slhb.lamps), std::uint32_t(slhb.shadow_resolution),
+                settings.seed);
     PrimaryMap primary(world, soup, cut_outs, rays, settings);
     SlhbTracer const tracer(world, rays, settings, slhb);
 
@@ -95,7 +97,8 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
             primary.refresh(index);
         }
         StageTimer const timer(report, "paths");
-        std::uint32_t const gathered = slhb.gather ? index % std::uint32_t(axes.first_bounce_axes()) : kNoPrimitive;
+        std::uint32_t const gathered =
+            slhb.gather ? index % std::uint32_t(axes.first_bounce_axes()) : kNoPrimitive;
         SlhbTracer::Pass const now{axes, lamps, exact.get(), index, gathered};
         std::size_t const pixels = sums.pixels.size();
         // Where many paths end on few layers, what a layer sends back is computed once.
@@ -125,7 +128,8 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
         in_blocks(shared.starts().size(), [&](std::size_t first, std::size_t last, WorkCounts& local) {
             thread_local std::vector<PathSample> sent;
             sent.resize(last - first);
-            tracer.trace(now, std::span(shared.starts()).subspan(first, last - first), sent, {}, local.paths, local.slhb);
+            tracer.trace(now, std::span(shared.starts()).subspan(first, last - first), sent, {}, local.paths,
+                         local.slhb);
             shared.keep(first, sent);
         });
         in_blocks(pixels, [&](std::size_t first, std::size_t last, WorkCounts&) {
@@ -152,7 +156,9 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     report.count("exact rays", double(total.slhb.exact_rays));
     report.count("layers shaded for several paths", double(shared.shaded()));
     report.count("axes built", double(axes.built()));
-    report.count("layers per texel, mean", axes.built() > 0 ? double(axes.layers()) / double(axes.built()) / (double(slhb.resolution) * slhb.resolution) : 0);
+    report.count("layers per texel, mean", axes.built() > 0 ? double(axes.layers()) / double(axes.built()) /
+                                                                  (double(slhb.resolution) * slhb.resolution)
+                                                            : 0);
     report.count("shadow maps built", double(lamps.maps_built()));
     report.lose("layers beyond the limit of a texel", axes.lost());
     result.rays = double(total.slhb.queries + total.slhb.shadow_lookups + total.slhb.exact_rays);

@@ -20,7 +20,7 @@ struct SlhbTracer::State {
     RqmcStream random;
     std::uint32_t triangle;
     vec2 barycentric;
-    vec3 position;  ///< only read where has_position
+    vec3 position; ///< only read where has_position
     bool has_position = false;
     vec3 direction; ///< of arrival
     vec3 throughput{1};
@@ -38,10 +38,10 @@ struct SlhbTracer::State {
 struct SlhbTracer::Vertex {
     std::uint32_t path;
     bool exact;
-    Ray ray;            ///< exact
-    WalkOrigin origin;  ///< else
+    Ray ray;           ///< exact
+    WalkOrigin origin; ///< else
     std::uint32_t axis;
-    LayerHit hit;       ///< answer of a query
+    LayerHit hit; ///< answer of a query
     std::uint32_t layer;
 };
 
@@ -92,7 +92,8 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, ShadingPoint const
     ShadowMap::Place const place =
         l.shadow.look(at.position, at.geometric_normal, s.random.noise2(s.dimension(shadow)));
     __builtin_prefetch(place.texel);
-    direct.push_back({&l.shadow, place, at.position, s.triangle, s.throughput * value, &s.bucket(s.scatterings + 1)});
+    direct.push_back(
+        {&l.shadow, place, at.position, s.triangle, s.throughput * value, &s.bucket(s.scatterings + 1)});
 }
 
 /// False where the path ends.
@@ -139,7 +140,8 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
     next.exact = false;
     float const u_lobe = narrow ? s.random.sample(s.dimension(lobe)) : 1;
     if (narrow && takes_narrow_lobe(at.bsdf, wo, u_lobe)) {
-        BsdfSample const sampled = gi::sample(at.bsdf, wo, at.front, u_lobe, s.random.sample2(s.dimension(lobe_u)));
+        BsdfSample const sampled =
+            gi::sample(at.bsdf, wo, at.front, u_lobe, s.random.sample2(s.dimension(lobe_u)));
         if (last && !sampled.delta) return false;
         s.throughput *= sampled.weight;
         delta = sampled.delta;
@@ -151,15 +153,18 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
     } else {
         if (last || !(wo.z > 0)) return false;
         // The last surface would only bring light that exact rays or the sky can bring.
-        if (s.scatterings == bounces_ && pass.exact == nullptr && world_.environment_radiance.empty()) return false;
+        if (s.scatterings == bounces_ && pass.exact == nullptr && world_.environment_radiance.empty())
+            return false;
         AxisSample a;
         if (s.vertex == 0 && pass.gather_axis != kNoPrimitive) {
             vec3 const along = pass.axes.axis(pass.gather_axis);
             float const cosine = glm::dot(along, at.frame.normal);
             a = {pass.gather_axis, cosine < 0 ? -along : along,
-                 std::abs(cosine) * pass.axes.solid_angle(pass.gather_axis) * float(pass.axes.first_bounce_axes()) * kInvPi};
+                 std::abs(cosine) * pass.axes.solid_angle(pass.gather_axis) *
+                     float(pass.axes.first_bounce_axes()) * kInvPi};
         } else {
-            a = pass.axes.sample(std::uint32_t(s.scatterings), at.frame.normal, s.random.sample(s.dimension(axis)));
+            a = pass.axes.sample(std::uint32_t(s.scatterings), at.frame.normal,
+                                 s.random.sample(s.dimension(axis)));
         }
         direction = a.direction;
         vec3 const wi = at.frame.to_local(direction);
@@ -173,8 +178,8 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
         next.axis = a.axis;
         vec3 const normal = glm::cross(surface.edge1, surface.edge2);
         vec3 const along_axis = pass.axes.axis(a.axis);
-        next.origin = {at.position, s.triangle, glm::dot(normal, along_axis) > 0, glm::dot(direction, along_axis) > 0,
-                       std::sqrt(std::max(0.0f, 1 - side * side)) / side};
+        next.origin = {at.position, s.triangle, glm::dot(normal, along_axis) > 0,
+                       glm::dot(direction, along_axis) > 0, std::sqrt(std::max(0.0f, 1 - side * side)) / side};
         if (cone_ > 0) {
             RasterGrid const& grid = pass.axes.pool().grids[a.axis];
             vec2 const off = cone_ * grid.texel * square_to_disk(s.random.noise2(s.dimension(cone)));
@@ -219,14 +224,17 @@ void SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
         if (!vertices[k].exact) order[first[vertices[k].axis]++] = k;
     auto const answer = [&](std::size_t from, std::size_t to, auto const& ask) {
         batch.resize(to - from);
-        for (std::size_t k = from; k < to; ++k) batch.set(k - from, vertices[order[k]].origin, vertices[order[k]].axis);
+        for (std::size_t k = from; k < to; ++k)
+            batch.set(k - from, vertices[order[k]].origin, vertices[order[k]].axis);
         ask();
         for (std::size_t k = from; k < to; ++k) {
             std::uint32_t const hit = batch.hit[k - from];
             LayerHit& to_fill = vertices[order[k]].hit;
             to_fill = {};
             if (hit == kNoLayerHit) continue;
-            to_fill = {hit & kPrimitiveMask, {batch.hit_x[k - from], batch.hit_y[k - from], batch.hit_z[k - from]}, (hit & kAlongAxis) != 0};
+            to_fill = {hit & kPrimitiveMask,
+                       {batch.hit_x[k - from], batch.hit_y[k - from], batch.hit_z[k - from]},
+                       (hit & kAlongAxis) != 0};
             vertices[order[k]].layer = batch.hit_layer[k - from];
             __builtin_prefetch(&world_.surfaces[to_fill.triangle]);
         }
@@ -269,9 +277,10 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
             // The raster says which triangle; the ray says where on its plane.
             Surface const& surface = world_.surfaces[start.triangle];
             vec3 const normal = glm::cross(surface.edge1, surface.edge2);
-            float const t = glm::dot(normal, surface.corner - start.ray.origin) / glm::dot(normal, start.ray.direction);
-            s.barycentric =
-                std::isfinite(t) ? barycentric_at(surface, start.ray.origin + t * start.ray.direction) : vec2{1.0f / 3};
+            float const t =
+                glm::dot(normal, surface.corner - start.ray.origin) / glm::dot(normal, start.ray.direction);
+            s.barycentric = std::isfinite(t) ? barycentric_at(surface, start.ray.origin + t * start.ray.direction)
+                                             : vec2{1.0f / 3};
         }
         states[k] = s;
         vertices[k].path = std::uint32_t(k);
@@ -292,7 +301,9 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
         std::span<Vertex> const now(vertices.data(), active);
         rays.clear();
         for (Vertex const& v : now)
-            if (v.exact) rays.push_back({.ray = v.ray, .seed = states[v.path].random.seed + std::uint32_t(states[v.path].vertex)});
+            if (v.exact)
+                rays.push_back(
+                    {.ray = v.ray, .seed = states[v.path].random.seed + std::uint32_t(states[v.path].vertex)});
         if (rays.size() < active) ask_axes(pass, now);
         ray_hits.resize(rays.size());
         if (!rays.empty()) pass.exact->nearest(rays, ray_hits);

@@ -1,11 +1,13 @@
 #pragma once
-// Paths through layered hit buffers. Primary surfaces come from a G-buffer, direct light from shadow maps; a diffuse or
-// broad lobe continues along one of the axes of the pass (hemisphere formulation, Yu 2012, eq. 5.7), a mirror, glass or
-// narrow lobe with an exact ray. Paths of a block advance together, one surface at a time: all shadings, then all queries.
+// Paths through layered hit buffers. Primary surfaces come from a G-buffer, direct light from shadow maps; a
+// diffuse or broad lobe continues along one of the axes of the pass (hemisphere formulation, Yu 2012, eq. 5.7), a
+// mirror, glass or narrow lobe with an exact ray. Paths of a block advance together, one surface at a time: all
+// shadings, then all queries.
 //
 // Estimators. Axis k is drawn with chance p_k in proportion to solid angle times cosine; the factor of a path is
-// f cos w_k / p_k, times the balance heuristic against the narrow lobes where there are some (one-sample model, Veach 1997, sec. 9.2.4).
-// Lamps are found by light sampling alone, except by exact rays; the sky by both, with the power heuristic.
+// f cos w_k / p_k, times the balance heuristic against the narrow lobes where there are some (one-sample model,
+// Veach 1997, sec. 9.2.4). Lamps are found by light sampling alone, except by exact rays; the sky by both, with
+// the power heuristic.
 
 #include "gi/base/rqmc.h"
 #include "gi/image/render_settings.h"
@@ -31,11 +33,12 @@ struct PathStart {
     bool on_layer = false;  ///< the first scattering has been
 };
 
-/// The rest of a path that ends on a matt layer: what the layer sends back is the same for all paths that met its side.
+/// The rest of a path that ends on a matt layer: what the layer sends back is the same for all paths that met its
+/// side.
 struct Ending {
     std::uint32_t layer = kNoLayerHit; ///< of the pool; kNoLayerHit = none
     std::uint32_t triangle;
-    bool up;        ///< the walk that met it
+    bool up; ///< the walk that met it
     vec3 position;
     vec3 throughput;
 };
@@ -47,12 +50,17 @@ public:
         AxisSet const& axes;
         Lamps const& lamps;
         ExactVisibility const* exact;
-        std::uint32_t index;      ///< of the path of each pixel
+        std::uint32_t index;       ///< of the path of each pixel
         std::uint32_t gather_axis; ///< taken by every first bounce; kNoPrimitive = by chance
     };
 
-    SlhbTracer(World const& world, CameraRays const& camera, RenderSettings const& settings, SlhbSettings const& slhb)
-        : world_(view(world)), camera_(camera), bounces_(settings.bounces), seed_(settings.seed), width_(settings.width),
+    SlhbTracer(World const& world, CameraRays const& camera, RenderSettings const& settings,
+               SlhbSettings const& slhb)
+        : world_(view(world)),
+          camera_(camera),
+          bounces_(settings.bounces),
+          seed_(settings.seed),
+          width_(settings.width),
           cone_(slhb.cone)
     {
     }
@@ -68,7 +76,8 @@ private:
     struct Unshadowed;
 
     /// All in one function, so that vectors stay in registers.
-    [[gnu::flatten]] bool shade(Pass const& pass, State& s, Vertex& next, std::vector<Unshadowed>& direct, PathCounts& paths) const;
+    [[gnu::flatten]] bool shade(Pass const& pass, State& s, Vertex& next, std::vector<Unshadowed>& direct,
+                                PathCounts& paths) const;
     void add_direct(Pass const& pass, State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
                     std::vector<Unshadowed>& direct) const;
     void add_sky(State& s) const;

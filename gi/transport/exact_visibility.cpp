@@ -93,8 +93,8 @@ void ExactVisibility::add_triangles(World const& world, RTCBuffer positions, uns
     RTCGeometry const geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0, sizeof(vec3),
                          world.positions.size());
-    auto* const triangles = static_cast<uvec3*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3), count));
+    auto* const triangles = static_cast<uvec3*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3), count));
     if (triangles == nullptr) throw std::bad_alloc();
     for (std::size_t i = 0; i < count; ++i)
         triangles[i] = world.triangles[world_triangle(geometry_id, std::uint32_t(i))];
@@ -123,8 +123,7 @@ ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threa
         // Embree reads 16 bytes from every vertex, so the last one needs padding.
         RTCBuffer const positions = rtcNewBuffer(device_.get(), (world.positions.size() + 1) * sizeof(vec3));
         if (positions == nullptr) throw std::bad_alloc();
-        std::copy(world.positions.begin(), world.positions.end(),
-                  static_cast<vec3*>(rtcGetBufferData(positions)));
+        std::copy(world.positions.begin(), world.positions.end(), static_cast<vec3*>(rtcGetBufferData(positions)));
         if (triangles_[kCutOut].empty() || !triangles_[kOpaque].empty()) add_triangles(world, positions, kOpaque);
         if (!triangles_[kCutOut].empty()) add_triangles(world, positions, kCutOut);
         rtcReleaseBuffer(positions);

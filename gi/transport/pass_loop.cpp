@@ -7,7 +7,11 @@ namespace gi {
 
 PassLoop::PassLoop(RenderSettings const& settings, StopRequest const& stop, RenderProgress const& progress,
                    Report& report)
-    : settings_(settings), stop_(stop), progress_(progress), report_(report), sums_(settings.width, settings.height)
+    : settings_(settings),
+      stop_(stop),
+      progress_(progress),
+      report_(report),
+      sums_(settings.width, settings.height)
 {
 }
 
@@ -43,7 +47,8 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
             result.end = RenderEnd::interrupted;
             break;
         }
-        if (settings_.budget_s > 0 && sums_.paths > resumed && seconds_since(start_) + per_path > settings_.budget_s) {
+        if (settings_.budget_s > 0 && sums_.paths > resumed &&
+            seconds_since(start_) + per_path > settings_.budget_s) {
             result.end = RenderEnd::budget;
             break;
         }

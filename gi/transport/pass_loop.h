@@ -1,6 +1,6 @@
 #pragma once
-// The loop that every method renders in: pass after pass until the paths, the time or the error that was asked for,
-// or an interruption; with progress, checkpoints and the losses of all paths.
+// The loop that every method renders in: pass after pass until the paths, the time or the error that was asked
+// for, or an interruption; with progress, checkpoints and the losses of all paths.
 
 #include "gi/image/render_settings.h"
 #include "gi/transport/accumulator.h"
@@ -13,7 +13,8 @@ namespace gi {
 class PassLoop {
 public:
     /// Time counts from here on: make it before the structures that the method builds.
-    PassLoop(RenderSettings const& settings, StopRequest const& stop, RenderProgress const& progress, Report& report);
+    PassLoop(RenderSettings const& settings, StopRequest const& stop, RenderProgress const& progress,
+             Report& report);
 
     /// Traces that many more paths for every pixel, into the sums.
     using Pass = std::function<void(Accumulator&, std::uint32_t paths)>;

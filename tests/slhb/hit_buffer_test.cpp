@@ -56,7 +56,8 @@ TEST(HitBuffer, TenThousandLayersUnderOneTexel)
 {
     Scene scene;
     int const m = add_material(scene, lambert(vec3{0.5f}));
-    for (int k = 0; k < 10000; ++k) add_quad(scene, {-1, -1, 1e-3f * float(k * 7919 % 10000)}, {2, 0, 0}, {0, 2, 0}, m);
+    for (int k = 0; k < 10000; ++k)
+        add_quad(scene, {-1, -1, 1e-3f * float(k * 7919 % 10000)}, {2, 0, 0}, {0, 2, 0}, m);
     World const world = world_of(scene);
     TriangleSoup const soup = make_soup(world);
     RasterGrid const grid = make_grid(world.bounds, vec3{0, 0, 1}, 4, {0.5f, 0.5f}, 0);
@@ -103,7 +104,8 @@ TEST(Query, VectorsAnswerAsThePlainForm)
     std::vector<HitBuffer> buffers;
     for (int a = 0; a < 7; ++a) {
         vec3 const axis = glm::normalize(vec3{rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f});
-        buffers.push_back(make_hit_buffer(soup, make_grid(world.bounds, axis, 24 + 9 * std::uint32_t(a), rng.uniform2(), 6 * rng.uniform())));
+        buffers.push_back(make_hit_buffer(
+            soup, make_grid(world.bounds, axis, 24 + 9 * std::uint32_t(a), rng.uniform2(), 6 * rng.uniform())));
     }
     AxisPool pool;
     fill_pool(buffers, pool);
@@ -126,7 +128,8 @@ TEST(Query, VectorsAnswerAsThePlainForm)
             nearest_layers(pool, a, world.surfaces, alone);
             EXPECT_EQ(alone.hit[0], mixed.hit[k]);
             // Fused products may put a depth on the other side of a comparison.
-            std::uint32_t const expected = plain.triangle == kNoLayerHit ? kNoLayerHit : plain.triangle | (plain.along ? kAlongAxis : 0);
+            std::uint32_t const expected =
+                plain.triangle == kNoLayerHit ? kNoLayerHit : plain.triangle | (plain.along ? kAlongAxis : 0);
             differ += mixed.hit[k] != expected;
             if (mixed.hit[k] != expected || expected == kNoLayerHit) continue;
             vec3 const hit{mixed.hit_x[k], mixed.hit_y[k], mixed.hit_z[k]};
@@ -134,6 +137,39 @@ TEST(Query, VectorsAnswerAsThePlainForm)
         }
         EXPECT_LE(differ, n / 1000);
     }
+}
+
+TEST(Query, PackedLayersAnswerNearlyTheSame)
+{
+    World const world = room_with_spheres();
+    TriangleSoup const soup = make_soup(world);
+    Pcg32 rng(7, 7);
+    std::vector<HitBuffer> buffers;
+    for (int a = 0; a < 3; ++a)
+        buffers.push_back(make_hit_buffer(soup, make_grid(world.bounds, glm::normalize(vec3{1, float(a), 0.4f}), 64, {0.3f, 0.1f}, 1)));
+    AxisPool exact, packed;
+    fill_pool(buffers, exact);
+    fill_pool(buffers, packed, true);
+    EXPECT_LT(packed.bytes(), exact.bytes());
+    QueryBatch a, b;
+    a.resize(6000);
+    b.resize(6000);
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        WalkOrigin const o = random_origin(world, exact.grids[k % 3].axis, rng);
+        a.set(k, o, std::uint32_t(k % 3));
+        b.set(k, o, std::uint32_t(k % 3));
+    }
+    nearest_layers(exact, world.surfaces, a);
+    nearest_layers(packed, world.surfaces, b);
+    std::size_t differ = 0;
+    float farthest = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        differ += a.hit[k] != b.hit[k];
+        if (a.hit[k] != b.hit[k] || a.hit[k] == kNoLayerHit) continue;
+        farthest = std::max(farthest, glm::length(vec3{a.hit_x[k] - b.hit_x[k], a.hit_y[k] - b.hit_y[k], a.hit_z[k] - b.hit_z[k]}));
+    }
+    EXPECT_LT(differ, a.size() / 100);
+    EXPECT_LE(farthest, 7.0f / 4095); // half a step, of depths 7 m apart at most
 }
 
 TEST(Query, HitsLieOnTheirTriangles)
@@ -174,7 +210,8 @@ TEST(Query, TwoSegmentsAnswerAsOne)
     std::size_t differ = 0;
     for (int k = 0; k < 4000; ++k) {
         WalkOrigin const o = random_origin(world, axis, rng);
-        differ += nearest_layer(together, world.surfaces, o).triangle != nearest_layer(apart, world.surfaces, o).triangle;
+        differ += nearest_layer(together, world.surfaces, o).triangle !=
+                  nearest_layer(apart, world.surfaces, o).triangle;
     }
     EXPECT_LE(differ, 4u); // equal depths may come in another order
 }
@@ -190,13 +227,16 @@ struct Rule {
     /// Share of walks from points of triangles first..last - 1, leaving upwards (+Y side), whose answer fulfils a
     /// condition; over many axes, grids and points.
     template <class Condition>
-    double share(std::uint32_t first, std::uint32_t last, std::uint32_t resolution, Condition const& condition) const
+    double share(std::uint32_t first, std::uint32_t last, std::uint32_t resolution,
+                 Condition const& condition) const
     {
         Pcg32 rng(6, 6);
         int good = 0, all = 0;
         for (int a = 0; a < 60; ++a) {
-            vec3 const axis = glm::normalize(vec3{2 * rng.uniform() - 1, 0.05f + rng.uniform(), 2 * rng.uniform() - 1});
-            HitBuffer const b = make_hit_buffer(soup, make_grid(world.bounds, axis, resolution, rng.uniform2(), 6 * rng.uniform()));
+            vec3 const axis =
+                glm::normalize(vec3{2 * rng.uniform() - 1, 0.05f + rng.uniform(), 2 * rng.uniform() - 1});
+            HitBuffer const b = make_hit_buffer(
+                soup, make_grid(world.bounds, axis, resolution, rng.uniform2(), 6 * rng.uniform()));
             AxisView const v{{view(b), {}}};
             for (int k = 0; k < 50; ++k) {
                 std::uint32_t const t = first + rng.next() % (last - first);
@@ -227,7 +267,9 @@ TEST(SelfIntersection, ThinWallOfATenthOfATexelHidesItsOtherSide)
     for (std::uint32_t t = 0; t < rule.world.triangles.size(); ++t) {
         Surface const& s = rule.world.surfaces[t];
         if (glm::cross(s.edge1, s.edge2).y <= 0 || s.corner.y < 0) continue;
-        EXPECT_EQ(rule.share(t, t + 1, 32, [](LayerHit const& h, WalkOrigin const&) { return h.triangle == kNoLayerHit; }), 1.0);
+        EXPECT_EQ(rule.share(t, t + 1, 32,
+                             [](LayerHit const& h, WalkOrigin const&) { return h.triangle == kNoLayerHit; }),
+                  1.0);
     }
 }
 
@@ -239,7 +281,8 @@ TEST(SelfIntersection, CoplanarTwinsDoNotShadowEachOther)
     add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, m);
     add_quad(scene, {-1, 0, 1}, {0, 0, -2}, {2, 0, 0}, m); // and one that faces down
     Rule const rule(std::move(scene));
-    EXPECT_EQ(rule.share(0, 6, 64, [](LayerHit const& h, WalkOrigin const&) { return h.triangle == kNoLayerHit; }), 1.0);
+    EXPECT_EQ(rule.share(0, 6, 64, [](LayerHit const& h, WalkOrigin const&) { return h.triangle == kNoLayerHit; }),
+              1.0);
 }
 
 TEST(SelfIntersection, ConvexMeshesDoNotShadowThemselves)
@@ -268,7 +311,8 @@ TEST(SelfIntersection, AContactIsNotALeak)
     for (std::uint32_t t = 0; t < 12; ++t) {
         Surface const& s = rule.world.surfaces[t];
         if (glm::cross(s.edge1, s.edge2).y <= 0) continue; // the floor
-        double const inside = rule.share(t, t + 1, 48, [](LayerHit const& h, WalkOrigin const&) { return h.triangle != kNoLayerHit; });
+        double const inside = rule.share(
+            t, t + 1, 48, [](LayerHit const& h, WalkOrigin const&) { return h.triangle != kNoLayerHit; });
         EXPECT_GT(inside, 0.998);
     }
 }

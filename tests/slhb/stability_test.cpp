@@ -17,7 +17,8 @@ void expect_like_reference(World const& world, Camera const& camera, double tole
     StopRequest stop;
     Report report;
     double const truth = mean_of(render_reference(world, camera, s, stop, {}, report).picture).mean;
-    EXPECT_NEAR(mean_of(render_with_slhb(world, camera, s).result.picture).mean, truth, tolerance * truth + 1e-12) << what;
+    EXPECT_NEAR(mean_of(render_with_slhb(world, camera, s).result.picture).mean, truth, tolerance * truth + 1e-12)
+        << what;
 }
 
 /// A lit room; everything scaled and moved.
@@ -27,8 +28,10 @@ Scene room(float scale, vec3 at)
     int const grey = add_material(scene, lambert(vec3{0.6f}));
     auto const place = [&](vec3 p) { return at + scale * p; };
     add_box(scene, place({-1, -1, -1}), place({1, 1, 1}), grey, true);
-    add_box(scene, place({-0.4f, -1, -0.4f}), place({0.3f, 0, 0.2f}), add_material(scene, lambert(vec3{0.3f, 0.6f, 0.2f})), false);
-    add_quad(scene, place({-0.3f, 0.9f, -0.3f}), {0.6f * scale, 0, 0}, {0, 0, 0.6f * scale}, add_material(scene, emitter(vec3{10})));
+    add_box(scene, place({-0.4f, -1, -0.4f}), place({0.3f, 0, 0.2f}),
+            add_material(scene, lambert(vec3{0.3f, 0.6f, 0.2f})), false);
+    add_quad(scene, place({-0.3f, 0.9f, -0.3f}), {0.6f * scale, 0, 0}, {0, 0, 0.6f * scale},
+             add_material(scene, emitter(vec3{10})));
     return scene;
 }
 
@@ -40,22 +43,26 @@ Camera room_camera(double scale, dvec3 at)
 TEST(SlhbStability, ScalesFromAMicrometreToAThousandKilometres)
 {
     for (float const scale : {1e-6f, 1e-3f, 1.0f, 1e3f, 1e6f})
-        expect_like_reference(world_of(room(scale, vec3{0})), room_camera(double(scale), dvec3{0}), 0.02, fmt::format("{}", scale));
+        expect_like_reference(world_of(room(scale, vec3{0})), room_camera(double(scale), dvec3{0}), 0.02,
+                              fmt::format("{}", scale));
 }
 
 TEST(SlhbStability, FarFromTheOrigin)
 {
     // The vertices themselves are floats: at 1e6 m they lie on a grid of 1/16 m, so the room is 1 km wide.
-    expect_like_reference(world_of(room(500, vec3{1e6f, -1e6f, 1e6f})), room_camera(500, {1e6, -1e6, 1e6}), 0.02, "far");
+    expect_like_reference(world_of(room(500, vec3{1e6f, -1e6f, 1e6f})), room_camera(500, {1e6, -1e6, 1e6}), 0.02,
+                          "far");
 }
 
 TEST(SlhbStability, EmptySceneIsBlackAndEmptySkyIsSky)
 {
     Camera const camera = look_at({0, 0, 1}, {0, 0, 0}, 45);
-    EXPECT_EQ(mean_of(render_with_slhb(world_of(Scene{}), camera, small_settings(8, 4, 2)).result.picture).mean, 0);
+    EXPECT_EQ(mean_of(render_with_slhb(world_of(Scene{}), camera, small_settings(8, 4, 2)).result.picture).mean,
+              0);
     Scene sky;
     set_environment(sky, vec3{2});
-    EXPECT_NEAR(mean_of(render_with_slhb(world_of(sky), camera, small_settings(8, 4, 2)).result.picture).mean, 2, 1e-5);
+    EXPECT_NEAR(mean_of(render_with_slhb(world_of(sky), camera, small_settings(8, 4, 2)).result.picture).mean, 2,
+                1e-5);
 }
 
 TEST(SlhbStability, OneTriangle)
@@ -91,9 +98,14 @@ TEST(SlhbStability, SliversDegenerateTrianglesAndTJunctions)
     for (int k = 0; k < 200; ++k) {
         float const y = -0.9f + 0.005f * float(k);
         auto const n = std::uint32_t(mesh.positions.size());
-        for (vec3 const p : {vec3{-0.99f, y, -0.9f}, {-0.99f, y, 0.9f}, {-0.99f, y + 1e-5f, 0}, {-0.99f, y + 0.005f, -0.9f}, {-0.99f, y + 0.005f, 0.9f}})
+        for (vec3 const p : {vec3{-0.99f, y, -0.9f},
+                             {-0.99f, y, 0.9f},
+                             {-0.99f, y + 1e-5f, 0},
+                             {-0.99f, y + 0.005f, -0.9f},
+                             {-0.99f, y + 0.005f, 0.9f}})
             mesh.positions.push_back(p);
-        for (uvec3 const t : {uvec3{n, n + 2, n + 1}, uvec3{n, n + 3, n + 2}, uvec3{n + 2, n + 3, n + 4}, uvec3{n + 2, n + 4, n + 1}, uvec3{n, n, n + 1}})
+        for (uvec3 const t : {uvec3{n, n + 2, n + 1}, uvec3{n, n + 3, n + 2}, uvec3{n + 2, n + 3, n + 4},
+                              uvec3{n + 2, n + 4, n + 1}, uvec3{n, n, n + 1}})
             mesh.triangles.push_back(t);
     }
     scene.nodes.emplace_back().meshes = {std::int32_t(scene.meshes.size()) - 1};
@@ -102,8 +114,9 @@ TEST(SlhbStability, SliversDegenerateTrianglesAndTJunctions)
 
 TEST(SlhbStability, ThinWallsKeepLightOut)
 {
-    // Two rooms with a common wall of 0.1 texel; a lamp in one of them. Direct light never passes; of indirect light what
-    // columns confuse within a texel of the wall, where the two floors are one plane (measured: 0.13 %).
+    // Two rooms with a common wall of 0.1 texel; a lamp in one of them. Direct light never passes; of indirect
+    // light what columns confuse within a texel of the wall, where the two floors are one plane (measured: 0.13
+    // %).
     Scene scene;
     int const grey = add_material(scene, lambert(vec3{0.8f}));
     float const half = 0.05f * 4 / 128;
@@ -112,8 +125,10 @@ TEST(SlhbStability, ThinWallsKeepLightOut)
     add_quad(scene, {-1.3f, 0.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{10})));
     World const world = world_of(scene);
     RenderSettings const s = small_settings(24, 256, 4);
-    double const lit = mean_of(render_with_slhb(world, look_at({-1.8, 0.5, 0.9}, {-1, -0.5, -0.3}, 70), s).result.picture).mean;
-    Picture const other = render_with_slhb(world, look_at({1.8, 0.5, 0.9}, {0.2, -0.5, -0.3}, 70), s).result.picture;
+    double const lit =
+        mean_of(render_with_slhb(world, look_at({-1.8, 0.5, 0.9}, {-1, -0.5, -0.3}, 70), s).result.picture).mean;
+    Picture const other =
+        render_with_slhb(world, look_at({1.8, 0.5, 0.9}, {0.2, -0.5, -0.3}, 70), s).result.picture;
     double const dark = mean_of(other).mean;
     EXPECT_LT(mean_of(other, "L1").mean, 1e-3 * lit);
     EXPECT_GT(lit, 0.1);
@@ -128,7 +143,8 @@ TEST(SlhbStability, AxisAlignedGeometrySeenEdgeOn)
     double const truth = mean_of(render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture).mean;
     s.slhb.schedule = Schedule::stored;
     s.slhb.directions = "octahedron:128";
-    EXPECT_NEAR(mean_of(render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture).mean, truth, 0.03 * truth);
+    EXPECT_NEAR(mean_of(render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture).mean, truth,
+                0.03 * truth);
 }
 
 TEST(SlhbStability, LightsOnSurfacesOutsideAndCamerasInsideGeometry)
@@ -145,7 +161,10 @@ TEST(SlhbStability, LightsOnSurfacesOutsideAndCamerasInsideGeometry)
     World const world = world_of(scene);
     render_with_slhb(world, room_camera(1, dvec3{0}), small_settings(16, 32, 2));
     // Inside of the box: dark but for what nothing lights.
-    double const inside = mean_of(render_with_slhb(world, look_at({0, -0.5, 0}, {0, -0.9, 0.1}, 60), small_settings(16, 32, 2)).result.picture).mean;
+    double const inside =
+        mean_of(render_with_slhb(world, look_at({0, -0.5, 0}, {0, -0.9, 0.1}, 60), small_settings(16, 32, 2))
+                    .result.picture)
+            .mean;
     EXPECT_LT(inside, 1e-3);
 }
 
@@ -169,7 +188,8 @@ TEST(SlhbStability, ThreadsAndInterruptionsDoNotChangeThePicture)
     s.threads = 1;
     Picture const one = render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture;
     s.threads = 2;
-    EXPECT_EQ(render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture.find("color")->data, one.find("color")->data);
+    EXPECT_EQ(render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture.find("color")->data,
+              one.find("color")->data);
 }
 
 } // namespace

@@ -175,7 +175,7 @@ TEST(BenchCommand, WrongCallsLeaveNothing)
 TEST(BenchCommand, ControlCKeepsTheRowsSoFar)
 {
     TemporaryFolder const folder;
-    Program program(words("bench sweep --scene cornell --budgets 20ms,100s --repeats 1 --size 16x16 "
+    Program program(words("bench sweep --scene cornell --methods reference --budgets 20ms,100s --repeats 1 --size 16x16 "
                           "--reference-paths 16 --out d"),
                     folder.path());
     while (!std::filesystem::exists(folder / "d" / "sweep.csv") && program.wait_until_catches(SIGINT, true))
@@ -194,7 +194,7 @@ TEST(BenchCommand, ControlCKeepsTheRowsSoFar)
 TEST(BenchCommand, AnInterruptedReferenceGoesOn)
 {
     TemporaryFolder const folder;
-    std::string const call = "bench sweep --scene cornell --budgets 20ms --repeats 1 --size 64x64 "
+    std::string const call = "bench sweep --scene cornell --methods reference --budgets 20ms --repeats 1 --size 64x64 "
                              "--reference-paths 400 --threads 1 --out d";
     Program program(words(call), folder.path());
     ASSERT_TRUE(program.wait_until_catches(SIGINT, true));
