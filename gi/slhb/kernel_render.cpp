@@ -143,6 +143,9 @@ void check_kernels_can(Camera const& camera, SlhbSettings const& s)
     if (s.cone > 0) throw InputError("--device cuda with --cone", "its kernels know one column only", suggestion);
     if (s.packed)
         throw InputError("--device cuda with --packed", "its kernels read plain layers only", suggestion);
+    if (s.interleave > 1)
+        throw InputError("--device cuda with --interleave", "its kernels take indirect light in every pixel",
+                         suggestion);
     if (s.gather) throw InputError("--device cuda with --gather", "its kernels choose axes by chance", suggestion);
 }
 

@@ -120,14 +120,21 @@ GI_FN inline Column look_into(AxisView const& axis, std::size_t texel, WalkOrigi
     return with_own.own ? with_own : without;
 }
 
-/// Whether a walk from the origin's true position can meet the plane of that triangle.
-GI_FN inline bool lies_ahead(Surface const& s, std::uint32_t primitive, WalkOrigin const& o)
+GI_FN inline bool is_back(std::uint32_t primitive, WalkOrigin const& o)
 {
+    return ((primitive & kAlongAxis) != 0) == o.up;
+}
+
+/// Whether a walk from the origin's true position can meet the plane of that triangle; the back of a surface that
+/// is not double-sided is taken for the inside of something solid, in which the texel's centre lies and the origin
+/// does not.
+GI_FN inline bool can_be_hit(Surface const& s, std::uint32_t primitive, WalkOrigin const& o)
+{
+    if (is_back(primitive, o) && !s.is(Surface::kDoubleSided)) return false;
     vec3 const normal = glm::cross(s.edge1, s.edge2);
     float const side = glm::dot(normal, o.position - s.corner);
-    bool const faces_away = ((primitive & kAlongAxis) != 0) == o.up;
     float const far_enough = s.clearance * glm::length(normal);
-    return faces_away ? side < -far_enough : side > far_enough;
+    return is_back(primitive, o) ? side < -far_enough : side > far_enough;
 }
 
 } // namespace query_detail
@@ -160,7 +167,8 @@ GI_FN inline LayerHit nearest_layer(AxisView const& axis, View<Surface const> su
         if (!c.own) continue;
         if (c.hit == kNoLayerHit) return {};
         std::uint32_t const triangle = c.hit & kPrimitiveMask;
-        if (c.gap < near_gap(grid) && !lies_ahead(surfaces[triangle], c.hit, o)) continue;
+        bool const doubtful = c.gap < near_gap(grid) || is_back(c.hit, o);
+        if (doubtful && !can_be_hit(surfaces[triangle], c.hit, o)) continue;
         return {triangle, grid.point(ti, tj, c.depth), (c.hit & kAlongAxis) != 0};
     }
     if (first.hit == kNoLayerHit) return {};

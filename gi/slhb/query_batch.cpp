@@ -130,8 +130,8 @@ Cell choose_cell(V x, V y, GridLanes const& g, int attempt)
 }
 
 struct Answer {
-    std::uint32_t unsure; ///< bit per lane: its column does not speak for its origin
-    std::uint32_t near;   ///< bit per lane: it does if the hit lies ahead
+    std::uint32_t unsure;   ///< bit per lane: its column does not speak for its origin
+    std::uint32_t doubtful; ///< bit per lane: it does if the surface can be hit from there
 };
 
 std::uint32_t bits_of(M mask)
@@ -199,7 +199,8 @@ LayerLanes load_layers(AxisPool const& pool, GridLanes const& g, I index)
             words, hn::GatherIndex(integers, reinterpret_cast<std::int32_t const*>(pool.packed.data()), index));
         V const step = hn::ConvertTo(d, hn::BitCast(integers, hn::ShiftRight<20>(word)));
         W const facing = hn::And(hn::ShiftLeft<12>(word), hn::Set(words, kAlongAxis));
-        return {hn::MulAdd(step, g.step, g.low), hn::Or(facing, hn::And(word, hn::Set(words, kPackedTriangles - 1)))};
+        return {hn::MulAdd(step, g.step, g.low),
+                hn::Or(facing, hn::And(word, hn::Set(words, kPackedTriangles - 1)))};
     } else {
         TwoWords const record = gather_pairs<3>(pool.layers.data(), index);
         return {hn::BitCast(d, record.first), record.second};
@@ -278,7 +279,8 @@ Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, Quer
         left = hn::Sub(left, one);
         running = hn::AndNot(over, hn::And(running, hn::RebindMask(d, hn::Gt(left, zero))));
     }
-    M const near = hn::And(hn::And(found, hit), hn::Lt(gap, hn::Mul(set(4), g.texel)));
+    M const front = hn::RebindMask(d, hn::Eq(hn::And(answer, facing_bit), towards));
+    M const doubtful = hn::And(hn::And(found, hit), hn::Or(hn::Not(front), hn::Lt(gap, hn::Mul(set(4), g.texel))));
     depth = hn::IfThenElse(found, depth, plain_depth);
     answer =
         hn::IfThenElse(hn::RebindMask(words, found),
@@ -295,7 +297,7 @@ Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, Quer
     hn::StoreU(answer, words, b.hit.data() + first);
     hn::StoreU(hn::BitCast(words, hn::IfThenElse(hn::RebindMask(integers, found), answer_at, plain_at)), words,
                b.hit_layer.data() + first);
-    return {bits_of(hn::Not(found)), bits_of(near)};
+    return {bits_of(hn::Not(found)), bits_of(doubtful)};
 }
 
 /// Rounded up to whole vectors, which the arrays are made for.
@@ -320,8 +322,8 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
     unsure.clear();
     thread_local Columns columns;
     thread_local GridLanes grids_of_block[Columns::kBlock / 4]; // vectors have at least 4 lanes
-    thread_local std::vector<std::uint32_t> near;
-    near.clear();
+    thread_local std::vector<std::uint32_t> doubtful;
+    doubtful.clear();
     for (std::size_t i = 0; i < n; i += lanes) {
         std::size_t const column = i % Columns::kBlock;
         if (column == 0) {
@@ -336,20 +338,20 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
         Answer answer = answer_lanes(pool, grids_of_block[column / lanes], attempt, b, i, columns, column);
         if (n - i < lanes) {
             std::uint32_t const there = (1u << (n - i)) - 1;
-            answer = {answer.unsure & there, answer.near & there};
+            answer = {answer.unsure & there, answer.doubtful & there};
         }
-        for (std::uint32_t bits = answer.near; bits != 0; bits &= bits - 1) {
+        for (std::uint32_t bits = answer.doubtful; bits != 0; bits &= bits - 1) {
             std::uint32_t const q = std::uint32_t(i) + std::uint32_t(std::countr_zero(bits));
             __builtin_prefetch(&surfaces[b.hit[q] & kPrimitiveMask]);
-            near.push_back(q);
+            doubtful.push_back(q);
         }
         for (std::uint32_t bits = answer.unsure; bits != 0; bits &= bits - 1)
             unsure.push_back(std::uint32_t(i) + std::uint32_t(std::countr_zero(bits)));
         if (column + lanes < Columns::kBlock && i + lanes < n) continue;
-        for (std::uint32_t const q : near) // their surfaces have come meanwhile
-            if (!query_detail::lies_ahead(surfaces[b.hit[q] & kPrimitiveMask], b.hit[q], b.origin(q)))
+        for (std::uint32_t const q : doubtful) // their surfaces have come meanwhile
+            if (!query_detail::can_be_hit(surfaces[b.hit[q] & kPrimitiveMask], b.hit[q], b.origin(q)))
                 unsure.push_back(q);
-        near.clear();
+        doubtful.clear();
     }
     std::ranges::sort(unsure);
 }
@@ -449,7 +451,8 @@ void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool, bool packe
         layer += b.layers.size();
     }
     if (packed && pool.packed.empty()) pool.packed.push_back(0);
-    if (!packed && pool.layers.empty()) pool.layers.push_back({}); // vectors read something where they have nothing to read
+    if (!packed && pool.layers.empty())
+        pool.layers.push_back({}); // vectors read something where they have nothing to read
 }
 
 void QueryBatch::resize(std::size_t n)

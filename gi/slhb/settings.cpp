@@ -6,9 +6,24 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 namespace gi {
 namespace {
+
+/// Where the first pass would not end within the budget: the primary surfaces and direct light of all pixels, and
+/// indirect light for as many as there is time for.
+int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, double axis_s, double map_s)
+{
+    constexpr double kDirect = 0.25e-6, kBounce = 0.2e-6; // s per pixel on one core
+    if (!(asked.budget_s > 0) || asked.bounces == 0) return 1;
+    double const cores = asked.threads > 0 ? asked.threads : tbb::this_task_arena::max_concurrency();
+    double const pixels = double(asked.width) * asked.height, bounces = std::min(asked.bounces, 3);
+    double const fixed = bounces * s.fresh_axes * axis_s + s.lamps * map_s + pixels * kDirect;
+    for (int const n : {1, 2, 4})
+        if ((fixed + pixels * bounces * kBounce / (n * n)) / cores < asked.budget_s) return n;
+    return 4;
+}
 
 bool narrow_somewhere(World const& world)
 {
@@ -54,6 +69,7 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world)
     if (s.shadow_resolution == 0) s.shadow_resolution = from_points ? 1024 : 256;
     double const map = 5e-9 * triangles + 1e-8 * double(s.shadow_resolution) * s.shadow_resolution;
     if (s.lamps == 0) s.lamps = from_points ? 16 : worth(map, 1, 4);
+    if (s.interleave == 0) s.interleave = choose_interleave(asked, s, axis, map);
     return s;
 }
 
@@ -62,9 +78,9 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
     SlhbSettings const s = choose_settings(asked, world);
     std::vector<PlanItem> items;
     char const* const names[] = {"automatic", "stored", "streamed", "temporal"};
-    items.push_back({fmt::format("schedule {}", names[int(s.schedule)]), true,
-                     s.schedule == Schedule::streamed ? "no set of directions limits how far the error falls"
-                                                      : "asked for"});
+    items.push_back(
+        {fmt::format("schedule {}", names[int(s.schedule)]), true,
+         s.schedule == Schedule::streamed ? "no set of directions limits how far the error falls" : "asked for"});
     if (s.schedule == Schedule::stored)
         items.push_back({"directions " + s.directions, true, "built once, all paths draw from them"});
     else
@@ -74,8 +90,8 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
     items.push_back({fmt::format("hit buffers of {0} x {0} texels", s.resolution), true,
                      fmt::format("{} triangles", world.triangles.size())});
     bool const lit = !world.light_select.empty();
-    items.push_back({fmt::format("{} shadow maps of {} x {}", s.lamps, s.shadow_resolution, s.shadow_resolution), lit,
-                     lit ? "points on lights that light a pass" : "nothing shines"});
+    items.push_back({fmt::format("{} shadow maps of {} x {}", s.lamps, s.shadow_resolution, s.shadow_resolution),
+                     lit, lit ? "points on lights that light a pass" : "nothing shines"});
     bool const exact = needs_exact_rays(world, orthographic);
     items.push_back({"exact rays (Embree) beside look-ups", exact,
                      orthographic ? "the camera is orthographic"

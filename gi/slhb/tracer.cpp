@@ -18,7 +18,7 @@ enum Dimension : std::uint32_t { axis, lobe, lobe_u, lobe_v, roulette, lamp, sha
 /// One path on its way: how it arrived at a surface.
 struct SlhbTracer::State {
     RqmcStream random;
-    std::uint32_t triangle;
+    std::uint32_t triangle, pixel;
     vec2 barycentric;
     vec3 position; ///< only read where has_position
     bool has_position = false;
@@ -96,6 +96,14 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, ShadingPoint const
         {&l.shadow, place, at.position, s.triangle, s.throughput * value, &s.bucket(s.scatterings + 1)});
 }
 
+std::uint32_t SlhbTracer::indirect_share(std::uint32_t pixel, std::uint32_t pass) const
+{
+    std::uint32_t const all = interleave_ * interleave_, width = std::uint32_t(width_);
+    std::uint32_t const own = pixel % width % interleave_ + pixel / width % interleave_ * interleave_;
+    constexpr std::uint32_t kStride = 5; // odd: all turns come, neighbours not one after the other
+    return (own + pass * kStride) % all == 0 ? all : 0;
+}
+
 /// False where the path ends.
 bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Unshadowed>& direct,
                        PathCounts& paths) const
@@ -155,6 +163,12 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
         // The last surface would only bring light that exact rays or the sky can bring.
         if (s.scatterings == bounces_ && pass.exact == nullptr && world_.environment_radiance.empty())
             return false;
+        if (s.vertex == 0 && interleave_ > 1) {
+            std::uint32_t const share = indirect_share(s.pixel, pass.index);
+            if (share == 0) return false;
+            s.throughput *= float(share);
+            s.random.index = pass.index / share;
+        }
         AxisSample a;
         if (s.vertex == 0 && pass.gather_axis != kNoPrimitive) {
             vec3 const along = pass.axes.axis(pass.gather_axis);
@@ -268,6 +282,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
         s.sample = &samples[k];
         s.random = {hash_words(std::uint32_t(seed_) ^ std::uint32_t(seed_ >> 32), start.stream), pass.index};
         s.triangle = start.triangle;
+        s.pixel = start.stream;
         s.direction = start.ray.direction;
         if (start.on_layer) {
             s.position = start.ray.origin;

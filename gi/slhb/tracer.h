@@ -61,7 +61,8 @@ public:
           bounces_(settings.bounces),
           seed_(settings.seed),
           width_(settings.width),
-          cone_(slhb.cone)
+          cone_(slhb.cone),
+          interleave_(std::uint32_t(slhb.interleave))
     {
     }
 
@@ -81,6 +82,8 @@ private:
     void add_direct(Pass const& pass, State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
                     std::vector<Unshadowed>& direct) const;
     void add_sky(State& s) const;
+    /// How many pixels this one takes indirect light for in this pass: 0, or the square of the interleaving.
+    std::uint32_t indirect_share(std::uint32_t pixel, std::uint32_t pass) const;
     void ask_axes(Pass const& pass, std::span<Vertex> vertices) const;
 
     WorldView world_;
@@ -89,6 +92,7 @@ private:
     std::uint64_t seed_;
     int width_;
     float cone_;
+    std::uint32_t interleave_;
 };
 
 } // namespace gi
