@@ -4,8 +4,8 @@
 //
 // What it lacks: exact rays. A path that chooses a mirror, glass or a narrow lobe ends there, and is counted; the
 // light it would have brought is missing from the picture. Direct light on such surfaces has its full weight
-// instead, as no exact ray will find the lamp. There is no cone and no gathering, and no sharing of what layers
-// send back.
+// instead, as no exact ray will find the lamp. There is no cone, no gathering, no interleaving and no
+// sharing of what layers send back.
 
 #include "gi/base/atomics.h"
 #include "gi/base/rqmc.h"
