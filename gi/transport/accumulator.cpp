@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <fstream>
+#include <tbb/parallel_for.h>
 
 namespace gi {
 
@@ -33,11 +34,13 @@ Picture Accumulator::picture(dvec3 world_origin) const
     out.height = height;
     auto const fill = [&](char const* name, int channels, auto const& value) {
         Layer& layer = out.add(name, channels);
-        for (std::size_t i = 0; i < pixels.size(); ++i) {
-            dvec3 const v = value(pixels[i]);
-            for (int c = 0; c < channels; ++c)
-                layer.data[i * std::size_t(channels) + std::size_t(c)] = float(v[c]);
-        }
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 4096), [&](auto const& range) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                dvec3 const v = value(pixels[i]);
+                for (int c = 0; c < channels; ++c)
+                    layer.data[i * std::size_t(channels) + std::size_t(c)] = float(v[c]);
+            }
+        });
     };
     double const n = std::max(1.0, double(paths));
     fill("color", 3, [&](PixelSums const& p) { return (p.radiance[0] + p.radiance[1] + p.radiance[2]) / n; });
