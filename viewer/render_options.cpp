@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 #include "gi/registry/registry.h"
+#include "gi/slhb/kernel_render.h"
 #include "viewer/arguments.h"
 #include "viewer/validators.h"
 
@@ -29,6 +30,14 @@ void check_memory(gi::RenderSettings const& s)
             fmt::format("--size {}x{} is too large", s.width, s.height),
             fmt::format("it takes about {:.0f} GB of memory, of {:.0f}", needed * 1e-9, there * 1e-9),
             "choose a smaller one");
+}
+
+void check_device(RenderOptions const& o, gi::SlhbSettings const& s)
+{
+    if (s.space == gi::Space::device && o.method != "slhb")
+        throw gi::InputError("--device cuda with --method " + o.method, "it runs on the CPU only",
+                             "add --method slhb, or leave --device out");
+    gi::check_device(s);
 }
 
 gi::Schedule schedule_of(std::string const& name)
@@ -67,6 +76,8 @@ gi::RenderSettings make_settings(RenderOptions& o)
     s.filter = o.filter == "tent" ? gi::PixelFilter::tent : gi::PixelFilter::box;
     s.slhb = o.slhb;
     s.slhb.schedule = schedule_of(o.schedule);
+    s.slhb.space = o.device == "cuda" ? gi::Space::device : gi::Space::host;
+    check_device(o, s.slhb);
     s.resume = o.resume;
     if (!o.out.empty()) s.checkpoint = o.out + ".state";
     return s;
@@ -137,6 +148,11 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
 
 void declare_slhb(CLI::App& c, RenderOptions& o)
 {
+    c.add_option("--device", o.device,
+                 "cpu; or cuda: all by kernels, paths end at mirrors, glass and narrow lobes, which is counted")
+        ->check(CLI::IsMember({"cpu", "cuda"}))
+        ->capture_default_str()
+        ->group("Method slhb");
     c.add_option("--schedule", o.schedule,
                  "stored: one set of axes; streamed: new ones in every pass; temporal: some new")
         ->check(CLI::IsMember({"auto", "stored", "streamed", "temporal"}))

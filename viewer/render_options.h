@@ -24,7 +24,7 @@ struct RenderOptions {
     std::optional<std::uint32_t> paths;
     std::uint64_t seed = 0;
     int bounces = 64, threads = 0;
-    std::string schedule = "auto";
+    std::string schedule = "auto", device = "cpu";
     gi::SlhbSettings slhb;
     bool half = false, resume = false, json = false, quiet = false;
 };

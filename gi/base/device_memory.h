@@ -1,7 +1,8 @@
 #pragma once
-// What device.cu implements, and device.cpp where there is no CUDA.
+// What device.cu and scan.cu implement, and device.cpp and scan.cpp where there is no CUDA.
 
 #include <cstddef>
+#include <cstdint>
 
 namespace gi::device {
 
@@ -10,5 +11,7 @@ void release(void* bytes) noexcept;
 void fill(void* bytes, unsigned char value, std::size_t count);
 /// Between the device and itself or the host; which is which is known from the addresses.
 void copy(void* to, void const* from, std::size_t count);
+/// In scan.cu and scan.cpp.
+void exclusive_scan(std::uint32_t const* in, std::uint32_t* out, std::size_t n);
 
 } // namespace gi::device

@@ -4,6 +4,7 @@
 #include "gi/base/picture.h"
 #include "gi/base/progress.h"
 #include "gi/base/report.h"
+#include "gi/base/space.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -36,6 +37,7 @@ struct SlhbSettings {
     bool packed = false;           ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
     float cone = 0;                ///< texels; radius of the disk of columns that a query may ask (Yu 2012, fig. 5.6)
     int interleave = 0;            ///< n: in a pass one pixel of n x n takes indirect light, n^2-fold; 1 = all do
+    Space space = Space::host;     ///< device: all by CUDA kernels, see gi/slhb/kernel_render.h
     bool gather = false;           ///< first bounce over all axes in turn instead of at random
 };
 

@@ -1,13 +1,15 @@
 #pragma once
 // Triangles that reach out of what a pinhole raster can hold, cut to it (Sutherland & Hodgman 1974), and boxes
-// that it cannot see. Cuts are made between the corners of an edge in a fixed order, so that neighbours cut alike.
+// that it cannot see. Cuts are made between the corners of an edge in a fixed order, so that neighbours cut alike,
+// with multiply-adds spelled out, so that all compilers round alike.
 
 #include "gi/raster/perspective_grid.h"
 
-#include <array>
-
 namespace gi {
 namespace clip_detail {
+
+/// Rounds alike everywhere.
+GI_FN inline double dot(dvec3 a, dvec3 b) { return std::fma(a.z, b.z, std::fma(a.y, b.y, a.x * b.x)); }
 
 struct Corner {
     dvec3 raster; ///< subpixels times w, and w in z
@@ -18,36 +20,37 @@ struct Plane {
     dvec3 weights;
     double limit;
 
-    double distance(Corner const& c) const { return glm::dot(weights, c.raster) - limit; }
+    GI_FN double distance(Corner const& c) const { return dot(weights, c.raster) - limit; }
 };
 
-inline bool before(dvec3 a, dvec3 b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
+GI_FN inline bool before(dvec3 a, dvec3 b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
 
-inline Corner cut(Corner const& a, Corner const& b, Plane const& plane)
+GI_FN inline Corner cut(Corner const& one, Corner const& other, Plane const& plane)
 {
-    if (before(b.raster, a.raster)) return cut(b, a, plane);
-    double const da = plane.distance(a), db = plane.distance(b);
-    return {a.raster + (da / (da - db)) * (b.raster - a.raster)};
+    bool const swap = before(other.raster, one.raster);
+    dvec3 const a = swap ? other.raster : one.raster, b = swap ? one.raster : other.raster;
+    double const da = plane.distance({a}), db = plane.distance({b}), t = da / (da - db);
+    return {{std::fma(t, b.x - a.x, a.x), std::fma(t, b.y - a.y, a.y), std::fma(t, b.z - a.z, a.z)}};
 }
 
-inline Corner corner(PerspectiveGrid const& g, vec3 p)
+GI_FN inline Corner corner(PerspectiveGrid const& g, vec3 p)
 {
     dvec3 const v = dvec3(p) - dvec3(g.eye);
-    return {{glm::dot(v, dvec3(g.to_x)), glm::dot(v, dvec3(g.to_y)), glm::dot(v, dvec3(g.forward))}};
+    return {{dot(v, dvec3(g.to_x)), dot(v, dvec3(g.to_y)), dot(v, dvec3(g.forward))}};
 }
 
 } // namespace clip_detail
 
 /// Calls emit(SnappedTriangle, depths) for the parts of a triangle within the guard and in front of the eye.
 template <class Emit>
-void clip_triangle(PerspectiveGrid const& g, vec3 const* corners, Emit const& emit)
+GI_FN void clip_triangle(PerspectiveGrid const& g, vec3 const* corners, Emit const& emit)
 {
     using namespace clip_detail;
     constexpr std::size_t kMost = 16;
     double const guard = 0.5 * double(PerspectiveGrid::kGuard);
-    std::array<Plane, 5> const planes{Plane{{0, 0, 1}, double(g.near_m)}, Plane{{1, 0, guard}, 0},
-                                      Plane{{-1, 0, guard}, 0}, Plane{{0, 1, guard}, 0}, Plane{{0, -1, guard}, 0}};
-    std::array<Corner, kMost> polygon{corner(g, corners[0]), corner(g, corners[1]), corner(g, corners[2])}, kept;
+    Plane const planes[] = {Plane{{0, 0, 1}, double(g.near_m)}, Plane{{1, 0, guard}, 0}, Plane{{-1, 0, guard}, 0},
+                            Plane{{0, 1, guard}, 0}, Plane{{0, -1, guard}, 0}};
+    Corner polygon[kMost] = {corner(g, corners[0]), corner(g, corners[1]), corner(g, corners[2])}, kept[kMost];
     std::size_t n = 3;
     for (Plane const& plane : planes) {
         std::size_t m = 0;
@@ -57,7 +60,7 @@ void clip_triangle(PerspectiveGrid const& g, vec3 const* corners, Emit const& em
             if (a_in) kept[m++] = a;
             if (a_in != b_in) kept[m++] = cut(a, b, plane);
         }
-        polygon = kept;
+        for (std::size_t k = 0; k < m; ++k) polygon[k] = kept[k];
         n = m;
         if (n < 3) return;
     }

@@ -22,7 +22,7 @@ struct RasterGrid {
     float x0 = 0, y0 = 0;
     float rounding = 0; ///< m; depths that differ by less are equal
 
-    std::size_t texels() const { return std::size_t(width) * height; }
+    GI_FN std::size_t texels() const { return std::size_t(width) * height; }
     GI_FN float project_x(vec3 p) const
     {
         return std::fma(p.z, to_x.z, std::fma(p.y, to_x.y, std::fma(p.x, to_x.x, x0)));

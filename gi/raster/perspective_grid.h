@@ -22,7 +22,7 @@ struct PerspectiveGrid {
 
     mat3 inverse{1}; ///< from (x, y, w) with x and y in subpixels times w to the world
 
-    std::size_t texels() const { return std::size_t(width) * height; }
+    GI_FN std::size_t texels() const { return std::size_t(width) * height; }
     /// Through the centre of texel (i, j), not normalised: one metre along the view.
     GI_FN vec3 direction(std::uint32_t i, std::uint32_t j) const
     {

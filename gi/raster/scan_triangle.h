@@ -132,14 +132,14 @@ GI_FN void scan(TriangleScan const& s, MacroPath path, Run const& run)
 }
 
 /// Depth over the samples of a triangle: its plane, held between its lowest and highest corner, which is what
-/// keeps triangles seen edge-on from flying off.
+/// keeps triangles seen edge-on from flying off. Multiply-adds are spelled out, so that all compilers round alike.
 struct DepthPlane {
     double at_zero, step_i, step_j; ///< at sample (0, 0), per sample
     float low, high;
 
     GI_FN float at(std::uint32_t i, std::uint32_t j) const
     {
-        return glm::clamp(float(at_zero + double(i) * step_i + double(j) * step_j), low, high);
+        return glm::clamp(float(std::fma(double(i), step_i, std::fma(double(j), step_j, at_zero))), low, high);
     }
 };
 
@@ -150,10 +150,10 @@ GI_FN inline DepthPlane depth_plane(SnappedTriangle const& t, std::int32_t subpi
     double const x2 = t.x[2] - t.x[0], y2 = t.y[2] - t.y[0], z2 = double(depth.z) - double(depth.x);
     double const scale = subpixels / double(t.doubled_area());
     DepthPlane p;
-    p.step_i = (z1 * y2 - z2 * y1) * scale;
-    p.step_j = (z2 * x1 - z1 * x2) * scale;
-    p.at_zero = double(depth.x) + p.step_i * (0.5 - double(t.x[0]) / subpixels) +
-                p.step_j * (0.5 - double(t.y[0]) / subpixels);
+    p.step_i = std::fma(z1, y2, -(z2 * y1)) * scale;
+    p.step_j = std::fma(z2, x1, -(z1 * x2)) * scale;
+    p.at_zero = std::fma(p.step_i, 0.5 - double(t.x[0]) / subpixels,
+                         std::fma(p.step_j, 0.5 - double(t.y[0]) / subpixels, double(depth.x)));
     p.low = glm::min(depth.x, glm::min(depth.y, depth.z));
     p.high = glm::max(depth.x, glm::max(depth.y, depth.z));
     return p;

@@ -20,39 +20,28 @@ vec3 half_sphere(vec2 u)
 
 } // namespace
 
-AxisSample FewAxes::sample(vec3 normal, float u) const
-{
-    alignas(64) std::array<float, kMost> weight;
-    float total = 0;
-    for (std::size_t k = 0; k < count; ++k)
-        weight[k] = std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
-    for (std::size_t k = 0; k < count; ++k) total += weight[k];
-    // The first axis up to which the weights sum to more than u of all: no branch on what is random.
-    float const wanted = u * total;
-    float sum = 0;
-    std::uint32_t k = 0;
-    for (std::size_t a = 0; a + 1 < count; ++a) {
-        sum += weight[a];
-        k += sum <= wanted ? 1 : 0;
-    }
-    vec3 const axis{x[k], y[k], z[k]};
-    return {k, glm::dot(axis, normal) < 0 ? -axis : axis, 2 * total / float(count)};
-}
-
 void AxisSet::build(std::vector<NewAxis> const& axes)
 {
-    tbb::parallel_for(std::size_t(0), axes.size(), [&](std::size_t k) {
+    auto const build_one = [&](std::size_t k) {
         thread_local Fragments fragments;
         NewAxis const& axis = axes[k];
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(axis.slot), axis.number);
         vec2 const jitter = rng.uniform2();
         RasterGrid const grid =
             make_grid(source_.bounds, axis.direction, source_.resolution, jitter, 2 * kPi * rng.uniform());
+        if (source_.elsewhere) {
+            source_.elsewhere(axis.slot, grid, rng.next());
+            return;
+        }
         fragments.count = 0;
         rasterize(source_.soup, 0, source_.soup.count, grid, MacroPath::edge_table, fragments);
         source_.cut_outs.remove(fragments, grid, rng.next());
         fill_hit_buffer(fragments, grid, source_.most_layers, buffers_[axis.slot]);
-    });
+    };
+    if (source_.elsewhere)
+        for (std::size_t k = 0; k < axes.size(); ++k) build_one(k);
+    else
+        tbb::parallel_for(std::size_t(0), axes.size(), build_one);
     for (NewAxis const& axis : axes) {
         lost_ += buffers_[axis.slot].lost;
         layers_ += buffers_[axis.slot].layers.size();

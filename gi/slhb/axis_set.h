@@ -6,6 +6,8 @@
 #include "gi/slhb/cut_outs.h"
 #include "gi/slhb/query_batch.h"
 
+#include <functional>
+
 namespace gi {
 
 /// Plain arrays for choosing among few axes: the cosines of all of them are computed, so that the chance is exact.
@@ -15,7 +17,40 @@ struct FewAxes {
     std::uint32_t count = 0;                            ///< all of one solid angle
     alignas(64) std::array<float, kMost> x{}, y{}, z{}; ///< zero beyond count
 
-    AxisSample sample(vec3 normal, float u) const;
+    GI_FN AxisSample sample(vec3 normal, float u) const
+    {
+        alignas(64) std::array<float, kMost> weight;
+        float total = 0;
+        for (std::size_t k = 0; k < count; ++k)
+            weight[k] = std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
+        for (std::size_t k = 0; k < count; ++k) total += weight[k];
+        // The first axis up to which the weights sum to more than u of all: no branch on what is random.
+        float const wanted = u * total;
+        float sum = 0;
+        std::uint32_t k = 0;
+        for (std::size_t a = 0; a + 1 < count; ++a) {
+            sum += weight[a];
+            k += sum <= wanted ? 1 : 0;
+        }
+        vec3 const axis{x[k], y[k], z[k]};
+        return {k, glm::dot(axis, normal) < 0 ? -axis : axis, 2 * total / float(count)};
+    }
+};
+
+/// What AxisSet::sample does, for kernels.
+struct AxisChoice {
+    View<FewAxes const> few; ///< per sequence
+    std::uint32_t few_count = 0;
+    CosineTablesView tables; ///< where there are any, in place of the few
+
+    GI_FN AxisSample sample(std::uint32_t bounce, vec3 normal, float u) const
+    {
+        if (!tables.axes.empty()) return tables.sample(normal, double(u));
+        std::uint32_t const sequence = bounce % std::uint32_t(few.size());
+        AxisSample s = few[sequence].sample(normal, u);
+        s.axis += sequence * few_count;
+        return s;
+    }
 };
 
 class AxisSet {
@@ -29,6 +64,9 @@ public:
         std::uint32_t most_layers;
         bool packed;
         std::uint64_t seed;
+        /// Where it is not empty, buffers are not built here but there: index of the axis, its grid, a seed for
+        /// the cut-outs. Axes come one after the other.
+        std::function<void(std::size_t, RasterGrid const&, std::uint32_t)> elsewhere = {};
     };
 
     explicit AxisSet(Source const& source) : source_(source) {}
@@ -67,6 +105,8 @@ public:
     {
         return tables_.axes.empty() ? 2 * kPi / float(few_count_) : tables_.solid_angles[a];
     }
+    std::vector<FewAxes> const& few() const { return few_; }
+    CosineTables const& tables() const { return tables_; }
     std::uint64_t built() const { return built_; }   ///< axes, so far
     std::uint64_t lost() const { return lost_; }     ///< layers beyond most_layers
     std::uint64_t layers() const { return layers_; } ///< of all axes built so far

@@ -1,8 +1,5 @@
 #include "gi/slhb/cut_outs.h"
 
-#include "gi/base/rng.h"
-#include "gi/scene/shading_point.h"
-
 #include <algorithm>
 
 namespace gi {
@@ -13,7 +10,7 @@ CutOuts::CutOuts(World const& world) : world_(view(world))
     if (std::ranges::none_of(world.materials, is_cut)) return;
     marked_.resize(world.triangles.size());
     for (std::size_t t = 0; t < marked_.size(); ++t)
-        marked_[t] = is_cut(world.materials[world.triangle_material[t]]);
+        marked_[t] = is_cut(world.materials[world.triangle_material[t]]) ? 1 : 0;
 }
 
 template <class Position>
@@ -23,13 +20,9 @@ void CutOuts::remove_where(Fragments& f, std::uint32_t seed, Position const& pos
     std::size_t kept = 0;
     for (std::size_t k = 0; k < f.count; ++k) {
         std::uint32_t const triangle = f.primitive[k] & kPrimitiveMask;
-        if (marked_[triangle]) {
-            Surface const& s = world_.surfaces[triangle];
-            float const covered = coverage(world_, triangle, barycentric_at(s, position(f.texel[k], f.depth[k])));
-            std::uint64_t const key =
-                (std::uint64_t(seed) << 32) ^ (std::uint64_t(triangle) * 0x9e3779b1u + f.texel[k]);
-            if (float(mix_bits(key) >> 40) * 0x1p-24f >= covered) continue;
-        }
+        if (marked_[triangle] != 0 &&
+            !is_there(world_, triangle, f.texel[k], position(f.texel[k], f.depth[k]), seed))
+            continue;
         f.texel[kept] = f.texel[k];
         f.depth[kept] = f.depth[k];
         f.primitive[kept++] = f.primitive[k];

@@ -2,7 +2,9 @@
 // What is cut out of surfaces (alpha masks, blending) is taken out of the buffers when they are built, so that no
 // query has to ask. Partial coverage is a random decision per fragment.
 
+#include "gi/base/rng.h"
 #include "gi/raster/nearest_map.h"
+#include "gi/scene/shading_point.h"
 
 namespace gi {
 
@@ -20,12 +22,36 @@ GI_FN inline vec2 barycentric_at(Surface const& s, vec3 position)
     return sum > 1 ? w / sum : w;
 }
 
+/// Whether the surface of a triangle with an alpha is there, at a position in a texel.
+GI_FN inline bool is_there(WorldView const& world, std::uint32_t triangle, std::uint32_t texel, vec3 position,
+                           std::uint32_t seed)
+{
+    float const covered = coverage(world, triangle, barycentric_at(world.surfaces[triangle], position));
+    std::uint64_t const key = (std::uint64_t(seed) << 32) ^ (std::uint64_t(triangle) * 0x9e3779b1u + texel);
+    return float(mix_bits(key) >> 40) * 0x1p-24f < covered;
+}
+
+/// For kernels: which fragments there are, see DrawNearest and TrimLayers.
+struct KeepUncut {
+    WorldView world;
+    View<std::uint8_t const> marked; ///< per triangle
+    std::uint32_t seed;
+
+    template <class Grid>
+    GI_FN bool operator()(Grid const& grid, std::uint32_t triangle, std::uint32_t texel, float depth) const
+    {
+        return marked[triangle] == 0 ||
+               is_there(world, triangle, texel, grid.point(texel % grid.width, texel / grid.width, depth), seed);
+    }
+};
+
 class CutOuts {
 public:
     /// Empty where every material is opaque.
     explicit CutOuts(World const& world);
 
     bool none() const { return marked_.empty(); }
+    std::vector<std::uint8_t> const& marked() const { return marked_; }
     /// Drops fragments where the surface is not. @param seed another one, another decision where coverage is
     /// partial
     void remove(Fragments& fragments, RasterGrid const& grid, std::uint32_t seed) const;
@@ -36,7 +62,7 @@ private:
     void remove_where(Fragments& fragments, std::uint32_t seed, Position const& position) const;
 
     WorldView world_;
-    std::vector<bool> marked_; ///< per triangle
+    std::vector<std::uint8_t> marked_; ///< per triangle: 1 = it has an alpha
 };
 
 } // namespace gi

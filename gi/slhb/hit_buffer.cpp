@@ -5,11 +5,6 @@
 namespace gi {
 namespace {
 
-bool before(HitLayer const& a, HitLayer const& b)
-{
-    return a.depth < b.depth || (a.depth == b.depth && a.primitive < b.primitive);
-}
-
 void sort_layers(HitLayer* first, HitLayer* last)
 {
     constexpr std::ptrdiff_t kFew = 24;

@@ -6,13 +6,9 @@
 // by primitive). offset has texels + 1 entries.
 
 #include "gi/raster/deep_raster.h"
+#include "gi/raster/hit_layer.h"
 
 namespace gi {
-
-struct HitLayer {
-    float depth;             ///< along the axis, m
-    std::uint32_t primitive; ///< triangle of the world, and kAlongAxis
-};
 
 struct HitBufferView {
     RasterGrid grid;

@@ -32,8 +32,8 @@ ShadowView view_from(World const& world, LightChoice const& choice, vec2 u)
 } // namespace
 
 Lamps::Lamps(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t count,
-             std::uint32_t resolution, std::uint64_t seed)
-    : world_(world), builder_(world, soup, cut_outs, resolution), seed_(seed)
+             std::uint32_t resolution, std::uint64_t seed, DrawElsewhere elsewhere)
+    : world_(world), builder_(world, soup, cut_outs, resolution), seed_(seed), elsewhere_(std::move(elsewhere))
 {
     if (world.light_select.empty()) return;
     std::size_t const lights = world.lights.size();
@@ -78,11 +78,15 @@ void Lamps::build(std::uint32_t pass)
         builder_.start(lamp.view, jitter, 2 * kPi * rng.uniform(), lamp.shadow);
     }
     std::uint32_t const seed = rng.next();
+    built_ += lamps_.size();
+    if (elsewhere_) {
+        elsewhere_(lamps_, seed);
+        return;
+    }
     tbb::parallel_for(std::size_t(0), 6 * lamps_.size(), [&](std::size_t job) {
         Lamp& lamp = lamps_[job / 6];
         builder_.build(lamp.view, int(job % 6), seed, lamp.shadow);
     });
-    built_ += lamps_.size();
 }
 
 } // namespace gi

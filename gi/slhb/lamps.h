@@ -5,6 +5,8 @@
 
 #include "gi/slhb/shadow_map.h"
 
+#include <functional>
+
 namespace gi {
 
 struct Lamp {
@@ -18,8 +20,11 @@ class Lamps {
 public:
     /// @param count per pass; where all lights are points or parallel and no more than this, all of them, and they
     /// keep their maps from pass to pass
+    /// @param elsewhere where it is not empty, shadow maps only get their grids here and are drawn there; with a
+    /// seed for the cut-outs
+    using DrawElsewhere = std::function<void(std::vector<Lamp> const&, std::uint32_t)>;
     Lamps(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t count,
-          std::uint32_t resolution, std::uint64_t seed);
+          std::uint32_t resolution, std::uint64_t seed, DrawElsewhere elsewhere = {});
 
     /// New points and shadow maps.
     void refresh(std::uint32_t pass);
@@ -36,6 +41,7 @@ private:
     World const& world_;
     ShadowMapBuilder builder_;
     std::uint64_t seed_;
+    DrawElsewhere elsewhere_;
     bool fixed_ = false;
     std::vector<Lamp> lamps_;
     AliasTable chances_; ///< where they are fixed

@@ -7,6 +7,12 @@
 
 namespace gi {
 
+vec2 place_in_pixel(PixelFilter filter, std::uint64_t seed, std::uint32_t pass)
+{
+    RqmcStream const stream{std::uint32_t(mix_bits(seed ^ 0xca3e7a)), pass};
+    return 0.5f + filter_offset(filter, vec2(stream.sample_together(0)));
+}
+
 PrimaryMap::PrimaryMap(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs,
                        CameraRays const& camera, RenderSettings const& settings)
     : soup_(soup),
@@ -16,14 +22,13 @@ PrimaryMap::PrimaryMap(World const& world, TriangleSoup const& soup, CutOuts con
       height_(settings.height),
       filter_(settings.filter),
       seed_(settings.seed),
-      near_m_(1e-5f * glm::max(world.bounds.radius(), 1e-30f))
+      near_m_(near_plane(world.bounds))
 {
 }
 
 void PrimaryMap::refresh(std::uint32_t pass)
 {
-    RqmcStream const stream{std::uint32_t(mix_bits(seed_ ^ 0xca3e7a)), pass};
-    at_ = 0.5f + filter_offset(filter_, vec2(stream.sample_together(0)));
+    at_ = place_in_pixel(filter_, seed_, pass);
     PerspectiveGrid const grid = camera_grid(camera_, width_, height_, at_, near_m_);
     // Parts in a fixed order, whoever computes them: the picture does not depend on threads.
     std::size_t const part =

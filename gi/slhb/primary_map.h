@@ -7,6 +7,11 @@
 
 namespace gi {
 
+/// The point of every pixel that a pass looks through, (0, 0) its corner.
+vec2 place_in_pixel(PixelFilter filter, std::uint64_t seed, std::uint32_t pass);
+/// Nothing nearer than this is seen, m.
+inline float near_plane(Bounds const& bounds) { return 1e-5f * glm::max(bounds.radius(), 1e-30f); }
+
 class PrimaryMap {
 public:
     PrimaryMap(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, CameraRays const& camera,

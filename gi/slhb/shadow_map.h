@@ -7,9 +7,9 @@
 // filtering: the texel is chosen among the four around by random numbers, which in the mean over paths is the
 // bilinear filter.
 
-#include "gi/raster/nearest_map.h"
 #include "gi/scene/light_sampling.h"
 #include "gi/slhb/cut_outs.h"
+#include "gi/slhb/shadow_look.h"
 
 #include <array>
 
@@ -21,12 +21,12 @@ struct ShadowMap {
     std::array<PerspectiveGrid, 6> faces;
     std::array<NearestMap, 6> maps; ///< [0] alone where parallel
 
-    /// A texel for a point.
-    struct Place {
-        NearestTexel const* texel = nullptr; ///< null = nothing can be in the way
-        float depth = 0;                     ///< of the lit surface at the texel's centre, m
-        float side = 0;                      ///< of the texel there, m
-    };
+    using Place = ShadowPlace;
+    /// Null where the face is empty.
+    NearestTexel const* texels(std::size_t face) const
+    {
+        return maps[face].texels.empty() ? nullptr : maps[face].texels.data();
+    }
     /// @param normal  unit, of the lit triangle  @param u uniform in [0, 1)^2
     Place look(vec3 position, vec3 normal, vec2 u) const;
     /// @param triangle  that is lit, at `position`
@@ -39,6 +39,9 @@ struct ShadowView {
     vec3 at{0};     ///< position of the lamp, or direction towards it
     vec3 facing{0}; ///< a lamp that shines to one side only: its normal, else 0
 };
+
+/// Whether a face's every direction points behind the lamp, where it lights nothing.
+bool sees_only_dark(ShadowView const& view, PerspectiveGrid const& face);
 
 class ShadowMapBuilder {
 public:

@@ -1,5 +1,6 @@
 #include "gi/slhb/slhb.h"
 
+#include "gi/slhb/kernel_render.h"
 #include "gi/slhb/primary_map.h"
 #include "gi/slhb/settings.h"
 #include "gi/slhb/shared_endings.h"
@@ -46,6 +47,10 @@ void exact_hits(ExactVisibility const& exact, CameraRays const& camera, RenderSe
 RenderResult render_slhb(World const& world, Camera const& camera, RenderSettings const& settings,
                          StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
+    if (settings.slhb.space == Space::device) {
+        check_device(settings.slhb);
+        return render_by_kernels(Space::device, world, camera, settings, stop, progress, report);
+    }
     PassLoop loop(settings, stop, progress, report);
     ScenePlan const plan = plan_scene(world);
     SlhbSettings const slhb = choose_settings(settings, world);

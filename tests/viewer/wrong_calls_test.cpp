@@ -1,5 +1,6 @@
 // A wrong call or input: exit code 2, one clear message, and no file left behind.
 
+#include "gi/base/device.h"
 #include "tests/viewer/run_program.h"
 
 namespace viewer::test {
@@ -34,6 +35,8 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"render nowhere.glb", "nowhere.glb"},
              {"render .", "folder"},
              {"render cornell --method magic", "magic"},
+             {"render cornell --device tpu", "--device"},
+             {"render cornell --device cuda", "--method reference"},
              {"render cornell --size 0x5", "--size"},
              {"render cornell --size 16384x16385", "--size"},
              {"render cornell --camera nobody", "nobody"},
@@ -108,6 +111,15 @@ TEST(WrongCalls, OutputsAreCheckedBeforeTheWork)
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
     EXPECT_EQ(folder.files(), before);
     EXPECT_EQ(file_text(folder / "file"), "kept");
+}
+
+TEST(WrongCalls, ADeviceThatIsNotThere)
+{
+    if (gi::device_present()) GTEST_SKIP() << "SKIPPED: there is a CUDA device";
+    TemporaryFolder const folder;
+    expect_refused("render cornell --method slhb --device cuda",
+                   gi::kCudaBuild ? "no CUDA device" : "without CUDA", folder.path());
+    EXPECT_TRUE(folder.files().empty());
 }
 
 TEST(WrongCalls, ReadOnlyFolder)

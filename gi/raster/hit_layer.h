@@ -1,0 +1,21 @@
+#pragma once
+// One surface under one texel centre.
+
+#include "gi/base/platform.h"
+
+#include <cstdint>
+
+namespace gi {
+
+struct HitLayer {
+    float depth;             ///< along the axis, m
+    std::uint32_t primitive; ///< triangle of the world, and kAlongAxis
+};
+
+/// The order of the layers of a texel.
+GI_FN inline bool before(HitLayer const& a, HitLayer const& b)
+{
+    return a.depth < b.depth || (a.depth == b.depth && a.primitive < b.primitive);
+}
+
+} // namespace gi

@@ -1,0 +1,13 @@
+#include "gi/raster/raster_kernels.h"
+
+#include "gi/base/launch.cuh"
+
+namespace gi {
+
+template void launch_device(char const*, std::size_t, CountLayers const&);
+template void launch_device(char const*, std::size_t, FillLayers const&);
+template void launch_device(char const*, std::size_t, DrawNearest<RasterGrid, KeepAll> const&);
+template void launch_device(char const*, std::size_t, DrawNearest<PerspectiveGrid, KeepAll> const&);
+template void launch_device(char const*, std::size_t, UnpackNearest const&);
+
+} // namespace gi

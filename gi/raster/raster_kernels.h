@@ -1,0 +1,198 @@
+#pragma once
+// The rasteriser as kernels, one item per share of a triangle: layers under every texel are counted, then filled
+// in no order; or the nearest one is kept. All decisions are made in integers and in multiply-adds that are
+// spelled out, so that every space gives the same layers, bit for bit.
+//
+// A launch has triangles * shares items. The rows of a large triangle are divided among its shares, since a scene
+// may have few triangles that fill the view; see shares_for.
+
+#include "gi/base/atomics.h"
+#include "gi/raster/clip.h"
+#include "gi/raster/hit_layer.h"
+#include "gi/raster/nearest_map.h"
+#include "gi/raster/scan_triangle.h"
+#include "gi/raster/soup_view.h"
+
+#include <bit>
+
+namespace gi {
+
+/// Items per triangle so that a device has enough of them.
+inline std::uint32_t shares_for(std::size_t triangles)
+{
+    constexpr std::size_t kEnough = 1 << 17, kMost = 64;
+    return std::uint32_t(glm::clamp(kEnough / glm::max(triangles, std::size_t(1)), std::size_t(1), kMost));
+}
+
+namespace raster_detail {
+
+/// Calls run as scan does, for the rows of one share.
+template <class Run>
+GI_FN void scan_share(TriangleScan s, std::uint32_t share, std::uint32_t shares, Run const& run)
+{
+    if (s.empty) return;
+    std::int64_t const rows = s.rows.last - s.rows.first + 1, top = s.rows.first;
+    s.rows = {std::int32_t(top + rows * share / shares), std::int32_t(top + rows * (share + 1) / shares - 1)};
+    constexpr std::int32_t kSmall = 4; // columns in which divisions would cost more than they save
+    scan(s, s.columns.last - s.columns.first < kSmall ? MacroPath::square_blocks : MacroPath::edge_table, run);
+}
+
+/// Calls emit(SnappedTriangle, depths) for what the grid has to scan of a triangle.
+template <class Emit>
+GI_FN void project(RasterGrid const& grid, vec3 const* p, Emit const& emit)
+{
+    emit(snap(grid, p[0], p[1], p[2]), vec3{grid.depth(p[0]), grid.depth(p[1]), grid.depth(p[2])});
+}
+
+template <class Emit>
+GI_FN void project(PerspectiveGrid const& grid, vec3 const* p, Emit const& emit)
+{
+    auto const row = [](vec3 v, vec3 to) { return std::fma(v.z, to.z, std::fma(v.y, to.y, v.x * to.x)); };
+    float x[3], y[3], z[3], nearest = kInf, farthest = -kInf, widest = 0;
+    for (int k = 0; k < 3; ++k) {
+        vec3 const v = p[k] - grid.eye;
+        float const w = row(v, grid.forward);
+        nearest = glm::min(nearest, w);
+        farthest = glm::max(farthest, w);
+        z[k] = 1 / w;
+        x[k] = std::rint(row(v, grid.to_x) * z[k]);
+        y[k] = std::rint(row(v, grid.to_y) * z[k]);
+        widest = glm::max(widest, glm::max(std::abs(x[k]), std::abs(y[k])));
+    }
+    if (farthest <= grid.near_m) return;
+    if (!(nearest > grid.near_m && widest <= PerspectiveGrid::kGuard)) {
+        clip_triangle(grid, p, emit);
+        return;
+    }
+    auto const whole = [](float v) { return std::int32_t(v); };
+    emit(SnappedTriangle{{whole(x[0]), whole(x[1]), whole(x[2])}, {whole(y[0]), whole(y[1]), whole(y[2])}},
+         vec3{z[0], z[1], z[2]});
+}
+
+/// A float as an integer of the same order; never 0.
+GI_FN inline std::uint32_t ordered_bits(float v)
+{
+    auto const bits = std::bit_cast<std::uint32_t>(v + 0.0f); // -0 is 0
+    return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
+}
+
+GI_FN inline float from_ordered_bits(std::uint32_t ordered)
+{
+    return std::bit_cast<float>((ordered & 0x80000000u) != 0 ? ordered & 0x7fffffffu : ~ordered);
+}
+
+GI_FN inline float key_sign(RasterGrid const&) { return -1; }
+GI_FN inline float key_sign(PerspectiveGrid const&) { return 1; }
+
+} // namespace raster_detail
+
+/// Item = share of a triangle. Adds the layers that it has under each texel.
+struct CountLayers {
+    SoupView soup;
+    RasterGrid grid;
+    std::uint32_t shares;
+    View<std::uint32_t> count; ///< per texel
+    View<std::uint64_t> total; ///< one number, of all texels: counts wrap at 2^32
+
+    GI_FN void operator()(std::size_t i) const
+    {
+        std::size_t const t = i / shares;
+        SnappedTriangle const snapped = snap(grid, soup.vertex(t, 0), soup.vertex(t, 1), soup.vertex(t, 2));
+        TriangleScan const s = start_scan(snapped, std::int32_t(grid.subpixels), grid.width, grid.height);
+        std::uint64_t sum = 0;
+        raster_detail::scan_share(s, std::uint32_t(i % shares), shares,
+                                  [&](std::uint32_t row, std::uint32_t first, std::uint32_t last) {
+                                      for (std::uint32_t c = first; c <= last; ++c)
+                                          atomic_add(count[std::size_t(row) * grid.width + c], 1);
+                                      sum += last - first + 1;
+                                  });
+        if (sum > 0) atomic_add(total[0], sum);
+    }
+};
+
+/// Item = share of a triangle. Writes its layers, where CountLayers and a scan have made room for them.
+struct FillLayers {
+    SoupView soup;
+    RasterGrid grid;
+    std::uint32_t shares;
+    View<std::uint32_t> next; ///< per texel: first free layer; the end of its layers when all is done
+    View<HitLayer> layers;
+
+    GI_FN void operator()(std::size_t i) const
+    {
+        std::size_t const t = i / shares;
+        vec3 const a = soup.vertex(t, 0), b = soup.vertex(t, 1), c = soup.vertex(t, 2);
+        SnappedTriangle const snapped = snap(grid, a, b, c);
+        auto const subpixels = std::int32_t(grid.subpixels);
+        TriangleScan const s = start_scan(snapped, subpixels, grid.width, grid.height);
+        if (s.empty) return;
+        DepthPlane const plane = depth_plane(snapped, subpixels, {grid.depth(a), grid.depth(b), grid.depth(c)});
+        std::uint32_t const id = std::uint32_t(t) | (s.along ? kAlongAxis : 0);
+        raster_detail::scan_share(s, std::uint32_t(i % shares), shares,
+                                  [&](std::uint32_t row, std::uint32_t first, std::uint32_t last) {
+                                      for (std::uint32_t column = first; column <= last; ++column)
+                                          layers[atomic_add(next[std::size_t(row) * grid.width + column], 1)] = {
+                                              plane.at(column, row), id};
+                                  });
+    }
+};
+
+/// Draws every fragment.
+struct KeepAll {
+    template <class Grid>
+    GI_FN bool operator()(Grid const&, std::uint32_t, std::uint32_t, float) const
+    {
+        return true;
+    }
+};
+
+/// Item = share of a triangle. Keeps the nearest fragment of each texel, of equally near ones that of the first
+/// triangle. Keep(grid, triangle, texel, depth) says which fragments there are.
+template <class Grid, class Keep>
+struct DrawNearest {
+    SoupView soup;
+    Grid grid;
+    Keep keep;
+    std::uint32_t shares;
+    View<std::uint64_t> best; ///< per texel: key in the upper half, inverted triangle in the lower; 0 = none
+
+    GI_FN void operator()(std::size_t i) const
+    {
+        std::size_t const t = i / shares;
+        vec3 const p[3] = {soup.vertex(t, 0), soup.vertex(t, 1), soup.vertex(t, 2)};
+        auto const subpixels = std::int32_t(grid.subpixels);
+        auto const id = std::uint32_t(t);
+        raster_detail::project(grid, p, [&](SnappedTriangle const& part, vec3 depths) {
+            TriangleScan const s = start_scan(part, subpixels, grid.width, grid.height);
+            if (s.empty) return;
+            DepthPlane const plane = depth_plane(part, subpixels, depths);
+            raster_detail::scan_share(s, std::uint32_t(i % shares), shares,
+                                      [&](std::uint32_t row, std::uint32_t first, std::uint32_t last) {
+                                          for (std::uint32_t column = first; column <= last; ++column) {
+                                              std::uint32_t const texel = row * grid.width + column;
+                                              float const depth = plane.at(column, row);
+                                              if (!keep(grid, id, texel, depth)) continue;
+                                              std::uint64_t const key = raster_detail::ordered_bits(
+                                                  raster_detail::key_sign(grid) * depth);
+                                              atomic_max(best[texel], key << 32 | (~id & 0xffffffffu));
+                                          }
+                                      });
+        });
+    }
+};
+
+/// Item = texel. What DrawNearest left, as a NearestMap has it.
+struct UnpackNearest {
+    View<std::uint64_t const> best;
+    View<NearestTexel> texels;
+
+    GI_FN void operator()(std::size_t i) const
+    {
+        NearestTexel t;
+        if (best[i] != 0)
+            t = {raster_detail::from_ordered_bits(std::uint32_t(best[i] >> 32)), ~std::uint32_t(best[i])};
+        texels[i] = t;
+    }
+};
+
+} // namespace gi

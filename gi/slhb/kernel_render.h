@@ -1,0 +1,20 @@
+#pragma once
+// The method slhb by kernels: hit buffers, shadow maps, G-buffer and paths are all made in one space, and only the
+// paths' results come back. On the device this is `--device cuda`; on the host it is there so that tests can hold
+// it to render_slhb.
+
+#include "gi/image/render_settings.h"
+#include "gi/scene/world.h"
+
+namespace gi {
+
+/// Throws InputError where no device can be used, or where it lacks what is asked for.
+void check_device(SlhbSettings const& settings);
+
+/// See RenderFunction in gi/registry. What is missing from the picture is in path_kernel.h, and counted in the
+/// report. Throws InputError on what kernels cannot do: an orthographic camera, --cone, --gather.
+RenderResult render_by_kernels(Space space, World const& world, Camera const& camera,
+                               RenderSettings const& settings, StopRequest const& stop,
+                               RenderProgress const& progress, Report& report);
+
+} // namespace gi

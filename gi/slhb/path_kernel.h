@@ -1,0 +1,90 @@
+#pragma once
+// The paths of a pass as a kernel: item = pixel, one path depth first, its state in registers. The estimators are
+// those of SlhbTracer (tracer.h) with the same random numbers, so that both trace the same paths but for rounding.
+//
+// What it lacks: exact rays. A path that chooses a mirror, glass or a narrow lobe ends there, and is counted; the
+// light it would have brought is missing from the picture. Direct light on such surfaces has its full weight
+// instead, as no exact ray will find the lamp. There is no cone, no gathering, no interleaving and no
+// sharing of what layers send back.
+
+#include "gi/base/atomics.h"
+#include "gi/base/rqmc.h"
+#include "gi/scene/camera.h"
+#include "gi/scene/light_sampling.h"
+#include "gi/scene/shading_point.h"
+#include "gi/slhb/axis_set.h"
+#include "gi/slhb/cut_outs.h"
+#include "gi/slhb/narrow_lobes.h"
+#include "gi/slhb/shadow_look.h"
+#include "gi/transport/path_sample.h"
+#include "gi/transport/sampling.h"
+
+namespace gi {
+
+/// A Lamp that kernels can see.
+struct LampView {
+    LightChoice choice;
+    vec2 u{0};
+    ShadowMapView shadow;
+};
+
+struct PathKernelCounts {
+    std::uint64_t queries = 0, shadow_lookups = 0;
+    std::uint64_t narrow_ends = 0; ///< paths that wanted an exact ray
+    std::uint64_t cut_paths = 0, invalid_paths = 0;
+};
+
+struct TracePaths {
+    WorldView world;
+    CameraRays camera;
+    View<NearestTexel const> primary; ///< per pixel, in rows of `width`
+    vec2 place;                       ///< in the pixel, that all look through
+    std::uint32_t width;
+    View<AxisView const> axes;
+    AxisChoice choice;
+    View<LampView const> lamps;
+    AliasTableView chances; ///< of the lamps; empty = they are taken in turn
+    int bounces;
+    std::uint32_t seed, pass;
+    View<PathSample> samples;      ///< per pixel
+    View<PathKernelCounts> counts; ///< one
+
+    GI_FN void operator()(std::size_t i) const;
+
+private:
+    /// Dimension::d of vertex v is v * kPerVertex + 2 + d, as in tracer.cpp.
+    enum Dimension : std::uint32_t { axis, lobe, lobe_u, lobe_v, roulette, lamp, shadow, cone, kPerVertex };
+
+    /// One path on its way. Every surface scatters once, so that scatterings also count surfaces.
+    struct State {
+        RqmcStream random;
+        std::uint32_t triangle = kNoPrimitive;
+        vec2 barycentric{1.0f / 3};
+        vec3 position{0};  ///< read after the first surface
+        vec3 direction{0}; ///< of arrival
+        vec3 throughput{1};
+        float arrival_pdf = 0; ///< of the direction, for the sky; 0 = camera
+        int scatterings = 0;
+
+        GI_FN std::uint32_t dimension(Dimension d) const
+        {
+            return std::uint32_t(scatterings) * kPerVertex + 2 + d;
+        }
+    };
+
+    GI_FN State start(std::size_t pixel) const;
+    GI_FN vec3 sky(State const& s) const;
+    GI_FN vec3 direct(State const& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
+    /// False where the path ends.
+    GI_FN bool leave(State& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
+    GI_FN static void add(PathSample& out, int scattered, vec3 radiance)
+    {
+        vec3& to = scattered == 0 ? out.radiance[0] : scattered == 1 ? out.radiance[1] : out.radiance[2];
+        to += radiance;
+    }
+    GI_FN void add_counts(PathKernelCounts const& local) const;
+};
+
+} // namespace gi
+
+#include "gi/slhb/path_kernel.inl.h"

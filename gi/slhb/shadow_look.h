@@ -1,0 +1,98 @@
+#pragma once
+// Looking into a shadow map, on the CPU and in kernels: for whatever type has `parallel`, `grid`, `faces` and
+// texels(face), as ShadowMap and ShadowMapView do. What a look-up decides is said in shadow_map.h.
+
+#include "gi/raster/nearest_map.h"
+
+namespace gi {
+
+/// A texel for a point.
+struct ShadowPlace {
+    NearestTexel const* texel = nullptr; ///< null = nothing can be in the way
+    float depth = 0;                     ///< of the lit surface at the texel's centre, m
+    float side = 0;                      ///< of the texel there, m
+};
+
+/// A ShadowMap that kernels can see.
+struct ShadowMapView {
+    bool parallel = false;
+    RasterGrid grid;
+    PerspectiveGrid faces[6];
+    NearestTexel const* maps[6] = {}; ///< null = empty
+
+    GI_FN NearestTexel const* texels(std::size_t face) const { return maps[face]; }
+};
+
+namespace shadow_detail {
+
+/// Of the four texels around a point, one with the probability of its bilinear weight.
+GI_FN inline std::uint32_t pick(float at, float u, std::uint32_t count)
+{
+    float const shifted = std::floor(at - 0.5f + u);
+    return shifted > 0 ? glm::min(std::uint32_t(shifted), count - 1) : 0u;
+}
+
+GI_FN inline int face_of(vec3 d)
+{
+    vec3 const a = glm::abs(d);
+    if (a.x >= a.y && a.x >= a.z) return d.x < 0 ? 1 : 0;
+    if (a.y >= a.z) return d.y < 0 ? 3 : 2;
+    return d.z < 0 ? 5 : 4;
+}
+
+/// @param normal  unit, of the lit triangle  @param u uniform in [0, 1)^2
+template <class Map>
+GI_FN ShadowPlace look(Map const& map, vec3 position, vec3 normal, vec2 u)
+{
+    // Where the surface is met by the line through the texel's centre, no farther from the point than a surface
+    // that is grazed steeply would be.
+    constexpr float kSteepest = 8;
+    auto const shift = [&](vec3 off, vec3 line, float texel) {
+        float const cosine = glm::dot(normal, line), most = kSteepest * texel;
+        return cosine != 0 ? glm::clamp(glm::dot(normal, off) / cosine, -most, most) : 0.0f;
+    };
+    if (map.parallel) {
+        RasterGrid const& grid = map.grid;
+        float const x = (glm::dot(position, grid.right) - grid.corner.x) / grid.texel;
+        float const y = (glm::dot(position, grid.up) - grid.corner.y) / grid.texel;
+        std::uint32_t const i = pick(x, u.x, grid.width), j = pick(y, u.y, grid.height);
+        float const here = grid.depth(position);
+        return {map.texels(0) + (std::size_t(j) * grid.width + i),
+                here + shift(position - grid.point(i, j, here), grid.axis, grid.texel), grid.texel};
+    }
+    vec3 const way = position - map.faces[0].eye;
+    auto const f = std::size_t(face_of(way));
+    PerspectiveGrid const& g = map.faces[f];
+    NearestTexel const* const texels = map.texels(f);
+    float const w = glm::dot(g.forward, way);
+    if (texels == nullptr || !(w > g.near_m)) return {}; // behind a lamp that shines to one side, or at the lamp
+    float const per_subpixel = 1 / (w * g.subpixels);
+    std::uint32_t const i = pick(glm::dot(g.to_x, way) * per_subpixel, u.x, g.width);
+    std::uint32_t const j = pick(glm::dot(g.to_y, way) * per_subpixel, u.y, g.height);
+    vec3 const line = g.direction(i, j);
+    float const texel = 2 * w / float(g.width);
+    return {texels + (std::size_t(j) * g.width + i), w + shift(way - w * line, line, texel), texel};
+}
+
+/// @param triangle  that is lit, at `position`
+template <class Map>
+GI_FN bool lit(Map const& map, ShadowPlace const& place, View<Surface const> surfaces, vec3 position,
+               std::uint32_t triangle)
+{
+    constexpr float kRounding = 1e-5f, kNear = 4; // of the depth; texels
+    if (place.texel == nullptr || place.texel->primitive == triangle || place.texel->primitive == kNoPrimitive)
+        return true;
+    float const stored = map.parallel ? -place.texel->key : 1 / place.texel->key;
+    float const gap = place.depth - stored;
+    if (gap <= kRounding * std::abs(place.depth)) return true;
+    if (gap > kNear * place.side) return false;
+    Surface const& s = surfaces[place.texel->primitive];
+    vec3 const normal = glm::cross(s.edge1, s.edge2);
+    float const here = glm::dot(normal, position - s.corner);
+    float const lamp =
+        map.parallel ? -glm::dot(normal, map.grid.axis) : glm::dot(normal, map.faces[0].eye - s.corner);
+    return (here < 0) == (lamp < 0) || std::abs(here) <= s.clearance * glm::length(normal);
+}
+
+} // namespace shadow_detail
+} // namespace gi

@@ -1,0 +1,187 @@
+// The whole method by kernels, on the host and on the device, against render_slhb: with the same random numbers
+// they trace the same paths, but for rounding.
+
+#include "gi/base/error.h"
+#include "gi/slhb/kernel_render.h"
+#include "tests/slhb/slhb_render.h"
+#include "tests/support/on_device.h"
+
+namespace gi::test {
+namespace {
+
+SlhbRun render_with_kernels(Space space, World const& world, Camera const& camera, RenderSettings const& settings)
+{
+    StopRequest stop;
+    Report report;
+    SlhbRun run{render_by_kernels(space, world, camera, settings, stop, {}, report), {}, {}};
+    run.losses = report.losses();
+    run.counts = report.counts();
+    EXPECT_EQ(run.losses.count("path terms that were not finite, dropped"), 0u);
+    return run;
+}
+
+/// A room with a block and a ball in it; what lights it is added by the test.
+Scene room()
+{
+    Scene scene;
+    int const grey = add_material(scene, lambert(vec3{0.6f}));
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, grey, true);
+    add_box(scene, {-0.4f, -1, -0.4f}, {0.3f, 0, 0.2f}, add_material(scene, lambert(vec3{0.3f, 0.6f, 0.2f})),
+            false);
+    add_sphere(scene, {0.5f, -0.6f, 0.4f}, 0.3f, 3, add_material(scene, lambert(vec3{0.7f, 0.2f, 0.2f})), true);
+    return scene;
+}
+
+Camera room_camera() { return look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70); }
+
+/// Few pixels and large buffers, so that the CPU shares no endings.
+RenderSettings settings_of(std::uint32_t paths, int bounces)
+{
+    RenderSettings s = small_settings(24, paths, bounces);
+    s.slhb.resolution = 64;
+    return s;
+}
+
+/// Every layer's mean, and nearly every pixel's colour.
+void expect_same_picture(SlhbRun const& found, SlhbRun const& expected, std::string const& what)
+{
+    ASSERT_EQ(found.result.paths, expected.result.paths);
+    for (char const* const name : {"color", "L0", "L1", "L2", "albedo", "normal", "depth"}) {
+        double const truth = mean_of(expected.result.picture, name).mean;
+        EXPECT_NEAR(mean_of(found.result.picture, name).mean, truth, 0.01 * std::abs(truth) + 1e-3)
+            << what << " " << name;
+    }
+    std::vector<float> const& a = found.result.picture.find("color")->data;
+    std::vector<float> const& b = expected.result.picture.find("color")->data;
+    ASSERT_EQ(a.size(), b.size());
+    std::size_t differ = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        ASSERT_TRUE(std::isfinite(a[k]));
+        differ += std::abs(a[k] - b[k]) > 0.01f * (std::abs(b[k]) + 0.01f);
+    }
+    EXPECT_LE(differ, a.size() / 20) << what;
+    double const queries = expected.counts.at("hit-buffer queries");
+    EXPECT_NEAR(found.counts.at("hit-buffer queries"), queries, 0.005 * queries) << what;
+}
+
+template <Space S>
+void expect_like_cpu(Scene scene, RenderSettings const& settings, std::string const& what)
+{
+    World const world = world_of(std::move(scene));
+    SlhbRun const expected = render_with_slhb(world, room_camera(), settings);
+    EXPECT_EQ(expected.counts.at("layers shaded for several paths"), 0) << what;
+    expect_same_picture(render_with_kernels(S, world, room_camera(), settings), expected, what);
+}
+
+template <Space S>
+void check_lights()
+{
+    Scene lamp = room();
+    add_quad(lamp, {-0.3f, 0.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(lamp, emitter(vec3{10})));
+    expect_like_cpu<S>(lamp, settings_of(8, 4), "area light");
+    expect_like_cpu<S>(lamp, settings_of(8, 0), "area light, no bounces");
+
+    Scene points = room();
+    for (int k = 0; k < 3; ++k) {
+        Light light;
+        light.type = k == 2 ? LightType::spot : LightType::point;
+        light.position = {0.5f - 0.4f * float(k), 0.8f, 0.1f};
+        light.direction = {0, -1, 0};
+        light.intensity = vec3{1 + float(k)};
+        add_light(points, light);
+    }
+    expect_like_cpu<S>(points, settings_of(8, 6), "point lights");
+
+    Scene open;
+    add_quad(open, {-2, -1, -2}, {0, 0, 4}, {4, 0, 0}, add_material(open, lambert(vec3{0.5f})));
+    add_sphere(open, {0, -0.4f, 0}, 0.6f, 3, add_material(open, lambert(vec3{0.8f, 0.5f, 0.3f})), false);
+    set_environment(open, {1, 2, 3});
+    Light sun;
+    sun.type = LightType::directional;
+    sun.direction = glm::normalize(vec3{0.3f, -1, 0.2f});
+    add_light(open, sun);
+    expect_like_cpu<S>(open, settings_of(8, 3), "sky and sun");
+}
+LIGHTWELL_TEST_BOTH(KernelRender, LightsAsOnTheCpu, check_lights);
+
+template <Space S>
+void check_schedules()
+{
+    Scene lamp = room();
+    add_quad(lamp, {-0.3f, 0.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(lamp, emitter(vec3{10})));
+    RenderSettings s = settings_of(6, 5);
+    s.slhb.schedule = Schedule::temporal;
+    expect_like_cpu<S>(lamp, s, "temporal");
+    s.slhb.schedule = Schedule::stored;
+    s.slhb.directions = "icosahedron:80";
+    expect_like_cpu<S>(lamp, s, "stored");
+    s.slhb.most_layers = 2;
+    expect_like_cpu<S>(lamp, s, "few layers");
+}
+LIGHTWELL_TEST_BOTH(KernelRender, SchedulesAsOnTheCpu, check_schedules);
+
+template <Space S>
+void check_cut_outs()
+{
+    Scene scene = room();
+    Material veil = lambert(vec3{0.9f});
+    veil.alpha_mode = AlphaMode::blend;
+    veil.alpha = 0.5f;
+    add_quad(scene, {-0.9f, 0.2f, -0.9f}, {0, 0, 1.8f}, {1.8f, 0, 0}, add_material(scene, veil));
+    Light light;
+    light.position = {0, 0.8f, 0};
+    light.intensity = vec3{2};
+    add_light(scene, light);
+    expect_like_cpu<S>(scene, settings_of(8, 3), "half transparent veil");
+}
+LIGHTWELL_TEST_BOTH(KernelRender, CutOutsAsOnTheCpu, check_cut_outs);
+
+template <Space S>
+void check_mirrors()
+{
+    Scene scene = room();
+    add_sphere(scene, {-0.5f, 0.4f, 0}, 0.3f, 3, add_material(scene, mirror(vec3{0.9f})), true);
+    add_quad(scene, {-0.3f, 0.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{10})));
+    World const world = world_of(scene);
+    SlhbRun const found = render_with_kernels(S, world, room_camera(), settings_of(4, 3));
+    auto const lost =
+        found.losses.find("paths that ended at a mirror, glass or narrow lobe, as the kernels have no exact rays");
+    ASSERT_NE(lost, found.losses.end());
+    EXPECT_GT(lost->second.count, 0u);
+}
+LIGHTWELL_TEST_BOTH(KernelRender, PathsThatEndAtMirrorsAreCounted, check_mirrors);
+
+template <Space S>
+void check_nothing()
+{
+    Camera const camera = look_at({0, 0, 1}, {0, 0, 0}, 45);
+    EXPECT_EQ(
+        mean_of(render_with_kernels(S, world_of(Scene{}), camera, small_settings(8, 4, 2)).result.picture).mean,
+        0);
+    Scene sky;
+    set_environment(sky, vec3{2});
+    EXPECT_NEAR(
+        mean_of(render_with_kernels(S, world_of(sky), camera, small_settings(8, 4, 2)).result.picture).mean, 2,
+        1e-5);
+}
+LIGHTWELL_TEST_BOTH(KernelRender, EmptySceneIsBlackAndEmptySkyIsSky, check_nothing);
+
+TEST(KernelRender, WhatKernelsLackIsRefused)
+{
+    World const world = world_of(room());
+    auto const refused = [&](Camera const& camera, RenderSettings const& s) {
+        EXPECT_THROW(render_with_kernels(Space::host, world, camera, s), InputError);
+    };
+    refused(orthographic({0, 0, 1}, {0, 0, 0}, 1), settings_of(1, 1));
+    RenderSettings cone = settings_of(1, 1), gather = settings_of(1, 1), device = settings_of(1, 1);
+    cone.slhb.cone = 1;
+    refused(room_camera(), cone);
+    gather.slhb.gather = true;
+    refused(room_camera(), gather);
+    if (device_present()) return;
+    device.slhb.space = Space::device;
+    EXPECT_THROW(render_with_slhb(world, room_camera(), device), InputError);
+}
+
+} // namespace
+} // namespace gi::test
