@@ -20,33 +20,33 @@ vec3 half_sphere(vec2 u)
 
 } // namespace
 
-void AxisSet::build(std::vector<std::size_t> const& which, std::vector<vec3> const& axes)
+void AxisSet::build(std::vector<NewAxis> const& axes)
 {
     auto const build_one = [&](std::size_t k) {
         thread_local Fragments fragments;
-        std::size_t const a = which[k];
-        Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(built_ + k), 0);
+        NewAxis const& axis = axes[k];
+        Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(axis.slot), axis.number);
         vec2 const jitter = rng.uniform2();
         RasterGrid const grid =
-            make_grid(source_.bounds, axes[k], source_.resolution, jitter, 2 * kPi * rng.uniform());
+            make_grid(source_.bounds, axis.direction, source_.resolution, jitter, 2 * kPi * rng.uniform());
         if (source_.elsewhere) {
-            source_.elsewhere(a, grid, rng.next());
+            source_.elsewhere(axis.slot, grid, rng.next());
             return;
         }
         fragments.count = 0;
         rasterize(source_.soup, 0, source_.soup.count, grid, MacroPath::edge_table, fragments);
         source_.cut_outs.remove(fragments, grid, rng.next());
-        fill_hit_buffer(fragments, grid, source_.most_layers, buffers_[a]);
+        fill_hit_buffer(fragments, grid, source_.most_layers, buffers_[axis.slot]);
     };
     if (source_.elsewhere)
-        for (std::size_t k = 0; k < which.size(); ++k) build_one(k);
+        for (std::size_t k = 0; k < axes.size(); ++k) build_one(k);
     else
-        tbb::parallel_for(std::size_t(0), which.size(), build_one);
-    for (std::size_t const a : which) {
-        lost_ += buffers_[a].lost;
-        layers_ += buffers_[a].layers.size();
+        tbb::parallel_for(std::size_t(0), axes.size(), build_one);
+    for (NewAxis const& axis : axes) {
+        lost_ += buffers_[axis.slot].lost;
+        layers_ += buffers_[axis.slot].layers.size();
     }
-    built_ += which.size();
+    built_ += axes.size();
     fill_pool(buffers_, pool_, source_.packed);
 }
 
@@ -54,43 +54,38 @@ void AxisSet::store(DirectionSet const& directions)
 {
     tables_ = make_cosine_tables(directions, kNormalBins);
     buffers_.resize(directions.axes.size());
-    std::vector<std::size_t> which;
-    std::vector<vec3> axes;
-    for (dvec3 const a : directions.axes) {
-        which.push_back(axes.size());
-        axes.push_back(vec3(a));
-    }
-    build(which, axes);
+    std::vector<NewAxis> axes;
+    for (dvec3 const a : directions.axes) axes.push_back({axes.size(), vec3(a), 0});
+    build(axes);
     buffers_.clear();
     buffers_.shrink_to_fit();
 }
 
-void AxisSet::refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh)
+void AxisSet::refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh, std::uint32_t pass)
 {
-    if (buffers_.empty()) {
+    std::uint32_t const first = pass * fresh, last = first + count;
+    if (buffers_.empty() || drawn_ < first || drawn_ > last) {
         buffers_.resize(std::size_t(sequences) * count);
-        few_.resize(sequences);
+        few_.assign(sequences, {});
         few_count_ = count;
-        fresh = count;
+        drawn_ = first;
     }
-    std::vector<std::size_t> which;
-    std::vector<vec3> axes;
+    std::vector<NewAxis> axes;
     for (std::uint32_t s = 0; s < sequences; ++s) {
         FewAxes& few = few_[s];
         few.count = count;
-        for (std::uint32_t k = 0; k < fresh; ++k) {
-            RqmcStream const stream{std::uint32_t(mix_bits(source_.seed ^ (0xa8e5 + s))), drawn_ + k};
+        for (std::uint32_t number = drawn_; number < last; ++number) {
+            RqmcStream const stream{std::uint32_t(mix_bits(source_.seed ^ (0xa8e5 + s))), number};
             vec3 const axis = half_sphere(vec2(stream.sample_together(0)));
-            std::uint32_t const a = (drawn_ + k) % count;
-            which.push_back(std::size_t(s) * count + a);
-            axes.push_back(axis);
+            std::uint32_t const a = number % count;
+            axes.push_back({std::size_t(s) * count + a, axis, number});
             few.x[a] = axis.x;
             few.y[a] = axis.y;
             few.z[a] = axis.z;
         }
     }
-    drawn_ += fresh;
-    build(which, axes);
+    drawn_ = last;
+    build(axes);
 }
 
 } // namespace gi

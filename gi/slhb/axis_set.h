@@ -77,9 +77,10 @@ public:
     /// they avoid each other, which is a bias that does not go away. Bounce b shares its axes with b + kSequences.
     static constexpr std::uint32_t kSequences = 3;
 
-    /// For each of `sequences` bounces `count` axes (up to FewAxes::kMost), of which the next `fresh` ones are
-    /// replaced by the next of a scrambled Sobol sequence over the half sphere; all when called first.
-    void refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh);
+    /// For each of `sequences` bounces `count` axes (up to FewAxes::kMost) from a scrambled Sobol sequence over the half
+    /// sphere: numbers pass * fresh to pass * fresh + count - 1. Those that are there already are kept, so that a pass
+    /// has the same axes whether or not the passes before it were made here.
+    void refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh, std::uint32_t pass);
 
     /// @param bounce  0 = the first  @param normal unit  @param u uniform in [0, 1)
     AxisSample sample(std::uint32_t bounce, vec3 normal, float u) const
@@ -111,7 +112,12 @@ public:
     std::uint64_t layers() const { return layers_; } ///< of all axes built so far
 
 private:
-    void build(std::vector<std::size_t> const& which, std::vector<vec3> const& axes);
+    struct NewAxis {
+        std::size_t slot;
+        vec3 direction;
+        std::uint32_t number; ///< decides where its grid lies
+    };
+    void build(std::vector<NewAxis> const& axes);
 
     Source source_;
     std::vector<HitBuffer> buffers_;
@@ -119,7 +125,7 @@ private:
     CosineTables tables_;
     std::vector<FewAxes> few_; ///< per sequence
     std::uint32_t few_count_ = 0;
-    std::uint32_t drawn_ = 0; ///< from each sequence
+    std::uint32_t drawn_ = 0; ///< of each sequence, the next number
     std::uint64_t built_ = 0, lost_ = 0, layers_ = 0;
 };
 

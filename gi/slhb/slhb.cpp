@@ -86,7 +86,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
         {
             StageTimer const timer(report, "hit buffers of a pass");
             if (slhb.schedule != Schedule::stored)
-                axes.refresh(sequences, std::uint32_t(slhb.axes), std::uint32_t(slhb.fresh_axes));
+                axes.refresh(sequences, std::uint32_t(slhb.axes), std::uint32_t(slhb.fresh_axes), index);
         }
         {
             StageTimer const timer(report, "shadow maps");
@@ -147,7 +147,9 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
         });
         ++sums.paths;
     };
-    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, "slhb") : 0;
+    RenderSettings chosen = settings;
+    chosen.slhb = slhb;
+    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb") : 0;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
         for (std::uint32_t i = 0; i < paths; ++i) pass(sums);
     });

@@ -188,6 +188,22 @@ TEST(SlhbStability, ThreadsAndInterruptionsDoNotChangeThePicture)
     s.threads = 1;
     Picture const one = render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture;
     s.threads = 2;
+    s.slhb.schedule = Schedule::temporal;
+    Picture const whole = render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture;
+    std::filesystem::path const state = std::filesystem::temp_directory_path() / "lightwell_slhb_test.state";
+    std::filesystem::remove(state);
+    s.checkpoint = state;
+    StopRequest stop;
+    Report report;
+    auto const after_the_first_pass = [&](RenderStatus const&) { stop.request(); };
+    RenderResult const part =
+        render_slhb(world, room_camera(1, dvec3{0}), s, stop, after_the_first_pass, report);
+    ASSERT_EQ(part.end, RenderEnd::interrupted);
+    s.resume = true;
+    EXPECT_EQ(render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture.find("color")->data,
+              whole.find("color")->data);
+    std::filesystem::remove(state);
+    s = small_settings(80, 5, 3);
     EXPECT_EQ(render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture.find("color")->data,
               one.find("color")->data);
 }
