@@ -206,7 +206,9 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
         sums.counts.invalid_paths += scene.last_pass().invalid_paths;
         ++sums.paths;
     };
-    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, "slhb by kernels") : 0;
+    RenderSettings chosen = settings;
+    chosen.slhb = slhb;
+    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb by kernels") : 0;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
         for (std::uint32_t i = 0; i < paths; ++i) pass(sums);
     });
