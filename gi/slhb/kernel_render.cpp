@@ -154,10 +154,10 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
                     StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
     PassLoop loop(settings, stop, progress, report);
-    SlhbSettings const slhb = choose_settings(settings, world);
+    TriangleSoup const soup = make_soup(world);
+    SlhbSettings const slhb = choose_settings(settings, world, soup);
     CameraRays const rays = camera_rays(camera, settings.width, settings.height, world.origin);
     CutOuts const cut_outs(world);
-    TriangleSoup const soup = make_soup(world);
     KernelScene<S> scene(world, soup, cut_outs, slhb);
     AxisSet axes({world.bounds, soup, cut_outs, std::uint32_t(slhb.resolution), std::uint32_t(slhb.most_layers),
                   false, settings.seed, [&](std::size_t a, RasterGrid const& grid, std::uint32_t seed) {

@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 #include "gi/slhb/axis_set.h"
+#include "gi/slhb/hit_buffer.h"
 #include "gi/slhb/narrow_lobes.h"
 
 #include <algorithm>
@@ -11,17 +12,31 @@
 namespace gi {
 namespace {
 
+double cores_of(RenderSettings const& s)
+{
+    return s.threads > 0 ? s.threads : tbb::this_task_arena::max_concurrency();
+}
+
+/// How cluttered a scene is: the mean over texels that have any, in a coarse look from a slanted direction.
+double layers_per_texel(World const& world, TriangleSoup const& soup)
+{
+    HitBuffer const b = make_hit_buffer(
+        soup, make_grid(world.bounds, glm::normalize(vec3{0.48f, 0.62f, 0.62f}), 64, vec2{0.5f}, 0));
+    std::size_t covered = 0;
+    for (std::size_t t = 0; t + 1 < b.offset.size(); ++t) covered += b.offset[t + 1] > b.offset[t];
+    return covered > 0 ? double(b.layers.size()) / double(covered) : 0;
+}
+
 /// Where the first pass would not end within the budget: the primary surfaces and direct light of all pixels, and
 /// indirect light for as many as there is time for.
 int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, double axis_s, double map_s)
 {
-    constexpr double kDirect = 0.25e-6, kBounce = 0.2e-6; // s per pixel on one core
+    constexpr double kDirect = 0.15e-6, kBounce = 0.13e-6; // s per pixel on one core
     if (!(asked.budget_s > 0) || asked.bounces == 0) return 1;
-    double const cores = asked.threads > 0 ? asked.threads : tbb::this_task_arena::max_concurrency();
     double const pixels = double(asked.width) * asked.height, bounces = std::min(asked.bounces, 3);
     double const fixed = bounces * s.fresh_axes * axis_s + s.lamps * map_s + pixels * kDirect;
     for (int const n : {1, 2, 4})
-        if ((fixed + pixels * bounces * kBounce / (n * n)) / cores < asked.budget_s) return n;
+        if ((fixed + pixels * bounces * kBounce / (n * n)) / cores_of(asked) < asked.budget_s) return n;
     return 4;
 }
 
@@ -45,50 +60,57 @@ bool narrow_somewhere(World const& world)
 
 bool needs_exact_rays(World const& world, bool orthographic) { return orthographic || narrow_somewhere(world); }
 
-SlhbSettings choose_settings(RenderSettings const& asked, World const& world)
+SlhbSettings choose_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup)
 {
     SlhbSettings s = asked.slhb;
-    if (s.schedule == Schedule::automatic) s.schedule = Schedule::streamed;
+    // Light that comes through few openings needs many axes at once; what they are is seen by all pixels alike.
+    bool const sky = !world.environment_select.empty();
+    if (s.schedule == Schedule::automatic) s.schedule = sky ? Schedule::stored : Schedule::streamed;
     if (s.directions.empty()) s.directions = "icosahedron:320";
-    constexpr std::size_t kDetailed = 50'000; // triangles
-    if (s.resolution == 0) s.resolution = world.triangles.size() < kDetailed ? 128 : 256;
+    constexpr double kCluttered = 3; // layers
+    if (s.resolution == 0) s.resolution = layers_per_texel(world, soup) < kCluttered ? 128 : 256;
     // What a pass builds should cost a share of what its paths cost, or be shared by too few of them.
     double const paths = double(asked.width) * asked.height, triangles = double(world.triangles.size());
     auto const worth = [&](double seconds_each, int least, int most) {
-        constexpr double kPath = 0.5e-6, kShare = 0.3;
+        constexpr double kPath = 0.5e-6, kShare = 0.5;
         return std::clamp(int(kShare * kPath * paths / seconds_each), least, most);
     };
+    // Few passes need more axes and lamps each: what they lack shows in the whole picture alike.
+    bool const few_passes = asked.budget_s > 0 && asked.budget_s * cores_of(asked) < 8 * 0.5e-6 * paths;
     double const axis = 2e-9 * triangles + 2e-8 * double(s.resolution) * s.resolution;
-    if (s.axes == 0) s.axes = s.schedule == Schedule::temporal ? 16 : worth(axis, 2, 4);
+    if (s.axes == 0) s.axes = s.schedule == Schedule::temporal ? 16 : worth(axis, 2, few_passes ? 8 : 4);
     if (s.axes > int(FewAxes::kMost))
         throw InputError(fmt::format("{} axes in a pass", s.axes),
                          fmt::format("there is room for {}", FewAxes::kMost), "use --schedule stored for more");
     if (s.fresh_axes == 0) s.fresh_axes = s.schedule == Schedule::temporal ? std::max(1, s.axes / 8) : s.axes;
     s.fresh_axes = std::min(s.fresh_axes, s.axes);
     bool const from_points = world.emitters.empty() && world.environment_select.empty();
-    if (s.shadow_resolution == 0) s.shadow_resolution = from_points ? 1024 : 256;
+    if (s.shadow_resolution == 0) s.shadow_resolution = from_points ? 1024 : sky ? 512 : 256;
     double const map = 5e-9 * triangles + 1e-8 * double(s.shadow_resolution) * s.shadow_resolution;
-    if (s.lamps == 0) s.lamps = from_points ? 16 : worth(map, 1, 4);
+    if (s.lamps == 0) s.lamps = from_points || sky ? 16 : worth(map, 1, few_passes ? 8 : 4);
     if (s.interleave == 0) s.interleave = choose_interleave(asked, s, axis, map);
     return s;
 }
 
 std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, bool orthographic)
 {
-    SlhbSettings const s = choose_settings(asked, world);
+    TriangleSoup const soup = make_soup(world);
+    SlhbSettings const s = choose_settings(asked, world, soup);
     std::vector<PlanItem> items;
     char const* const names[] = {"automatic", "stored", "streamed", "temporal"};
-    items.push_back(
-        {fmt::format("schedule {}", names[int(s.schedule)]), true,
-         s.schedule == Schedule::streamed ? "no set of directions limits how far the error falls" : "asked for"});
+    items.push_back({fmt::format("schedule {}", names[int(s.schedule)]), true,
+                     s.schedule == Schedule::streamed ? "no set of directions limits how far the error falls"
+                                                      : "axes are built once, and all paths draw from them"});
     if (s.schedule == Schedule::stored)
-        items.push_back({"directions " + s.directions, true, "built once, all paths draw from them"});
+        items.push_back(
+            {"directions " + s.directions, true,
+             world.environment_select.empty() ? "asked for" : "a sky shines, and many axes must look for it"});
     else
         items.push_back({fmt::format("{} axes for each bounce of a pass", s.axes), true,
                          fmt::format("for {} triangles and {} x {} pixels", world.triangles.size(), asked.width,
                                      asked.height)});
     items.push_back({fmt::format("hit buffers of {0} x {0} texels", s.resolution), true,
-                     fmt::format("{} triangles", world.triangles.size())});
+                     fmt::format("{:.1f} surfaces behind each other", layers_per_texel(world, soup))});
     bool const lit = !world.light_select.empty();
     items.push_back({fmt::format("{} shadow maps of {} x {}", s.lamps, s.shadow_resolution, s.shadow_resolution),
                      lit, lit ? "points on lights that light a pass" : "nothing shines"});

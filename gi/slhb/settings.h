@@ -2,12 +2,13 @@
 // What the plan of a scene chooses for the method slhb, where nothing was asked for, and why.
 
 #include "gi/image/render_settings.h"
+#include "gi/raster/triangle_soup.h"
 #include "gi/scene/plan.h"
 
 namespace gi {
 
 /// Every number of SlhbSettings chosen. Throws InputError on values that cannot work together.
-SlhbSettings choose_settings(RenderSettings const& asked, World const& world);
+SlhbSettings choose_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup);
 
 /// What choose_settings decides for a scene and why, as lines of the plan.
 std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, bool orthographic);

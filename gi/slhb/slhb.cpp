@@ -53,7 +53,8 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     }
     PassLoop loop(settings, stop, progress, report);
     ScenePlan const plan = plan_scene(world);
-    SlhbSettings const slhb = choose_settings(settings, world);
+    TriangleSoup const soup = make_soup(world);
+    SlhbSettings const slhb = choose_settings(settings, world, soup);
     CameraRays const rays = camera_rays(camera, settings.width, settings.height, world.origin);
     std::unique_ptr<ExactVisibility> exact;
     if (needs_exact_rays(world, camera.orthographic)) {
@@ -61,7 +62,6 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
         exact = std::make_unique<ExactVisibility>(world, plan.alpha_tests, settings.threads);
     }
     CutOuts const cut_outs(world);
-    TriangleSoup const soup = make_soup(world);
     AxisSet axes({world.bounds, soup, cut_outs, std::uint32_t(slhb.resolution), std::uint32_t(slhb.most_layers),
                   slhb.packed, settings.seed});
     if (slhb.schedule == Schedule::stored) {
