@@ -1,21 +1,15 @@
 #include "gi/raster/deep_raster.h"
 
 #include "gi/raster/clip.h"
+#include "gi/raster/lanes.h"
 #include "gi/raster/nearest_map.h"
 
 #include <algorithm>
-#include <hwy/highway.h>
 
 namespace gi {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Floats = hn::ScalableTag<float>;
-using Words = hn::RebindToUnsigned<Floats>;
-using Integers = hn::RebindToSigned<Floats>;
-using V = hn::Vec<Floats>;
-using Mask = hn::Mask<Floats>;
-constexpr std::size_t kMostLanes = HWY_MAX_BYTES / sizeof(float);
+using namespace lanes;
 
 /// Snapped corners and depths of triangles that wait for a full vector.
 struct Queue {
@@ -262,10 +256,9 @@ void VectorRaster<Lanes>::empty_queue(Queue& queue, std::size_t lanes)
                 HWY_ALIGN float at_j[kMostLanes];
                 hn::Store(i, d, at_i);
                 hn::Store(j, d, at_j);
-                std::uint8_t bits[8] = {};
-                hn::StoreMaskBits(d, unclear, bits);
+                std::uint32_t const bits = bits_of(unclear);
                 for (std::size_t k = 0; k < lanes; ++k)
-                    if ((bits[k / 8] >> (k % 8) & 1) != 0)
+                    if ((bits >> k & 1) != 0)
                         test_exactly(queue, first + k, std::uint32_t(at_i[k]), std::uint32_t(at_j[k]));
             }
             if (hn::AllFalse(d, covered)) continue;
@@ -307,10 +300,9 @@ void VectorRaster<Lanes>::run(TriangleSoup const& soup, std::size_t first, std::
         V const across = hn::Sub(b.last_i, b.first_i), down = hn::Sub(b.last_j, b.first_j);
         Mask const clipped = hn::And(there, q.clip);
         if (!hn::AllFalse(d, clipped)) {
-            std::uint8_t clip_bits[8] = {};
-            hn::StoreMaskBits(d, clipped, clip_bits);
+            std::uint32_t const bits = bits_of(clipped);
             for (std::size_t k = 0; k < lanes; ++k) {
-                if ((clip_bits[k / 8] >> (k % 8) & 1) == 0) continue;
+                if ((bits >> k & 1) == 0) continue;
                 vec3 const corner[3] = {soup.vertex(t + k, 0), soup.vertex(t + k, 1), soup.vertex(t + k, 2)};
                 lanes_.clip(corner, [&](SnappedTriangle const& part, vec3 depth) {
                     scan_large(part, depth, std::uint32_t(t + k));
@@ -342,10 +334,9 @@ void VectorRaster<Lanes>::run(TriangleSoup const& soup, std::size_t first, std::
             hn::Store(y[k], d, corners[3 + k]);
             hn::Store(z[k], d, corners[6 + k]);
         }
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, large, bits);
+        std::uint32_t const bits = bits_of(large);
         for (std::size_t k = 0; k < lanes; ++k) {
-            if ((bits[k / 8] >> (k % 8) & 1) == 0) continue;
+            if ((bits >> k & 1) == 0) continue;
             auto const integer = [&](std::size_t c) { return std::int32_t(corners[c][k]); };
             scan_large({{integer(0), integer(1), integer(2)}, {integer(3), integer(4), integer(5)}},
                        {corners[6][k], corners[7][k], corners[8][k]}, std::uint32_t(t + k));

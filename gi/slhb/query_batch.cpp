@@ -2,25 +2,17 @@
 
 #include "gi/base/error.h"
 #include "gi/base/huge_pages.h"
+#include "gi/raster/lanes.h"
 
 #include <algorithm>
 #include <bit>
-#include <hwy/highway.h>
 
 namespace gi {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Floats = hn::ScalableTag<float>;
-using Words = hn::RebindToUnsigned<Floats>;
-using Integers = hn::RebindToSigned<Floats>;
+using namespace lanes;
 using Pairs = hn::Repartition<std::int64_t, Integers>;
 using HalfIntegers = hn::Half<Integers>;
-using V = hn::Vec<Floats>;
-using I = hn::Vec<Integers>;
-using W = hn::Vec<Words>;
-using M = hn::Mask<Floats>;
-constexpr std::size_t kMostLanes = HWY_MAX_BYTES / sizeof(float);
 
 struct TwoWords {
     W first, second;
@@ -124,8 +116,8 @@ Cell choose_cell(V x, V y, GridLanes const& g, int attempt)
     };
     V const i = other(c.i, off_x, g.last_i), j = other(c.j, off_y, g.last_j);
     if (attempt == 3) return {i, j};
-    M const x_first = hn::Gt(hn::Abs(off_x), hn::Abs(off_y));
-    M const to_x = attempt == 1 ? x_first : hn::Not(x_first);
+    Mask const x_first = hn::Gt(hn::Abs(off_x), hn::Abs(off_y));
+    Mask const to_x = attempt == 1 ? x_first : hn::Not(x_first);
     return {hn::IfThenElse(to_x, i, c.i), hn::IfThenElse(to_x, c.j, j)};
 }
 
@@ -133,15 +125,6 @@ struct Answer {
     std::uint32_t unsure;   ///< bit per lane: its column does not speak for its origin
     std::uint32_t doubtful; ///< bit per lane: it does if the surface can be hit from there
 };
-
-std::uint32_t bits_of(M mask)
-{
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(Floats(), mask, bytes);
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < (kMostLanes + 7) / 8; ++k) bits |= std::uint32_t(bytes[k]) << (8 * k);
-    return bits;
-}
 
 /// Which columns a block of queries looks into. Found for the whole block before any is walked, so that the cache
 /// misses of all of them overlap.
@@ -228,7 +211,7 @@ Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, Quer
     W const own = hn::And(primitive, hn::Set(words, kPrimitiveMask));
     W const facing_bit = hn::Set(words, kAlongAxis);
     W const own_facing = hn::And(primitive, facing_bit);
-    M const is_up = hn::RebindMask(d, hn::TestBit(primitive, hn::Set(words, kWalkUp)));
+    Mask const is_up = hn::RebindMask(d, hn::TestBit(primitive, hn::Set(words, kWalkUp)));
     // Layers that face the walk have this facing.
     W const towards = hn::IfThenElseZero(hn::Not(hn::RebindMask(words, is_up)), facing_bit);
     V const sign = hn::IfThenElse(is_up, set(1), set(-1));
@@ -240,47 +223,48 @@ Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, Quer
     I at = hn::Add(g.first_layer, hn::IfThenElse(hn::RebindMask(integers, is_up), begin, hn::Sub(end, one)));
     I left = hn::Sub(end, begin);
     V best = margin, own_depth = hn::Zero(d), depth = hn::Zero(d), gap = hn::Zero(d), plain_depth = hn::Zero(d);
-    M found = hn::FirstN(d, 0), hit = found, plain_hit = found;
+    Mask found = hn::FirstN(d, 0), hit = found, plain_hit = found;
     W answer = hn::Set(words, kNoLayerHit), plain = answer;
     I answer_at = zero, plain_at = zero;
-    for (M running = hn::RebindMask(d, hn::Gt(left, zero)); !hn::AllFalse(d, running);) {
+    for (Mask running = hn::RebindMask(d, hn::Gt(left, zero)); !hn::AllFalse(d, running);) {
         // Not by `running`: so the next layers can be under way while these are judged.
         LayerLanes const record = load_layers<kPacked>(pool, g, hn::IfThenElseZero(hn::Gt(left, zero), at));
         V const layer_depth = record.depth;
         W const layer = record.primitive, facing = hn::And(layer, facing_bit);
         V const from_origin = hn::MulSub(sign, layer_depth, origin), distance = hn::Abs(from_origin);
-        M const same = hn::RebindMask(d, hn::Eq(hn::And(layer, hn::Set(words, kPrimitiveMask)), own));
-        M const alike = hn::And(hn::RebindMask(d, hn::Eq(facing, own_facing)), hn::Le(distance, best));
-        M const is_own = hn::And(running, hn::Or(same, alike));
+        Mask const same = hn::RebindMask(d, hn::Eq(hn::And(layer, hn::Set(words, kPrimitiveMask)), own));
+        Mask const alike = hn::And(hn::RebindMask(d, hn::Eq(facing, own_facing)), hn::Le(distance, best));
+        Mask const is_own = hn::And(running, hn::Or(same, alike));
         best = hn::IfThenElse(is_own, hn::IfThenElse(same, set(-1), distance), best);
         own_depth = hn::IfThenElse(is_own, from_origin, own_depth);
         found = hn::Or(found, is_own);
         hit = hn::AndNot(is_own, hit);
-        M const other = hn::AndNot(is_own, running);
+        Mask const other = hn::AndNot(is_own, running);
         V const beyond = hn::Sub(from_origin, own_depth);
-        M const new_hit = hn::And(hn::AndNot(hit, hn::And(other, found)), hn::Gt(beyond, g.rounding));
+        Mask const new_hit = hn::And(hn::AndNot(hit, hn::And(other, found)), hn::Gt(beyond, g.rounding));
         hit = hn::Or(hit, new_hit);
         depth = hn::IfThenElse(new_hit, layer_depth, depth);
         gap = hn::IfThenElse(new_hit, beyond, gap);
         answer = hn::IfThenElse(hn::RebindMask(words, new_hit), layer, answer);
         answer_at = hn::IfThenElse(hn::RebindMask(integers, new_hit), at, answer_at);
         if (attempt == 0) {
-            M const faces = hn::RebindMask(d, hn::Eq(facing, towards));
-            M const new_plain =
+            Mask const faces = hn::RebindMask(d, hn::Eq(facing, towards));
+            Mask const new_plain =
                 hn::And(hn::AndNot(plain_hit, hn::And(other, faces)), hn::Gt(from_origin, g.rounding));
             plain_hit = hn::Or(plain_hit, new_plain);
             plain_depth = hn::IfThenElse(new_plain, layer_depth, plain_depth);
             plain = hn::IfThenElse(hn::RebindMask(words, new_plain), layer, plain);
             plain_at = hn::IfThenElse(hn::RebindMask(integers, new_plain), at, plain_at);
         }
-        M const answered = hn::Or(hn::And(found, hit), hn::AndNot(found, plain_hit));
-        M const over = hn::And(answered, hn::Or(hn::Lt(best, hn::Zero(d)), hn::Gt(from_origin, margin)));
+        Mask const answered = hn::Or(hn::And(found, hit), hn::AndNot(found, plain_hit));
+        Mask const over = hn::And(answered, hn::Or(hn::Lt(best, hn::Zero(d)), hn::Gt(from_origin, margin)));
         at = hn::Add(at, step);
         left = hn::Sub(left, one);
         running = hn::AndNot(over, hn::And(running, hn::RebindMask(d, hn::Gt(left, zero))));
     }
-    M const front = hn::RebindMask(d, hn::Eq(hn::And(answer, facing_bit), towards));
-    M const doubtful = hn::And(hn::And(found, hit), hn::Or(hn::Not(front), hn::Lt(gap, hn::Mul(set(4), g.texel))));
+    Mask const front = hn::RebindMask(d, hn::Eq(hn::And(answer, facing_bit), towards));
+    Mask const doubtful =
+        hn::And(hn::And(found, hit), hn::Or(hn::Not(front), hn::Lt(gap, hn::Mul(set(4), g.texel))));
     depth = hn::IfThenElse(found, depth, plain_depth);
     answer =
         hn::IfThenElse(hn::RebindMask(words, found),

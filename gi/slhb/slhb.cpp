@@ -10,7 +10,9 @@
 #include "gi/transport/sampling.h"
 
 #include <memory>
+#include <optional>
 #include <tbb/combinable.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -51,6 +53,9 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
         check_device(settings.slhb);
         return render_by_kernels(Space::device, world, camera, settings, stop, progress, report);
     }
+    std::optional<tbb::global_control> limit; // also of what is built before the passes
+    if (settings.threads > 0)
+        limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(settings.threads));
     PassLoop loop(settings, stop, progress, report);
     ScenePlan const plan = plan_scene(world);
     TriangleSoup const soup = make_soup(world);
