@@ -4,6 +4,7 @@
 #include "viewer/bench_record.h"
 #include "viewer/commands.h"
 #include "viewer/load_world.h"
+#include "viewer/report_json.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -74,6 +75,7 @@ int run(AccuracyOptions& o)
                    {"reference", fmt::format("path tracing, {} paths per pixel", o.reference_paths)}};
     write(table, o.out);
     show(table, o.out, o.render.json);
+    print_losses(report);
     return 0;
 }
 

@@ -8,7 +8,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <map>
 #include <memory>
 #include <tbb/parallel_for.h>
 
@@ -202,12 +201,12 @@ void measure_builds(RasterOptions const& o, BenchTable& table)
             ms.push_back(1e3 / axes * seconds_of([&] {
                              for (int a = 0; a < axes; ++a) make_hit_buffer(soup, random_grid(world, rng, 128));
                          }));
-        table.add({fmt::format("build, {} triangles, {} axes", soup.count, axes), std::string("ms per axis"), summarise(ms),
-                   std::string(), Cell()});
+        table.add({fmt::format("build, {} triangles, {} axes", soup.count, axes), std::string("ms per axis"),
+                   summarise(ms), std::string(), Cell()});
     }
     auto const bvh = measure(std::max(1, o.repeats / 2), [&] { ExactVisibility const exact(world, false, 1); });
-    table.add({fmt::format("peer: Embree 3, robust, default build, {} triangles", soup.count), std::string("s on one core"),
-               bvh, std::string(), Cell()});
+    table.add({fmt::format("peer: Embree 3, robust, default build, {} triangles", soup.count),
+               std::string("s on one core"), bvh, std::string(), Cell()});
 }
 
 /// The three ways to take large triangles apart, and one by one against vectors.
@@ -255,7 +254,8 @@ int run(RasterOptions const& o)
     BenchTable table = start_table("raster", "The deep rasteriser: exact, and how fast",
                                    {"what", "unit", "value", "also", "second"});
     check_watertight(o, table);
-    check_against_embree("room with a displaced sphere", world_of(generate_sphere(o.triangles, 0)), o.samples / 2, table);
+    check_against_embree("room with a displaced sphere", world_of(generate_sphere(o.triangles, 0)), o.samples / 2,
+                         table);
     check_against_embree("atrium", world_of(generate_atrium({})), o.samples / 2, table);
     measure_builds(o, table);
     measure_macro(o, table);
@@ -277,7 +277,9 @@ void add_bench_raster(CLI::App& bench, int& exit_code)
     c->add_option("--samples", o->samples, "texel centres that are checked against Embree")
         ->check(CLI::Range(1.0, 1e9))
         ->capture_default_str();
-    c->add_option("--triangles", o->triangles, "of the largest model")->check(CLI::Range(1000u, 100'000'000u))->capture_default_str();
+    c->add_option("--triangles", o->triangles, "of the largest model")
+        ->check(CLI::Range(1000u, 100'000'000u))
+        ->capture_default_str();
     c->add_option("--repeats", o->repeats, "of each time; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();

@@ -151,10 +151,14 @@ void measure_scene(RaysOptions const& o, std::string const& scene, BenchTable& t
         batch.resize(from.size());
         for (std::size_t k = 0; k < from.size(); ++k) batch.set(k, from[k], std::uint32_t(a));
     };
-    for (std::size_t k = 0; k < kFew; ++k) fill(few[k], of_few[k], k * step);
+    std::size_t const used = std::min(kFew, axes);
+    for (std::size_t k = 0; k < used; ++k) fill(few[k], of_few[k], k * step);
     QueryBatch one;
     fill(one, of_one, the_one);
 
+    if (n == 0 || of_one.empty())
+        throw InputError("no indirect ray of '" + scene + "' starts anywhere", "the camera sees nothing",
+                         "choose another view");
     std::vector<Hit> hits(n);
     std::size_t sink = 0;
     auto const s = measure_interleaved(
@@ -167,7 +171,7 @@ void measure_scene(RaysOptions const& o, std::string const& scene, BenchTable& t
          },
          [&] { nearest_layers(pool, world.surfaces, random); },
          [&] {
-             for (std::size_t k = 0; k < kFew; ++k) nearest_layers(pool, k * step, world.surfaces, few[k]);
+             for (std::size_t k = 0; k < used; ++k) nearest_layers(pool, k * step, world.surfaces, few[k]);
          },
          [&] { nearest_layers(pool, the_one, world.surfaces, one); }});
     if (sink == 0)

@@ -42,7 +42,7 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
     };
     list("--scene", o->scenes, "files or names, comma-separated")->required();
     list("--methods", o->methods, "comma-separated, of:" + known)->capture_default_str();
-    list("--budgets", o->budgets, "times to trace, comma-separated")->capture_default_str();
+    list("--budgets", o->budgets, "times for a frame, comma-separated")->capture_default_str();
     RenderOptions& r = o->render;
     c->add_option("--size", r.size, "width x height, pixels")->capture_default_str();
     declare_view_options(*c, r);

@@ -154,7 +154,8 @@ void declare_slhb(CLI::App& c, RenderOptions& o)
         ->capture_default_str()
         ->group("Method slhb");
     c.add_option("--schedule", o.schedule,
-                 "stored: one set of axes; streamed: new ones in every pass; temporal: some new")
+                 "stored: one set of axes; streamed: new ones in every pass; temporal: some new; auto: "
+                 "streamed,\nstored under a sky")
         ->check(CLI::IsMember({"auto", "stored", "streamed", "temporal"}))
         ->capture_default_str()
         ->group("Method slhb");

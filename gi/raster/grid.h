@@ -2,7 +2,7 @@
 // The raster of an orthographic view along an axis, and the exact arithmetic that makes it watertight.
 //
 // Vertices are projected and snapped to whole subpixels: integers of at most 2^22 that floats hold exactly (at 512
-// texels a subpixel is 1/8192 of a texel, the rounding error of the projection itself). Samples are texel centres.
+// texels a subpixel is 1/4096 of a texel, the rounding error of the projection itself). Samples are texel centres.
 // After snapping every decision is exact, so that triangles which share an edge or a vertex cover a sample exactly
 // once between them, and a closed mesh has as many entering as leaving layers in every texel.
 

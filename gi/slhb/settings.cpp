@@ -65,7 +65,8 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
     SlhbSettings s = asked.slhb;
     // Light that comes through few openings needs many axes at once; what they are is seen by all pixels alike.
     bool const sky = !world.environment_select.empty();
-    if (s.schedule == Schedule::automatic) s.schedule = sky ? Schedule::stored : Schedule::streamed;
+    if (s.schedule == Schedule::automatic)
+        s.schedule = sky || !s.directions.empty() ? Schedule::stored : Schedule::streamed;
     if (s.directions.empty()) s.directions = "icosahedron:320";
     constexpr double kCluttered = 3; // layers
     if (s.resolution == 0) s.resolution = layers_per_texel(world, soup) < kCluttered ? 128 : 256;
@@ -82,7 +83,8 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
     if (s.axes > int(FewAxes::kMost))
         throw InputError(fmt::format("{} axes in a pass", s.axes),
                          fmt::format("there is room for {}", FewAxes::kMost), "use --schedule stored for more");
-    if (s.fresh_axes == 0) s.fresh_axes = s.schedule == Schedule::temporal ? std::max(1, s.axes / 8) : s.axes;
+    if (s.schedule != Schedule::temporal) s.fresh_axes = s.axes;
+    if (s.fresh_axes == 0) s.fresh_axes = std::max(1, s.axes / 8);
     s.fresh_axes = std::min(s.fresh_axes, s.axes);
     bool const from_points = world.emitters.empty() && world.environment_select.empty();
     if (s.shadow_resolution == 0) s.shadow_resolution = from_points ? 1024 : sky ? 512 : 256;
@@ -100,7 +102,7 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
     char const* const names[] = {"automatic", "stored", "streamed", "temporal"};
     items.push_back({fmt::format("schedule {}", names[int(s.schedule)]), true,
                      s.schedule == Schedule::streamed ? "no set of directions limits how far the error falls"
-                                                      : "axes are built once, and all paths draw from them"});
+                                                      : "a sky shines, or it was asked for"});
     if (s.schedule == Schedule::stored)
         items.push_back(
             {"directions " + s.directions, true,

@@ -80,6 +80,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
 
     // Surfaces that a path may leave along an axis: the last one only where the sky or exact rays count.
     bool const to_the_end = exact != nullptr || !view(world).environment_radiance.empty();
+    bool const walks = settings.bounces > 0 || to_the_end;
     auto const sequences =
         std::uint32_t(std::clamp(settings.bounces + (to_the_end ? 1 : 0), 1, int(AxisSet::kSequences)));
     WorkCounts total;
@@ -90,7 +91,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
         std::uint32_t const index = sums.paths;
         {
             StageTimer const timer(report, "hit buffers of a pass");
-            if (slhb.schedule != Schedule::stored)
+            if (walks && slhb.schedule != Schedule::stored)
                 axes.refresh(sequences, std::uint32_t(slhb.axes), std::uint32_t(slhb.fresh_axes), index);
         }
         {
@@ -102,8 +103,10 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
             primary.refresh(index);
         }
         StageTimer const timer(report, "paths");
-        std::uint32_t const gathered =
-            slhb.gather ? index % std::uint32_t(axes.first_bounce_axes()) : kNoPrimitive;
+        std::uint32_t const gathered = slhb.gather && walks
+                                           ? index / std::uint32_t(slhb.interleave * slhb.interleave) %
+                                                 std::uint32_t(axes.first_bounce_axes())
+                                           : kNoPrimitive;
         SlhbTracer::Pass const now{axes, lamps, exact.get(), index, gathered};
         std::size_t const pixels = sums.pixels.size();
         // Where many paths end on few layers, what a layer sends back is computed once.

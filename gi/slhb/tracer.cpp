@@ -100,7 +100,7 @@ std::uint32_t SlhbTracer::indirect_share(std::uint32_t pixel, std::uint32_t pass
 {
     std::uint32_t const all = interleave_ * interleave_, width = std::uint32_t(width_);
     std::uint32_t const own = pixel % width % interleave_ + pixel / width % interleave_ * interleave_;
-    constexpr std::uint32_t kStride = 5; // odd: all turns come, neighbours not one after the other
+    constexpr std::uint32_t kStride = 17; // a prime above every interleaving: all turns come
     return (own + pass * kStride) % all == 0 ? all : 0;
 }
 

@@ -46,8 +46,8 @@ TEST(SlhbFurnace, ClosedSphereThatGlows)
             s.slhb.lamps = 8;
             // E (1 + rho + ... + rho^(bounces + 1))
             double const truth = 0.5 * (1 - std::pow(double(rho), bounces + 2)) / (1 - double(rho));
-            expect_mean(render_with_slhb(world, look_at({0.1, 0.2, 0.1}, {-1, -0.5, -0.7}, 90), s).result.picture, truth,
-                        fmt::format("albedo {}, {} bounces", rho, bounces));
+            expect_mean(render_with_slhb(world, look_at({0.1, 0.2, 0.1}, {-1, -0.5, -0.7}, 90), s).result.picture,
+                        truth, fmt::format("albedo {}, {} bounces", rho, bounces));
         }
     }
 }
@@ -74,6 +74,27 @@ TEST(SlhbFurnace, SchedulesAgree)
     double const stored = mean_of(render_with_slhb(world, camera, s).result.picture, "L2").mean;
     s.slhb.gather = true;
     EXPECT_NEAR(mean_of(render_with_slhb(world, camera, s).result.picture, "L2").mean, stored, 0.01 * stored);
+}
+
+TEST(SlhbFurnace, InterleavingTakesEveryPixelInTurn)
+{
+    // As many passes as turns: every pixel has had its indirect light once.
+    Scene scene;
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, lambert(vec3{0.6f})), true);
+    add_quad(scene, {-0.3f, 0.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{10})));
+    World const world = world_of(scene);
+    for (int const n : {2, 3, 5, 10}) {
+        RenderSettings s = small_settings(20, std::uint32_t(n * n), 1);
+        s.slhb.interleave = n;
+        s.slhb.resolution = 16;
+        s.slhb.shadow_resolution = 32;
+        Picture const picture =
+            render_with_slhb(world, look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70), s).result.picture;
+        std::size_t dark = 0;
+        std::vector<float> const& indirect = picture.find("L2")->data;
+        for (std::size_t p = 0; p < indirect.size(); p += 3) dark += indirect[p] == 0;
+        EXPECT_LT(dark, indirect.size() / 3 * 2 / 5) << n; // a walk may end where no lamp is seen
+    }
 }
 
 TEST(SlhbRadiometry, PointAndParallelLight)
