@@ -12,7 +12,7 @@
 // speaks for the origin if it has the own layer, and if the origin is on the right side of the plane that is hit;
 // the latter is looked at only near by, where it can fail. If not, the other three of the four texel centres
 // around the origin are asked (across an edge, or beyond a wall, the centre sees another world). If none will do,
-// the nearest column counts, from the origin's depth on and for faces towards the walk.
+// the answer of the nearest stands; without an own layer that is the first face towards the walk from the origin's depth on.
 
 #include "gi/slhb/hit_buffer.h"
 
