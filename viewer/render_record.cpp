@@ -30,6 +30,7 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
     if (o.environment_rotate_deg != 0) add("--envmap-rotate", fmt::format("{}", o.environment_rotate_deg));
     if (o.environment_scale != 1) add("--envmap-scale", fmt::format("{}", o.environment_scale));
     if (o.denoise != "none") add("--denoise", o.denoise);
+    if (!result.options.empty()) command += " " + result.options;
     return command;
 }
 

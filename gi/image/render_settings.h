@@ -27,26 +27,26 @@ enum class Schedule : std::uint8_t {
 /// For the method slhb; 0 or empty = what the scene plan chooses.
 struct SlhbSettings {
     Schedule schedule = Schedule::automatic;
-    std::string directions;        ///< "icosahedron:320", of the stored schedule
-    int resolution = 0;            ///< texels of a hit buffer, about resolution x resolution
-    int axes = 0;                  ///< of a pass, streamed and temporal
-    int fresh_axes = 0;            ///< of these, replaced in a pass, temporal
-    int lamps = 0;                 ///< light samples with a shadow map per pass
-    int shadow_resolution = 0;     ///< texels of a shadow map, squared
-    int most_layers = 0;           ///< per texel; 0 = all
-    bool packed = false;           ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
-    float cone = 0;                ///< texels; radius of the disk of columns that a query may ask (Yu 2012, fig. 5.6)
-    int interleave = 0;            ///< n: in a pass one pixel of n x n takes indirect light, n^2-fold; 1 = all do
-    Space space = Space::host;     ///< device: all by CUDA kernels, see gi/slhb/kernel_render.h
-    bool gather = false;           ///< first bounce over all axes in turn instead of at random
+    std::string directions;    ///< "icosahedron:320", of the stored schedule
+    int resolution = 0;        ///< texels of a hit buffer, about resolution x resolution
+    int axes = 0;              ///< of a pass, streamed and temporal
+    int fresh_axes = 0;        ///< of these, replaced in a pass, temporal
+    int lamps = 0;             ///< light samples with a shadow map per pass
+    int shadow_resolution = 0; ///< texels of a shadow map, squared
+    int most_layers = 0;       ///< per texel; 0 = all
+    bool packed = false;       ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
+    float cone = 0;            ///< texels; radius of the disk of columns that a query may ask (Yu 2012, fig. 5.6)
+    int interleave = 0;        ///< n: in a pass one pixel of n x n takes indirect light, n^2-fold; 1 = all do
+    Space space = Space::host; ///< device: all by CUDA kernels, see gi/slhb/kernel_render.h
+    bool gather = false;       ///< first bounce over all axes in turn instead of at random
 };
 
 struct RenderSettings {
     int width = 512, height = 512; ///< pixels, >= 1
     std::uint32_t paths = 64;      ///< per pixel: the most that are traced
-    double budget_s = 0;           ///< from the start of building structures; stop when a pass would end later; 0 = none
-    double until_relmse = 0;       ///< stop when the estimated relMSE of the picture is below; 0 = none
-    int bounces = 64;              ///< indirect bounces: 0 = emitted and direct light only
+    double budget_s = 0;     ///< from the start of building structures; stop when a pass would end later; 0 = none
+    double until_relmse = 0; ///< stop when the estimated relMSE of the picture is below; 0 = none
+    int bounces = 64;        ///< indirect bounces: 0 = emitted and direct light only
     std::uint64_t seed = 0;
     int threads = 0;                       ///< 0 = all
     PixelFilter filter = PixelFilter::box; ///< by filter importance sampling; tent has a radius of one pixel
@@ -54,7 +54,7 @@ struct RenderSettings {
                                            ///< render that resumes stops early; empty = never. Whoever saves the
                                            ///< picture deletes it afterwards unless RenderResult::resumable
     SlhbSettings slhb;
-    bool resume = false;                   ///< start from the checkpoint if it is there and fits
+    bool resume = false; ///< start from the checkpoint if it is there and fits
 };
 
 struct RenderStatus {
@@ -78,8 +78,9 @@ struct RenderResult {
     std::uint32_t paths = 0;
     double seconds = 0; ///< for all its paths, those before an interruption too
     double relmse = 0;
+    std::string options;    ///< what the method chose for itself, as options of the command line
     bool resumable = false; ///< settings.checkpoint holds what is needed to go on
-    double rays = 0; ///< closest-hit and shadow rays, or look-ups
+    double rays = 0;        ///< closest-hit and shadow rays, or look-ups
 };
 
 } // namespace gi

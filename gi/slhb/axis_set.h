@@ -77,19 +77,15 @@ public:
     /// they avoid each other, which is a bias that does not go away. Bounce b shares its axes with b + kSequences.
     static constexpr std::uint32_t kSequences = 3;
 
-    /// For each of `sequences` bounces `count` axes (up to FewAxes::kMost) from a scrambled Sobol sequence over the half
-    /// sphere: numbers pass * fresh to pass * fresh + count - 1. Those that are there already are kept, so that a pass
-    /// has the same axes whether or not the passes before it were made here.
+    /// For each of `sequences` bounces `count` axes (up to FewAxes::kMost) from a scrambled Sobol sequence over
+    /// the half sphere: numbers pass * fresh to pass * fresh + count - 1. Those that are there already are kept,
+    /// so that a pass has the same axes whether or not the passes before it were made here.
     void refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh, std::uint32_t pass);
 
     /// @param bounce  0 = the first  @param normal unit  @param u uniform in [0, 1)
     AxisSample sample(std::uint32_t bounce, vec3 normal, float u) const
     {
-        if (!tables_.axes.empty()) return view(tables_).sample(normal, double(u));
-        std::uint32_t const sequence = bounce % std::uint32_t(few_.size());
-        AxisSample s = few_[sequence].sample(normal, u);
-        s.axis += sequence * few_count_;
-        return s;
+        return AxisChoice{few_, few_count_, view(tables_)}.sample(bounce, normal, u);
     }
     /// Axes that the first bounce chooses from: the first ones of the pool.
     std::size_t first_bounce_axes() const { return tables_.axes.empty() ? few_count_ : tables_.axes.size(); }

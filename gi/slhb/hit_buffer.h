@@ -21,8 +21,6 @@ struct HitBuffer {
     std::vector<std::uint32_t> offset;
     std::vector<HitLayer> layers;
     std::uint64_t lost = 0; ///< layers beyond a limit that was asked for
-
-    std::size_t bytes() const { return offset.size() * sizeof(std::uint32_t) + layers.size() * sizeof(HitLayer); }
 };
 
 inline HitBufferView view(HitBuffer const& b) { return {b.grid, b.offset, b.layers}; }

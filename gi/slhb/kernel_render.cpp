@@ -155,7 +155,8 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
 {
     PassLoop loop(settings, stop, progress, report);
     TriangleSoup const soup = make_soup(world);
-    SlhbSettings const slhb = choose_settings(settings, world, soup);
+    SlhbSettings slhb = choose_settings(settings, world, soup);
+    slhb.interleave = 1; // whatever the budget
     CameraRays const rays = camera_rays(camera, settings.width, settings.height, world.origin);
     CutOuts const cut_outs(world);
     KernelScene<S> scene(world, soup, cut_outs, slhb);
@@ -224,6 +225,7 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
     report.lose("paths that ended at a mirror, glass or narrow lobe, as the kernels have no exact rays",
                 done.narrow_ends);
     result.rays = double(done.queries + done.shadow_lookups);
+    result.options = as_options(slhb);
     result.picture = loop.sums().picture(world.origin);
     return result;
 }

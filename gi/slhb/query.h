@@ -3,16 +3,17 @@
 //
 // A query starts on a triangle of the scene and leaves it along the axis (up) or against it. In the column of
 // layers under the nearest texel centre it finds the layer of the surface it starts from, and the next layer is
-// the answer; its position is the one on the polygon at the texel centre (guide: any other point lies off the
-// surface).
+// the answer; its position is the one on the polygon at the texel centre (at any other point the depth of this
+// layer would lie off the surface).
 //
 // Which layer is the origin's own: that of its triangle; else, as the centre may lie beside it, the nearest one of
 // the same facing within `margin`, which is how far the origin's own slope can carry a surface up over a texel. So
 // thin walls, contacts and coplanar twins need no epsilon that fits all: layers are in their true order. A column
-// speaks for the origin if it has the own layer, and if the origin is on the right side of the plane that is hit;
-// the latter is looked at only near by, where it can fail. If not, the other three of the four texel centres
-// around the origin are asked (across an edge, or beyond a wall, the centre sees another world). If none will do,
-// the answer of the nearest stands; without an own layer that is the first face towards the walk from the origin's depth on.
+// speaks for the origin if it has the own layer, if what it hits is a front or double-sided, and if the origin is
+// on the right side of the plane that is hit; the latter is looked at only near by, where it can fail. If not, the
+// other three of the four texel centres around the origin are asked (across an edge, or beyond a wall, the centre
+// sees another world). If none will do, the answer of the nearest stands; without an own layer that is the first
+// face towards the walk from the origin's depth on.
 
 #include "gi/slhb/hit_buffer.h"
 

@@ -63,21 +63,22 @@ bool needs_exact_rays(World const& world, bool orthographic) { return orthograph
 SlhbSettings choose_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup)
 {
     SlhbSettings s = asked.slhb;
-    // Light that comes through few openings needs many axes at once; what they are is seen by all pixels alike.
+    // Light that comes through few openings is found by few axes: a pass needs many at once.
     bool const sky = !world.environment_select.empty();
     if (s.schedule == Schedule::automatic)
         s.schedule = sky || !s.directions.empty() ? Schedule::stored : Schedule::streamed;
     if (s.directions.empty()) s.directions = "icosahedron:320";
     constexpr double kCluttered = 3; // layers
     if (s.resolution == 0) s.resolution = layers_per_texel(world, soup) < kCluttered ? 128 : 256;
+    constexpr double kPath = 0.5e-6; // s on one core, all bounces
     // What a pass builds should cost a share of what its paths cost, or be shared by too few of them.
     double const paths = double(asked.width) * asked.height, triangles = double(world.triangles.size());
     auto const worth = [&](double seconds_each, int least, int most) {
-        constexpr double kPath = 0.5e-6, kShare = 0.5;
+        constexpr double kShare = 0.5;
         return std::clamp(int(kShare * kPath * paths / seconds_each), least, most);
     };
     // Few passes need more axes and lamps each: what they lack shows in the whole picture alike.
-    bool const few_passes = asked.budget_s > 0 && asked.budget_s * cores_of(asked) < 8 * 0.5e-6 * paths;
+    bool const few_passes = asked.budget_s > 0 && asked.budget_s * cores_of(asked) < 8 * kPath * paths;
     double const axis = 2e-9 * triangles + 2e-8 * double(s.resolution) * s.resolution;
     if (s.axes == 0) s.axes = s.schedule == Schedule::temporal ? 16 : worth(axis, 2, few_passes ? 8 : 4);
     if (s.axes > int(FewAxes::kMost))
@@ -92,6 +93,25 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
     if (s.lamps == 0) s.lamps = from_points || sky ? 16 : worth(map, 1, few_passes ? 8 : 4);
     if (s.interleave == 0) s.interleave = choose_interleave(asked, s, axis, map);
     return s;
+}
+
+std::string as_options(SlhbSettings const& s)
+{
+    char const* const names[] = {"auto", "stored", "streamed", "temporal"};
+    std::string text =
+        fmt::format("--schedule {} --hit-buffer {} --lamps {} --shadow-map {} --interleave {}",
+                    names[int(s.schedule)], s.resolution, s.lamps, s.shadow_resolution, s.interleave);
+    if (s.schedule == Schedule::stored)
+        text += " --directions " + s.directions;
+    else
+        text += fmt::format(" --axes {}", s.axes);
+    if (s.schedule == Schedule::temporal) text += fmt::format(" --fresh-axes {}", s.fresh_axes);
+    if (s.most_layers > 0) text += fmt::format(" --max-layers {}", s.most_layers);
+    if (s.cone > 0) text += fmt::format(" --cone {}", s.cone);
+    if (s.packed) text += " --packed";
+    if (s.gather) text += " --gather";
+    if (s.space == Space::device) text += " --device cuda";
+    return text;
 }
 
 std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, bool orthographic)

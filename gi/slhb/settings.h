@@ -10,6 +10,9 @@ namespace gi {
 /// Every number of SlhbSettings chosen. Throws InputError on values that cannot work together.
 SlhbSettings choose_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup);
 
+/// Chosen settings as options of the command line, which repeat the picture.
+std::string as_options(SlhbSettings const& chosen);
+
 /// What choose_settings decides for a scene and why, as lines of the plan.
 std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, bool orthographic);
 

@@ -172,6 +172,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     report.count("shadow maps built", double(lamps.maps_built()));
     report.lose("layers beyond the limit of a texel", axes.lost());
     result.rays = double(total.slhb.queries + total.slhb.shadow_lookups + total.slhb.exact_rays);
+    result.options = as_options(slhb);
     result.picture = loop.sums().picture(world.origin);
     return result;
 }
