@@ -38,6 +38,14 @@ AxisView AxisPool::axis(std::size_t a) const
     return {{{grids[a], {offsets, texels + 1}, {layers.data() + first_layer[a], offsets[texels]}}, {}}};
 }
 
+HitLayer AxisPool::layer(std::size_t a, std::uint32_t k) const
+{
+    if (packed.empty()) return layers[k];
+    std::uint32_t const word = packed[k];
+    return {float(word >> 20) * packed_step[a] + packed_low[a],
+            ((word & kPackedTriangles) != 0 ? kAlongAxis : 0) | (word & (kPackedTriangles - 1))};
+}
+
 void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool, bool packed)
 {
     pool.grids.clear();

@@ -19,6 +19,8 @@ struct AxisPool {
     std::size_t size() const { return grids.size(); }
     /// Axis `a` by itself; only where layers are not packed.
     AxisView axis(std::size_t a) const;
+    /// @param k  index into `layers` or `packed`, of axis `a`
+    HitLayer layer(std::size_t a, std::uint32_t k) const;
     std::size_t bytes() const
     {
         return offset.size() * sizeof(std::uint32_t) + layers.size() * sizeof(HitLayer) +

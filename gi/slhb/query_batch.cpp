@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 namespace gi {
 namespace {
@@ -119,20 +120,18 @@ Cell choose_cell(V x, V y, GridLanes const& g, int attempt)
     return {hn::IfThenElse(to_x, i, c.i), hn::IfThenElse(to_x, c.j, j)};
 }
 
-struct Answer {
-    std::uint32_t unsure;   ///< bit per lane: its column does not speak for its origin
-    std::uint32_t doubtful; ///< bit per lane: it does if the surface can be hit from there
-};
-
-/// Which columns a block of queries looks into. Found for the whole block before any is walked, so that the cache
-/// misses of all of them overlap.
+/// Which columns queries look into. Found for pairs of vectors ahead of the one that walks, so that their cache
+/// misses pass while others are answered.
 struct Columns {
-    static constexpr std::size_t kBlock = 16 * kMostLanes;
+    static constexpr std::size_t kPairs = 8, kRing = 2 * kPairs * kMostLanes; ///< of the newest pairs
+    static constexpr std::size_t kAhead = 4, kLayersAhead = 2;                ///< pairs; of offsets, of layers
 
-    alignas(64) float i[kBlock];
-    alignas(64) float j[kBlock];
-    alignas(64) std::int32_t texel[kBlock];       ///< into the pool's offsets
-    alignas(64) std::int32_t first_layer[kBlock]; ///< of the axis
+    alignas(64) float i[kRing];
+    alignas(64) float j[kRing];
+    alignas(64) std::int32_t texel[kRing];       ///< into the pool's offsets
+    alignas(64) std::int32_t first_layer[kRing]; ///< of the axis
+    alignas(64) std::int32_t begin[kRing];       ///< layers of the column, from the axis' first on
+    alignas(64) std::int32_t end[kRing];
 };
 
 void find_columns(GridLanes const& g, int attempt, QueryBatch const& b, std::size_t first, std::size_t at,
@@ -152,16 +151,49 @@ void find_columns(GridLanes const& g, int attempt, QueryBatch const& b, std::siz
     hn::Store(g.first_layer, integers, columns.first_layer + at);
 }
 
-/// Worth it where queries walk along many axes, whose buffers lie in no cache.
-void fetch(AxisPool const& pool, Columns const& columns, QueryBatch const& b, std::size_t first, std::size_t n)
+/// The two steps of fetching are worth it where buffers lie in no cache.
+void fetch_offsets(AxisPool const& pool, Columns const& columns, std::size_t column, std::size_t n)
 {
-    for (std::size_t k = 0; k < n; ++k) __builtin_prefetch(&pool.offset[std::size_t(columns.texel[k])]);
-    for (std::size_t k = 0; k < n; ++k) {
-        auto const t = std::size_t(columns.texel[k]);
-        bool const up = (b.triangle[first + k] & kWalkUp) != 0;
-        __builtin_prefetch(pool.layers.data() + std::size_t(columns.first_layer[k]) +
-                           pool.offset[t + (up ? 0 : 1)] - (up ? 0 : 1));
+    for (std::size_t k = column; k < column + n; ++k) {
+        std::uint32_t const* const offset = pool.offset.data() + columns.texel[k];
+        __builtin_prefetch(offset);
+        __builtin_prefetch(offset + 1); // often in the next line for one of a vector, which all would wait for
     }
+}
+
+/// By plain loads: a gather waits for the address translations of its lanes one after the other.
+void find_ranges(AxisPool const& pool, Columns& columns, std::size_t column, std::size_t n)
+{
+    for (std::size_t k = column; k < column + n; ++k) {
+        std::uint32_t const* const offset = pool.offset.data() + columns.texel[k];
+        columns.begin[k] = std::int32_t(offset[0]);
+        columns.end[k] = std::int32_t(offset[1]);
+    }
+}
+
+template <class Record>
+void fetch_layers(std::vector<Record> const& layers, Columns const& columns, std::size_t column, std::size_t n)
+{
+    for (std::size_t k = column; k < column + n; ++k) {
+        Record const* const first = layers.data() + columns.first_layer[k];
+        __builtin_prefetch(first + columns.begin[k]);
+        __builtin_prefetch(first + columns.end[k] - 1);
+    }
+}
+
+/// After the fetch: so that address translations are there when a gather asks.
+template <class Record>
+void touch_layers(std::vector<Record> const& layers, Columns const& columns, std::size_t column, std::size_t n)
+{
+    std::int32_t const last = std::int32_t(layers.size()) - 1;
+    std::uint32_t sum = 0;
+    for (std::size_t k = column; k < column + n; ++k) {
+        std::uint32_t word;
+        std::memcpy(&word, layers.data() + std::min(columns.first_layer[k] + columns.begin[k], last),
+                    sizeof(word));
+        sum += word;
+    }
+    asm volatile("" : : "r"(sum));
 }
 
 struct LayerLanes {
@@ -188,102 +220,134 @@ LayerLanes load_layers(AxisPool const& pool, GridLanes const& g, I index)
     }
 }
 
-/// One vector of queries; query_detail::look_into in lanes.
+/// query_detail::look_into in lanes, less what a column without an own layer answers. Two vectors advance
+/// together, as each step waits for the one before it.
 template <bool kPacked>
-Answer answer_vector(AxisPool const& pool, GridLanes const& g, int attempt, QueryBatch& b, std::size_t first,
-                     Columns const& columns, std::size_t column)
-{
-    Floats const d;
-    Words const words;
-    Integers const integers;
-    auto const set = [&](float v) { return hn::Set(d, v); };
-    V const x = hn::LoadU(d, b.x.data() + first), y = hn::LoadU(d, b.y.data() + first),
-            z = hn::LoadU(d, b.z.data() + first);
-    auto const along = [&](V const* to) { return hn::MulAdd(z, to[2], hn::MulAdd(y, to[1], hn::Mul(x, to[0]))); };
-    Cell const cell{hn::Load(d, columns.i + column), hn::Load(d, columns.j + column)};
-    I const texel = hn::Load(integers, columns.texel + column);
-    TwoWords const range = gather_pairs<2>(pool.offset.data(), texel);
-    I const begin = hn::BitCast(integers, range.first), end = hn::BitCast(integers, range.second);
+struct WalkLanes {
+    static constexpr Floats d{};
+    static constexpr Words words{};
+    static constexpr Integers integers{};
 
-    W const primitive = hn::LoadU(words, b.triangle.data() + first);
-    W const own = hn::And(primitive, hn::Set(words, kPrimitiveMask));
-    W const facing_bit = hn::Set(words, kAlongAxis);
-    W const own_facing = hn::And(primitive, facing_bit);
-    Mask const is_up = hn::RebindMask(d, hn::TestBit(primitive, hn::Set(words, kWalkUp)));
-    // Layers that face the walk have this facing.
-    W const towards = hn::IfThenElseZero(hn::Not(hn::RebindMask(words, is_up)), facing_bit);
-    V const sign = hn::IfThenElse(is_up, set(1), set(-1));
-    V const origin = hn::Mul(sign, along(g.axis));
-    V const margin = hn::Mul(g.texel, hn::Add(set(1), hn::LoadU(d, b.slope.data() + first)));
+    AxisPool const& pool;
+    GridLanes const& g;
+    W own, own_facing;
+    V sign, origin, margin;
+    I step, at, left, answer_at;
+    V best, own_depth; ///< along the walk, from the origin
+    Mask found = hn::FirstN(d, 0), hit = found, running;
 
-    I const one = hn::Set(integers, 1), zero = hn::Zero(integers);
-    I const step = hn::ConvertTo(integers, sign);
-    I at = hn::Add(g.first_layer, hn::IfThenElse(hn::RebindMask(integers, is_up), begin, hn::Sub(end, one)));
-    I left = hn::Sub(end, begin);
-    V best = margin, own_depth = hn::Zero(d), depth = hn::Zero(d), gap = hn::Zero(d), plain_depth = hn::Zero(d);
-    Mask found = hn::FirstN(d, 0), hit = found, plain_hit = found;
-    W answer = hn::Set(words, kNoLayerHit), plain = answer;
-    I answer_at = zero, plain_at = zero;
-    for (Mask running = hn::RebindMask(d, hn::Gt(left, zero)); !hn::AllFalse(d, running);) {
+    WalkLanes(AxisPool const& p, GridLanes const& grid, QueryBatch const& b, std::size_t first, I begin, I end)
+        : pool(p), g(grid)
+    {
+        V const x = hn::LoadU(d, b.x.data() + first), y = hn::LoadU(d, b.y.data() + first),
+                z = hn::LoadU(d, b.z.data() + first);
+        W const primitive = hn::LoadU(words, b.triangle.data() + first);
+        own = hn::And(primitive, hn::Set(words, kPrimitiveMask));
+        own_facing = hn::And(primitive, hn::Set(words, kAlongAxis));
+        Mask const is_up = hn::RebindMask(d, hn::TestBit(primitive, hn::Set(words, kWalkUp)));
+        V const one = hn::Set(d, 1);
+        I const one_layer = hn::Set(integers, 1);
+        sign = hn::IfThenElse(is_up, one, hn::Set(d, -1));
+        origin = hn::Mul(sign, hn::MulAdd(z, g.axis[2], hn::MulAdd(y, g.axis[1], hn::Mul(x, g.axis[0]))));
+        margin = hn::Mul(g.texel, hn::Add(one, hn::LoadU(d, b.slope.data() + first)));
+        step = hn::ConvertTo(integers, sign);
+        at = hn::Add(g.first_layer,
+                     hn::IfThenElse(hn::RebindMask(integers, is_up), begin, hn::Sub(end, one_layer)));
+        left = hn::Sub(end, begin);
+        answer_at = hn::Zero(integers);
+        best = margin;
+        own_depth = hn::Zero(d);
+        running = hn::RebindMask(d, hn::Gt(left, hn::Zero(integers)));
+    }
+
+    void next_layer()
+    {
+        I const zero = hn::Zero(integers);
         // Not by `running`: so the next layers can be under way while these are judged.
-        LayerLanes const record = load_layers<kPacked>(pool, g, hn::IfThenElseZero(hn::Gt(left, zero), at));
-        V const layer_depth = record.depth;
-        W const layer = record.primitive, facing = hn::And(layer, facing_bit);
-        V const from_origin = hn::MulSub(sign, layer_depth, origin), distance = hn::Abs(from_origin);
-        Mask const same = hn::RebindMask(d, hn::Eq(hn::And(layer, hn::Set(words, kPrimitiveMask)), own));
+        LayerLanes const layer = load_layers<kPacked>(pool, g, hn::IfThenElseZero(hn::Gt(left, zero), at));
+        V const from_origin = hn::MulSub(sign, layer.depth, origin), distance = hn::Abs(from_origin);
+        Mask const same = hn::RebindMask(d, hn::Eq(hn::And(layer.primitive, hn::Set(words, kPrimitiveMask)), own));
+        W const facing = hn::And(layer.primitive, hn::Set(words, kAlongAxis));
         Mask const alike = hn::And(hn::RebindMask(d, hn::Eq(facing, own_facing)), hn::Le(distance, best));
         Mask const is_own = hn::And(running, hn::Or(same, alike));
-        best = hn::IfThenElse(is_own, hn::IfThenElse(same, set(-1), distance), best);
+        best = hn::IfThenElse(is_own, hn::IfThenElse(same, hn::Set(d, -1), distance), best);
         own_depth = hn::IfThenElse(is_own, from_origin, own_depth);
         found = hn::Or(found, is_own);
         hit = hn::AndNot(is_own, hit);
-        Mask const other = hn::AndNot(is_own, running);
-        V const beyond = hn::Sub(from_origin, own_depth);
-        Mask const new_hit = hn::And(hn::AndNot(hit, hn::And(other, found)), hn::Gt(beyond, g.rounding));
+        Mask const first_beyond = hn::And(hn::AndNot(hit, hn::AndNot(is_own, running)),
+                                          hn::Gt(hn::Sub(from_origin, own_depth), g.rounding));
+        Mask const new_hit = hn::And(found, first_beyond);
         hit = hn::Or(hit, new_hit);
-        depth = hn::IfThenElse(new_hit, layer_depth, depth);
-        gap = hn::IfThenElse(new_hit, beyond, gap);
-        answer = hn::IfThenElse(hn::RebindMask(words, new_hit), layer, answer);
         answer_at = hn::IfThenElse(hn::RebindMask(integers, new_hit), at, answer_at);
-        if (attempt == 0) {
-            Mask const faces = hn::RebindMask(d, hn::Eq(facing, towards));
-            Mask const new_plain =
-                hn::And(hn::AndNot(plain_hit, hn::And(other, faces)), hn::Gt(from_origin, g.rounding));
-            plain_hit = hn::Or(plain_hit, new_plain);
-            plain_depth = hn::IfThenElse(new_plain, layer_depth, plain_depth);
-            plain = hn::IfThenElse(hn::RebindMask(words, new_plain), layer, plain);
-            plain_at = hn::IfThenElse(hn::RebindMask(integers, new_plain), at, plain_at);
-        }
-        Mask const answered = hn::Or(hn::And(found, hit), hn::AndNot(found, plain_hit));
-        Mask const over = hn::And(answered, hn::Or(hn::Lt(best, hn::Zero(d)), hn::Gt(from_origin, margin)));
+        // Nothing further on can be a nearer own layer.
+        Mask const past = hn::And(hn::Gt(from_origin, margin), hn::Or(hit, hn::Not(found)));
+        Mask const done = hn::Or(past, hn::And(hit, hn::Lt(best, hn::Zero(d))));
         at = hn::Add(at, step);
-        left = hn::Sub(left, one);
-        running = hn::AndNot(over, hn::And(running, hn::RebindMask(d, hn::Gt(left, zero))));
+        left = hn::Sub(left, hn::Set(integers, 1));
+        running = hn::AndNot(done, hn::And(running, hn::RebindMask(d, hn::Gt(left, zero))));
     }
-    Mask const front = hn::RebindMask(d, hn::Eq(hn::And(answer, facing_bit), towards));
-    Mask const doubtful =
-        hn::And(hn::And(found, hit), hn::Or(hn::Not(front), hn::Lt(gap, hn::Mul(set(4), g.texel))));
-    depth = hn::IfThenElse(found, depth, plain_depth);
-    answer =
-        hn::IfThenElse(hn::RebindMask(words, found),
-                       hn::IfThenElse(hn::RebindMask(words, hit), answer, hn::Set(words, kNoLayerHit)), plain);
-    V const u = hn::MulAdd(hn::Add(cell.i, set(0.5f)), g.texel, g.corner_x);
-    V const v = hn::MulAdd(hn::Add(cell.j, set(0.5f)), g.texel, g.corner_y);
+};
+
+/// Bits per lane of a pair of vectors.
+struct Answer {
+    std::uint32_t found;    ///< the column has the own layer, and so an answer, be it that nothing is hit
+    std::uint32_t doubtful; ///< the answer is right if the surface can be hit from there
+};
+
+template <bool kPacked>
+Answer store_answers(WalkLanes<kPacked> const& w, QueryBatch& b, std::size_t first, Columns const& columns,
+                     std::size_t column)
+{
+    Floats const d;
+    Words const words;
+    GridLanes const& g = w.g;
+    auto const set = [&](float v) { return hn::Set(d, v); };
+    Mask const answered = hn::And(w.found, w.hit);
+    I const layer_at = hn::IfThenElseZero(hn::RebindMask(Integers(), answered), w.answer_at);
+    LayerLanes const layer = load_layers<kPacked>(w.pool, g, layer_at);
+    Mask const along = hn::RebindMask(d, hn::TestBit(layer.primitive, hn::Set(words, kAlongAxis)));
+    Mask const back = hn::Not(hn::Xor(along, hn::Gt(w.sign, hn::Zero(d))));
+    V const gap = hn::Sub(hn::MulSub(w.sign, layer.depth, w.origin), w.own_depth);
+    Mask const doubtful = hn::And(answered, hn::Or(back, hn::Lt(gap, hn::Mul(set(4), g.texel))));
+    V const u = hn::MulAdd(hn::Add(hn::Load(d, columns.i + column), set(0.5f)), g.texel, g.corner_x);
+    V const v = hn::MulAdd(hn::Add(hn::Load(d, columns.j + column), set(0.5f)), g.texel, g.corner_y);
     auto const store = [&](std::size_t k, std::vector<float>& to) {
-        hn::StoreU(hn::MulAdd(depth, g.axis[k], hn::MulAdd(v, g.up[k], hn::Mul(u, g.right[k]))), d,
+        hn::StoreU(hn::MulAdd(layer.depth, g.axis[k], hn::MulAdd(v, g.up[k], hn::Mul(u, g.right[k]))), d,
                    to.data() + first);
     };
     store(0, b.hit_x);
     store(1, b.hit_y);
     store(2, b.hit_z);
-    hn::StoreU(answer, words, b.hit.data() + first);
-    hn::StoreU(hn::BitCast(words, hn::IfThenElse(hn::RebindMask(integers, found), answer_at, plain_at)), words,
-               b.hit_layer.data() + first);
-    return {bits_of(hn::Not(found)), bits_of(doubtful)};
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(words, answered), layer.primitive, hn::Set(words, kNoLayerHit)),
+               words, b.hit.data() + first);
+    hn::StoreU(
+        hn::IfThenElse(hn::RebindMask(words, w.found), hn::BitCast(words, layer_at), hn::Set(words, kNoLayerHit)),
+        words, b.hit_layer.data() + first);
+    return {bits_of(w.found), bits_of(doubtful)};
 }
 
-/// Rounded up to whole vectors, which the arrays are made for.
-std::size_t padded(std::size_t n) { return (n + kMostLanes - 1) / kMostLanes * kMostLanes; }
+/// @param grids, column  of the first vector of the pair
+template <bool kPacked>
+Answer answer_pair(AxisPool const& pool, GridLanes const* grids, QueryBatch& b, std::size_t first,
+                   Columns const& columns, std::size_t column)
+{
+    Integers const integers;
+    std::size_t const lanes = hn::Lanes(integers);
+    auto const begin = [&](std::size_t at) { return hn::Load(integers, columns.begin + at); };
+    auto const end = [&](std::size_t at) { return hn::Load(integers, columns.end + at); };
+    WalkLanes<kPacked> w(pool, grids[0], b, first, begin(column), end(column));
+    WalkLanes<kPacked> x(pool, grids[1], b, first + lanes, begin(column + lanes), end(column + lanes));
+    while (!hn::AllFalse(Floats(), hn::Or(w.running, x.running))) {
+        w.next_layer();
+        x.next_layer();
+    }
+    Answer const one = store_answers(w, b, first, columns, column);
+    Answer const two = store_answers(x, b, first + lanes, columns, column + lanes);
+    return {one.found | two.found << lanes, one.doubtful | two.doubtful << lanes};
+}
+
+/// Rounded up to whole pairs of vectors, which the arrays are made for.
+std::size_t padded(std::size_t n) { return (n + 2 * kMostLanes - 1) / (2 * kMostLanes) * (2 * kMostLanes); }
 
 void copy_query(QueryBatch const& from, std::size_t i, QueryBatch& to, std::size_t k)
 {
@@ -296,7 +360,7 @@ void copy_query(QueryBatch const& from, std::size_t i, QueryBatch& to, std::size
 }
 
 struct ManyGrids {
-    static constexpr bool kMany = true;
+    static constexpr bool kMany = true, kCold = true;
     AxisPool const& pool;
     std::uint32_t const* axes;
 
@@ -304,55 +368,125 @@ struct ManyGrids {
     GridLanes operator()(std::size_t i) const { return own_grids(pool, axes + i); }
 };
 
+/// @param kBufferIsCold  few queries over many texels
+template <bool kBufferIsCold>
 struct OneGrid {
-    static constexpr bool kMany = false;
+    static constexpr bool kMany = false, kCold = kBufferIsCold;
     GridLanes grid;
 
     OneGrid(AxisPool const& p, std::size_t a, QueryBatch const&) : grid(same_grid(p, a)) {}
     GridLanes const& operator()(std::size_t) const { return grid; }
 };
 
+/// The batch is read and written as ten or eleven streams, which is more than the hardware foresees.
+template <bool kWithAxes>
+void fetch_streams(QueryBatch& b, std::size_t i)
+{
+    for (auto* const a : {&b.x, &b.y, &b.z, &b.slope}) __builtin_prefetch(a->data() + i);
+    __builtin_prefetch(b.triangle.data() + i);
+    if constexpr (kWithAxes) __builtin_prefetch(b.axis.data() + i);
+    for (auto* const a : {&b.hit_x, &b.hit_y, &b.hit_z}) __builtin_prefetch(a->data() + i, 1);
+    for (auto* const a : {&b.hit, &b.hit_layer}) __builtin_prefetch(a->data() + i, 1);
+}
+
 /// Asks all queries of the batch at one attempt; indices of those that have no good answer yet go to `unsure`.
 template <class Grids>
 void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces, int attempt, QueryBatch& b,
          std::vector<std::uint32_t>& unsure)
 {
-    std::size_t const lanes = hn::Lanes(Floats()), n = b.size();
-    unsure.clear();
+    std::size_t const lanes = hn::Lanes(Floats()), two = 2 * lanes, n = b.size(), pairs = (n + two - 1) / two;
+    auto const answer = pool.packed.empty() ? answer_pair<false> : answer_pair<true>;
     thread_local Columns columns;
-    thread_local GridLanes grids_of_block[Columns::kBlock / 4]; // vectors have at least 4 lanes
-    thread_local std::vector<std::uint32_t> doubtful;
+    thread_local GridLanes grids_ahead[2 * Columns::kPairs];
+    thread_local std::vector<std::uint32_t> doubtful, doubted;
     doubtful.clear();
-    for (std::size_t i = 0; i < n; i += lanes) {
-        std::size_t const column = i % Columns::kBlock;
-        if (column == 0) {
-            std::size_t const block = std::min(Columns::kBlock, n - i);
-            for (std::size_t k = 0; k < block; k += lanes) {
-                grids_of_block[k / lanes] = grids(i + k);
-                find_columns(grids_of_block[k / lanes], attempt, b, i + k, k, columns);
+    doubted.clear();
+    unsure.clear();
+    auto const slot = [](std::size_t pair) { return pair % Columns::kPairs * 2; };
+    auto const queries_of = [&](std::size_t pair) { return std::min(two, n - pair * two); };
+    auto const judge = [&](std::vector<std::uint32_t>& queries) {
+        for (std::uint32_t const q : queries) // their surfaces have come meanwhile
+            if (!query_detail::can_be_hit(surfaces[b.hit[q] & kPrimitiveMask], b.hit[q], b.origin(q)))
+                unsure.push_back(q);
+        queries.clear();
+    };
+    constexpr std::size_t kAhead = Grids::kCold ? Columns::kAhead : 0, kStreamsAhead = 4;
+    for (std::size_t step = 0; step < pairs + kAhead; ++step) {
+        if (step < pairs) {
+            for (std::size_t k = 0; k < 2; ++k) {
+                std::size_t const i = step * two + k * lanes, ahead = i + kStreamsAhead * two;
+                if (ahead < n) fetch_streams<Grids::kMany>(b, ahead);
+                GridLanes& g = grids_ahead[slot(step) + k];
+                g = grids(i);
+                find_columns(g, attempt, b, i, (slot(step) + k) * lanes, columns);
             }
-            if constexpr (Grids::kMany) fetch(pool, columns, b, i, block);
+            if constexpr (Grids::kCold) fetch_offsets(pool, columns, slot(step) * lanes, queries_of(step));
         }
-        auto const answer_lanes = pool.packed.empty() ? answer_vector<false> : answer_vector<true>;
-        Answer answer = answer_lanes(pool, grids_of_block[column / lanes], attempt, b, i, columns, column);
-        if (n - i < lanes) {
-            std::uint32_t const there = (1u << (n - i)) - 1;
-            answer = {answer.unsure & there, answer.doubtful & there};
+        if constexpr (Grids::kCold) {
+            std::size_t const pair = step - (kAhead - Columns::kLayersAhead); // may wrap
+            if (pair < pairs) {
+                find_ranges(pool, columns, slot(pair) * lanes, two);
+                if (pool.packed.empty())
+                    fetch_layers(pool.layers, columns, slot(pair) * lanes, queries_of(pair));
+                else
+                    fetch_layers(pool.packed, columns, slot(pair) * lanes, queries_of(pair));
+            }
+            if (step < kAhead) continue;
         }
-        for (std::uint32_t bits = answer.doubtful; bits != 0; bits &= bits - 1) {
-            std::uint32_t const q = std::uint32_t(i) + std::uint32_t(std::countr_zero(bits));
+        std::size_t const pair = step - kAhead, first = pair * two;
+        if constexpr (Grids::kCold) {
+            if (pool.packed.empty())
+                touch_layers(pool.layers, columns, slot(pair) * lanes, queries_of(pair));
+            else
+                touch_layers(pool.packed, columns, slot(pair) * lanes, queries_of(pair));
+        } else {
+            find_ranges(pool, columns, slot(pair) * lanes, two);
+        }
+        Answer const a = answer(pool, grids_ahead + slot(pair), b, first, columns, slot(pair) * lanes);
+        std::uint32_t const there =
+            queries_of(pair) < 32 ? (1u << queries_of(pair)) - 1 : ~0u; // a pair has up to 32
+        for (std::uint32_t bits = a.doubtful & there; bits != 0; bits &= bits - 1) {
+            std::uint32_t const q = std::uint32_t(first) + std::uint32_t(std::countr_zero(bits));
             __builtin_prefetch(&surfaces[b.hit[q] & kPrimitiveMask]);
             doubtful.push_back(q);
         }
-        for (std::uint32_t bits = answer.unsure; bits != 0; bits &= bits - 1)
-            unsure.push_back(std::uint32_t(i) + std::uint32_t(std::countr_zero(bits)));
-        if (column + lanes < Columns::kBlock && i + lanes < n) continue;
-        for (std::uint32_t const q : doubtful) // their surfaces have come meanwhile
-            if (!query_detail::can_be_hit(surfaces[b.hit[q] & kPrimitiveMask], b.hit[q], b.origin(q)))
-                unsure.push_back(q);
-        doubtful.clear();
+        for (std::uint32_t bits = ~a.found & there; bits != 0; bits &= bits - 1)
+            unsure.push_back(std::uint32_t(first) + std::uint32_t(std::countr_zero(bits)));
+        if (pair % 4 != 3) continue;
+        judge(doubted);
+        std::swap(doubtful, doubted);
     }
+    judge(doubted);
+    judge(doubtful);
     std::ranges::sort(unsure);
+}
+
+/// What the nearest column answers without an own layer: the first face towards the walk.
+void answer_plainly(AxisPool const& pool, std::size_t a, QueryBatch& b, std::size_t i)
+{
+    WalkOrigin const o = b.origin(i);
+    RasterGrid const& grid = pool.grids[a];
+    auto const nearest = [&](vec3 across, float corner, std::uint32_t count) {
+        float const at = std::floor((glm::dot(o.position, across) - corner) / grid.texel);
+        return std::uint32_t(std::min(std::max(at, 0.0f), float(count - 1)));
+    };
+    std::uint32_t const ti = nearest(grid.right, grid.corner.x, grid.width),
+                        tj = nearest(grid.up, grid.corner.y, grid.height);
+    float const sign = o.up ? 1.0f : -1.0f, origin = sign * grid.depth(o.position);
+    std::size_t const texel = pool.first_offset[a] + std::size_t(tj) * grid.width + ti;
+    std::uint32_t const begin = pool.offset[texel], end = pool.offset[texel + 1];
+    for (std::uint32_t k = begin; k < end; ++k) {
+        std::uint32_t const at = pool.first_layer[a] + (o.up ? k : end - 1 - (k - begin));
+        HitLayer const layer = pool.layer(a, at);
+        if (query_detail::is_back(layer.primitive, o) || sign * layer.depth - origin <= grid.rounding) continue;
+        vec3 const p = grid.point(ti, tj, layer.depth);
+        b.hit[i] = layer.primitive;
+        b.hit_layer[i] = at;
+        b.hit_x[i] = p.x;
+        b.hit_y[i] = p.y;
+        b.hit_z[i] = p.z;
+        return;
+    }
 }
 
 template <class Grids>
@@ -382,6 +516,8 @@ void answer_all(AxisPool const& pool, std::size_t a, View<Surface const> surface
         }
         waiting.resize(left);
     }
+    for (std::uint32_t const i : waiting)
+        if (b.hit_layer[i] == kNoLayerHit) answer_plainly(pool, Grids::kMany ? b.axis[i] : a, b, i);
 }
 
 } // namespace
@@ -415,7 +551,11 @@ void nearest_layers(AxisPool const& pool, View<Surface const> surfaces, QueryBat
 
 void nearest_layers(AxisPool const& pool, std::size_t a, View<Surface const> surfaces, QueryBatch& batch)
 {
-    answer_all<OneGrid>(pool, a, surfaces, batch);
+    constexpr std::size_t kWarm = 4; // queries per texel
+    if (batch.size() < kWarm * pool.grids[a].texels())
+        answer_all<OneGrid<true>>(pool, a, surfaces, batch);
+    else
+        answer_all<OneGrid<false>>(pool, a, surfaces, batch);
 }
 
 } // namespace gi
