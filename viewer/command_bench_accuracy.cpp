@@ -35,13 +35,6 @@ struct Light {
     std::vector<float> direct, indirect;
 };
 
-Light operator-(Light a, Light const& b)
-{
-    for (std::size_t k = 0; k < a.direct.size(); ++k) a.direct[k] -= b.direct[k];
-    for (std::size_t k = 0; k < a.indirect.size(); ++k) a.indirect[k] -= b.indirect[k];
-    return a;
-}
-
 double mean(std::vector<float> const& v)
 {
     return std::accumulate(v.begin(), v.end(), 0.0) / double(std::max<std::size_t>(1, v.size()));
@@ -51,8 +44,18 @@ double mean(std::vector<float> const& v)
 using Lights = std::vector<Light>;
 using Part = std::vector<float> Light::*;
 
+Lights combine(Lights a, Lights const& b, float factor)
+{
+    for (std::size_t k = 0; k < a.size(); ++k)
+        for (Part const p : {&Light::direct, &Light::indirect})
+            for (std::size_t i = 0; i < (a[k].*p).size(); ++i) (a[k].*p)[i] += factor * (b[k].*p)[i];
+    return a;
+}
+Lights differences(Lights const& a, Lights const& b) { return combine(a, b, -1); }
+Lights sums(Lights const& a, Lights const& b) { return combine(a, b, 1); }
+
 struct Estimate {
-    double value, error; ///< a mean and its standard error
+    double value = 0, error = 0; ///< a mean and its standard error
 };
 
 /// Of the picture's mean, in units of `unit`.
@@ -65,7 +68,6 @@ Estimate estimate(Lights const& lights, Part part, double unit)
     return {sum / n / unit, std::sqrt(squares / (n * (n - 1))) / unit};
 }
 
-Estimate operator+(Estimate a, Estimate b) { return {a.value + b.value, std::hypot(a.error, b.error)}; }
 Estimate operator-(Estimate a, Estimate b) { return {a.value - b.value, std::hypot(a.error, b.error)}; }
 
 std::vector<float> mean_picture(Lights const& lights, Part part)
@@ -93,6 +95,11 @@ double systematic_relmse(Lights const& differences, std::vector<float> const& re
     return total / double(reference.size());
 }
 
+/// Of one row; those of one cause are of indirect light.
+struct Biases {
+    Estimate direct, indirect, of_hit_buffers, of_shadow_maps, of_directions;
+};
+
 struct Rendered {
     Lights lights;
     double seconds = 0, lost_layers = 0;
@@ -114,15 +121,17 @@ public:
         std::uint32_t const each = std::max(1u, o_.reference_paths / std::uint32_t(o_.seeds));
         Lights const reference = render_seeds("reference", {}, each, 1000).lights;
         reference_ = mean_picture(reference, &Light::indirect);
-        free_ = render_exactly({}, true, o_.direction_paths).lights;
+        Rendered const free = render_exactly({}, true, o_.direction_paths);
+        free_ = free.lights;
         direct_ = estimate(free_, &Light::direct, 1).value;
         indirect_ = estimate(free_, &Light::indirect, 1).value;
-        Part const parts[] = {&Light::direct, &Light::indirect};
-        double const units[] = {direct_, indirect_};
-        Estimate bias[2];
-        for (int k = 0; k < 2; ++k)
-            bias[k] = estimate(free_, parts[k], units[k]) - estimate(reference, parts[k], units[k]);
-        add({"exact rays", "free", std::monostate{}}, bias[0], bias[1], {}, {}, {}, free_, {});
+        add({"exact rays", "free", std::monostate{}},
+            {part(free_, &Light::direct) - part(reference, &Light::direct),
+             part(free_, &Light::indirect) - part(reference, &Light::indirect),
+             {},
+             {},
+             {}},
+            std::monostate{}, free);
     }
 
     void stream() { add_rows("streamed", {}); }
@@ -168,18 +177,23 @@ private:
         s.exact = {.queries = true, .shadows = true, .directions = free};
         return render_seeds("slhb", s, paths, 1);
     }
-    Lights differences(Lights a, Lights const& b) const
+    /// As a share of all light.
+    Estimate part(Lights const& l, Part p) const
     {
-        for (std::size_t k = 0; k < a.size(); ++k) a[k] = a[k] - b[k];
-        return a;
+        return estimate(l, p, p == &Light::direct ? direct_ : indirect_);
     }
-    void add(Name const& name, Estimate direct, Estimate indirect, Cell look_ups, Cell directions, Cell systematic,
-             Lights const& lights, Rendered const& r)
+    void add(Name const& name, Biases const& b, Cell systematic, Rendered const& r)
     {
-        std::vector<float> const picture = mean_picture(lights, &Light::indirect);
-        table_.add({scene_, name.schedule, name.directions, name.hit_buffer, direct.value, direct.error,
-                    indirect.value, indirect.error, look_ups, directions, systematic,
-                    measure_errors(picture, reference_, 3).relmse, r.lost_layers, r.seconds});
+        std::vector<Cell> row{scene_, name.schedule, name.directions, name.hit_buffer};
+        for (Estimate const& e : {b.direct, b.indirect, b.of_hit_buffers, b.of_shadow_maps, b.of_directions}) {
+            row.push_back(e.value);
+            row.push_back(e.error);
+        }
+        row.push_back(systematic);
+        row.push_back(measure_errors(mean_picture(r.lights, &Light::indirect), reference_, 3).relmse);
+        row.push_back(r.lost_layers);
+        row.push_back(r.seconds);
+        table_.add(row);
         write(table_, o_.out);
     }
     void add_rows(char const* schedule, std::string const& directions);
@@ -204,33 +218,21 @@ void Bench::add_rows(char const* schedule, std::string const& directions)
     Lights const of_directions =
         streamed ? Lights{} : differences(render_exactly(directions, false, o_.direction_paths).lights, free_);
     Lights const exact = render_exactly(directions, false, o_.paths).lights;
-    auto const of = [&](Lights const& d, Part part) {
-        return estimate(d, part, part == &Light::direct ? direct_ : indirect_);
-    };
-    auto const row = [&](Cell hit_buffer, SlhbSettings const& s) {
-        Rendered const r = render_seeds("slhb", s, o_.paths, 1);
-        Lights all = differences(r.lights, exact);
-        Estimate const look_ups = of(all, &Light::indirect);
-        Estimate direct = of(all, &Light::direct), indirect = look_ups;
-        Cell part = 0.0;
-        if (!streamed) {
-            direct = direct + of(of_directions, &Light::direct);
-            indirect = indirect + of(of_directions, &Light::indirect);
-            part = of(of_directions, &Light::indirect).value;
-            for (std::size_t k = 0; k < all.size(); ++k)
-                for (std::size_t i = 0; i < all[k].indirect.size(); ++i)
-                    all[k].indirect[i] += of_directions[k].indirect[i];
-        }
-        add({schedule, streamed ? "all" : directions, hit_buffer}, direct, indirect, look_ups.value, part,
-            systematic_relmse(all, reference_), r.lights, r);
-    };
     SlhbSettings s = slhb(directions);
     s.exact.queries = true;
-    row("exact", s);
+    Lights const with_maps = render_seeds("slhb", s, o_.paths, 1).lights;
     s.exact.queries = false;
+    Lights const of_maps = differences(with_maps, exact);
     for (int const resolution : o_.resolutions) {
         s.resolution = resolution;
-        row(double(resolution), s);
+        Rendered const r = render_seeds("slhb", s, o_.paths, 1);
+        Lights const of_buffers = differences(r.lights, with_maps);
+        Lights all = differences(r.lights, exact);
+        if (!streamed) all = sums(all, of_directions);
+        add({schedule, streamed ? "all" : directions, double(resolution)},
+            {part(all, &Light::direct), part(all, &Light::indirect), part(of_buffers, &Light::indirect),
+             part(of_maps, &Light::indirect), streamed ? Estimate{0, 0} : part(of_directions, &Light::indirect)},
+            systematic_relmse(all, reference_), r);
     }
 }
 
@@ -241,7 +243,8 @@ int run(AccuracyOptions& o)
     BenchTable table =
         start_table("accuracy", "Bias of slhb, by paired differences",
                     {"scene", "schedule", "directions", "hit_buffer", "bias_direct", "bias_direct_error",
-                     "bias_indirect", "bias_indirect_error", "of_look_ups", "of_directions",
+                     "bias_indirect", "bias_indirect_error", "of_hit_buffers", "of_hit_buffers_error",
+                     "of_shadow_maps", "of_shadow_maps_error", "of_directions", "of_directions_error",
                      "systematic_relmse_indirect", "relmse_indirect", "lost_layers", "seconds"});
     table.facts = {{"size", o.render.size},
                    {"bounces", std::to_string(o.render.bounces)},
@@ -300,15 +303,14 @@ void add_bench_accuracy(CLI::App& bench, int& exit_code)
   lightwell bench accuracy --scene cornell --directions icosahedron:80 --hit-buffers 32 --size 16x16 --seeds 2 --paths 8 --direction-paths 8 --reference-paths 32 --out accuracy
 
 bias_direct and bias_indirect are what the means of L1 and L2 over all channels differ by from the truth, as a share
-of it; bias_direct_error and bias_indirect_error are their standard errors. Each is the sum of two parts:
-  of_look_ups    slhb less slhb with exact rays instead of hit buffers and shadow maps: same seed, axes, lamps and
-                 random numbers
-  of_directions  stored: slhb with exact rays along its axes less slhb with exact rays by the cosine; streamed axes
-                 are uniform, so it is 0
-Rows with hit_buffer "exact" have shadow maps only. The row "exact rays" is slhb with exact rays by the cosine less
-the reference: it should be 0 within its error. systematic_relmse_indirect is the relMSE of L2 that no number of paths
-takes away (by products of different seeds, so noise may make it negative); relmse_indirect that of the mean of all
-seeds against the reference.)");
+of it; columns that end in _error are standard errors over the seeds. bias_indirect is the sum of three parts, each a
+difference of renders with the same seeds and lamps, the first two with the same axes and random numbers too:
+  of_hit_buffers  slhb less slhb with exact rays along its axes
+  of_shadow_maps  that less the same with exact rays to its lamps
+  of_directions   stored: that less exact rays by the cosine, each path its own; streamed axes are uniform: 0
+The row "exact rays" is the last of these less the reference: it should be 0 within its error.
+systematic_relmse_indirect is the relMSE of L2 that no number of paths takes away (from products of different seeds,
+so noise may make it negative); relmse_indirect that of the mean of all seeds against the reference.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 
