@@ -24,6 +24,16 @@ enum class Schedule : std::uint8_t {
     temporal, ///< a set of which some axes are replaced in every pass
 };
 
+/// What exact rays do in place of an approximation of slhb, to measure its bias: two renders of one seed that
+/// differ in this alone share axes, lamps and random numbers, so that their difference has little noise.
+struct ExactParts {
+    bool queries = false;    ///< instead of look-ups in hit buffers
+    bool shadows = false;    ///< instead of look-ups in shadow maps
+    bool directions = false; ///< by the cosine, each path its own, instead of axes; needs `queries`
+
+    bool any() const { return queries || shadows; }
+};
+
 /// For the method slhb; 0 or empty = what the scene plan chooses.
 struct SlhbSettings {
     Schedule schedule = Schedule::automatic;
@@ -39,6 +49,7 @@ struct SlhbSettings {
     int interleave = 0;        ///< n: in a pass one pixel of n x n takes indirect light, n^2-fold; 1 = all do
     Space space = Space::host; ///< device: all by CUDA kernels, see gi/slhb/kernel_render.h
     bool gather = false;       ///< first bounce over all axes in turn instead of at random
+    ExactParts exact;          ///< on the host; for bench accuracy
 };
 
 struct RenderSettings {

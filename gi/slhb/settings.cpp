@@ -91,6 +91,7 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
     if (s.shadow_resolution == 0) s.shadow_resolution = from_points ? 1024 : sky ? 512 : 256;
     double const map = 5e-9 * triangles + 1e-8 * double(s.shadow_resolution) * s.shadow_resolution;
     if (s.lamps == 0) s.lamps = from_points || sky ? 16 : worth(map, 1, few_passes ? 8 : 4);
+    if (s.exact.queries) s.cone = 0; // an exact ray starts where it is
     if (s.interleave == 0) s.interleave = choose_interleave(asked, s, axis, map);
     return s;
 }

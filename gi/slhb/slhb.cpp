@@ -66,15 +66,19 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
         StageTimer const timer(report, "build (Embree BVH)");
         exact = std::make_unique<ExactVisibility>(world, plan.alpha_tests, settings.threads);
     }
+    std::unique_ptr<ExactVisibility> judge;
+    if (slhb.exact.any()) judge = std::make_unique<ExactVisibility>(world, plan.alpha_tests, settings.threads);
     CutOuts const cut_outs(world);
-    AxisSet axes({world.bounds, soup, cut_outs, std::uint32_t(slhb.resolution), std::uint32_t(slhb.most_layers),
-                  slhb.packed, settings.seed});
+    constexpr int kUnused = 2; // texels: choosing among axes and lamps takes their grids alone
+    auto const texels = [](bool unused, int n) { return std::uint32_t(unused ? kUnused : n); };
+    AxisSet axes({world.bounds, soup, cut_outs, texels(slhb.exact.queries, slhb.resolution),
+                  std::uint32_t(slhb.most_layers), slhb.packed, settings.seed});
     if (slhb.schedule == Schedule::stored) {
         StageTimer const timer(report, "build (hit buffers)");
         axes.store(make_directions(slhb.directions));
     }
-    Lamps lamps(world, soup, cut_outs, std::uint32_t(slhb.lamps), std::uint32_t(slhb.shadow_resolution),
-                settings.seed);
+    Lamps lamps(world, soup, cut_outs, std::uint32_t(slhb.lamps),
+                texels(slhb.exact.shadows, slhb.shadow_resolution), settings.seed);
     PrimaryMap primary(world, soup, cut_outs, rays, settings);
     SlhbTracer const tracer(world, rays, settings, slhb);
 
@@ -107,10 +111,11 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
                                            ? index / std::uint32_t(slhb.interleave * slhb.interleave) %
                                                  std::uint32_t(axes.first_bounce_axes())
                                            : kNoPrimitive;
-        SlhbTracer::Pass const now{axes, lamps, exact.get(), index, gathered};
+        SlhbTracer::Pass const now{axes, lamps, exact.get(), index, gathered, judge.get()};
         std::size_t const pixels = sums.pixels.size();
         // Where many paths end on few layers, what a layer sends back is computed once.
-        bool const sharing = settings.bounces > 0 && slhb.cone == 0 && axes.first_bounce_layers() < pixels;
+        bool const sharing =
+            settings.bounces > 0 && slhb.cone == 0 && !slhb.exact.queries && axes.first_bounce_layers() < pixels;
         shared.start(sharing ? axes.first_bounce_layers() : 0);
         samples.resize(pixels);
         endings.resize(sharing ? pixels : 0);

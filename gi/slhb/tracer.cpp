@@ -47,7 +47,7 @@ struct SlhbTracer::Vertex {
 
 /// Direct light that waits for its shadow map.
 struct SlhbTracer::Unshadowed {
-    ShadowMap const* map;
+    Lamp const* lamp;
     ShadowMap::Place place;
     vec3 position;
     std::uint32_t triangle;
@@ -92,8 +92,7 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, ShadingPoint const
     ShadowMap::Place const place =
         l.shadow.look(at.position, at.geometric_normal, s.random.noise2(s.dimension(shadow)));
     __builtin_prefetch(place.texel);
-    direct.push_back(
-        {&l.shadow, place, at.position, s.triangle, s.throughput * value, &s.bucket(s.scatterings + 1)});
+    direct.push_back({&l, place, at.position, s.triangle, s.throughput * value, &s.bucket(s.scatterings + 1)});
 }
 
 std::uint32_t SlhbTracer::indirect_share(std::uint32_t pixel, std::uint32_t pass) const
@@ -176,6 +175,8 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
             a = {pass.gather_axis, cosine < 0 ? -along : along,
                  std::abs(cosine) * pass.axes.solid_angle(pass.gather_axis) *
                      float(pass.axes.first_bounce_axes()) * kInvPi};
+        } else if (parts_.directions) {
+            a = {0, at.frame.to_world(square_to_cosine_hemisphere(s.random.sample2(s.dimension(lobe_u)))), 1};
         } else {
             a = pass.axes.sample(std::uint32_t(s.scatterings), at.frame.normal,
                                  s.random.sample(s.dimension(axis)));
@@ -265,6 +266,42 @@ void SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
     }
 }
 
+namespace {
+
+vec3 off_surface(Surface const& s, vec3 position, vec3 direction)
+{
+    vec3 const normal = shading_detail::triangle_normal(s);
+    return position + (glm::dot(direction, normal) > 0 ? s.clearance : -s.clearance) * normal;
+}
+
+} // namespace
+
+void SlhbTracer::add_exactly(Pass const& pass, std::span<Unshadowed const> direct) const
+{
+    thread_local std::vector<RayQuery> rays;
+    thread_local std::vector<std::uint8_t> blocked;
+    rays.clear();
+    for (Unshadowed const& d : direct) {
+        LightSample const light = sample_light(world_, d.lamp->choice, d.position, d.lamp->u);
+        Surface const& surface = world_.surfaces[d.triangle];
+        RayQuery q{.ray = {off_surface(surface, d.position, light.direction), light.direction},
+                   .reach = light.distance,
+                   .seed = hash_words(hash_words(pass.index, d.triangle), std::uint32_t(rays.size()))};
+        if (light.distance != kInf) {
+            // As the reference aims: from where the ray starts to just before the lamp.
+            vec3 const way = d.position + light.distance * light.direction - q.ray.origin;
+            float const length = glm::length(way);
+            q.ray.direction = way / length;
+            q.reach = length * (1 - 2e-5f) - surface.clearance;
+        }
+        rays.push_back(q);
+    }
+    blocked.resize(rays.size());
+    pass.judge->occluded(rays, blocked);
+    for (std::size_t k = 0; k < direct.size(); ++k)
+        if (blocked[k] == 0 || !(rays[k].reach > 0)) *direct[k].to += direct[k].radiance;
+}
+
 void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
                        std::span<Ending> endings, PathCounts& paths, SlhbCounts& counts) const
 {
@@ -309,19 +346,33 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
             if (shade(pass, states[v.path], v, direct, paths)) vertices[going++] = v;
         }
         counts.shadow_lookups += direct.size();
-        for (Unshadowed const& d : direct)
-            if (d.map->lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
+        if (parts_.shadows) {
+            add_exactly(pass, direct);
+        } else {
+            for (Unshadowed const& d : direct)
+                if (d.lamp->shadow.lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
+        }
         direct.clear();
         active = going;
         std::span<Vertex> const now(vertices.data(), active);
+        if (parts_.queries)
+            for (Vertex& v : now)
+                if (!v.exact) {
+                    v.exact = true;
+                    vec3 const direction = states[v.path].direction;
+                    v.ray = {off_surface(world_.surfaces[v.origin.triangle], v.origin.position, direction),
+                             direction};
+                }
         rays.clear();
         for (Vertex const& v : now)
             if (v.exact)
                 rays.push_back(
-                    {.ray = v.ray, .seed = states[v.path].random.seed + std::uint32_t(states[v.path].vertex)});
+                    {.ray = v.ray,
+                     .seed = hash_words(states[v.path].random.seed + std::uint32_t(states[v.path].vertex),
+                                        pass.index)});
         if (rays.size() < active) ask_axes(pass, now);
         ray_hits.resize(rays.size());
-        if (!rays.empty()) pass.exact->nearest(rays, ray_hits);
+        if (!rays.empty()) (parts_.queries ? pass.judge : pass.exact)->nearest(rays, ray_hits);
         counts.exact_rays += rays.size();
         counts.queries += active - rays.size();
         std::size_t ray = 0, left = 0;

@@ -50,8 +50,9 @@ public:
         AxisSet const& axes;
         Lamps const& lamps;
         ExactVisibility const* exact;
-        std::uint32_t index;       ///< of the path of each pixel
-        std::uint32_t gather_axis; ///< taken by every first bounce; kNoPrimitive = by chance
+        std::uint32_t index;                    ///< of the path of each pixel
+        std::uint32_t gather_axis;              ///< taken by every first bounce; kNoPrimitive = by chance
+        ExactVisibility const* judge = nullptr; ///< answers for SlhbSettings::exact; null = nothing is asked there
     };
 
     SlhbTracer(World const& world, CameraRays const& camera, RenderSettings const& settings,
@@ -62,7 +63,8 @@ public:
           seed_(settings.seed),
           width_(settings.width),
           cone_(slhb.cone),
-          interleave_(std::uint32_t(slhb.interleave))
+          interleave_(std::uint32_t(slhb.interleave)),
+          parts_(slhb.exact)
     {
     }
 
@@ -85,6 +87,8 @@ private:
     /// How many pixels this one takes indirect light for in this pass: 0, or the square of the interleaving.
     std::uint32_t indirect_share(std::uint32_t pixel, std::uint32_t pass) const;
     void ask_axes(Pass const& pass, std::span<Vertex> vertices) const;
+    /// Asks the judge in place of shadow maps.
+    void add_exactly(Pass const& pass, std::span<Unshadowed const> direct) const;
 
     WorldView world_;
     CameraRays camera_;
@@ -93,6 +97,7 @@ private:
     int width_;
     float cone_;
     std::uint32_t interleave_;
+    ExactParts parts_;
 };
 
 } // namespace gi

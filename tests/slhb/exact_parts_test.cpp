@@ -1,0 +1,82 @@
+// slhb with exact rays in place of look-ups: what bench accuracy measures biases against has none itself.
+
+#include "gi/reference/reference.h"
+#include "tests/slhb/slhb_render.h"
+
+namespace gi::test {
+namespace {
+
+/// Mean of L2 over `seeds` renders and its standard error.
+template <class Render>
+Estimate indirect_over_seeds(RenderSettings s, int seeds, Render const& render)
+{
+    double sum = 0, squares = 0;
+    for (int k = 0; k < seeds; ++k) {
+        s.seed = std::uint64_t(100 + k);
+        double const m = mean_of(render(s), "L2").mean;
+        sum += m;
+        squares += m * m;
+    }
+    double const n = seeds, mean = sum / n;
+    return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
+}
+
+TEST(SlhbExactParts, WithoutLookUpsThereIsNoBias)
+{
+    Scene scene;
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, lambert(vec3{0.6f})), true);
+    add_box(scene, {-0.4f, -1, -0.4f}, {0.3f, 0, 0.2f}, add_material(scene, lambert(vec3{0.4f, 0.6f, 0.2f})),
+            false);
+    add_quad(scene, {-0.3f, 0.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{10})));
+    World const world = world_of(scene);
+    Camera const camera = look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70);
+    constexpr int kSeeds = 8;
+    RenderSettings s = small_settings(24, 128, 2);
+    Estimate const truth = indirect_over_seeds(s, kSeeds, [&](RenderSettings const& now) {
+        StopRequest stop;
+        Report report;
+        return render_reference(world, camera, now, stop, {}, report).picture;
+    });
+    s.slhb.schedule = Schedule::streamed;
+    s.slhb.axes = 8;
+    s.slhb.lamps = 8;
+    for (bool const own_directions : {false, true}) {
+        s.slhb.exact = {.queries = true, .shadows = true, .directions = own_directions};
+        Estimate const exact = indirect_over_seeds(s, kSeeds, [&](RenderSettings const& now) {
+            return render_with_slhb(world, camera, now).result.picture;
+        });
+        double const error = std::hypot(truth.sigma, exact.sigma);
+        EXPECT_LT(error, 0.01 * truth.mean); // else the next line says nothing
+        EXPECT_NEAR(exact.mean, truth.mean, 4 * error) << own_directions;
+    }
+}
+
+TEST(SlhbExactParts, NothingIsLookedUp)
+{
+    // Open, under a sky and parallel light: render_with_slhb checks that all is finite.
+    Scene scene;
+    add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, add_material(scene, lambert(vec3{0.5f})));
+    add_sphere(scene, {0, 0.4f, 0}, 0.4f, 2, add_material(scene, lambert(vec3{0.8f})), true);
+    set_environment(scene, vec3{1});
+    Light lamp;
+    lamp.type = LightType::directional;
+    lamp.direction = {0, -1, 0};
+    lamp.intensity = vec3{1};
+    add_light(scene, lamp);
+    World const world = world_of(scene);
+    Camera const camera = look_at({1, 1, 2}, {0, 0.2, 0}, 50);
+    for (Schedule const schedule : {Schedule::streamed, Schedule::stored}) {
+        RenderSettings s = small_settings(16, 64, 2);
+        s.slhb.schedule = schedule;
+        SlhbRun const look_ups = render_with_slhb(world, camera, s);
+        s.slhb.exact = {.queries = true, .shadows = true};
+        SlhbRun const exact = render_with_slhb(world, camera, s);
+        EXPECT_EQ(exact.counts.at("hit-buffer queries"), 0);
+        EXPECT_GT(exact.counts.at("exact rays"), 0);
+        double const truth = mean_of(exact.result.picture).mean;
+        EXPECT_NEAR(mean_of(look_ups.result.picture).mean, truth, 0.01 * truth);
+    }
+}
+
+} // namespace
+} // namespace gi::test
