@@ -72,19 +72,24 @@ public:
 
     std::uint32_t seed = 0;  ///< of the pixel, say
     std::uint32_t index = 0; ///< of the path
+    /// 0 to 15: of sixteen streams that share a seed. Their samples of one index lie in sixteen different strata.
+    std::uint32_t place = 0;
 
+    /// Of this stream alone.
+    GI_FN std::uint32_t own_seed() const { return seed + 0x9e3779b9u * place; }
     /// Uniform in [0, 1), a multiple of 2^-24.
     GI_FN float sample(std::uint32_t dimension) const
     {
         std::uint32_t const key = hash_words(seed, dimension);
-        std::uint32_t const word = permute_upwards(shuffled(key), key * 0x2c1b3c6du + 0x297a2d39u);
+        std::uint32_t const word =
+            permute_upwards(shuffled(key) ^ shuffled_place(key), key * 0x2c1b3c6du + 0x297a2d39u);
         return float(reverse_bits(word) >> 8) * 0x1p-24f;
     }
     GI_FN vec2 sample2(std::uint32_t dimension) const { return {sample(dimension), sample(dimension + 1)}; }
     /// Two numbers without any order, for decisions that matter little.
     GI_FN vec2 noise2(std::uint32_t dimension) const
     {
-        std::uint32_t const h = hash_words(seed + 0x68bc21ebu * index, dimension);
+        std::uint32_t const h = hash_words(own_seed() + 0x68bc21ebu * index, dimension);
         return {float(h >> 16) * 0x1p-16f, float(h & 0xffffu) * 0x1p-16f};
     }
     /// Four numbers that are stratified together (Sobol), for one decision; on the host.
@@ -103,6 +108,15 @@ public:
     }
 
 private:
+    /// The place in an order of its own for every decision.
+    GI_FN std::uint32_t shuffled_place(std::uint32_t key) const
+    {
+        std::uint32_t p = (place * (key | 1) + (key >> 4)) & 15;
+        p ^= p >> 2;
+        p = (p * (key >> 8 | 1) + (key >> 12)) & 15;
+        p ^= p >> 2;
+        return (p * (key >> 16 | 1) + (key >> 20)) & 15;
+    }
     /// The index in an order of its own for every decision, in which runs of 2^k stay together. Without it the top
     /// bits of all dimensions would follow the same bit of the index.
     GI_FN std::uint32_t shuffled(std::uint32_t key) const

@@ -8,13 +8,13 @@
 // sharing of what layers send back.
 
 #include "gi/base/atomics.h"
-#include "gi/base/rqmc.h"
 #include "gi/scene/camera.h"
 #include "gi/scene/light_sampling.h"
 #include "gi/scene/shading_point.h"
 #include "gi/slhb/axis_set.h"
 #include "gi/slhb/cut_outs.h"
 #include "gi/slhb/narrow_lobes.h"
+#include "gi/slhb/path_random.h"
 #include "gi/slhb/shadow_look.h"
 #include "gi/transport/path_sample.h"
 #include "gi/transport/sampling.h"
@@ -43,7 +43,7 @@ struct TracePaths {
     View<AxisView const> axes;
     AxisChoice choice;
     View<LampView const> lamps;
-    AliasTableView chances; ///< of the lamps; empty = they are taken in turn
+    AliasTableView chances; ///< of the lamps; empty = equal
     int bounces;
     std::uint32_t seed, pass;
     View<PathSample> samples;      ///< per pixel

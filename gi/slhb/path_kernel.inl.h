@@ -8,7 +8,7 @@ GI_FN inline TracePaths::State TracePaths::start(std::size_t pixel) const
     auto const id = std::uint32_t(pixel);
     Ray const ray = camera.through(vec2{float(id % width), float(id / width)} + place);
     State s;
-    s.random = {hash_words(seed, id), pass};
+    s.random = pixel_stream(seed, id, width, pass);
     s.triangle = primary[pixel].primitive;
     s.direction = ray.direction;
     if (s.triangle == kNoPrimitive) return s;
@@ -36,7 +36,7 @@ GI_FN inline vec3 TracePaths::direct(State const& s, ShadingPoint const& at, vec
         double u = double(s.random.sample(s.dimension(lamp)));
         k = chances.sample(u);
     } else {
-        k = (s.random.seed + pass + std::uint32_t(s.scatterings)) % lamps.size();
+        k = one_of(lamps.size(), s.random.sample(s.dimension(lamp)));
     }
     LampView const& l = lamps[k];
     LightSample const light = sample_light(world, l.choice, at.position, l.u);

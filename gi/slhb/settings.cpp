@@ -27,16 +27,32 @@ double layers_per_texel(World const& world, TriangleSoup const& soup)
     return covered > 0 ? double(b.layers.size()) / double(covered) : 0;
 }
 
+/// What things cost, s on one core (measured on a machine of 2024).
+struct Costs {
+    double triangles, layers; ///< layers: per texel
+    double direct, bounce;    ///< per pixel
+
+    explicit Costs(World const& world, double layers_each)
+        : triangles(double(world.triangles.size())), layers(std::max(1.0, layers_each))
+    {
+        double const shading = view(world).textures.textures.empty() ? 1 : 3;
+        direct = 0.15e-6 * shading;
+        bounce = 0.13e-6 * shading;
+    }
+    double axis(int texels) const { return 2e-9 * triangles + 2e-8 * layers * texels * texels; }
+    double map(int texels) const { return 5e-9 * triangles + 5e-8 * layers * texels * texels; }
+};
+
 /// Where the first pass would not end within the budget: the primary surfaces and direct light of all pixels, and
 /// indirect light for as many as there is time for.
-int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, double axis_s, double map_s)
+int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, Costs const& costs)
 {
-    constexpr double kDirect = 0.15e-6, kBounce = 0.13e-6; // s per pixel on one core
     if (!(asked.budget_s > 0) || asked.bounces == 0) return 1;
     double const pixels = double(asked.width) * asked.height, bounces = std::min(asked.bounces, 3);
-    double const fixed = bounces * s.fresh_axes * axis_s + s.lamps * map_s + pixels * kDirect;
+    double const fixed = bounces * s.fresh_axes * costs.axis(s.resolution) +
+                         s.lamps * costs.map(s.shadow_resolution) + pixels * costs.direct;
     for (int const n : {1, 2, 4})
-        if ((fixed + pixels * bounces * kBounce / (n * n)) / cores_of(asked) < asked.budget_s) return n;
+        if ((fixed + pixels * bounces * costs.bounce / (n * n)) / cores_of(asked) < asked.budget_s) return n;
     return 4;
 }
 
@@ -68,19 +84,28 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
     if (s.schedule == Schedule::automatic)
         s.schedule = sky || !s.directions.empty() ? Schedule::stored : Schedule::streamed;
     if (s.directions.empty()) s.directions = "icosahedron:320";
-    constexpr double kCluttered = 3; // layers
-    if (s.resolution == 0) s.resolution = layers_per_texel(world, soup) < kCluttered ? 128 : 256;
-    constexpr double kPath = 0.5e-6; // s on one core, all bounces
-    // What a pass builds should cost a share of what its paths cost, or be shared by too few of them.
-    double const paths = double(asked.width) * asked.height, triangles = double(world.triangles.size());
-    auto const worth = [&](double seconds_each, int least, int most) {
-        constexpr double kShare = 0.5;
-        return std::clamp(int(kShare * kPath * paths / seconds_each), least, most);
+    double const layers = layers_per_texel(world, soup), pixels = double(asked.width) * asked.height;
+    Costs const costs(world, layers);
+    // What a pass builds should cost a share of what its paths cost, or be shared by too few of them; and of the
+    // budget.
+    constexpr double kPath = 0.5e-6, kShare = 0.5, kShareOfBudget = 0.2;
+    double const budget = asked.budget_s > 0 ? asked.budget_s * cores_of(asked) : double(kInf);
+    double const worth = std::min(kShare * kPath * pixels, kShareOfBudget * budget);
+    // Few passes need more axes and lamps each: what they lack shows in the whole picture alike. Rather fewer
+    // texels.
+    bool const few_passes = budget < 8 * kPath * pixels;
+    int const enough = few_passes ? 8 : 4;
+    constexpr int kLeast = 64; // texels
+    auto const texels_for = [&](int texels, auto const& cost) {
+        while (few_passes && texels > kLeast && enough * cost(texels) > worth) texels /= 2;
+        return texels;
     };
-    // Few passes need more axes and lamps each: what they lack shows in the whole picture alike.
-    bool const few_passes = asked.budget_s > 0 && asked.budget_s * cores_of(asked) < 8 * kPath * paths;
-    double const axis = 2e-9 * triangles + 2e-8 * double(s.resolution) * s.resolution;
-    if (s.axes == 0) s.axes = s.schedule == Schedule::temporal ? 16 : worth(axis, 2, few_passes ? 8 : 4);
+    auto const axis = [&](int texels) { return costs.axis(texels); };
+    auto const map = [&](int texels) { return costs.map(texels); };
+    constexpr double kCluttered = 3; // layers
+    if (s.resolution == 0) s.resolution = texels_for(layers < kCluttered ? 128 : 256, axis);
+    if (s.axes == 0)
+        s.axes = s.schedule == Schedule::temporal ? 16 : std::clamp(int(worth / axis(s.resolution)), 2, enough);
     if (s.axes > int(FewAxes::kMost))
         throw InputError(fmt::format("{} axes in a pass", s.axes),
                          fmt::format("there is room for {}", FewAxes::kMost), "use --schedule stored for more");
@@ -88,11 +113,10 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
     if (s.fresh_axes == 0) s.fresh_axes = std::max(1, s.axes / 8);
     s.fresh_axes = std::min(s.fresh_axes, s.axes);
     bool const from_points = world.emitters.empty() && world.environment_select.empty();
-    if (s.shadow_resolution == 0) s.shadow_resolution = from_points ? 1024 : sky ? 512 : 256;
-    double const map = 5e-9 * triangles + 1e-8 * double(s.shadow_resolution) * s.shadow_resolution;
-    if (s.lamps == 0) s.lamps = from_points || sky ? 16 : worth(map, 1, few_passes ? 8 : 4);
-    if (s.exact.queries) s.cone = 0; // an exact ray starts where it is
-    if (s.interleave == 0) s.interleave = choose_interleave(asked, s, axis, map);
+    if (s.shadow_resolution == 0) s.shadow_resolution = from_points ? 1024 : sky ? 512 : texels_for(256, map);
+    if (s.lamps == 0)
+        s.lamps = from_points || sky ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), 1, enough);
+    if (s.interleave == 0) s.interleave = choose_interleave(asked, s, costs);
     return s;
 }
 

@@ -3,6 +3,7 @@
 #include "gi/scene/shading_point.h"
 #include "gi/scene/warp.h"
 #include "gi/slhb/narrow_lobes.h"
+#include "gi/slhb/path_random.h"
 #include "gi/transport/sampling.h"
 
 #include <algorithm>
@@ -72,9 +73,7 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, ShadingPoint const
         double u = double(s.random.sample(s.dimension(lamp)));
         k = pass.lamps.chances().sample(u);
     } else {
-        // Interleaved: neighbours take different lamps, and each pixel all of them in turn.
-        std::uint32_t const pixel = s.random.seed;
-        k = (pixel + pass.index + std::uint32_t(s.vertex)) % lamps.size();
+        k = one_of(lamps.size(), s.random.sample(s.dimension(lamp)));
     }
     Lamp const& l = lamps[k];
     LightSample const light = sample_light(world_, l.choice, at.position, l.u);
@@ -312,12 +311,14 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
     thread_local std::vector<Unshadowed> direct;
     states.resize(starts.size());
     vertices.resize(starts.size());
+    std::uint32_t const key = std::uint32_t(seed_) ^ std::uint32_t(seed_ >> 32);
     for (std::size_t k = 0; k < starts.size(); ++k) {
         PathStart const& start = starts[k];
         State s;
         samples[k] = {};
         s.sample = &samples[k];
-        s.random = {hash_words(std::uint32_t(seed_) ^ std::uint32_t(seed_ >> 32), start.stream), pass.index};
+        s.random = start.on_layer ? RqmcStream(hash_words(key, start.stream), pass.index)
+                                  : pixel_stream(key, start.stream, std::uint32_t(width_), pass.index);
         s.triangle = start.triangle;
         s.pixel = start.stream;
         s.direction = start.ray.direction;
@@ -368,7 +369,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
             if (v.exact)
                 rays.push_back(
                     {.ray = v.ray,
-                     .seed = hash_words(states[v.path].random.seed + std::uint32_t(states[v.path].vertex),
+                     .seed = hash_words(states[v.path].random.own_seed() + std::uint32_t(states[v.path].vertex),
                                         pass.index)});
         if (rays.size() < active) ask_axes(pass, now);
         ray_hits.resize(rays.size());

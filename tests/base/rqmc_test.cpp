@@ -16,6 +16,36 @@ TEST(Rqmc, EveryDimensionIsStratified)
     }
 }
 
+TEST(Rqmc, PlacesOfOneSeedTakeDifferentStrata)
+{
+    for (std::uint32_t dimension = 0; dimension < 50; ++dimension) {
+        RqmcStream s{79, 0};
+        for (s.index = 0; s.index < 40; ++s.index) { // over the places of one index
+            std::set<int> strata;
+            for (s.place = 0; s.place < 16; ++s.place) strata.insert(int(s.sample(dimension) * 16));
+            EXPECT_EQ(strata.size(), 16u) << dimension;
+        }
+        for (s.place = 0; s.place < 16; ++s.place) { // and over the indices of one place
+            std::set<int> strata;
+            for (s.index = 64; s.index < 128; ++s.index) strata.insert(int(s.sample(dimension) * 64));
+            EXPECT_EQ(strata.size(), 64u) << dimension;
+        }
+    }
+}
+
+TEST(Rqmc, PlacesPairDimensionsInManyWays)
+{
+    // Over the places of many seeds the strata of two dimensions are independent.
+    double product = 0;
+    constexpr std::uint32_t kSeeds = 4096;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+        RqmcStream s{seed, 0};
+        for (s.place = 0; s.place < 16; ++s.place)
+            product += (double(s.sample(3)) - 0.5) * (double(s.sample(8)) - 0.5);
+    }
+    EXPECT_NEAR(12 * product / (16 * kSeeds), 0, 4 / std::sqrt(16.0 * kSeeds)); // correlation
+}
+
 TEST(Rqmc, TogetherMeansInTwoDimensionsToo)
 {
     RqmcStream s{78, 0};
