@@ -110,7 +110,10 @@ void add_render(CLI::App& app, int& exit_code)
     auto const o = std::make_shared<RenderOptions>();
     CLI::App* const c = app.add_subcommand("render", "Render a scene to a picture with its error.");
     declare_options(*c, *o);
-    c->callback([o, &exit_code] { exit_code = run(*o); });
+    c->callback([o, c, &exit_code] {
+        check_slhb(*c, *o);
+        exit_code = run(*o);
+    });
 }
 
 } // namespace viewer

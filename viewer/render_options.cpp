@@ -122,9 +122,11 @@ void declare_denoise(CLI::App& c, RenderOptions& o)
         ->capture_default_str();
 }
 
+constexpr char const* kSlhbGroup = "Method slhb";
+
 void slhb_number(CLI::App& c, char const* name, int& value, int low, int high, char const* meaning)
 {
-    c.add_option(name, value, meaning)->check(CLI::Range(low, high))->group("Method slhb");
+    c.add_option(name, value, meaning)->check(CLI::Range(low, high))->group(kSlhbGroup);
 }
 
 void declare_slhb_quality(CLI::App& c, RenderOptions& o)
@@ -139,11 +141,33 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
     slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "kept per texel, others are counted; 0 = all");
     c.add_option("--cone", s.cone, "texels, radius of the cone approximation")
         ->check(in_range(0, 64))
-        ->group("Method slhb");
+        ->group(kSlhbGroup);
     c.add_flag("--packed", s.packed, "layers of 32 bits instead of 64, for up to 524288 triangles")
-        ->group("Method slhb");
+        ->group(kSlhbGroup);
     c.add_flag("--gather", s.gather, "first bounce along all axes in turn instead of by chance")
-        ->group("Method slhb");
+        ->group(kSlhbGroup);
+}
+
+void check_slhb(CLI::App const& command, RenderOptions const& o)
+{
+    for (CLI::Option const* const option : command.get_options())
+        if (option->get_group() == kSlhbGroup && option->count() > 0 && o.method != "slhb")
+            throw gi::InputError(option->get_name() + " with --method " + o.method, "it is about method slhb",
+                                 "add --method slhb, or leave it out");
+    auto const given = [&](char const* name) { return command.get_option(name)->count() > 0; };
+    auto const refuse = [&](char const* schedule, char const* name, char const* why) {
+        if (o.schedule == schedule && given(name))
+            throw gi::InputError(std::string(name) + " with --schedule " + schedule, why, "leave one of them out");
+    };
+    refuse("stored", "--axes", "all axes of --directions are used");
+    refuse("stored", "--fresh-axes", "axes stay as they are");
+    refuse("streamed", "--fresh-axes", "all axes of a pass are new");
+    refuse("streamed", "--directions", "axes are drawn from all directions");
+    refuse("temporal", "--directions", "axes are drawn from all directions");
+    if (o.schedule == "auto" && given("--directions") && (given("--axes") || given("--fresh-axes")))
+        throw gi::InputError("--directions with --axes or --fresh-axes",
+                             "a set of directions is stored, and axes are drawn by the other schedules",
+                             "leave one of them out");
 }
 
 void declare_slhb(CLI::App& c, RenderOptions& o)
@@ -152,15 +176,15 @@ void declare_slhb(CLI::App& c, RenderOptions& o)
                  "cpu; or cuda: all by kernels, paths end at mirrors, glass and narrow lobes, which is counted")
         ->check(CLI::IsMember({"cpu", "cuda"}))
         ->capture_default_str()
-        ->group("Method slhb");
+        ->group(kSlhbGroup);
     c.add_option("--schedule", o.schedule,
                  "stored: one set of axes; streamed: new ones in every pass; temporal: some new; auto: "
                  "streamed,\nstored under a sky")
         ->check(CLI::IsMember({"auto", "stored", "streamed", "temporal"}))
         ->capture_default_str()
-        ->group("Method slhb");
+        ->group(kSlhbGroup);
     c.add_option("--directions", o.slhb.directions, "FAMILY:COUNT of the stored set (default icosahedron:320)")
-        ->group("Method slhb");
+        ->group(kSlhbGroup);
     slhb_number(c, "--hit-buffer", o.slhb.resolution, 2, 8192,
                 "texels of a hit buffer on a side (default: by the plan)");
     declare_slhb_quality(c, o);

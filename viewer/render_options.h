@@ -32,6 +32,8 @@ struct RenderOptions {
 /// Those of the camera, the sky and the moment, for every command that renders.
 void declare_view_options(CLI::App& command, RenderOptions& options);
 void declare_denoise(CLI::App& command, RenderOptions& options);
+/// Throws InputError where options of method slhb are given that the method or the schedule does not read.
+void check_slhb(CLI::App const& command, RenderOptions const& options);
 /// All of method slhb; those that decide quality but not axes and buffers.
 void declare_slhb(CLI::App& command, RenderOptions& options);
 void declare_slhb_quality(CLI::App& command, RenderOptions& options);

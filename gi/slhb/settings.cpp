@@ -82,7 +82,10 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
     // Light that comes through few openings is found by few axes: a pass needs many at once.
     bool const sky = !world.environment_select.empty();
     if (s.schedule == Schedule::automatic)
-        s.schedule = sky || !s.directions.empty() ? Schedule::stored : Schedule::streamed;
+        s.schedule = !s.directions.empty()         ? Schedule::stored
+                     : s.fresh_axes > 0            ? Schedule::temporal
+                     : sky && asked.slhb.axes == 0 ? Schedule::stored
+                                                   : Schedule::streamed;
     if (s.directions.empty()) s.directions = "icosahedron:320";
     double const layers = layers_per_texel(world, soup), pixels = double(asked.width) * asked.height;
     Costs const costs(world, layers);
