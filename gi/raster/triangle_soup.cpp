@@ -1,7 +1,5 @@
 #include "gi/raster/triangle_soup.h"
 
-#include "gi/base/huge_pages.h"
-
 #include <algorithm>
 #include <tbb/parallel_for.h>
 
@@ -13,7 +11,7 @@ TriangleSoup make_soup(World const& world)
     soup.count = world.triangles.size();
     std::size_t const padded =
         (soup.count + TriangleSoup::kPadding - 1) / TriangleSoup::kPadding * TriangleSoup::kPadding;
-    for (auto& values : soup.corner) resize_on_huge_pages(values, padded);
+    for (auto& values : soup.corner) values.resize(padded);
     soup.chunks.resize((soup.count + TriangleSoup::kChunk - 1) / TriangleSoup::kChunk);
     tbb::parallel_for(std::size_t(0), soup.chunks.size(), [&](std::size_t chunk) {
         std::size_t const first = chunk * TriangleSoup::kChunk;

@@ -18,6 +18,15 @@ vec3 half_sphere(vec2 u)
     return {r * std::cos(2 * kPi * u.y), r * std::sin(2 * kPi * u.y), z};
 }
 
+/// Uniform over all rotations (Shoemake 1992).
+dquat random_rotation(std::uint64_t seed)
+{
+    Pcg32 rng(seed, 0x0707a7);
+    double const u = rng.uniform(), a = 2 * glm::pi<double>() * rng.uniform(),
+                 b = 2 * glm::pi<double>() * rng.uniform(), low = std::sqrt(1 - u), high = std::sqrt(u);
+    return {high * std::cos(b), low * std::sin(a), low * std::cos(a), high * std::sin(b)};
+}
+
 } // namespace
 
 void AxisSet::build(std::vector<NewAxis> const& axes)
@@ -52,10 +61,13 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
 
 void AxisSet::store(DirectionSet const& directions)
 {
-    tables_ = make_cosine_tables(directions, kNormalBins);
-    buffers_.resize(directions.axes.size());
+    DirectionSet turned = directions;
+    dquat const rotation = random_rotation(source_.seed);
+    for (dvec3& a : turned.axes) a = glm::normalize(rotation * a);
+    tables_ = make_cosine_tables(turned, kNormalBins);
+    buffers_.resize(turned.axes.size());
     std::vector<NewAxis> axes;
-    for (dvec3 const a : directions.axes) axes.push_back({axes.size(), vec3(a), 0});
+    for (dvec3 const a : turned.axes) axes.push_back({axes.size(), vec3(a), 0});
     build(axes);
     buffers_.clear();
     buffers_.shrink_to_fit();

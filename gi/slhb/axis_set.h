@@ -71,7 +71,7 @@ public:
 
     explicit AxisSet(Source const& source) : source_(source) {}
 
-    /// All axes of the set, once.
+    /// All axes of the set, once, turned as the seed says: so its error has no preferred direction and mean zero.
     void store(DirectionSet const& directions);
     /// Bounces that have axes of their own. Axes of one low-discrepancy sequence must not be paired along a path:
     /// they avoid each other, which is a bias that does not go away. Bounce b shares its axes with b + kSequences.
