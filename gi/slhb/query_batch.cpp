@@ -302,14 +302,17 @@ struct ManyGrids {
 
     ManyGrids(AxisPool const& p, std::size_t, QueryBatch const& b) : pool(p), axes(b.axis.data()) {}
     GridLanes operator()(std::size_t i) const { return own_grids(pool, axes + i); }
+    RasterGrid const& of(std::size_t i) const { return pool.grids[axes[i]]; }
 };
 
 struct OneGrid {
     static constexpr bool kMany = false;
     GridLanes grid;
+    RasterGrid const& plain;
 
-    OneGrid(AxisPool const& p, std::size_t a, QueryBatch const&) : grid(same_grid(p, a)) {}
+    OneGrid(AxisPool const& p, std::size_t a, QueryBatch const&) : grid(same_grid(p, a)), plain(p.grids[a]) {}
     GridLanes const& operator()(std::size_t) const { return grid; }
+    RasterGrid const& of(std::size_t) const { return plain; }
 };
 
 /// Asks all queries of the batch at one attempt; indices of those that have no good answer yet go to `unsure`.
@@ -348,7 +351,8 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
             unsure.push_back(std::uint32_t(i) + std::uint32_t(std::countr_zero(bits)));
         if (column + lanes < Columns::kBlock && i + lanes < n) continue;
         for (std::uint32_t const q : doubtful) // their surfaces have come meanwhile
-            if (!query_detail::can_be_hit(surfaces[b.hit[q] & kPrimitiveMask], b.hit[q], b.origin(q)))
+            if (!query_detail::can_be_hit(surfaces[b.hit[q] & kPrimitiveMask], b.hit[q], b.origin(q),
+                                          grids.of(q)))
                 unsure.push_back(q);
         doubtful.clear();
     }
