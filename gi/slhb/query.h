@@ -15,7 +15,8 @@
 // solid: floors go on under columns and walls behind ledges, and a centre that lies there, where no origin does,
 // sees only what is dark. If the column does not speak, the other three of the four texel centres around the origin
 // are asked (across an edge, or beyond a wall, the centre sees another world). If none will do, the answer of the
-// nearest stands; without an own layer that is the first face towards the walk from the origin's depth on.
+// first with an own layer stands; if none has one, the first face towards the walk from the origin's depth on, in
+// the nearest column.
 
 #include "gi/slhb/hit_buffer.h"
 
@@ -182,13 +183,18 @@ GI_FN inline LayerHit nearest_layer(AxisView const& axis, View<Surface const> su
     bool const nearer_in_x = std::abs(x - float(i[0]) - 0.5f) > std::abs(y - float(j[0]) - 0.5f);
 
     Column first;
+    std::uint32_t first_i = i[0], first_j = j[0];
     for (int attempt = 0; attempt < 4; ++attempt) {
         // The nearest centre; then its neighbour across the nearer border, the other neighbour, and the diagonal.
         int const to_x = attempt == 3 || (attempt == 1) == nearer_in_x ? int(attempt > 0) : 0;
         int const to_y = attempt == 3 || (attempt == 2) == nearer_in_x ? int(attempt > 0) : 0;
         std::uint32_t const ti = i[to_x], tj = j[to_y];
         Column const c = look_into(axis, std::size_t(tj) * grid.width + ti, o);
-        if (attempt == 0) first = c;
+        if (attempt == 0 || (!first.own && c.own)) {
+            first = c;
+            first_i = ti;
+            first_j = tj;
+        }
         if (!c.own) continue;
         if (c.hit == kNoLayerHit) return {};
         std::uint32_t const triangle = c.hit & kPrimitiveMask;
@@ -197,7 +203,7 @@ GI_FN inline LayerHit nearest_layer(AxisView const& axis, View<Surface const> su
         return {triangle, grid.point(ti, tj, c.depth), (c.hit & kAlongAxis) != 0};
     }
     if (first.hit == kNoLayerHit) return {};
-    return {first.hit & kPrimitiveMask, grid.point(i[0], j[0], first.depth), (first.hit & kAlongAxis) != 0};
+    return {first.hit & kPrimitiveMask, grid.point(first_i, first_j, first.depth), (first.hit & kAlongAxis) != 0};
 }
 
 } // namespace gi

@@ -315,7 +315,10 @@ struct OneGrid {
     RasterGrid const& of(std::size_t) const { return plain; }
 };
 
-/// Asks all queries of the batch at one attempt; indices of those that have no good answer yet go to `unsure`.
+/// Of a query that has no good answer yet: twice its index, and 1 if its column has an own layer.
+constexpr std::uint32_t kHasOwn = 1;
+
+/// Asks all queries of the batch at one attempt; those that have no good answer yet go to `unsure`.
 template <class Grids>
 void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces, int attempt, QueryBatch& b,
          std::vector<std::uint32_t>& unsure)
@@ -348,12 +351,12 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
             doubtful.push_back(q);
         }
         for (std::uint32_t bits = answer.unsure; bits != 0; bits &= bits - 1)
-            unsure.push_back(std::uint32_t(i) + std::uint32_t(std::countr_zero(bits)));
+            unsure.push_back(2 * (std::uint32_t(i) + std::uint32_t(std::countr_zero(bits))));
         if (column + lanes < Columns::kBlock && i + lanes < n) continue;
         for (std::uint32_t const q : doubtful) // their surfaces have come meanwhile
             if (!query_detail::can_be_hit(surfaces[b.hit[q] & kPrimitiveMask], b.hit[q], b.origin(q),
                                           grids.of(q)))
-                unsure.push_back(q);
+                unsure.push_back(2 * q + kHasOwn);
         doubtful.clear();
     }
     std::ranges::sort(unsure);
@@ -368,16 +371,17 @@ void answer_all(AxisPool const& pool, std::size_t a, View<Surface const> surface
     ask(pool, Grids(pool, a, b), surfaces, 0, b, waiting);
     for (int attempt = 1; attempt < 4 && !waiting.empty(); ++attempt) {
         again.resize(waiting.size());
-        for (std::size_t k = 0; k < waiting.size(); ++k) copy_query(b, waiting[k], again, k);
+        for (std::size_t k = 0; k < waiting.size(); ++k) copy_query(b, waiting[k] / 2, again, k);
         ask(pool, Grids(pool, a, again), surfaces, attempt, again, unsure);
         std::size_t left = 0, next = 0;
         for (std::uint32_t k = 0; k < waiting.size(); ++k) {
-            if (next < unsure.size() && unsure[next] == k) {
-                ++next;
-                waiting[left++] = waiting[k];
-                continue;
+            std::uint32_t const i = waiting[k] / 2;
+            if (next < unsure.size() && unsure[next] / 2 == k) {
+                // The first answer of a column with an own layer stands, if there is no good one.
+                bool const stands = (waiting[k] & kHasOwn) != 0 || (unsure[next] & kHasOwn) == 0;
+                waiting[left++] = waiting[k] | (unsure[next++] & kHasOwn);
+                if (stands) continue;
             }
-            std::uint32_t const i = waiting[k];
             b.hit[i] = again.hit[k];
             b.hit_layer[i] = again.hit_layer[k];
             b.hit_x[i] = again.hit_x[k];
