@@ -9,11 +9,14 @@
 // Which layer is the origin's own: that of its triangle; else, as the centre may lie beside it, the nearest one of
 // the same facing within `margin`, which is how far the origin's own slope can carry a surface up over a texel. So
 // thin walls, contacts and coplanar twins need no epsilon that fits all: layers are in their true order. A column
-// speaks for the origin if it has the own layer, if what it hits is a front or double-sided, and if the origin is
-// on the right side of the plane that is hit; the latter is looked at only near by, where it can fail. If not, the
-// other three of the four texel centres around the origin are asked (across an edge, or beyond a wall, the centre
-// sees another world). If none will do, the answer of the nearest stands; without an own layer that is the first
-// face towards the walk from the origin's depth on.
+// speaks for the origin if it has the own layer and if what it hits can be hit from the origin: the origin is on the
+// right side of its plane (looked at only near by, where it can fail, and for backs), and if it is a back, the walk
+// from the origin itself passes its triangle within kBackReach texels. For a back is mostly the inside of something
+// solid: floors go on under columns and walls behind ledges, and a centre that lies there, where no origin does,
+// sees only what is dark. If the column does not speak, the other three of the four texel centres around the origin
+// are asked (across an edge, or beyond a wall, the centre sees another world). If none will do, the answer of the
+// first with an own layer stands; if none has one, the first face towards the walk from the origin's depth on, in
+// the nearest column.
 
 #include "gi/slhb/hit_buffer.h"
 
@@ -46,6 +49,10 @@ struct LayerHit {
 
 /// How far beyond the depth of the origin, m, its own surface may lie under a texel centre.
 GI_FN inline float own_margin(RasterGrid const& grid, float slope) { return grid.texel * (1 + slope); }
+
+/// By how many texels a walk may pass a triangle that its column meets from behind. Measured: about as many true
+/// backs are missed as false ones are met.
+inline constexpr float kBackReach = 0.25f;
 
 /// Hits nearer than this, m, are checked against the origin's side.
 GI_FN inline float near_gap(RasterGrid const& grid) { return 4 * grid.texel; }
@@ -126,16 +133,34 @@ GI_FN inline bool is_back(std::uint32_t primitive, WalkOrigin const& o)
     return ((primitive & kAlongAxis) != 0) == o.up;
 }
 
-/// Whether a walk from the origin's true position can meet the plane of that triangle; the back of a surface that
-/// is not double-sided is taken for the inside of something solid, in which the texel's centre lies and the origin
-/// does not.
-GI_FN inline bool can_be_hit(Surface const& s, std::uint32_t primitive, WalkOrigin const& o)
+/// Whether that triangle, seen along the axis, covers the position or lies within `reach` of it, m.
+GI_FN inline bool covers(Surface const& s, vec3 position, RasterGrid const& grid, float reach)
 {
-    if (is_back(primitive, o) && !s.is(Surface::kDoubleSided)) return false;
+    auto const seen = [&](vec3 v) { return vec2{glm::dot(v, grid.right), glm::dot(v, grid.up)}; };
+    vec2 const first = seen(s.corner - position), edge1 = seen(s.edge1), edge2 = seen(s.edge2);
+    vec2 const corner[3] = {first, first + edge1, first + edge2};
+    float const winding = edge1.x * edge2.y < edge1.y * edge2.x ? -1.0f : 1.0f;
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+        vec2 const a = corner[k], edge = corner[(k + 1) % 3] - a; // the position is at 0
+        float const squared = glm::dot(edge, edge);
+        float const along = squared > 0 ? glm::clamp(-glm::dot(a, edge) / squared, 0.0f, 1.0f) : 0.0f;
+        vec2 const nearest = a + along * edge;
+        if (glm::dot(nearest, nearest) <= reach * reach) return true;
+        inside = inside && winding * (edge.y * a.x - edge.x * a.y) >= 0;
+    }
+    return inside;
+}
+
+/// Whether a walk from the origin's true position can meet that triangle: the plane if it is a front; if it is a
+/// back, the triangle too, nearly.
+GI_FN inline bool can_be_hit(Surface const& s, std::uint32_t primitive, WalkOrigin const& o, RasterGrid const& grid)
+{
     vec3 const normal = glm::cross(s.edge1, s.edge2);
     float const side = glm::dot(normal, o.position - s.corner);
     float const far_enough = s.clearance * glm::length(normal);
-    return is_back(primitive, o) ? side < -far_enough : side > far_enough;
+    if (!is_back(primitive, o)) return side > far_enough;
+    return side < -far_enough && covers(s, o.position, grid, kBackReach * grid.texel);
 }
 
 } // namespace query_detail
@@ -158,22 +183,27 @@ GI_FN inline LayerHit nearest_layer(AxisView const& axis, View<Surface const> su
     bool const nearer_in_x = std::abs(x - float(i[0]) - 0.5f) > std::abs(y - float(j[0]) - 0.5f);
 
     Column first;
+    std::uint32_t first_i = i[0], first_j = j[0];
     for (int attempt = 0; attempt < 4; ++attempt) {
         // The nearest centre; then its neighbour across the nearer border, the other neighbour, and the diagonal.
         int const to_x = attempt == 3 || (attempt == 1) == nearer_in_x ? int(attempt > 0) : 0;
         int const to_y = attempt == 3 || (attempt == 2) == nearer_in_x ? int(attempt > 0) : 0;
         std::uint32_t const ti = i[to_x], tj = j[to_y];
         Column const c = look_into(axis, std::size_t(tj) * grid.width + ti, o);
-        if (attempt == 0) first = c;
+        if (attempt == 0 || (!first.own && c.own)) {
+            first = c;
+            first_i = ti;
+            first_j = tj;
+        }
         if (!c.own) continue;
         if (c.hit == kNoLayerHit) return {};
         std::uint32_t const triangle = c.hit & kPrimitiveMask;
         bool const doubtful = c.gap < near_gap(grid) || is_back(c.hit, o);
-        if (doubtful && !can_be_hit(surfaces[triangle], c.hit, o)) continue;
+        if (doubtful && !can_be_hit(surfaces[triangle], c.hit, o, grid)) continue;
         return {triangle, grid.point(ti, tj, c.depth), (c.hit & kAlongAxis) != 0};
     }
     if (first.hit == kNoLayerHit) return {};
-    return {first.hit & kPrimitiveMask, grid.point(i[0], j[0], first.depth), (first.hit & kAlongAxis) != 0};
+    return {first.hit & kPrimitiveMask, grid.point(first_i, first_j, first.depth), (first.hit & kAlongAxis) != 0};
 }
 
 } // namespace gi

@@ -366,6 +366,7 @@ struct ManyGrids {
 
     ManyGrids(AxisPool const& p, std::size_t, QueryBatch const& b) : pool(p), axes(b.axis.data()) {}
     GridLanes operator()(std::size_t i) const { return own_grids(pool, axes + i); }
+    RasterGrid const& of(std::size_t i) const { return pool.grids[axes[i]]; }
 };
 
 /// @param kBufferIsCold  few queries over many texels
@@ -373,9 +374,11 @@ template <bool kBufferIsCold>
 struct OneGrid {
     static constexpr bool kMany = false, kCold = kBufferIsCold;
     GridLanes grid;
+    RasterGrid const& plain;
 
-    OneGrid(AxisPool const& p, std::size_t a, QueryBatch const&) : grid(same_grid(p, a)) {}
+    OneGrid(AxisPool const& p, std::size_t a, QueryBatch const&) : grid(same_grid(p, a)), plain(p.grids[a]) {}
     GridLanes const& operator()(std::size_t) const { return grid; }
+    RasterGrid const& of(std::size_t) const { return plain; }
 };
 
 /// The batch is read and written as ten or eleven streams, which is more than the hardware foresees.
@@ -406,7 +409,7 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
     auto const queries_of = [&](std::size_t pair) { return std::min(two, n - pair * two); };
     auto const judge = [&](std::vector<std::uint32_t>& queries) {
         for (std::uint32_t const q : queries) // their surfaces have come meanwhile
-            if (!query_detail::can_be_hit(surfaces[b.hit[q] & kPrimitiveMask], b.hit[q], b.origin(q)))
+            if (!query_detail::can_be_hit(surfaces[b.hit[q] & kPrimitiveMask], b.hit[q], b.origin(q), grids.of(q)))
                 unsure.push_back(q);
         queries.clear();
     };
@@ -502,12 +505,13 @@ void answer_all(AxisPool const& pool, std::size_t a, View<Surface const> surface
         ask(pool, Grids(pool, a, again), surfaces, attempt, again, unsure);
         std::size_t left = 0, next = 0;
         for (std::uint32_t k = 0; k < waiting.size(); ++k) {
+            std::uint32_t const i = waiting[k];
             if (next < unsure.size() && unsure[next] == k) {
                 ++next;
-                waiting[left++] = waiting[k];
-                continue;
+                waiting[left++] = i;
+                // The first answer of a column with an own layer stands, if there is no good one.
+                if (b.hit_layer[i] != kNoLayerHit || again.hit_layer[k] == kNoLayerHit) continue;
             }
-            std::uint32_t const i = waiting[k];
             b.hit[i] = again.hit[k];
             b.hit_layer[i] = again.hit_layer[k];
             b.hit_x[i] = again.hit_x[k];

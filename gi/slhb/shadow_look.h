@@ -80,6 +80,8 @@ GI_FN bool lit(Map const& map, ShadowPlace const& place, View<Surface const> sur
                std::uint32_t triangle)
 {
     constexpr float kRounding = 1e-5f, kNear = 4; // of the depth; texels
+    // What one surface may stand above its own plane within a texel, where it is made of smaller triangles.
+    constexpr float kBumps = 0.1f, kAlike = 0.8f; // texels; cosine between their normals
     if (place.texel == nullptr || place.texel->primitive == triangle || place.texel->primitive == kNoPrimitive)
         return true;
     float const stored = map.parallel ? -place.texel->key : 1 / place.texel->key;
@@ -91,7 +93,10 @@ GI_FN bool lit(Map const& map, ShadowPlace const& place, View<Surface const> sur
     float const here = glm::dot(normal, position - s.corner);
     float const lamp =
         map.parallel ? -glm::dot(normal, map.grid.axis) : glm::dot(normal, map.faces[0].eye - s.corner);
-    return (here < 0) == (lamp < 0) || std::abs(here) <= s.clearance * glm::length(normal);
+    if ((here < 0) == (lamp < 0) || std::abs(here) <= s.clearance * glm::length(normal)) return true;
+    if (gap > kBumps * place.side) return false;
+    vec3 const own = glm::cross(surfaces[triangle].edge1, surfaces[triangle].edge2);
+    return glm::dot(own, normal) > kAlike * glm::length(own) * glm::length(normal);
 }
 
 } // namespace shadow_detail
