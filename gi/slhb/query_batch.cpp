@@ -373,11 +373,13 @@ struct ManyGrids {
 template <bool kBufferIsCold>
 struct OneGrid {
     static constexpr bool kMany = false, kCold = kBufferIsCold;
-    GridLanes grid;
+    GridLanes pair[2];
     RasterGrid const& plain;
 
-    OneGrid(AxisPool const& p, std::size_t a, QueryBatch const&) : grid(same_grid(p, a)), plain(p.grids[a]) {}
-    GridLanes const& operator()(std::size_t) const { return grid; }
+    OneGrid(AxisPool const& p, std::size_t a, QueryBatch const&)
+        : pair{same_grid(p, a), same_grid(p, a)}, plain(p.grids[a])
+    {
+    }
     RasterGrid const& of(std::size_t) const { return plain; }
 };
 
@@ -406,6 +408,12 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
     doubted.clear();
     unsure.clear();
     auto const slot = [](std::size_t pair) { return pair % Columns::kPairs * 2; };
+    auto const grids_of = [&](std::size_t pair) -> GridLanes const* {
+        if constexpr (Grids::kMany)
+            return grids_ahead + slot(pair);
+        else
+            return grids.pair;
+    };
     auto const queries_of = [&](std::size_t pair) { return std::min(two, n - pair * two); };
     auto const judge = [&](std::vector<std::uint32_t>& queries) {
         for (std::uint32_t const q : queries) // their surfaces have come meanwhile
@@ -413,15 +421,14 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
                 unsure.push_back(q);
         queries.clear();
     };
-    constexpr std::size_t kAhead = Grids::kCold ? Columns::kAhead : 0, kStreamsAhead = 4;
+    constexpr std::size_t kAhead = Grids::kCold ? Columns::kAhead : 0, kStreamsAhead = 8;
     for (std::size_t step = 0; step < pairs + kAhead; ++step) {
         if (step < pairs) {
             for (std::size_t k = 0; k < 2; ++k) {
                 std::size_t const i = step * two + k * lanes, ahead = i + kStreamsAhead * two;
                 if (ahead < n) fetch_streams<Grids::kMany>(b, ahead);
-                GridLanes& g = grids_ahead[slot(step) + k];
-                g = grids(i);
-                find_columns(g, attempt, b, i, (slot(step) + k) * lanes, columns);
+                if constexpr (Grids::kMany) grids_ahead[slot(step) + k] = grids(i);
+                find_columns(grids_of(step)[k], attempt, b, i, (slot(step) + k) * lanes, columns);
             }
             if constexpr (Grids::kCold) fetch_offsets(pool, columns, slot(step) * lanes, queries_of(step));
         }
@@ -445,7 +452,7 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
         } else {
             find_ranges(pool, columns, slot(pair) * lanes, two);
         }
-        Answer const a = answer(pool, grids_ahead + slot(pair), b, first, columns, slot(pair) * lanes);
+        Answer const a = answer(pool, grids_of(pair), b, first, columns, slot(pair) * lanes);
         std::uint32_t const there =
             queries_of(pair) < 32 ? (1u << queries_of(pair)) - 1 : ~0u; // a pair has up to 32
         for (std::uint32_t bits = a.doubtful & there; bits != 0; bits &= bits - 1) {
