@@ -81,11 +81,20 @@ public:
     GI_FN float sample(std::uint32_t dimension) const
     {
         std::uint32_t const key = hash_words(seed, dimension);
-        std::uint32_t const word =
-            permute_upwards(shuffled(key) ^ shuffled_place(key), key * 0x2c1b3c6du + 0x297a2d39u);
+        std::uint32_t const at = shuffled(key) ^ shuffled_place(key), scramble = key * 0x2c1b3c6du + 0x297a2d39u;
+        // The sixteen share which stratum an index means; where in the stratum is each one's own.
+        std::uint32_t const stratum = permute_upwards(at, scramble) & 15,
+                            within = permute_upwards(at, scramble + 0x9e3779b9u * place) & ~15u;
+        std::uint32_t const word = stratum | within;
         return float(reverse_bits(word) >> 8) * 0x1p-24f;
     }
     GI_FN vec2 sample2(std::uint32_t dimension) const { return {sample(dimension), sample(dimension + 1)}; }
+    /// For taking things in turn: one more with every index, and different ones at the sixteen places.
+    GI_FN std::uint32_t turn(std::uint32_t dimension) const
+    {
+        std::uint32_t const key = hash_words(seed, dimension);
+        return (key >> 8) + shuffled_place(key) + index;
+    }
     /// Two numbers without any order, for decisions that matter little.
     GI_FN vec2 noise2(std::uint32_t dimension) const
     {

@@ -36,7 +36,7 @@ GI_FN inline vec3 TracePaths::direct(State const& s, ShadingPoint const& at, vec
         double u = double(s.random.sample(s.dimension(lamp)));
         k = chances.sample(u);
     } else {
-        k = one_of(lamps.size(), s.random.sample(s.dimension(lamp)));
+        k = s.random.turn(s.dimension(lamp)) % lamps.size();
     }
     LampView const& l = lamps[k];
     LightSample const light = sample_light(world, l.choice, at.position, l.u);

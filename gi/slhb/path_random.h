@@ -16,11 +16,4 @@ GI_FN inline RqmcStream pixel_stream(std::uint32_t key, std::uint32_t id, std::u
     return stream;
 }
 
-/// One of `count` with equal chances. @param u in [0, 1)
-GI_FN inline std::size_t one_of(std::size_t count, float u)
-{
-    std::size_t const k = std::size_t(u * float(count));
-    return k < count ? k : count - 1;
-}
-
 } // namespace gi

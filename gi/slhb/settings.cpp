@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 #include "gi/slhb/axis_set.h"
+#include "gi/slhb/directions.h"
 #include "gi/slhb/hit_buffer.h"
 #include "gi/slhb/narrow_lobes.h"
 
@@ -99,14 +100,21 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
     bool const few_passes = budget < 8 * kPath * pixels;
     int const enough = few_passes ? 8 : 4;
     constexpr int kLeast = 64; // texels
-    auto const texels_for = [&](int texels, auto const& cost) {
-        while (few_passes && texels > kLeast && enough * cost(texels) > worth) texels /= 2;
+    auto const texels_for = [&](int texels, double count, double most_s, auto const& cost) {
+        while (texels > kLeast && count * cost(texels) > most_s) texels /= 2;
         return texels;
     };
     auto const axis = [&](int texels) { return costs.axis(texels); };
     auto const map = [&](int texels) { return costs.map(texels); };
+    double const unless_few = few_passes ? worth : double(kInf);
     constexpr double kCluttered = 3; // layers
-    if (s.resolution == 0) s.resolution = texels_for(layers < kCluttered ? 128 : 256, axis);
+    if (s.resolution == 0) {
+        int const wanted = layers < kCluttered ? 128 : 256;
+        s.resolution = s.schedule == Schedule::stored
+                           ? texels_for(wanted, double(make_directions(s.directions).axes.size()),
+                                        kShareOfBudget * budget, axis)
+                           : texels_for(wanted, enough, unless_few, axis);
+    }
     if (s.axes == 0)
         s.axes = s.schedule == Schedule::temporal ? 16 : std::clamp(int(worth / axis(s.resolution)), 2, enough);
     if (s.axes > int(FewAxes::kMost))
@@ -116,9 +124,11 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
     if (s.fresh_axes == 0) s.fresh_axes = std::max(1, s.axes / 8);
     s.fresh_axes = std::min(s.fresh_axes, s.axes);
     bool const from_points = world.emitters.empty() && world.environment_select.empty();
-    if (s.shadow_resolution == 0) s.shadow_resolution = from_points ? 1024 : sky ? 512 : texels_for(256, map);
+    int const most_lamps = sky ? 16 : enough;
+    if (s.shadow_resolution == 0)
+        s.shadow_resolution = from_points ? 1024 : texels_for(256, most_lamps, unless_few, map);
     if (s.lamps == 0)
-        s.lamps = from_points || sky ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), 1, enough);
+        s.lamps = from_points ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), sky ? 8 : 1, most_lamps);
     if (s.interleave == 0) s.interleave = choose_interleave(asked, s, costs);
     return s;
 }

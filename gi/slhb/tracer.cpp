@@ -73,7 +73,8 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, ShadingPoint const
         double u = double(s.random.sample(s.dimension(lamp)));
         k = pass.lamps.chances().sample(u);
     } else {
-        k = one_of(lamps.size(), s.random.sample(s.dimension(lamp)));
+        // Lamps of successive numbers are spread well, and those that a strided choice would find are not.
+        k = s.random.turn(s.dimension(lamp)) % lamps.size();
     }
     Lamp const& l = lamps[k];
     LightSample const light = sample_light(world_, l.choice, at.position, l.u);
