@@ -126,7 +126,9 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
     bool const from_points = world.emitters.empty() && world.environment_select.empty();
     int const most_lamps = sky ? 16 : enough;
     if (s.shadow_resolution == 0)
-        s.shadow_resolution = from_points ? 1024 : texels_for(256, most_lamps, unless_few, map);
+        s.shadow_resolution =
+            from_points ? 1024
+                        : texels_for(sky && budget == double(kInf) ? 512 : 256, most_lamps, unless_few, map);
     if (s.lamps == 0)
         s.lamps = from_points ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), sky ? 8 : 1, most_lamps);
     if (s.interleave == 0) s.interleave = choose_interleave(asked, s, costs);
