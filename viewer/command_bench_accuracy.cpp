@@ -78,7 +78,7 @@ std::vector<float> mean_picture(Lights const& lights, Part part)
     return sum;
 }
 
-/// relMSE that no number of paths takes away. Products of different seeds have no noise in the mean; so this may
+/// relMSE that no number of paths and seeds takes away. Products of different seeds have no noise in the mean; so this may
 /// be a little below 0.
 double systematic_relmse(Lights const& differences, std::vector<float> const& reference)
 {
@@ -309,8 +309,8 @@ difference of renders with the same seeds and lamps, the first two with the same
   of_shadow_maps  that less the same with exact rays to its lamps
   of_directions   stored: that less exact rays by the cosine, each path its own; streamed axes are uniform: 0
 The row "exact rays" is the last of these less the reference: it should be 0 within its error.
-systematic_relmse_indirect is the relMSE of L2 that no number of paths takes away (from products of different seeds,
-so noise may make it negative); relmse_indirect that of the mean of all seeds against the reference.)");
+systematic_relmse_indirect is the relMSE of L2 that no number of paths and seeds takes away (from products of
+different seeds, so noise may make it negative; seeds turn stored sets, whose own error it does not see); relmse_indirect that of the mean of all seeds against the reference.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

@@ -28,7 +28,7 @@ double layers_per_texel(World const& world, TriangleSoup const& soup)
     return covered > 0 ? double(b.layers.size()) / double(covered) : 0;
 }
 
-/// What things cost, s on one core (measured on a machine of 2024).
+/// What things cost, s on one core: rough, from the machine and scenes of docs/results.
 struct Costs {
     double triangles, layers; ///< layers: per texel
     double direct, bounce;    ///< per pixel
