@@ -23,12 +23,7 @@ Estimate indirect_over_seeds(RenderSettings s, int seeds, Render const& render)
 
 TEST(SlhbExactParts, WithoutLookUpsThereIsNoBias)
 {
-    Scene scene;
-    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, lambert(vec3{0.6f})), true);
-    add_box(scene, {-0.4f, -1, -0.4f}, {0.3f, 0, 0.2f}, add_material(scene, lambert(vec3{0.4f, 0.6f, 0.2f})),
-            false);
-    add_quad(scene, {-0.3f, 0.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{10})));
-    World const world = world_of(scene);
+    World const world = world_of(box_with_block_and_lamp());
     Camera const camera = look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70);
     constexpr int kSeeds = 8;
     RenderSettings s = small_settings(24, 128, 2);

@@ -37,4 +37,15 @@ inline SlhbRun render_with_slhb(World const& world, Camera const& camera, Render
     return run;
 }
 
+/// A closed grey box with a coloured block on its floor and a lamp under its ceiling.
+inline Scene box_with_block_and_lamp()
+{
+    Scene scene;
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, lambert(vec3{0.6f})), true);
+    add_box(scene, {-0.4f, -1, -0.4f}, {0.3f, 0, 0.2f}, add_material(scene, lambert(vec3{0.4f, 0.6f, 0.2f})),
+            false);
+    add_quad(scene, {-0.3f, 0.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{10})));
+    return scene;
+}
+
 } // namespace gi::test
