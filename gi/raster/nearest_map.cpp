@@ -1,5 +1,7 @@
 #include "gi/raster/nearest_map.h"
 
+#include <atomic>
+
 namespace gi {
 
 void clear(NearestMap& map, std::uint32_t width, std::uint32_t height)
@@ -12,10 +14,13 @@ void clear(NearestMap& map, std::uint32_t width, std::uint32_t height)
 void resolve(Fragments const& f, float key_sign, NearestMap& map)
 {
     for (std::size_t k = 0; k < f.count; ++k) {
-        NearestTexel& t = map.texels[f.texel[k]];
-        float const key = key_sign * f.depth[k];
-        std::uint32_t const primitive = f.primitive[k] & kPrimitiveMask;
-        if (key > t.key || (key == t.key && primitive < t.primitive)) t = {key, primitive};
+        std::atomic_ref<NearestTexel> const texel(map.texels[f.texel[k]]);
+        NearestTexel const now{key_sign * f.depth[k], f.primitive[k] & kPrimitiveMask};
+        NearestTexel there = texel.load(std::memory_order_relaxed);
+        auto const nearer = [&] {
+            return now.key > there.key || (now.key == there.key && now.primitive < there.primitive);
+        };
+        while (nearer() && !texel.compare_exchange_weak(there, now, std::memory_order_relaxed)) {}
     }
 }
 

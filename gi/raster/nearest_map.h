@@ -9,7 +9,7 @@ namespace gi {
 
 inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
 
-struct NearestTexel {
+struct alignas(8) NearestTexel {
     float key = -kInf; ///< larger is nearer: 1 / distance (perspective) or -depth (orthographic)
     std::uint32_t primitive = kNoPrimitive; ///< triangle of the world
 };
@@ -24,7 +24,8 @@ void rasterize(TriangleSoup const& soup, std::size_t first, std::size_t last, Pe
                Fragments& out);
 
 void clear(NearestMap& map, std::uint32_t width, std::uint32_t height);
-/// Keeps the nearer of what is there and each fragment. @param key_sign -1 where small depths are near
+/// Keeps the nearer of what is there and each fragment; of two as near, the triangle of smaller number. Threads may
+/// resolve into one map at once. @param key_sign -1 where small depths are near
 void resolve(Fragments const& fragments, float key_sign, NearestMap& map);
 
 } // namespace gi

@@ -30,18 +30,15 @@ void PrimaryMap::refresh(std::uint32_t pass)
 {
     at_ = place_in_pixel(filter_, seed_, pass);
     PerspectiveGrid const grid = camera_grid(camera_, width_, height_, at_, near_m_);
-    // Parts in a fixed order, whoever computes them: the picture does not depend on threads.
-    std::size_t const part =
-        std::max<std::size_t>(TriangleSoup::kChunk, (soup_.count / 16 + TriangleSoup::kChunk - 1) /
-                                                        TriangleSoup::kChunk * TriangleSoup::kChunk);
-    parts_.resize((soup_.count + part - 1) / part);
-    tbb::parallel_for(std::size_t(0), parts_.size(), [&](std::size_t k) {
-        parts_[k].count = 0;
-        rasterize(soup_, k * part, std::min(soup_.count, (k + 1) * part), grid, parts_[k]);
-        cut_outs_.remove(parts_[k], grid, std::uint32_t(mix_bits(seed_) + pass));
-    });
     clear(map_, std::uint32_t(width_), std::uint32_t(height_));
-    for (Fragments const& f : parts_) resolve(f, 1, map_);
+    constexpr std::size_t kPart = 32 * TriangleSoup::kChunk;
+    tbb::parallel_for(std::size_t(0), (soup_.count + kPart - 1) / kPart, [&](std::size_t k) {
+        thread_local Fragments fragments;
+        fragments.count = 0;
+        rasterize(soup_, k * kPart, std::min(soup_.count, (k + 1) * kPart), grid, fragments);
+        cut_outs_.remove(fragments, grid, std::uint32_t(mix_bits(seed_) + pass));
+        resolve(fragments, 1, map_);
+    });
 }
 
 void PrimaryMap::hits(std::size_t first, std::size_t last, std::vector<PathStart>& out) const

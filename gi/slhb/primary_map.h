@@ -32,7 +32,6 @@ private:
     float near_m_;
     vec2 at_{0.5f}; ///< position in the pixel
     NearestMap map_;
-    std::vector<Fragments> parts_;
 };
 
 } // namespace gi

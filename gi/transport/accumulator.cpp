@@ -5,7 +5,9 @@
 
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 namespace gi {
 
@@ -19,11 +21,16 @@ dvec3 Accumulator::variance_of_mean(PixelSums const& p) const
 
 double Accumulator::relative_mse() const
 {
-    double sum = 0;
-    for (PixelSums const& p : pixels) {
-        dvec3 const m = mean(p), v = variance_of_mean(p) / (m * m + 0.01);
-        sum += v.x + v.y + v.z;
-    }
+    if (paths < 2) return 0;
+    auto const sum_of = [&](tbb::blocked_range<std::size_t> const& range, double sum) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            dvec3 const m = mean(pixels[i]), v = variance_of_mean(pixels[i]) / (m * m + 0.01);
+            sum += v.x + v.y + v.z;
+        }
+        return sum;
+    };
+    double const sum = tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::size_t>(0, pixels.size(), 4096), 0.0, sum_of, std::plus<>());
     return sum / (3.0 * double(pixels.size()));
 }
 

@@ -2,6 +2,7 @@
 // Sums over the paths of every pixel, in double and in path order, so that neither threads nor passes nor an
 // interruption change the picture. A checkpoint stores them exactly.
 
+#include "gi/base/huge_pages.h"
 #include "gi/base/picture.h"
 #include "gi/transport/path_sample.h"
 
@@ -39,7 +40,10 @@ struct Accumulator {
     PathCounts counts;  ///< of all paths so far
     double seconds = 0; ///< that they took
 
-    Accumulator(int w, int h) : width(w), height(h), pixels(std::size_t(w) * std::size_t(h)) {}
+    Accumulator(int w, int h) : width(w), height(h)
+    {
+        resize_on_huge_pages(pixels, std::size_t(w) * std::size_t(h));
+    }
     dvec3 mean(PixelSums const& p) const
     {
         return (p.radiance[0] + p.radiance[1] + p.radiance[2]) / double(paths);

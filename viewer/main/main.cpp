@@ -1,3 +1,12 @@
 #include "viewer/program.h"
 
-int main(int argc, char** argv) { return viewer::run_program(argc, argv); }
+#include <malloc.h>
+
+int main(int argc, char** argv)
+{
+    // Frames need the same memory again and again; taking its pages anew costs a third of a short one.
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
+    mallopt(M_TOP_PAD, 64 << 20);
+    return viewer::run_program(argc, argv);
+}
