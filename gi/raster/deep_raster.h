@@ -14,7 +14,7 @@ namespace gi {
 /// Triangles whose bounds hold more samples than this on a side are scanned one by one.
 inline constexpr int kMicroSide = 4;
 
-/// Appends the fragments of triangles first..last - 1. `first` is a multiple of TriangleSoup::kPadding.
+/// Appends the fragments of triangles first..last - 1.
 void rasterize(TriangleSoup const& soup, std::size_t first, std::size_t last, RasterGrid const& grid,
                MacroPath macro, Fragments& out);
 

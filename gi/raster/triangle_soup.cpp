@@ -9,13 +9,17 @@ TriangleSoup make_soup(World const& world)
 {
     TriangleSoup soup;
     soup.count = world.triangles.size();
-    std::size_t const padded =
-        (soup.count + TriangleSoup::kPadding - 1) / TriangleSoup::kPadding * TriangleSoup::kPadding;
-    for (auto& values : soup.corner) values.resize(padded);
+    for (auto& values : soup.corner) values.resize(soup.count + TriangleSoup::kPadding);
     soup.chunks.resize((soup.count + TriangleSoup::kChunk - 1) / TriangleSoup::kChunk);
-    tbb::parallel_for(std::size_t(0), soup.chunks.size(), [&](std::size_t chunk) {
+    update_soup(world, 0, soup);
+    return soup;
+}
+
+void update_soup(World const& world, std::size_t first_triangle, TriangleSoup& soup)
+{
+    tbb::parallel_for(first_triangle / TriangleSoup::kChunk, soup.chunks.size(), [&](std::size_t chunk) {
         std::size_t const first = chunk * TriangleSoup::kChunk;
-        Bounds& bounds = soup.chunks[chunk];
+        Bounds bounds;
         for (std::size_t t = first; t < std::min(first + TriangleSoup::kChunk, soup.count); ++t)
             for (glm::length_t k = 0; k < 3; ++k) {
                 vec3 const p = world.positions[world.triangles[t][k]];
@@ -23,8 +27,8 @@ TriangleSoup make_soup(World const& world)
                 bounds.low = glm::min(bounds.low, p);
                 bounds.high = glm::max(bounds.high, p);
             }
+        soup.chunks[chunk] = bounds;
     });
-    return soup;
 }
 
 } // namespace gi

@@ -1,6 +1,7 @@
 #pragma once
 // Triangle corners as nine arrays, so that a vector register holds one coordinate of several triangles. Indices
-// are those of the world's triangles. Padded with points to a whole number of vectors.
+// are those of the world's triangles. Followed by one vector of points, so that any triangle can be the first of a
+// vector.
 
 #include "gi/scene/world.h"
 
@@ -22,5 +23,7 @@ struct TriangleSoup {
 };
 
 TriangleSoup make_soup(World const& world);
+/// Reads triangles first.. of the world again, which have moved.
+void update_soup(World const& world, std::size_t first, TriangleSoup& soup);
 
 } // namespace gi

@@ -49,6 +49,7 @@ HitLayer AxisPool::layer(std::size_t a, std::uint32_t k) const
 void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool, bool packed)
 {
     pool.grids.clear();
+    pool.ranges.clear();
     pool.first_offset.clear();
     pool.first_layer.clear();
     std::size_t offsets = 0, layers = 0;

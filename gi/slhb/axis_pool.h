@@ -5,26 +5,38 @@
 
 namespace gi {
 
-/// The buffers of several axes in three arrays, so that one vector can walk along many axes.
+/// Layers of one texel, from the axis' first layer on.
+struct LayerRange {
+    std::uint32_t begin, end;
+};
+
+/// The buffers of several axes in a few arrays, so that one vector can walk along many axes.
 struct AxisPool {
     std::vector<RasterGrid> grids;
     std::vector<std::uint32_t> first_offset, first_layer; ///< of each axis
     std::vector<std::uint32_t> offset; ///< per axis texels + 1 entries, from the axis' first layer on
-    std::vector<HitLayer> layers;
+    std::vector<HitLayer> layers;      ///< of all axes; then those of moving_layers.h
+    /// Where something moves, in place of `offset` and numbered as that: the columns, wherever they lie.
+    std::vector<LayerRange> ranges;
     /// Instead of `layers` where that was asked for (after Yu 2012, sec. 4.3): 12 bits of depth, 1 of facing, 19
     /// of the triangle, and the range of depths of each axis.
     std::vector<std::uint32_t> packed;
     std::vector<float> packed_low, packed_step;
 
     std::size_t size() const { return grids.size(); }
-    /// Axis `a` by itself; only where layers are not packed.
+    /// Axis `a` by itself; only where layers are not packed and nothing moves.
     AxisView axis(std::size_t a) const;
+    /// @param at  index into `offset`, of a texel
+    LayerRange column(std::size_t at) const
+    {
+        return ranges.empty() ? LayerRange{offset[at], offset[at + 1]} : ranges[at];
+    }
     /// @param k  index into `layers` or `packed`, of axis `a`
     HitLayer layer(std::size_t a, std::uint32_t k) const;
     std::size_t bytes() const
     {
-        return offset.size() * sizeof(std::uint32_t) + layers.size() * sizeof(HitLayer) +
-               packed.size() * sizeof(std::uint32_t);
+        return offset.size() * sizeof(std::uint32_t) + ranges.size() * sizeof(LayerRange) +
+               layers.size() * sizeof(HitLayer) + packed.size() * sizeof(std::uint32_t);
     }
 };
 

@@ -38,15 +38,18 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
         vec2 const jitter = rng.uniform2();
         RasterGrid const grid =
             make_grid(source_.bounds, axis.direction, source_.resolution, jitter, 2 * kPi * rng.uniform());
+        cut_seeds_[axis.slot] = rng.next();
         if (source_.elsewhere) {
-            source_.elsewhere(axis.slot, grid, rng.next());
+            source_.elsewhere(axis.slot, grid, cut_seeds_[axis.slot]);
             return;
         }
         fragments.count = 0;
-        rasterize(source_.soup, 0, source_.soup.count, grid, MacroPath::edge_table, fragments);
-        source_.cut_outs.remove(fragments, grid, rng.next());
+        rasterize(source_.soup, 0, std::min(source_.first_moving, source_.soup.count), grid, MacroPath::edge_table,
+                  fragments);
+        source_.cut_outs.remove(fragments, grid, cut_seeds_[axis.slot]);
         fill_hit_buffer(fragments, grid, source_.most_layers, buffers_[axis.slot]);
     };
+    cut_seeds_.resize(buffers_.size());
     if (source_.elsewhere)
         for (std::size_t k = 0; k < axes.size(); ++k) build_one(k);
     else
@@ -57,6 +60,14 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
     }
     built_ += axes.size();
     fill_pool(buffers_, pool_, source_.packed);
+    moving_.forget();
+}
+
+void AxisSet::move()
+{
+    if (source_.first_moving >= source_.soup.count) return;
+    moving_.append({source_.soup, source_.first_moving, source_.cut_outs, source_.most_layers}, cut_seeds_, pool_);
+    lost_ += moving_.lost();
 }
 
 void AxisSet::store(DirectionSet const& directions)

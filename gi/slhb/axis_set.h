@@ -4,6 +4,7 @@
 
 #include "gi/slhb/cosine_tables.h"
 #include "gi/slhb/cut_outs.h"
+#include "gi/slhb/moving_layers.h"
 #include "gi/slhb/query_batch.h"
 
 #include <functional>
@@ -67,6 +68,8 @@ public:
         /// Where it is not empty, buffers are not built here but there: index of the axis, its grid, a seed for
         /// the cut-outs. Axes come one after the other.
         std::function<void(std::size_t, RasterGrid const&, std::uint32_t)> elsewhere = {};
+        /// Triangles from here on move: they are left to move(). As many as there are: none does.
+        std::size_t first_moving = ~std::size_t(0);
     };
 
     explicit AxisSet(Source const& source) : source_(source) {}
@@ -82,6 +85,10 @@ public:
     /// so that a pass has the same axes whether or not the passes before it were made here.
     void refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh, std::uint32_t pass);
 
+    /// Puts what moves into the axes that there are, as it is now; after store() and refresh(), and whenever it
+    /// has moved. Not with packed layers.
+    void move();
+
     /// @param bounce  0 = the first  @param normal unit  @param u uniform in [0, 1)
     AxisSample sample(std::uint32_t bounce, vec3 normal, float u) const
     {
@@ -90,11 +97,12 @@ public:
     /// Axes that the first bounce chooses from: the first ones of the pool.
     std::size_t first_bounce_axes() const { return tables_.axes.empty() ? few_count_ : tables_.axes.size(); }
     AxisPool const& pool() const { return pool_; }
-    /// Layers of these axes: the first ones of the pool.
+    /// The layers of these axes have smaller numbers in the pool.
     std::size_t first_bounce_layers() const
     {
         std::size_t const n = first_bounce_axes();
-        return n < pool_.size() ? pool_.first_layer[n] : pool_.layers.size() + pool_.packed.size();
+        return n < pool_.size() && pool_.ranges.empty() ? pool_.first_layer[n]
+                                                        : pool_.layers.size() + pool_.packed.size();
     }
     vec3 axis(std::size_t a) const { return pool_.grids[a].axis; }
     float solid_angle(std::size_t a) const
@@ -103,8 +111,11 @@ public:
     }
     std::vector<FewAxes> const& few() const { return few_; }
     CosineTables const& tables() const { return tables_; }
-    std::uint64_t built() const { return built_; }   ///< axes, so far
-    std::uint64_t lost() const { return lost_; }     ///< layers beyond most_layers
+    std::uint64_t built() const { return built_; } ///< axes, so far
+    std::uint64_t lost() const
+    {
+        return lost_;
+    } ///< layers beyond most_layers, of what is built once and of what moves
     std::uint64_t layers() const { return layers_; } ///< of all axes built so far
 
 private:
@@ -117,6 +128,8 @@ private:
 
     Source source_;
     std::vector<HitBuffer> buffers_;
+    std::vector<std::uint32_t> cut_seeds_; ///< per axis, of CutOuts
+    MovingLayers moving_;
     AxisPool pool_;
     CosineTables tables_;
     std::vector<FewAxes> few_; ///< per sequence

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 namespace gi {
-namespace {
 
 void sort_layers(HitLayer* first, HitLayer* last)
 {
@@ -19,6 +18,8 @@ void sort_layers(HitLayer* first, HitLayer* last)
         *to = moved;
     }
 }
+
+namespace {
 
 /// Moves the first `most` layers of every texel together.
 void cut(HitBuffer& b, std::uint32_t most)

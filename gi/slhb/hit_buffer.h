@@ -25,6 +25,9 @@ struct HitBuffer {
 
 inline HitBufferView view(HitBuffer const& b) { return {b.grid, b.offset, b.layers}; }
 
+/// A column, fast where it has few layers or starts in order.
+void sort_layers(HitLayer* first, HitLayer* last);
+
 /// Count, scan, fill, sort. Reuses the memory of `out`.
 /// @param most_layers per texel, the nearest along the axis are kept and the others counted; 0 = all
 void fill_hit_buffer(Fragments const& fragments, RasterGrid const& grid, std::uint32_t most_layers,

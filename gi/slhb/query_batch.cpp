@@ -154,6 +154,10 @@ void find_columns(GridLanes const& g, int attempt, QueryBatch const& b, std::siz
 /// The two steps of fetching are worth it where buffers lie in no cache.
 void fetch_offsets(AxisPool const& pool, Columns const& columns, std::size_t column, std::size_t n)
 {
+    if (!pool.ranges.empty()) {
+        for (std::size_t k = column; k < column + n; ++k) __builtin_prefetch(&pool.ranges[columns.texel[k]]);
+        return;
+    }
     for (std::size_t k = column; k < column + n; ++k) {
         std::uint32_t const* const offset = pool.offset.data() + columns.texel[k];
         __builtin_prefetch(offset);
@@ -165,9 +169,9 @@ void fetch_offsets(AxisPool const& pool, Columns const& columns, std::size_t col
 void find_ranges(AxisPool const& pool, Columns& columns, std::size_t column, std::size_t n)
 {
     for (std::size_t k = column; k < column + n; ++k) {
-        std::uint32_t const* const offset = pool.offset.data() + columns.texel[k];
-        columns.begin[k] = std::int32_t(offset[0]);
-        columns.end[k] = std::int32_t(offset[1]);
+        LayerRange const range = pool.column(std::size_t(columns.texel[k]));
+        columns.begin[k] = std::int32_t(range.begin);
+        columns.end[k] = std::int32_t(range.end);
     }
 }
 
@@ -484,7 +488,7 @@ void answer_plainly(AxisPool const& pool, std::size_t a, QueryBatch& b, std::siz
                         tj = nearest(grid.up, grid.corner.y, grid.height);
     float const sign = o.up ? 1.0f : -1.0f, origin = sign * grid.depth(o.position);
     std::size_t const texel = pool.first_offset[a] + std::size_t(tj) * grid.width + ti;
-    std::uint32_t const begin = pool.offset[texel], end = pool.offset[texel + 1];
+    auto const [begin, end] = pool.column(texel);
     for (std::uint32_t k = begin; k < end; ++k) {
         std::uint32_t const at = pool.first_layer[a] + (o.up ? k : end - 1 - (k - begin));
         HitLayer const layer = pool.layer(a, at);

@@ -25,12 +25,10 @@ void SharedEndings::note(std::span<Ending const> endings, std::uint32_t first_pi
 
 void SharedEndings::collect(std::vector<Ending> const& endings, AxisPool const& pool)
 {
-    std::size_t axis = 0;
     for (std::size_t k = 0; k < slots_.size(); ++k) {
-        while (axis + 1 < pool.size() && k / 2 >= pool.first_layer[axis + 1]) ++axis;
         if (slots_[k] == kNoLayerHit) continue;
         Ending const& e = endings[slots_[k]];
-        vec3 const along = pool.grids[axis].axis;
+        vec3 const along = pool.grids[e.axis].axis;
         slots_[k] = std::uint32_t(starts_.size());
         starts_.push_back({0x80000000u | std::uint32_t(k), e.triangle, {e.position, e.up ? along : -along}, true});
     }

@@ -383,7 +383,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
             s.has_position = !v.exact;
             if (!endings.empty() && !v.exact && s.vertex == 1 && v.hit.triangle != kNoLayerHit &&
                 bsdf_detail::is_matt(world_.bsdfs[world_.surfaces[v.hit.triangle].material])) {
-                endings[v.path] = {v.layer, v.hit.triangle, v.origin.up, v.hit.position, s.throughput};
+                endings[v.path] = {v.layer, v.axis, v.hit.triangle, v.origin.up, v.hit.position, s.throughput};
                 continue;
             }
             vertices[left++] = v;

@@ -37,6 +37,7 @@ struct PathStart {
 /// side.
 struct Ending {
     std::uint32_t layer = kNoLayerHit; ///< of the pool; kNoLayerHit = none
+    std::uint32_t axis;
     std::uint32_t triangle;
     bool up; ///< the walk that met it
     vec3 position;
