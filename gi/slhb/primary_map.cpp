@@ -13,23 +13,21 @@ vec2 place_in_pixel(PixelFilter filter, std::uint64_t seed, std::uint32_t pass)
     return 0.5f + filter_offset(filter, vec2(stream.sample_together(0)));
 }
 
-PrimaryMap::PrimaryMap(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs,
-                       CameraRays const& camera, RenderSettings const& settings)
+PrimaryMap::PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, RenderSettings const& settings)
     : soup_(soup),
       cut_outs_(cut_outs),
-      camera_(camera),
       width_(settings.width),
       height_(settings.height),
       filter_(settings.filter),
-      seed_(settings.seed),
-      near_m_(near_plane(world.bounds))
+      seed_(settings.seed)
 {
 }
 
-void PrimaryMap::refresh(std::uint32_t pass)
+void PrimaryMap::refresh(CameraRays const& camera, float near_m, std::uint32_t pass)
 {
+    camera_ = camera;
     at_ = place_in_pixel(filter_, seed_, pass);
-    PerspectiveGrid const grid = camera_grid(camera_, width_, height_, at_, near_m_);
+    PerspectiveGrid const grid = camera_grid(camera_, width_, height_, at_, near_m);
     clear(map_, std::uint32_t(width_), std::uint32_t(height_));
     constexpr std::size_t kPart = 32 * TriangleSoup::kChunk;
     tbb::parallel_for(std::size_t(0), (soup_.count + kPart - 1) / kPart, [&](std::size_t k) {

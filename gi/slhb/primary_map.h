@@ -14,11 +14,10 @@ inline float near_plane(Bounds const& bounds) { return 1e-5f * glm::max(bounds.r
 
 class PrimaryMap {
 public:
-    PrimaryMap(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, CameraRays const& camera,
-               RenderSettings const& settings);
+    PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, RenderSettings const& settings);
 
-    /// Rasterises the view of a pass.
-    void refresh(std::uint32_t pass);
+    /// Rasterises the view of a pass. @param near_m  what is nearer is not seen
+    void refresh(CameraRays const& camera, float near_m, std::uint32_t pass);
     /// Of pixels first..last - 1, in rows.
     void hits(std::size_t first, std::size_t last, std::vector<PathStart>& out) const;
 
@@ -29,7 +28,6 @@ private:
     int width_, height_;
     PixelFilter filter_;
     std::uint64_t seed_;
-    float near_m_;
     vec2 at_{0.5f}; ///< position in the pixel
     NearestMap map_;
 };

@@ -1,0 +1,233 @@
+#include "gi/slhb/renderer.h"
+
+#include "gi/scene/plan.h"
+#include "gi/slhb/settings.h"
+#include "gi/transport/flush_denormals.h"
+#include "gi/transport/sampling.h"
+
+#include <algorithm>
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+/// Pixels whose paths advance together on one thread.
+constexpr std::size_t kBlock = 4096;
+
+/// Primary hits through exact rays, for the cameras that have no raster.
+void exact_hits(ExactVisibility const& exact, CameraRays const& camera, RenderSettings const& s,
+                std::uint32_t pass, std::size_t first, std::size_t last, std::vector<PathStart>& out)
+{
+    std::vector<RayQuery> rays;
+    out.clear();
+    for (std::size_t p = first; p < last; ++p) {
+        RqmcStream const stream{std::uint32_t(mix_bits(s.seed + p)), pass};
+        vec2 const place{float(p % std::size_t(s.width)) + 0.5f, float(p / std::size_t(s.width)) + 0.5f};
+        Ray const ray = camera.through(place + filter_offset(s.filter, stream.sample2(0)));
+        out.push_back({std::uint32_t(p), kNoPrimitive, ray});
+        rays.push_back({.ray = ray, .seed = stream.seed + pass});
+    }
+    std::vector<Hit> hits(rays.size());
+    exact.nearest(rays, hits);
+    for (std::size_t k = 0; k < hits.size(); ++k) out[k].triangle = hits[k].triangle;
+}
+
+Bounds merged(Bounds const& a, Bounds const& b) { return {glm::min(a.low, b.low), glm::max(a.high, b.high)}; }
+
+bool contains(Bounds const& outer, Bounds const& inner)
+{
+    return inner.empty() || (glm::all(glm::lessThanEqual(outer.low, inner.low)) &&
+                             glm::all(glm::greaterThanEqual(outer.high, inner.high)));
+}
+
+/// Choosing among axes and lamps takes their grids alone.
+std::uint32_t texels(bool unused, int n) { return std::uint32_t(unused ? 2 : n); }
+
+} // namespace
+
+SlhbRenderer::SlhbRenderer(World const& world, Camera const& camera, RenderSettings const& settings,
+                           TriangleSoup soup, Motion const& motion, Report& report)
+    : world_(world),
+      settings_(settings),
+      motion_(motion),
+      report_(report),
+      orthographic_(camera.orthographic),
+      rays_(camera_rays(camera, settings.width, settings.height, world.origin)),
+      soup_(std::move(soup)),
+      cut_outs_(world),
+      grid_bounds_(merged(world.bounds, motion.bounds))
+{
+    build_exact();
+    make_axes();
+    make_lamps();
+    if (!orthographic_) primary_.emplace(soup_, cut_outs_, settings_);
+}
+
+void SlhbRenderer::build_exact()
+{
+    bool const alpha_tests = plan_scene(world_).alpha_tests;
+    auto const build = [&] { return std::make_unique<ExactVisibility>(world_, alpha_tests, settings_.threads); };
+    if (needs_exact_rays(world_, orthographic_)) {
+        StageTimer const timer(report_, "build (Embree BVH)");
+        exact_ = build();
+    }
+    if (slhb_.exact.any()) judge_ = build();
+}
+
+void SlhbRenderer::make_axes()
+{
+    bool const apart = slhb_.schedule != Schedule::streamed; // else all is built in every pass anyway
+    axes_.emplace(AxisSet::Source{.bounds = grid_bounds_,
+                                  .soup = soup_,
+                                  .cut_outs = cut_outs_,
+                                  .resolution = texels(slhb_.exact.queries, slhb_.resolution),
+                                  .most_layers = std::uint32_t(slhb_.most_layers),
+                                  .packed = slhb_.packed,
+                                  .seed = settings_.seed,
+                                  .first_moving = apart ? motion_.first_triangle : soup_.count});
+    if (slhb_.schedule != Schedule::stored) return;
+    StageTimer const timer(report_, "build (hit buffers)");
+    axes_->store(make_directions(slhb_.directions));
+    axes_->move();
+}
+
+void SlhbRenderer::make_lamps()
+{
+    lamps_.emplace(world_, soup_, cut_outs_, std::uint32_t(slhb_.lamps),
+                   texels(slhb_.exact.shadows, slhb_.shadow_resolution), settings_.seed);
+}
+
+void SlhbRenderer::world_moved(bool geometry, bool lights)
+{
+    if (geometry) {
+        {
+            StageTimer const timer(report_, "triangles that moved");
+            update_soup(world_, motion_.first_triangle, soup_);
+        }
+        if (exact_ || judge_) build_exact();
+        if (contains(grid_bounds_, world_.bounds)) {
+            StageTimer const timer(report_, "layers that moved");
+            axes_->move();
+        } else {
+            // Some room, so that it does not happen in every frame.
+            Bounds const b = world_.bounds;
+            vec3 const room = 0.1f * (b.high - b.low);
+            grid_bounds_ = merged(grid_bounds_, {b.low - room, b.high + room});
+            report_.lose("frames that left the bounds of the hit buffers, which were built anew");
+            make_axes();
+        }
+    }
+    // Shadow maps of points on lamps are drawn in every pass anyway.
+    if (lights || (geometry && lamps_->fixed())) make_lamps();
+}
+
+void SlhbRenderer::set_camera(Camera const& camera)
+{
+    rays_ = camera_rays(camera, settings_.width, settings_.height, world_.origin);
+}
+
+void SlhbRenderer::pass(std::uint32_t index, Accumulator& sums)
+{
+    // Surfaces that a path may leave along an axis: the last one only where the sky or exact rays count.
+    bool const to_the_end = exact_ != nullptr || !view(world_).environment_radiance.empty();
+    bool const walks = settings_.bounces > 0 || to_the_end;
+    auto const sequences =
+        std::uint32_t(std::clamp(settings_.bounces + (to_the_end ? 1 : 0), 1, int(AxisSet::kSequences)));
+    {
+        StageTimer const timer(report_, "hit buffers of a pass");
+        if (walks && slhb_.schedule != Schedule::stored) {
+            axes_->refresh(sequences, std::uint32_t(slhb_.axes), std::uint32_t(slhb_.fresh_axes), index);
+            axes_->move();
+        }
+    }
+    {
+        StageTimer const timer(report_, "shadow maps");
+        lamps_->refresh(index);
+    }
+    if (primary_) {
+        StageTimer const timer(report_, "G-buffer");
+        primary_->refresh(rays_, near_plane(world_.bounds), index);
+    }
+    StageTimer const timer(report_, "paths");
+    trace(index, sums, walks);
+    ++sums.paths;
+}
+
+void SlhbRenderer::trace(std::uint32_t index, Accumulator& sums, bool walks)
+{
+    SlhbTracer const tracer(world_, rays_, settings_, slhb_);
+    std::uint32_t const gathered = slhb_.gather && walks
+                                       ? index / std::uint32_t(slhb_.interleave * slhb_.interleave) %
+                                             std::uint32_t(axes_->first_bounce_axes())
+                                       : kNoPrimitive;
+    SlhbTracer::Pass const now{*axes_, *lamps_, exact_.get(), index, gathered, judge_.get()};
+    std::size_t const pixels = sums.pixels.size();
+    // Where many paths end on few layers, what a layer sends back is computed once.
+    bool const sharing =
+        settings_.bounces > 0 && slhb_.cone == 0 && !slhb_.exact.queries && axes_->first_bounce_layers() < pixels;
+    shared_.start(sharing ? axes_->first_bounce_layers() : 0);
+    samples_.resize(pixels);
+    endings_.resize(sharing ? pixels : 0);
+    struct WorkCounts {
+        PathCounts paths;
+        SlhbCounts slhb;
+    };
+    tbb::combinable<WorkCounts> counts;
+    auto const in_blocks = [&](std::size_t n, auto const& work) {
+        tbb::parallel_for(std::size_t(0), (n + kBlock - 1) / kBlock, [&](std::size_t block) {
+            FlushDenormals const guard;
+            work(block * kBlock, std::min(n, (block + 1) * kBlock), counts.local());
+        });
+    };
+    in_blocks(pixels, [&](std::size_t first, std::size_t last, WorkCounts& local) {
+        thread_local std::vector<PathStart> starts;
+        if (primary_)
+            primary_->hits(first, last, starts);
+        else
+            exact_hits(*exact_, rays_, settings_, index, first, last, starts);
+        std::span const block(samples_.data() + first, last - first);
+        std::span const ends = sharing ? std::span(endings_.data() + first, last - first) : std::span<Ending>();
+        tracer.trace(now, starts, block, ends, local.paths, local.slhb);
+        if (sharing) shared_.note(ends, std::uint32_t(first));
+    });
+    shared_.collect(endings_, axes_->pool());
+    in_blocks(shared_.starts().size(), [&](std::size_t first, std::size_t last, WorkCounts& local) {
+        thread_local std::vector<PathSample> sent;
+        sent.resize(last - first);
+        tracer.trace(now, std::span(shared_.starts()).subspan(first, last - first), sent, {}, local.paths,
+                     local.slhb);
+        shared_.keep(first, sent);
+    });
+    in_blocks(pixels, [&](std::size_t first, std::size_t last, WorkCounts&) {
+        for (std::size_t p = first; p < last; ++p) {
+            if (sharing && endings_[p].layer != kNoLayerHit)
+                samples_[p].radiance[2] += endings_[p].throughput * shared_.radiance(endings_[p]);
+            sums.pixels[p].add(samples_[p]);
+        }
+    });
+    counts.combine_each([&](WorkCounts const& c) {
+        sums.counts += c.paths;
+        done_.queries += c.slhb.queries;
+        done_.exact_rays += c.slhb.exact_rays;
+        done_.shadow_lookups += c.slhb.shadow_lookups;
+    });
+}
+
+double SlhbRenderer::rays() const { return double(done_.queries + done_.shadow_lookups + done_.exact_rays); }
+
+void SlhbRenderer::report_work() const
+{
+    report_.count("hit-buffer queries", double(done_.queries));
+    report_.count("shadow-map look-ups", double(done_.shadow_lookups));
+    report_.count("exact rays", double(done_.exact_rays));
+    report_.count("layers shaded for several paths", double(shared_.shaded()));
+    report_.count("axes built", double(axes_->built()));
+    report_.count("layers per texel, mean", axes_->built() > 0 ? double(axes_->layers()) / double(axes_->built()) /
+                                                                     (double(slhb_.resolution) * slhb_.resolution)
+                                                               : 0);
+    report_.count("shadow maps built", double(lamps_->maps_built()));
+    report_.lose("layers beyond the limit of a texel", axes_->lost());
+}
+
+} // namespace gi

@@ -1,0 +1,65 @@
+#pragma once
+// Everything that the method slhb keeps from pass to pass and, where things move, from frame to frame: the
+// structures built from the world, and how a pass goes through them.
+
+#include "gi/slhb/primary_map.h"
+#include "gi/slhb/shared_endings.h"
+#include "gi/slhb/tracer.h"
+#include "gi/transport/accumulator.h"
+
+#include <memory>
+#include <optional>
+
+namespace gi {
+
+class SlhbRenderer {
+public:
+    /// What moves in the world between frames; by default nothing.
+    struct Motion {
+        std::size_t first_triangle = ~std::size_t(0); ///< that moves; all after it do
+        Bounds bounds;                                ///< that hold everything at all times, as far as is known
+    };
+
+    /// Builds what lasts. `world` and `report` outlive this; the arrays of the world stay where they are.
+    /// @param settings  with those of slhb chosen  @param soup  of the world
+    SlhbRenderer(World const& world, Camera const& camera, RenderSettings const& settings, TriangleSoup soup,
+                 Motion const& motion, Report& report);
+
+    /// The world has changed: its triangles from Motion::first_triangle on, or its lights. What does not depend on
+    /// that stays.
+    void world_moved(bool geometry, bool lights);
+    void set_camera(Camera const& camera);
+    /// One more path for every pixel. @param index of the pass, which decides its random numbers
+    void pass(std::uint32_t index, Accumulator& sums);
+
+    double rays() const; ///< look-ups and exact rays, so far
+    /// What has been done so far.
+    void report_work() const;
+
+private:
+    void build_exact();
+    void make_axes();
+    void make_lamps();
+    void trace(std::uint32_t index, Accumulator& sums, bool walks);
+
+    World const& world_;
+    RenderSettings settings_;
+    SlhbSettings const& slhb_ = settings_.slhb;
+    Motion motion_;
+    Report& report_;
+    bool orthographic_;
+    CameraRays rays_;
+    TriangleSoup soup_;
+    CutOuts cut_outs_;
+    std::unique_ptr<ExactVisibility> exact_, judge_;
+    Bounds grid_bounds_; ///< of the hit buffers
+    std::optional<AxisSet> axes_;
+    std::optional<Lamps> lamps_;
+    std::optional<PrimaryMap> primary_; ///< not of orthographic cameras
+    SharedEndings shared_;
+    std::vector<PathSample> samples_;
+    std::vector<Ending> endings_;
+    SlhbCounts done_;
+};
+
+} // namespace gi
