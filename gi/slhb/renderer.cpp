@@ -58,6 +58,7 @@ SlhbRenderer::SlhbRenderer(World const& world, Camera const& camera, RenderSetti
       cut_outs_(world),
       grid_bounds_(merged(world.bounds, motion.bounds))
 {
+    end_frame();
     build_exact();
     make_axes();
     make_lamps();
@@ -103,6 +104,7 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
     if (geometry) {
         {
             StageTimer const timer(report_, "triangles that moved");
+            if (earlier_.corners.empty()) earlier_.corners = corners_of(soup_, motion_.first_triangle);
             update_soup(world_, motion_.first_triangle, soup_);
         }
         if (exact_ || judge_) build_exact();
@@ -120,6 +122,13 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
     }
     // Shadow maps of points on lamps are drawn in every pass anyway.
     if (lights || (geometry && lamps_->fixed())) make_lamps();
+}
+
+void SlhbRenderer::end_frame() { earlier_ = {rays_, motion_.first_triangle, {}}; }
+
+void SlhbRenderer::add_motion(Picture& picture) const
+{
+    if (primary_) gi::add_motion(*primary_, soup_, rays_, earlier_, picture);
 }
 
 void SlhbRenderer::set_camera(Camera const& camera)

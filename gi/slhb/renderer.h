@@ -2,6 +2,7 @@
 // Everything that the method slhb keeps from pass to pass and, where things move, from frame to frame: the
 // structures built from the world, and how a pass goes through them.
 
+#include "gi/slhb/motion.h"
 #include "gi/slhb/primary_map.h"
 #include "gi/slhb/shared_endings.h"
 #include "gi/slhb/tracer.h"
@@ -25,6 +26,8 @@ public:
     SlhbRenderer(World const& world, Camera const& camera, RenderSettings const& settings, TriangleSoup soup,
                  Motion const& motion, Report& report);
 
+    /// A frame ends here: motion vectors lead to what is seen now.
+    void end_frame();
     /// The world has changed: its triangles from Motion::first_triangle on, or its lights. What does not depend on
     /// that stays.
     void world_moved(bool geometry, bool lights);
@@ -32,6 +35,8 @@ public:
     /// One more path for every pixel. @param index of the pass, which decides its random numbers
     void pass(std::uint32_t index, Accumulator& sums);
 
+    /// Motion vectors of the last pass, to the frame that ended before it; not with orthographic cameras.
+    void add_motion(Picture& picture) const;
     double rays() const; ///< look-ups and exact rays, so far
     /// What has been done so far.
     void report_work() const;
@@ -56,6 +61,7 @@ private:
     std::optional<AxisSet> axes_;
     std::optional<Lamps> lamps_;
     std::optional<PrimaryMap> primary_; ///< not of orthographic cameras
+    EarlierFrame earlier_;
     SharedEndings shared_;
     std::vector<PathSample> samples_;
     std::vector<Ending> endings_;

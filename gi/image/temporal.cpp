@@ -1,0 +1,200 @@
+#include "gi/image/temporal.h"
+
+#include "gi/base/error.h"
+#include "gi/image/filter_input.h"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+// A texel of the frame before shows the same surface: cosine of normals, and difference of depths per depth.
+constexpr float kCosine = 0.9f, kDepth = 0.02f;
+// L1 is held to mean +- kSpread standard deviations of a window of kWindow pixels.
+constexpr int kWindow = 5;
+constexpr float kSpread = 1;
+
+Layer const& layer_of(Picture const& picture, char const* name)
+{
+    if (Layer const* const layer = picture.find(name)) return *layer;
+    throw InputError(std::string("the picture has no layer '") + name + "'", "temporal reuse goes by it",
+                     "render frames with a method that gives it");
+}
+
+/// Light over albedo, where that is not too dark to tell.
+vec3 over(vec3 light, vec3 albedo)
+{
+    for (int c = 0; c < 3; ++c)
+        if (albedo[c] >= kDarkest) light[c] /= albedo[c];
+    return light;
+}
+
+vec3 times(vec3 light, vec3 albedo)
+{
+    for (int c = 0; c < 3; ++c)
+        if (albedo[c] >= kDarkest) light[c] *= albedo[c];
+    return light;
+}
+
+bool finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// Of windows around each pixel.
+struct Window {
+    cv::Mat mean, squares; ///< 3 channels
+
+    Window(std::vector<vec3> const& values, int width, int height)
+    {
+        cv::Mat const all(height, width, CV_32FC3, const_cast<vec3*>(values.data()));
+        cv::Size const size(kWindow, kWindow);
+        cv::boxFilter(all, mean, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
+        cv::sqrBoxFilter(all, squares, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
+    }
+    vec3 clamped(vec3 v, int x, int y) const
+    {
+        auto const m = mean.at<cv::Vec3f>(y, x), s = squares.at<cv::Vec3f>(y, x);
+        for (int c = 0; c < 3; ++c) {
+            float const spread = kSpread * std::sqrt(std::max(0.0f, s[c] - m[c] * m[c]));
+            v[c] = glm::clamp(v[c], m[c] - spread, m[c] + spread);
+        }
+        return v;
+    }
+};
+
+} // namespace
+
+/// Light of this frame, averaged with that of the surface before.
+void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
+{
+    Layer const &l1 = layer_of(frame, "L1"), &l2 = layer_of(frame, "L2"), &albedo = layer_of(frame, "albedo"),
+                &normal = layer_of(frame, "normal"), &depth = layer_of(frame, "depth"),
+                &motion = layer_of(frame, "motion");
+    int const width = frame.width, height = frame.height;
+    std::size_t const pixels = frame.pixels();
+    std::swap(surfaces_, last_surfaces_);
+    std::swap(lights_, last_lights_);
+    surfaces_.resize(pixels);
+    lights_.resize(pixels);
+    std::vector<vec3> direct(pixels);
+    tbb::parallel_for(std::size_t(0), std::size_t(height), [&](std::size_t y) {
+        for (std::size_t i = y * std::size_t(width); i < (y + 1) * std::size_t(width); ++i) {
+            vec3 const a = rgb(albedo, i);
+            surfaces_[i] = {rgb(normal, i), depth.data[i]};
+            direct[i] = over(rgb(l1, i), a);
+            lights_[i] = {direct[i], over(rgb(l2, i), a), 1};
+        }
+    });
+    if (frames_ == 0) return;
+    Window const window(direct, width, height);
+    tbb::combinable<TemporalCounts> counts;
+    tbb::parallel_for(0, height, [&](int y) {
+        TemporalCounts& local = counts.local();
+        for (int x = 0; x < width; ++x) {
+            std::size_t const i = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            Surface const& here = surfaces_[i];
+            if (!(here.depth > 0)) continue;
+            ++local.surfaces;
+            vec3 const from = rgb(motion, i);
+            Light before{vec3{0}, vec3{0}, 0};
+            float weight = 0;
+            if (finite(from) && std::abs(from.x) < 1e6f && std::abs(from.y) < 1e6f) {
+                float const u = float(x) + from.x, v = float(y) + from.y, left = std::floor(u),
+                            top = std::floor(v);
+                for (int k = 0; k < 4; ++k) {
+                    int const tx = int(left) + (k & 1), ty = int(top) + (k >> 1);
+                    float const w = (1 - std::abs(u - float(tx))) * (1 - std::abs(v - float(ty)));
+                    if (tx < 0 || ty < 0 || tx >= width || ty >= height || !(w > 0)) continue;
+                    std::size_t const t = std::size_t(ty) * std::size_t(width) + std::size_t(tx);
+                    Surface const& there = last_surfaces_[t];
+                    if (!(std::abs(there.depth - from.z) < kDepth * from.z) ||
+                        glm::dot(there.normal, here.normal) < kCosine)
+                        continue;
+                    Light const& l = last_lights_[t];
+                    before.direct += w * l.direct;
+                    before.indirect += w * l.indirect;
+                    before.frames += w * l.frames;
+                    weight += w;
+                }
+            }
+            // Less than that is as good as nothing, and noisy.
+            constexpr float kLeast = 0.05f;
+            if (!(weight > kLeast)) {
+                ++local.started;
+                continue;
+            }
+            Light& now = lights_[i];
+            vec3 const held = window.clamped(before.direct / weight, x, y);
+            local.held += held != before.direct / weight;
+            now.frames = std::min(before.frames / weight + 1, float(settings_.most_frames));
+            now.direct = glm::mix(held, now.direct, 1 / now.frames);
+            now.indirect = glm::mix(before.indirect / weight, now.indirect, 1 / now.frames);
+        }
+    });
+    counts.combine_each([&](TemporalCounts const& c) {
+        total.surfaces += c.surfaces;
+        total.started += c.started;
+        total.held += c.held;
+    });
+}
+
+/// One more picture of a scene in which nothing moves.
+void TemporalReuse::rest(Picture const& frame)
+{
+    Layer const* const parts[] = {&layer_of(frame, "L0"), &layer_of(frame, "L1"), &layer_of(frame, "L2")};
+    float const share = 1 / float(still_ + 1);
+    mean_.resize(frame.pixels());
+    tbb::parallel_for(std::size_t(0), std::size_t(frame.height), [&](std::size_t y) {
+        for (std::size_t i = y * std::size_t(frame.width); i < (y + 1) * std::size_t(frame.width); ++i)
+            for (std::size_t k = 0; k < 3; ++k)
+                mean_[i][k] = still_ == 0 ? rgb(*parts[k], i) : glm::mix(mean_[i][k], rgb(*parts[k], i), share);
+    });
+    ++still_;
+}
+
+void TemporalReuse::store(Picture& frame, TemporalCounts& counts) const
+{
+    Layer const& albedo = layer_of(frame, "albedo");
+    Layer &l0 = *frame.find("L0"), &l1 = *frame.find("L1"), &l2 = *frame.find("L2"), &color = *frame.find("color");
+    float const n = float(still_);
+    tbb::combinable<double> frames;
+    tbb::parallel_for(std::size_t(0), std::size_t(frame.height), [&](std::size_t y) {
+        double& sum = frames.local();
+        for (std::size_t i = y * std::size_t(frame.width); i < (y + 1) * std::size_t(frame.width); ++i) {
+            Light const& light = lights_[i];
+            vec3 const a = rgb(albedo, i);
+            // The frames since are in both means; those before count as long as they are many beside them.
+            float const earlier = std::max(0.0f, light.frames - n), share = earlier / (earlier + n);
+            vec3 const e0 = mean_[i][0], e1 = glm::mix(mean_[i][1], times(light.direct, a), share),
+                       e2 = glm::mix(mean_[i][2], times(light.indirect, a), share);
+            for (int c = 0; c < 3; ++c) {
+                std::size_t const k = 3 * i + std::size_t(c);
+                l0.data[k] = e0[c];
+                l1.data[k] = e1[c];
+                l2.data[k] = e2[c];
+                color.data[k] = e0[c] + e1[c] + e2[c];
+            }
+            sum += double(earlier + n);
+        }
+    });
+    counts.frames = frames.combine(std::plus<>()) / double(frame.pixels());
+}
+
+TemporalCounts TemporalReuse::add(Picture& frame, SceneChange change)
+{
+    if (frames_ > 0 && surfaces_.size() != frame.pixels())
+        throw InputError("frames of different sizes", "temporal reuse goes pixel by pixel", "start afresh");
+    if (frame.find("color") == nullptr) layer_of(frame, "color");
+    if (change == SceneChange::light) frames_ = 0;
+    if (change != SceneChange::nothing || frames_ == 0) still_ = 0;
+    TemporalCounts counts;
+    follow(frame, counts);
+    rest(frame);
+    store(frame, counts);
+    ++frames_;
+    counts.still_frames = still_;
+    return counts;
+}
+
+} // namespace gi

@@ -1,0 +1,65 @@
+#pragma once
+// Temporal reuse: the light on a surface in earlier frames, found again through the motion of each pixel, averaged
+// with that of this frame. Pictures of any method that gives the layer "motion".
+//
+// Two means are kept. While anything moves (camera, triangles), L1 and L2 over the albedo follow their surfaces:
+// four texels of the frame before are asked, each believed if its depth and normal fit; the mean has at most
+// `most_frames` frames, and L1 is held to what the neighbourhood shows now, as shadows move faster than that
+// (Yang, Liu and Salvi 2020, sec. 4.2). While nothing moves, the mean of the pictures themselves is taken, over
+// all frames since: so a still picture converges to what the method converges to. After a change of lights,
+// materials or environment nothing of before is used: the lag is zero frames.
+
+#include "gi/base/picture.h"
+
+namespace gi {
+
+struct TemporalSettings {
+    int most_frames = 16; ///< >= 1; 1 = no reuse
+};
+
+/// What has happened since the frame before.
+enum class SceneChange : std::uint8_t {
+    nothing,
+    motion, ///< of the camera or of triangles
+    light   ///< of lights, materials or the environment
+};
+
+struct TemporalCounts {
+    std::size_t surfaces = 0; ///< pixels that have one
+    std::size_t started = 0;  ///< of these, without anything to reuse
+    std::size_t held = 0;     ///< of these, whose L1 of before did not fit the neighbourhood
+    double frames = 0;        ///< that a pixel is the mean of, on average
+    int still_frames = 0;     ///< since anything moved; 0 = something has
+};
+
+class TemporalReuse {
+public:
+    explicit TemporalReuse(TemporalSettings const& settings) : settings_(settings) {}
+
+    /// Replaces L0, L1, L2 and color by means over frames. Needs color, L0, L1, L2, albedo, normal, depth and
+    /// motion (throws InputError where one is missing): x, y: pixels from here to where the surface was; z: its
+    /// depth then, m; NaN where it was not. The size may not change without forget().
+    TemporalCounts add(Picture& frame, SceneChange change);
+    void forget() { frames_ = 0; }
+
+private:
+    struct Surface {
+        vec3 normal;
+        float depth; ///< m; 0 = nothing is there
+    };
+    struct Light {
+        vec3 direct, indirect; ///< L1 and L2 over the albedo
+        float frames;          ///< that they are means of
+    };
+    void follow(Picture const& frame, TemporalCounts& counts);
+    void rest(Picture const& frame);
+    void store(Picture& frame, TemporalCounts& counts) const;
+
+    TemporalSettings settings_;
+    int frames_ = 0, still_ = 0;
+    std::vector<Surface> surfaces_, last_surfaces_;
+    std::vector<Light> lights_, last_lights_;
+    std::vector<std::array<vec3, 3>> mean_; ///< L0, L1, L2 since all is still
+};
+
+} // namespace gi

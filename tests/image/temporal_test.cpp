@@ -1,0 +1,194 @@
+#include "gi/image/temporal.h"
+
+#include "gi/base/error.h"
+#include "gi/base/rng.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace gi::test {
+namespace {
+
+constexpr int kWidth = 48, kHeight = 40;
+
+struct Values {
+    vec3 l0{0}, l1{0}, l2{0}, albedo{0.5f}, normal{0, 0, 1}, motion{0, 0, 2};
+    float depth = 2;
+};
+
+/// A picture from what `at` says of each pixel.
+template <class At>
+Picture picture(At const& at)
+{
+    Picture p;
+    p.width = kWidth;
+    p.height = kHeight;
+    for (char const* const name : {"color", "L0", "L1", "L2", "albedo", "normal", "motion"}) p.add(name, 3);
+    p.add("depth", 1);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            Values const v = at(x, y);
+            std::size_t const i = std::size_t(y * kWidth + x);
+            auto const set = [&](char const* name, vec3 value) {
+                for (int c = 0; c < 3; ++c) p.find(name)->data[3 * i + std::size_t(c)] = value[c];
+            };
+            set("color", v.l0 + v.l1 + v.l2);
+            set("L0", v.l0);
+            set("L1", v.l1);
+            set("L2", v.l2);
+            set("albedo", v.albedo);
+            set("normal", v.normal);
+            set("motion", v.motion);
+            p.find("depth")->data[i] = v.depth;
+        }
+    return p;
+}
+
+float value(Picture const& p, char const* layer, int x, int y)
+{
+    return p.find(layer)->data[3 * std::size_t(y * kWidth + x)];
+}
+
+/// Variance of a layer around a value, over all pixels.
+double noise(Picture const& p, char const* layer, float truth)
+{
+    double sum = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) sum += std::pow(double(value(p, layer, x, y) - truth), 2);
+    return sum / (kWidth * kHeight);
+}
+
+TEST(Temporal, AStillPictureIsTheMeanOfItsFrames)
+{
+    TemporalReuse reuse({.most_frames = 4});
+    Pcg32 rng(1, 1);
+    std::vector<double> sum(std::size_t(kWidth * kHeight), 0.0);
+    for (int frame = 1; frame <= 12; ++frame) {
+        Picture p = picture([&](int x, int y) {
+            Values v;
+            v.l0 = vec3{rng.uniform()};
+            v.l1 = vec3{rng.uniform()};
+            v.l2 = vec3{rng.uniform()};
+            v.albedo = vec3{rng.uniform()}; // jitter over an edge of a texture
+            sum[std::size_t(y * kWidth + x)] += double(v.l0.x) + double(v.l1.x) + double(v.l2.x);
+            return v;
+        });
+        TemporalCounts const counts = reuse.add(p, frame == 1 ? SceneChange::light : SceneChange::nothing);
+        EXPECT_EQ(counts.still_frames, frame);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x)
+                ASSERT_NEAR(value(p, "color", x, y), sum[std::size_t(y * kWidth + x)] / frame, 1e-4);
+    }
+}
+
+/// A wall that the camera passes, by whole or broken pixels a frame: the mean has the noise of many frames, but
+/// where it came into view.
+TEST(Temporal, LightFollowsItsSurface)
+{
+    for (vec3 const motion : {vec3{3, -2, 2}, vec3{0.5f, 0.25f, 2}}) {
+        TemporalReuse reuse({.most_frames = 8});
+        Pcg32 rng(2, 2);
+        double before = 0, after = 0;
+        auto const old_noise = [](Picture const& p) {
+            double sum = 0;
+            for (int y = 24; y < kHeight; ++y)
+                for (int x = 0; x < 16; ++x) sum += std::pow(double(value(p, "L2", x, y)) - 0.5, 2);
+            return sum;
+        };
+        for (int frame = 0; frame < 30; ++frame) {
+            Picture p = picture([&](int, int) {
+                Values v;
+                v.l2 = vec3{0.5f * (1 + rng.uniform() - rng.uniform())};
+                v.motion = motion;
+                return v;
+            });
+            before = old_noise(p);
+            reuse.add(p, SceneChange::motion);
+            after = old_noise(p);
+        }
+        EXPECT_LT(after, before / 8); // 1/15 in the limit
+        EXPECT_GT(after, before / 60);
+    }
+}
+
+TEST(Temporal, NothingOfBeforeALightChangedIsUsed)
+{
+    TemporalReuse reuse({});
+    auto const lit = [&](float l) {
+        return picture([&](int, int) { return Values{.l1 = vec3{l}, .l2 = vec3{l}}; });
+    };
+    for (int frame = 0; frame < 5; ++frame) {
+        Picture p = lit(1);
+        reuse.add(p, SceneChange::motion);
+    }
+    Picture dark = lit(0);
+    reuse.add(dark, SceneChange::light);
+    EXPECT_EQ(noise(dark, "color", 0), 0);
+    for (int frame = 0; frame < 3; ++frame) {
+        Picture p = lit(0);
+        reuse.add(p, SceneChange::nothing);
+        EXPECT_EQ(noise(p, "color", 0), 0);
+    }
+}
+
+/// The shadow's edge moves 4 pixels a frame over a still wall.
+TEST(Temporal, AMovingShadowLeavesNoGhost)
+{
+    TemporalReuse reuse({});
+    for (int frame = 0; frame < 8; ++frame) {
+        int const edge = 4 + 4 * frame;
+        Picture p = picture([&](int x, int) { return Values{.l1 = vec3{x < edge ? 0.0f : 1.0f}}; });
+        reuse.add(p, SceneChange::motion);
+        for (int x = 0; x < kWidth; ++x) {
+            if (std::abs(float(x) + 0.5f - float(edge)) < 3) continue;
+            EXPECT_EQ(value(p, "L1", x, 20), x < edge ? 0.0f : 1.0f) << frame << " " << x;
+        }
+    }
+}
+
+TEST(Temporal, WhatWasHiddenStartsAfresh)
+{
+    TemporalReuse reuse({});
+    Picture close = picture([&](int, int) { return Values{.l2 = vec3{7}, .depth = 1}; });
+    reuse.add(close, SceneChange::motion);
+    // The near wall is gone; where it was, the far one appears. Then one that is turned, then one from nowhere.
+    Values const cases[] = {{.l2 = vec3{1}, .motion = {0, 0, 2}},
+                            {.l2 = vec3{1}, .normal = {1, 0, 0}},
+                            {.l2 = vec3{1}, .motion = vec3{std::numeric_limits<float>::quiet_NaN()}, .depth = 2},
+                            {.l2 = vec3{1}, .motion = {1e30f, 0, 2}, .depth = 2}};
+    for (Values const& v : cases) {
+        Picture p = picture([&](int, int) { return v; });
+        TemporalCounts const counts = reuse.add(p, SceneChange::motion);
+        EXPECT_EQ(counts.started, counts.surfaces);
+        EXPECT_EQ(noise(p, "L2", 1), 0);
+    }
+}
+
+TEST(Temporal, WithoutSurfacesOrAlbedoNothingBreaks)
+{
+    TemporalReuse reuse({});
+    for (int frame = 0; frame < 4; ++frame) {
+        Picture p = picture([&](int x, int) {
+            Values v{.l0 = vec3{float(frame)}, .albedo = vec3{0}};
+            v.depth = x < 10 ? 0.0f : 2.0f;
+            v.l1 = vec3{x < 10 ? 0.0f : 1.0f};
+            return v;
+        });
+        reuse.add(p, SceneChange::motion);
+        EXPECT_EQ(value(p, "L0", 3, 3), float(frame)); // what is no surface is that of now
+        EXPECT_EQ(value(p, "color", 20, 3), float(frame) + 1);
+    }
+}
+
+TEST(Temporal, MissingLayersAreNamed)
+{
+    TemporalReuse reuse({});
+    Picture p;
+    p.width = p.height = 4;
+    p.add("color", 3);
+    EXPECT_THROW(reuse.add(p, SceneChange::motion), InputError);
+}
+
+} // namespace
+} // namespace gi::test
