@@ -68,7 +68,9 @@ SlhbRenderer::SlhbRenderer(World const& world, Camera const& camera, RenderSetti
 void SlhbRenderer::build_exact()
 {
     bool const alpha_tests = plan_scene(world_).alpha_tests;
-    auto const build = [&] { return std::make_unique<ExactVisibility>(world_, alpha_tests, settings_.threads); };
+    auto const build = [&] {
+        return std::make_unique<ExactVisibility>(world_, alpha_tests, settings_.threads, motion_.first_triangle);
+    };
     if (needs_exact_rays(world_, orthographic_)) {
         StageTimer const timer(report_, "build (Embree BVH)");
         exact_ = build();
@@ -107,7 +109,11 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
             if (earlier_.corners.empty()) earlier_.corners = corners_of(soup_, motion_.first_triangle);
             update_soup(world_, motion_.first_triangle, soup_);
         }
-        if (exact_ || judge_) build_exact();
+        {
+            StageTimer const timer(report_, "BVH of what moves (Embree)");
+            if (exact_) exact_->moved(world_);
+            if (judge_) judge_->moved(world_);
+        }
         if (contains(grid_bounds_, world_.bounds)) {
             StageTimer const timer(report_, "layers that moved");
             axes_->move();

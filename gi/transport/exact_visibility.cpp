@@ -49,11 +49,13 @@ void ExactVisibility::nearest(std::span<RayQuery const> queries, std::span<Hit> 
         RTCRayHit16 packet;
         PacketMask const mask = fill(packet.ray, some);
         std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
+        std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
         rtcIntersect16(mask.valid, scene_.get(), &context.rtc, &packet);
         for (std::size_t k = 0; k < some.size(); ++k)
             hits[first + k] = packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
                                   ? Hit{}
-                                  : Hit{world_triangle(packet.hit.geomID[k], packet.hit.primID[k]),
+                                  : Hit{part_of(packet.hit.instID[0][k])
+                                            .world_triangle(packet.hit.geomID[k], packet.hit.primID[k]),
                                         {packet.hit.u[k], packet.hit.v[k]},
                                         packet.ray.tfar[k]};
     }
@@ -76,7 +78,8 @@ void ExactVisibility::coverage_filter(RTCFilterFunctionNArguments const* a)
     ExactVisibility const& self = *reinterpret_cast<Context const*>(a->context)->owner;
     for (unsigned i = 0; i < a->N; ++i) {
         if (a->valid[i] == 0) continue;
-        std::uint32_t const triangle = self.world_triangle(kCutOut, RTCHitN_primID(a->hit, a->N, i));
+        std::uint32_t const triangle = self.part_of(RTCHitN_instID(a->hit, a->N, i, 0))
+                                           .world_triangle(kCutOut, RTCHitN_primID(a->hit, a->N, i));
         vec2 const uv{RTCHitN_u(a->hit, a->N, i), RTCHitN_v(a->hit, a->N, i)};
         float const covered = coverage(self.world_, triangle, uv);
         if (covered >= 1) continue;
@@ -86,51 +89,97 @@ void ExactVisibility::coverage_filter(RTCFilterFunctionNArguments const* a)
     }
 }
 
-void ExactVisibility::add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id)
+void ExactVisibility::add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id,
+                                    RTCBuildQuality quality, Part& part)
 {
-    std::vector<std::uint32_t> const& chosen = triangles_[geometry_id];
-    std::size_t const count = chosen.empty() ? world.triangles.size() : chosen.size();
+    std::size_t const count =
+        part.triangles[geometry_id].empty() ? part.last - part.first : part.triangles[geometry_id].size();
     RTCGeometry const geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetGeometryBuildQuality(geometry, quality);
     rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0, sizeof(vec3),
-                         world.positions.size());
+                         world.positions.size() - part.first_vertex);
     auto* const triangles = static_cast<uvec3*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3), count));
     if (triangles == nullptr) throw std::bad_alloc();
     for (std::size_t i = 0; i < count; ++i)
-        triangles[i] = world.triangles[world_triangle(geometry_id, std::uint32_t(i))];
+        triangles[i] = world.triangles[part.world_triangle(geometry_id, std::uint32_t(i))] - part.first_vertex;
     if (geometry_id == kCutOut) {
         rtcSetGeometryIntersectFilterFunction(geometry, coverage_filter);
         rtcSetGeometryOccludedFilterFunction(geometry, coverage_filter);
     }
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene_.get(), geometry, geometry_id);
+    rtcAttachGeometryByID(part.scene.get(), geometry, geometry_id);
     rtcReleaseGeometry(geometry);
 }
 
-ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threads)
-    : device_(rtcNewDevice(threads > 0 ? fmt::format("threads={}", threads).c_str() : nullptr)),
-      world_(view(world))
+void ExactVisibility::build(World const& world, bool alpha_tests, RTCBuildQuality quality, Part& part)
 {
-    if (!device_) throw std::runtime_error("Embree could not be started");
-    scene_.reset(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-    if (alpha_tests)
-        for (std::uint32_t t = 0; t < world.triangles.size(); ++t) {
-            bool const opaque = world.materials[world.triangle_material[t]].alpha_mode == AlphaMode::opaque;
-            triangles_[opaque ? kOpaque : kCutOut].push_back(t);
-        }
-    if (!world.triangles.empty()) {
+    part.scene.reset(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(part.scene.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(part.scene.get(), quality);
+    part.first_vertex = std::uint32_t(world.positions.size());
+    for (std::vector<std::uint32_t>& t : part.triangles) t.clear();
+    for (std::uint32_t t = part.first; t < part.last; ++t) {
+        part.first_vertex =
+            std::min({part.first_vertex, world.triangles[t].x, world.triangles[t].y, world.triangles[t].z});
+        if (!alpha_tests) continue;
+        bool const opaque = world.materials[world.triangle_material[t]].alpha_mode == AlphaMode::opaque;
+        part.triangles[opaque ? kOpaque : kCutOut].push_back(t);
+    }
+    if (part.first < part.last) {
+        std::size_t const vertices = world.positions.size() - part.first_vertex;
         // Embree reads 16 bytes from every vertex, so the last one needs padding.
-        RTCBuffer const positions = rtcNewBuffer(device_.get(), (world.positions.size() + 1) * sizeof(vec3));
+        RTCBuffer const positions = rtcNewBuffer(device_.get(), (vertices + 1) * sizeof(vec3));
         if (positions == nullptr) throw std::bad_alloc();
-        std::copy(world.positions.begin(), world.positions.end(), static_cast<vec3*>(rtcGetBufferData(positions)));
-        if (triangles_[kCutOut].empty() || !triangles_[kOpaque].empty()) add_triangles(world, positions, kOpaque);
-        if (!triangles_[kCutOut].empty()) add_triangles(world, positions, kCutOut);
+        std::copy(world.positions.begin() + part.first_vertex, world.positions.end(),
+                  static_cast<vec3*>(rtcGetBufferData(positions)));
+        bool const cut_outs = !part.triangles[kCutOut].empty();
+        if (!cut_outs || !part.triangles[kOpaque].empty()) add_triangles(world, positions, kOpaque, quality, part);
+        if (cut_outs) add_triangles(world, positions, kCutOut, quality, part);
         rtcReleaseBuffer(positions);
     }
-    rtcCommitScene(scene_.get());
+    rtcCommitScene(part.scene.get());
+}
+
+void ExactVisibility::check() const
+{
     if (RTCError const e = rtcGetDeviceError(device_.get()); e != RTC_ERROR_NONE)
         throw std::runtime_error(fmt::format("Embree could not build the scene (error {})", int(e)));
+}
+
+ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threads, std::size_t first_moving)
+    : device_(rtcNewDevice(threads > 0 ? fmt::format("threads={}", threads).c_str() : nullptr)),
+      world_(view(world)),
+      alpha_tests_(alpha_tests)
+{
+    if (!device_) throw std::runtime_error("Embree could not be started");
+    auto const triangles = std::uint32_t(world.triangles.size());
+    parts_[0].last = parts_[1].first = std::uint32_t(std::min<std::size_t>(first_moving, triangles));
+    parts_[1].last = triangles;
+    build(world, alpha_tests, RTC_BUILD_QUALITY_MEDIUM, parts_[0]);
+    if (parts_[1].first == triangles) {
+        scene_ = std::move(parts_[0].scene);
+    } else {
+        moved(world);
+    }
+    check();
+}
+
+void ExactVisibility::moved(World const& world)
+{
+    if (parts_[1].first == parts_[1].last) return;
+    build(world, alpha_tests_, RTC_BUILD_QUALITY_LOW, parts_[1]);
+    scene_.reset(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+    for (unsigned k = 0; k < 2; ++k) {
+        RTCGeometry const instance = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(instance, parts_[k].scene.get());
+        rtcCommitGeometry(instance);
+        rtcAttachGeometryByID(scene_.get(), instance, k);
+        rtcReleaseGeometry(instance);
+    }
+    rtcCommitScene(scene_.get());
+    check();
 }
 
 } // namespace gi

@@ -2,6 +2,7 @@
 // Exact ray queries against a World through Embree 3 (robust, watertight mode), in packets.
 // Only triangles whose material can be seen through pass the filter that tests coverage; partial coverage is a
 // random decision per ray and triangle that does not depend on traversal order.
+// Where something moves, it has a BVH of its own beside that of what stays, and only that one is built anew.
 
 #include "gi/scene/camera.h"
 #include "gi/scene/world.h"
@@ -32,7 +33,10 @@ struct RayQuery {
 class ExactVisibility {
 public:
     /// Copies the vertices; `world` must outlive this where alpha tests are on. threads 0 = all.
-    ExactVisibility(World const& world, bool alpha_tests, int threads);
+    /// @param first_moving  triangle; all from there on may move
+    ExactVisibility(World const& world, bool alpha_tests, int threads, std::size_t first_moving = ~std::size_t(0));
+    /// The vertices of triangles that may move are elsewhere now. Materials are as they were.
+    void moved(World const& world);
 
     /// Nearest triangle beyond each origin. hits.size() == queries.size()
     void nearest(std::span<RayQuery const> queries, std::span<Hit> hits) const;
@@ -50,23 +54,40 @@ public:
 private:
     static constexpr unsigned kOpaque = 0, kCutOut = 1; ///< Embree's geometry ids
 
-    static void coverage_filter(RTCFilterFunctionNArguments const* arguments);
-    void add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id);
-    std::uint32_t world_triangle(unsigned geometry_id, std::uint32_t primitive) const
-    {
-        return triangles_[geometry_id].empty() ? primitive : triangles_[geometry_id][primitive];
-    }
-
     struct ReleaseDevice {
         void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
     };
     struct ReleaseScene {
         void operator()(RTCScene s) const { rtcReleaseScene(s); }
     };
+    using ScenePointer = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
+
+    /// What stays, or what moves.
+    struct Part {
+        std::uint32_t first = 0, last = 0;       ///< triangles of the world
+        std::uint32_t first_vertex = 0;          ///< of the world; Embree's are counted from there
+        std::vector<std::uint32_t> triangles[2]; ///< of each geometry, of the world; empty = all in their order
+        ScenePointer scene;
+
+        std::uint32_t world_triangle(unsigned geometry_id, std::uint32_t primitive) const
+        {
+            return triangles[geometry_id].empty() ? first + primitive : triangles[geometry_id][primitive];
+        }
+    };
+
+    static void coverage_filter(RTCFilterFunctionNArguments const* arguments);
+    void build(World const& world, bool alpha_tests, RTCBuildQuality quality, Part& part);
+    void add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id, RTCBuildQuality quality,
+                       Part& part);
+    void check() const;
+    /// @param instance  Embree's, or none
+    Part const& part_of(unsigned instance) const { return parts_[instance == 1 ? 1 : 0]; }
+
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice> device_;
-    std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene> scene_;
-    std::vector<std::uint32_t> triangles_[2]; ///< of each geometry, as indices into World::triangles; empty = all
+    Part parts_[2];      ///< the second one is empty where nothing moves
+    ScenePointer scene_; ///< that rays go through: the first part's own, or one with instances of both
     WorldView world_;
+    bool alpha_tests_;
 };
 
 } // namespace gi
