@@ -47,14 +47,14 @@ double mean_emission(WorldView const& world, std::uint32_t triangle)
 
 /// Solid angle of a texel times its mean luminance, for every texel; the mean of a bilinear patch over one texel
 /// has the weights 1/8, 6/8, 1/8 per axis.
-std::vector<float> texel_weights(EnvironmentMap const& map)
+std::vector<float> texel_weights(EnvironmentMap const& map, vec3 scale)
 {
     std::uint32_t const w = map.width, h = map.height;
     std::vector<float> blurred(std::size_t(w) * h), weights(std::size_t(w) * h);
     for (std::uint32_t y = 0; y < h; ++y)
         for (std::uint32_t x = 0; x < w; ++x) {
             auto const at = [&](std::uint32_t column) {
-                return luminance(map.radiance[std::size_t(y) * w + column] * map.scale);
+                return luminance(map.radiance[std::size_t(y) * w + column] * scale);
             };
             blurred[std::size_t(y) * w + x] =
                 0.125f * at((x + w - 1) % w) + 0.75f * at(x) + 0.125f * at((x + 1) % w);
@@ -74,14 +74,34 @@ std::vector<float> texel_weights(EnvironmentMap const& map)
 
 } // namespace
 
-void build_light_tables(World& world, Report& report)
+void add_emitters(World const& world, std::size_t first, std::size_t end, EmitterPowers& to)
 {
-    world.emitters.clear();
-    world.emitter_pdf.clear();
-    world.environment_pdf = 0;
-    world.environment_select = {};
-    world.light_select = {};
     WorldView const v = view(world);
+    for (std::size_t i = first; i < end; ++i) {
+        Surface const& surface = world.surfaces[i];
+        if (!surface.is(Surface::kEmits)) continue;
+        double const triangle_area = 0.5 * double(glm::length(light_detail::area_vector(surface)));
+        double const faces = surface.is(Surface::kDoubleSided) ? 2 : 1;
+        double const p = mean_emission(v, std::uint32_t(i)) * triangle_area * double(kPi) * faces;
+        if (!(p > 0)) continue;
+        to.triangles.push_back(std::uint32_t(i));
+        to.powers_w.push_back(p);
+    }
+}
+
+void build_environment_table(World& world)
+{
+    world.environment_select = {};
+    if (world.environment)
+        world.environment_select = make_alias_table(texel_weights(*world.environment, world.environment_scale));
+}
+
+void build_light_select(World& world, EmitterPowers const& fixed, EmitterPowers const& moving)
+{
+    if (!world.emitter_pdf.empty())
+        for (std::uint32_t const t : world.emitters) world.emitter_pdf[t] = 0;
+    world.emitters.clear();
+    world.environment_pdf = 0;
 
     std::vector<double> powers;
     std::vector<LightClass> class_of;
@@ -90,23 +110,14 @@ void build_light_tables(World& world, Report& report)
         powers.push_back(power(light, disc));
         class_of.push_back(light.type == LightType::directional ? distant : punctual);
     }
-    for (std::uint32_t i = 0; i < world.triangles.size(); ++i) {
-        Material const& m = world.materials[world.triangle_material[i]];
-        if (!emits(m)) continue;
-        double const triangle_area = 0.5 * double(glm::length(light_detail::area_vector(world.surfaces[i])));
-        double const p = mean_emission(v, i) * triangle_area * double(kPi) * (m.double_sided ? 2 : 1);
-        if (!(p > 0)) continue;
-        world.emitters.push_back(i);
-        powers.push_back(p);
-        class_of.push_back(area);
+    for (EmitterPowers const* some : {&fixed, &moving}) {
+        world.emitters.insert(world.emitters.end(), some->triangles.begin(), some->triangles.end());
+        powers.insert(powers.end(), some->powers_w.begin(), some->powers_w.end());
     }
-    if (world.scene->environment) {
-        EnvironmentMap const& map = *world.scene->environment;
-        world.environment_select = make_alias_table(texel_weights(map));
-        if (world.environment_select.total > 0) {
-            powers.push_back(world.environment_select.total * std::max(disc, 1e-30));
-            class_of.push_back(environment);
-        }
+    class_of.resize(powers.size(), area);
+    if (!world.environment_select.empty()) {
+        powers.push_back(world.environment_select.total * std::max(disc, 1e-30));
+        class_of.push_back(environment);
     }
 
     std::array<double, classes> total{};
@@ -123,15 +134,15 @@ void build_light_tables(World& world, Report& report)
         weights[i] = t > 0 ? float(powers[i] / t * (kLeastShare + (1 - present * kLeastShare) * t / all)) : 0.0f;
     }
     world.light_select = make_alias_table(weights);
-    if (world.light_select.empty()) {
-        world.emitters.clear();
-        return;
-    }
-    if (!world.emitters.empty()) world.emitter_pdf.assign(world.triangles.size(), 0.0f);
+    if (world.light_select.empty()) world.emitters.clear();
+    if (world.emitters.empty())
+        world.emitter_pdf.clear();
+    else
+        world.emitter_pdf.resize(world.triangles.size(), 0.0f);
     for (std::size_t i = 0; i < world.emitters.size(); ++i)
         world.emitter_pdf[world.emitters[i]] = world.light_select.entries[world.lights.size() + i].probability;
-    if (!world.environment_select.empty()) world.environment_pdf = world.light_select.entries.back().probability;
-    report.count("emissive triangles", double(world.emitters.size()));
+    if (!world.light_select.empty() && !world.environment_select.empty())
+        world.environment_pdf = world.light_select.entries.back().probability;
 }
 
 } // namespace gi

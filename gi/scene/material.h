@@ -42,6 +42,8 @@ struct Material {
     TextureRef specular_map;           ///< A multiplies specular
     TextureRef specular_color_map;     ///< sRGB, multiplies specular_color
     TextureRef transmission_map;       ///< R multiplies transmission
+
+    bool operator==(Material const&) const = default;
 };
 
 GI_FN inline bool has_textures(Material const& m)

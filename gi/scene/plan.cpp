@@ -1,6 +1,7 @@
 #include "gi/scene/plan.h"
 
 #include "gi/scene/bsdf.h"
+#include "gi/scene/motion.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -40,11 +41,11 @@ ScenePlan plan_scene(World const& world)
     std::size_t const masked = count([](Material const& m) { return m.alpha_mode != AlphaMode::opaque; });
     plan.alpha_tests = decide("alpha tests along rays", masked > 0, of_materials(masked, "are masks or blend"),
                               "every material is opaque");
-    bool const map = scene.environment.has_value();
-    plan.environment = decide(
-        "environment sampling", world.environment_pdf > 0,
-        map ? fmt::format("a map of {} x {} texels", scene.environment->width, scene.environment->height) : "",
-        map ? "the map is black" : "no environment map");
+    EnvironmentMap const* const map = world.environment.get();
+    plan.environment =
+        decide("environment sampling", world.environment_pdf > 0,
+               map != nullptr ? fmt::format("a map of {} x {} texels", map->width, map->height) : "",
+               map != nullptr ? "the map is black" : "no environment map");
     plan.emitters = decide("emissive-triangle sampling", !world.emitters.empty(),
                            fmt::format("{} triangles emit", world.emitters.size()), "nothing emits");
     plan.punctual_lights = decide("punctual lights", !world.lights.empty(),
@@ -69,6 +70,13 @@ ScenePlan plan_scene(World const& world)
                          "no mesh has morph targets");
     plan.motion = decide("motion", !scene.playbacks.empty(), fmt::format("{} clips play", scene.playbacks.size()),
                          scene.animations.empty() ? "no animation clip" : "no clip was chosen to play");
+    std::size_t const moving = world.triangles.size() - world.static_triangles;
+    std::vector<std::string> const reasons = reasons_for_motion(scene);
+    plan.moving_parts =
+        decide("parts renewed with time", moving > 0,
+               fmt::format("{} of {} triangles in {} of {} instances can move: {}", moving, world.triangles.size(),
+                           world.instances - world.static_instances, world.instances, fmt::join(reasons, "; ")),
+               fmt::format("all {} triangles stay where they are", world.triangles.size()));
     return plan;
 }
 

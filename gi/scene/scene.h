@@ -28,10 +28,10 @@ struct Mesh {
     std::vector<vec3> normals;  ///< unit; empty = flat shaded
     std::vector<vec4> tangents; ///< xyz unit, w = +-1 handedness
     std::vector<vec2> uv0, uv1;
-    std::vector<vec3> colors;   ///< linear, multiply base_color
+    std::vector<vec3> colors;     ///< linear, multiply base_color
     std::vector<uvec3> triangles; ///< indices < positions.size(), counter-clockwise seen from the front
     std::vector<std::array<std::uint16_t, 4>> joints; ///< indices into Skin::joints
-    std::vector<vec4> weights;  ///< sum 1
+    std::vector<vec4> weights;                        ///< sum 1
     std::vector<MorphTarget> morph_targets;
 };
 
@@ -41,15 +41,21 @@ struct Node {
     dvec3 translation{0};
     dquat rotation{1, 0, 0, 0}; ///< unit; glm order w, x, y, z
     dvec3 scale{1};
-    std::optional<dmat4> matrix; ///< replaces the three above
-    std::vector<std::int32_t> meshes; ///< several nodes may share a mesh (instances)
+    std::optional<dmat4> matrix;                     ///< replaces the three above
+    std::vector<std::int32_t> meshes;                ///< several nodes may share a mesh (instances)
     std::int32_t skin = -1, camera = -1, light = -1; ///< indices into Scene
     std::vector<float> morph_weights;
+    bool driven = false; ///< something outside the clips may move it (a tracker, an editor)
 };
+
+/// How joints are blended (deform_kernels.h): linear skinning is what files mean; dual quaternions keep the volume
+/// of what is twisted.
+enum class SkinningMethod : std::uint8_t { linear, dual_quaternion };
 
 struct Skin {
     std::vector<std::int32_t> joints; ///< node indices
     std::vector<mat4> inverse_bind;   ///< same length
+    SkinningMethod method = SkinningMethod::linear;
 };
 
 enum class ChannelPath : std::uint8_t { translation, rotation, scale, morph_weights };

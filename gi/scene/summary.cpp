@@ -57,27 +57,25 @@ SceneSummary summarise(World const& world)
     add("vertices", std::to_string(world.positions.size()));
     if (!world.bounds.empty()) {
         dvec3 const low = dvec3(world.bounds.low) + world.origin, high = dvec3(world.bounds.high) + world.origin;
-        add("bounds", fmt::format("{:.6g}, {:.6g}, {:.6g} to {:.6g}, {:.6g}, {:.6g} m", low.x, low.y, low.z, high.x,
-                                  high.y, high.z));
+        add("bounds", fmt::format("{:.6g}, {:.6g}, {:.6g} to {:.6g}, {:.6g}, {:.6g} m", low.x, low.y, low.z,
+                                  high.x, high.y, high.z));
     }
     add("materials", material_kinds(world));
     add("textures", fmt::format("{} ({:.1f} MiB)", scene.textures.textures.size(),
                                 double(scene.textures.texels.size() * sizeof(Rgba8)) / (1 << 20)));
     add("punctual lights", std::to_string(world.lights.size()));
     add("emissive triangles", fmt::format("{} ({:.6g} m2)", world.emitters.size(), emitting_area(world)));
-    add("environment map", scene.environment
-                               ? fmt::format("{} x {}", scene.environment->width, scene.environment->height)
-                               : "none");
+    add("environment map",
+        world.environment ? fmt::format("{} x {}", world.environment->width, world.environment->height) : "none");
     add("cameras", join(world.cameras, [](Camera const& c) { return c.name; }));
     add("skins", join(scene.skins, [](Skin const& k) { return fmt::format("{} joints", k.joints.size()); }));
     std::size_t targets = 0;
     for (Mesh const& m : scene.meshes) targets += m.morph_targets.size();
     add("morph targets", std::to_string(targets));
-    add("clips",
-        join(scene.animations, [](Animation const& a) { return fmt::format("{} ({:.3g} s)", a.name, a.duration_s); }));
-    add("playing", join(scene.playbacks, [&](Playback const& p) {
-            return scene.animations[std::size_t(p.animation)].name;
-        }));
+    add("clips", join(scene.animations,
+                      [](Animation const& a) { return fmt::format("{} ({:.3g} s)", a.name, a.duration_s); }));
+    add("playing",
+        join(scene.playbacks, [&](Playback const& p) { return scene.animations[std::size_t(p.animation)].name; }));
     return s;
 }
 

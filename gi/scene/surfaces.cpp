@@ -1,4 +1,3 @@
-#include "gi/base/huge_pages.h"
 #include "gi/scene/shading_point.h"
 #include "gi/scene/world_tables.h"
 
@@ -23,8 +22,7 @@ Surface surface_of(World const& world, std::size_t triangle)
     s.normal_scale = squared > 1e-30f && squared < 1e30f ? 1 / std::sqrt(squared) : 0;
     s.clearance = 0;
     for (int k = 0; k < 3; ++k)
-        s.clearance =
-            std::max(s.clearance, kClearance * max_component(glm::abs(world.positions[s.vertex[k]])));
+        s.clearance = std::max(s.clearance, kClearance * max_component(glm::abs(world.positions[s.vertex[k]])));
     s.material = world.triangle_material[triangle];
     s.flags = 0;
     Material const& m = world.materials[s.material];
@@ -44,12 +42,22 @@ Surface surface_of(World const& world, std::size_t triangle)
 
 } // namespace
 
-void build_surfaces(World& world)
+void build_bsdfs(World& world)
 {
+    world.bsdfs.clear();
     for (Material const& m : world.materials) world.bsdfs.push_back(make_bsdf(m));
-    resize_on_huge_pages(world.surfaces, world.triangles.size());
-    tbb::parallel_for(std::size_t(0), world.triangles.size(),
-                      [&](std::size_t t) { world.surfaces[t] = surface_of(world, t); });
+}
+
+void update_surfaces(World& world, std::size_t first, std::size_t end)
+{
+    tbb::parallel_for(first, end, [&](std::size_t t) { world.surfaces[t] = surface_of(world, t); });
+}
+
+void update_surfaces_of(World& world, std::uint32_t material)
+{
+    tbb::parallel_for(std::size_t(0), world.triangles.size(), [&](std::size_t t) {
+        if (world.triangle_material[t] == material) world.surfaces[t] = surface_of(world, t);
+    });
 }
 
 } // namespace gi

@@ -27,9 +27,11 @@ struct Texture {
 
 /// How a material refers to a texture: KHR_texture_transform, uv' = T * R * S * uv.
 struct TextureRef {
-    std::int32_t texture = -1; ///< index into TexturePool::textures, -1 = none
-    std::uint8_t uv_set = 0;   ///< 0 or 1
+    std::int32_t texture = -1;                   ///< index into TexturePool::textures, -1 = none
+    std::uint8_t uv_set = 0;                     ///< 0 or 1
     vec2 row_u{1, 0}, row_v{0, 1}, offset{0, 0}; ///< u' = dot(row_u, uv) + offset.x, v' likewise
+
+    bool operator==(TextureRef const&) const = default;
 };
 
 struct TexturePool {

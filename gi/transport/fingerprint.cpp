@@ -92,11 +92,11 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
         for (vec3 const v : {l.position, l.direction, l.intensity}) h.add(v);
         for (float const v : {l.cos_inner, l.cos_outer, l.range}) h.add(v);
     }
-    if (auto const& e = world.scene->environment) {
+    if (auto const& e = world.environment) {
         h.add(std::uint64_t(e->width));
         h.add_array(e->radiance);
-        h.add(e->rotation_rad);
-        h.add(e->scale);
+        h.add(world.environment_rotation_rad);
+        h.add(world.environment_scale);
     }
     for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 4; ++r) h.add(camera.world_from_camera[c][r]);

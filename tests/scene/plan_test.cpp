@@ -29,7 +29,7 @@ TEST(Plan, MattSceneNeedsNothing)
     ScenePlan const plan = plan_scene(world_of(scene));
     EXPECT_FALSE(plan.alpha_tests || plan.environment || plan.emitters || plan.punctual_lights ||
                  plan.delta_lobes || plan.transmission || plan.textures || plan.normal_maps || plan.skins ||
-                 plan.morphs || plan.motion);
+                 plan.morphs || plan.motion || plan.moving_parts);
     for (PlanItem const& i : plan.items) {
         EXPECT_FALSE(i.build) << i.what;
         EXPECT_FALSE(i.reason.empty()) << i.what;
@@ -51,18 +51,23 @@ TEST(Plan, EverythingThatIsThereIsBuilt)
     quad_of(scene, emitter(vec3{3}));
     add_light(scene, Light{});
     set_environment(scene, vec3{1});
-    scene.animations.resize(1);
+    AnimationChannel slide;
+    slide.node = 0;
+    slide.times_s = {0, 1};
+    slide.values = {0, 0, 0, 1, 0, 0};
+    scene.animations = {{"slide", {slide}, 1}};
     scene.playbacks = {{0, 0, 1, true}};
     scene.skins.resize(1);
     scene.meshes[0].morph_targets.resize(1);
     ScenePlan const plan = plan_scene(world_of(scene));
     EXPECT_TRUE(plan.alpha_tests && plan.environment && plan.emitters && plan.punctual_lights &&
                 plan.delta_lobes && plan.transmission && plan.textures && plan.normal_maps && plan.skins &&
-                plan.morphs && plan.motion);
+                plan.morphs && plan.motion && plan.moving_parts);
     for (PlanItem const& i : plan.items) EXPECT_TRUE(i.build) << i.what;
     EXPECT_EQ(item(plan, "alpha").reason, "1 of 4 materials are masks or blend");
     EXPECT_EQ(item(plan, "delta").reason, "2 of 4 materials are perfectly smooth");
     EXPECT_EQ(item(plan, "emissive").reason, "2 triangles emit");
+    EXPECT_EQ(item(plan, "parts renewed").reason, "2 of 8 triangles in 1 of 4 instances can move: clip 'slide'");
 }
 
 TEST(Plan, OnlyMaterialsInUseCount)

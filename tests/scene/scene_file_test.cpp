@@ -149,6 +149,14 @@ TEST(SceneFile, ClipsAreChosen)
     expect_refusal(model + "run}]", {"test.yaml:1:", "'run'", "walk"});
 }
 
+TEST(SceneFile, SkinningIsChosen)
+{
+    std::string const model = "models: [{generate: {kind: atrium, bays: 1, detail: 0.2}";
+    EXPECT_EQ(parse(model + "}]").skins.at(0).method, SkinningMethod::linear);
+    EXPECT_EQ(parse(model + ", skinning: dual_quaternion}]").skins.at(0).method, SkinningMethod::dual_quaternion);
+    expect_refusal(model + ", skinning: cubic}]", {"test.yaml:1:", "'cubic'", "linear"});
+}
+
 TEST(SceneFile, OverridesReachWhatTheyMatch)
 {
     Scene const scene = parse(R"(

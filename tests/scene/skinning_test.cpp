@@ -42,10 +42,10 @@ DeformedVertices deform_first(Scene const& scene)
 TEST(Skinning, TwoJointsByHand)
 {
     DeformedVertices const v = deform_first(bar_scene());
-    EXPECT_LT(glm::distance(v.positions[0], dvec3{0, 0, 0}), 1e-9);
-    EXPECT_LT(glm::distance(v.positions[1], dvec3{1, 1, 0}), 1e-9);
-    EXPECT_LT(glm::distance(v.positions[2], 0.5 * (dvec3{2, 1, 0} + dvec3{0, 1, 0})), 1e-9);
-    EXPECT_LT(glm::distance(v.positions[3], dvec3{0, 1, 0}), 1e-9);
+    EXPECT_LT(glm::distance(dvec3(v.positions[0]), dvec3{0, 0, 0}), 1e-9);
+    EXPECT_LT(glm::distance(dvec3(v.positions[1]), dvec3{1, 1, 0}), 1e-9);
+    EXPECT_LT(glm::distance(dvec3(v.positions[2]), 0.5 * (dvec3{2, 1, 0} + dvec3{0, 1, 0})), 1e-9);
+    EXPECT_LT(glm::distance(dvec3(v.positions[3]), dvec3{0, 1, 0}), 1e-9);
     for (vec3 const n : v.normals) EXPECT_LT(glm::distance(n, vec3{0, 0, 1}), 1e-6f);
 }
 
@@ -56,7 +56,7 @@ TEST(Skinning, TheNodesOwnTransformDoesNotCount)
     scene.nodes[0].translation = {100, 200, 300};
     scene.nodes[0].scale = {-5, 5, 5};
     DeformedVertices const v = deform_first(scene);
-    EXPECT_LT(glm::distance(v.positions[1], dvec3{1, 1, 0}), 1e-9);
+    EXPECT_LT(glm::distance(dvec3(v.positions[1]), dvec3{1, 1, 0}), 1e-9);
     EXPECT_FALSE(v.mirrored);
 }
 
@@ -64,7 +64,7 @@ TEST(Skinning, WeightsAreRenormalised)
 {
     Scene scene = bar_scene();
     for (vec4& w : scene.meshes[0].weights) w *= 0.9f;
-    EXPECT_LT(glm::distance(deform_first(scene).positions[1], dvec3{1, 1, 0}), 1e-6);
+    EXPECT_LT(glm::distance(dvec3(deform_first(scene).positions[1]), dvec3{1, 1, 0}), 1e-6);
 }
 
 TEST(Skinning, JointsThatMirrorTurnTheWinding)
@@ -90,7 +90,7 @@ TEST(Skinning, MorphTargetsAddUp)
     scene.nodes[0].morph_weights = {0.5f, 1};
     scene.nodes[0].translation = {0, 10, 0};
     DeformedVertices const v = deform_first(scene);
-    EXPECT_LT(glm::distance(v.positions[0], dvec3{0.5, 10, 2}), 1e-9);
+    EXPECT_LT(glm::distance(dvec3(v.positions[0]), dvec3{0.5, 10, 2}), 1e-9);
     for (vec3 const n : v.normals) EXPECT_LT(glm::distance(n, vec3{1, 0, 0}), 1e-6f);
 }
 

@@ -119,6 +119,8 @@ private:
         }
         if (m.has("name")) name = m.at("name").text();
         if (m.has("animation")) choose_animation(m.at("animation"), part);
+        if (m.has("skinning"))
+            for (Skin& skin : part.skins) skin.method = skinning_method(m.at("skinning"));
 
         name_default_material(part);
         if (part.environment && scene_.environment)
@@ -161,6 +163,15 @@ private:
             throw r.error("the axis is zero", "nothing can turn about it", "axis: [0, 1, 0]");
         if (!r.has("degrees")) throw r.error("a rotation needs degrees", "it is not known how far", "degrees: 90");
         return glm::rotate(dmat4(1), glm::radians(r.at("degrees").number(-1e6, 1e6)), glm::normalize(axis));
+    }
+
+    static SkinningMethod skinning_method(YamlReader const& s)
+    {
+        std::string const method = s.text();
+        if (method == "linear") return SkinningMethod::linear;
+        if (method == "dual_quaternion") return SkinningMethod::dual_quaternion;
+        throw s.error("there is no skinning '" + method.substr(0, 64) + "'", "it is not known here",
+                      "choose linear or dual_quaternion");
     }
 
     static void choose_animation(YamlReader const& a, Scene& part)

@@ -6,7 +6,7 @@ std::map<std::string, std::set<std::string>> const& scene_file_keys()
 {
     static std::map<std::string, std::set<std::string>> const keys{
         {"scene", {"models", "environment", "lights", "cameras", "materials"}},
-        {"model", {"name", "file", "generate", "translate", "rotate", "scale", "animation"}},
+        {"model", {"name", "file", "generate", "translate", "rotate", "scale", "animation", "skinning"}},
         {"generate", {"kind", "bays", "detail", "figure", "sun_elevation", "sun_azimuth", "triangles", "seed"}},
         {"rotation", {"axis", "degrees"}},
         {"animation", {"clip", "offset", "speed", "loop"}},
