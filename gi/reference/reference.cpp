@@ -12,7 +12,8 @@
 namespace gi {
 namespace {
 
-void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t paths)
+void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t first_path,
+                std::uint32_t paths)
 {
     tbb::combinable<PathCounts> counts;
     int const columns = (sums.width + kTile - 1) / kTile, rows = (sums.height + kTile - 1) / kTile;
@@ -25,7 +26,8 @@ void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, st
         for (std::uint32_t i = 0; i < paths; ++i) {
             batch.clear();
             for (int y = top; y < bottom; ++y)
-                for (int x = left; x < right; ++x) batch.push_back(tracer.start(x, y, sums.paths + i));
+                for (int x = left; x < right; ++x)
+                    batch.push_back(tracer.start(x, y, first_path + sums.paths + i));
             tracer.trace(batch, local);
             auto next = batch.begin();
             for (int y = top; y < bottom; ++y)
@@ -37,31 +39,86 @@ void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, st
     sums.counts += counts.combine([](PathCounts a, PathCounts const& b) { return a += b; });
 }
 
+/// Rays through a world as it is.
+struct Structures {
+    std::unique_ptr<ExactVisibility> visibility;
+
+    void build(World const& world, int threads, Report& report)
+    {
+        StageTimer const timer(report, "build (Embree BVH)");
+        visibility = std::make_unique<ExactVisibility>(world, plan_scene(world).alpha_tests, threads);
+    }
+    PathTracer<ExactVisibility> tracer(World const& world, Camera const& camera, RenderSettings const& s) const
+    {
+        return {view(world), *visibility, camera_rays(camera, s.width, s.height, world.origin), s.bounces, s.seed,
+                s.filter,    s.width};
+    }
+};
+
+/// @param print  of the scene and settings  @param first_path  of each pixel
+RenderResult trace_all(PassLoop& loop, PathTracer<ExactVisibility> const& tracer, std::uint64_t print,
+                       std::uint32_t first_path, dvec3 origin)
+{
+    RenderResult result = loop.run(
+        print, [&](Accumulator& sums, std::uint32_t paths) { trace_pass(tracer, sums, first_path, paths); });
+    PathCounts const& total = loop.sums().counts;
+    result.rays = double(total.nearest_rays + total.shadow_rays);
+    result.picture = loop.sums().picture(origin);
+    return result;
+}
+
+class ReferenceFrames : public FrameRenderer {
+public:
+    ReferenceFrames(MovingWorld const& world, RenderSettings const& settings, Report& report)
+        : world_(world), settings_(settings), report_(report)
+    {
+    }
+    void changed(Changes const& changes) override
+    {
+        if (changes.materials || changes.coverage) structures_.visibility.reset();
+        if (!changes.geometry || !structures_.visibility) return;
+        StageTimer const timer(report_, "BVH of what moves (Embree)");
+        structures_.visibility->moved(world_.world());
+    }
+    RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress) override
+    {
+        PassLoop loop(settings_, stop, progress, report_);
+        World const& world = world_.world();
+        if (!structures_.visibility) structures_.build(world, settings_.threads, report_);
+        RenderResult result =
+            trace_all(loop, structures_.tracer(world, camera, settings_), 0, paths_, world.origin);
+        paths_ += result.paths;
+        return result;
+    }
+
+private:
+    MovingWorld const& world_;
+    RenderSettings settings_;
+    Report& report_;
+    Structures structures_;
+    std::uint32_t paths_ = 0; ///< so far, of all frames
+};
+
 } // namespace
 
 RenderResult render_reference(World const& world, Camera const& camera, RenderSettings const& settings,
                               StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
     PassLoop loop(settings, stop, progress, report);
-    ScenePlan const plan = plan_scene(world);
-    std::unique_ptr<ExactVisibility> visibility;
-    {
-        StageTimer const timer(report, "build (Embree BVH)");
-        visibility = std::make_unique<ExactVisibility>(world, plan.alpha_tests, settings.threads);
-    }
-    PathTracer<ExactVisibility> const tracer{
-        view(world),      *visibility,   camera_rays(camera, settings.width, settings.height, world.origin),
-        settings.bounces, settings.seed, settings.filter,
-        settings.width};
+    Structures structures;
+    structures.build(world, settings.threads, report);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, "reference") : 0;
-    RenderResult result =
-        loop.run(print, [&](Accumulator& sums, std::uint32_t paths) { trace_pass(tracer, sums, paths); });
+    RenderResult result = trace_all(loop, structures.tracer(world, camera, settings), print, 0, world.origin);
     PathCounts const& total = loop.sums().counts;
     report.count("closest-hit rays", double(total.nearest_rays));
     report.count("shadow rays", double(total.shadow_rays));
-    result.rays = double(total.nearest_rays + total.shadow_rays);
-    result.picture = loop.sums().picture(world.origin);
     return result;
+}
+
+std::unique_ptr<FrameRenderer> start_reference_frames(MovingWorld const& world, Camera const&,
+                                                      RenderSettings const& settings, Report& report)
+{
+    return std::make_unique<ReferenceFrames>(world, settings, report);
 }
 
 } // namespace gi

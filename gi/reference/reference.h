@@ -1,8 +1,7 @@
 #pragma once
 // The reference path tracer: slow, obvious, judges the others. See path_tracer.h for the estimator.
 
-#include "gi/image/render_settings.h"
-#include "gi/scene/world.h"
+#include "gi/transport/frame_renderer.h"
 
 namespace gi {
 
@@ -10,5 +9,9 @@ namespace gi {
 /// divided into, or interruptions that were resumed. Throws InputError on a checkpoint that does not fit.
 RenderResult render_reference(World const& world, Camera const& camera, RenderSettings const& settings,
                               StopRequest const& stop, RenderProgress const& progress, Report& report);
+
+/// See StartFrames. Every frame has paths of its own; BVHs are built anew where something has moved.
+std::unique_ptr<FrameRenderer> start_reference_frames(MovingWorld const& world, Camera const& camera,
+                                                      RenderSettings const& settings, Report& report);
 
 } // namespace gi

@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 #include "gi/reference/reference.h"
+#include "gi/slhb/frames.h"
 #include "gi/slhb/slhb.h"
 
 #include <array>
@@ -11,8 +12,10 @@ namespace gi {
 namespace {
 
 constexpr std::array kMethods{
-    Method{"reference", "path tracing with exact rays (Embree): slow, unbiased, judges the others", render_reference},
-    Method{"slhb", "path tracing through spherical layered hit buffers: look-ups instead of rays", render_slhb},
+    Method{"reference", "path tracing with exact rays (Embree): slow, unbiased, judges the others",
+           render_reference, start_reference_frames},
+    Method{"slhb", "path tracing through spherical layered hit buffers: look-ups instead of rays", render_slhb,
+           start_slhb_frames},
 };
 
 } // namespace

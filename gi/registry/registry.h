@@ -2,8 +2,7 @@
 // Every light-transport method by name. One line here gives a method its place on the command line, in the
 // benchmarks, in studies and in --help.
 
-#include "gi/image/render_settings.h"
-#include "gi/scene/world.h"
+#include "gi/transport/frame_renderer.h"
 
 #include <span>
 #include <string_view>
@@ -17,6 +16,7 @@ struct Method {
     std::string_view name;
     std::string_view summary; ///< one line for --help
     RenderFunction render;
+    StartFrames frames;
 };
 
 std::span<Method const> methods();

@@ -221,12 +221,17 @@ void SlhbRenderer::trace(std::uint32_t index, Accumulator& sums, bool walks)
             sums.pixels[p].add(samples_[p]);
         }
     });
+    double direct_s = 0, indirect_s = 0;
     counts.combine_each([&](WorkCounts const& c) {
+        direct_s += c.slhb.direct_s;
+        indirect_s += c.slhb.indirect_s;
         sums.counts += c.paths;
         done_.queries += c.slhb.queries;
         done_.exact_rays += c.slhb.exact_rays;
         done_.shadow_lookups += c.slhb.shadow_lookups;
     });
+    report_.add_time("direct light, thread seconds", direct_s);
+    report_.add_time("indirect light, thread seconds", indirect_s);
 }
 
 double SlhbRenderer::rays() const { return double(done_.queries + done_.shadow_lookups + done_.exact_rays); }

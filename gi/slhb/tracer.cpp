@@ -7,6 +7,7 @@
 #include "gi/transport/sampling.h"
 
 #include <algorithm>
+#include <chrono>
 
 namespace gi {
 namespace {
@@ -305,6 +306,10 @@ void SlhbTracer::add_exactly(Pass const& pass, std::span<Unshadowed const> direc
 void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
                        std::span<Ending> endings, PathCounts& paths, SlhbCounts& counts) const
 {
+    using Clock = std::chrono::steady_clock;
+    auto const begun = Clock::now();
+    auto turned = begun; // from direct to indirect light
+    bool const from_camera = starts.empty() || !starts[0].on_layer;
     thread_local std::vector<State> states;
     thread_local std::vector<Vertex> vertices;
     thread_local std::vector<RayQuery> rays;
@@ -355,6 +360,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
                 if (d.lamp->shadow.lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
         }
         direct.clear();
+        if (from_camera && turned == begun) turned = Clock::now();
         active = going;
         std::span<Vertex> const now(vertices.data(), active);
         if (parts_.queries)
@@ -398,6 +404,8 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
         }
         active = left;
     }
+    counts.direct_s += std::chrono::duration<double>(turned - begun).count();
+    counts.indirect_s += std::chrono::duration<double>(Clock::now() - turned).count();
     for (PathSample& s : samples)
         for (vec3& part : s.radiance)
             if (!all_finite(part)) {

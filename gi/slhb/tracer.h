@@ -23,6 +23,7 @@ namespace gi {
 /// Work done, for --stats.
 struct SlhbCounts {
     std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0;
+    double direct_s = 0, indirect_s = 0; ///< of all threads: first surfaces with their direct light; what follows
 };
 
 /// Where a path begins: at what the camera sees, or on a layer that several paths have met.

@@ -1,0 +1,85 @@
+#include "gi/slhb/frames.h"
+
+#include "gi/base/error.h"
+#include "gi/slhb/renderer.h"
+#include "gi/slhb/settings.h"
+#include "gi/transport/pass_loop.h"
+
+#include <optional>
+#include <tbb/global_control.h>
+
+namespace gi {
+namespace {
+
+class SlhbFrames : public FrameRenderer {
+public:
+    SlhbFrames(MovingWorld const& world, Camera const& camera, RenderSettings const& settings, Report& report)
+        : world_(world), settings_(settings), report_(report)
+    {
+        if (settings.slhb.space == Space::device)
+            throw InputError("--device cuda with frames that follow each other", "its kernels render one picture",
+                             "leave it out, or render with --device cpu");
+        if (settings.threads > 0)
+            threads_.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(settings.threads));
+        if (settings.slhb.packed && world.world().static_triangles < world.world().triangles.size())
+            throw InputError("--packed with something that moves",
+                             "the range of packed depths is that of what stays", "leave out --packed");
+        start(camera);
+    }
+
+    void changed(Changes const& changes) override
+    {
+        if (changes.materials || changes.coverage || changes.environment) {
+            restart_ = true; // also the plan may be another one
+            return;
+        }
+        if (changes.geometry || changes.lights || changes.light_select)
+            renderer_->world_moved(changes.geometry, changes.lights || changes.light_select);
+    }
+
+    RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress) override
+    {
+        PassLoop loop(settings_, stop, progress, report_);
+        if (restart_) start(camera);
+        renderer_->set_camera(camera);
+        double const earlier = renderer_->rays();
+        RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
+            for (std::uint32_t i = 0; i < paths; ++i) renderer_->pass(passes_++, sums);
+        });
+        result.rays = renderer_->rays() - earlier;
+        result.options = as_options(settings_.slhb);
+        result.picture = loop.sums().picture(world_.world().origin);
+        renderer_->add_motion(result.picture);
+        renderer_->end_frame();
+        return result;
+    }
+
+private:
+    void start(Camera const& camera)
+    {
+        World const& world = world_.world();
+        TriangleSoup soup = make_soup(world);
+        settings_.slhb = choose_settings(settings_, world, soup);
+        renderer_.emplace(world, camera, settings_, std::move(soup),
+                          SlhbRenderer::Motion{world.static_triangles, {}}, report_);
+        restart_ = false;
+    }
+
+    MovingWorld const& world_;
+    RenderSettings settings_;
+    Report& report_;
+    std::optional<tbb::global_control> threads_;
+    std::optional<SlhbRenderer> renderer_;
+    std::uint32_t passes_ = 0;
+    bool restart_ = false;
+};
+
+} // namespace
+
+std::unique_ptr<FrameRenderer> start_slhb_frames(MovingWorld const& world, Camera const& camera,
+                                                 RenderSettings const& settings, Report& report)
+{
+    return std::make_unique<SlhbFrames>(world, camera, settings, report);
+}
+
+} // namespace gi
