@@ -57,26 +57,31 @@ SceneSummary summarise(World const& world)
     add("vertices", std::to_string(world.positions.size()));
     if (!world.bounds.empty()) {
         dvec3 const low = dvec3(world.bounds.low) + world.origin, high = dvec3(world.bounds.high) + world.origin;
-        add("bounds", fmt::format("{:.6g}, {:.6g}, {:.6g} to {:.6g}, {:.6g}, {:.6g} m", low.x, low.y, low.z, high.x,
-                                  high.y, high.z));
+        add("bounds", fmt::format("{:.6g}, {:.6g}, {:.6g} to {:.6g}, {:.6g}, {:.6g} m", low.x, low.y, low.z,
+                                  high.x, high.y, high.z));
     }
     add("materials", material_kinds(world));
     add("textures", fmt::format("{} ({:.1f} MiB)", scene.textures.textures.size(),
                                 double(scene.textures.texels.size() * sizeof(Rgba8)) / (1 << 20)));
     add("punctual lights", std::to_string(world.lights.size()));
     add("emissive triangles", fmt::format("{} ({:.6g} m2)", world.emitters.size(), emitting_area(world)));
-    add("environment map", scene.environment
-                               ? fmt::format("{} x {}", scene.environment->width, scene.environment->height)
-                               : "none");
+    add("environment map",
+        scene.environment ? fmt::format("{} x {}", scene.environment->width, scene.environment->height) : "none");
     add("cameras", join(world.cameras, [](Camera const& c) { return c.name; }));
     add("skins", join(scene.skins, [](Skin const& k) { return fmt::format("{} joints", k.joints.size()); }));
     std::size_t targets = 0;
     for (Mesh const& m : scene.meshes) targets += m.morph_targets.size();
     add("morph targets", std::to_string(targets));
-    add("clips",
-        join(scene.animations, [](Animation const& a) { return fmt::format("{} ({:.3g} s)", a.name, a.duration_s); }));
+    for (Animation const& a : scene.animations)
+        if (!a.channels.empty() && a.channels[0].path == ChannelPath::morph_frame)
+            add("mesh sequence",
+                fmt::format("{} ({} frames)", a.name,
+                            scene.nodes[std::size_t(a.channels[0].node)].morph_weights.size() + 1));
+    add("clips", join(scene.animations,
+                      [](Animation const& a) { return fmt::format("{} ({:.3g} s)", a.name, a.duration_s); }));
     add("playing", join(scene.playbacks, [&](Playback const& p) {
-            return scene.animations[std::size_t(p.animation)].name;
+            std::string const& name = scene.animations[std::size_t(p.animation)].name;
+            return p.weight == 1 ? name : fmt::format("{} (weight {:g})", name, p.weight);
         }));
     return s;
 }
