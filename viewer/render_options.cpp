@@ -48,6 +48,13 @@ gi::Schedule schedule_of(std::string const& name)
                                 : gi::Schedule::automatic;
 }
 
+/// The scene's name, also where it is a folder with a slash at its end.
+std::string default_out(std::string const& scene)
+{
+    std::filesystem::path const path = std::filesystem::absolute(scene).lexically_normal();
+    return (path.has_filename() ? path : path.parent_path()).stem().string() + ".exr";
+}
+
 } // namespace
 
 gi::RenderSettings make_settings(RenderOptions& o)
@@ -59,7 +66,7 @@ gi::RenderSettings make_settings(RenderOptions& o)
         if (std::find(kLayers.begin(), kLayers.end(), layer) == kLayers.end())
             throw gi::InputError("there is no layer '" + layer + "'", "--aovs names layers of the picture",
                                  fmt::format("choose from: {}", fmt::join(kLayers, ", ")));
-    if (o.out.empty() && o.png.empty()) o.out = std::filesystem::path(o.scene).stem().string() + ".exr";
+    if (o.out.empty() && o.png.empty()) o.out = default_out(o.scene);
     if (o.out.empty() && (o.resume || o.half || !o.layers.empty()))
         throw gi::InputError("--resume, --half and --aovs are about an EXR", "only --png is given",
                              "add --out F.exr");
@@ -192,7 +199,9 @@ void declare_slhb(CLI::App& c, RenderOptions& o)
 
 void declare_options(CLI::App& c, RenderOptions& o)
 {
-    c.add_option("SCENE", o.scene, "glTF, YAML, OBJ, PLY, FBX, ... file, or atrium, cornell")->required();
+    c.add_option("SCENE", o.scene,
+                 "glTF, YAML, OBJ, PLY, FBX, ... file, a folder of OBJ or PLY frames, or atrium, cornell")
+        ->required();
     std::string known;
     for (gi::Method const& m : gi::methods()) known += fmt::format("\n  {}: {}", m.name, m.summary);
     c.add_option("--method", o.method, "how light is computed:" + known)->capture_default_str();

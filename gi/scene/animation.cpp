@@ -53,6 +53,81 @@ struct LocalTransform {
     std::optional<dmat4> matrix;
 };
 
+/// What the clips say of one node, summed with their weights.
+struct Blend {
+    dvec3 translation{0}, scale{0};
+    dquat rotation{0, 0, 0, 0}, first_rotation{1, 0, 0, 0};
+    std::vector<double> morph;
+    double translation_weight = 0, scale_weight = 0, rotation_weight = 0, morph_weight = 0;
+};
+
+void add_channel(AnimationChannel const& channel, double time_s, double weight, std::size_t targets, Blend& to)
+{
+    float v[4];
+    switch (channel.path) {
+    case ChannelPath::translation:
+        sample_channel(channel, time_s, 3, v);
+        to.translation += weight * dvec3{v[0], v[1], v[2]};
+        to.translation_weight += weight;
+        break;
+    case ChannelPath::scale:
+        sample_channel(channel, time_s, 3, v);
+        to.scale += weight * dvec3{v[0], v[1], v[2]};
+        to.scale_weight += weight;
+        break;
+    case ChannelPath::rotation: {
+        sample_channel(channel, time_s, 4, v);
+        dquat const q = to_quaternion(v);
+        if (to.rotation_weight == 0) to.first_rotation = q;
+        to.rotation += (glm::dot(q, to.first_rotation) < 0 ? -weight : weight) * q;
+        to.rotation_weight += weight;
+        break;
+    }
+    case ChannelPath::morph_weights: {
+        std::vector<float> values(targets);
+        sample_channel(channel, time_s, targets, values.data());
+        to.morph.resize(targets);
+        for (std::size_t i = 0; i < targets; ++i) to.morph[i] += weight * double(values[i]);
+        to.morph_weight += weight;
+        break;
+    }
+    case ChannelPath::morph_frame:
+        sample_channel(channel, time_s, 1, v);
+        to.morph.resize(targets);
+        add_frame(double(v[0]), weight, to.morph);
+        to.morph_weight += weight;
+        break;
+    }
+}
+
+/// Parts that no clip moves stay as they are.
+void apply(Blend const& blend, LocalTransform& local, std::vector<float>& morph_weights)
+{
+    if (blend.translation_weight > 0) local.translation = blend.translation / blend.translation_weight;
+    if (blend.scale_weight > 0) local.scale = blend.scale / blend.scale_weight;
+    if (blend.rotation_weight > 0) local.rotation = glm::normalize(blend.rotation / blend.rotation_weight);
+    if (blend.translation_weight + blend.scale_weight + blend.rotation_weight > 0) local.matrix.reset();
+    if (blend.morph_weight > 0)
+        for (std::size_t i = 0; i < morph_weights.size(); ++i)
+            morph_weights[i] = float(blend.morph[i] / blend.morph_weight);
+}
+
+std::vector<Blend> blend_clips(Scene const& scene, double time_s)
+{
+    std::vector<Blend> blends(scene.nodes.size());
+    for (Playback const& playback : scene.playbacks) {
+        if (!(playback.weight > 0)) continue;
+        Animation const& clip = scene.animations[std::size_t(playback.animation)];
+        double const end_s = playback.loop ? clip.duration_s : clip.duration_s - clip.closing_s;
+        double const t = local_time(playback, end_s, time_s);
+        for (AnimationChannel const& channel : clip.channels) {
+            auto const node = std::size_t(channel.node);
+            add_channel(channel, t, playback.weight, scene.nodes[node].morph_weights.size(), blends[node]);
+        }
+    }
+    return blends;
+}
+
 } // namespace
 
 void sample_channel(AnimationChannel const& channel, double time_s, std::size_t count, float* out)
@@ -82,6 +157,15 @@ void sample_channel(AnimationChannel const& channel, double time_s, std::size_t 
     if (rotation) store(to_quaternion(out), out);
 }
 
+void add_frame(double frame, double weight, std::vector<double>& morph)
+{
+    auto const frames = double(morph.size() + 1);
+    double const wrapped = frame - std::floor(frame / frames) * frames, fraction = wrapped - std::floor(wrapped);
+    auto const first = std::size_t(wrapped) % (morph.size() + 1), second = (first + 1) % (morph.size() + 1);
+    if (first > 0) morph[first - 1] += weight * (1 - fraction);
+    if (second > 0) morph[second - 1] += weight * fraction;
+}
+
 double local_time(Playback const& playback, double duration_s, double time_s)
 {
     double const t = playback.offset_s + playback.speed * time_s;
@@ -101,35 +185,10 @@ Pose evaluate_pose(Scene const& scene, std::optional<double> time_s)
         local[i] = {node.translation, node.scale, node.rotation, node.matrix};
         pose.morph_weights[i] = node.morph_weights;
     }
-    if (time_s)
-        for (Playback const& playback : scene.playbacks) {
-            Animation const& clip = scene.animations[std::size_t(playback.animation)];
-            double const t = local_time(playback, clip.duration_s, *time_s);
-            for (AnimationChannel const& channel : clip.channels) {
-                LocalTransform& to = local[std::size_t(channel.node)];
-                float v[4];
-                switch (channel.path) {
-                case ChannelPath::translation:
-                    sample_channel(channel, t, 3, v);
-                    to.translation = {v[0], v[1], v[2]};
-                    break;
-                case ChannelPath::scale:
-                    sample_channel(channel, t, 3, v);
-                    to.scale = {v[0], v[1], v[2]};
-                    break;
-                case ChannelPath::rotation:
-                    sample_channel(channel, t, 4, v);
-                    to.rotation = to_quaternion(v);
-                    break;
-                case ChannelPath::morph_weights: {
-                    auto& weights = pose.morph_weights[std::size_t(channel.node)];
-                    sample_channel(channel, t, weights.size(), weights.data());
-                    break;
-                }
-                }
-                if (channel.path != ChannelPath::morph_weights) to.matrix.reset();
-            }
-        }
+    if (time_s) {
+        std::vector<Blend> const blends = blend_clips(scene, *time_s);
+        for (std::size_t i = 0; i < n; ++i) apply(blends[i], local[i], pose.morph_weights[i]);
+    }
     pose.world_from_node.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         LocalTransform const& t = local[i];

@@ -18,10 +18,18 @@ struct Pose {
 /// `count` numbers per key into `out`. Rotations come out as unit quaternions x, y, z, w.
 void sample_channel(AnimationChannel const& channel, double time_s, std::size_t count, float* out);
 
+/// Add `weight` times the morph weights of a fractional frame (ChannelPath::morph_frame) to `morph`, one per
+/// target.
+void add_frame(double frame, double weight, std::vector<double>& morph);
+
 /// Local time of a playback, s.
 double local_time(Playback const& playback, double duration_s, double time_s);
 
-/// Without a time the nodes rest as the file has them.
+/// Without a time the nodes rest as the file has them. Several clips that move one part of a node are blended
+/// (Playback): translations, scales and morph weights linearly; rotations by the normalised weighted sum of their
+/// quaternions in the hemisphere of the first. Unlike repeated slerp that sum does not depend on the order of more
+/// than two clips, never vanishes and costs no trigonometry; two rotations 90 degrees apart are blended within 1
+/// degree of slerp, 180 degrees apart within 9.
 Pose evaluate_pose(Scene const& scene, std::optional<double> time_s);
 
 } // namespace gi

@@ -1,6 +1,7 @@
 #pragma once
 // One door to every scene format. The extension chooses the reader: .gltf/.glb tinygltf, .yaml/.yml scene files,
-// everything else Assimp. A name without a file ("atrium", "cornell") is a scene that the project generates.
+// everything else Assimp; a folder of OBJ or PLY files (or its sequence.json) is a mesh sequence. A name without a
+// file ("atrium", "cornell") is a scene that the project generates.
 
 #include "gi/base/report.h"
 #include "gi/scene/scene.h"
@@ -18,6 +19,10 @@ Scene load_gltf(std::filesystem::path const& file, Report& report);
 Scene parse_gltf(unsigned char const* bytes, std::size_t size, std::filesystem::path const& folder,
                  std::string const& name, Report& report);
 Scene load_assimp(std::filesystem::path const& file, Report& report);
+/// OBJ or PLY files of equal topology, one per frame, in the order of their names; sequence_timing.h says when
+/// each is seen. Between frames positions and normals are interpolated linearly; normals that files do not have
+/// are made.
+Scene load_mesh_sequence(std::filesystem::path const& folder, Report& report);
 Scene load_scene_file(std::filesystem::path const& yaml, Report& report);
 /// `name` is used in messages, relative paths are looked up in `folder`.
 Scene parse_scene_file(std::string const& text, std::filesystem::path const& folder, std::string const& name,

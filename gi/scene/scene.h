@@ -58,7 +58,10 @@ struct Skin {
     SkinningMethod method = SkinningMethod::linear;
 };
 
-enum class ChannelPath : std::uint8_t { translation, rotation, scale, morph_weights };
+/// `morph_frame` has one number f per key: morph target f - 1 alone, target 0 being the mesh itself; between whole
+/// numbers the two around it, and one beyond the last target is the mesh again. It takes a key per frame where
+/// morph_weights would take one per pair of frames.
+enum class ChannelPath : std::uint8_t { translation, rotation, scale, morph_weights, morph_frame };
 enum class Interpolation : std::uint8_t { step, linear, cubic_spline };
 
 /// Key k of a channel with n components has value values[k*n ..]; cubic spline stores in-tangent, value,
@@ -74,14 +77,19 @@ struct AnimationChannel {
 struct Animation {
     std::string name;
     std::vector<AnimationChannel> channels;
-    double duration_s = 0;
+    double duration_s = 0; ///< period of a clip that loops
+    double closing_s = 0;  ///< its last part, which leads from the last key back to the first; only loops play it
 };
 
 /// A clip that plays: local time = offset + speed * t, wrapped into the clip if it loops, else held at its ends.
+/// Where several clips move the same part of a node, the part is their mean by weight: weights count relative to
+/// those of the other clips that move it, whatever their sum, and the rest pose never fills up. A clip of weight 0
+/// (or less) does not play.
 struct Playback {
     std::int32_t animation = -1;
     double offset_s = 0, speed = 1;
     bool loop = true;
+    double weight = 1;
 };
 
 /// A lat-long map: +Y up, u = 0.5 + atan2(x, -z) / 2 pi, v = acos(y) / pi, v = 0 in the top row.

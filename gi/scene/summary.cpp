@@ -72,10 +72,17 @@ SceneSummary summarise(World const& world)
     std::size_t targets = 0;
     for (Mesh const& m : scene.meshes) targets += m.morph_targets.size();
     add("morph targets", std::to_string(targets));
+    for (Animation const& a : scene.animations)
+        if (!a.channels.empty() && a.channels[0].path == ChannelPath::morph_frame)
+            add("mesh sequence",
+                fmt::format("{} ({} frames)", a.name,
+                            scene.nodes[std::size_t(a.channels[0].node)].morph_weights.size() + 1));
     add("clips", join(scene.animations,
                       [](Animation const& a) { return fmt::format("{} ({:.3g} s)", a.name, a.duration_s); }));
-    add("playing",
-        join(scene.playbacks, [&](Playback const& p) { return scene.animations[std::size_t(p.animation)].name; }));
+    add("playing", join(scene.playbacks, [&](Playback const& p) {
+            std::string const& name = scene.animations[std::size_t(p.animation)].name;
+            return p.weight == 1 ? name : fmt::format("{} (weight {:g})", name, p.weight);
+        }));
     return s;
 }
 

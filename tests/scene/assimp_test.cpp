@@ -317,7 +317,10 @@ TEST_F(AssimpFolder, WhatCannotBeASceneIsRefusedWithAReason)
     EXPECT_NE(refusal(write("empty.obj", "")).find("is empty"), std::string::npos);
     EXPECT_NE(refusal(write("points.obj", "v 0 0 0\nv 1 0 0\n")).find("points.obj"), std::string::npos);
     EXPECT_NE(refusal(write("what.xyzzy", "nothing known")).find("cannot be read"), std::string::npos);
-    EXPECT_NE(refusal(folder_.string()).find("folder"), std::string::npos);
+    EXPECT_NE(refusal(folder_.string()).find("empty.obj"), std::string::npos)
+        << "a folder is a sequence of frames";
+    fs::create_directories(folder_ / "bare");
+    EXPECT_NE(refusal((folder_ / "bare").string()).find("folder"), std::string::npos);
     EXPECT_NE(refusal("no_such_scene").find("atrium, cornell"), std::string::npos);
     EXPECT_NE(refusal(write("loop.off", "OFF\n99999999 99999999 0\n")), "accepted");
 }

@@ -146,6 +146,7 @@ TEST(SceneFile, ClipsAreChosen)
     EXPECT_EQ(p.offset_s, 0.5);
     EXPECT_EQ(p.speed, -2);
     EXPECT_FALSE(p.loop);
+    EXPECT_EQ(p.weight, 1);
     expect_refusal(model + "run}]", {"test.yaml:1:", "'run'", "walk"});
 }
 
@@ -155,6 +156,24 @@ TEST(SceneFile, SkinningIsChosen)
     EXPECT_EQ(parse(model + "}]").skins.at(0).method, SkinningMethod::linear);
     EXPECT_EQ(parse(model + ", skinning: dual_quaternion}]").skins.at(0).method, SkinningMethod::dual_quaternion);
     expect_refusal(model + ", skinning: cubic}]", {"test.yaml:1:", "'cubic'", "linear"});
+}
+
+TEST(SceneFile, SeveralClipsAreBlended)
+{
+    std::string const model = "models:\n  - generate: {kind: atrium, bays: 1, detail: 0.2}\n    animation:\n";
+    Scene const scene = parse(model + "      - walk\n      - {weight: 0.25, speed: 2, offset: 1}\n");
+    ASSERT_EQ(scene.playbacks.size(), 2u);
+    EXPECT_EQ(scene.playbacks[0].weight, 1);
+    EXPECT_EQ(scene.playbacks[1].animation, scene.playbacks[0].animation) << "the only clip needs no name";
+    EXPECT_EQ(scene.playbacks[1].weight, 0.25);
+    EXPECT_EQ(scene.playbacks[1].speed, 2);
+    EXPECT_TRUE(parse(model + "      []\n").playbacks.empty());
+    expect_refusal(model + "      - walk\n      - jump\n", {"test.yaml:5:9", "'jump'", "walk"});
+    expect_refusal(model + "      - {clip: walk, weight: -1}\n", {"test.yaml:4:30", "between"});
+    expect_refusal(model + "      - {clip: walk, wieght: 1}\n", {"test.yaml:4:22", "'wieght'", "weight"});
+    expect_refusal(model + "      - {clip: [walk]}\n", {"test.yaml:4:", "not text"});
+    expect_refusal("models: [{generate: {kind: cornell}, animation: {speed: 2}}]",
+                   {"test.yaml:1:", "needs a clip"});
 }
 
 TEST(SceneFile, OverridesReachWhatTheyMatch)

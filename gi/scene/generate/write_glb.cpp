@@ -3,6 +3,7 @@
 #include "gi/base/error.h"
 #include "gi/base/file.h"
 #include "gi/base/picture_file.h"
+#include "gi/scene/animation.h"
 
 #include <algorithm>
 #include <array>
@@ -335,7 +336,8 @@ private:
         for (std::size_t const i : order) {
             Animation const& a = scene_.animations[i];
             json j{{"name", a.name}};
-            for (AnimationChannel const& c : a.channels) {
+            for (AnimationChannel const& channel : a.channels) {
+                AnimationChannel const c = as_gltf(channel);
                 int const input = add_floats(c.times_s, "SCALAR");
                 root_["accessors"].back()["min"] = {c.times_s.front()};
                 root_["accessors"].back()["max"] = {c.times_s.back()};
@@ -355,6 +357,21 @@ private:
         }
     }
 
+    /// Frames as weights of every morph target, which glTF has instead.
+    AnimationChannel as_gltf(AnimationChannel const& channel) const
+    {
+        if (channel.path != ChannelPath::morph_frame) return channel;
+        AnimationChannel out = channel;
+        out.path = ChannelPath::morph_weights;
+        out.values.clear();
+        for (float const frame : channel.values) {
+            std::vector<double> weights(scene_.nodes[std::size_t(channel.node)].morph_weights.size());
+            add_frame(double(frame), 1, weights);
+            for (double const w : weights) out.values.push_back(float(w));
+        }
+        return out;
+    }
+
     Scene const& scene_;
     Report& report_;
     json root_;
@@ -366,8 +383,8 @@ private:
 std::string sky_yaml(EnvironmentMap const& map, std::string const& glb, std::string const& sky)
 {
     return fmt::format(
-        "{}\nmodels:\n  - file: \"{}\"\nenvironment:\n  file: \"{}\"\n  rotate: {}\n  scale: [{}, {}, {}]\n", kBundleMark, glb, sky,
-        glm::degrees(map.rotation_rad), map.scale.x, map.scale.y, map.scale.z);
+        "{}\nmodels:\n  - file: \"{}\"\nenvironment:\n  file: \"{}\"\n  rotate: {}\n  scale: [{}, {}, {}]\n",
+        kBundleMark, glb, sky, glm::degrees(map.rotation_rad), map.scale.x, map.scale.y, map.scale.z);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "gi/base/file.h"
 #include "gi/scene/load.h"
 #include "gi/scene/load/assimp_convert.h"
+#include "gi/scene/load/assimp_import.h"
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -25,13 +26,19 @@ constexpr rlim_t kProbeSeconds = 60;
 constexpr rlim_t kProbeBytes = rlim_t(1) << 30,
                  kProbeBytesPerByte = 64; ///< memory: some, and some per byte of file
 
-aiScene const* import(Assimp::Importer& importer, std::filesystem::path const& file)
+unsigned steps(AssimpFaces faces)
+{
+    if (faces == AssimpFaces::polygons) return 0;
+    unsigned const cut = aiProcess_Triangulate | aiProcess_SortByPType;
+    return faces == AssimpFaces::merged ? cut | aiProcess_JoinIdenticalVertices : cut;
+}
+
+aiScene const* import(Assimp::Importer& importer, std::filesystem::path const& file, AssimpFaces faces)
 {
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     importer.SetPropertyInteger(AI_CONFIG_PP_LBW_MAX_WEIGHTS, 4);
-    return importer.ReadFile(file.string(),
-                             aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+    return importer.ReadFile(file.string(), steps(faces));
 }
 
 /// Address space of this process, bytes.
@@ -43,10 +50,10 @@ rlim_t used_memory()
 }
 
 /// Why the file cannot be imported; empty where it can.
-std::string try_import(Assimp::Importer& importer, std::filesystem::path const& file)
+std::string try_import(Assimp::Importer& importer, std::filesystem::path const& file, AssimpFaces faces)
 {
     try {
-        if (import(importer, file) != nullptr) return {};
+        if (import(importer, file, faces) != nullptr) return {};
         std::string const reason = importer.GetErrorString();
         return reason.empty() ? "Assimp gives no reason" : reason;
     } catch (std::exception const& e) {
@@ -54,7 +61,8 @@ std::string try_import(Assimp::Importer& importer, std::filesystem::path const& 
     }
 }
 
-[[noreturn]] void import_with_limits(std::filesystem::path const& file, rlim_t most_memory, int reason_pipe)
+[[noreturn]] void import_with_limits(std::filesystem::path const& file, AssimpFaces faces, rlim_t most_memory,
+                                     int reason_pipe)
 {
     rlimit const time{kProbeSeconds, kProbeSeconds}, none{0, 0};
     setrlimit(RLIMIT_CPU, &time);
@@ -68,13 +76,13 @@ std::string try_import(Assimp::Importer& importer, std::filesystem::path const& 
     if (int const null = open("/dev/null", O_WRONLY); null >= 0) dup2(null, STDERR_FILENO);
     for (int const s : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGINT, SIGTERM}) signal(s, SIG_DFL);
     Assimp::Importer importer;
-    std::string const reason = try_import(importer, file).substr(0, 4096);
+    std::string const reason = try_import(importer, file, faces).substr(0, 4096);
     bool const told = write(reason_pipe, reason.data(), reason.size()) == ssize_t(reason.size());
     _exit(reason.empty() && told ? 0 : 1);
 }
 
 /// Throws InputError where the file cannot be read within the limits, or reading it kills or stalls the reader.
-void probe(std::filesystem::path const& file, std::size_t file_bytes)
+void probe(std::filesystem::path const& file, AssimpFaces faces, std::size_t file_bytes)
 {
     auto const bad = [&](std::string const& why) {
         return InputError("'" + file.string() + "' cannot be read", why,
@@ -84,7 +92,7 @@ void probe(std::filesystem::path const& file, std::size_t file_bytes)
     int ends[2];
     if (pipe(ends) != 0) throw bad("there is no pipe to be had for its reader");
     pid_t const child = fork();
-    if (child == 0) import_with_limits(file, most_memory, ends[1]);
+    if (child == 0) import_with_limits(file, faces, most_memory, ends[1]);
     close(ends[1]);
     std::string reason;
     char chunk[4096];
@@ -105,16 +113,25 @@ void probe(std::filesystem::path const& file, std::size_t file_bytes)
 
 } // namespace
 
-Scene load_assimp(std::filesystem::path const& file, Report& report)
+void import_assimp(std::filesystem::path const& file, AssimpFaces faces,
+                   std::function<void(aiScene const&)> const& use)
 {
     std::size_t const file_bytes = read_bytes(file).size();
     if (file_bytes == 0)
         throw InputError("'" + file.string() + "' is empty", "there is nothing to load", "export it again");
-    probe(file, file_bytes);
+    probe(file, faces, file_bytes);
     Assimp::Importer importer;
-    std::string const reason = try_import(importer, file);
+    std::string const reason = try_import(importer, file, faces);
     if (!reason.empty()) throw InputError("'" + file.string() + "' cannot be read", reason, "export it again");
-    return convert_assimp(*importer.GetScene(), file, report);
+    use(*importer.GetScene());
+}
+
+Scene load_assimp(std::filesystem::path const& file, Report& report)
+{
+    Scene scene;
+    import_assimp(file, AssimpFaces::merged,
+                  [&](aiScene const& source) { scene = convert_assimp(source, file, report); });
+    return scene;
 }
 
 } // namespace gi

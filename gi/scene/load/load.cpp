@@ -14,12 +14,13 @@ Scene load_scene(std::string const& file_or_name, Report& report)
     if (!std::filesystem::exists(file, error)) {
         if (file_or_name == "atrium") return generate_atrium({});
         if (file_or_name == "cornell") return generate_cornell();
-        throw InputError("there is no scene '" + file_or_name + "'",
-                         "no such file, and no built-in scene of that name",
-                         "give a glTF, YAML, OBJ, PLY, FBX, ... file, or one of: atrium, cornell");
+        throw InputError(
+            "there is no scene '" + file_or_name + "'", "no such file, and no built-in scene of that name",
+            "give a glTF, YAML, OBJ, PLY, FBX, ... file, a folder of frames, or one of: atrium, cornell");
     }
-    if (std::filesystem::is_directory(file, error))
-        throw InputError("'" + file_or_name + "' is a folder", "a scene is a file", "name the scene file in it");
+    if (std::filesystem::is_directory(file, error)) return load_mesh_sequence(file, report);
+    if (file.filename() == "sequence.json")
+        return load_mesh_sequence(file.has_parent_path() ? file.parent_path() : ".", report);
     std::string extension = file.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return char(std::tolower(c)); });

@@ -4,6 +4,7 @@
 #include "gi/base/file.h"
 #include "gi/scene/generate.h"
 #include "gi/scene/load.h"
+#include "gi/scene/load/scene_file_animation.h"
 #include "gi/scene/load/scene_file_keys.h"
 #include "gi/scene/load/scene_file_light.h"
 #include "gi/scene/load/scene_file_material.h"
@@ -172,36 +173,6 @@ private:
         if (method == "dual_quaternion") return SkinningMethod::dual_quaternion;
         throw s.error("there is no skinning '" + method.substr(0, 64) + "'", "it is not known here",
                       "choose linear or dual_quaternion");
-    }
-
-    static void choose_animation(YamlReader const& a, Scene& part)
-    {
-        Playback playback;
-        std::string clip;
-        if (a.is_text()) {
-            clip = a.text();
-            if (clip == "none") {
-                part.playbacks.clear();
-                return;
-            }
-        } else {
-            check_keys(a, "animation");
-            if (!a.has("clip"))
-                throw a.error("an animation needs a clip", "it is not known which one", "clip: Walk");
-            clip = a.at("clip").text();
-            if (a.has("offset")) playback.offset_s = a.at("offset").number(-1e6, 1e6);
-            if (a.has("speed")) playback.speed = a.at("speed").number(-1e3, 1e3);
-            if (a.has("loop")) playback.loop = a.at("loop").boolean();
-        }
-        std::string known;
-        for (std::size_t i = 0; i < part.animations.size(); ++i) {
-            if (part.animations[i].name == clip) playback.animation = std::int32_t(i);
-            known += (known.empty() ? "" : ", ") + part.animations[i].name;
-        }
-        if (playback.animation < 0)
-            throw a.error("there is no clip '" + clip.substr(0, 64) + "'", "the model does not have it",
-                          known.empty() ? "it has none" : "choose one of: " + known);
-        part.playbacks = {playback};
     }
 
     void set_environment(YamlReader const& e)

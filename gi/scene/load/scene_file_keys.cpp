@@ -9,7 +9,7 @@ std::map<std::string, std::set<std::string>> const& scene_file_keys()
         {"model", {"name", "file", "generate", "translate", "rotate", "scale", "animation", "skinning"}},
         {"generate", {"kind", "bays", "detail", "figure", "sun_elevation", "sun_azimuth", "triangles", "seed"}},
         {"rotation", {"axis", "degrees"}},
-        {"animation", {"clip", "offset", "speed", "loop"}},
+        {"animation", {"clip", "offset", "speed", "loop", "weight"}},
         {"environment", {"file", "color", "rotate", "scale"}},
         {"point_light", {"type", "position", "intensity", "range"}},
         {"spot_light", {"type", "position", "direction", "target", "intensity", "range", "cone"}},

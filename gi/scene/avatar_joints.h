@@ -1,0 +1,38 @@
+#pragma once
+// Which joints of a skeleton are head, arms and hands.
+
+#include "gi/scene/scene.h"
+
+namespace gi {
+
+/// Node indices: the joint at the shoulder that moves the upper arm, elbow, wrist.
+struct ArmJoints {
+    std::int32_t upper = -1, lower = -1, hand = -1;
+};
+
+struct AvatarJoints {
+    std::int32_t head = -1;
+    ArmJoints left, right; ///< the avatar's own left and right
+};
+
+/// Names of nodes, for skeletons whose names tell nothing; those that are empty are looked for.
+struct ArmNames {
+    std::string upper, lower, hand;
+};
+
+struct AvatarNames {
+    std::string head;
+    ArmNames left, right;
+};
+
+/// Joints by their names in common skeletons: Mixamo ("mixamorig:LeftForeArm"), Quaternius and Blender
+/// ("LowerArm.L", "forearm.L"), Unreal ("lowerarm_l"), VRM, 3ds Max bipeds ("Bip01 L Forearm"), the glTF sample
+/// models. Where an elbow or wrist has no such name, it is the only joint below the one before it. Of several
+/// skeletons in a scene the first that has all of them counts, or the given skin. Throws InputError that says what
+/// was not found and which joints there are.
+AvatarJoints find_avatar_joints(Scene const& scene, AvatarNames const& names = {}, std::int32_t skin = -1);
+
+/// What was matched, for people: "head: Head, left arm: LeftArm > LeftForeArm > LeftHand, right arm: ...".
+std::string describe(Scene const& scene, AvatarJoints const& joints);
+
+} // namespace gi

@@ -1,0 +1,97 @@
+#include "gi/scene/load/mesh_frames.h"
+
+#include "gi/base/error.h"
+#include "gi/scene/load/assimp_import.h"
+#include "gi/scene/load/assimp_types.h"
+
+#include <cstring>
+#include <fmt/format.h>
+#include <unordered_map>
+
+namespace gi {
+namespace {
+
+InputError misfit(std::filesystem::path const& file, std::string const& why)
+{
+    return {"'" + file.string() + "' does not fit into its sequence", why,
+            "export all frames from one mesh, with the same settings"};
+}
+
+MeshFrame read_mesh(aiMesh const& source, std::filesystem::path const& file)
+{
+    MeshFrame mesh;
+    for (unsigned i = 0; i < source.mNumVertices; ++i) {
+        mesh.positions.push_back(to_vec3(source.mVertices[i]));
+        if (!all_finite(mesh.positions.back())) throw misfit(file, fmt::format("its vertex {} is not finite", i));
+    }
+    for (unsigned i = 0; source.HasNormals() && i < source.mNumVertices; ++i) {
+        vec3 const v = to_vec3(source.mNormals[i]);
+        float const length = glm::length(v);
+        mesh.normals.push_back(length > 1e-12f && length < kInf ? v / length : vec3{0});
+    }
+    return mesh;
+}
+
+} // namespace
+
+SequenceFrame read_sequence_frame(std::filesystem::path const& file)
+{
+    SequenceFrame frame;
+    import_assimp(file, AssimpFaces::polygons, [&](aiScene const& scene) {
+        for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+            aiMesh const& mesh = *scene.mMeshes[m];
+            frame.meshes.push_back(read_mesh(mesh, file));
+            std::vector<std::uint32_t>& polygons = frame.polygons.emplace_back();
+            for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+                aiFace const& face = mesh.mFaces[f];
+                polygons.push_back(face.mNumIndices);
+                polygons.insert(polygons.end(), face.mIndices, face.mIndices + face.mNumIndices);
+            }
+        }
+    });
+    return frame;
+}
+
+void check_topology(SequenceFrame const& first, std::filesystem::path const& first_file,
+                    SequenceFrame const& frame, std::filesystem::path const& file)
+{
+    std::string const other = "'" + first_file.filename().string() + "'";
+    if (frame.meshes.size() != first.meshes.size())
+        throw misfit(file,
+                     fmt::format("it has {} meshes, {} has {}", frame.meshes.size(), other, first.meshes.size()));
+    for (std::size_t m = 0; m < frame.meshes.size(); ++m) {
+        std::size_t const vertices = frame.meshes[m].positions.size(), expected = first.meshes[m].positions.size();
+        if (vertices != expected)
+            throw misfit(file, fmt::format("it has {} vertices, {} has {}", vertices, other, expected));
+        if (frame.polygons[m] != first.polygons[m])
+            throw misfit(file, fmt::format("its faces are not those of {}", other));
+    }
+}
+
+std::vector<std::uint32_t> first_equal_vertices(std::size_t count, std::vector<VertexBytes> const& attributes)
+{
+    auto const hash_of = [&](std::size_t vertex) { // FNV-1a
+        std::uint64_t hash = 14695981039346656037u;
+        for (VertexBytes const& a : attributes)
+            for (std::size_t i = 0; i < a.size; ++i) hash = (hash ^ a.data[vertex * a.size + i]) * 1099511628211u;
+        return hash;
+    };
+    auto const equal = [&](std::size_t x, std::size_t y) {
+        for (VertexBytes const& a : attributes)
+            if (std::memcmp(a.data + x * a.size, a.data + y * a.size, a.size) != 0) return false;
+        return true;
+    };
+    std::unordered_multimap<std::uint64_t, std::uint32_t> seen;
+    std::vector<std::uint32_t> first(count);
+    for (std::size_t v = 0; v < count; ++v) {
+        first[v] = std::uint32_t(v);
+        std::uint64_t const hash = hash_of(v);
+        auto const [begin, end] = seen.equal_range(hash);
+        for (auto it = begin; it != end && first[v] == v; ++it)
+            if (equal(it->second, v)) first[v] = it->second;
+        if (first[v] == v) seen.emplace(hash, std::uint32_t(v));
+    }
+    return first;
+}
+
+} // namespace gi
