@@ -60,6 +60,27 @@ public:
                               exponential(middle * (u * u * (3 - 2 * u))) * exponential(arrive * (u * u * u)));
     }
 
+    /// Cubic in log tan(fov / 2), between the values of the two keys (Fritsch and Butland 1984: velocities are
+    /// harmonic means, and zero at a turning point).
+    double field_of_view(Segment s) const
+    {
+        auto const zoom = [&](std::size_t i) { return std::log(std::tan(0.5 * *keys_[i].fov_rad)); };
+        auto const chord = [&](std::size_t i) { return (zoom(i + 1) - zoom(i)) / span(i); };
+        auto const inner = [&](std::size_t i) {
+            double const a = chord(i - 1), b = chord(i), wa = span(i - 1) + 2 * span(i),
+                         wb = 2 * span(i - 1) + span(i);
+            return a * b > 0 ? (wa + wb) / (wa / b + wb / a) : 0.0;
+        };
+        std::size_t const last = keys_.size() - 1;
+        bool const from_end = s.i == 0, to_end = s.i + 1 == last;
+        double const c = chord(s.i);
+        double const arrive = to_end ? from_end ? c : 1.5 * c - 0.5 * inner(s.i) : inner(s.i + 1);
+        double const leave = from_end ? 1.5 * c - 0.5 * arrive : inner(s.i);
+        double const u = s.u, v = 1 - u;
+        return 2 * std::atan(std::exp(v * v * (1 + 2 * u) * zoom(s.i) + u * u * (3 - 2 * u) * zoom(s.i + 1) +
+                                      s.span_s * u * v * (v * leave - u * arrive)));
+    }
+
 private:
     using Chord = std::function<dvec3(std::size_t)>;
 
@@ -95,8 +116,8 @@ Camera camera_at(CameraPath const& path, double time_s, double fov_rad)
     auto const after = std::upper_bound(keys.begin(), keys.end(), time_s,
                                         [](double t, CameraKey const& key) { return t < key.time_s; });
     bool const looks_at = std::all_of(keys.begin(), keys.end(), [](CameraKey const& k) { return bool(k.at); });
-    if (after == keys.begin() || after == keys.end()) {
-        CameraKey const& key = after == keys.begin() ? keys.front() : keys.back();
+    CameraKey const& key = after == keys.begin() ? keys.front() : *(after - 1);
+    if (after == keys.begin() || after == keys.end() || time_s == key.time_s) {
         double const fov = key.fov_rad.value_or(fov_rad);
         return looks_at ? look_at(key.from, *key.at, glm::degrees(fov)) : make_camera(key.from, key.rotation, fov);
     }
@@ -106,11 +127,7 @@ Camera camera_at(CameraPath const& path, double time_s, double fov_rad)
 
     PathCurves const curves(keys);
     dvec3 const from = curves.point(s, [](CameraKey const& k) { return k.from; });
-    double fov = fov_rad;
-    if (keys.front().fov_rad) {
-        auto const log_zoom = [](CameraKey const& k) { return dvec3{std::log(std::tan(0.5 * *k.fov_rad)), 0, 0}; };
-        fov = s.u == 0 ? *keys[i].fov_rad : 2 * std::atan(std::exp(curves.point(s, log_zoom).x));
-    }
+    double const fov = keys.front().fov_rad ? curves.field_of_view(s) : fov_rad;
     if (!looks_at) return make_camera(from, curves.rotation(s), fov);
     dvec3 const at = curves.point(s, [](CameraKey const& k) { return *k.at; });
     try {

@@ -6,7 +6,7 @@
 // parabola are joined by it. Rotations follow the Hermite curve of unit quaternions (Kim, Kim and Shin 1995, "A
 // General Construction Scheme for Unit Quaternion Curves with Simple High Order Derivatives", section 4), whose
 // angular velocity is continuous for uneven keys too, as that of squad is not. The shorter way round is taken.
-// Fields of view change evenly in log tan(fov / 2), a zoom without jerks that stays between 0 and 180 degrees.
+// Fields of view change smoothly in log tan(fov / 2) and stay between those of the two keys.
 // Before the first key and after the last the camera rests.
 
 #include "gi/scene/camera.h"

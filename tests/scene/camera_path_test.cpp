@@ -131,16 +131,18 @@ TEST(CameraPath, RestsBeforeAndAfter)
     EXPECT_EQ(camera_at(one, 0, kFov).yfov_rad, kFov);
 }
 
-TEST(CameraPath, AFieldOfViewStaysOne)
+TEST(CameraPath, FieldsOfViewStayBetweenThoseOfTheKeys)
 {
     CameraPath path = winding();
-    double const fovs[]{1e-4, 3.1, 1e-4, 3.1, 1.0};
+    double const fovs[]{1e-4, 3.1, 1.5, 1.4, 1e-3};
     for (std::size_t i = 0; i < 5; ++i) path.keys[i].fov_rad = fovs[i];
-    for (double t = -1; t < 5; t += 0.01) {
-        double const fov = camera_at(path, t, kFov).yfov_rad;
-        EXPECT_GT(fov, 0);
-        EXPECT_LT(fov, 3.1415926) << t;
-    }
+    for (std::size_t i = 0; i + 1 < 5; ++i)
+        for (double u = 0; u <= 1; u += 0.01) {
+            double const t = glm::mix(path.keys[i].time_s, path.keys[i + 1].time_s, u);
+            double const fov = camera_at(path, t, kFov).yfov_rad;
+            EXPECT_GE(fov, std::min(fovs[i], fovs[i + 1]) - 1e-12) << t;
+            EXPECT_LE(fov, std::max(fovs[i], fovs[i + 1]) + 1e-12) << t;
+        }
 }
 
 TEST(CameraPathFile, ReadsPointsAndRotations)
