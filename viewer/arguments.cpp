@@ -5,21 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <optional>
-#include <string_view>
 
 namespace viewer {
 namespace {
-
-/// The whole text as a finite number, whatever the locale.
-std::optional<double> to_number(std::string_view text)
-{
-    double value = 0;
-    auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (text.empty() || error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-        return std::nullopt;
-    return value;
-}
 
 gi::InputError bad(std::string const& option, std::string const& text, std::string const& why,
                    std::string const& suggestion)
@@ -28,6 +16,15 @@ gi::InputError bad(std::string const& option, std::string const& text, std::stri
 }
 
 } // namespace
+
+std::optional<double> to_number(std::string_view text)
+{
+    double value = 0;
+    auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+        return std::nullopt;
+    return value;
+}
 
 std::pair<int, int> parse_size(std::string const& text)
 {

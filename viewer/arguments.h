@@ -4,11 +4,15 @@
 
 #include "gi/base/math.h"
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace viewer {
 
+/// The whole text as a finite number, whatever the locale.
+std::optional<double> to_number(std::string_view text);
 /// "512x384": 1..65536 each, at most 2^28 pixels.
 std::pair<int, int> parse_size(std::string const& text);
 /// "1,2.5,-3"

@@ -21,16 +21,6 @@ gi::Camera with_fov(gi::Camera camera, std::optional<double> fov_deg)
     return camera;
 }
 
-void check_distance(gi::World const& world, gi::Camera const& camera)
-{
-    double const distance = glm::length(gi::dvec3(camera.world_from_camera[3]) - world.origin);
-    if (!(distance < kFarthest_m))
-        throw gi::InputError("the camera is too far away",
-                             fmt::format("{:.3g} m from the middle of the scene, at most {:.0e} m can be computed",
-                                         distance, kFarthest_m),
-                             "move it closer");
-}
-
 gi::Camera const& named_camera(gi::World const& world, std::string const& name)
 {
     std::string known;
@@ -51,6 +41,16 @@ gi::Camera framing_camera(gi::dvec3 center, double radius, double fov_deg)
 
 } // namespace
 
+void check_distance(gi::World const& world, gi::Camera const& camera)
+{
+    double const distance = glm::length(gi::dvec3(camera.world_from_camera[3]) - world.origin);
+    if (!(distance < kFarthest_m))
+        throw gi::InputError("the camera is too far away",
+                             fmt::format("{:.3g} m from the middle of the scene, at most {:.0e} m can be computed",
+                                         distance, kFarthest_m),
+                             "move it closer");
+}
+
 ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice)
 {
     if (choice.look_from && !choice.name.empty())
@@ -58,7 +58,6 @@ ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice)
     if (choice.look_at && !choice.look_from)
         throw gi::InputError("--look-at is given alone", "it is not known from where", "add --look-from x,y,z");
 
-    constexpr double kDefaultFov_deg = 45;
     double const fov_deg = choice.fov_deg.value_or(kDefaultFov_deg);
     bool const empty = world.bounds.empty();
     gi::dvec3 const center = gi::dvec3(empty ? gi::vec3{0} : world.bounds.center()) + world.origin;

@@ -6,6 +6,8 @@
 
 namespace viewer {
 
+inline constexpr double kDefaultFov_deg = 45;
+
 /// What the command line says about the point of view; all may be empty.
 struct CameraChoice {
     std::string name;
@@ -22,5 +24,7 @@ struct ChosenCamera {
 /// Throws InputError on unknown names (it lists the known ones), half-given or contradictory positions, a field of
 /// view for an orthographic camera, and cameras too far away to compute with.
 ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice);
+/// Throws InputError where a camera is too far away to compute with.
+void check_distance(gi::World const& world, gi::Camera const& camera);
 
 } // namespace viewer

@@ -1,27 +1,24 @@
 #include "gi/base/error.h"
 #include "gi/base/file.h"
 #include "gi/base/picture_file.h"
-#include "gi/image/tone_map.h"
 #include "gi/registry/registry.h"
 #include "viewer/commands.h"
+#include "viewer/frame_options.h"
+#include "viewer/frame_sequence.h"
 #include "viewer/interrupt.h"
 #include "viewer/load_world.h"
 #include "viewer/outputs.h"
+#include "viewer/render_picture.h"
 #include "viewer/render_record.h"
 #include "viewer/report_json.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
 #include <memory>
 
 namespace viewer {
 namespace {
-
-constexpr int kInterrupted = 130;
-
-void say(std::string const& text) { std::fputs(("note: " + text + "\n").c_str(), stderr); }
 
 gi::RenderResult trace(RenderOptions const& o, gi::RenderSettings const& settings, gi::World const& world,
                        gi::Camera const& camera, gi::Report& report)
@@ -35,32 +32,31 @@ gi::RenderResult trace(RenderOptions const& o, gi::RenderSettings const& setting
     return gi::find_method(o.method).render(world, camera, settings, stop, show, report);
 }
 
-void denoise(gi::Picture& picture, gi::DenoiseSettings const& settings, gi::Report& report)
-{
-    if (settings.denoiser == gi::Denoiser::none) return;
-    gi::StageTimer const timer(report, "denoise");
-    gi::DenoiseReport const done = gi::denoise(picture, settings);
-    if (done.no_variance) say("--denoise atrous does nothing: nothing in the picture has a variance");
-    report.count("pixels without a surface to filter on", double(done.without_surface));
-    if (done.not_finite > 0) report.lose("pixels not filtered, as a value is not finite", done.not_finite);
-}
-
 void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::RenderResult& result, gi::Report& report)
 {
     gi::StageTimer const timer(report, "save");
     gi::Picture& picture = result.picture;
     picture.metadata = make_metadata(o, settings, result);
-    if (!o.out.empty()) {
-        if (!o.layers.empty())
-            std::erase_if(picture.layers, [&](gi::Layer const& l) {
-                return l.name != "color" && std::find(o.layers.begin(), o.layers.end(), l.name) == o.layers.end();
-            });
-        gi::write_exr(o.out, picture, o.half ? gi::PixelType::half : gi::PixelType::single, report);
-    }
-    if (o.png.empty()) return;
-    gi::ToneMapSettings const tone{float(o.exposure_ev),
-                                   o.tone == "filmic" ? gi::ToneCurve::filmic : gi::ToneCurve::srgb};
-    gi::write_png(o.png, picture.width, picture.height, gi::tone_map_bytes(*picture.find("color"), tone));
+    keep_layers(o, picture);
+    if (!o.out.empty()) save_exr(o, o.out, picture, report);
+    if (!o.png.empty()) gi::write_png(o.png, picture.width, picture.height, display_bytes(o, picture));
+}
+
+gi::Camera first_camera(RenderOptions const& o, gi::World const& world, CameraChoice const& choice,
+                        CameraMotion const& motion)
+{
+    FrameCamera const camera(world, choice, motion);
+    if (!camera.note().empty()) say(camera.note());
+    return camera.of(world, o.time_s.value_or(0), 0);
+}
+
+/// Options that no output reads.
+void check_display(CLI::App const& command, RenderOptions const& o)
+{
+    for (char const* name : {"--exposure", "--tone"})
+        if (command.get_option(name)->count() > 0 && o.png.empty() && o.video.empty())
+            throw gi::InputError(std::string(name) + " without --png or --video",
+                                 "it is about pictures for a display", "add --png F.png, or leave it out");
 }
 
 int run(RenderOptions o)
@@ -69,7 +65,9 @@ int run(RenderOptions o)
     gi::RenderSettings const settings = make_settings(o);
     gi::DenoiseSettings const denoise_settings = make_denoise_settings(o, settings);
     CameraChoice const choice = camera_choice(o);
-    check_outputs({o.out, o.png, o.stats, settings.checkpoint.string()}, {o.scene, o.environment});
+    if (!o.frames.empty()) return render_frames(o, settings, denoise_settings, choice);
+    CameraMotion const motion = make_motion(o);
+    check_outputs({o.out, o.png, o.stats, settings.checkpoint.string()}, {o.scene, o.environment, o.camera_path});
     bool const has_state = !settings.checkpoint.empty() && std::filesystem::exists(settings.checkpoint);
     if (o.resume && !has_state) say("there is no '" + settings.checkpoint.string() + "': starting afresh");
     if (!o.resume && has_state)
@@ -78,10 +76,10 @@ int run(RenderOptions o)
 
     gi::Report report;
     gi::World const world = load_world(o, report);
-    ChosenCamera const chosen = choose_camera(world, choice);
-    if (!chosen.note.empty()) say(chosen.note);
-    gi::RenderResult result = trace(o, settings, world, chosen.camera, report);
-    denoise(result.picture, denoise_settings, report);
+    gi::Camera const camera = first_camera(o, world, choice, motion);
+    gi::RenderResult result = trace(o, settings, world, camera, report);
+    std::string const remark = denoise(result.picture, denoise_settings, report);
+    if (!remark.empty()) say(remark);
     save(o, settings, result, report);
     if (!settings.checkpoint.empty() && !result.resumable) std::filesystem::remove(settings.checkpoint);
 
@@ -112,6 +110,7 @@ void add_render(CLI::App& app, int& exit_code)
     declare_options(*c, *o);
     c->callback([o, c, &exit_code] {
         check_slhb(*c, *o);
+        check_display(*c, *o);
         exit_code = run(*o);
     });
 }

@@ -3,6 +3,8 @@
 
 namespace viewer {
 
+inline constexpr int kInterrupted = 130; ///< exit code
+
 /// While this lives, Ctrl-C and SIGTERM ask for a stop; a second one ends the program at once.
 class InterruptGuard {
 public:

@@ -59,16 +59,19 @@ CameraChoice camera_choice(RenderOptions const& o)
     return choice;
 }
 
+std::shared_ptr<gi::Scene const> load_lit_scene(RenderOptions const& o, gi::Report& report)
+{
+    gi::StageTimer const timer(report, "load");
+    gi::Scene scene = gi::load_scene(o.scene, report);
+    set_environment(scene, o, report);
+    return std::make_shared<gi::Scene const>(std::move(scene));
+}
+
 gi::World load_world(RenderOptions const& o, gi::Report& report)
 {
-    gi::Scene scene;
-    {
-        gi::StageTimer const timer(report, "load");
-        scene = gi::load_scene(o.scene, report);
-        set_environment(scene, o, report);
-    }
+    auto const scene = load_lit_scene(o, report);
     gi::StageTimer const timer(report, "world");
-    return gi::build_world(std::make_shared<gi::Scene const>(std::move(scene)), o.time_s, report);
+    return gi::build_world(scene, o.time_s, report);
 }
 
 } // namespace viewer

@@ -11,6 +11,8 @@ namespace viewer {
 CameraChoice camera_choice(RenderOptions const& options);
 
 /// Loads the scene, sets or replaces its sky, and lights it where it has no light; says on stderr what it decided.
+std::shared_ptr<gi::Scene const> load_lit_scene(RenderOptions const& options, gi::Report& report);
+/// The same, and its world at the time of the options.
 gi::World load_world(RenderOptions const& options, gi::Report& report);
 
 } // namespace viewer

@@ -4,6 +4,7 @@
 #include "gi/registry/registry.h"
 #include "gi/slhb/kernel_render.h"
 #include "viewer/arguments.h"
+#include "viewer/frame_options.h"
 #include "viewer/validators.h"
 
 #include <CLI/CLI.hpp>
@@ -49,10 +50,10 @@ gi::Schedule schedule_of(std::string const& name)
 }
 
 /// The scene's name, also where it is a folder with a slash at its end.
-std::string default_out(std::string const& scene)
+std::string default_out(std::string const& scene, char const* ending)
 {
     std::filesystem::path const path = std::filesystem::absolute(scene).lexically_normal();
-    return (path.has_filename() ? path : path.parent_path()).stem().string() + ".exr";
+    return (path.has_filename() ? path : path.parent_path()).stem().string() + ending;
 }
 
 } // namespace
@@ -66,10 +67,12 @@ gi::RenderSettings make_settings(RenderOptions& o)
         if (std::find(kLayers.begin(), kLayers.end(), layer) == kLayers.end())
             throw gi::InputError("there is no layer '" + layer + "'", "--aovs names layers of the picture",
                                  fmt::format("choose from: {}", fmt::join(kLayers, ", ")));
-    if (o.out.empty() && o.png.empty()) o.out = default_out(o.scene);
+    bool const is_sequence = !o.frames.empty();
+    if (o.out.empty() && o.png.empty() && o.video.empty())
+        o.out = default_out(o.scene, is_sequence ? "_%04d.exr" : ".exr");
     if (o.out.empty() && (o.resume || o.half || !o.layers.empty()))
-        throw gi::InputError("--resume, --half and --aovs are about an EXR", "only --png is given",
-                             "add --out F.exr");
+        throw gi::InputError("--resume, --half and --aovs are about an EXR", "none is saved",
+                             is_sequence ? "add --out f_%04d.exr" : "add --out F.exr");
 
     gi::RenderSettings s;
     std::tie(s.width, s.height) = parse_size(o.size);
@@ -85,8 +88,8 @@ gi::RenderSettings make_settings(RenderOptions& o)
     s.slhb.schedule = schedule_of(o.schedule);
     s.slhb.space = o.device == "cuda" ? gi::Space::device : gi::Space::host;
     check_device(o, s.slhb);
-    s.resume = o.resume;
-    if (!o.out.empty()) s.checkpoint = o.out + ".state";
+    s.resume = o.resume && !is_sequence; // a sequence resumes by its frames
+    if (!o.out.empty() && !is_sequence) s.checkpoint = o.out + ".state";
     return s;
 }
 
@@ -222,21 +225,22 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_option("--threads", o.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c.add_option("--out", o.out, "EXR with all layers (default: the scene's name)");
     c.add_flag("--half", o.half, "half floats where they suffice");
-    CLI::Option* const png = c.add_option("--png", o.png, "tone-mapped picture");
-    c.add_option("--exposure", o.exposure_ev, "stops, for --png")->check(in_range(-100, 100))->needs(png);
-    c.add_option("--tone", o.tone, "curve, for --png")
+    c.add_option("--png", o.png, "tone-mapped picture");
+    c.add_option("--exposure", o.exposure_ev, "stops, for --png and --video")->check(in_range(-100, 100));
+    c.add_option("--tone", o.tone, "curve, for --png and --video")
         ->check(CLI::IsMember({"srgb", "filmic"}))
-        ->capture_default_str()
-        ->needs(png);
+        ->capture_default_str();
     c.add_option("--aovs", o.layers, fmt::format("layers to keep beside color, of: {}", fmt::join(kLayers, ", ")))
         ->delimiter(',')
         ->allow_extra_args(false);
     c.add_option("--stats", o.stats, "JSON file: what was asked, built, lost and measured");
     c.add_flag(
         "--resume", o.resume,
-        "go on from F.exr.state, which a render leaves that was interrupted, or stopped early with --resume");
+        "go on from F.exr.state, which a render leaves that was interrupted, or stopped early with --resume;\n"
+        "of --frames: render those that are missing");
     c.add_flag("--json", o.json, "print the statistics instead of text");
     c.add_flag("--quiet", o.quiet, "no progress bar");
+    declare_frames(c, o);
     declare_slhb(c, o);
     c.footer(R"(Examples:
   lightwell render atrium --size 160x100 --paths 16 --png atrium.png --out atrium.exr
@@ -244,12 +248,16 @@ void declare_options(CLI::App& c, RenderOptions& o)
   lightwell render cornell --look-from 0.278,0.273,-0.4 --look-at 0.278,0.2,0.3 --fov 60 --size 64x64 --out close.exr
   lightwell render cornell --until relmse=0.05 --size 48x48 --aovs L1,L2,variance --out cornell.exr
   lightwell render atrium --size 64x64 --paths 4 --denoise atrous --out smooth.exr
+  lightwell render atrium --frames 0:3@10 --size 48x48 --paths 2 --out walk_%04d.exr --png walk_%04d.png
+  lightwell render cornell --frames 0:4@8 --turntable --size 48x48 --paths 2 --video turn.mkv
 
 --stats and --json hold: schema, program, command, settings, outputs, result (end, paths_per_pixel, seconds,
 relmse_estimate, rays, rays_per_s), plan (what, build, reason), report (stages_s, counts, losses,
-peak_memory_bytes).
+peak_memory_bytes); for --frames, instead of result, one record per frame (frame, time_s, outputs, reused, seconds,
+trace_s, paths_per_pixel, rays, relmse_estimate, end, losses) and frame_seconds (median, p95, p99, most, total).
 
-Ctrl-C saves the picture so far and F.exr.state, and exits with 130; a second one ends at once.)");
+Ctrl-C saves the picture so far and F.exr.state, and exits with 130; a second one ends at once.
+Of --frames it keeps those that are complete, and the video so far.)");
 }
 
 } // namespace viewer

@@ -27,6 +27,9 @@ struct RenderOptions {
     std::string schedule = "auto", device = "cpu";
     gi::SlhbSettings slhb;
     bool half = false, resume = false, json = false, quiet = false;
+    std::string frames, video, turntable, camera_path; ///< empty = none
+    bool turns = false;                                ///< --turntable was given, maybe without a value
+    bool seed_per_frame = false;
 };
 
 /// Those of the camera, the sky and the moment, for every command that renders.

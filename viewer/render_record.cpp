@@ -13,11 +13,12 @@ using Json = nlohmann::ordered_json;
 constexpr int kSchema = 1; // of the statistics: counts up when a key changes its meaning or goes
 
 /// Every option that decides the values of the picture, in one order and with the defaults written out.
-std::string normalised_command(RenderOptions const& o, gi::RenderSettings const& s, gi::RenderResult const& result)
+std::string normalised_command(RenderOptions const& o, gi::RenderSettings const& s, std::string const& amount,
+                               std::string const& chosen)
 {
-    std::string command =
-        fmt::format("lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} --paths {}",
-                    o.scene, o.method, s.width, s.height, s.bounces, o.filter, s.seed, result.paths);
+    std::string command = fmt::format(
+        "lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} {}", o.scene, o.method,
+        s.width, s.height, s.bounces, o.filter, o.seed_per_frame && !o.frames.empty() ? o.seed : s.seed, amount);
     auto const add = [&](char const* option, std::string const& value) {
         if (!value.empty()) command += fmt::format(" {} {}", option, value);
     };
@@ -30,9 +31,20 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
     if (o.environment_rotate_deg != 0) add("--envmap-rotate", fmt::format("{}", o.environment_rotate_deg));
     if (o.environment_scale != 1) add("--envmap-scale", fmt::format("{}", o.environment_scale));
     if (o.denoise != "none") add("--denoise", o.denoise);
-    if (!result.options.empty()) command += " " + result.options;
+    add("--camera-path", o.camera_path);
+    add("--frames", o.frames);
+    if (o.turns) add("--turntable", o.turntable.empty() ? "1" : o.turntable);
+    if (o.seed_per_frame && !o.frames.empty()) command += " --seed-per-frame";
+    if (!chosen.empty()) command += " " + chosen;
     return command;
 }
+
+/// One path says nothing about its variance.
+bool knows_error(gi::RenderResult const& r) { return r.paths >= 2; }
+
+double rays_per_second(gi::RenderResult const& r) { return r.seconds > 0 ? r.rays / r.seconds : 0; }
+
+} // namespace
 
 char const* end_text(gi::RenderEnd end)
 {
@@ -49,19 +61,29 @@ char const* end_text(gi::RenderEnd end)
     return "";
 }
 
-/// One path says nothing about its variance.
-bool knows_error(gi::RenderResult const& r) { return r.paths >= 2; }
+std::string stop_option(gi::RenderSettings const& s)
+{
+    if (s.budget_s > 0) return fmt::format("--budget {}s", s.budget_s);
+    if (s.until_relmse > 0) return fmt::format("--until relmse={}", s.until_relmse);
+    return fmt::format("--paths {}", s.paths);
+}
 
-double rays_per_second(gi::RenderResult const& r) { return r.seconds > 0 ? r.rays / r.seconds : 0; }
+Json relmse_json(gi::RenderResult const& r) { return knows_error(r) ? Json(r.relmse) : Json(); }
 
-} // namespace
+Json to_json(gi::ScenePlan const& plan)
+{
+    Json j = Json::array();
+    for (gi::PlanItem const& item : plan.items)
+        j.push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
+    return j;
+}
 
 std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::RenderSettings const& s,
                                                  gi::RenderResult const& result)
 {
     return {{"version", version_number()},
             {"git", git_hash()},
-            {"command", normalised_command(o, s, result)},
+            {"command", normalised_command(o, s, fmt::format("--paths {}", result.paths), result.options)},
             {"scene", o.scene},
             {"method", o.method},
             {"size", fmt::format("{}x{}", s.width, s.height)},
@@ -73,15 +95,15 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::Ren
             {"units", "radiance, W/(m2 sr), linear Rec. 709"}};
 }
 
-Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePlan const& plan,
-                gi::RenderResult const& r, gi::Report const& report)
+Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::string const& amount,
+                   std::string const& chosen)
 {
     auto const or_null = [](auto const& value) { return value ? Json(*value) : Json(); };
     auto const name_or_null = [](std::string const& name) { return name.empty() ? Json() : Json(name); };
     Json j;
     j["schema"] = kSchema;
     j["program"] = version_text();
-    j["command"] = normalised_command(o, s, r);
+    j["command"] = normalised_command(o, s, amount, chosen);
     j["settings"] = {{"scene", o.scene},
                      {"method", o.method},
                      {"width", s.width},
@@ -102,18 +124,30 @@ Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePl
                      {"denoise", o.denoise},
                      {"seed", s.seed},
                      {"threads", s.threads},
-                     {"resume", s.resume},
+                     {"resume", o.resume},
                      {"aovs", o.layers},
                      {"half", o.half},
                      {"exposure_ev", o.exposure_ev},
-                     {"tone", o.tone}};
-    j["outputs"] = {{"exr", name_or_null(o.out)}, {"png", name_or_null(o.png)}, {"stats", name_or_null(o.stats)}};
+                     {"tone", o.tone},
+                     {"frames", name_or_null(o.frames)},
+                     {"turntable", o.turns ? Json(o.turntable.empty() ? "1" : o.turntable) : Json()},
+                     {"camera_path", name_or_null(o.camera_path)},
+                     {"seed_per_frame", o.seed_per_frame}};
+    j["outputs"] = {{"exr", name_or_null(o.out)},
+                    {"png", name_or_null(o.png)},
+                    {"video", name_or_null(o.video)},
+                    {"stats", name_or_null(o.stats)}};
+    return j;
+}
+
+Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePlan const& plan,
+                gi::RenderResult const& r, gi::Report const& report)
+{
+    Json j = describe_call(o, s, fmt::format("--paths {}", r.paths), r.options);
     j["result"] = {{"end", end_text(r.end)}, {"paths_per_pixel", r.paths},
-                   {"seconds", r.seconds},   {"relmse_estimate", knows_error(r) ? Json(r.relmse) : Json()},
+                   {"seconds", r.seconds},   {"relmse_estimate", relmse_json(r)},
                    {"rays", r.rays},         {"rays_per_s", rays_per_second(r)}};
-    j["plan"] = Json::array();
-    for (gi::PlanItem const& item : plan.items)
-        j["plan"].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
+    j["plan"] = to_json(plan);
     j["report"] = to_json(report);
     return j;
 }

@@ -4,6 +4,7 @@
 // file ("atrium", "cornell") is a scene that the project generates.
 
 #include "gi/base/report.h"
+#include "gi/scene/camera_path.h"
 #include "gi/scene/scene.h"
 
 #include <filesystem>
@@ -27,6 +28,9 @@ Scene load_scene_file(std::filesystem::path const& yaml, Report& report);
 /// `name` is used in messages, relative paths are looked up in `folder`.
 Scene parse_scene_file(std::string const& text, std::filesystem::path const& folder, std::string const& name,
                        Report& report);
+/// Keys of a moving camera; messages name the place in the text.
+CameraPath load_camera_path(std::filesystem::path const& yaml);
+CameraPath parse_camera_path(std::string const& text, std::string const& name);
 /// Append an image to the pool, de-duplicated by the caller. Throws InputError if it cannot be decoded.
 std::int32_t add_texture(TexturePool& pool, unsigned char const* bytes, std::size_t size, bool srgb,
                          std::string const& name);

@@ -4,6 +4,7 @@
 #include "gi/base/file.h"
 #include "gi/scene/generate.h"
 #include "gi/scene/load.h"
+#include "gi/scene/load/rotation_value.h"
 #include "gi/scene/load/scene_file_animation.h"
 #include "gi/scene/load/scene_file_keys.h"
 #include "gi/scene/load/scene_file_light.h"
@@ -129,7 +130,7 @@ private:
 
         dmat4 transform(1);
         if (m.has("translate")) transform = glm::translate(transform, m.at("translate").vector());
-        if (m.has("rotate")) transform *= rotation(m.at("rotate"));
+        if (m.has("rotate")) transform *= read_rotation(m.at("rotate"));
         if (m.has("scale")) transform = glm::scale(transform, m.at("scale").vector_or_number(-1e9, 1e9));
         std::size_t const first = scene_.materials.size();
         append(scene_, std::move(part), name, transform);
@@ -149,21 +150,6 @@ private:
         if (!used) return;
         part.materials.push_back({});
         part.material_names.push_back("default");
-    }
-
-    static dmat4 rotation(YamlReader const& r)
-    {
-        if (r.is_list()) { // about x, then y, then z
-            dvec3 const a = glm::radians(r.vector(-1e6, 1e6));
-            return glm::rotate(dmat4(1), a.z, dvec3{0, 0, 1}) * glm::rotate(dmat4(1), a.y, dvec3{0, 1, 0}) *
-                   glm::rotate(dmat4(1), a.x, dvec3{1, 0, 0});
-        }
-        check_keys(r, "rotation");
-        dvec3 const axis = r.has("axis") ? r.at("axis").vector(-1e6, 1e6) : dvec3{0, 1, 0};
-        if (!(glm::length(axis) > 0))
-            throw r.error("the axis is zero", "nothing can turn about it", "axis: [0, 1, 0]");
-        if (!r.has("degrees")) throw r.error("a rotation needs degrees", "it is not known how far", "degrees: 90");
-        return glm::rotate(dmat4(1), glm::radians(r.at("degrees").number(-1e6, 1e6)), glm::normalize(axis));
     }
 
     static SkinningMethod skinning_method(YamlReader const& s)

@@ -16,7 +16,7 @@ constexpr int kDeepest = 100;
 void check_shape(std::string const& text, std::string const& file)
 {
     auto const refuse = [&](std::string const& why) {
-        return InputError({file, 1, 1}, "this YAML is not read", why, "a scene file is small and flat");
+        return InputError({file, 1, 1}, "this YAML is not read", why, "such files are small and flat");
     };
     if (text.size() > kLongest) throw refuse("it is larger than 1 MiB");
     int flow = 0, line_depth = 0;
@@ -65,11 +65,11 @@ int edit_distance(std::string const& a, std::string const& b)
 
 } // namespace
 
-YamlReader YamlReader::parse(std::string const& text, std::string const& file)
+YamlReader YamlReader::parse(std::string const& text, std::string const& file, std::string const& root)
 {
     check_shape(text, file);
     try {
-        return {YAML::Load(text), file, "scene"};
+        return {YAML::Load(text), file, root};
     } catch (YAML::Exception const& e) {
         throw InputError({file, e.mark.line + 1, e.mark.column + 1}, "this is not YAML", e.msg,
                          "check the indentation and the quotes");

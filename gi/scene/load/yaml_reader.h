@@ -18,8 +18,9 @@ public:
         : node_(std::move(node)), file_(std::move(file)), path_(std::move(path))
     {
     }
-    /// The whole text. Throws InputError where it is not YAML, nests or expands without bounds.
-    static YamlReader parse(std::string const& text, std::string const& file);
+    /// The whole text, called `root` in messages. Throws InputError where it is not YAML, nests or expands without
+    /// bounds.
+    static YamlReader parse(std::string const& text, std::string const& file, std::string const& root = "scene");
 
     InputError error(std::string const& problem, std::string const& why, std::string const& suggestion) const;
 

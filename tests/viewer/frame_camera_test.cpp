@@ -1,0 +1,81 @@
+// The turntable.
+
+#include "viewer/frame_camera.h"
+
+#include "gi/base/error.h"
+#include "tests/support/scenes.h"
+
+#include <gtest/gtest.h>
+#include <numbers>
+
+namespace viewer {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// Its middle is (2, 3, 5).
+gi::World box_world()
+{
+    gi::Scene scene;
+    gi::test::add_box(scene, {1, 2, 3}, {3, 4, 7},
+                      gi::test::add_material(scene, gi::test::lambert(gi::vec3{0.5f})), false);
+    return gi::test::world_of(scene);
+}
+
+gi::dvec3 place(gi::Camera const& c) { return gi::dvec3(c.world_from_camera[3]); }
+
+TEST(Turntable, CirclesTheMiddleOfTheScene)
+{
+    gi::World const world = box_world();
+    CameraChoice choice;
+    choice.look_from = gi::dvec3{2, 4, 15};
+    FrameCamera const camera(world, choice, {std::nullopt, kTurn});
+    gi::dvec3 const center{2, 3, 5};
+    EXPECT_LT(glm::length(place(camera.of(world, 0, 0)) - *choice.look_from), 1e-12);
+    EXPECT_LT(glm::length(place(camera.of(world, 0, 0.25)) - gi::dvec3(12, 4, 5)), 1e-12) << "from +z to +x";
+    for (int k = 0; k <= 16; ++k) {
+        gi::dmat4 const m = camera.of(world, 0, k / 16.0).world_from_camera;
+        gi::dvec3 const to = center - gi::dvec3(m[3]);
+        EXPECT_NEAR(glm::length(to), std::sqrt(101.0), 1e-12);
+        EXPECT_NEAR(m[3].y, 4, 1e-12);
+        EXPECT_LT(glm::length(glm::normalize(to) + gi::dvec3(m[2])), 1e-12) << "looks at the middle";
+    }
+    EXPECT_LT(glm::length(place(camera.of(world, 0, 1)) - place(camera.of(world, 0, 0))), 1e-12) << "once round";
+}
+
+TEST(Turntable, CirclesThePointLookedAt)
+{
+    gi::World const world = box_world();
+    CameraChoice choice;
+    choice.look_from = gi::dvec3{0, 0, 4};
+    choice.look_at = gi::dvec3{0, 0, 1};
+    FrameCamera const camera(world, choice, {std::nullopt, -kTurn});
+    EXPECT_LT(glm::length(place(camera.of(world, 0, 0.25)) - gi::dvec3(-3, 0, 1)), 1e-12);
+}
+
+TEST(Turntable, TakesTurnsAndDegrees)
+{
+    EXPECT_DOUBLE_EQ(parse_turn(""), kTurn);
+    EXPECT_DOUBLE_EQ(parse_turn("2"), 2 * kTurn);
+    EXPECT_DOUBLE_EQ(parse_turn("-0.5"), -0.5 * kTurn);
+    EXPECT_DOUBLE_EQ(parse_turn("90deg"), 0.25 * kTurn);
+    for (char const* text : {"0", "nan", "inf", "1e9", "deg", "90°", "once", "1 "})
+        EXPECT_THROW(parse_turn(text), gi::InputError) << text;
+}
+
+TEST(FrameCamera, AnimatedCamerasMoveAndTheFramingOneRests)
+{
+    gi::World first = box_world(), second = first;
+    second.bounds.high += 10.0f;
+    FrameCamera const framing(first, {}, {});
+    EXPECT_FALSE(framing.note().empty());
+    EXPECT_EQ(framing.of(first, 0, 0).world_from_camera, framing.of(second, 1, 0.5).world_from_camera);
+
+    first.cameras = {gi::look_at({0, 0, 9}, {0, 0, 0}, 30)};
+    second.cameras = {gi::look_at({0, 1, 9}, {0, 0, 0}, 30)};
+    FrameCamera const animated(first, {}, {});
+    EXPECT_EQ(animated.of(second, 1, 0.5).world_from_camera, second.cameras[0].world_from_camera);
+}
+
+} // namespace
+} // namespace viewer

@@ -1,0 +1,92 @@
+#include "viewer/frame_range.h"
+
+#include "gi/base/error.h"
+#include "viewer/frame_record.h"
+
+#include <gtest/gtest.h>
+#include <set>
+
+namespace viewer {
+namespace {
+
+TEST(FrameRange, EndsBeforeTheSecondNumber)
+{
+    FrameRange const r = parse_frame_range("0:120@30");
+    EXPECT_EQ(r.first, 0);
+    EXPECT_EQ(r.count(), 120);
+    EXPECT_EQ(r.time_s(r.end), 4);
+    FrameRange const part = parse_frame_range("60:61@24");
+    EXPECT_EQ(part.first, 60);
+    EXPECT_EQ(part.count(), 1);
+}
+
+TEST(FrameRange, TakesSeconds)
+{
+    FrameRange const r = parse_frame_range("1s:4s@30");
+    EXPECT_EQ(r.first, 30);
+    EXPECT_EQ(r.end, 120);
+    EXPECT_EQ(parse_frame_range("0:0.1s@30").count(), 3) << "0.1 * 30 is not 3 in binary";
+}
+
+TEST(FrameRange, TimesDoNotDrift)
+{
+    FrameRange const r = parse_frame_range("0:100000@30");
+    for (int k = r.first; k < r.end; ++k) ASSERT_EQ(r.time_s(k), k / 30.0) << k;
+    FrameRange const ntsc = parse_frame_range("0:30001@30000/1001");
+    EXPECT_EQ(ntsc.time_s(30000), 1001);
+    EXPECT_DOUBLE_EQ(ntsc.fps(), 30000 / 1001.0);
+    EXPECT_EQ(parse_frame_range("0:5@0.25").time_s(1), 4);
+}
+
+TEST(FrameRange, RefusesNonsense)
+{
+    for (char const* text : {"",           ":",
+                             "0:4",        "@30",
+                             "0@30",       "0:4@",
+                             ":4@30",      "0:@30",
+                             "4:4@30",     "5:4@30",
+                             "-1:4@30",    "0:-4@30",
+                             "0:4@0",      "0:4@-30",
+                             "0:4@nan",    "0:4@inf",
+                             "nan:4@30",   "0:inf@30",
+                             "0.5:4@30",   "0:4.5@30",
+                             "0:0.05s@30", "0:4@1e9",
+                             "0:4@1e-9",   "0:1e6@30",
+                             "0:1e30@30",  "1e9:1000000004@30",
+                             "0:4@30/0",   "0:4@30/",
+                             "0:4@/2",     "0:4@30@30",
+                             "0:4:2@30",   "0:4m@30",
+                             "0:s@30",     " 0:4@30",
+                             "0:4@30x",    "@30:0:4"})
+        EXPECT_THROW(parse_frame_range(text), gi::InputError) << text;
+}
+
+TEST(FrameName, CountsAsPrintfDoes)
+{
+    EXPECT_EQ(parse_frame_name("--out", "a/f_%04d.exr").of(7), "a/f_0007.exr");
+    EXPECT_EQ(parse_frame_name("--out", "f_%04d.exr").of(123456), "f_123456.exr");
+    EXPECT_EQ(parse_frame_name("--out", "f%d").of(7), "f7");
+    EXPECT_EQ(parse_frame_name("--out", "50%%/f%%_%02d.exr").of(7), "50%/f%_07.exr");
+    EXPECT_EQ(parse_frame_name("--out", "f_%03d.exr").of_all(parse_frame_range("0:120@30")), "f_000-119.exr");
+}
+
+TEST(FrameName, RefusesOtherPatterns)
+{
+    for (char const* pattern : {"", "f.exr", "f_%%d.exr", "f_%s.exr", "f_%", "f_%04", "f_%4d.exr", "f_%-4d.exr",
+                                "f_%00d.exr", "f_%010d.exr", "%d_%d.exr", "%d/f.exr", "f_%n.exr", "f_%04d%x.exr"})
+        EXPECT_THROW(parse_frame_name("--out", pattern), gi::InputError) << pattern;
+}
+
+TEST(FrameRecords, PercentilesAreValuesThatOccurred)
+{
+    std::vector<double> values;
+    for (int i = 100; i > 0; --i) values.push_back(i);
+    EXPECT_EQ(percentile(values, 0.5), 50);
+    EXPECT_EQ(percentile(values, 0.95), 95);
+    EXPECT_EQ(percentile(values, 0.99), 99);
+    EXPECT_EQ(percentile(values, 1), 100);
+    EXPECT_EQ(percentile({3}, 0.5), 3);
+}
+
+} // namespace
+} // namespace viewer

@@ -1,0 +1,260 @@
+// `lightwell render --frames`: every frame is the picture that --time gives alone, whatever interrupts them.
+
+#include "gi/base/picture_file.h"
+#include "tests/viewer/run_program.h"
+
+#include <nlohmann/json.hpp>
+#include <opencv2/videoio.hpp>
+
+namespace viewer::test {
+namespace {
+
+using Json = nlohmann::json;
+
+bool contains(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
+
+Json json_file(std::filesystem::path const& file) { return Json::parse(file_text(file)); }
+
+/// The first difference of two pictures' layers; empty = none.
+std::string difference(std::filesystem::path const& a, std::filesystem::path const& b)
+{
+    gi::Picture const p = gi::read_picture(a), q = gi::read_picture(b);
+    if (p.layers.size() != q.layers.size()) return "layers";
+    for (std::size_t i = 0; i < p.layers.size(); ++i)
+        if (p.layers[i].name != q.layers[i].name || p.layers[i].data != q.layers[i].data) return p.layers[i].name;
+    return {};
+}
+
+int frames_of_video(std::filesystem::path const& file, cv::Size size)
+{
+    cv::VideoCapture in(file.string(), cv::CAP_FFMPEG);
+    int frames = 0;
+    for (cv::Mat image; in.read(image); ++frames) EXPECT_EQ(image.size(), size);
+    return frames;
+}
+
+TEST(Frames, AreThePicturesOfTheirTimes)
+{
+    TemporaryFolder const folder;
+    for (std::string const method : {"reference", "slhb"}) {
+        std::string const how = " --size 32x24 --paths 2 --camera gallery --method " + method;
+        Outcome const o =
+            run_well("render atrium --frames 3:6@7 --out f_%02d.exr --png f_%d.png" + how, folder.path());
+        EXPECT_TRUE(contains(o.out, "f_03.exr ... f_05.exr\n")) << o.out;
+        EXPECT_TRUE(contains(o.out, "3 frames of 32 x 24 pixels")) << o.out;
+        for (int k = 3; k < 6; ++k) {
+            std::string const name = "f_0" + std::to_string(k) + ".exr";
+            auto const metadata = gi::read_picture(folder / name).metadata;
+            EXPECT_EQ(metadata.at("frame"), std::to_string(k));
+            // Its own words make it again, alone.
+            run_well(metadata.at("command").substr(10) + " --out one.exr --png one.png", folder.path());
+            EXPECT_EQ(difference(folder / name, folder / "one.exr"), "");
+            EXPECT_EQ(file_text(folder / ("f_" + std::to_string(k) + ".png")), file_text(folder / "one.png"));
+        }
+        EXPECT_NE(difference(folder / "f_03.exr", folder / "f_05.exr"), "") << "the figure walks";
+    }
+}
+
+TEST(Frames, OfACameraPathAreThePicturesOfTheirTimes)
+{
+    TemporaryFolder const folder;
+    std::string const how =
+        " --size 24x16 --paths 1 --camera-path " LIGHTWELL_SOURCE_DIR "/data/camera_path.yaml ";
+    run_well("render atrium --frames 0:4@1 --out f_%d.exr" + how, folder.path());
+    run_well("render atrium --time 3 --out one.exr" + how, folder.path());
+    EXPECT_EQ(difference(folder / "f_3.exr", folder / "one.exr"), "");
+    EXPECT_NE(difference(folder / "f_2.exr", folder / "one.exr"), "");
+}
+
+TEST(Frames, HaveOneSeedOrEachItsOwn)
+{
+    TemporaryFolder const folder;
+    run_well("render cornell --size 16x16 --paths 1 --frames 0:2@1 --out same_%d.exr", folder.path());
+    run_well("render cornell --size 16x16 --paths 1 --frames 0:2@1 --seed-per-frame --out own_%d.exr",
+             folder.path());
+    EXPECT_EQ(difference(folder / "same_0.exr", folder / "same_1.exr"), "");
+    EXPECT_EQ(difference(folder / "own_0.exr", folder / "same_0.exr"), "");
+    EXPECT_NE(difference(folder / "own_0.exr", folder / "own_1.exr"), "");
+}
+
+TEST(Frames, ATurntableComesRoundWithoutAFrameTwice)
+{
+    TemporaryFolder const folder;
+    std::string const how = "render cornell --size 16x16 --paths 1 --look-from 0.3,0.3,0.9 --look-at 0.3,0.3,0.3 ";
+    run_well(how + "--frames 0:4@1 --turntable --out f_%d.exr", folder.path());
+    run_well(how + "--frames 0:8@1 --turntable 2 --out two_%d.exr", folder.path());
+    run_well("render cornell --size 16x16 --paths 1 --look-from 0.9,0.3,0.3 --look-at 0.3,0.3,0.3 --out side.exr",
+             folder.path());
+    auto const mean_depth = [&](std::string const& name) {
+        double sum = 0;
+        gi::Picture const picture = gi::read_picture(folder / name);
+        for (float const v : picture.find("depth")->data) sum += std::isfinite(v) ? double(v) : 0.0;
+        return sum;
+    };
+    EXPECT_NEAR(mean_depth("f_1.exr") / mean_depth("side.exr"), 1, 1e-3) << "a quarter round";
+    for (int k = 0; k < 4; ++k)
+        EXPECT_NEAR(mean_depth("f_" + std::to_string(k) + ".exr") /
+                        mean_depth("two_" + std::to_string(k + 4) + ".exr"),
+                    1, 1e-3);
+    EXPECT_GT(std::abs(mean_depth("f_0.exr") / mean_depth("f_1.exr") - 1), 1e-3);
+}
+
+TEST(Frames, GiveAVideo)
+{
+    TemporaryFolder const folder;
+    run_well("render cornell --size 32x24 --paths 1 --frames 0:5@25 --turntable --png f_%d.png --video a.mkv "
+             "--exposure 1 --tone filmic",
+             folder.path());
+    EXPECT_EQ(folder.files(),
+              (std::vector<std::string>{"a.mkv", "f_0.png", "f_1.png", "f_2.png", "f_3.png", "f_4.png"}));
+    EXPECT_EQ(frames_of_video(folder / "a.mkv", {32, 24}), 5);
+    cv::VideoCapture in((folder / "a.mkv").string(), cv::CAP_FFMPEG);
+    EXPECT_NEAR(in.get(cv::CAP_PROP_FPS), 25, 1e-6);
+    cv::Mat image;
+    for (int k = 0; k < 5 && in.read(image); ++k) {
+        gi::Picture const png = gi::read_picture(folder / ("f_" + std::to_string(k) + ".png"));
+        // Byte 255 is 1, and so on: equal bytes have equal linear values.
+        for (int i : {0, 100, 32 * 24 - 1}) {
+            float const v = png.find("color")->data[std::size_t(3 * i)];
+            float const s = float(image.data[3 * i + 2]) / 255;
+            EXPECT_NEAR(v, s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f), 1e-6f);
+        }
+    }
+    run_well("render cornell --size 32x24 --paths 1 --frames 0:5@25 --video a.mp4", folder.path());
+    EXPECT_EQ(frames_of_video(folder / "a.mp4", {32, 24}), 5);
+}
+
+TEST(Frames, HaveARecordEach)
+{
+    TemporaryFolder const folder;
+    std::string const call = "render cornell --size 16x16 --paths 2 --frames 0:4@8 --out f_%d.exr --stats s.json";
+    run_well(call, folder.path());
+    Json const stats = json_file(folder / "s.json");
+    ASSERT_EQ(stats.at("frames").size(), 4u);
+    for (int k = 0; k < 4; ++k) {
+        Json const& f = stats.at("frames").at(std::size_t(k));
+        EXPECT_EQ(f.at("frame"), k);
+        EXPECT_EQ(f.at("time_s"), k / 8.0);
+        EXPECT_EQ(f.at("exr"), "f_" + std::to_string(k) + ".exr");
+        EXPECT_EQ(f.at("paths_per_pixel"), 2);
+        EXPECT_GT(f.at("seconds").get<double>(), 0);
+        EXPECT_FALSE(f.at("reused").get<bool>());
+    }
+    Json const& seconds = stats.at("frame_seconds");
+    EXPECT_LE(seconds.at("median"), seconds.at("p95"));
+    EXPECT_LE(seconds.at("p95"), seconds.at("p99"));
+
+    run_well(call + " --resume", folder.path());
+    Json const again = json_file(folder / "s.json");
+    for (Json const& f : again.at("frames")) EXPECT_TRUE(f.at("reused").get<bool>());
+    EXPECT_TRUE(again.at("frame_seconds").is_null());
+}
+
+// Frames take a tenth of a second, so that the signal comes between the first and the last.
+constexpr char const* kLong =
+    "render cornell --size 128x128 --paths 16 --seed-per-frame --threads 1 --quiet --frames "
+    "0:30@30 --turntable 15deg --out f_%02d.exr --video a.mkv";
+constexpr char const* kState = "f_00-29.exr.state";
+
+/// Starts it and sends the signal once some frames are there.
+Outcome interrupt(TemporaryFolder const& folder, int signal)
+{
+    Program program(words(kLong), folder.path());
+    for (int i = 0; i < 60000 && !std::filesystem::exists(folder / "f_02.exr"); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    program.send(signal);
+    return program.wait();
+}
+
+void expect_whole(TemporaryFolder const& folder)
+{
+    TemporaryFolder const undisturbed;
+    run_well(kLong, undisturbed.path());
+    EXPECT_EQ(folder.files(), undisturbed.files());
+    for (std::string const& name : undisturbed.files())
+        if (name.ends_with(".exr")) {
+            EXPECT_TRUE(file_text(folder / name) == file_text(undisturbed / name)) << name;
+        }
+    EXPECT_EQ(frames_of_video(folder / "a.mkv", {128, 128}), 30);
+    // Matroska writes a random id, so that videos are compared by what they show.
+    cv::VideoCapture a((folder / "a.mkv").string()), b((undisturbed / "a.mkv").string());
+    for (cv::Mat p, q; a.read(p) && b.read(q);) EXPECT_EQ(cv::norm(p, q, cv::NORM_INF), 0);
+}
+
+TEST(Frames, ControlCKeepsWhatIsCompleteAndResumeGoesOn)
+{
+    TemporaryFolder const folder;
+    Outcome const o = interrupt(folder, SIGINT);
+    ASSERT_EQ(o.code, 130) << o.err;
+    EXPECT_TRUE(contains(o.err, "--resume")) << o.err;
+    EXPECT_TRUE(contains(o.err, "can be played")) << o.err;
+    std::vector<std::string> const files = folder.files();
+    int const frames = int(files.size()) - 2; // a.mkv and the state
+    EXPECT_TRUE(std::filesystem::exists(folder / kState));
+    EXPECT_GE(frames, 3);
+    ASSERT_LT(frames, 30) << "was not interrupted";
+    EXPECT_TRUE(contains(o.err, std::to_string(frames) + " of 30 frames")) << o.err;
+    for (std::string const& name : files)
+        if (name.ends_with(".exr")) {
+            EXPECT_NO_THROW(gi::read_picture(folder / name)) << name;
+        }
+    EXPECT_EQ(frames_of_video(folder / "a.mkv", {128, 128}), frames);
+
+    Outcome const afresh = run(kLong, folder.path());
+    EXPECT_EQ(afresh.code, 2) << "would replace what is unfinished";
+    EXPECT_TRUE(contains(afresh.err, "--resume")) << afresh.err;
+
+    auto const time = std::filesystem::last_write_time(folder / "f_00.exr");
+    Outcome const resumed = run_well(std::string(kLong) + " --resume", folder.path());
+    EXPECT_TRUE(contains(resumed.out, std::to_string(frames) + " were there")) << resumed.out;
+    EXPECT_EQ(std::filesystem::last_write_time(folder / "f_00.exr"), time);
+    expect_whole(folder);
+}
+
+TEST(Frames, AKilledRenderResumesToo)
+{
+    TemporaryFolder const folder;
+    EXPECT_EQ(interrupt(folder, SIGKILL).signal, SIGKILL);
+    std::string const part = file_text(folder / "f_01.exr").substr(0, 5000);
+    std::ofstream(folder / "f_01.exr", std::ios::binary) << part;
+    Outcome const o = run_well(std::string(kLong) + " --resume", folder.path());
+    EXPECT_TRUE(contains(o.err, "damaged, rendered again: 1 (first: f_01.exr)")) << o.err;
+    for (std::string const& name : folder.files()) // what was half-written when it was killed
+        if (name.starts_with(".f_")) std::filesystem::remove(folder / name);
+    expect_whole(folder);
+}
+
+TEST(Frames, OfAnotherRenderAreKept)
+{
+    TemporaryFolder const folder;
+    std::string const call =
+        "render cornell --size 16x16 --paths 1 --frames 0:3@30 --turntable --out f_%d.exr --resume ";
+    Outcome const o = run_well(call, folder.path());
+    EXPECT_TRUE(contains(o.err, "only missing frames")) << o.err;
+    std::string const before = file_text(folder / "f_0.exr");
+    struct Other {
+        char const *option, *why;
+    };
+    for (Other const other : {Other{"--seed 1", "its seed is 0, not 1"},
+                              {"--bounces 2", "its bounces is 64, not 2"},
+                              {"--paths 2", "its stop is --paths 1, not --paths 2"},
+                              {"--size 8x8", "its size is 16x16, not 8x8"},
+                              {"--half", "its numbers is single, not half"},
+                              {"--fov 20", "its scene, camera or settings are others"}}) {
+        std::string changed = call;
+        if (std::string(other.option).starts_with("--paths")) changed.replace(changed.find("--paths 1"), 9, "");
+        if (std::string(other.option).starts_with("--size")) changed.replace(changed.find("--size 16x16"), 12, "");
+        Outcome const refused = run(changed + other.option, folder.path());
+        EXPECT_EQ(refused.code, 2) << other.option;
+        EXPECT_TRUE(contains(refused.err, other.why)) << refused.err;
+    }
+    EXPECT_TRUE(file_text(folder / "f_0.exr") == before);
+    EXPECT_EQ(folder.files().size(), 3u) << testing::PrintToString(folder.files());
+    // Only the display changes: the frames stay, their pictures are made from them.
+    run_well(call + "--png f_%d.png --exposure 1", folder.path());
+    EXPECT_TRUE(file_text(folder / "f_0.exr") == before);
+    EXPECT_EQ(folder.files().size(), 6u);
+}
+
+} // namespace
+} // namespace viewer::test

@@ -1,0 +1,51 @@
+#include "viewer/frame_camera.h"
+
+#include "gi/base/error.h"
+#include "viewer/arguments.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+
+namespace viewer {
+
+double parse_turn(std::string const& text)
+{
+    constexpr double kMostTurns = 1000;
+    if (text.empty()) return 2 * std::numbers::pi;
+    bool const degrees = text.ends_with("deg");
+    auto const value = to_number(std::string_view(text).substr(0, text.size() - (degrees ? 3 : 0)));
+    double const turns = value.value_or(0) / (degrees ? 360 : 1);
+    if (turns == 0 || !(std::abs(turns) <= kMostTurns))
+        throw gi::InputError("--turntable '" + text + "' is not understood",
+                             "turns or degrees are needed, other than 0 and at most 1000 turns",
+                             "write --turntable 1 or --turntable 90deg");
+    return turns * 2 * std::numbers::pi;
+}
+
+FrameCamera::FrameCamera(gi::World const& first, CameraChoice const& choice, CameraMotion const& motion)
+    : choice_(choice), motion_(motion)
+{
+    if (motion_.path) return;
+    first_ = choose_camera(first, choice);
+    of_scene_ = !choice.look_from && !first.cameras.empty();
+    center_ = choice.look_at.value_or(gi::dvec3(first.bounds.empty() ? gi::vec3{0} : first.bounds.center()) +
+                                      first.origin);
+}
+
+gi::Camera FrameCamera::of(gi::World const& world, double time_s, double fraction) const
+{
+    if (motion_.path) {
+        gi::Camera const camera =
+            gi::camera_at(*motion_.path, time_s, glm::radians(choice_.fov_deg.value_or(kDefaultFov_deg)));
+        check_distance(world, camera);
+        return camera;
+    }
+    gi::Camera camera = of_scene_ ? choose_camera(world, choice_).camera : first_.camera;
+    if (double const angle = motion_.turn_rad * fraction; angle != 0)
+        camera.world_from_camera = glm::translate(gi::dmat4(1), center_) *
+                                   glm::rotate(gi::dmat4(1), angle, gi::dvec3{0, 1, 0}) *
+                                   glm::translate(gi::dmat4(1), -center_) * camera.world_from_camera;
+    return camera;
+}
+
+} // namespace viewer

@@ -1,0 +1,36 @@
+#pragma once
+#include "gi/scene/camera_path.h"
+#include "viewer/choose_camera.h"
+
+namespace viewer {
+
+/// How the point of view moves over frames: not, along a path, or round the scene.
+struct CameraMotion {
+    std::optional<gi::CameraPath> path;
+    double turn_rad = 0; ///< over all frames, about +Y, counter-clockwise from above
+};
+
+/// "" = once round, "2" turns, "90deg". Throws InputError.
+double parse_turn(std::string const& text);
+
+/// The cameras of all frames.
+class FrameCamera {
+public:
+    /// @param first the world of the first frame: its middle is circled, and a camera that frames the whole scene
+    ///              stays where it is then
+    /// Throws InputError as choose_camera does.
+    FrameCamera(gi::World const& first, CameraChoice const& choice, CameraMotion const& motion);
+
+    /// @param time_s on the path   @param fraction of the turn, 0..1
+    gi::Camera of(gi::World const& world, double time_s, double fraction) const;
+    std::string const& note() const { return first_.note; }
+
+private:
+    CameraChoice choice_;
+    CameraMotion motion_;
+    ChosenCamera first_;
+    gi::dvec3 center_{0};
+    bool of_scene_ = false; ///< a camera of the scene's, which may be animated
+};
+
+} // namespace viewer

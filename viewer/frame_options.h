@@ -1,0 +1,26 @@
+#pragma once
+#include "viewer/frame_camera.h"
+#include "viewer/frame_range.h"
+#include "viewer/render_options.h"
+
+namespace viewer {
+
+/// Everything about --frames, understood.
+struct FrameSettings {
+    FrameRange range;
+    std::optional<FrameName> exr, png;
+    std::string video, state; ///< empty = none; state: a file that is there while frames are missing
+    CameraMotion motion;
+
+    /// Of the animation: that of the frame, or where --time holds it still.
+    double scene_time_s(RenderOptions const& o, int frame) const { return o.time_s.value_or(range.time_s(frame)); }
+    double fraction(int frame) const { return double(frame - range.first) / range.count(); }
+};
+
+void declare_frames(CLI::App& command, RenderOptions& options);
+/// Of --camera-path and --turntable. Throws InputError where they contradict other options.
+CameraMotion make_motion(RenderOptions const& options);
+/// Checks, too, that all results can be written. Throws InputError.
+FrameSettings make_frame_settings(RenderOptions const& options, gi::RenderSettings const& settings);
+
+} // namespace viewer

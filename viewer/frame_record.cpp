@@ -1,0 +1,59 @@
+#include "viewer/frame_record.h"
+
+#include "viewer/render_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace viewer {
+
+using Json = nlohmann::ordered_json;
+
+double percentile(std::vector<double> values, double fraction)
+{
+    std::sort(values.begin(), values.end());
+    double const rank = std::ceil(fraction * double(values.size()));
+    return values[std::size_t(std::clamp(rank, 1.0, double(values.size()))) - 1];
+}
+
+Json to_json(std::vector<FrameRecord> const& records, FrameSettings const& frames)
+{
+    auto const name = [](std::optional<FrameName> const& pattern, int frame) {
+        return pattern ? Json(pattern->of(frame)) : Json();
+    };
+    Json all = Json::array();
+    for (FrameRecord const& r : records) {
+        bool const known = !r.reused;
+        Json losses = Json::object();
+        for (auto const& [what, loss] : r.losses) losses[what] = {{"count", loss.count}, {"first", loss.first}};
+        all.push_back({{"frame", r.frame},
+                       {"time_s", frames.range.time_s(r.frame)},
+                       {"exr", name(frames.exr, r.frame)},
+                       {"png", name(frames.png, r.frame)},
+                       {"reused", r.reused},
+                       {"seconds", known ? Json(r.seconds) : Json()},
+                       {"trace_s", known ? Json(r.result.seconds) : Json()},
+                       {"paths_per_pixel", known ? Json(r.result.paths) : Json()},
+                       {"rays", known ? Json(r.result.rays) : Json()},
+                       {"relmse_estimate", known ? relmse_json(r.result) : Json()},
+                       {"end", known ? Json(end_text(r.result.end)) : Json()},
+                       {"losses", losses}});
+    }
+    return all;
+}
+
+Json frame_seconds(std::vector<FrameRecord> const& records)
+{
+    std::vector<double> s;
+    for (FrameRecord const& r : records)
+        if (!r.reused) s.push_back(r.seconds);
+    if (s.empty()) return {};
+    return {{"median", percentile(s, 0.5)},
+            {"p95", percentile(s, 0.95)},
+            {"p99", percentile(s, 0.99)},
+            {"most", percentile(s, 1)},
+            {"total", std::accumulate(s.begin(), s.end(), 0.0)}};
+}
+
+} // namespace viewer

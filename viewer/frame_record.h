@@ -1,0 +1,27 @@
+#pragma once
+#include "gi/base/report.h"
+#include "gi/image/render_settings.h"
+#include "viewer/frame_options.h"
+
+#include <nlohmann/json.hpp>
+
+namespace viewer {
+
+/// What --stats says of one frame.
+struct FrameRecord {
+    int frame = 0;
+    bool reused = false;     ///< was there already
+    double seconds = 0;      ///< world, paths, filter and files; 0 where reused
+    gi::RenderResult result; ///< without its picture
+    std::map<std::string, gi::Report::Loss> losses;
+};
+
+/// Nearest-rank percentile: the least value that `fraction` of all values do not exceed. Not empty.
+double percentile(std::vector<double> values, double fraction);
+
+/// An array with an object per frame.
+nlohmann::ordered_json to_json(std::vector<FrameRecord> const& records, FrameSettings const& frames);
+/// Seconds of the frames that were rendered: median, p95, p99, most, total; null where there are none.
+nlohmann::ordered_json frame_seconds(std::vector<FrameRecord> const& records);
+
+} // namespace viewer

@@ -1,0 +1,285 @@
+#include "viewer/frame_sequence.h"
+
+#include "gi/base/error.h"
+#include "gi/base/file.h"
+#include "gi/base/picture_file.h"
+#include "gi/registry/registry.h"
+#include "gi/transport/fingerprint.h"
+#include "viewer/frame_record.h"
+#include "viewer/frame_state.h"
+#include "viewer/interrupt.h"
+#include "viewer/render_picture.h"
+#include "viewer/render_record.h"
+#include "viewer/report_json.h"
+#include "viewer/video_writer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+void add_losses(gi::Report& sum, std::map<std::string, gi::Report::Loss> const& losses, int frame)
+{
+    for (auto const& [what, loss] : losses)
+        sum.lose(what, loss.count, fmt::format("frame {}{}", frame, loss.first.empty() ? "" : ", " + loss.first));
+}
+
+class Sequence {
+public:
+    Sequence(RenderOptions const& o, gi::RenderSettings const& settings,
+             gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice)
+        : o_(o), settings_(settings), denoise_(denoise_settings), f_(make_frame_settings(o, settings))
+    {
+        refuse_to_replace();
+        if (!f_.video.empty())
+            video_ = std::make_unique<VideoWriter>(f_.video, settings.width, settings.height, f_.range.fps());
+        scene_ = load_lit_scene(o_, report_);
+        gi::Report unused; // the frame itself reports what its world lost
+        gi::World const first = world_of(f_.range.first, unused);
+        plan_ = to_json(gi::plan_scene(first));
+        camera_ = std::make_unique<FrameCamera>(first, choice, f_.motion);
+        if (!camera_->note().empty()) say(camera_->note());
+    }
+
+    int run()
+    {
+        std::vector<char> const there =
+            o_.resume ? find_frames() : std::vector<char>(std::size_t(f_.range.count()));
+        if (!f_.state.empty()) gi::write_text(f_.state, stats_command() + "\n");
+        missing_ = int(std::count(there.begin(), there.end(), 0));
+        bar_.emplace("render " + fs::path(o_.scene).filename().string(), !o_.quiet);
+        for (int k = f_.range.first; k < f_.range.end && !stop_.requested(); ++k) {
+            bool const kept = there[std::size_t(k - f_.range.first)] != 0;
+            if (kept ? !reuse(k) : !render(k)) break;
+        }
+        bar_.reset();
+        return finish();
+    }
+
+private:
+    /// The world of a frame. The only place that makes one.
+    gi::World world_of(int frame, gi::Report& report) const
+    {
+        gi::StageTimer const timer(report, "world");
+        return gi::build_world(scene_, f_.scene_time_s(o_, frame), report);
+    }
+
+    gi::Camera camera_of(gi::World const& world, int frame) const
+    {
+        return camera_->of(world, f_.range.time_s(frame), f_.fraction(frame));
+    }
+
+    /// The options of one frame. Where the same picture can be had alone, by --time, they say so.
+    RenderOptions options_of(int frame) const
+    {
+        RenderOptions o = o_;
+        if (!o.time_s && !o.turns) {
+            o.time_s = f_.range.time_s(frame);
+            o.frames.clear();
+        }
+        return o;
+    }
+
+    gi::RenderSettings settings_of(int frame) const
+    {
+        gi::RenderSettings s = settings_;
+        if (o_.seed_per_frame) s.seed += std::uint64_t(frame);
+        return s;
+    }
+
+    std::string stats_command() const
+    {
+        return describe_call(o_, settings_, stop_option(settings_), "").at("command").get<std::string>();
+    }
+
+    std::map<std::string, std::string> metadata(int frame, gi::World const& world, gi::Camera const& camera,
+                                                gi::RenderResult const& result) const
+    {
+        gi::RenderSettings const s = settings_of(frame);
+        return frame_metadata(options_of(frame), s, result, frame, gi::fingerprint(world, camera, s, o_.method));
+    }
+
+    void refuse_to_replace() const
+    {
+        bool const unfinished = !f_.state.empty() && fs::exists(f_.state);
+        if (o_.resume && !unfinished) say("there is no '" + f_.state + "': only missing frames are rendered");
+        if (!o_.resume && unfinished)
+            throw gi::InputError("'" + f_.state + "' says that frames are unfinished",
+                                 "new ones would replace them", "add --resume to go on, or delete it");
+    }
+
+    /// Which frames are on disk, whole, and of this render. Throws InputError where one is of another render.
+    std::vector<char> find_frames()
+    {
+        std::vector<char> there(std::size_t(f_.range.count()), 0);
+        gi::ProgressBar bar("look for frames", !o_.quiet);
+        for (int k = f_.range.first; k < f_.range.end && !stop_.requested(); ++k) {
+            std::string const file = f_.exr->of(k);
+            bar.update(f_.fraction(k), file);
+            if (!fs::exists(file)) continue;
+            gi::Picture picture;
+            try {
+                picture = gi::read_exr(file);
+            } catch (gi::InputError const&) {
+                report_.lose("frames that were damaged, rendered again", 1, file);
+                continue;
+            }
+            gi::Report unused; // what it lost was said when it was rendered
+            gi::World const world = world_of(k, unused);
+            std::string const other = difference(picture, metadata(k, world, camera_of(world, k), {}));
+            if (!other.empty())
+                throw gi::InputError("'" + file + "' belongs to another render", other,
+                                     "delete it, or choose another --out");
+            there[std::size_t(k - f_.range.first)] = 1;
+        }
+        return there;
+    }
+
+    /// @return false if there is no more to do
+    bool reuse(int frame)
+    {
+        FrameRecord record;
+        record.frame = frame;
+        record.reused = true;
+        gi::Picture picture;
+        if (f_.png || video_) picture = gi::read_exr(f_.exr->of(frame));
+        show_picture(frame, picture);
+        records_.push_back(record);
+        return true;
+    }
+
+    /// @return false if it was interrupted
+    bool render(int frame)
+    {
+        auto const start = std::chrono::steady_clock::now();
+        FrameRecord record;
+        record.frame = frame;
+        gi::Report report;
+        gi::World const world = world_of(frame, report);
+        gi::Camera const camera = camera_of(world, frame);
+        auto const progress = [&](gi::RenderStatus const& s) {
+            bar_->update((rendered_ + s.fraction) / missing_,
+                         fmt::format("frame {}, {} of {}, {} paths", frame, rendered_ + 1, missing_, s.paths));
+        };
+        gi::RenderResult result =
+            gi::find_method(o_.method).render(world, camera, settings_of(frame), stop_, progress, report);
+        if (result.end == gi::RenderEnd::interrupted) return false;
+        std::string const remark = denoise(result.picture, denoise_, report);
+        if (!remark.empty() && rendered_ == 0) say(remark);
+        gi::Picture picture = std::move(result.picture);
+        picture.metadata = metadata(frame, world, camera, result);
+        keep_layers(o_, picture);
+        {
+            gi::StageTimer const timer(report, "save");
+            show_picture(frame, picture);
+            if (f_.exr) save_exr(o_, f_.exr->of(frame), picture, report);
+        }
+        record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        result.picture = {};
+        record.result = result;
+        record.losses = report.losses();
+        for (auto const& [stage, seconds] : report.times()) report_.add_time(stage, seconds);
+        add_losses(report_, record.losses, frame);
+        records_.push_back(std::move(record));
+        ++rendered_;
+        return true;
+    }
+
+    /// To its PNG and to the video.
+    void show_picture(int frame, gi::Picture const& picture)
+    {
+        if (!f_.png && !video_) return;
+        std::vector<unsigned char> const bytes = display_bytes(o_, picture);
+        if (f_.png) gi::write_png(f_.png->of(frame), picture.width, picture.height, bytes);
+        if (video_) video_->add(bytes);
+    }
+
+    int finish()
+    {
+        bool const complete = int(records_.size()) == f_.range.count();
+        bool const has_video = video_ && video_->frames() > 0;
+        if (has_video) {
+            gi::StageTimer const timer(report_, "video");
+            video_->finish();
+        }
+        if (complete && !f_.state.empty()) fs::remove(f_.state);
+        print();
+        print_losses(report_);
+        if (complete) return 0;
+        std::string const done = fmt::format("interrupted: {} of {} frames are complete",
+                                             f_.range.count() - missing_ + rendered_, f_.range.count());
+        say(done + (f_.exr ? "; the same command with --resume goes on" : "; with --out they could be resumed"));
+        if (has_video) say(fmt::format("'{}' can be played, as far as it goes", f_.video));
+        return kInterrupted;
+    }
+
+    void print() const
+    {
+        Json stats = describe_call(o_, settings_, stop_option(settings_),
+                                   rendered_ > 0 ? last_rendered().result.options : "");
+        stats["frames"] = to_json(records_, f_);
+        stats["frame_seconds"] = frame_seconds(records_);
+        stats["plan"] = plan_;
+        stats["report"] = to_json(report_);
+        if (!o_.stats.empty()) gi::write_text(o_.stats, to_text(stats));
+        if (o_.json) {
+            std::fputs(to_text(stats).c_str(), stdout);
+        } else {
+            for (auto const& name : {f_.exr, f_.png})
+                if (name && !records_.empty())
+                    fmt::print("{} ... {}\n", name->of(records_.front().frame), name->of(records_.back().frame));
+            for (std::string const& file : {video_ && video_->frames() > 0 ? f_.video : "", o_.stats})
+                if (!file.empty()) fmt::print("{}\n", file);
+            fmt::print("{}\n", summary(stats["frame_seconds"]));
+        }
+        std::fflush(stdout);
+    }
+
+    FrameRecord const& last_rendered() const
+    {
+        return *std::find_if(records_.rbegin(), records_.rend(), [](FrameRecord const& r) { return !r.reused; });
+    }
+
+    std::string summary(Json const& seconds) const
+    {
+        std::string line =
+            fmt::format("{} frames of {} x {} pixels", records_.size(), settings_.width, settings_.height);
+        if (int const kept = int(records_.size()) - rendered_; kept > 0)
+            line += fmt::format(", {} were there", kept);
+        if (seconds.is_null()) return line;
+        auto const s = [&](char const* key) { return seconds.at(key).get<double>(); };
+        return line + fmt::format(", {:.2f} s; per frame: median {:.3f} s, 95 % {:.3f} s, 99 % {:.3f} s",
+                                  s("total"), s("median"), s("p95"), s("p99"));
+    }
+
+    RenderOptions const& o_;
+    gi::RenderSettings const& settings_;
+    gi::DenoiseSettings const& denoise_;
+    FrameSettings f_;
+    gi::StopRequest stop_;
+    InterruptGuard const guard_{stop_}; ///< from before the video begins, so that its hidden file is cleaned up
+    gi::Report report_;                 ///< of all frames together
+    std::unique_ptr<VideoWriter> video_;
+    std::shared_ptr<gi::Scene const> scene_;
+    std::unique_ptr<FrameCamera> camera_;
+    Json plan_;
+    std::optional<gi::ProgressBar> bar_;
+    std::vector<FrameRecord> records_; ///< in their order
+    int missing_ = 0, rendered_ = 0;   ///< frames that were to be rendered, and that are
+};
+
+} // namespace
+
+int render_frames(RenderOptions const& o, gi::RenderSettings const& settings,
+                  gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice)
+{
+    return Sequence(o, settings, denoise_settings, choice).run();
+}
+
+} // namespace viewer

@@ -1,0 +1,36 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace viewer {
+
+/// Throws InputError where no video of this name, size and rate can be written: .mkv (FFV1, lossless) and .mp4
+/// (H.264), even sizes, 0.01 to 1000 frames per second. Writes nothing.
+void check_video(std::filesystem::path const& file, int width, int height, double fps);
+
+/// A video under way: it grows under a hidden name beside `file` and gets its own name when it is complete and was
+/// read back. Whatever is not finished is removed.
+class VideoWriter {
+public:
+    /// Throws InputError as check_video does, or where the codec is missing or the file cannot be written.
+    VideoWriter(std::filesystem::path const& file, int width, int height, double fps);
+    ~VideoWriter();
+    VideoWriter(VideoWriter const&) = delete;
+    VideoWriter& operator=(VideoWriter const&) = delete;
+
+    /// rgb8.size() == 3 * width * height, display-encoded.
+    void add(std::span<unsigned char const> rgb8);
+    int frames() const { return frames_; }
+    /// Throws InputError unless all frames can be read back; OpenCV does not tell of a full disk otherwise.
+    void finish();
+
+private:
+    struct Stream;
+    std::filesystem::path file_, temporary_;
+    int width_, height_, frames_ = 0;
+    std::unique_ptr<Stream> stream_;
+};
+
+} // namespace viewer
