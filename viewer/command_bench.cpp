@@ -12,6 +12,7 @@ void add_bench(CLI::App& app, int& exit_code)
     add_bench_rays(*c, exit_code);
     add_bench_accuracy(*c, exit_code);
     add_bench_thesis(*c, exit_code);
+    add_bench_dynamic(*c, exit_code);
     add_bench_sweep(*c, exit_code);
     add_bench_report(*c, exit_code);
     c->footer(R"(Examples:
