@@ -7,6 +7,7 @@
 #include "viewer/bench/table_file.h"
 #include "viewer/bench_record.h"
 #include "viewer/commands.h"
+#include "viewer/frame_follower.h"
 #include "viewer/load_world.h"
 #include "viewer/report_json.h"
 
@@ -161,7 +162,8 @@ private:
             }
             Camera const eye = camera(world.world());
             render_s = seconds_of([&] { result = renderer->frame(eye, {}, {}); });
-            if (o_.most_frames > 1) reuse_s = seconds_of([&] { reuse.add(result.picture, change_of(changes)); });
+            if (o_.most_frames > 1)
+                reuse_s = seconds_of([&] { reuse.add(result.picture, scene_change(changes, f == 0)); });
             filter_s = seconds_of([&] { denoise(result.picture, filter); });
 
             std::map<std::string, double> spent = stages(report_);
@@ -215,12 +217,6 @@ private:
                       at(relmse, 0.5), at(flip, 0.5), at(flip, 1)});
         write(table_, o_.out);
         write(summary_, o_.out);
-    }
-
-    static SceneChange change_of(Changes const& c)
-    {
-        if (c.lights || c.materials || c.environment || c.emitters) return SceneChange::light;
-        return c.geometry || c.cameras ? SceneChange::motion : SceneChange::nothing;
     }
 
     DynamicOptions const& o_;

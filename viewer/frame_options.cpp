@@ -41,6 +41,11 @@ void declare_frames(CLI::App& c, RenderOptions& o)
     c.add_option("--camera-path", o.camera_path,
                  "YAML key frames (data/camera_path.yaml); without --frames, the camera at --time")
         ->group(kGroup);
+    c.add_option("--reuse", o.reuse,
+                 "temporal reuse: a pixel is the mean of so many frames at most (of all, while nothing moves)")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str()
+        ->needs(frames);
     c.add_flag("--seed-per-frame", o.seed_per_frame, "frame k has the seed --seed + k: noise that flickers")
         ->group(kGroup)
         ->needs(frames);

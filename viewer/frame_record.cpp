@@ -38,7 +38,10 @@ Json to_json(std::vector<FrameRecord> const& records, FrameSettings const& frame
                        {"rays", known ? Json(r.result.rays) : Json()},
                        {"relmse_estimate", known ? relmse_json(r.result) : Json()},
                        {"end", known ? Json(end_text(r.result.end)) : Json()},
-                       {"losses", losses}});
+                       {"losses", losses},
+                       {"changes", r.changes},
+                       {"mean_of_frames", r.reuse.frames},
+                       {"surfaces_without_history", r.reuse.started}});
     }
     return all;
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include "gi/base/report.h"
 #include "gi/image/render_settings.h"
+#include "gi/image/temporal.h"
 #include "viewer/frame_options.h"
 
 #include <nlohmann/json.hpp>
@@ -14,6 +15,8 @@ struct FrameRecord {
     double seconds = 0;      ///< world, paths, filter and files; 0 where reused
     gi::RenderResult result; ///< without its picture
     std::map<std::string, gi::Report::Loss> losses;
+    std::vector<std::string> changes; ///< of the world since the frame before; with --reuse
+    gi::TemporalCounts reuse;         ///< likewise
 };
 
 /// Nearest-rank percentile: the least value that `fraction` of all values do not exceed. Not empty.

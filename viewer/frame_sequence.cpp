@@ -5,6 +5,7 @@
 #include "gi/base/picture_file.h"
 #include "gi/registry/registry.h"
 #include "gi/transport/fingerprint.h"
+#include "viewer/frame_follower.h"
 #include "viewer/frame_record.h"
 #include "viewer/frame_state.h"
 #include "viewer/interrupt.h"
@@ -70,6 +71,17 @@ private:
         return gi::build_world(scene_, f_.scene_time_s(o_, frame), report);
     }
 
+    /// The same, moved on from the frame before.
+    gi::World const& follow(int frame, gi::Report& report)
+    {
+        gi::StageTimer const timer(report, "world");
+        double const time_s = f_.scene_time_s(o_, frame);
+        if (!follower_)
+            follower_ =
+                std::make_unique<FrameFollower>(scene_, time_s, gi::find_method(o_.method), settings_, o_.reuse);
+        return follower_->go_to(time_s);
+    }
+
     gi::Camera camera_of(gi::World const& world, int frame) const
     {
         return camera_->of(world, f_.range.time_s(frame), f_.fraction(frame));
@@ -79,7 +91,7 @@ private:
     RenderOptions options_of(int frame) const
     {
         RenderOptions o = o_;
-        if (!o.time_s && !o.turns) {
+        if (!o_.time_s && !o_.turns && o_.reuse == 1) {
             o.time_s = f_.range.time_s(frame);
             o.frames.clear();
         }
@@ -161,14 +173,23 @@ private:
         FrameRecord record;
         record.frame = frame;
         gi::Report report;
-        gi::World const world = world_of(frame, report);
+        gi::World own;
+        if (o_.reuse == 1) own = world_of(frame, report);
+        gi::World const& world = o_.reuse == 1 ? own : follow(frame, report);
         gi::Camera const camera = camera_of(world, frame);
         auto const progress = [&](gi::RenderStatus const& s) {
             bar_->update((rendered_ + s.fraction) / missing_,
                          fmt::format("frame {}, {} of {}, {} paths", frame, rendered_ + 1, missing_, s.paths));
         };
-        gi::RenderResult result =
-            gi::find_method(o_.method).render(world, camera, settings_of(frame), stop_, progress, report);
+        gi::RenderResult result;
+        if (o_.reuse == 1) {
+            result = gi::find_method(o_.method).render(world, camera, settings_of(frame), stop_, progress, report);
+        } else {
+            FrameFollower::Frame followed = follower_->render(camera, stop_, progress, report);
+            result = std::move(followed.result);
+            record.changes = followed.changes;
+            record.reuse = followed.counts;
+        }
         if (result.end == gi::RenderEnd::interrupted) return false;
         std::string const remark = denoise(result.picture, denoise_, report);
         if (!remark.empty() && rendered_ == 0) say(remark);
@@ -268,6 +289,7 @@ private:
     std::unique_ptr<VideoWriter> video_;
     std::shared_ptr<gi::Scene const> scene_;
     std::unique_ptr<FrameCamera> camera_;
+    std::unique_ptr<FrameFollower> follower_; ///< with --reuse
     Json plan_;
     std::optional<gi::ProgressBar> bar_;
     std::vector<FrameRecord> records_; ///< in their order

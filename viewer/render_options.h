@@ -30,6 +30,7 @@ struct RenderOptions {
     std::string frames, video, turntable, camera_path; ///< empty = none
     bool turns = false;                                ///< --turntable was given, maybe without a value
     bool seed_per_frame = false;
+    int reuse = 1; ///< frames
 };
 
 /// Those of the camera, the sky and the moment, for every command that renders.

@@ -34,6 +34,7 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
     add("--camera-path", o.camera_path);
     add("--frames", o.frames);
     if (o.turns) add("--turntable", o.turntable.empty() ? "1" : o.turntable);
+    if (o.reuse > 1) add("--reuse", std::to_string(o.reuse));
     if (o.seed_per_frame && !o.frames.empty()) command += " --seed-per-frame";
     if (!chosen.empty()) command += " " + chosen;
     return command;
@@ -132,7 +133,8 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
                      {"frames", name_or_null(o.frames)},
                      {"turntable", o.turns ? Json(o.turntable.empty() ? "1" : o.turntable) : Json()},
                      {"camera_path", name_or_null(o.camera_path)},
-                     {"seed_per_frame", o.seed_per_frame}};
+                     {"seed_per_frame", o.seed_per_frame},
+                     {"reuse", o.reuse}};
     j["outputs"] = {{"exr", name_or_null(o.out)},
                     {"png", name_or_null(o.png)},
                     {"video", name_or_null(o.video)},

@@ -1,0 +1,70 @@
+#include "viewer/frame_follower.h"
+
+#include "gi/base/error.h"
+
+namespace viewer {
+namespace {
+
+bool same_view(gi::Camera const& a, gi::Camera const& b)
+{
+    return a.orthographic == b.orthographic && a.yfov_rad == b.yfov_rad && a.ymag_m == b.ymag_m &&
+           a.world_from_camera == b.world_from_camera;
+}
+
+} // namespace
+
+gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
+{
+    if (c.lights || c.materials || c.coverage || c.emitters || c.environment) return gi::SceneChange::light;
+    return c.geometry || camera_moved ? gi::SceneChange::motion : gi::SceneChange::nothing;
+}
+
+FrameFollower::FrameFollower(std::shared_ptr<gi::Scene const> scene, double time_s, gi::Method const& method,
+                             gi::RenderSettings const& settings, int most_frames)
+    : method_(method),
+      settings_(settings),
+      world_(std::move(scene), time_s, report_),
+      reuse_({.most_frames = most_frames})
+{
+    if (method.name != "slhb")
+        throw gi::InputError("--reuse with method '" + std::string(method.name) + "'",
+                             "it gives no motion vectors, by which the light of earlier frames is found",
+                             "use --method slhb");
+}
+
+gi::World const& FrameFollower::go_to(double time_s)
+{
+    changes_.add(world_.advance(time_s));
+    return world_.world();
+}
+
+FrameFollower::Frame FrameFollower::render(gi::Camera const& camera, gi::StopRequest const& stop,
+                                           gi::RenderProgress const& progress, gi::Report& report)
+{
+    if (camera.orthographic)
+        throw gi::InputError("--reuse with an orthographic camera", "it has no motion vectors",
+                             "leave out --reuse, or choose a perspective camera");
+    bool const first = renderer_ == nullptr;
+    if (first)
+        renderer_ = method_.frames(world_, camera, settings_, report_);
+    else
+        renderer_->changed(changes_);
+    Frame frame;
+    frame.result = renderer_->frame(camera, stop, progress);
+    if (frame.result.end == gi::RenderEnd::interrupted) return frame;
+    {
+        gi::StageTimer const timer(report_, "temporal reuse");
+        frame.counts =
+            reuse_.add(frame.result.picture, scene_change(changes_, first || !same_view(camera, last_camera_)));
+    }
+    frame.changes = changes_.reasons;
+    changes_ = {};
+    last_camera_ = camera;
+    for (auto const& [stage, seconds] : report_.times()) {
+        report.add_time(stage, seconds - reported_s_[stage]);
+        reported_s_[stage] = seconds;
+    }
+    return frame;
+}
+
+} // namespace viewer

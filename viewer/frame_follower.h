@@ -1,0 +1,42 @@
+#pragma once
+#include "gi/image/temporal.h"
+#include "gi/registry/registry.h"
+#include "gi/scene/moving_world.h"
+
+namespace viewer {
+
+/// What has happened between two frames, as temporal reuse sees it.
+gi::SceneChange scene_change(gi::Changes const& changes, bool camera_moved);
+
+/// Frames that follow each other: the world is moved on in place, structures of what stays are kept, and the light
+/// of earlier frames is reused.
+class FrameFollower {
+public:
+    struct Frame {
+        gi::RenderResult result;
+        gi::TemporalCounts counts;
+        std::vector<std::string> changes; ///< since the frame before, with reasons
+    };
+
+    /// Throws InputError where the method does not give what reuse needs.
+    FrameFollower(std::shared_ptr<gi::Scene const> scene, double time_s, gi::Method const& method,
+                  gi::RenderSettings const& settings, int most_frames);
+
+    gi::World const& go_to(double time_s);
+    /// @param report  gets the times of this frame
+    Frame render(gi::Camera const& camera, gi::StopRequest const& stop, gi::RenderProgress const& progress,
+                 gi::Report& report);
+
+private:
+    gi::Method const& method_;
+    gi::RenderSettings settings_;
+    gi::Report report_; ///< of all frames
+    std::map<std::string, double> reported_s_;
+    gi::MovingWorld world_;
+    gi::Changes changes_;
+    std::unique_ptr<gi::FrameRenderer> renderer_;
+    gi::TemporalReuse reuse_;
+    gi::Camera last_camera_;
+};
+
+} // namespace viewer
