@@ -45,11 +45,41 @@ void denoise(gi::Picture& picture, gi::DenoiseSettings const& settings, gi::Repo
     if (done.not_finite > 0) report.lose("pixels not filtered, as a value is not finite", done.not_finite);
 }
 
+/// The alpha channel goes with the colours.
+void join_alpha(gi::Picture& picture)
+{
+    gi::Layer const* const alpha = picture.find("alpha");
+    if (alpha == nullptr) return;
+    gi::Layer& color = *picture.find("color");
+    std::vector<float> joined;
+    joined.reserve(4 * alpha->data.size());
+    for (std::size_t p = 0; p < alpha->data.size(); ++p) {
+        joined.insert(joined.end(), color.data.begin() + std::ptrdiff_t(3 * p),
+                      color.data.begin() + std::ptrdiff_t(3 * p + 3));
+        joined.push_back(alpha->data[p]);
+    }
+    color.channels = 4;
+    color.data = std::move(joined);
+    std::erase_if(picture.layers, [](gi::Layer const& l) { return l.name == "alpha"; });
+}
+
+std::vector<unsigned char> display_bytes(gi::Picture const& picture, gi::ToneMapSettings const& tone)
+{
+    gi::Layer const &color = *picture.find("color"), *const alpha = picture.find("alpha");
+    return alpha != nullptr ? gi::tone_map_bytes(color, *alpha, tone) : gi::tone_map_bytes(color, tone);
+}
+
 void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::RenderResult& result, gi::Report& report)
 {
     gi::StageTimer const timer(report, "save");
     gi::Picture& picture = result.picture;
     picture.metadata = make_metadata(o, settings, result);
+    if (!o.png.empty()) {
+        gi::ToneMapSettings const tone{float(o.exposure_ev),
+                                       o.tone == "filmic" ? gi::ToneCurve::filmic : gi::ToneCurve::srgb};
+        gi::write_png(o.png, picture.width, picture.height, display_bytes(picture, tone));
+    }
+    join_alpha(picture);
     if (!o.out.empty()) {
         if (!o.layers.empty())
             std::erase_if(picture.layers, [&](gi::Layer const& l) {
@@ -57,10 +87,6 @@ void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::Render
             });
         gi::write_exr(o.out, picture, o.half ? gi::PixelType::half : gi::PixelType::single, report);
     }
-    if (o.png.empty()) return;
-    gi::ToneMapSettings const tone{float(o.exposure_ev),
-                                   o.tone == "filmic" ? gi::ToneCurve::filmic : gi::ToneCurve::srgb};
-    gi::write_png(o.png, picture.width, picture.height, gi::tone_map_bytes(*picture.find("color"), tone));
 }
 
 int run(RenderOptions o)
@@ -69,6 +95,7 @@ int run(RenderOptions o)
     gi::RenderSettings const settings = make_settings(o);
     gi::DenoiseSettings const denoise_settings = make_denoise_settings(o, settings);
     CameraChoice const choice = camera_choice(o);
+    if (!o.background.empty()) parse_background(o.background); // before any work
     check_outputs({o.out, o.png, o.stats, settings.checkpoint.string()}, {o.scene, o.environment});
     bool const has_state = !settings.checkpoint.empty() && std::filesystem::exists(settings.checkpoint);
     if (o.resume && !has_state) say("there is no '" + settings.checkpoint.string() + "': starting afresh");

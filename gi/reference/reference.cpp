@@ -60,7 +60,7 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
     report.count("closest-hit rays", double(total.nearest_rays));
     report.count("shadow rays", double(total.shadow_rays));
     result.rays = double(total.nearest_rays + total.shadow_rays);
-    result.picture = loop.sums().picture(world.origin);
+    result.picture = loop.sums().picture(world);
     return result;
 }
 

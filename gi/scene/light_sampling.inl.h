@@ -195,4 +195,10 @@ GI_FN inline vec3 environment_radiance(WorldView const& world, vec3 direction)
     return light_detail::map_radiance(world, light_detail::map_point(world, direction).position);
 }
 
+GI_FN inline vec3 background_radiance(WorldView const& world, vec3 direction)
+{
+    if (world.background.kind == BackgroundKind::map) return environment_radiance(world, direction);
+    return world.background.kind == BackgroundKind::color ? world.background.color : vec3{0};
+}
+
 } // namespace gi

@@ -38,6 +38,7 @@ WorldView view(World const& world)
         v.environment_cos = std::cos(world.environment_rotation_rad);
         v.environment_sin = std::sin(world.environment_rotation_rad);
     }
+    v.background = world.scene->background;
     v.environment_pdf = world.environment_pdf;
     v.scene_radius = world.bounds.radius();
     return v;

@@ -114,6 +114,7 @@ struct WorldView {
     vec3 environment_scale{1};
     float environment_cos = 1, environment_sin = 0; ///< of its rotation about +Y
     float environment_pdf = 0;
+    Background background;
     float scene_radius = 0; ///< m
 };
 
