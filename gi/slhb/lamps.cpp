@@ -30,13 +30,11 @@ ShadowView view_from(World const& world, LightChoice const& choice, vec2 u)
     return v;
 }
 
-std::vector<double> sums(AliasTable const& table)
+void add_up(AliasTable const& table, std::vector<double>& sums)
 {
-    std::vector<double> out;
-    out.reserve(table.entries.size());
+    sums.clear();
     double sum = 0;
-    for (AliasEntry const& e : table.entries) out.push_back(sum += double(e.probability));
-    return out;
+    for (AliasEntry const& e : table.entries) sums.push_back(sum += double(e.probability));
 }
 
 /// The entry in whose share u lies; u becomes its place in there.
@@ -61,8 +59,6 @@ Lamps::Lamps(World const& world, TriangleSoup const& soup, CutOuts const& cut_ou
     fixed_ = world.emitters.empty() && world.environment_select.empty() && lights <= count;
     if (!fixed_) {
         lamps_.resize(count);
-        light_sums_ = sums(world.light_select);
-        if (!world.environment_select.empty()) texel_sums_ = sums(world.environment_select);
         return;
     }
     std::vector<float> weights;
@@ -79,6 +75,7 @@ Lamps::Lamps(World const& world, TriangleSoup const& soup, CutOuts const& cut_ou
 LightChoice Lamps::choose(double u) const
 {
     LightChoice c;
+    if (light_sums_.empty()) return c;
     c.light = pick(light_sums_, u);
     c.probability = world_.light_select.entries[c.light].probability;
     if (c.light < world_.lights.size() + world_.emitters.size()) return c;
@@ -90,6 +87,12 @@ LightChoice Lamps::choose(double u) const
 void Lamps::refresh(std::uint32_t pass)
 {
     if (fixed_ || none()) return;
+    add_up(world_.light_select, light_sums_); // the world may have moved
+    AliasTable const& texels = world_.environment_select;
+    if (texels.entries.size() != texel_sums_.size() || texels.total != texel_total_) {
+        add_up(texels, texel_sums_);
+        texel_total_ = texels.total;
+    }
     std::uint64_t const key = mix_bits(seed_ ^ 0x1a395);
     for (std::uint32_t k = 0; k < lamps_.size(); ++k) {
         // Stratified over the lamps of all passes.

@@ -49,6 +49,7 @@ private:
     /// Sums of probabilities, where they are not fixed. Neighbouring numbers find neighbouring lights and texels,
     /// so that every pass has its share of a small sun; an alias table would leave that to chance.
     std::vector<double> light_sums_, texel_sums_;
+    double texel_total_ = 0; ///< of the table that they belong to
     std::uint64_t built_ = 0;
 };
 
