@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -55,6 +56,17 @@ gi::dvec3 parse_point(std::string const& option, std::string const& text)
         rest.remove_prefix(std::min(comma + 1, rest.size()));
     }
     return point;
+}
+
+gi::dvec3 parse_color(std::string const& option, std::string const& text)
+{
+    if (auto const grey = to_number(text); grey && *grey >= 0 && *grey <= 1e9) return gi::dvec3{*grey};
+    if (text.find(',') != std::string::npos) {
+        gi::dvec3 const c = parse_point(option, text);
+        if (std::min({c.x, c.y, c.z}) >= 0 && std::max({c.x, c.y, c.z}) <= 1e9) return c;
+    }
+    throw bad(option, text, "one number or three with commas between them, from 0 to 1e9, are needed",
+              "write 0.2 or 0.9,0.5,0.1");
 }
 
 double parse_duration(std::string const& option, std::string const& text)

@@ -17,6 +17,8 @@ std::optional<double> to_number(std::string_view text);
 std::pair<int, int> parse_size(std::string const& text);
 /// "1,2.5,-3"
 gi::dvec3 parse_point(std::string const& option, std::string const& text);
+/// "0.2" or "0.9,0.5,0.1": three numbers from 0 to 1e9.
+gi::dvec3 parse_color(std::string const& option, std::string const& text);
 /// "500ms", "2s", "3min", or a plain number of seconds.
 double parse_duration(std::string const& option, std::string const& text);
 /// "relmse=0.001" for a known name; the value must be > 0.

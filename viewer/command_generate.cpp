@@ -1,5 +1,7 @@
 #include "gi/base/error.h"
+#include "gi/base/picture_file.h"
 #include "gi/scene/generate.h"
+#include "gi/scene/sky.h"
 #include "gi/scene/write_glb.h"
 #include "viewer/arguments.h"
 #include "viewer/commands.h"
@@ -11,6 +13,7 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <tuple>
 
 namespace viewer {
 namespace {
@@ -20,6 +23,9 @@ struct GenerateOptions {
     std::uint32_t triangles = 20000;
     std::uint64_t seed = 0;
     bool no_figure = false;
+    gi::SkyOptions sky;
+    bool no_sun = false;
+    std::string sky_size = "1024x512", ground;
     std::string out;
 };
 
@@ -47,18 +53,60 @@ int save(gi::Scene const& scene, std::string const& out)
     return 0;
 }
 
+int save_sky(GenerateOptions const& o)
+{
+    gi::SkyOptions sky = o.sky;
+    std::tie(sky.width, sky.height) = parse_size(o.sky_size);
+    sky.sun = !o.no_sun;
+    if (!o.ground.empty()) sky.ground_albedo = gi::vec3(parse_color("--ground-albedo", o.ground));
+    gi::EnvironmentMap const map = gi::sky_map(sky);
+    gi::Picture picture;
+    picture.width = int(map.width);
+    picture.height = int(map.height);
+    picture.metadata = {{"units", "kcd/m2, linear Rec. 709"}};
+    gi::Layer& color = picture.add("color", 3);
+    for (std::size_t i = 0; i < map.radiance.size(); ++i)
+        for (int c = 0; c < 3; ++c) color.data[3 * i + std::size_t(c)] = map.radiance[i][c];
+    gi::Report report;
+    gi::write_exr(o.out, picture, gi::PixelType::single, report);
+    fmt::print("{}\n", o.out);
+    std::fflush(stdout);
+    print_losses(report);
+    return 0;
+}
+
+void declare_sky(CLI::App& generate, std::shared_ptr<GenerateOptions> const& o, int& exit_code)
+{
+    CLI::App* const c = generate.add_subcommand(
+        "sky", "a clear sky (Preetham et al. 1999) as a lat-long map; its luminance is in kcd/m2");
+    gi::SkyOptions& s = o->sky;
+    c->add_option("--turbidity", s.turbidity, "2 (very clear) to 10 (hazy)")->capture_default_str();
+    c->add_option("--sun-elevation", s.sun_elevation_deg, "degrees, 0 to 90")->capture_default_str();
+    c->add_option("--sun-azimuth", s.sun_azimuth_deg, "degrees from -Z towards +X")->capture_default_str();
+    c->add_flag("--no-sun", o->no_sun, "leave its disc out; the ground stays lit by it");
+    c->add_option("--ground-albedo", o->ground, "below the horizon: one number or R,G,B (default: 0.2)");
+    c->add_option("--size", o->sky_size, "texels")->capture_default_str();
+    c->add_option("--out", o->out, "EXR to write")->required();
+    c->callback([o, &exit_code] {
+        check_outputs({o->out}, {});
+        exit_code = save_sky(*o);
+    });
+}
+
 } // namespace
 
 void add_generate(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<GenerateOptions>();
-    CLI::App* const c = app.add_subcommand("generate", "Save a scene that the program makes itself.");
+    CLI::App* const c = app.add_subcommand("generate", "Save a scene or a sky that the program makes itself.");
     c->require_subcommand(1);
     c->footer(R"(Examples:
   lightwell generate cornell --out cornell.glb
   lightwell generate atrium --bays 3 --no-figure --out small_atrium.glb
   lightwell generate boxes --triangles 20000 --seed 1 --out boxes.glb
   lightwell generate sphere --triangles 20000 --out sphere.glb
+  lightwell generate sky --turbidity 3 --sun-elevation 40 --sun-azimuth 120 --size 256x128 --out sky.exr
+  lightwell render cornell --envmap sky.exr --envmap-scale 0.05 --size 32x32 --paths 4 --out lit.exr
 
 A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them.)");
     using Make = std::function<gi::Scene()>;
@@ -93,6 +141,7 @@ A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them
             ->check(refuse_negative)
             ->capture_default_str();
     }
+    declare_sky(*c, o, exit_code);
 }
 
 } // namespace viewer

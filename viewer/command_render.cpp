@@ -37,9 +37,9 @@ void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::Render
     gi::StageTimer const timer(report, "save");
     gi::Picture& picture = result.picture;
     picture.metadata = make_metadata(o, settings, result);
+    if (!o.png.empty()) gi::write_png(o.png, picture.width, picture.height, display_bytes(o, picture));
     keep_layers(o, picture);
     if (!o.out.empty()) save_exr(o, o.out, picture, report);
-    if (!o.png.empty()) gi::write_png(o.png, picture.width, picture.height, display_bytes(o, picture));
 }
 
 gi::Camera first_camera(RenderOptions const& o, gi::World const& world, CameraChoice const& choice,
@@ -65,6 +65,7 @@ int run(RenderOptions o)
     gi::RenderSettings const settings = make_settings(o);
     gi::DenoiseSettings const denoise_settings = make_denoise_settings(o, settings);
     CameraChoice const choice = camera_choice(o);
+    if (!o.background.empty()) parse_background(o.background); // before any work
     if (!o.frames.empty()) return render_frames(o, settings, denoise_settings, choice);
     CameraMotion const motion = make_motion(o);
     check_outputs({o.out, o.png, o.stats, settings.checkpoint.string()}, {o.scene, o.environment, o.camera_path});

@@ -195,10 +195,10 @@ private:
         if (!remark.empty() && rendered_ == 0) say(remark);
         gi::Picture picture = std::move(result.picture);
         picture.metadata = metadata(frame, world, camera, result);
-        keep_layers(o_, picture);
         {
             gi::StageTimer const timer(report, "save");
             show_picture(frame, picture);
+            keep_layers(o_, picture);
             if (f_.exr) save_exr(o_, f_.exr->of(frame), picture, report);
         }
         record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -216,9 +216,15 @@ private:
     void show_picture(int frame, gi::Picture const& picture)
     {
         if (!f_.png && !video_) return;
-        std::vector<unsigned char> const bytes = display_bytes(o_, picture);
+        std::vector<unsigned char> bytes = display_bytes(o_, picture);
         if (f_.png) gi::write_png(f_.png->of(frame), picture.width, picture.height, bytes);
-        if (video_) video_->add(bytes);
+        if (!video_) return;
+        if (std::size_t const pixels = picture.pixels(); bytes.size() == 4 * pixels) {
+            for (std::size_t p = 0; p < pixels; ++p) // a video has no alpha
+                for (std::size_t c = 0; c < 3; ++c) bytes[3 * p + c] = bytes[4 * p + c];
+            bytes.resize(3 * pixels);
+        }
+        video_->add(bytes);
     }
 
     int finish()

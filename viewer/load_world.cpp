@@ -1,5 +1,6 @@
 #include "viewer/load_world.h"
 
+#include "gi/base/error.h"
 #include "gi/scene/load.h"
 #include "viewer/arguments.h"
 
@@ -49,6 +50,16 @@ void set_environment(gi::Scene& scene, RenderOptions const& o, gi::Report& repor
 
 } // namespace
 
+gi::Background parse_background(std::string const& text)
+{
+    if (text == "map") return {};
+    if (text == "transparent") return {gi::BackgroundKind::transparent, gi::vec3{0}};
+    if (text.find(',') == std::string::npos)
+        throw gi::InputError("--background '" + text + "' is not understood", "it is not known here",
+                             "write map, transparent or a colour: 0.1,0.2,0.3");
+    return {gi::BackgroundKind::color, gi::vec3(parse_color("--background", text))};
+}
+
 CameraChoice camera_choice(RenderOptions const& o)
 {
     CameraChoice choice;
@@ -64,6 +75,7 @@ std::shared_ptr<gi::Scene const> load_lit_scene(RenderOptions const& o, gi::Repo
     gi::StageTimer const timer(report, "load");
     gi::Scene scene = gi::load_scene(o.scene, report);
     set_environment(scene, o, report);
+    if (!o.background.empty()) scene.background = parse_background(o.background);
     return std::make_shared<gi::Scene const>(std::move(scene));
 }
 

@@ -10,6 +10,9 @@ namespace viewer {
 /// Throws InputError on nonsense in the options; the world is not needed for that.
 CameraChoice camera_choice(RenderOptions const& options);
 
+/// "map", "transparent" or a colour "R,G,B". Throws InputError on anything else.
+gi::Background parse_background(std::string const& text);
+
 /// Loads the scene, sets or replaces its sky, and lights it where it has no light; says on stderr what it decided.
 std::shared_ptr<gi::Scene const> load_lit_scene(RenderOptions const& options, gi::Report& report);
 /// The same, and its world at the time of the options.

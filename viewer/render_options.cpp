@@ -210,6 +210,15 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_option("--method", o.method, "how light is computed:" + known)->capture_default_str();
     c.add_option("--size", o.size, "width x height, pixels")->capture_default_str();
     declare_view_options(c, o);
+    c.add_option(
+        "--background", o.background,
+        "what the camera sees past all surfaces (default: what the scene says, else map):"
+        "\n  map: the environment map, black without one"
+        "\n  R,G,B: a colour, radiance"
+        "\n  transparent: nothing; --out gets an alpha channel A, the share of paths that met a surface, by "
+        "which colours are multiplied, and --png one by which they are not"
+        "\nIt is about camera rays alone: surfaces are lit by the map, and mirrors and glass show it, as "
+        "surfaces of alpha 1");
     c.add_option("--paths", o.paths, fmt::format("per pixel (default {})", kDefaultPaths))
         ->check(CLI::Range(1u, kNoLimit));
     c.add_option("--budget", o.budget, "time for structures and paths: 500ms, 2s, 3min");
@@ -247,6 +256,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
   lightwell render atrium --camera courtyard --time 0.4 --size 96x64 --budget 500ms --out walk.exr --stats walk.json
   lightwell render cornell --look-from 0.278,0.273,-0.4 --look-at 0.278,0.2,0.3 --fov 60 --size 64x64 --out close.exr
   lightwell render cornell --until relmse=0.05 --size 48x48 --aovs L1,L2,variance --out cornell.exr
+  lightwell render atrium --background transparent --size 64x48 --paths 4 --out cut.exr --png cut.png
   lightwell render atrium --size 64x64 --paths 4 --denoise atrous --out smooth.exr
   lightwell render atrium --frames 0:3@10 --size 48x48 --paths 2 --out walk_%04d.exr --png walk_%04d.png
   lightwell render cornell --frames 0:4@8 --turntable --size 48x48 --paths 2 --video turn.mkv

@@ -16,8 +16,8 @@ class App;
 namespace viewer {
 
 struct RenderOptions {
-    std::string scene, method = "reference", size = "512x512", camera, look_from, look_at, environment, budget,
-                       until, filter = "box", denoise = "none", out, png, stats, tone = "srgb";
+    std::string scene, method = "reference", size = "512x512", camera, look_from, look_at, environment, background,
+                       budget, until, filter = "box", denoise = "none", out, png, stats, tone = "srgb";
     std::vector<std::string> layers;
     std::optional<double> fov_deg, time_s;
     double environment_rotate_deg = 0, environment_scale = 1, exposure_ev = 0;

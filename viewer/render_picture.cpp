@@ -20,8 +20,40 @@ std::string denoise(gi::Picture& picture, gi::DenoiseSettings const& settings, g
     return done.no_variance ? "--denoise atrous does nothing: nothing in the picture has a variance" : "";
 }
 
+namespace {
+
+/// The alpha channel goes with the colours.
+void join_alpha(gi::Picture& picture)
+{
+    gi::Layer const* const alpha = picture.find("alpha");
+    if (alpha == nullptr) return;
+    gi::Layer& color = *picture.find("color");
+    std::vector<float> joined;
+    joined.reserve(4 * alpha->data.size());
+    for (std::size_t p = 0; p < alpha->data.size(); ++p) {
+        joined.insert(joined.end(), color.data.begin() + std::ptrdiff_t(3 * p),
+                      color.data.begin() + std::ptrdiff_t(3 * p + 3));
+        joined.push_back(alpha->data[p]);
+    }
+    color.channels = 4;
+    color.data = std::move(joined);
+    std::erase_if(picture.layers, [](gi::Layer const& l) { return l.name == "alpha"; });
+}
+
+/// As it was before join_alpha.
+std::pair<gi::Layer, gi::Layer> without_alpha(gi::Layer const& joined)
+{
+    gi::Layer color{"color", 3, {}}, alpha{"alpha", 1, {}};
+    for (std::size_t k = 0; k < joined.data.size(); ++k)
+        (k % 4 == 3 ? alpha : color).data.push_back(joined.data[k]);
+    return {color, alpha};
+}
+
+} // namespace
+
 void keep_layers(RenderOptions const& o, gi::Picture& picture)
 {
+    join_alpha(picture);
     if (o.layers.empty()) return;
     std::erase_if(picture.layers, [&](gi::Layer const& l) {
         return l.name != "color" && std::find(o.layers.begin(), o.layers.end(), l.name) == o.layers.end();
@@ -37,7 +69,11 @@ std::vector<unsigned char> display_bytes(RenderOptions const& o, gi::Picture con
 {
     gi::ToneMapSettings const tone{float(o.exposure_ev),
                                    o.tone == "filmic" ? gi::ToneCurve::filmic : gi::ToneCurve::srgb};
-    return gi::tone_map_bytes(*picture.find("color"), tone);
+    gi::Layer const &color = *picture.find("color"), *const alpha = picture.find("alpha");
+    if (alpha != nullptr) return gi::tone_map_bytes(color, *alpha, tone);
+    if (color.channels != 4) return gi::tone_map_bytes(color, tone);
+    auto const [plain, apart] = without_alpha(color);
+    return gi::tone_map_bytes(plain, apart, tone);
 }
 
 } // namespace viewer

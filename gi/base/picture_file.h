@@ -34,7 +34,8 @@ Picture read_picture(std::filesystem::path const& file);
 /// As above from memory; `name` is used in messages.
 Picture decode_picture(std::span<unsigned char const> bytes, std::string const& name);
 
-/// 8-bit sRGB PNG. rgb8.size() == 3 * width * height, already display-encoded.
-void write_png(std::filesystem::path const& file, int width, int height, std::span<unsigned char const> rgb8);
+/// 8-bit sRGB PNG. Three bytes a pixel, already display-encoded, or four: with alpha, which colours are not
+/// multiplied by.
+void write_png(std::filesystem::path const& file, int width, int height, std::span<unsigned char const> bytes);
 
 } // namespace gi

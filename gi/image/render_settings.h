@@ -82,7 +82,7 @@ enum class RenderEnd : std::uint8_t { paths, budget, error_target, interrupted }
 
 /// Layers of `picture`: color, L0 (emitted, seen directly or through delta lobes), L1 (one scattering: direct
 /// light), L2 (two or more: indirect), albedo, normal, depth, position, variance (of the mean of color, per
-/// channel).
+/// channel); alpha, one channel, where the background is transparent.
 struct RenderResult {
     Picture picture;
     RenderEnd end = RenderEnd::paths;

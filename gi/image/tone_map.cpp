@@ -34,4 +34,20 @@ std::vector<unsigned char> tone_map_bytes(Layer const& layer, ToneMapSettings co
     return out;
 }
 
+std::vector<unsigned char> tone_map_bytes(Layer const& color, Layer const& alpha, ToneMapSettings const& settings)
+{
+    Layer straight{color.name, 3, rgb_values(color)};
+    for (std::size_t i = 0; i < straight.data.size(); ++i) {
+        float const a = alpha.data[i / 3];
+        straight.data[i] = a > 0 ? straight.data[i] / a : 0.0f;
+    }
+    std::vector<unsigned char> const bytes = tone_map_bytes(straight, settings);
+    std::vector<unsigned char> out;
+    for (std::size_t p = 0; p < alpha.data.size(); ++p) {
+        out.insert(out.end(), bytes.begin() + std::ptrdiff_t(3 * p), bytes.begin() + std::ptrdiff_t(3 * p + 3));
+        out.push_back(static_cast<unsigned char>(glm::clamp(alpha.data[p], 0.0f, 1.0f) * 255 + 0.5f));
+    }
+    return out;
+}
+
 } // namespace gi

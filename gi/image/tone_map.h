@@ -42,5 +42,9 @@ struct ToneMap {
 std::vector<float> tone_map(Layer const& layer, ToneMapSettings const& settings);
 /// The same in bytes.
 std::vector<unsigned char> tone_map_bytes(Layer const& layer, ToneMapSettings const& settings);
+/// R, G, B, A. PNG keeps colours that are not multiplied by their coverage: they are divided by it, 0 where it is
+/// 0.
+/// @param color multiplied by @param alpha, one channel, 0..1
+std::vector<unsigned char> tone_map_bytes(Layer const& color, Layer const& alpha, ToneMapSettings const& settings);
 
 } // namespace gi

@@ -148,7 +148,10 @@ bool PathTracer<Visibility>::advance(Path& p, Hit const& hit, int vertex, PathCo
 {
     p.shadow_radiance = vec3{0};
     if (hit.triangle == kNoTriangle) {
-        collect_environment(p);
+        if (vertex == 0)
+            p.sample.radiance[0] = background_radiance(world, p.ray.direction);
+        else
+            collect_environment(p);
         return false;
     }
     ShadingPoint const at = shading_point(world, hit.triangle, hit.barycentric, p.ray.direction);

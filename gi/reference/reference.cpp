@@ -57,13 +57,13 @@ struct Structures {
 
 /// @param print  of the scene and settings  @param first_path  of each pixel
 RenderResult trace_all(PassLoop& loop, PathTracer<ExactVisibility> const& tracer, std::uint64_t print,
-                       std::uint32_t first_path, dvec3 origin)
+                       std::uint32_t first_path, World const& world)
 {
     RenderResult result = loop.run(
         print, [&](Accumulator& sums, std::uint32_t paths) { trace_pass(tracer, sums, first_path, paths); });
     PathCounts const& total = loop.sums().counts;
     result.rays = double(total.nearest_rays + total.shadow_rays);
-    result.picture = loop.sums().picture(origin);
+    result.picture = loop.sums().picture(world);
     return result;
 }
 
@@ -85,8 +85,7 @@ public:
         PassLoop loop(settings_, stop, progress, report_);
         World const& world = world_.world();
         if (!structures_.visibility) structures_.build(world, settings_.threads, report_);
-        RenderResult result =
-            trace_all(loop, structures_.tracer(world, camera, settings_), 0, paths_, world.origin);
+        RenderResult result = trace_all(loop, structures_.tracer(world, camera, settings_), 0, paths_, world);
         paths_ += result.paths;
         return result;
     }
@@ -108,7 +107,7 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
     Structures structures;
     structures.build(world, settings.threads, report);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, "reference") : 0;
-    RenderResult result = trace_all(loop, structures.tracer(world, camera, settings), print, 0, world.origin);
+    RenderResult result = trace_all(loop, structures.tracer(world, camera, settings), print, 0, world);
     PathCounts const& total = loop.sums().counts;
     report.count("closest-hit rays", double(total.nearest_rays));
     report.count("shadow rays", double(total.shadow_rays));

@@ -34,6 +34,8 @@ GI_FN float emitter_direction_pdf(WorldView const& world, std::uint32_t triangle
 GI_FN float environment_direction_pdf(WorldView const& world, vec3 direction);
 /// Radiance from the environment (bilinear), 0 if there is none.
 GI_FN vec3 environment_radiance(WorldView const& world, vec3 direction);
+/// What a camera ray brings that meets no surface.
+GI_FN vec3 background_radiance(WorldView const& world, vec3 direction);
 
 } // namespace gi
 

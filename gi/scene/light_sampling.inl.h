@@ -98,11 +98,30 @@ GI_FN inline MapPoint map_point(WorldView const& world, vec3 direction)
     return {{u * float(world.environment_width), v * float(world.environment_height)}, sin_theta};
 }
 
-/// Density per solid angle of a uniform point in a texel chosen with probability p.
-GI_FN inline float texel_pdf(WorldView const& world, float p, float sin_theta)
+/// Density per solid angle with which sample_environment draws a point of the map, for all texels together: a
+/// texel by its mean luminance times its solid angle (taken at its middle), and the point in it by the luminance
+/// there.
+/// @param texel_row, sin_theta of the point
+GI_FN inline float map_pdf(WorldView const& world, float luminance_there, std::uint32_t texel_row, float sin_theta)
 {
-    float const texels = float(world.environment_width) * float(world.environment_height);
-    return p * texels / (2 * kPi * kPi * sin_theta);
+    float const middle = std::sin((float(texel_row) + 0.5f) * (kPi / float(world.environment_height)));
+    return luminance_there * world.environment_pdf_per_luminance * middle / sin_theta;
+}
+
+/// A point of [0, 1) with a density in proportion to a function that is linear from the mean of `before` and
+/// `middle` at 0 to `middle` at 1/2 and to the mean of `middle` and `after` at 1.
+GI_FN inline float sample_hats(float before, float middle, float after, float u)
+{
+    float const first = 0.5f * (before + middle), last = 0.5f * (middle + after);
+    float const left = first + middle, right = middle + last; // areas, times four
+    float const all = left + right;
+    if (!(all > 0)) return u;
+    bool const in_left = u * all < left;
+    float const from = in_left ? first : middle, to = in_left ? middle : last;
+    float const v = in_left ? u * all / left : (u * all - left) / right;
+    float const root = std::sqrt(from * from + v * (to * to - from * from));
+    float const t = from + root > 0 ? v * (from + to) / (from + root) : v;
+    return glm::min(0.5f * ((in_left ? 0.0f : 1.0f) + t), 0x1.fffffep-1f);
 }
 
 /// Bilinear, around in u, held in v.
@@ -120,12 +139,35 @@ GI_FN inline vec3 map_radiance(WorldView const& world, vec2 position)
     return world.environment_scale * glm::mix(top, bottom, v.weight);
 }
 
-/// @param p probability of the texel, and of the environment among the lights
+/// A point in a texel by the luminance of the bilinear map, so that a small sun is equally bright wherever it is
+/// sampled.
+GI_FN inline vec2 sample_texel(WorldView const& world, std::uint32_t x, std::uint32_t y, vec2 u)
+{
+    std::uint32_t const w = world.environment_width, h = world.environment_height;
+    std::uint32_t const columns[3] = {x > 0 ? x - 1 : w - 1, x, x + 1 < w ? x + 1 : 0};
+    std::uint32_t const rows[3] = {y > 0 ? y - 1 : 0, y, glm::min(y + 1, h - 1)};
+    float l[3][3], mean[3]; // of the column over the height of the texel
+    for (int c = 0; c < 3; ++c) {
+        for (int r = 0; r < 3; ++r)
+            l[r][c] = luminance(world.environment_radiance[std::uint64_t(rows[r]) * w + columns[c]] *
+                                world.environment_scale);
+        mean[c] = 0.125f * l[0][c] + 0.75f * l[1][c] + 0.125f * l[2][c];
+    }
+    vec2 at;
+    at.x = sample_hats(mean[0], mean[1], mean[2], u.x);
+    int const beside = at.x < 0.5f ? 0 : 2;
+    float const share = std::abs(at.x - 0.5f);
+    auto const along = [&](int r) { return l[r][1] + share * (l[r][beside] - l[r][1]); };
+    at.y = sample_hats(along(0), along(1), along(2), u.y);
+    return at;
+}
+
+/// @param p probability of the environment among the lights
 GI_FN inline LightSample sample_environment(WorldView const& world, std::uint32_t texel, float p, vec2 u)
 {
     LightSample s;
-    vec2 const corner{float(texel % world.environment_width), float(texel / world.environment_width)};
-    vec2 const position = corner + u;
+    std::uint32_t const x = texel % world.environment_width, y = texel / world.environment_width;
+    vec2 const position = vec2{float(x), float(y)} + sample_texel(world, x, y, u);
     float const phi = (position.x / float(world.environment_width) - 0.5f) * 2 * kPi;
     float const theta = position.y / float(world.environment_height) * kPi;
     float const sin_theta = std::sin(theta);
@@ -133,7 +175,7 @@ GI_FN inline LightSample sample_environment(WorldView const& world, std::uint32_
     s.direction = from_map(world, {sin_theta * std::sin(phi), std::cos(theta), -sin_theta * std::cos(phi)});
     s.distance = kInf;
     s.radiance = map_radiance(world, position);
-    s.pdf = texel_pdf(world, p, sin_theta);
+    s.pdf = p * map_pdf(world, luminance(s.radiance), y, sin_theta);
     return s;
 }
 
@@ -160,7 +202,7 @@ GI_FN inline LightSample sample_light(WorldView const& world, LightChoice choice
 {
     using namespace light_detail;
     if (!(choice.probability > 0)) return {};
-    if (is_environment(world, choice)) return sample_environment(world, choice.texel, choice.probability, u);
+    if (is_environment(world, choice)) return sample_environment(world, choice.texel, world.environment_pdf, u);
     LightSample s = choice.light < world.lights.size()
                         ? sample_punctual(world.lights[choice.light], point)
                         : sample_emitter(world, world.emitters[choice.light - world.lights.size()], point, u);
@@ -183,16 +225,20 @@ GI_FN inline float environment_direction_pdf(WorldView const& world, vec3 direct
     if (world.environment_select.empty()) return 0;
     MapPoint const at = map_point(world, direction);
     if (!(at.sin_theta > 0)) return 0;
-    std::uint32_t const x = glm::min(std::uint32_t(at.position.x), world.environment_width - 1);
     std::uint32_t const y = glm::min(std::uint32_t(at.position.y), world.environment_height - 1);
-    float const p = world.environment_select.probability(y * world.environment_width + x);
-    return world.environment_pdf * texel_pdf(world, p, at.sin_theta);
+    return world.environment_pdf * map_pdf(world, luminance(map_radiance(world, at.position)), y, at.sin_theta);
 }
 
 GI_FN inline vec3 environment_radiance(WorldView const& world, vec3 direction)
 {
     if (world.environment_radiance.empty()) return vec3{0};
     return light_detail::map_radiance(world, light_detail::map_point(world, direction).position);
+}
+
+GI_FN inline vec3 background_radiance(WorldView const& world, vec3 direction)
+{
+    if (world.background.kind == BackgroundKind::map) return environment_radiance(world, direction);
+    return world.background.kind == BackgroundKind::color ? world.background.color : vec3{0};
 }
 
 } // namespace gi

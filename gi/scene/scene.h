@@ -100,6 +100,13 @@ struct EnvironmentMap {
     vec3 scale{1};
 };
 
+/// What the camera sees where its ray meets no surface. Light, mirrors and glass know the map alone.
+enum class BackgroundKind : std::uint8_t { map, color, transparent };
+struct Background {
+    BackgroundKind kind = BackgroundKind::map;
+    vec3 color{0}; ///< radiance, where that is the kind
+};
+
 struct Scene {
     std::string name;
     std::vector<Node> nodes;
@@ -113,6 +120,7 @@ struct Scene {
     std::vector<Camera> cameras;     ///< world_from_camera is taken from the node that holds it
     std::vector<Light> lights;       ///< position/direction are taken from the node that holds it
     std::optional<EnvironmentMap> environment;
+    Background background; ///< append() leaves it as it is
 };
 
 /// Append a copy of everything in `part` below a new root node of that name and transform.

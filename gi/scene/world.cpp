@@ -38,7 +38,12 @@ WorldView view(World const& world)
         v.environment_cos = std::cos(world.environment_rotation_rad);
         v.environment_sin = std::sin(world.environment_rotation_rad);
     }
+    v.background = world.scene->background;
     v.environment_pdf = world.environment_pdf;
+    if (world.environment_select.total > 0) {
+        double const half_row = 0.5 * double(kPi) / v.environment_height; // solid angle of a texel over its area
+        v.environment_pdf_per_luminance = float(std::sin(half_row) / half_row / world.environment_select.total);
+    }
     v.scene_radius = world.bounds.radius();
     return v;
 }

@@ -112,8 +112,10 @@ struct WorldView {
     View<vec3 const> environment_radiance; ///< empty = no environment
     std::uint32_t environment_width = 0, environment_height = 0;
     vec3 environment_scale{1};
+    float environment_pdf_per_luminance = 0; ///< of a direction in the middle of its texel, see light_sampling.h
     float environment_cos = 1, environment_sin = 0; ///< of its rotation about +Y
     float environment_pdf = 0;
+    Background background;
     float scene_radius = 0; ///< m
 };
 

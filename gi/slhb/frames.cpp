@@ -48,7 +48,7 @@ public:
         });
         result.rays = renderer_->rays() - earlier;
         result.options = as_options(settings_.slhb);
-        result.picture = loop.sums().picture(world_.world().origin);
+        result.picture = loop.sums().picture(world_.world());
         renderer_->add_motion(result.picture);
         renderer_->end_frame();
         return result;

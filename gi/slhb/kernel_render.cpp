@@ -226,7 +226,7 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
                 done.narrow_ends);
     result.rays = double(done.queries + done.shadow_lookups);
     result.options = as_options(slhb);
-    result.picture = loop.sums().picture(world.origin);
+    result.picture = loop.sums().picture(world);
     return result;
 }
 

@@ -4,6 +4,7 @@
 #include "gi/base/rqmc.h"
 #include "gi/scene/warp.h"
 
+#include <algorithm>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -19,7 +20,7 @@ ShadowView view_from(World const& world, LightChoice const& choice, vec2 u)
         v.at = v.parallel ? -light.direction : light.position;
     } else if (light_detail::is_environment(w, choice)) {
         v.parallel = true;
-        v.at = light_detail::sample_environment(w, choice.texel, choice.probability, u).direction;
+        v.at = light_detail::sample_environment(w, choice.texel, w.environment_pdf, u).direction;
     } else {
         std::uint32_t const triangle = world.emitters[choice.light - world.lights.size()];
         Surface const& s = world.surfaces[triangle];
@@ -27,6 +28,24 @@ ShadowView view_from(World const& world, LightChoice const& choice, vec2 u)
         if (!s.is(Surface::kDoubleSided)) v.facing = shading_detail::triangle_normal(s);
     }
     return v;
+}
+
+void add_up(AliasTable const& table, std::vector<double>& sums)
+{
+    sums.clear();
+    double sum = 0;
+    for (AliasEntry const& e : table.entries) sums.push_back(sum += double(e.probability));
+}
+
+/// The entry in whose share u lies; u becomes its place in there.
+std::uint32_t pick(std::vector<double> const& sums, double& u)
+{
+    double const at = u * sums.back();
+    auto const i =
+        std::min(std::size_t(std::upper_bound(sums.begin(), sums.end(), at) - sums.begin()), sums.size() - 1);
+    double const before = i > 0 ? sums[i - 1] : 0.0;
+    u = sums[i] > before ? glm::clamp((at - before) / (sums[i] - before), 0.0, 1 - 0x1p-53) : 0.0;
+    return std::uint32_t(i);
 }
 
 } // namespace
@@ -53,17 +72,34 @@ Lamps::Lamps(World const& world, TriangleSoup const& soup, CutOuts const& cut_ou
     build(0);
 }
 
+LightChoice Lamps::choose(double u) const
+{
+    LightChoice c;
+    if (light_sums_.empty()) return c;
+    c.light = pick(light_sums_, u);
+    c.probability = world_.light_select.entries[c.light].probability;
+    if (c.light < world_.lights.size() + world_.emitters.size()) return c;
+    c.texel = pick(texel_sums_, u);
+    c.probability *= world_.environment_select.entries[c.texel].probability;
+    return c;
+}
+
 void Lamps::refresh(std::uint32_t pass)
 {
     if (fixed_ || none()) return;
-    WorldView const world = view(world_);
+    add_up(world_.light_select, light_sums_); // the world may have moved
+    AliasTable const& texels = world_.environment_select;
+    if (texels.entries.size() != texel_sums_.size() || texels.total != texel_total_) {
+        add_up(texels, texel_sums_);
+        texel_total_ = texels.total;
+    }
     std::uint64_t const key = mix_bits(seed_ ^ 0x1a395);
     for (std::uint32_t k = 0; k < lamps_.size(); ++k) {
         // Stratified over the lamps of all passes.
         RqmcStream const stream{std::uint32_t(key), pass * std::uint32_t(lamps_.size()) + k};
         Lamp& lamp = lamps_[k];
         vec4 const u = stream.sample_together(0);
-        lamp.choice = choose_light(world, double(u.x) + double(stream.sample(4)) * 0x1p-24);
+        lamp.choice = choose(double(u.x) + double(stream.sample(4)) * 0x1p-24);
         lamp.u = {u.y, u.z};
         lamp.view = view_from(world_, lamp.choice, lamp.u);
     }

@@ -37,6 +37,7 @@ public:
 
 private:
     void build(std::uint32_t pass);
+    LightChoice choose(double u) const;
 
     World const& world_;
     ShadowMapBuilder builder_;
@@ -45,6 +46,10 @@ private:
     bool fixed_ = false;
     std::vector<Lamp> lamps_;
     AliasTable chances_; ///< where they are fixed
+    /// Sums of probabilities, where they are not fixed. Neighbouring numbers find neighbouring lights and texels,
+    /// so that every pass has its share of a small sun; an alias table would leave that to chance.
+    std::vector<double> light_sums_, texel_sums_;
+    double texel_total_ = 0; ///< of the table that they belong to
     std::uint64_t built_ = 0;
 };
 

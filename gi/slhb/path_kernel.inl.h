@@ -22,6 +22,7 @@ GI_FN inline TracePaths::State TracePaths::start(std::size_t pixel) const
 
 GI_FN inline vec3 TracePaths::sky(State const& s) const
 {
+    if (s.scatterings == 0) return background_radiance(world, s.direction);
     if (world.environment_radiance.empty()) return vec3{0};
     vec3 light = environment_radiance(world, s.direction);
     if (s.arrival_pdf > 0) light *= power_heuristic(s.arrival_pdf, environment_direction_pdf(world, s.direction));

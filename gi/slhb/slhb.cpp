@@ -33,7 +33,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     renderer.report_work();
     result.rays = renderer.rays();
     result.options = as_options(chosen.slhb);
-    result.picture = loop.sums().picture(world.origin);
+    result.picture = loop.sums().picture(world);
     return result;
 }
 

@@ -59,6 +59,10 @@ struct SlhbTracer::Unshadowed {
 
 void SlhbTracer::add_sky(State& s) const
 {
+    if (s.vertex == 0) {
+        s.sample->radiance[0] = background_radiance(world_, s.direction);
+        return;
+    }
     if (world_.environment_radiance.empty()) return;
     vec3 light = environment_radiance(world_, s.direction);
     if (s.arrival_pdf > 0) light *= power_heuristic(s.arrival_pdf, environment_direction_pdf(world_, s.direction));

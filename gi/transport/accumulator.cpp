@@ -34,7 +34,7 @@ double Accumulator::relative_mse() const
     return sum / (3.0 * double(pixels.size()));
 }
 
-Picture Accumulator::picture(dvec3 world_origin) const
+Picture Accumulator::picture(World const& world) const
 {
     Picture out;
     out.width = width;
@@ -54,6 +54,8 @@ Picture Accumulator::picture(dvec3 world_origin) const
     fill("L0", 3, [&](PixelSums const& p) { return p.radiance[0] / n; });
     fill("L1", 3, [&](PixelSums const& p) { return p.radiance[1] / n; });
     fill("L2", 3, [&](PixelSums const& p) { return p.radiance[2] / n; });
+    if (world.scene->background.kind == BackgroundKind::transparent)
+        fill("alpha", 1, [&](PixelSums const& p) { return dvec3{p.hits / n}; });
     fill("variance", 3, [&](PixelSums const& p) { return variance_of_mean(p); });
     // Surface layers average over the paths that met a surface; where none did they are 0.
     auto const over_hits = [](PixelSums const& p, dvec3 v) { return p.hits > 0 ? v / p.hits : dvec3{0}; };
@@ -64,7 +66,7 @@ Picture Accumulator::picture(dvec3 world_origin) const
     });
     fill("depth", 1, [&](PixelSums const& p) { return over_hits(p, dvec3{p.depth}); });
     fill("position", 3,
-         [&](PixelSums const& p) { return p.hits > 0 ? p.position / p.hits + world_origin : dvec3{0}; });
+         [&](PixelSums const& p) { return p.hits > 0 ? p.position / p.hits + world.origin : dvec3{0}; });
     return out;
 }
 

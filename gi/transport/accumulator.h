@@ -4,6 +4,7 @@
 
 #include "gi/base/huge_pages.h"
 #include "gi/base/picture.h"
+#include "gi/scene/world.h"
 #include "gi/transport/path_sample.h"
 
 #include <filesystem>
@@ -52,8 +53,9 @@ struct Accumulator {
     dvec3 variance_of_mean(PixelSums const& p) const;
     /// Estimated relMSE of the picture: mean over pixels and channels of var(mean) / (mean^2 + 0.01).
     double relative_mse() const;
-    /// @param world_origin added to positions
-    Picture picture(dvec3 world_origin) const;
+    /// Of the world that was rendered: positions are absolute; where its background is transparent, "alpha" is the
+    /// share of paths that met a surface, and the colours are multiplied by it as they are.
+    Picture picture(World const& world) const;
 };
 
 /// @param fingerprint of scene, camera and settings; a checkpoint with another one is refused (InputError)

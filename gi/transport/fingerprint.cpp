@@ -98,6 +98,10 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
         h.add(world.environment_rotation_rad);
         h.add(world.environment_scale);
     }
+    if (Background const& b = world.scene->background; b.kind != BackgroundKind::map) {
+        h.add(std::uint64_t(b.kind));
+        h.add(b.color);
+    }
     for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 4; ++r) h.add(camera.world_from_camera[c][r]);
     for (double const v : {camera.yfov_rad, camera.ymag_m, double(camera.orthographic)}) h.add(v);

@@ -1,7 +1,7 @@
 // The Cornell box against its published numbers.
 
 #include "gi/scene/generate.h"
-#include "gi/scene/generate/spectrum.h"
+#include "gi/scene/spectrum.h"
 #include "tests/scene/scene_checks.h"
 
 #include <array>

@@ -4,6 +4,7 @@
 #include "gi/base/file.h"
 #include "gi/scene/load.h"
 #include "gi/scene/load/scene_file_keys.h"
+#include "gi/scene/sky.h"
 #include "tests/support/scenes.h"
 
 #include <chrono>
@@ -221,6 +222,32 @@ TEST(SceneFile, EnvironmentOfOneColour)
     for (vec3 const v : scene.environment->radiance) EXPECT_EQ(v, (vec3{1, 2, 3}));
     EXPECT_NEAR(scene.environment->rotation_rad, 0.5f * kPi, 1e-6f);
     EXPECT_EQ(scene.environment->scale, vec3{2});
+}
+
+TEST(SceneFile, SkiesAndBackgrounds)
+{
+    Scene const scene = parse("environment: {sky: {turbidity: 4, sun_elevation: 20, sun_azimuth: 10, sun: false, "
+                              "ground_albedo: [0.1, 0.2, 0.3], size: [32, 16]}, scale: 0.5}");
+    SkyOptions options;
+    options.turbidity = 4;
+    options.sun_elevation_deg = 20;
+    options.sun_azimuth_deg = 10;
+    options.sun = false;
+    options.ground_albedo = {0.1f, 0.2f, 0.3f};
+    options.width = 32;
+    options.height = 16;
+    EXPECT_EQ(scene.environment->radiance, sky_map(options).radiance);
+    EXPECT_EQ(scene.environment->scale, vec3{0.5f});
+    EXPECT_EQ(parse("models: []").background.kind, BackgroundKind::map);
+    EXPECT_EQ(parse("background: map").background.kind, BackgroundKind::map);
+    EXPECT_EQ(parse("background: transparent").background.kind, BackgroundKind::transparent);
+    EXPECT_EQ(parse("background: [1, 2, 3]").background.color, (vec3{1, 2, 3}));
+    expect_refusal("background: blue", {"background", "transparent"});
+    expect_refusal("background: [1, 2]", {"1:13"});
+    expect_refusal("environment: {sky: {turbidity: 1}}", {"turbidity"});
+    expect_refusal("environment: {sky: {size: [64]}}", {"two numbers"});
+    expect_refusal("environment: {sky: {clouds: 1}}", {"clouds"});
+    expect_refusal("environment: {sky: {}, color: 1}", {"either"});
 }
 
 TEST(SceneFile, MistakesAreNamedWithTheirPlace)

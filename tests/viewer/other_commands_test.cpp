@@ -1,5 +1,6 @@
 // info, generate, --version, --help.
 
+#include "gi/base/picture_file.h"
 #include "tests/viewer/run_program.h"
 
 #include <nlohmann/json.hpp>
@@ -84,6 +85,30 @@ TEST(OtherCommands, StandardOutputThatIsFullIsNotSuccess)
         "cd " + folder.path().string() + " && " LIGHTWELL_PROGRAM " info cornell > /dev/full 2> err";
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
     EXPECT_NE(file_text(folder / "err").find("standard output"), std::string::npos);
+}
+
+TEST(Generate, ASkyLightsAScene)
+{
+    TemporaryFolder const folder;
+    run_well("generate sky --turbidity 2.5 --sun-elevation 30 --size 64x32 --out sky.exr", folder.path());
+    run_well("generate sky --turbidity 2.5 --sun-elevation 30 --size 64x32 --no-sun --out dim.exr", folder.path());
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"dim.exr", "sky.exr"}));
+    gi::Picture const sky = gi::read_picture(folder / "sky.exr"), dim = gi::read_picture(folder / "dim.exr");
+    ASSERT_EQ(sky.width, 64);
+    std::size_t brighter = 0;
+    for (std::size_t p = 0; p < sky.pixels(); ++p) {
+        float const more = gi::luminance(gi::rgb(*sky.find("color"), p) - gi::rgb(*dim.find("color"), p));
+        EXPECT_GE(more, 0);
+        brighter += more > 0;
+    }
+    EXPECT_GT(brighter, 0u);
+    EXPECT_LE(brighter, 6u); // the sun is smaller than a texel
+    std::ofstream(folder / "a.yaml") << "models: [{generate: {kind: cornell}}]\n"
+                                        "environment: {sky: {turbidity: 2.5, sun_elevation: 30, size: [64, 32]}}\n"
+                                        "background: [0, 0, 1]\n";
+    run_well("render a.yaml --size 8x8 --paths 1 --out a.exr", folder.path());
+    run_well("render cornell --envmap sky.exr --size 8x8 --paths 1 --background 0,0,1 --out b.exr", folder.path());
+    run_well("compare a.exr b.exr --fail-above relmse=1e-6", folder.path());
 }
 
 } // namespace

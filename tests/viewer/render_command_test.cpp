@@ -31,6 +31,37 @@ TEST(RenderCommand, WritesWhatItIsAskedFor)
     EXPECT_EQ(png.height, 16);
 }
 
+TEST(RenderCommand, TransparentPicturesHaveAlpha)
+{
+    // The room seen from far away: its picture has a rim of nothing.
+    TemporaryFolder const folder;
+    std::string const call =
+        "render cornell --look-from 0.278,0.273,-3 --look-at 0.278,0.273,0 --size 24x24 --paths 8 ";
+    run_well(call + "--background transparent --out cut.exr --png cut.png --half", folder.path());
+    run_well(call + "--out map.exr", folder.path());
+    run_well(call + "--background 0.5,0.25,0.125 --out color.exr", folder.path());
+    gi::Picture const cut = gi::read_picture(folder / "cut.exr"), map = gi::read_picture(folder / "map.exr"),
+                      color = gi::read_picture(folder / "color.exr");
+    gi::Layer const& c = *cut.find("color");
+    ASSERT_EQ(c.channels, 4);
+    EXPECT_EQ(cut.layers.size(), map.layers.size());
+    EXPECT_EQ(c.data[3], 0);
+    EXPECT_EQ(c.data[4 * (12 * 24 + 12) + 3], 1);
+    EXPECT_EQ(gi::rgb(*color.find("color"), 0), (gi::vec3{0.5f, 0.25f, 0.125f}));
+    EXPECT_EQ(cut.metadata.at("command").find("--background transparent") == std::string::npos, false);
+    // Without a map, colours are those over black.
+    EXPECT_TRUE(
+        contains(run_well("compare cut.exr map.exr --metrics relmse --fail-above relmse=1e-5", folder.path()).out,
+                 "relmse"));
+    // The PNG: 8 bits of red, green, blue and alpha (colour type 6), which compare reads without alpha.
+    std::string const png = file_text(folder / "cut.png");
+    ASSERT_GT(png.size(), 26u);
+    EXPECT_EQ(png[24], 8);
+    EXPECT_EQ(png[25], 6);
+    EXPECT_EQ(gi::read_picture(folder / "cut.png").find("color")->channels, 3);
+    run_well("compare cut.png cut.png", folder.path());
+}
+
 TEST(RenderCommand, NamesThePictureAfterTheScene)
 {
     TemporaryFolder const folder;

@@ -112,6 +112,16 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"generate boxes --triangles 4294967295 --out a.glb", "triangles"},
              {"generate sphere --triangles -3 --out a.glb", "--triangles"},
              {"generate cornell --out nowhere/a.glb", "nowhere"},
+             {"generate sky", "--out"},
+             {"generate sky --turbidity 1 --out a.exr", "turbidity"},
+             {"generate sky --sun-elevation -1 --out a.exr", "elevation"},
+             {"generate sky --sun-elevation nan --out a.exr", "elevation"},
+             {"generate sky --ground-albedo 2 --out a.exr", "albedo"},
+             {"generate sky --ground-albedo green --out a.exr", "--ground-albedo"},
+             {"generate sky --size 2x1 --out a.exr", "2 x 1"},
+             {"render cornell --background purple", "--background"},
+             {"render cornell --background 1,2", "--background"},
+             {"render cornell --background 1,-2,3", "--background"},
          })
         expect_refused(call.arguments, call.mentions, folder.path());
     EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());

@@ -2,7 +2,7 @@
 // about a millimetre, here as metres; spectra from 400 to 700 nm.
 
 #include "gi/scene/generate.h"
-#include "gi/scene/generate/spectrum.h"
+#include "gi/scene/spectrum.h"
 
 #include <array>
 

@@ -1,4 +1,4 @@
-// The YAML scene file: models, environment, lights, cameras, overrides of materials. Schema:
+// The YAML scene file: models, environment, background, lights, cameras, overrides of materials. Schema:
 // data/scene.schema.json.
 
 #include "gi/base/file.h"
@@ -10,6 +10,7 @@
 #include "gi/scene/load/scene_file_light.h"
 #include "gi/scene/load/scene_file_material.h"
 #include "gi/scene/load/yaml_reader.h"
+#include "gi/scene/sky.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -50,6 +51,7 @@ public:
         if (root_.has("models"))
             for (YamlReader const& item : root_.at("models").items()) add_model(item);
         if (root_.has("environment")) set_environment(root_.at("environment"));
+        if (root_.has("background")) scene_.background = read_background(root_.at("background"));
         if (root_.has("lights"))
             for (YamlReader const& item : root_.at("lights").items()) add_scene_file_light(item, scene_);
         if (root_.has("cameras")) add_cameras(root_.at("cameras"));
@@ -161,14 +163,50 @@ private:
                       "choose linear or dual_quaternion");
     }
 
+    static Background read_background(YamlReader const& b)
+    {
+        if (b.is_list()) return {BackgroundKind::color, vec3(b.vector(0, 1e9))};
+        std::string const kind = b.text();
+        if (kind == "map") return {};
+        if (kind == "transparent") return {BackgroundKind::transparent, vec3{0}};
+        throw b.error("there is no background '" + kind.substr(0, 64) + "'", "it is not known here",
+                      "choose map, transparent or a colour: [0.1, 0.2, 0.3]");
+    }
+
+    EnvironmentMap make_sky(YamlReader const& s) const
+    {
+        check_keys(s, "sky");
+        SkyOptions o;
+        if (s.has("turbidity")) o.turbidity = s.at("turbidity").number(2, 10);
+        if (s.has("sun_elevation")) o.sun_elevation_deg = s.at("sun_elevation").number(0, 90);
+        if (s.has("sun_azimuth")) o.sun_azimuth_deg = s.at("sun_azimuth").number(-360, 360);
+        if (s.has("sun")) o.sun = s.at("sun").boolean();
+        if (s.has("ground_albedo")) o.ground_albedo = vec3(s.at("ground_albedo").vector_or_number(0, 1));
+        if (s.has("size")) {
+            auto const size = s.at("size").items();
+            if (size.size() != 2)
+                throw s.at("size").error("a size has two numbers", "width and height, texels",
+                                         "size: [1024, 512]");
+            // A text from memory may not ask for a sky of any size.
+            o.width = std::uint32_t(size[0].integer(8, folder_.empty() ? 128 : 32768));
+            o.height = std::uint32_t(size[1].integer(4, folder_.empty() ? 64 : 16384));
+        } else if (folder_.empty()) {
+            o.width = 128;
+            o.height = 64;
+        }
+        return sky_map(o);
+    }
+
     void set_environment(YamlReader const& e)
     {
         check_keys(e, "environment");
-        if (e.has("file") == e.has("color"))
-            throw e.error("an environment needs either file or color", "it has both or none", "keep one");
+        if (int(e.has("file")) + int(e.has("color")) + int(e.has("sky")) != 1)
+            throw e.error("an environment needs either file, color or sky", "it has several or none", "keep one");
         EnvironmentMap map;
         if (e.has("file")) {
             map = load_environment(find_file(e.at("file")), report_);
+        } else if (e.has("sky")) {
+            map = make_sky(e.at("sky"));
         } else {
             map.width = 4;
             map.height = 2;

@@ -5,12 +5,13 @@ namespace gi {
 std::map<std::string, std::set<std::string>> const& scene_file_keys()
 {
     static std::map<std::string, std::set<std::string>> const keys{
-        {"scene", {"models", "environment", "lights", "cameras", "materials"}},
+        {"scene", {"models", "environment", "background", "lights", "cameras", "materials"}},
         {"model", {"name", "file", "generate", "translate", "rotate", "scale", "animation", "skinning"}},
         {"generate", {"kind", "bays", "detail", "figure", "sun_elevation", "sun_azimuth", "triangles", "seed"}},
         {"rotation", {"axis", "degrees"}},
         {"animation", {"clip", "offset", "speed", "loop", "weight"}},
-        {"environment", {"file", "color", "rotate", "scale"}},
+        {"environment", {"file", "color", "sky", "rotate", "scale"}},
+        {"sky", {"turbidity", "sun_elevation", "sun_azimuth", "sun", "ground_albedo", "size"}},
         {"point_light", {"type", "position", "intensity", "range"}},
         {"spot_light", {"type", "position", "direction", "target", "intensity", "range", "cone"}},
         {"directional_light", {"type", "direction", "intensity"}},

@@ -1,4 +1,4 @@
-#include "gi/scene/generate/spectrum.h"
+#include "gi/scene/spectrum.h"
 
 #include <algorithm>
 
@@ -11,7 +11,9 @@ double lobe(double x, double mean, double left, double right)
     return std::exp(-0.5 * t * t);
 }
 
-dvec3 observer(double nm)
+} // namespace
+
+dvec3 cie_observer(double nm)
 {
     return {1.056 * lobe(nm, 599.8, 37.9, 31.0) + 0.362 * lobe(nm, 442.0, 16.0, 26.7) -
                 0.065 * lobe(nm, 501.1, 20.4, 26.2),
@@ -26,8 +28,6 @@ dvec3 xyz_to_rec709(dvec3 c)
             0.0556434 * c.x - 0.2040259 * c.y + 1.0572252 * c.z};
 }
 
-} // namespace
-
 double Spectrum::at(double nm) const
 {
     double const x = std::clamp((nm - first_nm) / step_nm, 0.0, double(values.size() - 1));
@@ -39,8 +39,8 @@ vec3 to_rgb(Spectrum const& spectrum)
 {
     dvec3 sum{0}, white{0};
     for (double nm = 380; nm <= 780; nm += 1) {
-        sum += spectrum.at(nm) * observer(nm);
-        white += observer(nm);
+        sum += spectrum.at(nm) * cie_observer(nm);
+        white += cie_observer(nm);
     }
     return glm::max(vec3(xyz_to_rec709(sum) / xyz_to_rec709(white)), vec3{0});
 }

@@ -14,6 +14,12 @@ struct Spectrum {
     double at(double nm) const;
 };
 
+/// Colour matching functions x, y, z of the CIE 1931 observer: the fit of Wyman et al. 2013, within 2 % of the
+/// peak.
+dvec3 cie_observer(double nm);
+/// Linear Rec. 709, whose white is D65; colours outside its triangle have negative channels.
+dvec3 xyz_to_rec709(dvec3 xyz);
+
 /// Linear Rec. 709 by the CIE 1931 observer (fit of Wyman et al. 2013), scaled so that the constant spectrum 1
 /// gives (1, 1, 1): channels are relative to equal-energy white. Negative values become 0.
 vec3 to_rgb(Spectrum const& spectrum);
