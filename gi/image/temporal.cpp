@@ -13,6 +13,8 @@ namespace {
 
 // A texel of the frame before shows the same surface: cosine of normals, and difference of depths per depth.
 constexpr float kCosine = 0.9f, kDepth = 0.02f;
+// What moves by less than that, pixels, stands still in the picture.
+constexpr float kStill = 1e-3f;
 // L1 is held to mean +- kSpread standard deviations of a window of kWindow pixels.
 constexpr int kWindow = 5;
 constexpr float kSpread = 1;
@@ -68,9 +70,9 @@ struct Window {
 /// Light of this frame, averaged with that of the surface before.
 void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
 {
-    Layer const &l1 = layer_of(frame, "L1"), &l2 = layer_of(frame, "L2"), &albedo = layer_of(frame, "albedo"),
-                &normal = layer_of(frame, "normal"), &depth = layer_of(frame, "depth"),
-                &motion = layer_of(frame, "motion");
+    Layer const &l0 = layer_of(frame, "L0"), &l1 = layer_of(frame, "L1"), &l2 = layer_of(frame, "L2"),
+                &albedo = layer_of(frame, "albedo"), &normal = layer_of(frame, "normal"),
+                &depth = layer_of(frame, "depth"), &motion = layer_of(frame, "motion");
     int const width = frame.width, height = frame.height;
     std::size_t const pixels = frame.pixels();
     std::swap(surfaces_, last_surfaces_);
@@ -83,7 +85,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
             vec3 const a = rgb(albedo, i);
             surfaces_[i] = {rgb(normal, i), depth.data[i]};
             direct[i] = over(rgb(l1, i), a);
-            lights_[i] = {direct[i], over(rgb(l2, i), a), 1};
+            lights_[i] = {direct[i], over(rgb(l2, i), a), 1, rgb(l0, i), a, 1};
         }
     });
     if (frames_ == 0) return;
@@ -97,7 +99,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
             if (!(here.depth > 0)) continue;
             ++local.surfaces;
             vec3 const from = rgb(motion, i);
-            Light before{vec3{0}, vec3{0}, 0};
+            Light before{};
             float weight = 0;
             if (finite(from) && std::abs(from.x) < 1e6f && std::abs(from.y) < 1e6f) {
                 float const u = float(x) + from.x, v = float(y) + from.y, left = std::floor(u),
@@ -125,6 +127,11 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
                 continue;
             }
             Light& now = lights_[i];
+            if (Light const& last = last_lights_[i]; glm::length(vec2(from)) < kStill && weight > 1 - kStill) {
+                now.still_frames = std::min(last.still_frames + 1, float(settings_.most_frames));
+                now.l0 = glm::mix(last.l0, now.l0, 1 / now.still_frames);
+                now.albedo = glm::mix(last.albedo, now.albedo, 1 / now.still_frames);
+            }
             vec3 const held = window.clamped(before.direct / weight, x, y);
             local.held += held != before.direct / weight;
             now.frames = std::min(before.frames / weight + 1, float(settings_.most_frames));
@@ -155,22 +162,23 @@ void TemporalReuse::rest(Picture const& frame)
 
 void TemporalReuse::store(Picture& frame, TemporalCounts& counts) const
 {
-    Layer const& albedo = layer_of(frame, "albedo");
-    Layer &l0 = *frame.find("L0"), &l1 = *frame.find("L1"), &l2 = *frame.find("L2"), &color = *frame.find("color");
+    Layer &albedo = *frame.find("albedo"), &l0 = *frame.find("L0"), &l1 = *frame.find("L1"),
+          &l2 = *frame.find("L2"), &color = *frame.find("color");
     float const n = float(still_);
     tbb::combinable<double> frames;
     tbb::parallel_for(std::size_t(0), std::size_t(frame.height), [&](std::size_t y) {
         double& sum = frames.local();
         for (std::size_t i = y * std::size_t(frame.width); i < (y + 1) * std::size_t(frame.width); ++i) {
             Light const& light = lights_[i];
-            vec3 const a = rgb(albedo, i);
             // The frames since are in both means; those before count as long as they are many beside them.
             float const earlier = std::max(0.0f, light.frames - n), share = earlier / (earlier + n);
-            vec3 const e0 = mean_[i][0], e1 = glm::mix(mean_[i][1], times(light.direct, a), share),
-                       e2 = glm::mix(mean_[i][2], times(light.indirect, a), share);
+            vec3 const e0 = glm::mix(mean_[i][0], light.l0, share),
+                       e1 = glm::mix(mean_[i][1], times(light.direct, light.albedo), share),
+                       e2 = glm::mix(mean_[i][2], times(light.indirect, light.albedo), share);
             for (int c = 0; c < 3; ++c) {
                 std::size_t const k = 3 * i + std::size_t(c);
                 l0.data[k] = e0[c];
+                albedo.data[k] = light.albedo[c];
                 l1.data[k] = e1[c];
                 l2.data[k] = e2[c];
                 color.data[k] = e0[c] + e1[c] + e2[c];

@@ -5,7 +5,8 @@
 // Two means are kept. While anything moves (camera, triangles), L1 and L2 over the albedo follow their surfaces:
 // four texels of the frame before are asked, each believed if its depth and normal fit; the mean has at most
 // `most_frames` frames, and L1 is held to what the neighbourhood shows now, as shadows move faster than that
-// (Yang, Liu and Salvi 2020, sec. 4.2). While nothing moves, the mean of the pictures themselves is taken, over
+// (Yang, Liu and Salvi 2020, sec. 4.2). Where the picture stands still, albedo and L0 are averaged too, so that
+// edges and textures are smooth. While nothing moves anywhere, the mean of the pictures themselves is taken, over
 // all frames since: so a still picture converges to what the method converges to. After a change of lights,
 // materials or environment nothing of before is used: the lag is zero frames.
 
@@ -36,9 +37,9 @@ class TemporalReuse {
 public:
     explicit TemporalReuse(TemporalSettings const& settings) : settings_(settings) {}
 
-    /// Replaces L0, L1, L2 and color by means over frames. Needs color, L0, L1, L2, albedo, normal, depth and
-    /// motion (throws InputError where one is missing): x, y: pixels from here to where the surface was; z: its
-    /// depth then, m; NaN where it was not. The size may not change without forget().
+    /// Replaces L0, L1, L2, color and albedo by means over frames. Needs color, L0, L1, L2, albedo, normal, depth
+    /// and motion (throws InputError where one is missing): x, y: pixels from here to where the surface was; z:
+    /// its depth then, m; NaN where it was not. The size may not change without forget().
     TemporalCounts add(Picture& frame, SceneChange change);
     void forget() { frames_ = 0; }
 
@@ -50,6 +51,8 @@ private:
     struct Light {
         vec3 direct, indirect; ///< L1 and L2 over the albedo
         float frames;          ///< that they are means of
+        vec3 l0, albedo;
+        float still_frames; ///< that these are means of
     };
     void follow(Picture const& frame, TemporalCounts& counts);
     void rest(Picture const& frame);
