@@ -170,15 +170,32 @@ TEST(Temporal, WithoutSurfacesOrAlbedoNothingBreaks)
     TemporalReuse reuse({});
     for (int frame = 0; frame < 4; ++frame) {
         Picture p = picture([&](int x, int) {
-            Values v{.l0 = vec3{float(frame)}, .albedo = vec3{0}};
+            Values v{.l0 = vec3{x < 10 ? float(frame) : 2.0f}, .albedo = vec3{0}};
             v.depth = x < 10 ? 0.0f : 2.0f;
             v.l1 = vec3{x < 10 ? 0.0f : 1.0f};
             return v;
         });
         reuse.add(p, SceneChange::motion);
         EXPECT_EQ(value(p, "L0", 3, 3), float(frame)); // what is no surface is that of now
-        EXPECT_EQ(value(p, "color", 20, 3), float(frame) + 1);
+        EXPECT_EQ(value(p, "color", 20, 3), 3);
     }
+}
+
+/// A pixel that stands still beside something that moves is smoothed over the edge of a texture that it covers.
+TEST(Temporal, EdgesOfTexturesAreSmoothWhereThePictureStandsStill)
+{
+    TemporalReuse reuse({.most_frames = 32});
+    Picture p;
+    for (int frame = 0; frame < 32; ++frame) {
+        p = picture([&](int x, int) {
+            float const a = frame % 2 == 0 ? 0.2f : 0.6f;
+            return Values{.l1 = vec3{3 * a}, .albedo = vec3{a}, .motion = {x < 10 ? 0.0f : 0.7f, 0, 2}};
+        });
+        reuse.add(p, SceneChange::motion);
+    }
+    EXPECT_NEAR(value(p, "albedo", 3, 20), 0.4f, 1e-5f);
+    EXPECT_NEAR(value(p, "L1", 3, 20), 1.2f, 1e-4f);
+    EXPECT_NEAR(value(p, "albedo", 30, 20), 0.6f, 1e-5f);
 }
 
 TEST(Temporal, MissingLayersAreNamed)
