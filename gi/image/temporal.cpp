@@ -171,7 +171,8 @@ void TemporalReuse::store(Picture& frame, TemporalCounts& counts) const
         for (std::size_t i = y * std::size_t(frame.width); i < (y + 1) * std::size_t(frame.width); ++i) {
             Light const& light = lights_[i];
             // The frames since are in both means; those before count as long as they are many beside them.
-            float const earlier = std::max(0.0f, light.frames - n), share = earlier / (earlier + n);
+            float const earlier = std::max(0.0f, light.frames - n),
+                        share = still_ == 1 ? 1 : earlier / (earlier + n);
             vec3 const e0 = glm::mix(mean_[i][0], light.l0, share),
                        e1 = glm::mix(mean_[i][1], times(light.direct, light.albedo), share),
                        e2 = glm::mix(mean_[i][2], times(light.indirect, light.albedo), share);
