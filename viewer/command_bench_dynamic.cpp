@@ -74,7 +74,7 @@ private:
 Scene figure_in_room(std::uint32_t triangles)
 {
     Scene scene = generate_sphere(triangles, 0);
-    add_figure(scene, glm::translate(dmat4(1), dvec3{2.5, 0, 2}), 1);
+    add_figure(scene, glm::translate(dmat4(1), dvec3{3.5, 0, -1.5}), 1);
     return scene;
 }
 

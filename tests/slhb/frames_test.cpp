@@ -1,0 +1,168 @@
+#include "gi/image/temporal.h"
+#include "gi/scene/generate.h"
+#include "gi/scene/generate/figure.h"
+#include "gi/slhb/frames.h"
+#include "gi/slhb/renderer.h"
+#include "gi/slhb/settings.h"
+#include "tests/support/scenes.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+namespace gi::test {
+namespace {
+
+/// A closed room with a displaced sphere, a lamp, and a figure that walks.
+std::shared_ptr<Scene const> walk()
+{
+    Scene scene = generate_sphere(2000, 0);
+    add_figure(scene, glm::translate(dmat4(1), dvec3{2.5, 1.5, 0}), 0.3);
+    return std::make_shared<Scene const>(std::move(scene));
+}
+
+RenderSettings few_pixels(Schedule schedule)
+{
+    RenderSettings s;
+    s.width = s.height = 40;
+    s.paths = 2;
+    s.bounces = 2;
+    s.slhb.schedule = schedule;
+    if (schedule == Schedule::stored) s.slhb.directions = "icosahedron:80";
+    s.slhb.resolution = 48;
+    return s;
+}
+
+class Frames : public testing::TestWithParam<Schedule> {};
+
+/// The third frame of a walk is, bit for bit, the picture that everything built anew gives.
+TEST_P(Frames, AreThoseOfAWorldBuiltAnew)
+{
+    auto const scene = walk();
+    Report report;
+    MovingWorld moving(scene, 0, report);
+    Camera const camera = moving.world().cameras.at(0);
+    RenderSettings settings = few_pixels(GetParam());
+    auto const frames = start_slhb_frames(moving, camera, settings, report);
+    Picture last;
+    for (double const t : {0.0, 0.3, 0.5}) {
+        frames->changed(moving.advance(t));
+        last = frames->frame(camera, {}, {}).picture;
+    }
+    ASSERT_LT(moving.world().static_triangles, moving.world().triangles.size());
+
+    MovingWorld const anew(scene, 0.5, report);
+    TriangleSoup soup = make_soup(anew.world());
+    settings.slhb = choose_settings(settings, anew.world(), soup);
+    SlhbRenderer renderer(anew.world(), camera, settings, std::move(soup), {}, report);
+    Accumulator sums(settings.width, settings.height);
+    for (std::uint32_t pass = 0; pass < 6; ++pass) {
+        Accumulator unused(settings.width, settings.height);
+        renderer.pass(pass, pass < 4 ? unused : sums);
+    }
+    EXPECT_EQ(last.find("color")->data, sums.picture(anew.world()).find("color")->data);
+}
+
+INSTANTIATE_TEST_SUITE_P(Schedules, Frames,
+                         testing::Values(Schedule::stored, Schedule::temporal, Schedule::streamed));
+
+/// Where the figure walks there is motion, and nowhere else.
+TEST(MotionVectors, AreThoseOfWhatMoves)
+{
+    auto const scene = walk();
+    Report report;
+    MovingWorld moving(scene, 0, report);
+    Camera const camera = moving.world().cameras.at(0);
+    RenderSettings settings = few_pixels(Schedule::streamed);
+    settings.width = settings.height = 128;
+    settings.paths = 1;
+    auto const frames = start_slhb_frames(moving, camera, settings, report);
+    frames->frame(camera, {}, {});
+    frames->changed(moving.advance(0.1));
+    Picture const p = frames->frame(camera, {}, {}).picture;
+    std::size_t still = 0, moves = 0;
+    for (std::size_t i = 0; i < p.pixels(); ++i) {
+        vec3 const m = rgb(*p.find("motion"), i);
+        if (m.x == 0 && m.y == 0) {
+            ++still;
+            EXPECT_NEAR(m.z, p.find("depth")->data[i], 1e-3f);
+        } else {
+            ++moves;
+            EXPECT_LT(glm::length(vec2(m)), 30);
+        }
+    }
+    EXPECT_GT(still, p.pixels() / 2);
+    EXPECT_GT(moves, 50u);
+
+    // The camera goes a step: all that is seen moves, and a point straight ahead as a projection says.
+    Camera aside = camera;
+    aside.world_from_camera = camera.world_from_camera * glm::translate(dmat4(1), dvec3{0.1, 0, 0});
+    Picture const q = frames->frame(aside, {}, {}).picture;
+    std::size_t const middle = q.pixels() / 2 + std::size_t(q.width) / 2;
+    float const depth = q.find("depth")->data[middle];
+    double const per_m = q.height / (2 * std::tan(0.5 * camera.yfov_rad) * double(depth));
+    EXPECT_NEAR(double(rgb(*q.find("motion"), middle).x), 0.1 * per_m, 0.02 * per_m);
+}
+
+/// A lamp that is switched off leaves nothing in the very first frame after it.
+TEST(TemporalFrames, ALightSwitchedOffIsOff)
+{
+    Scene scene;
+    int const m = add_material(scene, lambert(vec3{0.6f}));
+    add_box(scene, {-2, -2, -2}, {2, 2, 2}, m, true);
+    Light light;
+    light.type = LightType::point;
+    light.intensity = vec3{10};
+    scene.lights = {light};
+    Node node;
+    node.light = 0;
+    node.translation = {0.5, 1, 0.2};
+    scene.nodes.push_back(node);
+    Report report;
+    MovingWorld world(std::make_shared<Scene const>(std::move(scene)), 0, report);
+    Camera const camera = look_at({0, 0, 1.9}, {0, 0, -1}, 70);
+    auto const frames = start_slhb_frames(world, camera, few_pixels(Schedule::streamed), report);
+    TemporalReuse reuse({});
+    auto const show = [&](SceneChange change) {
+        Picture p = frames->frame(camera, {}, {}).picture;
+        reuse.add(p, change);
+        double sum = 0;
+        for (float const v : p.find("color")->data) sum += double(v);
+        return sum;
+    };
+    show(SceneChange::light);
+    for (int k = 0; k < 10; ++k) EXPECT_GT(show(SceneChange::nothing), 0);
+    light.intensity = vec3{0};
+    Light dark = world.world().lights.at(0);
+    dark.intensity = vec3{0};
+    Changes const changes = world.set_light(0, dark);
+    EXPECT_TRUE(changes.lights);
+    frames->changed(changes);
+    EXPECT_EQ(show(SceneChange::light), 0);
+    EXPECT_EQ(show(SceneChange::nothing), 0);
+}
+
+/// A still picture of many frames has the error of as many paths.
+TEST(TemporalFrames, AStillPictureIsTheRenderOfAllItsPaths)
+{
+    auto const scene = walk();
+    Report report;
+    MovingWorld world(scene, 0, report);
+    Camera const camera = world.world().cameras.at(0);
+    RenderSettings settings = few_pixels(Schedule::streamed);
+    settings.paths = 1;
+    auto const frames = start_slhb_frames(world, camera, settings, report);
+    TemporalReuse reuse({.most_frames = 4});
+    Picture p;
+    for (int k = 0; k < 24; ++k) {
+        p = frames->frame(camera, {}, {}).picture;
+        reuse.add(p, k == 0 ? SceneChange::light : SceneChange::nothing);
+    }
+    settings.paths = 24;
+    auto const all = start_slhb_frames(world, camera, settings, report);
+    Picture const q = all->frame(camera, {}, {}).picture;
+    for (std::size_t k = 0; k < p.find("color")->data.size(); ++k)
+        ASSERT_NEAR(p.find("color")->data[k], q.find("color")->data[k], 1e-4f * (1 + q.find("color")->data[k]));
+}
+
+} // namespace
+} // namespace gi::test
