@@ -13,6 +13,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
@@ -89,7 +90,7 @@ public:
           summary_(start_table("dynamic_summary", "The same, over all frames but the first",
                                {"scene", "triangles", "moving", "structure", "structures_ms", "frame_ms",
                                 "frame_ms_p95", "frame_ms_p99", "frame_ms_most", "paths", "relmse", "flip",
-                                "flip_most"}))
+                                "flip_most", "not_finite"}))
     {
     }
 
@@ -143,6 +144,7 @@ private:
         Stages stages;
         stages(report_);
         std::vector<double> frame_s, structures_s, relmse, flip, paths;
+        std::ptrdiff_t not_finite = 0;
         double const triangles = double(world.world().triangles.size()),
                      moving = triangles - double(world.world().static_triangles);
         for (int f = 0; f < o_.frames; ++f) {
@@ -187,16 +189,17 @@ private:
                                   1e3 * filter_s,
                                   1e3 * whole,
                                   double(result.paths)};
-            if (std::size_t(f) < references.size() && (structure.moves || f == 0)) {
-                Comparison const c =
-                    compare(result.picture, references[std::size_t(f)], {"relmse", "flip"}, "color");
-                for (NamedValue const& v : c.values) {
+            if (references.empty()) {
+                row.insert(row.end(), 2, std::monostate{});
+            } else {
+                Picture const& truth = references[structure.moves ? std::size_t(f) : 0];
+                for (NamedValue const& v : compare(result.picture, truth, {"relmse", "flip"}, "color").values) {
                     row.push_back(v.value);
                     if (f > 0) (v.name == "flip" ? flip : relmse).push_back(v.value);
                 }
-            } else {
-                row.insert(row.end(), 2, std::monostate{});
             }
+            std::vector<float> const& color = result.picture.find("color")->data;
+            not_finite += std::ranges::count_if(color, [](float v) { return !std::isfinite(v); });
             table_.add(row);
             if (f == 0) continue; // it builds what lasts
             frame_s.push_back(whole);
@@ -214,7 +217,7 @@ private:
         };
         summary_.add({name, triangles, moving, std::string(structure.name), ms(structures_s, 0.5),
                       ms(frame_s, 0.5), ms(frame_s, 0.95), ms(frame_s, 0.99), ms(frame_s, 1), at(paths, 0.5),
-                      at(relmse, 0.5), at(flip, 0.5), at(flip, 1)});
+                      at(relmse, 0.5), at(flip, 0.5), at(flip, 1), double(not_finite)});
         write(table_, o_.out);
         write(summary_, o_.out);
     }
@@ -289,7 +292,7 @@ void add_bench_dynamic(CLI::App& bench, int& exit_code)
 
 Times are of one frame: world_ms, skinning and what follows from it in the world; structures_ms, hit buffers;
 direct_ms and indirect_ms share the time of the paths as their threads' times do. Errors are against the reference
-of the same moment. The summary leaves out the first frame, which builds what lasts.)");
+of the same moment. The summary leaves out the first frame, which builds what lasts; not_finite counts values of all pictures.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 
