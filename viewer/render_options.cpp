@@ -259,6 +259,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
   lightwell render atrium --background transparent --size 64x48 --paths 4 --out cut.exr --png cut.png
   lightwell render atrium --size 64x64 --paths 4 --denoise atrous --out smooth.exr
   lightwell render atrium --frames 0:3@10 --size 48x48 --paths 2 --out walk_%04d.exr --png walk_%04d.png
+  lightwell render atrium --method slhb --frames 0:3@24 --reuse 16 --paths 1 --bounces 2 --size 48x48 --out reuse_%04d.exr --stats reuse.json
   lightwell render cornell --frames 0:4@8 --turntable --size 48x48 --paths 2 --video turn.mkv
 
 --stats and --json hold: schema, program, command, settings, outputs, result (end, paths_per_pixel, seconds,

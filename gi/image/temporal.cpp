@@ -11,8 +11,9 @@
 namespace gi {
 namespace {
 
-// A texel of the frame before shows the same surface: cosine of normals, and difference of depths per depth.
-constexpr float kCosine = 0.9f, kDepth = 0.02f;
+// A texel of the frame before shows the same surface: cosine of normals, and difference of depths per depth,
+// beside what the surface's slope explains.
+constexpr float kCosine = 0.8f, kDepth = 0.02f;
 // What moves by less than that, pixels, stands still in the picture.
 constexpr float kStill = 1e-3f;
 // L1 is held to mean +- kSpread standard deviations of a window of kWindow pixels.
@@ -99,6 +100,13 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
             if (!(here.depth > 0)) continue;
             ++local.surfaces;
             vec3 const from = rgb(motion, i);
+            // What the depth changes by over a pixel; frames look through different points of it.
+            auto const change = [&](bool there, std::ptrdiff_t step) {
+                return there ? std::abs(surfaces_[std::size_t(std::ptrdiff_t(i) + step)].depth - here.depth)
+                             : kInf;
+            };
+            float const slope = std::min(change(x > 0, -1), change(x + 1 < width, 1)) +
+                                std::min(change(y > 0, -width), change(y + 1 < height, width));
             Light before{};
             float weight = 0;
             if (finite(from) && std::abs(from.x) < 1e6f && std::abs(from.y) < 1e6f) {
@@ -110,7 +118,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
                     if (tx < 0 || ty < 0 || tx >= width || ty >= height || !(w > 0)) continue;
                     std::size_t const t = std::size_t(ty) * std::size_t(width) + std::size_t(tx);
                     Surface const& there = last_surfaces_[t];
-                    if (!(std::abs(there.depth - from.z) < kDepth * from.z) ||
+                    if (!(std::abs(there.depth - from.z) < kDepth * from.z + slope) ||
                         glm::dot(there.normal, here.normal) < kCosine)
                         continue;
                     Light const& l = last_lights_[t];
