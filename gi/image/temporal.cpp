@@ -86,11 +86,21 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
             vec3 const a = rgb(albedo, i);
             surfaces_[i] = {rgb(normal, i), depth.data[i]};
             direct[i] = over(rgb(l1, i), a);
-            lights_[i] = {direct[i], over(rgb(l2, i), a), 1, rgb(l0, i), a, 1};
+            lights_[i] = {direct[i], over(rgb(l2, i), a), 1, rgb(l0, i), a, 1, false};
         }
     });
     if (frames_ == 0) return;
     Window const window(direct, width, height);
+    // Whether a surface is still there now, in a pixel next to this one.
+    auto const is_beside = [&](Surface const& s, int x, int y) {
+        for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)
+            for (int k = std::max(0, x - 1); k <= std::min(width - 1, x + 1); ++k) {
+                Surface const& n = surfaces_[std::size_t(j) * std::size_t(width) + std::size_t(k)];
+                if (std::abs(n.depth - s.depth) <= kDepth * s.depth && glm::dot(n.normal, s.normal) >= kCosine)
+                    return true;
+            }
+        return false;
+    };
     tbb::combinable<TemporalCounts> counts;
     tbb::parallel_for(0, height, [&](int y) {
         TemporalCounts& local = counts.local();
@@ -108,6 +118,10 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
             float const slope = std::min(change(x > 0, -1), change(x + 1 < width, 1)) +
                                 std::min(change(y > 0, -width), change(y + 1 < height, width));
             Light before{};
+            // Neither what is seen here now nor what was seen moves: it is an edge, seen through other points of
+            // it.
+            bool const still = glm::length(vec2(from)) < kStill, resting = still && last_lights_[i].still;
+            lights_[i].still = still;
             float weight = 0;
             if (finite(from) && std::abs(from.x) < 1e6f && std::abs(from.y) < 1e6f) {
                 float const u = float(x) + from.x, v = float(y) + from.y, left = std::floor(u),
@@ -118,9 +132,9 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
                     if (tx < 0 || ty < 0 || tx >= width || ty >= height || !(w > 0)) continue;
                     std::size_t const t = std::size_t(ty) * std::size_t(width) + std::size_t(tx);
                     Surface const& there = last_surfaces_[t];
-                    if (!(std::abs(there.depth - from.z) < kDepth * from.z + slope) ||
-                        glm::dot(there.normal, here.normal) < kCosine)
-                        continue;
+                    bool const same = std::abs(there.depth - from.z) < kDepth * from.z + slope &&
+                                      glm::dot(there.normal, here.normal) >= kCosine;
+                    if (!same && !(resting && is_beside(there, x, y))) continue;
                     Light const& l = last_lights_[t];
                     before.direct += w * l.direct;
                     before.indirect += w * l.indirect;
@@ -135,7 +149,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
                 continue;
             }
             Light& now = lights_[i];
-            if (Light const& last = last_lights_[i]; glm::length(vec2(from)) < kStill && weight > 1 - kStill) {
+            if (Light const& last = last_lights_[i]; still && weight > 1 - kStill) {
                 now.still_frames = std::min(last.still_frames + 1, float(settings_.most_frames));
                 now.l0 = glm::mix(last.l0, now.l0, 1 / now.still_frames);
                 now.albedo = glm::mix(last.albedo, now.albedo, 1 / now.still_frames);

@@ -53,6 +53,7 @@ private:
         float frames;          ///< that they are means of
         vec3 l0, albedo;
         float still_frames; ///< that these are means of
+        bool still;         ///< its surface stood still in the picture
     };
     void follow(Picture const& frame, TemporalCounts& counts);
     void rest(Picture const& frame);
