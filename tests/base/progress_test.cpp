@@ -1,6 +1,5 @@
 #include "gi/base/progress.h"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <pty.h>
 #include <unistd.h>
@@ -26,11 +25,11 @@ std::string on_a_terminal(bool enabled)
     dup2(kept, STDERR_FILENO);
     close(kept);
     close(program);
-    fcntl(terminal, F_SETFL, O_NONBLOCK);
-    std::string text(4096, '\0');
-    auto const n = read(terminal, text.data(), text.size());
+    std::string text;
+    char part[256];
+    // What was written arrives piece by piece; the read after the last of it fails, as nobody can write any more.
+    for (ssize_t n; (n = read(terminal, part, sizeof part)) > 0;) text.append(part, std::size_t(n));
     close(terminal);
-    text.resize(n > 0 ? std::size_t(n) : 0);
     return text;
 }
 
