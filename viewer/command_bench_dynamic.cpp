@@ -8,6 +8,7 @@
 #include "viewer/bench_record.h"
 #include "viewer/commands.h"
 #include "viewer/frame_follower.h"
+#include "viewer/frame_record.h"
 #include "viewer/load_world.h"
 #include "viewer/report_json.h"
 
@@ -55,23 +56,7 @@ Structure const& find_structure(std::string const& name)
     throw InputError("there is no structure '" + name + "'", "it is not one of slhb's", "choose of: " + known);
 }
 
-/// Seconds by stage since the last call.
-class Stages {
-public:
-    std::map<std::string, double> operator()(Report const& report)
-    {
-        std::map<std::string, double> now, spent;
-        for (auto const& [name, seconds] : report.times()) now[name] = seconds;
-        for (auto const& [name, seconds] : now) spent[name] = seconds - last_[name];
-        last_ = now;
-        return spent;
-    }
-
-private:
-    std::map<std::string, double> last_;
-};
-
-/// A room with a displaced sphere that stays and a figure of about 2,500 triangles that walks.
+/// A room with a displaced sphere that stays and a figure of 10,880 triangles that walks.
 Scene figure_in_room(std::uint32_t triangles)
 {
     Scene scene = generate_sphere(triangles, 0);
@@ -141,8 +126,8 @@ private:
         };
         std::unique_ptr<FrameRenderer> renderer = start();
         TemporalReuse reuse({.most_frames = o_.most_frames});
-        Stages stages;
-        stages(report_);
+        ReportReader stages(report_);
+        stages.times();
         std::vector<double> frame_s, structures_s, relmse, flip, paths;
         std::ptrdiff_t not_finite = 0;
         double const triangles = double(world.world().triangles.size()),
@@ -168,7 +153,7 @@ private:
                 reuse_s = seconds_of([&] { reuse.add(result.picture, scene_change(changes, f == 0)); });
             filter_s = seconds_of([&] { denoise(result.picture, filter); });
 
-            std::map<std::string, double> spent = stages(report_);
+            std::map<std::string, double> spent = stages.times();
             double const in_paths = spent["paths"], direct = spent["direct light, thread seconds"],
                          indirect = spent["indirect light, thread seconds"], light = direct + indirect;
             double const structures = build_s + spent["hit buffers of a pass"];
@@ -207,14 +192,10 @@ private:
             paths.push_back(double(result.paths));
         }
         if (frame_s.empty()) return;
-        auto const at = [](std::vector<double> v, double share) -> Cell {
-            if (v.empty()) return std::monostate{};
-            std::ranges::sort(v);
-            return v[std::min(v.size() - 1, std::size_t(share * double(v.size())))];
+        auto const at = [](std::vector<double> const& v, double share) {
+            return v.empty() ? Cell() : Cell(percentile(v, share));
         };
-        auto const ms = [&](std::vector<double> const& v, double share) {
-            return Cell(1e3 * std::get<double>(at(v, share)));
-        };
+        auto const ms = [&](std::vector<double> const& v, double share) { return 1e3 * percentile(v, share); };
         summary_.add({name, triangles, moving, std::string(structure.name), ms(structures_s, 0.5),
                       ms(frame_s, 0.5), ms(frame_s, 0.95), ms(frame_s, 0.99), ms(frame_s, 1), at(paths, 0.5),
                       at(relmse, 0.5), at(flip, 0.5), at(flip, 1), double(not_finite)});
@@ -290,7 +271,7 @@ void add_bench_dynamic(CLI::App& bench, int& exit_code)
     c->footer(R"(Example:
   lightwell bench dynamic --triangles 2000 --frames 3 --size 16x16 --reference-paths 2 --out dynamic
 
-Times are of one frame: world_ms, skinning and what follows from it in the world; structures_ms, hit buffers;
+Times are of one frame: world_ms, skinning and what follows from it in the world; structures_ms, hit buffers (rebuilt: all that a renderer starts with);
 direct_ms and indirect_ms share the time of the paths as their threads' times do. Errors are against the reference
 of the same moment. The summary leaves out the first frame, which builds what lasts; not_finite counts values of all pictures.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });

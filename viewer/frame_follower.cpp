@@ -3,15 +3,6 @@
 #include "gi/base/error.h"
 
 namespace viewer {
-namespace {
-
-bool same_view(gi::Camera const& a, gi::Camera const& b)
-{
-    return a.orthographic == b.orthographic && a.yfov_rad == b.yfov_rad && a.ymag_m == b.ymag_m &&
-           a.world_from_camera == b.world_from_camera;
-}
-
-} // namespace
 
 gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
 {
@@ -55,15 +46,13 @@ FrameFollower::Frame FrameFollower::render(gi::Camera const& camera, gi::StopReq
     {
         gi::StageTimer const timer(report_, "temporal reuse");
         frame.counts =
-            reuse_.add(frame.result.picture, scene_change(changes_, first || !same_view(camera, last_camera_)));
+            reuse_.add(frame.result.picture, scene_change(changes_, first || !(camera == last_camera_)));
     }
     frame.changes = changes_.reasons;
     changes_ = {};
     last_camera_ = camera;
-    for (auto const& [stage, seconds] : report_.times()) {
-        report.add_time(stage, seconds - reported_s_[stage]);
-        reported_s_[stage] = seconds;
-    }
+    for (auto const& [stage, seconds] : added_.times()) report.add_time(stage, seconds);
+    added_.pass_on_losses(report);
     return frame;
 }
 

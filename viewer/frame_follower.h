@@ -23,7 +23,7 @@ public:
                   gi::RenderSettings const& settings, int most_frames);
 
     gi::World const& go_to(double time_s);
-    /// @param report  gets the times of this frame
+    /// @param report  gets the times and losses of this frame, the first one also those of the world
     Frame render(gi::Camera const& camera, gi::StopRequest const& stop, gi::RenderProgress const& progress,
                  gi::Report& report);
 
@@ -31,7 +31,7 @@ private:
     gi::Method const& method_;
     gi::RenderSettings settings_;
     gi::Report report_; ///< of all frames
-    std::map<std::string, double> reported_s_;
+    gi::ReportReader added_{report_};
     gi::MovingWorld world_;
     gi::Changes changes_;
     std::unique_ptr<gi::FrameRenderer> renderer_;

@@ -45,10 +45,12 @@ void declare_frames(CLI::App& c, RenderOptions& o)
                  "temporal reuse: a pixel is the mean of so many frames at most (of all, while nothing moves)")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str()
+        ->group(kGroup)
         ->needs(frames);
     c.add_flag("--seed-per-frame", o.seed_per_frame, "frame k has the seed --seed + k: noise that flickers")
         ->group(kGroup)
-        ->needs(frames);
+        ->needs(frames)
+        ->excludes("--reuse"); // its frames continue one sequence of random numbers
 }
 
 CameraMotion make_motion(RenderOptions const& o)

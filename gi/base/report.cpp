@@ -47,4 +47,22 @@ std::vector<std::pair<std::string, double>> Report::times() const
     return times_;
 }
 
+std::map<std::string, double> ReportReader::times()
+{
+    std::map<std::string, double> added;
+    for (auto const& [stage, seconds] : report_.times()) {
+        added[stage] = seconds - times_[stage];
+        times_[stage] = seconds;
+    }
+    return added;
+}
+
+void ReportReader::pass_on_losses(Report& to)
+{
+    for (auto const& [what, loss] : report_.losses()) {
+        to.lose(what, loss.count - losses_[what], loss.first);
+        losses_[what] = loss.count;
+    }
+}
+
 } // namespace gi

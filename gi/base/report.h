@@ -57,4 +57,19 @@ private:
     Clock::time_point start_ = Clock::now();
 };
 
+/// Reads a report that goes on growing: each call gives what was added since the one before.
+class ReportReader {
+public:
+    explicit ReportReader(Report const& report) : report_(report) {}
+    /// Seconds by stage.
+    std::map<std::string, double> times();
+    /// Losses, to another report.
+    void pass_on_losses(Report& to);
+
+private:
+    Report const& report_;
+    std::map<std::string, double> times_;
+    std::map<std::string, std::uint64_t> losses_;
+};
+
 } // namespace gi

@@ -118,8 +118,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
             float const slope = std::min(change(x > 0, -1), change(x + 1 < width, 1)) +
                                 std::min(change(y > 0, -width), change(y + 1 < height, width));
             Light before{};
-            // Neither what is seen here now nor what was seen moves: it is an edge, seen through other points of
-            // it.
+            // Neither what is seen here now nor what was seen moves: an edge, perhaps, seen through another point.
             bool const still = glm::length(vec2(from)) < kStill, resting = still && last_lights_[i].still;
             lights_[i].still = still;
             float weight = 0;
@@ -216,7 +215,7 @@ TemporalCounts TemporalReuse::add(Picture& frame, SceneChange change)
 {
     if (frames_ > 0 && surfaces_.size() != frame.pixels())
         throw InputError("frames of different sizes", "temporal reuse goes pixel by pixel", "start afresh");
-    if (frame.find("color") == nullptr) layer_of(frame, "color");
+    layer_of(frame, "color");
     if (change == SceneChange::light) frames_ = 0;
     if (change != SceneChange::nothing || frames_ == 0) still_ = 0;
     TemporalCounts counts;

@@ -30,7 +30,7 @@ struct TemporalCounts {
     std::size_t started = 0;  ///< of these, without anything to reuse
     std::size_t held = 0;     ///< of these, whose L1 of before did not fit the neighbourhood
     double frames = 0;        ///< that a pixel is the mean of, on average
-    int still_frames = 0;     ///< since anything moved; 0 = something has
+    int still_frames = 0;     ///< since anything moved, this one counted; 1 = something has
 };
 
 class TemporalReuse {
@@ -39,9 +39,8 @@ public:
 
     /// Replaces L0, L1, L2, color and albedo by means over frames. Needs color, L0, L1, L2, albedo, normal, depth
     /// and motion (throws InputError where one is missing): x, y: pixels from here to where the surface was; z:
-    /// its depth then, m; NaN where it was not. The size may not change without forget().
+    /// its depth then, m; NaN where it was not. All frames have one size.
     TemporalCounts add(Picture& frame, SceneChange change);
-    void forget() { frames_ = 0; }
 
 private:
     struct Surface {

@@ -112,10 +112,8 @@ public:
     std::vector<FewAxes> const& few() const { return few_; }
     CosineTables const& tables() const { return tables_; }
     std::uint64_t built() const { return built_; } ///< axes, so far
-    std::uint64_t lost() const
-    {
-        return lost_;
-    } ///< layers beyond most_layers, of what is built once and of what moves
+    /// Layers beyond most_layers, of what is built once and of what moves.
+    std::uint64_t lost() const { return lost_; }
     std::uint64_t layers() const { return layers_; } ///< of all axes built so far
 
 private:

@@ -14,7 +14,7 @@ namespace {
 class SlhbFrames : public FrameRenderer {
 public:
     SlhbFrames(MovingWorld const& world, Camera const& camera, RenderSettings const& settings, Report& report)
-        : world_(world), settings_(settings), report_(report)
+        : world_(world), asked_(settings), settings_(settings), report_(report)
     {
         if (settings.slhb.space == Space::device)
             throw InputError("--device cuda with frames that follow each other", "its kernels render one picture",
@@ -51,6 +51,8 @@ public:
         result.picture = loop.sums().picture(world_.world());
         renderer_->add_motion(result.picture);
         renderer_->end_frame();
+        report_.lose("layers beyond the limit of a texel", renderer_->lost_layers() - lost_);
+        lost_ = renderer_->lost_layers();
         return result;
     }
 
@@ -59,18 +61,19 @@ private:
     {
         World const& world = world_.world();
         TriangleSoup soup = make_soup(world);
-        settings_.slhb = choose_settings(settings_, world, soup);
-        renderer_.emplace(world, camera, settings_, std::move(soup),
-                          SlhbRenderer::Motion{world.static_triangles, {}}, report_);
+        settings_.slhb = choose_settings(asked_, world, soup);
+        renderer_.emplace(world, camera, settings_, std::move(soup), world.static_triangles, report_);
         restart_ = false;
+        lost_ = 0;
     }
 
     MovingWorld const& world_;
-    RenderSettings settings_;
+    RenderSettings asked_, settings_; ///< the second with those of slhb chosen
     Report& report_;
     std::optional<tbb::global_control> threads_;
     std::optional<SlhbRenderer> renderer_;
     std::uint32_t passes_ = 0;
+    std::uint64_t lost_ = 0; ///< layers that were reported
     bool restart_ = false;
 };
 

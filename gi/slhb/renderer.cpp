@@ -47,16 +47,16 @@ std::uint32_t texels(bool unused, int n) { return std::uint32_t(unused ? 2 : n);
 } // namespace
 
 SlhbRenderer::SlhbRenderer(World const& world, Camera const& camera, RenderSettings const& settings,
-                           TriangleSoup soup, Motion const& motion, Report& report)
+                           TriangleSoup soup, std::size_t first_moving, Report& report)
     : world_(world),
       settings_(settings),
-      motion_(motion),
+      first_moving_(first_moving),
       report_(report),
       orthographic_(camera.orthographic),
       rays_(camera_rays(camera, settings.width, settings.height, world.origin)),
       soup_(std::move(soup)),
       cut_outs_(world),
-      grid_bounds_(merged(world.bounds, motion.bounds))
+      grid_bounds_(world.bounds)
 {
     end_frame();
     build_exact();
@@ -69,7 +69,7 @@ void SlhbRenderer::build_exact()
 {
     bool const alpha_tests = plan_scene(world_).alpha_tests;
     auto const build = [&] {
-        return std::make_unique<ExactVisibility>(world_, alpha_tests, settings_.threads, motion_.first_triangle);
+        return std::make_unique<ExactVisibility>(world_, alpha_tests, settings_.threads, first_moving_);
     };
     if (needs_exact_rays(world_, orthographic_)) {
         StageTimer const timer(report_, "build (Embree BVH)");
@@ -88,7 +88,7 @@ void SlhbRenderer::make_axes()
                                   .most_layers = std::uint32_t(slhb_.most_layers),
                                   .packed = slhb_.packed,
                                   .seed = settings_.seed,
-                                  .first_moving = apart ? motion_.first_triangle : soup_.count});
+                                  .first_moving = apart ? first_moving_ : soup_.count});
     if (slhb_.schedule != Schedule::stored) return;
     StageTimer const timer(report_, "build (hit buffers)");
     axes_->store(make_directions(slhb_.directions));
@@ -106,8 +106,8 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
     if (geometry) {
         {
             StageTimer const timer(report_, "triangles that moved");
-            if (earlier_.corners.empty()) earlier_.corners = corners_of(soup_, motion_.first_triangle);
-            update_soup(world_, motion_.first_triangle, soup_);
+            if (earlier_.corners.empty()) earlier_.corners = corners_of(soup_, first_moving_);
+            update_soup(world_, first_moving_, soup_);
         }
         {
             StageTimer const timer(report_, "BVH of what moves (Embree)");
@@ -116,7 +116,7 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
         }
         if (contains(grid_bounds_, world_.bounds)) {
             StageTimer const timer(report_, "layers that moved");
-            axes_->move();
+            if (slhb_.schedule == Schedule::stored) axes_->move(); // for others every pass does
         } else {
             // Some room, so that it does not happen in every frame.
             Bounds const b = world_.bounds;
@@ -130,7 +130,7 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
     if (lights || (geometry && lamps_->fixed())) make_lamps();
 }
 
-void SlhbRenderer::end_frame() { earlier_ = {rays_, motion_.first_triangle, {}}; }
+void SlhbRenderer::end_frame() { earlier_ = {rays_, first_moving_, {}}; }
 
 void SlhbRenderer::add_motion(Picture& picture) const
 {
@@ -247,7 +247,7 @@ void SlhbRenderer::report_work() const
                                                                      (double(slhb_.resolution) * slhb_.resolution)
                                                                : 0);
     report_.count("shadow maps built", double(lamps_->maps_built()));
-    report_.lose("layers beyond the limit of a texel", axes_->lost());
+    report_.lose("layers beyond the limit of a texel", lost_layers());
 }
 
 } // namespace gi

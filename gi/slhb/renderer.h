@@ -15,20 +15,14 @@ namespace gi {
 
 class SlhbRenderer {
 public:
-    /// What moves in the world between frames; by default nothing.
-    struct Motion {
-        std::size_t first_triangle = ~std::size_t(0); ///< that moves; all after it do
-        Bounds bounds;                                ///< that hold everything at all times, as far as is known
-    };
-
     /// Builds what lasts. `world` and `report` outlive this; the arrays of the world stay where they are.
     /// @param settings  with those of slhb chosen  @param soup  of the world
     SlhbRenderer(World const& world, Camera const& camera, RenderSettings const& settings, TriangleSoup soup,
-                 Motion const& motion, Report& report);
+                 std::size_t first_moving, Report& report);
 
     /// A frame ends here: motion vectors lead to what is seen now.
     void end_frame();
-    /// The world has changed: its triangles from Motion::first_triangle on, or its lights. What does not depend on
+    /// The world has changed: its triangles from the first that moves on, or its lights. What does not depend on
     /// that stays.
     void world_moved(bool geometry, bool lights);
     void set_camera(Camera const& camera);
@@ -37,7 +31,8 @@ public:
 
     /// Motion vectors of the last pass, to the frame that ended before it; not with orthographic cameras.
     void add_motion(Picture& picture) const;
-    double rays() const; ///< look-ups and exact rays, so far
+    double rays() const;                                        ///< look-ups and exact rays, so far
+    std::uint64_t lost_layers() const { return axes_->lost(); } ///< beyond the limit of a texel, so far
     /// What has been done so far.
     void report_work() const;
 
@@ -50,7 +45,7 @@ private:
     World const& world_;
     RenderSettings settings_;
     SlhbSettings const& slhb_ = settings_.slhb;
-    Motion motion_;
+    std::size_t first_moving_; ///< triangle
     Report& report_;
     bool orthographic_;
     CameraRays rays_;

@@ -53,7 +53,7 @@ TEST_P(Frames, AreThoseOfAWorldBuiltAnew)
     MovingWorld const anew(scene, 0.5, report);
     TriangleSoup soup = make_soup(anew.world());
     settings.slhb = choose_settings(settings, anew.world(), soup);
-    SlhbRenderer renderer(anew.world(), camera, settings, std::move(soup), {}, report);
+    SlhbRenderer renderer(anew.world(), camera, settings, std::move(soup), anew.world().triangles.size(), report);
     Accumulator sums(settings.width, settings.height);
     for (std::uint32_t pass = 0; pass < 6; ++pass) {
         Accumulator unused(settings.width, settings.height);
@@ -131,7 +131,6 @@ TEST(TemporalFrames, ALightSwitchedOffIsOff)
     };
     show(SceneChange::light);
     for (int k = 0; k < 10; ++k) EXPECT_GT(show(SceneChange::nothing), 0);
-    light.intensity = vec3{0};
     Light dark = world.world().lights.at(0);
     dark.intensity = vec3{0};
     Changes const changes = world.set_light(0, dark);

@@ -4,7 +4,7 @@
 
 int main(int argc, char** argv)
 {
-    // Frames need the same memory again and again; taking its pages anew costs a third of a short one.
+    // Frames need the same memory again and again; taking its pages anew costs a quarter of a short one.
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     mallopt(M_TOP_PAD, 64 << 20);
