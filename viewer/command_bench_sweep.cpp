@@ -41,7 +41,9 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
         return c->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
     };
     list("--scene", o->scenes, "files or names, comma-separated")->required();
-    list("--methods", o->methods, "comma-separated, of:" + known)->capture_default_str();
+    list("--methods", o->methods,
+         "comma-separated, of:" + known + "\n  slhb:stored, slhb:streamed, slhb:temporal: with that schedule")
+        ->capture_default_str();
     list("--budgets", o->budgets, "times for a frame, comma-separated")->capture_default_str();
     RenderOptions& r = o->render;
     c->add_option("--size", r.size, "width x height, pixels")->capture_default_str();
@@ -65,11 +67,11 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
     c->add_flag("--quiet", r.quiet, "no progress bar");
     c->footer(R"(Examples:
   lightwell bench sweep --scene cornell --methods reference --budgets 20ms --repeats 2 --size 32x32 --reference-paths 32 --out sweep
-  lightwell bench sweep --scene cornell,atrium --budgets 20ms --repeats 1 --size 24x24 --reference-paths 8 --out both --json
+  lightwell bench sweep --scene cornell,atrium --methods slhb:stored,slhb:streamed --budgets 20ms --repeats 1 --size 24x24 --reference-paths 8 --out both --json
 
 Columns: budget_s, what was asked for, structures, paths and filter together; frame_s, the whole call with all that the method builds for it (a method
 finishes at least one path per pixel, so it may be more); trace_s, the tracing alone; paths per pixel; Mrays_per_s;
-relmse, flip and bias against the reference, which is rendered with a seed of its own; reference_relmse, what the
+relmse (relmse_indirect: of L2 alone), flip and bias against the reference, which is rendered with a seed of its own; reference_relmse, what the
 noise of the reference adds to relmse.
 
 Ctrl-C drops the render at hand, saves the rows so far and exits with 130; a second one ends at once.)");

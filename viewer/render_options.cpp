@@ -41,14 +41,6 @@ void check_device(RenderOptions const& o, gi::SlhbSettings const& s)
     gi::check_device(s);
 }
 
-gi::Schedule schedule_of(std::string const& name)
-{
-    return name == "stored"     ? gi::Schedule::stored
-           : name == "streamed" ? gi::Schedule::streamed
-           : name == "temporal" ? gi::Schedule::temporal
-                                : gi::Schedule::automatic;
-}
-
 /// The scene's name, also where it is a folder with a slash at its end.
 std::string default_out(std::string const& scene, char const* ending)
 {
@@ -57,6 +49,16 @@ std::string default_out(std::string const& scene, char const* ending)
 }
 
 } // namespace
+
+gi::Schedule parse_schedule(std::string const& name)
+{
+    if (name == "stored") return gi::Schedule::stored;
+    if (name == "streamed") return gi::Schedule::streamed;
+    if (name == "temporal") return gi::Schedule::temporal;
+    if (name == "auto") return gi::Schedule::automatic;
+    throw gi::InputError("there is no schedule '" + name + "'", "slhb has others",
+                         "choose auto, stored, streamed or temporal");
+}
 
 gi::RenderSettings make_settings(RenderOptions& o)
 {
@@ -85,7 +87,7 @@ gi::RenderSettings make_settings(RenderOptions& o)
     s.threads = o.threads;
     s.filter = o.filter == "tent" ? gi::PixelFilter::tent : gi::PixelFilter::box;
     s.slhb = o.slhb;
-    s.slhb.schedule = schedule_of(o.schedule);
+    s.slhb.schedule = parse_schedule(o.schedule);
     s.slhb.space = o.device == "cuda" ? gi::Space::device : gi::Space::host;
     check_device(o, s.slhb);
     s.resume = o.resume && !is_sequence; // a sequence resumes by its frames

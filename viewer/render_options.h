@@ -33,6 +33,9 @@ struct RenderOptions {
     int reuse = 1; ///< frames
 };
 
+/// Throws InputError naming those that there are.
+gi::Schedule parse_schedule(std::string const& name);
+
 /// Those of the camera, the sky and the moment, for every command that renders.
 void declare_view_options(CLI::App& command, RenderOptions& options);
 void declare_denoise(CLI::App& command, RenderOptions& options);

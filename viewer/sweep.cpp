@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 /// What the repeats of one method with one budget gave.
 struct Samples {
-    std::vector<double> frame_s, trace_s, paths, mrays_per_s, relmse, flip, bias;
+    std::vector<double> frame_s, trace_s, paths, mrays_per_s, relmse, relmse_indirect, flip, bias;
     std::string picture, flip_map;
 };
 
@@ -43,13 +43,13 @@ public:
     std::set<std::string> const& notes() const { return notes_; }
 
 private:
-    gi::RenderSettings settings(double budget_s, int repeat) const;
+    gi::RenderSettings settings(SweepMethod const& method, double budget_s, int repeat) const;
     gi::RenderResult frame(gi::Method const& method, SweepScene const& scene, gi::RenderSettings const& s,
                            gi::RenderProgress const& progress, gi::Report& report) const;
     void warm_up(SweepScene const& scene);
     bool measure(SweepScene const& scene, SweepReference const& reference, std::size_t method, std::size_t budget,
                  int repeat, Samples& into);
-    void save(SweepScene const& scene, gi::Method const& method, std::string const& budget,
+    void save(SweepScene const& scene, SweepMethod const& method, std::string const& budget,
               gi::RenderSettings const& settings, gi::RenderResult& result, SweepReference const& reference,
               Samples& into);
 
@@ -63,12 +63,13 @@ private:
     std::set<std::string> notes_; ///< of the comparisons
 };
 
-gi::RenderSettings Sweep::settings(double budget_s, int repeat) const
+gi::RenderSettings Sweep::settings(SweepMethod const& method, double budget_s, int repeat) const
 {
     gi::RenderSettings s = plan_.settings;
     constexpr double kLeast = 1e-4; // s; a budget of 0 would be none
     if (budget_s > 0) s.budget_s = std::max(kLeast, budget_s - filter_s_);
     s.seed = std::uint64_t(repeat) + 1;
+    s.slhb.schedule = method.schedule;
     return s;
 }
 
@@ -86,12 +87,12 @@ gi::RenderResult Sweep::frame(gi::Method const& method, SweepScene const& scene,
 void Sweep::warm_up(SweepScene const& scene)
 {
     filter_s_ = 0;
-    gi::RenderSettings s = settings(0, 0);
-    s.paths = 2;
     gi::Report unused;
-    for (gi::Method const& method : plan_.methods) {
+    for (SweepMethod const& m : plan_.methods) {
         if (stop_.requested()) return;
-        gi::RenderResult result = frame(method, scene, s, {}, unused);
+        gi::RenderSettings s = settings(m, 0, 0);
+        s.paths = 2;
+        gi::RenderResult result = frame(m.method, scene, s, {}, unused);
         if (plan_.filter.denoiser != gi::Denoiser::none)
             filter_s_ = seconds_of([&] { gi::denoise(result.picture, plan_.filter); });
     }
@@ -100,15 +101,15 @@ void Sweep::warm_up(SweepScene const& scene)
 bool Sweep::measure(SweepScene const& scene, SweepReference const& reference, std::size_t m, std::size_t b,
                     int repeat, Samples& into)
 {
-    gi::Method const& method = plan_.methods[m];
-    gi::RenderSettings const s = settings(plan_.budgets_s[b], repeat);
+    SweepMethod const& method = plan_.methods[m];
+    gi::RenderSettings const s = settings(method, plan_.budgets_s[b], repeat);
     auto const show = [&](gi::RenderStatus const& status) {
         bar_.update(
             (done_s_ + s.budget_s * status.fraction) / total_s_,
             fmt::format("{}, {}, {}, {}/{}", scene.name, method.name, o_.budgets[b], repeat + 1, o_.repeats));
     };
     gi::RenderResult result;
-    double const frame_s = seconds_of([&] { result = frame(method, scene, s, show, report_); });
+    double const frame_s = seconds_of([&] { result = frame(method.method, scene, s, show, report_); });
     if (result.end == gi::RenderEnd::interrupted) return false;
     done_s_ += s.budget_s;
 
@@ -123,11 +124,14 @@ bool Sweep::measure(SweepScene const& scene, SweepReference const& reference, st
         if (v.name == "flip") into.flip.push_back(v.value);
         if (v.name == "bias") into.bias.push_back(v.value);
     }
+    if (result.picture.find("L2") != nullptr && reference.picture.find("L2") != nullptr)
+        into.relmse_indirect.push_back(
+            gi::compare(result.picture, reference.picture, {"relmse"}, "L2").values.front().value);
     if (repeat == 0) save(scene, method, o_.budgets[b], s, result, reference, into);
     return true;
 }
 
-void Sweep::save(SweepScene const& scene, gi::Method const& method, std::string const& budget,
+void Sweep::save(SweepScene const& scene, SweepMethod const& method, std::string const& budget,
                  gi::RenderSettings const& s, gi::RenderResult& result, SweepReference const& reference,
                  Samples& into)
 {
@@ -142,7 +146,7 @@ void Sweep::save(SweepScene const& scene, gi::Method const& method, std::string 
     gi::write_png(folder / into.picture, picture.width, picture.height,
                   gi::tone_map_bytes(*picture.find("color"), {}));
     RenderOptions options = scene.options;
-    options.method = method.name;
+    options.method = method.method.name;
     picture.metadata = make_metadata(options, s, result);
     std::erase_if(picture.layers, [](gi::Layer const& l) { return l.name != "color" && l.name != "variance"; });
     gi::write_exr(folder / (stem + ".exr"), picture, gi::PixelType::single, report_);
@@ -164,10 +168,11 @@ bool Sweep::run(SweepScene const& scene, SweepReference const& reference, BenchT
         for (std::size_t m = 0; m < n; ++m) {
             Samples const& s = samples[m];
             if (s.frame_s.empty()) continue;
-            table.add({scene.name, std::string(plan_.methods[m].name), plan_.budgets_s[b], summarise(s.frame_s),
+            table.add({scene.name, plan_.methods[m].name, plan_.budgets_s[b], summarise(s.frame_s),
                        summarise(s.trace_s), summarise(s.paths), summarise(s.mrays_per_s), summarise(s.relmse),
-                       summarise(s.flip), summarise(s.bias), double(s.frame_s.size()), reference.relmse, s.picture,
-                       s.flip_map, reference.png_file});
+                       s.relmse_indirect.empty() ? Cell() : summarise(s.relmse_indirect), summarise(s.flip),
+                       summarise(s.bias), double(s.frame_s.size()), reference.relmse, s.picture, s.flip_map,
+                       reference.png_file});
         }
         write(table, o_.out);
         if (!goes_on) return false;
@@ -177,10 +182,10 @@ bool Sweep::run(SweepScene const& scene, SweepReference const& reference, BenchT
 
 BenchTable empty_table(SweepOptions const& o, SweepPlan const& plan)
 {
-    BenchTable table =
-        start_table("sweep", "Error over time, method against method",
-                    {"scene", "method", "budget_s", "frame_s", "trace_s", "paths", "Mrays_per_s", "relmse", "flip",
-                     "bias", "repeats", "reference_relmse", "picture_file", "flip_file", "reference_file"});
+    BenchTable table = start_table("sweep", "Error over time, method against method",
+                                   {"scene", "method", "budget_s", "frame_s", "trace_s", "paths", "Mrays_per_s",
+                                    "relmse", "relmse_indirect", "flip", "bias", "repeats", "reference_relmse",
+                                    "picture_file", "flip_file", "reference_file"});
     gi::RenderSettings const& s = plan.settings;
     table.facts = {{"size", fmt::format("{}x{}", s.width, s.height)},
                    {"bounces", std::to_string(s.bounces)},

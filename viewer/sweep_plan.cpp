@@ -54,6 +54,18 @@ SweepScene load(std::string const& scene, RenderOptions options, CameraChoice co
     return {std::move(options), name, std::move(world), chosen.camera};
 }
 
+/// "slhb:streamed" is slhb with that schedule.
+SweepMethod find_method(std::string const& name, std::string const& schedule_of_all)
+{
+    std::size_t const colon = name.find(':');
+    gi::Method const& method = gi::find_method(name.substr(0, colon));
+    if (colon == std::string::npos) return {name, method, parse_schedule(schedule_of_all)};
+    if (method.name != "slhb")
+        throw gi::InputError(fmt::format("--methods {}: '{}' has no schedules", name, method.name),
+                             "slhb alone has axes to schedule", fmt::format("name it '{}'", method.name));
+    return {name, method, parse_schedule(name.substr(colon + 1))};
+}
+
 /// A second sweep may replace what a first one wrote, but not what it reads itself.
 void check_pictures(SweepOptions const& o, std::vector<std::string> const& names)
 {
@@ -72,15 +84,16 @@ void check_pictures(SweepOptions const& o, std::vector<std::string> const& names
 
 } // namespace
 
-std::string picture_stem(std::string const& scene, std::string_view method, std::string const& budget)
+std::string picture_stem(std::string const& scene, std::string method, std::string const& budget)
 {
+    std::ranges::replace(method, ':', '-');
     return fmt::format("{}_{}_{}", scene, method, budget);
 }
 
 SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
 {
     SweepPlan plan;
-    for (std::string const& name : o.methods) plan.methods.push_back(gi::find_method(name));
+    for (std::string const& name : o.methods) plan.methods.push_back(find_method(name, o.render.schedule));
     refuse_twins("--methods", o.methods, o.methods);
     for (std::string const& text : o.budgets) plan.budgets_s.push_back(parse_duration("--budgets", text));
     refuse_twins("--budgets", plan.budgets_s, o.budgets);

@@ -16,17 +16,23 @@ struct SweepScene {
     gi::Camera camera;
 };
 
+struct SweepMethod {
+    std::string name; ///< in tables: "slhb", "slhb:streamed"
+    gi::Method method;
+    gi::Schedule schedule = gi::Schedule::automatic; ///< of the method slhb
+};
+
 struct SweepPlan {
     gi::RenderSettings settings; ///< the same for all, but for budget and seed
     gi::DenoiseSettings filter;  ///< of every picture
     std::vector<double> budgets_s;
-    std::vector<gi::Method> methods;
+    std::vector<SweepMethod> methods;
     std::vector<SweepScene> scenes;
     std::optional<gi::Picture> reference; ///< that was given
 };
 
 /// Of the pictures of a row, without extension.
-std::string picture_stem(std::string const& scene, std::string_view method, std::string const& budget);
+std::string picture_stem(std::string const& scene, std::string method, std::string const& budget);
 
 /// Loads every scene. Throws InputError on all that is wrong with the call.
 SweepPlan plan_sweep(SweepOptions const& options, gi::Report& report);

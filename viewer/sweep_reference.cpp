@@ -72,7 +72,7 @@ std::optional<SweepReference> find_reference(SweepScene const& scene, gi::Render
     options.method = "reference";
     result.picture.metadata = make_metadata(options, s, result);
     std::erase_if(result.picture.layers,
-                  [](gi::Layer const& l) { return l.name != "color" && l.name != "variance"; });
+                  [](gi::Layer const& l) { return l.name != "color" && l.name != "variance" && l.name != "L2"; });
     gi::write_exr(file, result.picture, gi::PixelType::single, report);
     std::filesystem::remove(s.checkpoint);
     return keep_reference(std::move(result.picture), folder, stem);
