@@ -1,11 +1,11 @@
 #include "gi/image/denoise.h"
 
 #include "gi/base/error.h"
+#include "gi/base/threads.h"
 #include "gi/image/atrous.h"
 #include "gi/image/discontinuity.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 namespace gi {
 namespace {
@@ -53,8 +53,7 @@ DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings)
     if (settings.denoiser == Denoiser::none) return {};
     check(picture, settings);
     DenoiseReport report;
-    tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
-    arena.execute([&] {
+    on_threads(settings.threads, [&] {
         bool const atrous = settings.denoiser == Denoiser::atrous;
         FilterInput input = make_filter_input(picture, atrous);
         store(picture, input.guides,

@@ -1,7 +1,8 @@
 #include "gi/transport/pass_loop.h"
 
+#include "gi/base/threads.h"
+
 #include <algorithm>
-#include <tbb/task_arena.h>
 
 namespace gi {
 
@@ -34,7 +35,6 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
 
     if (settings_.resume) load_checkpoint(settings_.checkpoint, sums_, print);
     std::uint32_t const resumed = sums_.paths;
-    tbb::task_arena arena(settings_.threads > 0 ? settings_.threads : tbb::task_arena::automatic);
     double const earlier = sums_.seconds;
     RenderResult result;
     auto const first_pass = Clock::now();
@@ -56,7 +56,7 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
             result.end = RenderEnd::error_target;
             break;
         }
-        arena.execute([&] { pass(sums_, next_pass(per_path)); });
+        on_threads(settings_.threads, [&] { pass(sums_, next_pass(per_path)); });
         double const now = seconds_since(start_);
         sums_.seconds = earlier + now;
         per_path = seconds_since(first_pass) / double(sums_.paths - resumed);

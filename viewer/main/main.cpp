@@ -1,12 +1,10 @@
 #include "viewer/program.h"
 
-#include <malloc.h>
+#include <tbb/scalable_allocator.h>
 
 int main(int argc, char** argv)
 {
-    // Frames need the same memory again and again; taking its pages anew costs a quarter of a short one.
-    mallopt(M_MMAP_MAX, 0);
-    mallopt(M_TRIM_THRESHOLD, 1 << 30);
-    mallopt(M_TOP_PAD, 64 << 20);
+    // Frames need the same memory again and again: pages that were taken are kept, whatever the size of the block.
+    scalable_allocation_mode(TBBMALLOC_SET_HUGE_SIZE_THRESHOLD, 1 << 30);
     return viewer::run_program(argc, argv);
 }
