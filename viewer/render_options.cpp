@@ -147,6 +147,8 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
     slhb_number(c, "--axes", s.axes, 1, 64, "per bounce in a pass, streamed and temporal");
     slhb_number(c, "--fresh-axes", s.fresh_axes, 1, 64, "of these, replaced in a pass, temporal");
     slhb_number(c, "--lamps", s.lamps, 1, 64, "points on lights that get a shadow map in a pass");
+    slhb_number(c, "--fresh-lamps", s.fresh_lamps, 1, 64,
+                "of these, replaced in a pass (default: all; few in frames that follow each other)");
     slhb_number(c, "--shadow-map", s.shadow_resolution, 2, 8192, "texels of a shadow map on a side");
     slhb_number(c, "--interleave", s.interleave, 1, 16,
                 "n: one pixel of n x n takes indirect light in a pass (default: by the budget)");

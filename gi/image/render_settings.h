@@ -42,6 +42,7 @@ struct SlhbSettings {
     int axes = 0;              ///< of a pass, streamed and temporal
     int fresh_axes = 0;        ///< of these, replaced in a pass, temporal
     int lamps = 0;             ///< light samples with a shadow map per pass
+    int fresh_lamps = 0;       ///< of these, replaced in a pass
     int shadow_resolution = 0; ///< texels of a shadow map, squared
     int most_layers = 0;       ///< per texel; 0 = all
     bool packed = false;       ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle

@@ -61,7 +61,7 @@ private:
     {
         World const& world = world_.world();
         TriangleSoup soup = make_soup(world);
-        settings_.slhb = choose_settings(asked_, world, soup);
+        settings_.slhb = choose_frame_settings(asked_, world, soup);
         renderer_.emplace(world, camera, settings_, std::move(soup), world.static_triangles, report_);
         restart_ = false;
         lost_ = 0;

@@ -168,8 +168,11 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
         StageTimer const timer(report, "build (hit buffers)");
         axes.store(make_directions(slhb.directions));
     }
-    Lamps lamps(world, soup, cut_outs, std::uint32_t(slhb.lamps), std::uint32_t(slhb.shadow_resolution),
-                settings.seed,
+    LampSettings const lamp_settings{.count = std::uint32_t(slhb.lamps),
+                                     .fresh = std::uint32_t(slhb.lamps),
+                                     .resolution = std::uint32_t(slhb.shadow_resolution),
+                                     .seed = settings.seed};
+    Lamps lamps(world, world.bounds, soup, cut_outs, lamp_settings,
                 [&](std::vector<Lamp> const& all, std::uint32_t seed) { scene.draw_lamps(all, seed); });
 
     bool const sky = !view(world).environment_radiance.empty();

@@ -50,15 +50,22 @@ std::uint32_t pick(std::vector<double> const& sums, double& u)
 
 } // namespace
 
-Lamps::Lamps(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t count,
-             std::uint32_t resolution, std::uint64_t seed, DrawElsewhere elsewhere)
-    : world_(world), builder_(world, soup, cut_outs, resolution), seed_(seed), elsewhere_(std::move(elsewhere))
+Lamps::Lamps(World const& world, Bounds const& bounds, TriangleSoup const& soup, CutOuts const& cut_outs,
+             LampSettings const& settings, DrawElsewhere elsewhere)
+    : world_(world),
+      settings_(settings),
+      builder_(bounds, soup, cut_outs, settings.resolution),
+      first_moving_(std::min(settings.first_moving, soup.count)),
+      elsewhere_(std::move(elsewhere))
 {
     if (world.light_select.empty()) return;
     std::size_t const lights = world.lights.size();
-    fixed_ = world.emitters.empty() && world.environment_select.empty() && lights <= count;
+    fixed_ = world.emitters.empty() && world.environment_select.empty() && lights <= settings.count;
     if (!fixed_) {
-        lamps_.resize(count);
+        lamps_.resize(settings.count);
+        // Points on lamps that move do not stay.
+        if (std::ranges::any_of(world.emitters, [&](std::uint32_t t) { return t >= first_moving_; }))
+            settings_.fresh = settings.count;
         return;
     }
     std::vector<float> weights;
@@ -69,7 +76,9 @@ Lamps::Lamps(World const& world, TriangleSoup const& soup, CutOuts const& cut_ou
         weights.push_back(lamp.choice.probability);
     }
     chances_ = make_alias_table(weights);
-    build(0);
+    std::vector<Lamp*> all;
+    for (Lamp& lamp : lamps_) all.push_back(&lamp);
+    build(all, 0);
 }
 
 LightChoice Lamps::choose(double u) const
@@ -84,45 +93,68 @@ LightChoice Lamps::choose(double u) const
     return c;
 }
 
+void Lamps::take_point(Lamp& lamp, std::uint64_t number)
+{
+    // Stratified over the points of all passes.
+    RqmcStream const stream{std::uint32_t(mix_bits(settings_.seed ^ 0x1a395)), std::uint32_t(number)};
+    vec4 const u = stream.sample_together(0);
+    lamp.number = number;
+    lamp.choice = choose(double(u.x) + double(stream.sample(4)) * 0x1p-24);
+    lamp.u = {u.y, u.z};
+    lamp.view = view_from(world_, lamp.choice, lamp.u);
+}
+
 void Lamps::refresh(std::uint32_t pass)
 {
-    if (fixed_ || none()) return;
+    if (none()) return;
+    if (fixed_) {
+        if (moved_) build({}, pass);
+        return;
+    }
     add_up(world_.light_select, light_sums_); // the world may have moved
     AliasTable const& texels = world_.environment_select;
     if (texels.entries.size() != texel_sums_.size() || texels.total != texel_total_) {
         add_up(texels, texel_sums_);
         texel_total_ = texels.total;
     }
-    std::uint64_t const key = mix_bits(seed_ ^ 0x1a395);
-    for (std::uint32_t k = 0; k < lamps_.size(); ++k) {
-        // Stratified over the lamps of all passes.
-        RqmcStream const stream{std::uint32_t(key), pass * std::uint32_t(lamps_.size()) + k};
-        Lamp& lamp = lamps_[k];
-        vec4 const u = stream.sample_together(0);
-        lamp.choice = choose(double(u.x) + double(stream.sample(4)) * 0x1p-24);
-        lamp.u = {u.y, u.z};
-        lamp.view = view_from(world_, lamp.choice, lamp.u);
+    // The points in use are successive ones.
+    std::vector<Lamp*> fresh;
+    std::uint64_t const first = std::uint64_t(pass) * settings_.fresh;
+    for (std::uint64_t number = first; number < first + lamps_.size(); ++number) {
+        Lamp& lamp = lamps_[number % lamps_.size()];
+        if (lamp.number == number) continue;
+        take_point(lamp, number);
+        fresh.push_back(&lamp);
     }
-    build(pass);
+    build(fresh, pass);
 }
 
-void Lamps::build(std::uint32_t pass)
+void Lamps::build(std::span<Lamp* const> fresh, std::uint32_t pass)
 {
-    Pcg32 rng = Pcg32::for_path(seed_, 0x1a395, pass);
-    for (Lamp& lamp : lamps_) {
+    Pcg32 rng = Pcg32::for_path(settings_.seed, 0x1a395, pass);
+    for (Lamp* const lamp : fresh) {
         vec2 const jitter = rng.uniform2();
-        builder_.start(lamp.view, jitter, 2 * kPi * rng.uniform(), lamp.shadow);
+        builder_.start(lamp->view, jitter, 2 * kPi * rng.uniform(), lamp->shadow);
+        for (auto& face : lamp->taken) face.clear();
     }
     std::uint32_t const seed = rng.next();
-    built_ += lamps_.size();
+    built_ += fresh.size();
     if (elsewhere_) {
         elsewhere_(lamps_, seed);
         return;
     }
-    tbb::parallel_for(std::size_t(0), 6 * lamps_.size(), [&](std::size_t job) {
-        Lamp& lamp = lamps_[job / 6];
-        builder_.build(lamp.view, int(job % 6), seed, lamp.shadow);
+    tbb::parallel_for(std::size_t(0), 6 * fresh.size(), [&](std::size_t job) {
+        Lamp& lamp = *fresh[job / 6];
+        builder_.build(lamp.view, int(job % 6), first_moving_, seed, lamp.shadow);
+        builder_.move(int(job % 6), first_moving_, seed, lamp.shadow, lamp.taken);
     });
+    if (moved_)
+        tbb::parallel_for(std::size_t(0), 6 * lamps_.size(), [&](std::size_t job) {
+            Lamp& lamp = lamps_[job / 6];
+            if (std::ranges::find(fresh, &lamp) == fresh.end())
+                builder_.move(int(job % 6), first_moving_, seed, lamp.shadow, lamp.taken);
+        });
+    moved_ = false;
 }
 
 } // namespace gi

@@ -1,11 +1,13 @@
 #pragma once
 // Direct light by the area formulation (Yu 2012, eq. 5.3): in every pass a few points on lamps (or directions to
 // the sky) are chosen by power, each gets a shadow map, and all paths of the pass are lit by them. Neighbouring
-// pixels take different ones (interleaved sampling), other passes others.
+// pixels take different ones (interleaved sampling), other passes others. Where frames follow each other, some of
+// the points stay for a while, and only what moves is drawn anew into their maps.
 
 #include "gi/slhb/shadow_map.h"
 
 #include <functional>
+#include <span>
 
 namespace gi {
 
@@ -14,19 +16,30 @@ struct Lamp {
     vec2 u{0}; ///< where on the light
     ShadowView view;
     ShadowMap shadow;
+    std::uint64_t number = ~std::uint64_t(0); ///< of the point, among all of the sequence
+    TakenTexels taken;
+};
+
+struct LampSettings {
+    std::uint32_t count = 1; ///< in a pass; where all lights are points or parallel and no more than this, all
+    std::uint32_t fresh = 1; ///< of these, other points in every pass
+    std::uint32_t resolution = 64; ///< texels of a shadow map on a side
+    std::uint64_t seed = 0;
+    std::size_t first_moving = ~std::size_t(0); ///< triangle
 };
 
 class Lamps {
 public:
-    /// @param count per pass; where all lights are points or parallel and no more than this, all of them, and they
-    /// keep their maps from pass to pass
-    /// @param elsewhere where it is not empty, shadow maps only get their grids here and are drawn there; with a
-    /// seed for the cut-outs
+    /// @param bounds  of all that casts shadows
+    /// @param elsewhere where it is not empty, shadow maps only get their grids here and are drawn there, all in
+    /// every pass; with a seed for the cut-outs
     using DrawElsewhere = std::function<void(std::vector<Lamp> const&, std::uint32_t)>;
-    Lamps(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t count,
-          std::uint32_t resolution, std::uint64_t seed, DrawElsewhere elsewhere = {});
+    Lamps(World const& world, Bounds const& bounds, TriangleSoup const& soup, CutOuts const& cut_outs,
+          LampSettings const& settings, DrawElsewhere elsewhere = {});
 
-    /// New points and shadow maps.
+    /// The triangles from LampSettings::first_moving on are elsewhere.
+    void moved() { moved_ = true; }
+    /// The points and shadow maps of a pass. Passes count up.
     void refresh(std::uint32_t pass);
     std::vector<Lamp> const& lamps() const { return lamps_; }
     bool none() const { return lamps_.empty(); }
@@ -36,14 +49,16 @@ public:
     std::uint64_t maps_built() const { return built_; }
 
 private:
-    void build(std::uint32_t pass);
+    void take_point(Lamp& lamp, std::uint64_t number);
+    void build(std::span<Lamp* const> fresh, std::uint32_t pass);
     LightChoice choose(double u) const;
 
     World const& world_;
+    LampSettings settings_;
     ShadowMapBuilder builder_;
-    std::uint64_t seed_;
+    std::size_t first_moving_;
     DrawElsewhere elsewhere_;
-    bool fixed_ = false;
+    bool fixed_ = false, moved_ = false;
     std::vector<Lamp> lamps_;
     AliasTable chances_; ///< where they are fixed
     /// Sums of probabilities, where they are not fixed. Neighbouring numbers find neighbouring lights and texels,

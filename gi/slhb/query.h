@@ -9,14 +9,14 @@
 // Which layer is the origin's own: that of its triangle; else, as the centre may lie beside it, the nearest one of
 // the same facing within `margin`, which is how far the origin's own slope can carry a surface up over a texel. So
 // thin walls, contacts and coplanar twins need no epsilon that fits all: layers are in their true order. A column
-// speaks for the origin if it has the own layer and if what it hits can be hit from the origin: the origin is on the
-// right side of its plane (looked at only near by, where it can fail, and for backs), and if it is a back, the walk
-// from the origin itself passes its triangle within kBackReach texels. For a back is mostly the inside of something
-// solid: floors go on under columns and walls behind ledges, and a centre that lies there, where no origin does,
-// sees only what is dark. If the column does not speak, the other three of the four texel centres around the origin
-// are asked (across an edge, or beyond a wall, the centre sees another world). If none will do, the answer of the
-// first with an own layer stands; if none has one, the first face towards the walk from the origin's depth on, in
-// the nearest column.
+// speaks for the origin if it has the own layer and if what it hits can be hit from the origin: the origin is on
+// the right side of its plane (looked at only near by, where it can fail, and for backs), and if it is a back, the
+// walk from the origin itself passes its triangle within kBackReach texels. For a back is mostly the inside of
+// something solid: floors go on under columns and walls behind ledges, and a centre that lies there, where no
+// origin does, sees only what is dark. If the column does not speak, the other three of the four texel centres
+// around the origin are asked (across an edge, or beyond a wall, the centre sees another world). If none will do,
+// the answer of the first with an own layer stands; if none has one, the first face towards the walk from the
+// origin's depth on, in the nearest column.
 
 #include "gi/slhb/hit_buffer.h"
 
@@ -154,7 +154,8 @@ GI_FN inline bool covers(Surface const& s, vec3 position, RasterGrid const& grid
 
 /// Whether a walk from the origin's true position can meet that triangle: the plane if it is a front; if it is a
 /// back, the triangle too, nearly.
-GI_FN inline bool can_be_hit(Surface const& s, std::uint32_t primitive, WalkOrigin const& o, RasterGrid const& grid)
+GI_FN inline bool can_be_hit(Surface const& s, std::uint32_t primitive, WalkOrigin const& o,
+                             RasterGrid const& grid)
 {
     vec3 const normal = glm::cross(s.edge1, s.edge2);
     float const side = glm::dot(normal, o.position - s.corner);

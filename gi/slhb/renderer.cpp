@@ -97,8 +97,12 @@ void SlhbRenderer::make_axes()
 
 void SlhbRenderer::make_lamps()
 {
-    lamps_.emplace(world_, soup_, cut_outs_, std::uint32_t(slhb_.lamps),
-                   texels(slhb_.exact.shadows, slhb_.shadow_resolution), settings_.seed);
+    lamps_.emplace(world_, grid_bounds_, soup_, cut_outs_,
+                   LampSettings{.count = std::uint32_t(slhb_.lamps),
+                                .fresh = std::uint32_t(slhb_.fresh_lamps),
+                                .resolution = texels(slhb_.exact.shadows, slhb_.shadow_resolution),
+                                .seed = settings_.seed,
+                                .first_moving = first_moving_});
 }
 
 void SlhbRenderer::world_moved(bool geometry, bool lights)
@@ -124,10 +128,11 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
             grid_bounds_ = merged(grid_bounds_, {b.low - room, b.high + room});
             report_.lose("frames that left the bounds of the hit buffers, which were built anew");
             make_axes();
+            lights = true; // the maps of parallel light hold the same bounds
         }
+        lamps_->moved();
     }
-    // Shadow maps of points on lamps are drawn in every pass anyway.
-    if (lights || (geometry && lamps_->fixed())) make_lamps();
+    if (lights) make_lamps();
 }
 
 void SlhbRenderer::end_frame() { earlier_ = {rays_, first_moving_, {}}; }

@@ -45,13 +45,13 @@ struct Costs {
 };
 
 /// Where the first pass would not end within the budget: the primary surfaces and direct light of all pixels, and
-/// indirect light for as many as there is time for.
-int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, Costs const& costs)
+/// indirect light for as many as there is time for. @param axes  built before, for a bounce
+int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, int axes, Costs const& costs)
 {
     if (!(asked.budget_s > 0) || asked.bounces == 0) return 1;
     double const pixels = double(asked.width) * asked.height, bounces = std::min(asked.bounces, 3);
-    double const fixed = bounces * s.fresh_axes * costs.axis(s.resolution) +
-                         s.lamps * costs.map(s.shadow_resolution) + pixels * costs.direct;
+    double const fixed = bounces * axes * costs.axis(s.resolution) +
+                         s.fresh_lamps * costs.map(s.shadow_resolution) + pixels * costs.direct;
     for (int const n : {1, 2, 4})
         if ((fixed + pixels * bounces * costs.bounce / (n * n)) / cores_of(asked) < asked.budget_s) return n;
     return 4;
@@ -131,7 +131,32 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
                         : texels_for(sky && budget == double(kInf) ? 512 : 256, most_lamps, unless_few, map);
     if (s.lamps == 0)
         s.lamps = from_points ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), sky ? 8 : 1, most_lamps);
-    if (s.interleave == 0) s.interleave = choose_interleave(asked, s, costs);
+    if (s.fresh_lamps == 0) s.fresh_lamps = s.lamps;
+    s.fresh_lamps = std::min(s.fresh_lamps, s.lamps);
+    if (s.interleave == 0) s.interleave = choose_interleave(asked, s, s.fresh_axes, costs);
+    return s;
+}
+
+SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup)
+{
+    RenderSettings lasting = asked;
+    lasting.budget_s = 0;
+    SlhbSettings& wanted = lasting.slhb;
+    bool const moves = world.static_triangles < world.triangles.size();
+    // Many axes for every frame, and what moves is all that they cost.
+    if (moves && wanted.schedule == Schedule::automatic && wanted.axes == 0 && wanted.fresh_axes == 0)
+        wanted.schedule = Schedule::stored;
+    SlhbSettings s = choose_settings(lasting, world, soup);
+    // Few points on lamps are exchanged from pass to pass: each has the light of as many as a window of the
+    // discontinuity filter has pixels.
+    constexpr int kLamps = 16, kPasses = 4; // in which what choose_settings takes in one is exchanged
+    if (asked.slhb.lamps == 0 && asked.slhb.fresh_lamps == 0 && s.lamps <= kLamps) {
+        s.fresh_lamps = std::max(1, s.lamps / kPasses);
+        s.lamps = kLamps;
+    }
+    if (asked.slhb.interleave == 0)
+        s.interleave = choose_interleave(asked, s, s.schedule == Schedule::stored ? 0 : s.fresh_axes,
+                                         Costs(world, layers_per_texel(world, soup)));
     return s;
 }
 
@@ -146,6 +171,7 @@ std::string as_options(SlhbSettings const& s)
     else
         text += fmt::format(" --axes {}", s.axes);
     if (s.schedule == Schedule::temporal) text += fmt::format(" --fresh-axes {}", s.fresh_axes);
+    if (s.fresh_lamps < s.lamps) text += fmt::format(" --fresh-lamps {}", s.fresh_lamps);
     if (s.most_layers > 0) text += fmt::format(" --max-layers {}", s.most_layers);
     if (s.cone > 0) text += fmt::format(" --cone {}", s.cone);
     if (s.packed) text += " --packed";

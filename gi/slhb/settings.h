@@ -10,6 +10,9 @@ namespace gi {
 /// Every number of SlhbSettings chosen. Throws InputError on values that cannot work together.
 SlhbSettings choose_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup);
 
+/// The same for frames that follow each other: the budget is that of a frame, and does not build what lasts.
+SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup);
+
 /// Chosen settings as options of the command line, which repeat the picture.
 std::string as_options(SlhbSettings const& chosen);
 

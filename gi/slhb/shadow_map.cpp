@@ -35,25 +35,54 @@ void ShadowMapBuilder::start(ShadowView const& view, vec2 jitter, float turn_rad
     for (int f = 0; f < 6; ++f) map.faces[std::size_t(f)] = cube_face(view.at, f, resolution_, near_m);
 }
 
-void ShadowMapBuilder::build(ShadowView const& view, int face, std::uint32_t seed, ShadowMap& map) const
+void ShadowMapBuilder::draw(int face, std::size_t first, std::size_t last, std::uint32_t seed,
+                            ShadowMap const& map, Fragments& fragments) const
 {
-    thread_local Fragments fragments;
     fragments.count = 0;
-    NearestMap& nearest = map.maps[std::size_t(face)];
-    if (view.parallel) {
-        if (face != 0) return;
-        rasterize(soup_, 0, soup_.count, map.grid, MacroPath::edge_table, fragments);
+    if (map.parallel) {
+        rasterize(soup_, first, last, map.grid, MacroPath::edge_table, fragments);
         cut_outs_.remove(fragments, map.grid, seed);
-        clear(nearest, map.grid.width, map.grid.height);
-        resolve(fragments, -1, nearest);
-        return;
+    } else {
+        PerspectiveGrid const& g = map.faces[std::size_t(face)];
+        rasterize(soup_, first, last, g, fragments);
+        cut_outs_.remove(fragments, g, seed);
     }
+}
+
+namespace {
+
+thread_local Fragments drawn;
+
+float key_sign(ShadowMap const& map) { return map.parallel ? -1.0f : 1.0f; }
+
+} // namespace
+
+void ShadowMapBuilder::build(ShadowView const& view, int face, std::size_t last, std::uint32_t seed,
+                             ShadowMap& map) const
+{
     PerspectiveGrid const& g = map.faces[std::size_t(face)];
-    if (sees_only_dark(view, g)) return;
-    rasterize(soup_, 0, soup_.count, g, fragments);
-    cut_outs_.remove(fragments, g, seed);
-    clear(nearest, g.width, g.height);
-    resolve(fragments, 1, nearest);
+    if (view.parallel ? face != 0 : sees_only_dark(view, g)) return;
+    draw(face, 0, last, seed, map, drawn);
+    NearestMap& nearest = map.maps[std::size_t(face)];
+    if (view.parallel)
+        clear(nearest, map.grid.width, map.grid.height);
+    else
+        clear(nearest, g.width, g.height);
+    resolve(drawn, key_sign(map), nearest);
+}
+
+void ShadowMapBuilder::move(int face, std::size_t first, std::uint32_t seed, ShadowMap& map,
+                            TakenTexels& taken) const
+{
+    NearestMap& nearest = map.maps[std::size_t(face)];
+    auto& under = taken[std::size_t(face)];
+    for (auto const& [at, texel] : under) nearest.texels[at] = texel;
+    under.clear();
+    if (nearest.texels.empty() || first == soup_.count) return;
+    draw(face, first, soup_.count, seed, map, drawn);
+    for (std::size_t k = 0; k < drawn.count; ++k)
+        under.emplace_back(drawn.texel[k], nearest.texels[drawn.texel[k]]);
+    resolve(drawn, key_sign(map), nearest);
 }
 
 } // namespace gi

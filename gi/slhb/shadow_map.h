@@ -43,19 +43,30 @@ struct ShadowView {
 /// Whether a face's every direction points behind the lamp, where it lights nothing.
 bool sees_only_dark(ShadowView const& view, PerspectiveGrid const& face);
 
+/// What is under the texels that moving triangles took, face by face: to take those off again.
+using TakenTexels = std::array<std::vector<std::pair<std::uint32_t, NearestTexel>>, 6>;
+
+/// Faces of a map are independent of each other.
 class ShadowMapBuilder {
 public:
-    ShadowMapBuilder(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs,
+    /// @param bounds  of all that casts shadows  @param resolution  texels on a side
+    ShadowMapBuilder(Bounds const& bounds, TriangleSoup const& soup, CutOuts const& cut_outs,
                      std::uint32_t resolution)
-        : bounds_(world.bounds), soup_(soup), cut_outs_(cut_outs), resolution_(resolution)
+        : bounds_(bounds), soup_(soup), cut_outs_(cut_outs), resolution_(resolution)
     {
     }
     /// Prepares all grids of a map.
     void start(ShadowView const& view, vec2 jitter, float turn_rad, ShadowMap& map) const;
-    /// Face 0..5 of it; parallel maps have only face 0. Faces are independent of each other.
-    void build(ShadowView const& view, int face, std::uint32_t seed, ShadowMap& map) const;
+    /// Face 0..5 of it, of triangles 0..last - 1; parallel maps have only face 0.
+    void build(ShadowView const& view, int face, std::size_t last, std::uint32_t seed, ShadowMap& map) const;
+    /// The triangles from `first` on are drawn into a face that has those before, where `taken` is what those of
+    /// an earlier moment took.
+    void move(int face, std::size_t first, std::uint32_t seed, ShadowMap& map, TakenTexels& taken) const;
 
 private:
+    void draw(int face, std::size_t first, std::size_t last, std::uint32_t seed, ShadowMap const& map,
+              Fragments& fragments) const;
+
     Bounds bounds_;
     TriangleSoup const& soup_;
     CutOuts const& cut_outs_;

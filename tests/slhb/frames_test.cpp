@@ -52,7 +52,7 @@ TEST_P(Frames, AreThoseOfAWorldBuiltAnew)
 
     MovingWorld const anew(scene, 0.5, report);
     TriangleSoup soup = make_soup(anew.world());
-    settings.slhb = choose_settings(settings, anew.world(), soup);
+    settings.slhb = choose_frame_settings(settings, anew.world(), soup);
     SlhbRenderer renderer(anew.world(), camera, settings, std::move(soup), anew.world().triangles.size(), report);
     Accumulator sums(settings.width, settings.height);
     for (std::uint32_t pass = 0; pass < 6; ++pass) {
