@@ -132,7 +132,10 @@ void add_info(CLI::App& app, int& exit_code)
     c->footer(R"(Examples:
   lightwell info atrium
   lightwell info cornell --json
-  lightwell info --directions icosahedron:320 --png icosahedron.png)");
+  lightwell info --directions icosahedron:320 --png icosahedron.png
+
+Below "environment map" stands what it sends: irradiance (red, green, blue) of unshadowed faces that look up, down and
+where most comes from; and how much of the map is smooth, by squared radiance: little, where it has a sun.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

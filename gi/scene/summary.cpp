@@ -1,6 +1,7 @@
 #include "gi/scene/summary.h"
 
 #include "gi/scene/bsdf.h"
+#include "gi/scene/environment_harmonics.h"
 
 #include <fmt/format.h>
 
@@ -44,6 +45,23 @@ std::string join(Items const& items, Text const& text)
     return out.empty() ? "none" : out;
 }
 
+/// What the sky sends, unshadowed: integrated; harmonics only say where most comes from.
+void describe_environment(World const& world, SceneSummary& s)
+{
+    EnvironmentHarmonics const h = project(world, EnvironmentHarmonics::kMostDegree);
+    dvec3 const normals[] = {{0, 1, 0}, {0, -1, 0}, brightest_normal(h)};
+    std::vector<dvec3> const e = integrate_irradiance(world, normals);
+    auto const rgb = [](dvec3 v) { return fmt::format("{:.4g}, {:.4g}, {:.4g} W/m2", v.x, v.y, v.z); };
+    dvec3 const n = normals[2];
+    s.lines.push_back({"light on upward faces", rgb(e[0])});
+    s.lines.push_back({"on downward faces", rgb(e[1])});
+    s.lines.push_back(
+        {"on the brightest", fmt::format("{}, facing {:.2f}, {:.2f}, {:.2f}", rgb(e[2]), n.x, n.y, n.z)});
+    s.lines.push_back({"smooth part of the map",
+                       fmt::format("{:.3g} % of its squared radiance (spherical harmonics to degree 2)",
+                                   100 * h.energy_share(2))});
+}
+
 } // namespace
 
 SceneSummary summarise(World const& world)
@@ -67,6 +85,7 @@ SceneSummary summarise(World const& world)
     add("emissive triangles", fmt::format("{} ({:.6g} m2)", world.emitters.size(), emitting_area(world)));
     add("environment map",
         world.environment ? fmt::format("{} x {}", world.environment->width, world.environment->height) : "none");
+    if (world.environment) describe_environment(world, s);
     add("cameras", join(world.cameras, [](Camera const& c) { return c.name; }));
     add("skins", join(scene.skins, [](Skin const& k) { return fmt::format("{} joints", k.joints.size()); }));
     std::size_t targets = 0;

@@ -39,6 +39,26 @@ PacketMask fill(RTCRay16& packet, std::span<RayQuery const> queries)
     return mask;
 }
 
+/// Embree leaves triangles out that are not finite or too far away, and refitting would not bring them back.
+bool usable(vec3 p) { return all_finite(p) && max_component(glm::abs(p)) < 1e18f; }
+bool usable(std::span<vec3 const> positions)
+{
+    return std::ranges::all_of(positions, [](vec3 p) { return usable(p); });
+}
+
+/// Are its usable triangles more than one point? Of two geometries without extent Embree 3.13 can build nothing.
+bool has_extent(World const& world, std::uint32_t first, std::uint32_t last)
+{
+    Bounds bounds;
+    for (std::uint32_t t = first; t < last; ++t) {
+        uvec3 const v = world.triangles[t];
+        vec3 const corners[3] = {world.positions[v.x], world.positions[v.y], world.positions[v.z]};
+        if (!usable(corners)) continue;
+        for (vec3 const p : corners) bounds = joined(bounds, {p, p});
+    }
+    return !bounds.empty() && bounds.low != bounds.high;
+}
+
 } // namespace
 
 void ExactVisibility::nearest(std::span<RayQuery const> queries, std::span<Hit> hits) const
@@ -89,13 +109,13 @@ void ExactVisibility::coverage_filter(RTCFilterFunctionNArguments const* a)
     }
 }
 
-void ExactVisibility::add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id,
-                                    RTCBuildQuality quality, Part& part)
+void ExactVisibility::add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id, bool moves,
+                                    Part& part)
 {
     std::size_t const count =
         part.triangles[geometry_id].empty() ? part.last - part.first : part.triangles[geometry_id].size();
     RTCGeometry const geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetGeometryBuildQuality(geometry, quality);
+    if (moves) rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
     rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0, sizeof(vec3),
                          world.positions.size() - part.first_vertex);
     auto* const triangles = static_cast<uvec3*>(
@@ -110,32 +130,39 @@ void ExactVisibility::add_triangles(World const& world, RTCBuffer positions, uns
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(part.scene.get(), geometry, geometry_id);
     rtcReleaseGeometry(geometry);
+    part.geometries[geometry_id] = geometry;
 }
 
-void ExactVisibility::build(World const& world, bool alpha_tests, RTCBuildQuality quality, Part& part)
+void ExactVisibility::build(World const& world, bool moves, Part& part)
 {
     part.scene.reset(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(part.scene.get(), RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(part.scene.get(), quality);
+    rtcSetSceneFlags(part.scene.get(),
+                     RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | (moves ? RTC_SCENE_FLAG_DYNAMIC : 0)));
+    // Low: a tree of one tree per geometry. These are good ones, by surface area, whatever is refitted later.
+    rtcSetSceneBuildQuality(part.scene.get(), moves ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
     part.first_vertex = std::uint32_t(world.positions.size());
     for (std::vector<std::uint32_t>& t : part.triangles) t.clear();
+    for (RTCGeometry& geometry : part.geometries) geometry = nullptr;
     for (std::uint32_t t = part.first; t < part.last; ++t) {
         part.first_vertex =
             std::min({part.first_vertex, world.triangles[t].x, world.triangles[t].y, world.triangles[t].z});
-        if (!alpha_tests) continue;
+        if (!alpha_tests_) continue;
         bool const opaque = world.materials[world.triangle_material[t]].alpha_mode == AlphaMode::opaque;
         part.triangles[opaque ? kOpaque : kCutOut].push_back(t);
     }
-    if (part.first < part.last) {
-        std::size_t const vertices = world.positions.size() - part.first_vertex;
+    std::span const positions_now = std::span(world.positions).subspan(part.first_vertex);
+    bool const both = !part.triangles[kOpaque].empty() && !part.triangles[kCutOut].empty();
+    bool const empty = part.first == part.last || (both && !has_extent(world, part.first, part.last));
+    part.usable = !empty && usable(positions_now);
+    if (!empty) {
         // Embree reads 16 bytes from every vertex, so the last one needs padding.
-        RTCBuffer const positions = rtcNewBuffer(device_.get(), (vertices + 1) * sizeof(vec3));
+        RTCBuffer const positions = rtcNewBuffer(device_.get(), (positions_now.size() + 1) * sizeof(vec3));
         if (positions == nullptr) throw std::bad_alloc();
-        std::copy(world.positions.begin() + part.first_vertex, world.positions.end(),
-                  static_cast<vec3*>(rtcGetBufferData(positions)));
+        part.positions = static_cast<vec3*>(rtcGetBufferData(positions));
+        std::ranges::copy(positions_now, part.positions);
         bool const cut_outs = !part.triangles[kCutOut].empty();
-        if (!cut_outs || !part.triangles[kOpaque].empty()) add_triangles(world, positions, kOpaque, quality, part);
-        if (cut_outs) add_triangles(world, positions, kCutOut, quality, part);
+        if (!cut_outs || !part.triangles[kOpaque].empty()) add_triangles(world, positions, kOpaque, moves, part);
+        if (cut_outs) add_triangles(world, positions, kCutOut, moves, part);
         rtcReleaseBuffer(positions);
     }
     rtcCommitScene(part.scene.get());
@@ -156,19 +183,17 @@ ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threa
     auto const triangles = std::uint32_t(world.triangles.size());
     parts_[0].last = parts_[1].first = std::uint32_t(std::min<std::size_t>(first_moving, triangles));
     parts_[1].last = triangles;
-    build(world, alpha_tests, RTC_BUILD_QUALITY_MEDIUM, parts_[0]);
-    if (parts_[1].first == triangles) {
+    build(world, false, parts_[0]);
+    if (parts_[1].first == triangles)
         scene_ = std::move(parts_[0].scene);
-    } else {
-        moved(world);
-    }
+    else
+        build_moving(world);
     check();
 }
 
-void ExactVisibility::moved(World const& world)
+void ExactVisibility::build_moving(World const& world)
 {
-    if (parts_[1].first == parts_[1].last) return;
-    build(world, alpha_tests_, RTC_BUILD_QUALITY_LOW, parts_[1]);
+    build(world, true, parts_[1]);
     scene_.reset(rtcNewScene(device_.get()));
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
     for (unsigned k = 0; k < 2; ++k) {
@@ -179,6 +204,27 @@ void ExactVisibility::moved(World const& world)
         rtcReleaseGeometry(instance);
     }
     rtcCommitScene(scene_.get());
+}
+
+void ExactVisibility::moved(World const& world)
+{
+    Part& part = parts_[1];
+    if (part.first == part.last) return;
+    std::span const positions = std::span(world.positions).subspan(part.first_vertex);
+    bool const both = part.geometries[kOpaque] != nullptr && part.geometries[kCutOut] != nullptr;
+    if (part.usable && usable(positions) && (!both || has_extent(world, part.first, part.last))) {
+        std::ranges::copy(positions, part.positions);
+        for (RTCGeometry const geometry : part.geometries) {
+            if (geometry == nullptr) continue;
+            rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+            rtcCommitGeometry(geometry);
+        }
+        rtcCommitScene(part.scene.get());
+        rtcCommitGeometry(rtcGetGeometry(scene_.get(), 1)); // the instance takes the new bounds
+        rtcCommitScene(scene_.get());
+    } else {
+        build_moving(world);
+    }
     check();
 }
 

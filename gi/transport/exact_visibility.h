@@ -2,7 +2,8 @@
 // Exact ray queries against a World through Embree 3 (robust, watertight mode), in packets.
 // Only triangles whose material can be seen through pass the filter that tests coverage; partial coverage is a
 // random decision per ray and triangle that does not depend on traversal order.
-// Where something moves, it has a BVH of its own beside that of what stays, and only that one is built anew.
+// Where something moves, it has a BVH of its own beside that of what stays, and only that one follows: its boxes
+// are refitted. Measured against building it anew: docs/results/2026-11-21-moving.md.
 
 #include "gi/scene/camera.h"
 #include "gi/scene/world.h"
@@ -68,6 +69,9 @@ private:
         std::uint32_t first_vertex = 0;          ///< of the world; Embree's are counted from there
         std::vector<std::uint32_t> triangles[2]; ///< of each geometry, of the world; empty = all in their order
         ScenePointer scene;
+        RTCGeometry geometries[2] = {}; ///< held by the scene; null = not there
+        vec3* positions = nullptr;      ///< Embree's copy of the vertices
+        bool usable = false;            ///< all of them, when it was built
 
         std::uint32_t world_triangle(unsigned geometry_id, std::uint32_t primitive) const
         {
@@ -76,9 +80,9 @@ private:
     };
 
     static void coverage_filter(RTCFilterFunctionNArguments const* arguments);
-    void build(World const& world, bool alpha_tests, RTCBuildQuality quality, Part& part);
-    void add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id, RTCBuildQuality quality,
-                       Part& part);
+    void build(World const& world, bool moves, Part& part);
+    void add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id, bool moves, Part& part);
+    void build_moving(World const& world);
     void check() const;
     /// @param instance  Embree's, or none
     Part const& part_of(unsigned instance) const { return parts_[instance == 1 ? 1 : 0]; }

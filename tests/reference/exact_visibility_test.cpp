@@ -3,6 +3,7 @@
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
+#include <limits>
 
 namespace gi::test {
 namespace {
@@ -27,6 +28,33 @@ World world_at(float t, bool holes)
 
 class MovingVisibility : public testing::TestWithParam<bool> {};
 
+/// Do rays find in `moving` what they find in `now`? @return how many of them hit what moves
+std::size_t expect_equal(ExactVisibility const& moving, World const& now, bool holes)
+{
+    ExactVisibility const anew(now, holes, 1);
+    Pcg32 rng(4, 4);
+    std::vector<RayQuery> rays(10000);
+    for (RayQuery& r : rays) {
+        vec3 const d{rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f};
+        r = {.ray = {1.8f * vec3{rng.uniform(), rng.uniform(), rng.uniform()}, glm::normalize(d)},
+             .reach = 3,
+             .seed = rng.next()};
+    }
+    std::vector<Hit> one(rays.size()), other(rays.size());
+    moving.nearest(rays, one);
+    anew.nearest(rays, other);
+    std::vector<std::uint8_t> blocked(rays.size()), expected(rays.size());
+    moving.occluded(rays, blocked);
+    anew.occluded(rays, expected);
+    std::size_t moved_hits = 0, differ = 0;
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+        differ += one[k].triangle != other[k].triangle || blocked[k] != expected[k];
+        moved_hits += one[k].triangle != kNoTriangle && one[k].triangle >= kStays;
+    }
+    EXPECT_LE(differ, 4u); // rays through edges
+    return moved_hits;
+}
+
 /// After a move, rays find what they find in a world that is new.
 TEST_P(MovingVisibility, AnswersAsIfBuiltAnew)
 {
@@ -36,29 +64,33 @@ TEST_P(MovingVisibility, AnswersAsIfBuiltAnew)
         World const now = world_at(t, GetParam());
         world.positions = now.positions; // of equal size: the view of `world` stays good
         moving.moved(world);
-        ExactVisibility const anew(now, GetParam(), 1);
-        Pcg32 rng(4, 4);
-        std::vector<RayQuery> rays(10000);
-        for (RayQuery& r : rays) {
-            vec3 const d{rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f};
-            r = {.ray = {1.8f * vec3{rng.uniform(), rng.uniform(), rng.uniform()}, glm::normalize(d)},
-                 .reach = 3,
-                 .seed = rng.next()};
-        }
-        std::vector<Hit> one(rays.size()), other(rays.size());
-        moving.nearest(rays, one);
-        anew.nearest(rays, other);
-        std::vector<std::uint8_t> blocked(rays.size()), expected(rays.size());
-        moving.occluded(rays, blocked);
-        anew.occluded(rays, expected);
-        std::size_t moved_hits = 0, differ = 0;
-        for (std::size_t k = 0; k < rays.size(); ++k) {
-            differ += one[k].triangle != other[k].triangle || blocked[k] != expected[k];
-            moved_hits += one[k].triangle != kNoTriangle && one[k].triangle >= kStays;
-        }
-        EXPECT_LE(differ, 4u); // rays through edges
-        EXPECT_GT(moved_hits, 100u);
+        EXPECT_GT(expect_equal(moving, now, GetParam()), 100u);
     }
+}
+
+/// What collapses, or is nowhere for a while, comes back; also where it began so.
+TEST_P(MovingVisibility, UnusableVerticesLeaveAndComeBack)
+{
+    float const nan = std::numeric_limits<float>::quiet_NaN();
+    for (float const away : {0.0f, 1.0f, nan, kInf, 1e20f})
+        for (bool const away_at_first : {false, true}) {
+            World world = world_at(0.5f, GetParam());
+            World const now = world_at(0.5f, GetParam());
+            auto const send_away = [&] {
+                // All to one place, else triangles would lie in each other.
+                std::size_t const step = std::abs(away) <= 1 ? 1 : 2;
+                for (std::size_t i = world.triangles[kStays].x; i < world.positions.size(); i += step)
+                    world.positions[i] = vec3{away};
+            };
+            if (away_at_first) send_away();
+            ExactVisibility moving(world, GetParam(), 1, kStays);
+            send_away();
+            moving.moved(world);
+            expect_equal(moving, world, GetParam());
+            world.positions = now.positions;
+            moving.moved(world);
+            EXPECT_GT(expect_equal(moving, now, GetParam()), 100u) << away;
+        }
 }
 
 INSTANTIATE_TEST_SUITE_P(Holes, MovingVisibility, testing::Bool());

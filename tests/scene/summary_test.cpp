@@ -53,6 +53,11 @@ TEST(Summary, CountsEverything)
     EXPECT_EQ(line(s, "punctual lights"), "1");
     EXPECT_EQ(line(s, "emissive triangles"), "2 (6 m2)");
     EXPECT_EQ(line(s, "environment map"), "16 x 8");
+    EXPECT_EQ(line(s, "light on upward faces"), "3.142, 3.142, 3.142 W/m2");
+    EXPECT_EQ(line(s, "on downward faces"), "3.142, 3.142, 3.142 W/m2");
+    EXPECT_EQ(line(s, "on the brightest").substr(0, 24), "3.142, 3.142, 3.142 W/m2");
+    EXPECT_EQ(line(s, "smooth part of the map"),
+              "100 % of its squared radiance (spherical harmonics to degree 2)");
     EXPECT_EQ(line(s, "cameras"), "front");
     EXPECT_EQ(line(s, "skins"), "2 joints");
     EXPECT_EQ(line(s, "morph targets"), "3");
