@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 #include "gi/registry/registry.h"
+#include "gi/scene/camera.h"
 #include "gi/slhb/kernel_render.h"
 #include "viewer/arguments.h"
 #include "viewer/frame_options.h"
@@ -122,6 +123,18 @@ void declare_view_options(CLI::App& c, RenderOptions& o)
     c.add_option("--time", o.time_s, "moment of the animation, s")->check(in_range(-1e9, 1e9));
 }
 
+void declare_lens_options(CLI::App& c, RenderOptions& o)
+{
+    c.add_option(
+         "--aperture-radius", o.aperture_radius_m,
+         "m, of a thin lens: what is not in focus is blurred (default: that of the camera, else 0, a pinhole)")
+        ->check(in_range(0, gi::kWidestLens_m));
+    c.add_option("--focus-distance", o.focus_distance_m,
+                 "m along the view, to the plane in focus (default: that of the camera, else to --look-at or the\n"
+                 "middle of the scene)")
+        ->check(in_range(gi::kNearestFocus_m, gi::kFarthestFocus_m));
+}
+
 void declare_denoise(CLI::App& c, RenderOptions& o)
 {
     c.add_option(
@@ -212,6 +225,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_option("--method", o.method, "how light is computed:" + known)->capture_default_str();
     c.add_option("--size", o.size, "width x height, pixels")->capture_default_str();
     declare_view_options(c, o);
+    declare_lens_options(c, o);
     c.add_option(
         "--background", o.background,
         "what the camera sees past all surfaces (default: what the scene says, else map):"
@@ -260,6 +274,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
   lightwell render cornell --until relmse=0.05 --size 48x48 --aovs L1,L2,variance --out cornell.exr
   lightwell render atrium --background transparent --size 64x48 --paths 4 --out cut.exr --png cut.png
   lightwell render atrium --size 64x64 --paths 4 --denoise atrous --out smooth.exr
+  lightwell render atrium --size 64x48 --paths 8 --aperture-radius 0.1 --focus-distance 3 --out lens.exr
   lightwell render atrium --frames 0:3@10 --size 48x48 --paths 2 --out walk_%04d.exr --png walk_%04d.png
   lightwell render atrium --method slhb --frames 0:3@24 --reuse 16 --paths 1 --bounces 2 --size 48x48 --out reuse_%04d.exr --stats reuse.json
   lightwell render cornell --frames 0:4@8 --turntable --size 48x48 --paths 2 --video turn.mkv

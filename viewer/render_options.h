@@ -19,7 +19,7 @@ struct RenderOptions {
     std::string scene, method = "reference", size = "512x512", camera, look_from, look_at, environment, background,
                        budget, until, filter = "box", denoise = "none", out, png, stats, tone = "srgb";
     std::vector<std::string> layers;
-    std::optional<double> fov_deg, time_s;
+    std::optional<double> fov_deg, time_s, aperture_radius_m, focus_distance_m;
     double environment_rotate_deg = 0, environment_scale = 1, exposure_ev = 0;
     std::optional<std::uint32_t> paths;
     std::uint64_t seed = 0;
@@ -38,6 +38,8 @@ gi::Schedule parse_schedule(std::string const& name);
 
 /// Those of the camera, the sky and the moment, for every command that renders.
 void declare_view_options(CLI::App& command, RenderOptions& options);
+/// Of the camera's lens, for commands that render whole pictures.
+void declare_lens_options(CLI::App& command, RenderOptions& options);
 void declare_denoise(CLI::App& command, RenderOptions& options);
 /// Throws InputError where options of method slhb are given that the method or the schedule does not read.
 void check_slhb(CLI::App const& command, RenderOptions const& options);
