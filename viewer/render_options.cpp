@@ -42,6 +42,22 @@ void check_device(RenderOptions const& o, gi::SlhbSettings const& s)
     gi::check_device(s);
 }
 
+void check_shutter(RenderOptions const& o, gi::RenderSettings const& s)
+{
+    if (!o.time_s && o.frames.empty())
+        throw gi::InputError("--shutter without --time or --frames", "it is not known when it opens",
+                             "add --time 0 or --frames 0:24@24");
+    if (o.reuse > 1)
+        throw gi::InputError("--shutter with --reuse", "motion vectors lead from moment to moment",
+                             "keep one of them");
+    if (s.slhb.space == gi::Space::device)
+        throw gi::InputError("--shutter with --device cuda", "its kernels render one moment",
+                             "leave it out, or render with --device cpu");
+    if (s.resume)
+        throw gi::InputError("--shutter with --resume", "a picture blurred by motion is rendered in one go",
+                             "leave --resume out");
+}
+
 /// The scene's name, also where it is a folder with a slash at its end.
 std::string default_out(std::string const& scene, char const* ending)
 {
@@ -92,7 +108,8 @@ gi::RenderSettings make_settings(RenderOptions& o)
     s.slhb.space = o.device == "cuda" ? gi::Space::device : gi::Space::host;
     check_device(o, s.slhb);
     s.resume = o.resume && !is_sequence; // a sequence resumes by its frames
-    if (!o.out.empty() && !is_sequence) s.checkpoint = o.out + ".state";
+    if (o.shutter_s > 0) check_shutter(o, s);
+    if (!o.out.empty() && !is_sequence && o.shutter_s == 0) s.checkpoint = o.out + ".state";
     return s;
 }
 
@@ -275,6 +292,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
   lightwell render atrium --background transparent --size 64x48 --paths 4 --out cut.exr --png cut.png
   lightwell render atrium --size 64x64 --paths 4 --denoise atrous --out smooth.exr
   lightwell render atrium --size 64x48 --paths 8 --aperture-radius 0.1 --focus-distance 3 --out lens.exr
+  lightwell render atrium --camera courtyard --time 0.4 --shutter 0.04 --size 64x48 --paths 8 --out blur.exr
   lightwell render atrium --frames 0:3@10 --size 48x48 --paths 2 --out walk_%04d.exr --png walk_%04d.png
   lightwell render atrium --method slhb --frames 0:3@24 --reuse 16 --paths 1 --bounces 2 --size 48x48 --out reuse_%04d.exr --stats reuse.json
   lightwell render cornell --frames 0:4@8 --turntable --size 48x48 --paths 2 --video turn.mkv

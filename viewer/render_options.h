@@ -30,7 +30,8 @@ struct RenderOptions {
     std::string frames, video, turntable, camera_path; ///< empty = none
     bool turns = false;                                ///< --turntable was given, maybe without a value
     bool seed_per_frame = false;
-    int reuse = 1; ///< frames
+    int reuse = 1;        ///< frames
+    double shutter_s = 0; ///< open for so long from the moment on
 };
 
 /// Throws InputError naming those that there are.

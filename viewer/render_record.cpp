@@ -39,6 +39,7 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
     if (o.turns) add("--turntable", o.turntable.empty() ? "1" : o.turntable);
     if (o.reuse > 1) add("--reuse", std::to_string(o.reuse));
     if (o.seed_per_frame && !o.frames.empty()) command += " --seed-per-frame";
+    if (o.shutter_s > 0) add("--shutter", fmt::format("{}", o.shutter_s));
     if (!chosen.empty()) command += " " + chosen;
     return command;
 }
@@ -140,7 +141,8 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
                      {"turntable", o.turns ? Json(o.turntable.empty() ? "1" : o.turntable) : Json()},
                      {"camera_path", name_or_null(o.camera_path)},
                      {"seed_per_frame", o.seed_per_frame},
-                     {"reuse", o.reuse}};
+                     {"reuse", o.reuse},
+                     {"shutter_s", o.shutter_s}};
     j["outputs"] = {{"exr", name_or_null(o.out)},
                     {"png", name_or_null(o.png)},
                     {"video", name_or_null(o.video)},

@@ -248,7 +248,6 @@ void SlhbRenderer::report_work() const
                                                                      (double(slhb_.resolution) * slhb_.resolution)
                                                                : 0);
     report_.count("shadow maps built", double(lamps_->maps_built()));
-    report_.lose("layers beyond the limit of a texel", lost_layers());
 }
 
 } // namespace gi

@@ -32,4 +32,10 @@ inline CameraRays eye_of_pass(CameraRays const& camera, std::uint64_t seed, std:
     return camera.at_lens(square_to_disk(vec2(pass_samples_detail::sample(seed, 0x1e45, pass))));
 }
 
+/// In [0, 1), of the time that the shutter is open.
+inline double moment_of_pass(std::uint64_t seed, std::uint32_t pass)
+{
+    return double(pass_samples_detail::sample(seed, 0x54f7e4, pass).x);
+}
+
 } // namespace gi
