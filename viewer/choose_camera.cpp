@@ -41,6 +41,34 @@ gi::Camera framing_camera(gi::dvec3 center, double radius, double fov_deg)
 
 } // namespace
 
+std::string put_lens(gi::Camera& camera, CameraChoice const& choice, std::optional<gi::dvec3> focus,
+                     std::string const& what)
+{
+    if (choice.aperture_radius_m) camera.aperture_radius_m = *choice.aperture_radius_m;
+    if (choice.focus_distance_m) camera.focus_distance_m = *choice.focus_distance_m;
+    if (camera.aperture_radius_m == 0) {
+        if (choice.focus_distance_m)
+            throw gi::InputError("--focus-distance is given for a pinhole", "all that it sees is in focus",
+                                 "add --aperture-radius 0.02, or leave it out");
+        camera.focus_distance_m = 0;
+        return {};
+    }
+    std::string note;
+    if (camera.focus_distance_m == 0 && !camera.orthographic) {
+        double const distance = focus ? glm::dot(gi::dvec3(camera.world_from_camera[3]) - *focus,
+                                                 gi::dvec3(camera.world_from_camera[2]))
+                                      : 0;
+        if (!(distance >= gi::kNearestFocus_m))
+            throw gi::InputError("--aperture-radius without --focus-distance",
+                                 focus ? what + " is not before the camera" : "nothing says what is in focus",
+                                 "add --focus-distance, m along the view");
+        camera.focus_distance_m = distance;
+        note = fmt::format("in focus is what lies {:.3g} m before the camera, as {} does", distance, what);
+    }
+    check_lens(camera);
+    return note;
+}
+
 void check_distance(gi::World const& world, gi::Camera const& camera)
 {
     double const distance = glm::length(gi::dvec3(camera.world_from_camera[3]) - world.origin);
@@ -74,6 +102,9 @@ ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice)
         chosen.note = "the scene has no camera: looking at all of it from the front";
     }
     check_distance(world, chosen.camera);
+    std::string const lens = put_lens(chosen.camera, choice, choice.look_at.value_or(center),
+                                      choice.look_at ? "the point looked at" : "the middle of the scene");
+    if (!lens.empty()) chosen.note += (chosen.note.empty() ? "" : "; ") + lens;
     return chosen;
 }
 

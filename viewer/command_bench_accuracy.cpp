@@ -285,6 +285,7 @@ void add_bench_accuracy(CLI::App& bench, int& exit_code)
     list("--directions", o->directions, "of the stored schedule, comma-separated");
     list("--hit-buffers", o->resolutions, "texels on a side, comma-separated");
     declare_view_options(*c, o->render);
+    declare_lens_options(*c, o->render);
     c->add_option("--size", o->render.size, "width x height, pixels")->capture_default_str();
     c->add_option("--bounces", o->render.bounces, "indirect bounces")
         ->check(CLI::Range(1, 1000))

@@ -48,6 +48,7 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
     RenderOptions& r = o->render;
     c->add_option("--size", r.size, "width x height, pixels")->capture_default_str();
     declare_view_options(*c, r);
+    declare_lens_options(*c, r);
     c->add_option("--bounces", r.bounces, "indirect bounces; 0 = direct light only")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();

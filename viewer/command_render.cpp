@@ -3,6 +3,7 @@
 #include "gi/base/picture_file.h"
 #include "gi/registry/registry.h"
 #include "viewer/commands.h"
+#include "viewer/exposure.h"
 #include "viewer/frame_options.h"
 #include "viewer/frame_sequence.h"
 #include "viewer/interrupt.h"
@@ -20,8 +21,10 @@
 namespace viewer {
 namespace {
 
-gi::RenderResult trace(RenderOptions const& o, gi::RenderSettings const& settings, gi::World const& world,
-                       gi::Camera const& camera, gi::Report& report)
+/// @param render  called with what stops it and shows how far it is
+gi::RenderResult
+trace(RenderOptions const& o,
+      std::function<gi::RenderResult(gi::StopRequest const&, gi::RenderProgress const&)> const& render)
 {
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
@@ -29,7 +32,7 @@ gi::RenderResult trace(RenderOptions const& o, gi::RenderSettings const& setting
     auto const show = [&](gi::RenderStatus const& s) {
         bar.update(s.fraction, fmt::format("{} paths, relMSE {:.2g}", s.paths, s.relmse));
     };
-    return gi::find_method(o.method).render(world, camera, settings, stop, show, report);
+    return render(stop, show);
 }
 
 void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::RenderResult& result, gi::Report& report)
@@ -42,12 +45,52 @@ void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::Render
     if (!o.out.empty()) save_exr(o, o.out, picture, report);
 }
 
-gi::Camera first_camera(RenderOptions const& o, gi::World const& world, CameraChoice const& choice,
-                        CameraMotion const& motion)
+struct Shot {
+    gi::ScenePlan plan;
+    gi::RenderResult result;
+};
+
+Shot shoot_moment(RenderOptions const& o, gi::RenderSettings const& settings, gi::World const& world,
+                  FrameCamera const& eye, gi::Report& report)
 {
-    FrameCamera const camera(world, choice, motion);
-    if (!camera.note().empty()) say(camera.note());
-    return camera.of(world, o.time_s.value_or(0), 0);
+    gi::Camera const camera = eye.of(world, o.time_s.value_or(0), 0);
+    gi::RenderResult result = trace(o, [&](gi::StopRequest const& stop, gi::RenderProgress const& progress) {
+        return gi::find_method(o.method).render(world, camera, settings, stop, progress, report);
+    });
+    return {gi::plan_scene(world), std::move(result)};
+}
+
+/// While the shutter is open.
+Shot shoot_motion(RenderOptions const& o, gi::RenderSettings const& settings, gi::MovingWorld& world,
+                  FrameCamera const& eye, gi::Report& report)
+{
+    Exposure const exposure{*o.time_s, o.shutter_s, false, [&](gi::World const& now, double after_s) {
+                                return eye.of(now, *o.time_s + after_s, 0);
+                            }};
+    gi::RenderResult result = trace(o, [&](gi::StopRequest const& stop, gi::RenderProgress const& progress) {
+        return expose(gi::find_method(o.method), world, exposure, settings, stop, progress, report);
+    });
+    return {gi::plan_scene(world.world()), std::move(result)};
+}
+
+Shot shoot(RenderOptions const& o, gi::RenderSettings const& settings, CameraChoice const& choice,
+           CameraMotion const& motion, gi::Report& report)
+{
+    auto const scene = load_lit_scene(o, report);
+    bool const blurs = o.shutter_s > 0 && depends_on_time(*scene, false, motion);
+    if (o.shutter_s > 0 && !blurs) say(kNothingMoves);
+    gi::World still;
+    std::optional<gi::MovingWorld> moving;
+    {
+        gi::StageTimer const timer(report, "world");
+        if (blurs)
+            moving.emplace(scene, *o.time_s, report);
+        else
+            still = gi::build_world(scene, o.time_s, report);
+    }
+    FrameCamera const eye(blurs ? moving->world() : still, choice, motion);
+    if (!eye.note().empty()) say(eye.note());
+    return blurs ? shoot_motion(o, settings, *moving, eye, report) : shoot_moment(o, settings, still, eye, report);
 }
 
 /// Options that no output reads.
@@ -69,22 +112,21 @@ int run(RenderOptions o)
     if (!o.frames.empty()) return render_frames(o, settings, denoise_settings, choice);
     CameraMotion const motion = make_motion(o);
     check_outputs({o.out, o.png, o.stats, settings.checkpoint.string()}, {o.scene, o.environment, o.camera_path});
-    bool const has_state = !settings.checkpoint.empty() && std::filesystem::exists(settings.checkpoint);
-    if (o.resume && !has_state) say("there is no '" + settings.checkpoint.string() + "': starting afresh");
+    std::string const state = o.out.empty() ? "" : o.out + ".state"; // also where this render keeps none
+    bool const has_state = !state.empty() && std::filesystem::exists(state);
+    if (o.resume && !has_state) say("there is no '" + state + "': starting afresh");
     if (!o.resume && has_state)
-        throw gi::InputError("'" + settings.checkpoint.string() + "' holds an unfinished render",
-                             "a new one would replace it", "add --resume to go on, or delete it");
+        throw gi::InputError("'" + state + "' holds an unfinished render", "a new one would replace it",
+                             "add --resume to go on, or delete it");
 
     gi::Report report;
-    gi::World const world = load_world(o, report);
-    gi::Camera const camera = first_camera(o, world, choice, motion);
-    gi::RenderResult result = trace(o, settings, world, camera, report);
+    auto [plan, result] = shoot(o, settings, choice, motion, report);
     std::string const remark = denoise(result.picture, denoise_settings, report);
     if (!remark.empty()) say(remark);
     save(o, settings, result, report);
     if (!settings.checkpoint.empty() && !result.resumable) std::filesystem::remove(settings.checkpoint);
 
-    nlohmann::ordered_json const stats = make_stats(o, settings, gi::plan_scene(world), result, report);
+    nlohmann::ordered_json const stats = make_stats(o, settings, plan, result, report);
     if (!o.stats.empty()) gi::write_text(o.stats, to_text(stats));
     if (o.json) {
         std::fputs(to_text(stats).c_str(), stdout);
@@ -96,9 +138,10 @@ int run(RenderOptions o)
     std::fflush(stdout);
     print_losses(report);
     if (result.end != gi::RenderEnd::interrupted) return 0;
-    say(settings.checkpoint.empty()
-            ? "interrupted: the picture so far is saved; with --out it could be resumed"
-            : "interrupted: the picture so far is saved; the same command with --resume goes on");
+    say(std::string("interrupted: the picture so far is saved") +
+        (o.shutter_s > 0               ? "; blurred by motion, it cannot be resumed"
+         : settings.checkpoint.empty() ? "; with --out it could be resumed"
+                                       : "; the same command with --resume goes on"));
     return kInterrupted;
 }
 

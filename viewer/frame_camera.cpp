@@ -25,8 +25,14 @@ double parse_turn(std::string const& text)
 FrameCamera::FrameCamera(gi::World const& first, CameraChoice const& choice, CameraMotion const& motion)
     : choice_(choice), motion_(motion)
 {
-    if (motion_.path) return;
+    if (motion_.path) {
+        gi::Camera any; // refused before the work
+        put_lens(any, choice_, std::nullopt, "");
+        return;
+    }
     first_ = choose_camera(first, choice);
+    choice_.aperture_radius_m = first_.camera.aperture_radius_m;
+    if (first_.camera.aperture_radius_m > 0) choice_.focus_distance_m = first_.camera.focus_distance_m;
     of_scene_ = !choice.look_from && !first.cameras.empty();
     center_ = choice.look_at.value_or(gi::dvec3(first.bounds.empty() ? gi::vec3{0} : first.bounds.center()) +
                                       first.origin);
@@ -35,9 +41,10 @@ FrameCamera::FrameCamera(gi::World const& first, CameraChoice const& choice, Cam
 gi::Camera FrameCamera::of(gi::World const& world, double time_s, double fraction) const
 {
     if (motion_.path) {
-        gi::Camera const camera =
+        gi::Camera camera =
             gi::camera_at(*motion_.path, time_s, glm::radians(choice_.fov_deg.value_or(kDefaultFov_deg)));
         check_distance(world, camera);
+        put_lens(camera, choice_, std::nullopt, "");
         return camera;
     }
     gi::Camera camera = of_scene_ ? choose_camera(world, choice_).camera : first_.camera;

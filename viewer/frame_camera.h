@@ -17,7 +17,7 @@ double parse_turn(std::string const& text);
 class FrameCamera {
 public:
     /// @param first the world of the first frame: its middle is circled, and a camera that frames the whole scene
-    ///              stays where it is then
+    ///              stays where it is then; what a lens focuses on without being told how far
     /// Throws InputError as choose_camera does.
     FrameCamera(gi::World const& first, CameraChoice const& choice, CameraMotion const& motion);
 

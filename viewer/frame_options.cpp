@@ -3,6 +3,7 @@
 #include "gi/base/error.h"
 #include "gi/scene/load.h"
 #include "viewer/outputs.h"
+#include "viewer/validators.h"
 #include "viewer/video_writer.h"
 
 #include <CLI/CLI.hpp>
@@ -47,6 +48,12 @@ void declare_frames(CLI::App& c, RenderOptions& o)
         ->capture_default_str()
         ->group(kGroup)
         ->needs(frames);
+    c.add_option(
+         "--shutter", o.shutter_s,
+         "s, open from the frame's moment on, or from --time: what moves meanwhile, the camera too, is blurred")
+        ->check(in_range(0, 1e6))
+        ->capture_default_str()
+        ->group(kGroup);
     c.add_flag("--seed-per-frame", o.seed_per_frame, "frame k has the seed --seed + k: noise that flickers")
         ->group(kGroup)
         ->needs(frames)

@@ -14,7 +14,11 @@ struct FrameSettings {
 
     /// Of the animation: that of the frame, or where --time holds it still.
     double scene_time_s(RenderOptions const& o, int frame) const { return o.time_s.value_or(range.time_s(frame)); }
-    double fraction(int frame) const { return double(frame - range.first) / range.count(); }
+    /// Of all frames, at a moment after that of a frame.
+    double fraction(int frame, double after_s = 0) const
+    {
+        return (frame - range.first + after_s * range.fps()) / range.count();
+    }
 };
 
 void declare_frames(CLI::App& command, RenderOptions& options);

@@ -5,6 +5,7 @@
 #include "gi/base/picture_file.h"
 #include "gi/registry/registry.h"
 #include "gi/transport/fingerprint.h"
+#include "viewer/exposure.h"
 #include "viewer/frame_follower.h"
 #include "viewer/frame_record.h"
 #include "viewer/frame_state.h"
@@ -46,6 +47,8 @@ public:
         plan_ = to_json(gi::plan_scene(first));
         camera_ = std::make_unique<FrameCamera>(first, choice, f_.motion);
         if (!camera_->note().empty()) say(camera_->note());
+        blurs_ = o.shutter_s > 0 && depends_on_time(*scene_, o.time_s.has_value(), f_.motion);
+        if (o.shutter_s > 0 && !blurs_) say(kNothingMoves);
     }
 
     int run()
@@ -64,7 +67,7 @@ public:
     }
 
 private:
-    /// The world of a frame. The only place that makes one.
+    /// The world of a frame.
     gi::World world_of(int frame, gi::Report& report) const
     {
         gi::StageTimer const timer(report, "world");
@@ -82,9 +85,20 @@ private:
         return follower_->go_to(time_s);
     }
 
-    gi::Camera camera_of(gi::World const& world, int frame) const
+    gi::Camera camera_of(gi::World const& world, int frame, double after_s = 0) const
     {
-        return camera_->of(world, f_.range.time_s(frame), f_.fraction(frame));
+        return camera_->of(world, f_.range.time_s(frame) + after_s, f_.fraction(frame, after_s));
+    }
+
+    /// The mean of all moments while the shutter is open.
+    gi::RenderResult expose_frame(int frame, gi::MovingWorld& world, gi::RenderProgress const& progress,
+                                  gi::Report& report)
+    {
+        Exposure exposure{f_.scene_time_s(o_, frame), o_.shutter_s, o_.time_s.has_value(), {}};
+        exposure.camera = [this, frame](gi::World const& now, double after_s) {
+            return camera_of(now, frame, after_s);
+        };
+        return expose(gi::find_method(o_.method), world, exposure, settings_of(frame), stop_, progress, report);
     }
 
     /// The options of one frame. Where the same picture can be had alone, by --time, they say so.
@@ -174,15 +188,21 @@ private:
         record.frame = frame;
         gi::Report report;
         gi::World own;
-        if (o_.reuse == 1) own = world_of(frame, report);
-        gi::World const& world = o_.reuse == 1 ? own : follow(frame, report);
+        std::optional<gi::MovingWorld> moving;
+        if (blurs_)
+            moving.emplace(scene_, f_.scene_time_s(o_, frame), report);
+        else if (o_.reuse == 1)
+            own = world_of(frame, report);
+        gi::World const& world = blurs_ ? moving->world() : o_.reuse == 1 ? own : follow(frame, report);
         gi::Camera const camera = camera_of(world, frame);
         auto const progress = [&](gi::RenderStatus const& s) {
             bar_->update((rendered_ + s.fraction) / missing_,
                          fmt::format("frame {}, {} of {}, {} paths", frame, rendered_ + 1, missing_, s.paths));
         };
         gi::RenderResult result;
-        if (o_.reuse == 1) {
+        if (blurs_) {
+            result = expose_frame(frame, *moving, progress, report);
+        } else if (o_.reuse == 1) {
             result = gi::find_method(o_.method).render(world, camera, settings_of(frame), stop_, progress, report);
         } else {
             FrameFollower::Frame followed = follower_->render(camera, stop_, progress, report);
@@ -300,6 +320,7 @@ private:
     std::optional<gi::ProgressBar> bar_;
     std::vector<FrameRecord> records_; ///< in their order
     int missing_ = 0, rendered_ = 0;   ///< frames that were to be rendered, and that are
+    bool blurs_ = false;               ///< by motion, while the shutter is open
 };
 
 } // namespace

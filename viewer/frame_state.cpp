@@ -15,6 +15,7 @@ std::map<std::string, std::string> frame_metadata(RenderOptions const& o, gi::Re
     m["frame"] = std::to_string(frame);
     m["stop"] = stop_option(s);
     m["reuse"] = std::to_string(o.reuse);
+    m["shutter"] = fmt::format("{}", o.shutter_s);
     m["layers"] = o.layers.empty() ? "all" : fmt::format("{}", fmt::join(o.layers, ","));
     m["numbers"] = o.half ? "half" : "single";
     m["fingerprint"] = fmt::format("{:016x}", fingerprint);
@@ -24,7 +25,7 @@ std::map<std::string, std::string> frame_metadata(RenderOptions const& o, gi::Re
 std::string difference(gi::Picture const& there, std::map<std::string, std::string> const& wanted)
 {
     for (char const* key : {"frame", "method", "size", "seed", "filter", "denoise", "bounces", "stop", "reuse",
-                            "layers", "numbers", "version", "git", "fingerprint"}) {
+                            "shutter", "layers", "numbers", "version", "git", "fingerprint"}) {
         auto const found = there.metadata.find(key);
         if (found == there.metadata.end()) return "it is no frame of a sequence";
         std::string const& value = wanted.at(key);

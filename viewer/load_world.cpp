@@ -67,6 +67,8 @@ CameraChoice camera_choice(RenderOptions const& o)
     if (!o.look_from.empty()) choice.look_from = parse_point("--look-from", o.look_from);
     if (!o.look_at.empty()) choice.look_at = parse_point("--look-at", o.look_at);
     choice.fov_deg = o.fov_deg;
+    choice.aperture_radius_m = o.aperture_radius_m;
+    choice.focus_distance_m = o.focus_distance_m;
     return choice;
 }
 

@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 #include "gi/registry/registry.h"
+#include "gi/scene/camera.h"
 #include "gi/slhb/kernel_render.h"
 #include "viewer/arguments.h"
 #include "viewer/frame_options.h"
@@ -39,6 +40,22 @@ void check_device(RenderOptions const& o, gi::SlhbSettings const& s)
         throw gi::InputError("--device cuda with --method " + o.method, "it runs on the CPU only",
                              "add --method slhb, or leave --device out");
     gi::check_device(s);
+}
+
+void check_shutter(RenderOptions const& o, gi::RenderSettings const& s)
+{
+    if (!o.time_s && o.frames.empty())
+        throw gi::InputError("--shutter without --time or --frames", "it is not known when it opens",
+                             "add --time 0 or --frames 0:24@24");
+    if (o.reuse > 1)
+        throw gi::InputError("--shutter with --reuse", "motion vectors lead from moment to moment",
+                             "keep one of them");
+    if (s.slhb.space == gi::Space::device)
+        throw gi::InputError("--shutter with --device cuda", "its kernels render one moment",
+                             "leave it out, or render with --device cpu");
+    if (s.resume)
+        throw gi::InputError("--shutter with --resume", "a picture blurred by motion is rendered in one go",
+                             "leave --resume out");
 }
 
 /// The scene's name, also where it is a folder with a slash at its end.
@@ -91,7 +108,8 @@ gi::RenderSettings make_settings(RenderOptions& o)
     s.slhb.space = o.device == "cuda" ? gi::Space::device : gi::Space::host;
     check_device(o, s.slhb);
     s.resume = o.resume && !is_sequence; // a sequence resumes by its frames
-    if (!o.out.empty() && !is_sequence) s.checkpoint = o.out + ".state";
+    if (o.shutter_s > 0) check_shutter(o, s);
+    if (!o.out.empty() && !is_sequence && o.shutter_s == 0) s.checkpoint = o.out + ".state";
     return s;
 }
 
@@ -120,6 +138,18 @@ void declare_view_options(CLI::App& c, RenderOptions& o)
         ->check(in_range(-1e6, 1e6));
     c.add_option("--envmap-scale", o.environment_scale, "factor on its radiance")->check(in_range(0, 1e9));
     c.add_option("--time", o.time_s, "moment of the animation, s")->check(in_range(-1e9, 1e9));
+}
+
+void declare_lens_options(CLI::App& c, RenderOptions& o)
+{
+    c.add_option(
+         "--aperture-radius", o.aperture_radius_m,
+         "m, of a thin lens: what is not in focus is blurred (default: that of the camera, else 0, a pinhole)")
+        ->check(in_range(0, gi::kWidestLens_m));
+    c.add_option("--focus-distance", o.focus_distance_m,
+                 "m along the view, to the plane in focus (default: that of the camera, else to --look-at or the\n"
+                 "middle of the scene)")
+        ->check(in_range(gi::kNearestFocus_m, gi::kFarthestFocus_m));
 }
 
 void declare_denoise(CLI::App& c, RenderOptions& o)
@@ -214,6 +244,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_option("--method", o.method, "how light is computed:" + known)->capture_default_str();
     c.add_option("--size", o.size, "width x height, pixels")->capture_default_str();
     declare_view_options(c, o);
+    declare_lens_options(c, o);
     c.add_option(
         "--background", o.background,
         "what the camera sees past all surfaces (default: what the scene says, else map):"
@@ -262,6 +293,8 @@ void declare_options(CLI::App& c, RenderOptions& o)
   lightwell render cornell --until relmse=0.05 --size 48x48 --aovs L1,L2,variance --out cornell.exr
   lightwell render atrium --background transparent --size 64x48 --paths 4 --out cut.exr --png cut.png
   lightwell render atrium --size 64x64 --paths 4 --denoise atrous --out smooth.exr
+  lightwell render atrium --size 64x48 --paths 8 --aperture-radius 0.1 --focus-distance 3 --out lens.exr
+  lightwell render atrium --camera courtyard --time 0.4 --shutter 0.04 --size 64x48 --paths 8 --out blur.exr
   lightwell render atrium --frames 0:3@10 --size 48x48 --paths 2 --out walk_%04d.exr --png walk_%04d.png
   lightwell render atrium --method slhb --frames 0:3@24 --reuse 16 --paths 1 --bounces 2 --size 48x48 --out reuse_%04d.exr --stats reuse.json
   lightwell render cornell --frames 0:4@8 --turntable --size 48x48 --paths 2 --video turn.mkv

@@ -19,7 +19,7 @@ struct RenderOptions {
     std::string scene, method = "reference", size = "512x512", camera, look_from, look_at, environment, background,
                        budget, until, filter = "box", denoise = "none", out, png, stats, tone = "srgb";
     std::vector<std::string> layers;
-    std::optional<double> fov_deg, time_s;
+    std::optional<double> fov_deg, time_s, aperture_radius_m, focus_distance_m;
     double environment_rotate_deg = 0, environment_scale = 1, exposure_ev = 0;
     std::optional<std::uint32_t> paths;
     std::uint64_t seed = 0;
@@ -30,7 +30,8 @@ struct RenderOptions {
     std::string frames, video, turntable, camera_path; ///< empty = none
     bool turns = false;                                ///< --turntable was given, maybe without a value
     bool seed_per_frame = false;
-    int reuse = 1; ///< frames
+    int reuse = 1;        ///< frames
+    double shutter_s = 0; ///< open for so long from the moment on
 };
 
 /// Throws InputError naming those that there are.
@@ -38,6 +39,8 @@ gi::Schedule parse_schedule(std::string const& name);
 
 /// Those of the camera, the sky and the moment, for every command that renders.
 void declare_view_options(CLI::App& command, RenderOptions& options);
+/// Of the camera's lens, for commands that render whole pictures.
+void declare_lens_options(CLI::App& command, RenderOptions& options);
 void declare_denoise(CLI::App& command, RenderOptions& options);
 /// Throws InputError where options of method slhb are given that the method or the schedule does not read.
 void check_slhb(CLI::App const& command, RenderOptions const& options);

@@ -26,6 +26,8 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
     add("--look-from", o.look_from);
     add("--look-at", o.look_at);
     if (o.fov_deg) add("--fov", fmt::format("{}", *o.fov_deg));
+    if (o.aperture_radius_m) add("--aperture-radius", fmt::format("{}", *o.aperture_radius_m));
+    if (o.focus_distance_m) add("--focus-distance", fmt::format("{}", *o.focus_distance_m));
     if (o.time_s) add("--time", fmt::format("{}", *o.time_s));
     add("--envmap", o.environment);
     if (o.environment_rotate_deg != 0) add("--envmap-rotate", fmt::format("{}", o.environment_rotate_deg));
@@ -37,6 +39,7 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
     if (o.turns) add("--turntable", o.turntable.empty() ? "1" : o.turntable);
     if (o.reuse > 1) add("--reuse", std::to_string(o.reuse));
     if (o.seed_per_frame && !o.frames.empty()) command += " --seed-per-frame";
+    if (o.shutter_s > 0) add("--shutter", fmt::format("{}", o.shutter_s));
     if (!chosen.empty()) command += " " + chosen;
     return command;
 }
@@ -114,6 +117,8 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
                      {"look_from", name_or_null(o.look_from)},
                      {"look_at", name_or_null(o.look_at)},
                      {"fov_deg", or_null(o.fov_deg)},
+                     {"aperture_radius_m", or_null(o.aperture_radius_m)},
+                     {"focus_distance_m", or_null(o.focus_distance_m)},
                      {"time_s", or_null(o.time_s)},
                      {"envmap", name_or_null(o.environment)},
                      {"envmap_rotate_deg", o.environment_rotate_deg},
@@ -136,7 +141,8 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
                      {"turntable", o.turns ? Json(o.turntable.empty() ? "1" : o.turntable) : Json()},
                      {"camera_path", name_or_null(o.camera_path)},
                      {"seed_per_frame", o.seed_per_frame},
-                     {"reuse", o.reuse}};
+                     {"reuse", o.reuse},
+                     {"shutter_s", o.shutter_s}};
     j["outputs"] = {{"exr", name_or_null(o.out)},
                     {"png", name_or_null(o.png)},
                     {"video", name_or_null(o.video)},

@@ -14,6 +14,7 @@
 #include "gi/scene/camera.h"
 #include "gi/scene/light_sampling.h"
 #include "gi/scene/shading_point.h"
+#include "gi/scene/warp.h"
 #include "gi/transport/exact_visibility.h"
 #include "gi/transport/path_sample.h"
 #include "gi/transport/sampling.h"
@@ -60,13 +61,20 @@ struct PathTracer {
     {
         Path p;
         p.rng = Pcg32::for_path(seed, std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x), index);
-        p.ray = camera.through(vec2{float(x) + 0.5f, float(y) + 0.5f} + filter_offset(filter, p.rng.uniform2()));
+        vec2 const place = vec2{float(x) + 0.5f, float(y) + 0.5f} + filter_offset(filter, p.rng.uniform2());
+        p.ray = camera.through(place);
+        if (camera.has_lens()) look_through_lens(place, p);
         return p;
     }
     /// Follow all paths to their ends.
     void trace(std::span<Path> paths, PathCounts& counts) const;
 
 private:
+    /// Apart, so that the rounding of pinholes does not depend on it.
+    [[gnu::noinline]] void look_through_lens(vec2 place, Path& p) const
+    {
+        p.ray = camera.at_lens(square_to_disk(p.rng.uniform2())).through(place);
+    }
     static vec3 leave(ShadingPoint const& at, vec3 direction)
     {
         float const offset = glm::dot(direction, at.geometric_normal) > 0 ? at.clearance : -at.clearance;

@@ -43,10 +43,12 @@ void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, st
 struct Structures {
     std::unique_ptr<ExactVisibility> visibility;
 
-    void build(World const& world, int threads, Report& report)
+    /// @param first_moving  triangle
+    void build(World const& world, int threads, Report& report, std::size_t first_moving)
     {
         StageTimer const timer(report, "build (Embree BVH)");
-        visibility = std::make_unique<ExactVisibility>(world, plan_scene(world).alpha_tests, threads);
+        visibility =
+            std::make_unique<ExactVisibility>(world, plan_scene(world).alpha_tests, threads, first_moving);
     }
     PathTracer<ExactVisibility> tracer(World const& world, Camera const& camera, RenderSettings const& s) const
     {
@@ -55,13 +57,14 @@ struct Structures {
     }
 };
 
-/// @param print  of the scene and settings  @param first_path  of each pixel
-RenderResult trace_all(PassLoop& loop, PathTracer<ExactVisibility> const& tracer, std::uint64_t print,
-                       std::uint32_t first_path, World const& world)
+/// @param print  of the scene and settings
+RenderResult trace_all(PassLoop& loop, std::uint64_t print, PassLoop::Pass const& pass, World const& world,
+                       Report& report)
 {
-    RenderResult result = loop.run(
-        print, [&](Accumulator& sums, std::uint32_t paths) { trace_pass(tracer, sums, first_path, paths); });
+    RenderResult result = loop.run(print, pass);
     PathCounts const& total = loop.sums().counts;
+    report.count("closest-hit rays", double(total.nearest_rays));
+    report.count("shadow rays", double(total.shadow_rays));
     result.rays = double(total.nearest_rays + total.shadow_rays);
     result.picture = loop.sums().picture(world);
     return result;
@@ -80,17 +83,33 @@ public:
         StageTimer const timer(report_, "BVH of what moves (Embree)");
         structures_.visibility->moved(world_.world());
     }
-    RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress) override
+    RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
+                       Moments const& moments) override
     {
         PassLoop loop(settings_, stop, progress, report_);
-        World const& world = world_.world();
-        if (!structures_.visibility) structures_.build(world, settings_.threads, report_);
-        RenderResult result = trace_all(loop, structures_.tracer(world, camera, settings_), 0, paths_, world);
+        auto const pass = [&](Accumulator& sums, std::uint32_t paths) {
+            if (!moments) return trace_pass(tracer(camera), sums, paths_, paths);
+            for (std::uint32_t i = 0; i < paths; ++i) {
+                Moment const now = moments(sums.paths);
+                changed(now.changes);
+                trace_pass(tracer(now.camera), sums, paths_, 1);
+            }
+        };
+        tracer(camera); // builds before the passes
+        RenderResult result = trace_all(loop, 0, pass, world_.world(), report_);
         paths_ += result.paths;
         return result;
     }
 
 private:
+    /// Through the world as it is now.
+    PathTracer<ExactVisibility> tracer(Camera const& camera)
+    {
+        World const& world = world_.world();
+        if (!structures_.visibility) structures_.build(world, settings_.threads, report_, world.static_triangles);
+        return structures_.tracer(world, camera, settings_);
+    }
+
     MovingWorld const& world_;
     RenderSettings settings_;
     Report& report_;
@@ -105,13 +124,11 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
 {
     PassLoop loop(settings, stop, progress, report);
     Structures structures;
-    structures.build(world, settings.threads, report);
+    structures.build(world, settings.threads, report, world.triangles.size());
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, "reference") : 0;
-    RenderResult result = trace_all(loop, structures.tracer(world, camera, settings), print, 0, world);
-    PathCounts const& total = loop.sums().counts;
-    report.count("closest-hit rays", double(total.nearest_rays));
-    report.count("shadow rays", double(total.shadow_rays));
-    return result;
+    PathTracer<ExactVisibility> const tracer = structures.tracer(world, camera, settings);
+    auto const pass = [&](Accumulator& sums, std::uint32_t paths) { trace_pass(tracer, sums, 0, paths); };
+    return trace_all(loop, print, pass, world, report);
 }
 
 std::unique_ptr<FrameRenderer> start_reference_frames(MovingWorld const& world, Camera const&,

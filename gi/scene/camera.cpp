@@ -2,6 +2,8 @@
 
 #include "gi/base/error.h"
 
+#include <fmt/format.h>
+
 namespace gi {
 
 CameraRays camera_rays(Camera const& camera, int width, int height, dvec3 world_origin)
@@ -17,7 +19,30 @@ CameraRays camera_rays(Camera const& camera, int width, int height, dvec3 world_
     rays.step_x = vec3(right * (2 * half_width / width));
     rays.step_y = vec3(-up * (2 * half_height / height));
     rays.corner = vec3((camera.orthographic ? dvec3{0} : -back) - half_width * right + half_height * up);
+    if (camera.aperture_radius_m == 0) return rays;
+    check_lens(camera);
+    rays.lens_x = vec3(camera.aperture_radius_m * right);
+    rays.lens_y = vec3(camera.aperture_radius_m * up);
+    rays.focus = float(camera.focus_distance_m);
     return rays;
+}
+
+void check_lens(Camera const& camera)
+{
+    double const radius = camera.aperture_radius_m, focus = camera.focus_distance_m;
+    if (!(radius >= 0 && radius <= kWidestLens_m))
+        throw InputError(fmt::format("an aperture radius of {} m", radius),
+                         fmt::format("a lens has 0 to {:g} m", kWidestLens_m), "give its radius in metres, or 0");
+    if (radius == 0) return;
+    if (camera.orthographic)
+        throw InputError("the orthographic camera '" + camera.name + "' has an aperture",
+                         "its rays do not pass through one place",
+                         "choose a perspective camera, or a radius of 0");
+    if (!(focus >= kNearestFocus_m && focus <= kFarthestFocus_m))
+        throw InputError(fmt::format("a focus distance of {} m", focus),
+                         fmt::format("the plane in focus lies {:g} to {:g} m before the lens", kNearestFocus_m,
+                                     kFarthestFocus_m),
+                         "give the distance along the view in metres");
 }
 
 vec3 project(CameraRays const& camera, vec3 point)

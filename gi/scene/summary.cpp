@@ -86,7 +86,11 @@ SceneSummary summarise(World const& world)
     add("environment map",
         world.environment ? fmt::format("{} x {}", world.environment->width, world.environment->height) : "none");
     if (world.environment) describe_environment(world, s);
-    add("cameras", join(world.cameras, [](Camera const& c) { return c.name; }));
+    add("cameras", join(world.cameras, [](Camera const& c) {
+            if (c.aperture_radius_m == 0) return c.name;
+            return fmt::format("{} (lens of {:.3g} m radius, focus at {:.3g} m)", c.name, c.aperture_radius_m,
+                               c.focus_distance_m);
+        }));
     add("skins", join(scene.skins, [](Skin const& k) { return fmt::format("{} joints", k.joints.size()); }));
     std::size_t targets = 0;
     for (Mesh const& m : scene.meshes) targets += m.morph_targets.size();

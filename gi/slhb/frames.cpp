@@ -5,6 +5,7 @@
 #include "gi/slhb/settings.h"
 #include "gi/transport/pass_loop.h"
 
+#include <chrono>
 #include <optional>
 #include <tbb/global_control.h>
 
@@ -24,7 +25,9 @@ public:
         if (settings.slhb.packed && world.world().static_triangles < world.world().triangles.size())
             throw InputError("--packed with something that moves",
                              "the range of packed depths is that of what stays", "leave out --packed");
+        auto const begun = std::chrono::steady_clock::now();
         start(camera);
+        start_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     }
 
     void changed(Changes const& changes) override
@@ -37,19 +40,27 @@ public:
             renderer_->world_moved(changes.geometry, changes.lights || changes.light_select);
     }
 
-    RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress) override
+    RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
+                       Moments const& moments) override
     {
-        PassLoop loop(settings_, stop, progress, report_);
-        if (restart_) start(camera);
-        renderer_->set_camera(camera);
+        PassLoop loop(settings_, stop, progress, report_, moments ? std::exchange(start_s_, 0) : 0);
+        see(camera);
         double const earlier = renderer_->rays();
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
-            for (std::uint32_t i = 0; i < paths; ++i) renderer_->pass(passes_++, sums);
+            for (std::uint32_t i = 0; i < paths; ++i) {
+                if (moments) {
+                    Moment const now = moments(sums.paths);
+                    changed(now.changes);
+                    see(now.camera);
+                }
+                renderer_->pass(passes_++, sums);
+            }
         });
+        renderer_->report_work();
         result.rays = renderer_->rays() - earlier;
         result.options = as_options(settings_.slhb);
         result.picture = loop.sums().picture(world_.world());
-        renderer_->add_motion(result.picture);
+        if (!moments) renderer_->add_motion(result.picture);
         renderer_->end_frame();
         report_.lose("layers beyond the limit of a texel", renderer_->lost_layers() - lost_);
         lost_ = renderer_->lost_layers();
@@ -57,6 +68,12 @@ public:
     }
 
 private:
+    void see(Camera const& camera)
+    {
+        if (restart_) start(camera);
+        renderer_->set_camera(camera);
+    }
+
     void start(Camera const& camera)
     {
         World const& world = world_.world();
@@ -75,6 +92,7 @@ private:
     std::uint32_t passes_ = 0;
     std::uint64_t lost_ = 0; ///< layers that were reported
     bool restart_ = false;
+    double start_s_ = 0; ///< that the first start took
 };
 
 } // namespace

@@ -10,6 +10,7 @@
 #include "gi/slhb/settings.h"
 #include "gi/transport/fingerprint.h"
 #include "gi/transport/pass_loop.h"
+#include "gi/transport/pass_samples.h"
 
 #include <tbb/parallel_for.h>
 
@@ -189,16 +190,17 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
             StageTimer const timer(report, "shadow maps");
             lamps.refresh(index);
         }
+        CameraRays const eye = eye_of_pass(rays, settings.seed, index);
         TracePaths paths{};
         paths.place = place_in_pixel(settings.filter, settings.seed, index);
         {
             StageTimer const timer(report, "G-buffer");
             PerspectiveGrid const grid =
-                camera_grid(rays, settings.width, settings.height, paths.place, near_plane(world.bounds));
+                camera_grid(eye, settings.width, settings.height, paths.place, near_plane(world.bounds));
             scene.draw_primary(grid, std::uint32_t(mix_bits(settings.seed) + index));
         }
         StageTimer const timer(report, "paths");
-        paths.camera = rays;
+        paths.camera = eye;
         paths.width = std::uint32_t(settings.width);
         paths.bounces = settings.bounces;
         paths.seed = std::uint32_t(settings.seed) ^ std::uint32_t(settings.seed >> 32);

@@ -1,5 +1,6 @@
 #include "gi/slhb/primary_map.h"
 
+#include "gi/transport/pass_samples.h"
 #include "gi/transport/sampling.h"
 
 #include <tbb/parallel_for.h>
@@ -9,8 +10,7 @@ namespace gi {
 
 vec2 place_in_pixel(PixelFilter filter, std::uint64_t seed, std::uint32_t pass)
 {
-    RqmcStream const stream{std::uint32_t(mix_bits(seed ^ 0xca3e7a)), pass};
-    return 0.5f + filter_offset(filter, vec2(stream.sample_together(0)));
+    return 0.5f + filter_offset(filter, sample_in_pixel(seed, pass));
 }
 
 PrimaryMap::PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, RenderSettings const& settings)

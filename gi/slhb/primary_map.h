@@ -16,7 +16,7 @@ class PrimaryMap {
 public:
     PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, RenderSettings const& settings);
 
-    /// Rasterises the view of a pass. @param near_m  what is nearer is not seen
+    /// Rasterises the view of a pass. @param camera  without a lens  @param near_m  what is nearer is not seen
     void refresh(CameraRays const& camera, float near_m, std::uint32_t pass);
     /// Of pixels first..last - 1, in rows.
     void hits(std::size_t first, std::size_t last, std::vector<PathStart>& out) const;

@@ -3,6 +3,7 @@
 #include "gi/scene/plan.h"
 #include "gi/slhb/settings.h"
 #include "gi/transport/flush_denormals.h"
+#include "gi/transport/pass_samples.h"
 #include "gi/transport/sampling.h"
 
 #include <algorithm>
@@ -167,7 +168,7 @@ void SlhbRenderer::pass(std::uint32_t index, Accumulator& sums)
     }
     if (primary_) {
         StageTimer const timer(report_, "G-buffer");
-        primary_->refresh(rays_, near_plane(world_.bounds), index);
+        primary_->refresh(eye_of_pass(rays_, settings_.seed, index), near_plane(world_.bounds), index);
     }
     StageTimer const timer(report_, "paths");
     trace(index, sums, walks);
@@ -252,7 +253,6 @@ void SlhbRenderer::report_work() const
                                                                      (double(slhb_.resolution) * slhb_.resolution)
                                                                : 0);
     report_.count("shadow maps built", double(lamps_->maps_built()));
-    report_.lose("layers beyond the limit of a texel", lost_layers());
 }
 
 } // namespace gi

@@ -48,7 +48,7 @@ private:
     std::size_t first_moving_; ///< triangle
     Report& report_;
     bool orthographic_;
-    CameraRays rays_;
+    CameraRays rays_; ///< through the middle of the lens, where motion vectors are measured
     TriangleSoup soup_;
     CutOuts cut_outs_;
     std::unique_ptr<ExactVisibility> exact_, judge_;

@@ -31,6 +31,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
         for (std::uint32_t i = 0; i < paths; ++i) renderer.pass(sums.paths, sums);
     });
     renderer.report_work();
+    report.lose("layers beyond the limit of a texel", renderer.lost_layers());
     result.rays = renderer.rays();
     result.options = as_options(chosen.slhb);
     result.picture = loop.sums().picture(world);

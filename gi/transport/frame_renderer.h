@@ -6,6 +6,14 @@
 
 namespace gi {
 
+/// What there is at one moment while the shutter is open.
+struct Moment {
+    Changes changes; ///< of the world, since the moment before
+    Camera camera;
+};
+/// Takes the world to the moment of a pass, counted from 0 in every frame.
+using Moments = std::function<Moment(std::uint32_t pass)>;
+
 class FrameRenderer {
 public:
     virtual ~FrameRenderer() = default;
@@ -14,7 +22,11 @@ public:
     virtual void changed(Changes const& changes) = 0;
     /// Renders what the camera sees now, with the budget and paths of the settings for every frame. Layers as
     /// those of RenderResult and, where the method knows it, "motion" (see gi/slhb/motion.h).
-    virtual RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress) = 0;
+    /// @param moments  where given, every path of a pixel is of a moment of its own, so that their mean is blurred
+    /// by
+    ///                 motion; `camera` is then that of no path, and there is no "motion"
+    virtual RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
+                               Moments const& moments = {}) = 0;
 };
 
 /// Starts with the world as it is; it and the report outlive the renderer.

@@ -7,12 +7,13 @@
 namespace gi {
 
 PassLoop::PassLoop(RenderSettings const& settings, StopRequest const& stop, RenderProgress const& progress,
-                   Report& report)
+                   Report& report, double spent_s)
     : settings_(settings),
       stop_(stop),
       progress_(progress),
       report_(report),
-      sums_(settings.width, settings.height)
+      sums_(settings.width, settings.height),
+      start_(Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(spent_s)))
 {
 }
 

@@ -13,8 +13,9 @@ namespace gi {
 class PassLoop {
 public:
     /// Time counts from here on: make it before the structures that the method builds.
+    /// @param spent_s  on them already
     PassLoop(RenderSettings const& settings, StopRequest const& stop, RenderProgress const& progress,
-             Report& report);
+             Report& report, double spent_s = 0);
 
     /// Traces that many more paths for every pixel, into the sums.
     using Pass = std::function<void(Accumulator&, std::uint32_t paths)>;
@@ -41,7 +42,7 @@ private:
     RenderProgress const& progress_;
     Report& report_;
     Accumulator sums_;
-    Clock::time_point start_ = Clock::now();
+    Clock::time_point start_;
 };
 
 } // namespace gi

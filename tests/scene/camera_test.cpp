@@ -87,6 +87,54 @@ TEST(Camera, LookingStraightUpOrDownHasSomeUp)
     }
 }
 
+Camera with_lens(Camera camera, double radius_m, double focus_m)
+{
+    camera.aperture_radius_m = radius_m;
+    camera.focus_distance_m = focus_m;
+    return camera;
+}
+
+/// Thin lens: from the rim, a point at depth d is seen r |1 / f - 1 / d| beside its place, in tangents.
+TEST(Lens, SpreadsWhatIsOutOfFocusAsAThinLensDoes)
+{
+    constexpr double kRadius = 0.1, kFocus = 3;
+    constexpr int kSize = 200;
+    Camera const camera = with_lens(look_at({1, 2, 3}, {4, 2, -1}, 40), kRadius, kFocus);
+    CameraRays const rays = camera_rays(camera, 2 * kSize, kSize, dvec3{0});
+    double const radius_px = kRadius * kSize / (2 * std::tan(glm::radians(20.0)));
+    for (double const depth : {0.5, 2.9, 3.0, 4.0, 100.0})
+        for (vec2 const disk : {vec2{1, 0}, vec2{0, -1}, vec2{0.6f, 0.8f}, vec2{0}}) {
+            Ray const ray = rays.through({130, 40});
+            vec3 const point = ray.origin + float(depth) / glm::dot(ray.direction, rays.forward) * ray.direction;
+            CameraRays const at = rays.at_lens(disk);
+            EXPECT_FALSE(at.has_lens());
+            EXPECT_NEAR(glm::distance(at.origin, rays.origin), kRadius * double(glm::length(disk)), 1e-6);
+            vec3 const seen = project(at, point);
+            double const aside_px = radius_px * (1 / kFocus - 1 / depth);
+            EXPECT_NEAR(seen.x, 130 + double(disk.x) * aside_px, 0.01) << depth;
+            EXPECT_NEAR(seen.y, 40 - double(disk.y) * aside_px, 0.01) << depth;
+            EXPECT_NEAR(seen.z, depth, 1e-4 * depth);
+        }
+}
+
+TEST(Lens, NonsenseIsRefused)
+{
+    double const nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+    Camera const camera = look_at({1, 2, 3}, {4, 2, -1}, 40);
+    auto const rays = [](Camera const& c) { return camera_rays(c, 10, 10, dvec3{0}); };
+    for (double const bad : {-1.0, nan, inf}) {
+        EXPECT_THROW(rays(with_lens(camera, bad, 1)), InputError) << bad;
+        EXPECT_THROW(rays(with_lens(camera, 0.1, bad)), InputError) << bad;
+    }
+    EXPECT_THROW(rays(with_lens(camera, 0.1, 0)), InputError);
+    Camera flat = with_lens(camera, 0.1, 1);
+    flat.orthographic = true;
+    EXPECT_THROW(rays(flat), InputError);
+    flat.aperture_radius_m = 0;
+    EXPECT_FALSE(rays(flat).has_lens());
+    EXPECT_FALSE(rays(with_lens(camera, 0, 1)).has_lens());
+}
+
 TEST(Camera, NonsenseIsRefused)
 {
     double const nan = std::numeric_limits<double>::quiet_NaN();

@@ -126,6 +126,25 @@ cameras:
     EXPECT_LT(glm::distance(-dvec3(w.cameras[1].world_from_camera[2]), dvec3{0, -1, 0}), 1e-12);
 }
 
+TEST(SceneFile, CamerasHaveLenses)
+{
+    auto const camera = [](std::string const& keys) {
+        return world_of(parse("models: [{generate: {kind: cornell}}]\n"
+                              "cameras: [{name: front, from: [0, 1, 5], at: [0, 1, 1]" +
+                              keys + "}]"))
+            .cameras[0];
+    };
+    EXPECT_EQ(camera("").aperture_radius_m, 0);
+    Camera const lens = camera(", aperture_radius: 0.02, focus_distance: 3");
+    EXPECT_EQ(lens.aperture_radius_m, 0.02);
+    EXPECT_EQ(lens.focus_distance_m, 3);
+    EXPECT_DOUBLE_EQ(camera(", aperture_radius: 0.02").focus_distance_m, 4) << "on what it looks at";
+    for (char const* bad : {", focus_distance: 3", ", aperture_radius: -1", ", aperture_radius: .nan",
+                            ", aperture_radius: 0.1, focus_distance: 0",
+                            ", aperture_radius: 0.1, focus_distance: .inf", ", aperture_radius: 0.1, height: 2"})
+        EXPECT_THROW(camera(bad), InputError) << bad;
+}
+
 TEST(SceneFile, CamerasLeaveSkinsAndClipsWithTheirNodes)
 {
     Scene const scene = parse(R"(

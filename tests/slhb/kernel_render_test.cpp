@@ -166,6 +166,22 @@ void check_nothing()
 }
 LIGHTWELL_TEST_BOTH(KernelRender, EmptySceneIsBlackAndEmptySkyIsSky, check_nothing);
 
+template <Space S>
+void check_lens()
+{
+    World const world = world_of(box_with_block_and_lamp());
+    Camera camera = room_camera();
+    camera.aperture_radius_m = 0.1;
+    camera.focus_distance_m = 2;
+    RenderSettings const s = settings_of(16, 2);
+    SlhbRun const expected = render_with_slhb(world, camera, s);
+    expect_same_picture(render_with_kernels(S, world, camera, s), expected, "lens");
+    camera.aperture_radius_m = 0;
+    EXPECT_NE(render_with_slhb(world, camera, s).result.picture.find("depth")->data,
+              expected.result.picture.find("depth")->data);
+}
+LIGHTWELL_TEST_BOTH(KernelRender, LensesAreThoseOfTheCpu, check_lens);
+
 TEST(KernelRender, WhatKernelsLackIsRefused)
 {
     World const world = world_of(room());

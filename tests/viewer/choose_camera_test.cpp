@@ -68,6 +68,45 @@ TEST(ChooseCamera, UnknownNamesAreAnsweredWithTheKnownOnes)
     }
 }
 
+TEST(ChooseCamera, PutsALensBeforeTheCamera)
+{
+    gi::World world = box_world({camera("front"), camera("side")}); // from (0, 0, 9), along -z
+    world.cameras[1].aperture_radius_m = 0.5;
+    world.cameras[1].focus_distance_m = 7;
+    CameraChoice choice;
+    choice.aperture_radius_m = 0.02;
+    ChosenCamera chosen = choose_camera(world, choice);
+    EXPECT_EQ(chosen.camera.aperture_radius_m, 0.02);
+    EXPECT_NEAR(chosen.camera.focus_distance_m, 4, 1e-6) << "the middle of the scene is at z = 5";
+    EXPECT_FALSE(chosen.note.empty());
+
+    choice.name = "side";
+    chosen = choose_camera(world, choice);
+    EXPECT_EQ(chosen.camera.focus_distance_m, 7) << "its own";
+    EXPECT_TRUE(chosen.note.empty());
+    choice.focus_distance_m = 3;
+    EXPECT_EQ(choose_camera(world, choice).camera.focus_distance_m, 3);
+    choice.aperture_radius_m = 0;
+    EXPECT_THROW(choose_camera(world, choice), gi::InputError) << "a pinhole has no focus";
+    choice.focus_distance_m = {};
+    EXPECT_EQ(choose_camera(world, choice).camera.aperture_radius_m, 0);
+
+    CameraChoice at;
+    at.look_from = gi::dvec3{2, 3, 0};
+    at.look_at = gi::dvec3{2, 3, -2};
+    at.aperture_radius_m = 0.1;
+    EXPECT_DOUBLE_EQ(choose_camera(world, at).camera.focus_distance_m, 2);
+
+    CameraChoice away;
+    away.aperture_radius_m = 0.1;
+    world.cameras[0] = gi::look_at({0, 0, 9}, {0, 0, 10}, 30);
+    EXPECT_THROW(choose_camera(world, away), gi::InputError) << "the middle of the scene is behind it";
+    world.cameras[0] = camera("front");
+    world.cameras[0].orthographic = true;
+    away.focus_distance_m = 1;
+    EXPECT_THROW(choose_camera(world, away), gi::InputError);
+}
+
 TEST(ChooseCamera, RefusesContradictions)
 {
     gi::World world = box_world({camera("front")});

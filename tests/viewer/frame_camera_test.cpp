@@ -77,5 +77,24 @@ TEST(FrameCamera, AnimatedCamerasMoveAndTheFramingOneRests)
     EXPECT_EQ(animated.of(second, 1, 0.5).world_from_camera, second.cameras[0].world_from_camera);
 }
 
+TEST(FrameCamera, AFocusOnceChosenStays)
+{
+    gi::World first = box_world(), second = first;
+    first.cameras = second.cameras = {gi::look_at({0, 0, 9}, {0, 0, 0}, 30)};
+    second.bounds.high += 10.0f;
+    CameraChoice choice;
+    choice.aperture_radius_m = 0.1;
+    FrameCamera const camera(first, choice, {});
+    EXPECT_FALSE(camera.note().empty());
+    EXPECT_NEAR(camera.of(first, 0, 0).focus_distance_m, 4, 1e-6);
+    EXPECT_EQ(camera.of(second, 0, 0).focus_distance_m, camera.of(first, 0, 0).focus_distance_m);
+
+    gi::CameraPath path;
+    path.keys.emplace_back().from = {0, 0, 9};
+    EXPECT_THROW(FrameCamera(first, choice, {path, 0}), gi::InputError) << "how far is not known on a path";
+    choice.focus_distance_m = 3;
+    EXPECT_EQ(FrameCamera(first, choice, {path, 0}).of(first, 0, 0).focus_distance_m, 3);
+}
+
 } // namespace
 } // namespace viewer

@@ -55,6 +55,50 @@ TEST(Frames, AreThePicturesOfTheirTimes)
     }
 }
 
+/// Blurred by motion, too, and an interruption changes nothing.
+TEST(Frames, AreThePicturesOfTheirShutters)
+{
+    TemporaryFolder const folder;
+    for (std::string const method : {"reference", "slhb"}) {
+        std::string const how = " --size 32x24 --paths 4 --camera gallery --method " + method;
+        std::string const call = "render atrium --frames 3:5@7 --out f_%d.exr --shutter 0.1" + how;
+        run_well(call, folder.path());
+        for (int k = 3; k < 5; ++k) {
+            std::string const name = "f_" + std::to_string(k) + ".exr";
+            run_well(gi::read_picture(folder / name).metadata.at("command").substr(10) + " --out one.exr",
+                     folder.path());
+            EXPECT_EQ(difference(folder / name, folder / "one.exr"), "");
+        }
+        std::string const kept = file_text(folder / "f_4.exr");
+        std::filesystem::remove(folder / "f_4.exr");
+        run_well(call + " --resume", folder.path());
+        EXPECT_TRUE(file_text(folder / "f_4.exr") == kept);
+        run_well("render atrium --frames 3:5@7 --out sharp_%d.exr --stats a.json" + how, folder.path());
+        EXPECT_NE(difference(folder / "f_3.exr", folder / "sharp_3.exr"), "") << "the figure walks";
+        EXPECT_EQ(json_file(folder / "a.json")["settings"]["shutter_s"], 0);
+        run_well("render atrium --frames 3:5@7 --shutter 0 --out closed_%d.exr" + how, folder.path());
+        EXPECT_TRUE(file_text(folder / "closed_3.exr") == file_text(folder / "sharp_3.exr"));
+        for (std::string const file :
+             {"f_3.exr", "f_4.exr", "sharp_3.exr", "sharp_4.exr", "closed_3.exr", "closed_4.exr"})
+            std::filesystem::remove(folder / file);
+    }
+}
+
+/// The camera's motion blurs, and without any the shutter does nothing and says so.
+TEST(Frames, OfWhatStandsStillHaveNoShutter)
+{
+    TemporaryFolder const folder;
+    std::string const call = "render cornell --size 24x24 --paths 4 --method slhb ";
+    Outcome const o = run_well(call + "--time 0 --shutter 1 --out open.exr", folder.path());
+    EXPECT_TRUE(contains(o.err, "--shutter does nothing")) << o.err;
+    run_well(call + "--time 0 --out closed.exr", folder.path());
+    EXPECT_EQ(difference(folder / "open.exr", folder / "closed.exr"), "");
+
+    run_well(call + "--frames 0:2@8 --turntable 90deg --shutter 0.1 --out open_%d.exr", folder.path());
+    run_well(call + "--frames 0:2@8 --turntable 90deg --out closed_%d.exr", folder.path());
+    EXPECT_NE(difference(folder / "open_0.exr", folder / "closed_0.exr"), "");
+}
+
 TEST(Frames, OfACameraPathAreThePicturesOfTheirTimes)
 {
     TemporaryFolder const folder;
@@ -239,6 +283,7 @@ TEST(Frames, OfAnotherRenderAreKept)
                               {"--bounces 2", "its bounces is 64, not 2"},
                               {"--paths 2", "its stop is --paths 1, not --paths 2"},
                               {"--size 8x8", "its size is 16x16, not 8x8"},
+                              {"--shutter 0.1", "its shutter is 0, not 0.1"},
                               {"--half", "its numbers is single, not half"},
                               {"--fov 20", "its scene, camera or settings are others"}}) {
         std::string changed = call;

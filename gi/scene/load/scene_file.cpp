@@ -218,6 +218,24 @@ private:
         scene_.environment = std::move(map);
     }
 
+    static void add_lens(YamlReader const& c, Camera& camera)
+    {
+        if (c.has("aperture_radius")) camera.aperture_radius_m = c.at("aperture_radius").number(0, kWidestLens_m);
+        if (c.has("focus_distance")) {
+            camera.focus_distance_m = c.at("focus_distance").number(kNearestFocus_m, kFarthestFocus_m);
+            if (!c.has("aperture_radius"))
+                throw c.error("a camera has focus_distance alone", "without a lens all is in focus",
+                              "add aperture_radius, m");
+        } else if (camera.aperture_radius_m > 0) {
+            camera.focus_distance_m = glm::length(c.at("at").vector() - c.at("from").vector());
+        }
+        try {
+            check_lens(camera);
+        } catch (InputError const& e) {
+            throw c.error("the camera's lens cannot be", e.what(), "change aperture_radius or focus_distance");
+        }
+    }
+
     /// The file's own cameras come first: they are what its author wants to see.
     void add_cameras(YamlReader const& list)
     {
@@ -242,6 +260,7 @@ private:
                 camera.ymag_m = 0.5 * c.at("height").number(1e-9, 1e9);
             }
             camera.name = c.at("name").text();
+            add_lens(c, camera);
             Node node;
             node.name = camera.name;
             node.camera = std::int32_t(scene_.cameras.size());

@@ -16,7 +16,7 @@ std::map<std::string, std::set<std::string>> const& scene_file_keys()
         {"spot_light", {"type", "position", "direction", "target", "intensity", "range", "cone"}},
         {"directional_light", {"type", "direction", "intensity"}},
         {"rectangle_light", {"type", "position", "u", "v", "size", "direction", "target", "radiance"}},
-        {"camera", {"name", "from", "at", "fov", "height"}},
+        {"camera", {"name", "from", "at", "fov", "height", "aperture_radius", "focus_distance"}},
         {"material",
          {"match", "model", "base_color", "roughness", "metallic", "specular", "ior", "transmission", "emission",
           "alpha", "double_sided", "thin", "phong"}},

@@ -1,0 +1,119 @@
+// Depth of field, by both methods: the circle of confusion of the thin lens, its energy, and what is in focus.
+
+#include "gi/reference/reference.h"
+#include "tests/slhb/blur_shapes.h"
+#include "tests/slhb/slhb_render.h"
+
+namespace gi::test {
+namespace {
+
+constexpr double kRadius = 0.4, kFocus = 2;
+
+Camera eye(bool lens)
+{
+    Camera camera = look_at({0, 0, 0}, {0, 0, -1}, 30);
+    if (lens) {
+        camera.aperture_radius_m = kRadius;
+        camera.focus_distance_m = kFocus;
+    }
+    return camera;
+}
+
+/// A luminous square of side 4 pixels before the middle of the view.
+Scene luminous_square(double depth)
+{
+    Scene scene;
+    float const d = float(depth), half = float(2 * pixel_tangent() * depth);
+    add_quad(scene, {-half, -half, -d}, {2 * half, 0, 0}, {0, 2 * half, 0},
+             add_material(scene, emitter(vec3{1}, true)));
+    return scene;
+}
+
+class Lens : public testing::TestWithParam<char const*> {
+protected:
+    Picture render(World const& world, Camera const& camera, RenderSettings const& s) const
+    {
+        Report report;
+        bool const slhb = std::string(GetParam()) == "slhb";
+        return (slhb ? render_slhb : render_reference)(world, camera, s, {}, {}, report).picture;
+    }
+};
+
+/// Nearer and farther than the plane in focus. A square of side a, a disk of radius c and the pixel have, in each
+/// direction, the variance a^2 / 12 + c^2 / 4 + 1 / 12 px^2, and all light is still there.
+TEST_P(Lens, TheCircleOfConfusionHasTheSizeOfTheThinLens)
+{
+    for (double const depth : {1.4, 4.0}) {
+        Picture const p = render(world_of(luminous_square(depth)), eye(true), blur_settings(2048));
+        double const c = kRadius * std::abs(depth - kFocus) / (depth * kFocus) / pixel_tangent();
+        BlurShape const shape = measure(p);
+        EXPECT_NEAR(shape.sum, 16, 0.02 * 16) << depth;
+        EXPECT_NEAR(shape.mean.x, kBlurSize / 2.0, 0.1) << depth;
+        EXPECT_NEAR(shape.mean.y, kBlurSize / 2.0, 0.1) << depth;
+        double const variance = 16 / 12.0 + c * c / 4 + 1 / 12.0;
+        EXPECT_NEAR(shape.variance.x, variance, 0.02 * variance) << depth;
+        EXPECT_NEAR(shape.variance.y, variance, 0.02 * variance) << depth;
+        double inside = 0;
+        int pixels = 0;
+        for (int y = 0; y < kBlurSize; ++y)
+            for (int x = 0; x < kBlurSize; ++x) {
+                double const r = glm::length(dvec3{x + 0.5 - kBlurSize / 2.0, y + 0.5 - kBlurSize / 2.0, 0});
+                float const value = p.find("L0")->data[3 * (std::size_t(y) * kBlurSize + std::size_t(x))];
+                if (r > c + 2 * std::sqrt(2.0) + 1) {
+                    EXPECT_EQ(value, 0) << x << " " << y;
+                }
+                if (r > c - 3.5) continue;
+                inside += double(value);
+                ++pixels;
+            }
+        ASSERT_GT(pixels, 20);
+        double const flat = 16 / (double(kPi) * c * c);
+        EXPECT_NEAR(inside / pixels, flat, 0.03 * flat) << "the disk is even, " << depth;
+    }
+}
+
+/// In focus all is as a pinhole sees it, up to the noise.
+TEST_P(Lens, ThePlaneInFocusIsSharp)
+{
+    World const world = world_of(luminous_square(kFocus));
+    Picture const sharp = render(world, eye(false), blur_settings(256)),
+                  lens = render(world, eye(true), blur_settings(256));
+    double most = 0;
+    for (std::size_t k = 0; k < sharp.find("L0")->data.size(); ++k)
+        most = std::max(most, std::abs(double(sharp.find("L0")->data[k]) - double(lens.find("L0")->data[k])));
+    // Of a pixel that is half covered, 256 paths know the share to 0.03; passes of slhb share their places.
+    EXPECT_LT(most, std::string(GetParam()) == "slhb" ? 0.02 : 0.2);
+}
+
+/// A lens of radius 0 is no lens, bit for bit, whatever it focuses on.
+TEST_P(Lens, APinholeIsAPinhole)
+{
+    World const world = world_of(box_with_block_and_lamp());
+    Camera closed = look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 60);
+    Picture const pinhole = render(world, closed, small_settings(24, 4, 2));
+    closed.focus_distance_m = 1;
+    EXPECT_EQ(render(world, closed, small_settings(24, 4, 2)).find("color")->data, pinhole.find("color")->data);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Lens, testing::Values("slhb", "reference"));
+
+/// A block before a room, out of focus: both methods agree, and a pinhole sees something else.
+TEST(LensOfBothMethods, GivesThePictureOfTheReference)
+{
+    World const world = world_of(box_with_block_and_lamp());
+    Camera camera = look_at({0.1, -0.3, 0.95}, {-0.1, -0.5, 0}, 70);
+    camera.aperture_radius_m = 0.15;
+    camera.focus_distance_m = 1.9; // the wall behind
+    RenderSettings s = small_settings(48, 256, 2);
+    s.slhb.resolution = 96;
+    Report report;
+    Picture const expected = render_reference(world, camera, s, {}, {}, report).picture,
+                  found = render_with_slhb(world, camera, s).result.picture;
+    camera.aperture_radius_m = 0;
+    Picture const sharp = render_with_slhb(world, camera, s).result.picture;
+    EXPECT_LT(block_distance(found, expected), 0.03 * mean_of(expected).mean);
+    EXPECT_GT(block_distance(sharp, expected), 3 * block_distance(found, expected));
+}
+
+} // namespace
+} // namespace gi::test

@@ -1,0 +1,55 @@
+#include "viewer/exposure.h"
+
+#include "gi/scene/motion.h"
+#include "gi/transport/pass_samples.h"
+
+#include <algorithm>
+
+namespace viewer {
+
+bool depends_on_time(gi::Scene const& scene, bool scene_still, CameraMotion const& camera)
+{
+    if (camera.path || camera.turn_rad != 0) return true;
+    if (scene_still) return false;
+    gi::Motion const motion = gi::find_motion(scene);
+    auto const moves = [](std::string const& why) { return !why.empty(); };
+    return std::ranges::any_of(motion.node, moves) || std::ranges::any_of(motion.morph, moves);
+}
+
+namespace {
+
+/// Triangles that move would be appended to all stored axes anew for every path: fresh axes are less work.
+/// Measured on a running figure under a sky: 7 times less, with the same error.
+gi::RenderSettings with_moving_triangles(gi::RenderSettings settings)
+{
+    gi::SlhbSettings& s = settings.slhb;
+    if (s.schedule == gi::Schedule::automatic && s.directions.empty() && s.fresh_axes == 0)
+        s.schedule = gi::Schedule::streamed;
+    return settings;
+}
+
+} // namespace
+
+gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposure const& exposure,
+                        gi::RenderSettings const& settings, gi::StopRequest const& stop,
+                        gi::RenderProgress const& progress, gi::Report& report)
+{
+    gi::Camera const first = exposure.camera(world.world(), 0);
+    bool const moves = !exposure.still && world.world().static_triangles < world.world().triangles.size();
+    auto const renderer = method.frames(world, first, moves ? with_moving_triangles(settings) : settings, report);
+    auto const moments = [&](std::uint32_t pass) {
+        double const after_s = exposure.shutter_s * gi::moment_of_pass(settings.seed, pass);
+        gi::Moment now;
+        if (!exposure.still) {
+            gi::StageTimer const timer(report, "world");
+            now.changes = world.advance(exposure.from_s + after_s);
+        }
+        now.camera = exposure.camera(world.world(), after_s);
+        return now;
+    };
+    gi::RenderResult result = renderer->frame(first, stop, progress, moments);
+    if (!exposure.still) world.advance(exposure.from_s);
+    return result;
+}
+
+} // namespace viewer
