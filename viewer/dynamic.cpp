@@ -195,7 +195,7 @@ private:
                       over(0.95, whole),
                       over(0.99, whole),
                       over(1, whole),
-                      growth(memory),
+                      settled(memory),
                       over(0.5, [&](std::size_t f) { return paths[f]; }),
                       over(0.5, [&](std::size_t f) { return errors[f].relmse; }),
                       over(0.5, [&](std::size_t f) { return errors[f].flip; }),
@@ -214,8 +214,8 @@ private:
 
     double first_s() const { return o_.render.time_s.value_or(0); }
 
-    /// Memory after the first frames, when all that lasts is there, to the last.
-    static Cell growth(std::vector<double> const& memory)
+    /// Of the last frame, and what was seen since all that lasts is there.
+    static Cell settled(std::vector<double> const& memory)
     {
         constexpr std::size_t kSettled = 100;
         std::span const later = std::span(memory).subspan(std::min(kSettled, memory.size() - 1));

@@ -116,9 +116,10 @@ gi::RenderSettings make_settings(RenderOptions& o)
 gi::DenoiseSettings make_denoise_settings(RenderOptions const& o, gi::RenderSettings const& s)
 {
     gi::DenoiseSettings d;
-    d.denoiser = o.denoise == "atrous"          ? gi::Denoiser::atrous
-                 : o.denoise == "discontinuity" ? gi::Denoiser::discontinuity
-                                                : gi::Denoiser::none;
+    d.denoiser = o.denoise == "atrous" ? gi::Denoiser::atrous
+                 : o.denoise == "none" ? gi::Denoiser::none
+                                       : gi::Denoiser::discontinuity;
+    if (o.denoise == "wide") d.reach = 2;
     d.threads = s.threads;
     if (d.denoiser == gi::Denoiser::atrous && s.paths < 2)
         throw gi::InputError("--denoise atrous with --paths 1",
@@ -159,8 +160,9 @@ void declare_denoise(CLI::App& c, RenderOptions& o)
          "filter of the finished picture, which stops at edges; changes color, L1 and L2, while variance and "
          "the estimated error stay those of the unfiltered picture:"
          "\n  atrous: wavelet that goes by the variance, 2 paths or more"
-         "\n  discontinuity: mean over 4 x 4 pixels of one surface")
-        ->check(CLI::IsMember({"none", "atrous", "discontinuity"}))
+         "\n  discontinuity: mean over 4 x 4 pixels of one surface"
+         "\n  wide: the same, and once more over 20 x 20 for indirect light")
+        ->check(CLI::IsMember({"none", "atrous", "discontinuity", "wide"}))
         ->capture_default_str();
 }
 

@@ -12,11 +12,11 @@ namespace gi {
 void advise_huge_pages(void* first, std::size_t bytes);
 
 /// v.resize(count), on large pages where it needs new memory.
-template <class T>
-void resize_on_huge_pages(std::vector<T>& v, std::size_t count)
+template <class T, class Allocator>
+void resize_on_huge_pages(std::vector<T, Allocator>& v, std::size_t count)
 {
     if (count > v.capacity()) {
-        std::vector<T> grown;
+        std::vector<T, Allocator> grown;
         grown.reserve(std::max(count, 2 * v.size()));
         advise_huge_pages(grown.data(), grown.capacity() * sizeof(T)); // before the pages are touched
         grown.insert(grown.end(), v.begin(), v.end());

@@ -18,6 +18,9 @@ void check(Picture const& picture, DenoiseSettings const& s)
     if (s.window < 1 || s.window > kMaxWindow)
         throw InputError("a discontinuity buffer of " + std::to_string(s.window) + " pixels",
                          "there are 1 to " + std::to_string(kMaxWindow), "choose one of them");
+    if (s.reach < 0 || s.reach > kMaxReach / s.window)
+        throw InputError("indirect light over " + std::to_string(s.reach) + " windows to each side",
+                         "they may reach over " + std::to_string(kMaxReach) + " pixels", "choose fewer");
     for (char const* const name : {"color", "L0"})
         if (picture.find(name) == nullptr)
             throw InputError(std::string("the picture has no layer '") + name + "'",
@@ -57,7 +60,8 @@ DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings)
         bool const atrous = settings.denoiser == Denoiser::atrous;
         FilterInput input = make_filter_input(picture, atrous);
         store(picture, input.guides,
-              atrous ? filter_atrous(input, settings.iterations) : filter_discontinuity(input, settings.window));
+              atrous ? filter_atrous(input, settings.iterations)
+                     : filter_discontinuity(input, settings.window, settings.reach));
         report = input.report;
     });
     return report;

@@ -13,13 +13,14 @@ enum class Denoiser : std::uint8_t {
     discontinuity ///< mean over a window of one surface (Keller & Heidrich 2001, Wald et al. 2002)
 };
 
-inline constexpr int kMaxIterations = 5, kMaxWindow = 32;
+inline constexpr int kMaxIterations = 5, kMaxWindow = 32, kMaxReach = 32; ///< pixels
 
 struct DenoiseSettings {
     Denoiser denoiser = Denoiser::atrous;
     int iterations = kMaxIterations; ///< of a-trous: 1 to 5; the last one reaches 2^iterations pixels to each side
     int window = 4;                  ///< of discontinuity: pixels across, 1 to 32
-    int threads = 0;                 ///< 0 = all
+    int reach = 0;   ///< of discontinuity: windows to each side for indirect light; window * reach <= kMaxReach
+    int threads = 0; ///< 0 = all
 };
 
 /// Pixels that keep their values for want of something to go by.

@@ -89,7 +89,11 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
             lights_[i] = {direct[i], over(rgb(l2, i), a), 1, rgb(l0, i), a, 1, false};
         }
     });
-    if (frames_ == 0) return;
+    if (frames_ == 0) {
+        total.surfaces = total.started =
+            std::size_t(std::ranges::count_if(surfaces_, [](Surface const& s) { return s.depth > 0; }));
+        return;
+    }
     Window const window(direct, width, height);
     // Whether a surface is still there now, in a pixel next to this one.
     auto const is_beside = [&](Surface const& s, int x, int y) {

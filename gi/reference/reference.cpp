@@ -32,7 +32,8 @@ void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, st
             auto next = batch.begin();
             for (int y = top; y < bottom; ++y)
                 for (int x = left; x < right; ++x)
-                    sums.pixels[std::size_t(y) * std::size_t(sums.width) + std::size_t(x)].add((next++)->sample);
+                    sums.add(std::size_t(y) * std::size_t(sums.width) + std::size_t(x), (next++)->sample,
+                             sums.paths + i);
         }
     });
     sums.paths += paths;

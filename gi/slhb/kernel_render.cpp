@@ -147,6 +147,9 @@ void check_kernels_can(Camera const& camera, SlhbSettings const& s)
     if (s.interleave > 1)
         throw InputError("--device cuda with --interleave", "its kernels take indirect light in every pixel",
                          suggestion);
+    if (s.fresh_lamps > 0)
+        throw InputError("--device cuda with --fresh-lamps", "its shadow maps are drawn anew in every pass",
+                         suggestion);
     if (s.gather) throw InputError("--device cuda with --gather", "its kernels choose axes by chance", suggestion);
 }
 
@@ -207,7 +210,8 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
         paths.pass = index;
         std::vector<PathSample> const samples =
             scene.trace(paths, axes, lamps.fixed() ? lamps.chances() : AliasTableView{});
-        tbb::parallel_for(std::size_t(0), samples.size(), [&](std::size_t p) { sums.pixels[p].add(samples[p]); });
+        tbb::parallel_for(std::size_t(0), samples.size(),
+                          [&](std::size_t p) { sums.add(p, samples[p], sums.paths); });
         sums.counts.cut_paths += scene.last_pass().cut_paths;
         sums.counts.invalid_paths += scene.last_pass().invalid_paths;
         ++sums.paths;

@@ -34,8 +34,6 @@ void exact_hits(ExactVisibility const& exact, CameraRays const& camera, RenderSe
     for (std::size_t k = 0; k < hits.size(); ++k) out[k].triangle = hits[k].triangle;
 }
 
-Bounds merged(Bounds const& a, Bounds const& b) { return {glm::min(a.low, b.low), glm::max(a.high, b.high)}; }
-
 bool contains(Bounds const& outer, Bounds const& inner)
 {
     return inner.empty() || (glm::all(glm::lessThanEqual(outer.low, inner.low)) &&
@@ -79,8 +77,17 @@ void SlhbRenderer::build_exact()
     if (slhb_.exact.any()) judge_ = build();
 }
 
+/// Also the last surface sends paths along axes: only where the sky or exact rays count there.
+bool SlhbRenderer::to_the_end() const { return exact_ != nullptr || !view(world_).environment_radiance.empty(); }
+
 void SlhbRenderer::make_axes()
 {
+    if (axes_) {
+        earlier_sets_.axes += axes_->built();
+        earlier_sets_.layers += axes_->layers();
+        earlier_sets_.lost += axes_->lost();
+    }
+    walks_ = settings_.bounces > 0 || to_the_end();
     bool const apart = slhb_.schedule != Schedule::streamed; // else all is built in every pass anyway
     axes_.emplace(AxisSet::Source{.bounds = grid_bounds_,
                                   .soup = soup_,
@@ -90,7 +97,7 @@ void SlhbRenderer::make_axes()
                                   .packed = slhb_.packed,
                                   .seed = settings_.seed,
                                   .first_moving = apart ? first_moving_ : soup_.count});
-    if (slhb_.schedule != Schedule::stored) return;
+    if (slhb_.schedule != Schedule::stored || !walks_) return;
     StageTimer const timer(report_, "build (hit buffers)");
     axes_->store(make_directions(slhb_.directions));
     axes_->move();
@@ -98,6 +105,7 @@ void SlhbRenderer::make_axes()
 
 void SlhbRenderer::make_lamps()
 {
+    if (lamps_) earlier_sets_.maps += lamps_->maps_built();
     lamps_.emplace(world_, grid_bounds_, soup_, cut_outs_,
                    LampSettings{.count = std::uint32_t(slhb_.lamps),
                                 .fresh = std::uint32_t(slhb_.fresh_lamps),
@@ -121,13 +129,14 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
         }
         if (contains(grid_bounds_, world_.bounds)) {
             StageTimer const timer(report_, "layers that moved");
-            if (slhb_.schedule == Schedule::stored) axes_->move(); // for others every pass does
+            if (slhb_.schedule == Schedule::stored && walks_) axes_->move(); // for others every pass does
         } else {
             // Some room, so that it does not happen in every frame.
             Bounds const b = world_.bounds;
             vec3 const room = 0.1f * (b.high - b.low);
-            grid_bounds_ = merged(grid_bounds_, {b.low - room, b.high + room});
-            report_.lose("frames that left the bounds of the hit buffers, which were built anew");
+            grid_bounds_ = joined(grid_bounds_, {b.low - room, b.high + room});
+            if (slhb_.schedule != Schedule::streamed) // which is built anew in every pass
+                report_.lose("frames that left the bounds of the hit buffers, which were built anew");
             make_axes();
             lights = true; // the maps of parallel light hold the same bounds
         }
@@ -150,14 +159,12 @@ void SlhbRenderer::set_camera(Camera const& camera)
 
 void SlhbRenderer::pass(std::uint32_t index, Accumulator& sums)
 {
-    // Surfaces that a path may leave along an axis: the last one only where the sky or exact rays count.
-    bool const to_the_end = exact_ != nullptr || !view(world_).environment_radiance.empty();
-    bool const walks = settings_.bounces > 0 || to_the_end;
+    // Surfaces that a path may leave along an axis.
     auto const sequences =
-        std::uint32_t(std::clamp(settings_.bounces + (to_the_end ? 1 : 0), 1, int(AxisSet::kSequences)));
+        std::uint32_t(std::clamp(settings_.bounces + (to_the_end() ? 1 : 0), 1, int(AxisSet::kSequences)));
     {
         StageTimer const timer(report_, "hit buffers of a pass");
-        if (walks && slhb_.schedule != Schedule::stored) {
+        if (walks_ && slhb_.schedule != Schedule::stored) {
             axes_->refresh(sequences, std::uint32_t(slhb_.axes), std::uint32_t(slhb_.fresh_axes), index);
             axes_->move();
         }
@@ -171,14 +178,14 @@ void SlhbRenderer::pass(std::uint32_t index, Accumulator& sums)
         primary_->refresh(eye_of_pass(rays_, settings_.seed, index), near_plane(world_.bounds), index);
     }
     StageTimer const timer(report_, "paths");
-    trace(index, sums, walks);
+    trace(index, sums);
     ++sums.paths;
 }
 
-void SlhbRenderer::trace(std::uint32_t index, Accumulator& sums, bool walks)
+void SlhbRenderer::trace(std::uint32_t index, Accumulator& sums)
 {
     SlhbTracer const tracer(world_, rays_, settings_, slhb_);
-    std::uint32_t const gathered = slhb_.gather && walks
+    std::uint32_t const gathered = slhb_.gather && walks_
                                        ? index / std::uint32_t(slhb_.interleave * slhb_.interleave) %
                                              std::uint32_t(axes_->first_bounce_axes())
                                        : kNoPrimitive;
@@ -224,7 +231,7 @@ void SlhbRenderer::trace(std::uint32_t index, Accumulator& sums, bool walks)
         for (std::size_t p = first; p < last; ++p) {
             if (sharing && endings_[p].layer != kNoLayerHit)
                 samples_[p].radiance[2] += endings_[p].throughput * shared_.radiance(endings_[p]);
-            sums.pixels[p].add(samples_[p]);
+            sums.add(p, samples_[p], sums.paths);
         }
     });
     double direct_s = 0, indirect_s = 0;
@@ -248,11 +255,12 @@ void SlhbRenderer::report_work() const
     report_.count("shadow-map look-ups", double(done_.shadow_lookups));
     report_.count("exact rays", double(done_.exact_rays));
     report_.count("layers shaded for several paths", double(shared_.shaded()));
-    report_.count("axes built", double(axes_->built()));
-    report_.count("layers per texel, mean", axes_->built() > 0 ? double(axes_->layers()) / double(axes_->built()) /
-                                                                     (double(slhb_.resolution) * slhb_.resolution)
-                                                               : 0);
-    report_.count("shadow maps built", double(lamps_->maps_built()));
+    double const axes = double(earlier_sets_.axes + axes_->built()),
+                 layers = double(earlier_sets_.layers + axes_->layers());
+    report_.count("axes built", axes);
+    report_.count("layers per texel, mean",
+                  axes > 0 ? layers / axes / (double(slhb_.resolution) * slhb_.resolution) : 0);
+    report_.count("shadow maps built", double(earlier_sets_.maps + lamps_->maps_built()));
 }
 
 } // namespace gi

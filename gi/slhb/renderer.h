@@ -31,8 +31,9 @@ public:
 
     /// Motion vectors of the last pass, to the frame that ended before it; not with orthographic cameras.
     void add_motion(Picture& picture) const;
-    double rays() const;                                        ///< look-ups and exact rays, so far
-    std::uint64_t lost_layers() const { return axes_->lost(); } ///< beyond the limit of a texel, so far
+    double rays() const; ///< look-ups and exact rays, so far
+    /// Beyond the limit of a texel, so far.
+    std::uint64_t lost_layers() const { return earlier_sets_.lost + axes_->lost(); }
     /// What has been done so far.
     void report_work() const;
 
@@ -40,7 +41,8 @@ private:
     void build_exact();
     void make_axes();
     void make_lamps();
-    void trace(std::uint32_t index, Accumulator& sums, bool walks);
+    bool to_the_end() const;
+    void trace(std::uint32_t index, Accumulator& sums);
 
     World const& world_;
     RenderSettings settings_;
@@ -48,6 +50,7 @@ private:
     std::size_t first_moving_; ///< triangle
     Report& report_;
     bool orthographic_;
+    bool walks_;      ///< paths may leave a surface along an axis
     CameraRays rays_; ///< through the middle of the lens, where motion vectors are measured
     TriangleSoup soup_;
     CutOuts cut_outs_;
@@ -61,6 +64,10 @@ private:
     std::vector<PathSample> samples_;
     std::vector<Ending> endings_;
     SlhbCounts done_;
+    /// Of sets of axes and lamps that are no more.
+    struct {
+        std::uint64_t axes = 0, layers = 0, lost = 0, maps = 0;
+    } earlier_sets_;
 };
 
 } // namespace gi

@@ -29,8 +29,8 @@ double Accumulator::relative_mse() const
         }
         return sum;
     };
-    double const sum = tbb::parallel_deterministic_reduce(
-        tbb::blocked_range<std::size_t>(0, pixels.size(), 4096), 0.0, sum_of, std::plus<>());
+    double const sum = tbb::parallel_deterministic_reduce(tbb::blocked_range<std::size_t>(0, pixels.size(), 4096),
+                                                          0.0, sum_of, std::plus<>());
     return sum / (3.0 * double(pixels.size()));
 }
 
@@ -39,34 +39,35 @@ Picture Accumulator::picture(World const& world) const
     Picture out;
     out.width = width;
     out.height = height;
-    auto const fill = [&](char const* name, int channels, auto const& value) {
-        Layer& layer = out.add(name, channels);
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 4096), [&](auto const& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                dvec3 const v = value(pixels[i]);
-                for (int c = 0; c < channels; ++c)
-                    layer.data[i * std::size_t(channels) + std::size_t(c)] = float(v[c]);
-            }
-        });
-    };
-    double const n = std::max(1.0, double(paths));
-    fill("color", 3, [&](PixelSums const& p) { return (p.radiance[0] + p.radiance[1] + p.radiance[2]) / n; });
-    fill("L0", 3, [&](PixelSums const& p) { return p.radiance[0] / n; });
-    fill("L1", 3, [&](PixelSums const& p) { return p.radiance[1] / n; });
-    fill("L2", 3, [&](PixelSums const& p) { return p.radiance[2] / n; });
-    if (world.scene->background.kind == BackgroundKind::transparent)
-        fill("alpha", 1, [&](PixelSums const& p) { return dvec3{p.hits / n}; });
-    fill("variance", 3, [&](PixelSums const& p) { return variance_of_mean(p); });
-    // Surface layers average over the paths that met a surface; where none did they are 0.
-    auto const over_hits = [](PixelSums const& p, dvec3 v) { return p.hits > 0 ? v / p.hits : dvec3{0}; };
-    fill("albedo", 3, [&](PixelSums const& p) { return over_hits(p, p.albedo); });
-    fill("normal", 3, [&](PixelSums const& p) {
-        double const length = glm::length(p.normal);
-        return length > 0 ? p.normal / length : dvec3{0};
+    auto const layer = [&](char const* name, int channels) { return out.add(name, channels).data.data(); };
+    float* const color = layer("color", 3);
+    float* const parts[] = {layer("L0", 3), layer("L1", 3), layer("L2", 3)};
+    bool const transparent = world.scene->background.kind == BackgroundKind::transparent;
+    float* const alpha = transparent ? layer("alpha", 1) : nullptr;
+    float *const variance = layer("variance", 3), *const albedo = layer("albedo", 3),
+                 *const normal = layer("normal", 3), *const depth = layer("depth", 1),
+                 *const position = layer("position", 3);
+    if (paths == 0) return out;
+    double const n = double(paths);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 4096), [&](auto const& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            PixelSums const& p = pixels[i];
+            auto const put = [i](float* to, dvec3 v) {
+                for (int c = 0; c < 3; ++c) to[3 * i + std::size_t(c)] = float(v[c]);
+            };
+            put(color, (p.radiance[0] + p.radiance[1] + p.radiance[2]) / n);
+            for (std::size_t k = 0; k < 3; ++k) put(parts[k], p.radiance[k] / n);
+            if (alpha != nullptr) alpha[i] = float(p.hits / n);
+            put(variance, variance_of_mean(p));
+            // Surface layers average over the paths that met a surface; where none did they are 0.
+            if (!(p.hits > 0)) continue;
+            double const length = glm::length(p.normal);
+            put(albedo, p.albedo / p.hits);
+            put(normal, length > 0 ? p.normal / length : dvec3{0});
+            depth[i] = float(p.depth / p.hits);
+            put(position, p.position / p.hits + world.origin);
+        }
     });
-    fill("depth", 1, [&](PixelSums const& p) { return over_hits(p, dvec3{p.depth}); });
-    fill("position", 3,
-         [&](PixelSums const& p) { return p.hits > 0 ? p.position / p.hits + world.origin : dvec3{0}; });
     return out;
 }
 

@@ -14,11 +14,11 @@ namespace gi {
 
 /// Sums of one pixel.
 struct PixelSums {
-    std::array<dvec3, 3> radiance{dvec3{0}, dvec3{0}, dvec3{0}}; ///< L0, L1, L2
-    dvec3 color_squared{0};                                      ///< of L0 + L1 + L2, per path
-    dvec3 albedo{0}, normal{0}, position{0};                     ///< over paths that hit something
-    double depth = 0;
-    double hits = 0;
+    std::array<dvec3, 3> radiance;  ///< L0, L1, L2
+    dvec3 color_squared;            ///< of L0 + L1 + L2, per path
+    dvec3 albedo, normal, position; ///< over paths that hit something
+    double depth;
+    double hits;
 
     void add(PathSample const& s)
     {
@@ -34,16 +34,42 @@ struct PixelSums {
     }
 };
 
+/// Leaves elements as they are in memory: large arrays whose every element is written anyway.
+template <class T>
+struct Uninitialised : std::allocator<T> {
+    static_assert(std::is_trivially_default_constructible_v<T>);
+    template <class U>
+    struct rebind {
+        using other = Uninitialised<U>;
+    };
+    template <class U>
+    void construct(U* at)
+    {
+        ::new (static_cast<void*>(at)) U;
+    }
+    template <class U, class... Args>
+    void construct(U* at, Args&&... args)
+    {
+        std::construct_at(at, std::forward<Args>(args)...);
+    }
+};
+
 struct Accumulator {
     int width = 0, height = 0;
-    std::uint32_t paths = 0; ///< per pixel
-    std::vector<PixelSums> pixels;
-    PathCounts counts;  ///< of all paths so far
-    double seconds = 0; ///< that they took
+    std::uint32_t paths = 0;                                 ///< per pixel
+    std::vector<PixelSums, Uninitialised<PixelSums>> pixels; ///< where paths > 0
+    PathCounts counts;                                       ///< of all paths so far
+    double seconds = 0;                                      ///< that they took
 
     Accumulator(int w, int h) : width(w), height(h)
     {
         resize_on_huge_pages(pixels, std::size_t(w) * std::size_t(h));
+    }
+    /// One more path of a pixel. @param before  paths of it that were added already
+    void add(std::size_t pixel, PathSample const& s, std::uint32_t before)
+    {
+        if (before == 0) pixels[pixel] = PixelSums{};
+        pixels[pixel].add(s);
     }
     dvec3 mean(PixelSums const& p) const
     {

@@ -10,7 +10,8 @@
 namespace gi::test {
 namespace {
 
-constexpr DenoiseSettings kAtrous{Denoiser::atrous}, kDiscontinuity{Denoiser::discontinuity};
+constexpr DenoiseSettings kAtrous{Denoiser::atrous}, kDiscontinuity{Denoiser::discontinuity},
+    kWide{.denoiser = Denoiser::discontinuity, .reach = 2};
 
 void set(Picture& p, char const* layer, std::size_t pixel, vec3 v)
 {
@@ -73,13 +74,16 @@ double largest_difference(Picture const& a, Picture const& b, char const* layer 
     return largest;
 }
 
-class BothFilters : public testing::TestWithParam<DenoiseSettings> {};
+class AllFilters : public testing::TestWithParam<DenoiseSettings> {};
 
-INSTANTIATE_TEST_SUITE_P(Denoise, BothFilters, testing::Values(kAtrous, kDiscontinuity), [](auto const& settings) {
-    return settings.param.denoiser == Denoiser::atrous ? "Atrous" : "Discontinuity";
-});
+INSTANTIATE_TEST_SUITE_P(Denoise, AllFilters, testing::Values(kAtrous, kDiscontinuity, kWide),
+                         [](auto const& settings) {
+                             return settings.param.denoiser == Denoiser::atrous ? "Atrous"
+                                    : settings.param.reach > 0                  ? "Wide"
+                                                                                : "Discontinuity";
+                         });
 
-TEST_P(BothFilters, KeepATextureUnderConstantLight)
+TEST_P(AllFilters, KeepATextureUnderConstantLight)
 {
     Picture p = wall(70, 50);
     for (std::size_t i = 0; i < p.pixels(); ++i) {
@@ -90,7 +94,7 @@ TEST_P(BothFilters, KeepATextureUnderConstantLight)
     EXPECT_LT(largest_difference(filtered(p, GetParam()), p), 2e-6);
 }
 
-TEST_P(BothFilters, DoNotBlurAcrossEdges)
+TEST_P(AllFilters, DoNotBlurAcrossEdges)
 {
     auto const right = [](std::size_t i) { return i % 60 >= 30; };
     for (char const* layer : {"normal", "position", "silhouette"}) {
@@ -120,7 +124,7 @@ TEST(Denoise, AtrousDoesNotBlurAcrossAlbedo)
     EXPECT_LT(largest_difference(filtered(p, kAtrous), p), 1e-5);
 }
 
-TEST_P(BothFilters, KeepTheMeanOfANoisyWall)
+TEST_P(AllFilters, KeepTheMeanOfANoisyWall)
 {
     Picture p = wall(128, 128);
     Pcg32 rng(5, 5);
@@ -145,7 +149,7 @@ TEST_P(BothFilters, KeepTheMeanOfANoisyWall)
     EXPECT_EQ(q.find("variance")->data, p.find("variance")->data);
 }
 
-TEST_P(BothFilters, DoNotSpreadWhatIsNotFinite)
+TEST_P(AllFilters, DoNotSpreadWhatIsNotFinite)
 {
     for (char const* layer : {"L1", "L2", "albedo", "normal", "position", "variance"})
         for (float const bad : {std::nanf(""), HUGE_VALF, -HUGE_VALF, 3e38f}) {
@@ -165,7 +169,7 @@ TEST_P(BothFilters, DoNotSpreadWhatIsNotFinite)
         }
 }
 
-TEST_P(BothFilters, SmallAndEmptyPictures)
+TEST_P(AllFilters, SmallAndEmptyPictures)
 {
     for (auto const& [width, height] : {std::pair{1, 1}, {1, 9}, {9, 1}, {3, 2}}) {
         Picture const p = wall(width, height);
@@ -184,7 +188,7 @@ TEST_P(BothFilters, SmallAndEmptyPictures)
     denoise(none, GetParam());
 }
 
-TEST_P(BothFilters, BlackSurfacesStayFinite)
+TEST_P(AllFilters, BlackSurfacesStayFinite)
 {
     Picture p = wall(30, 30);
     for (std::size_t i = 0; i < p.pixels(); i += 2) set(p, "albedo", i, vec3{0});
@@ -239,7 +243,10 @@ TEST(Denoise, SaysWhatIsMissing)
     EXPECT_THROW(denoise(p, {Denoiser::atrous, 0}), InputError);
     EXPECT_THROW(denoise(p, {Denoiser::atrous, kMaxIterations + 1}), InputError);
     EXPECT_THROW(denoise(p, {Denoiser::discontinuity, 5, kMaxWindow + 1}), InputError);
+    EXPECT_THROW(denoise(p, {.denoiser = Denoiser::discontinuity, .window = 4, .reach = 9}), InputError);
+    EXPECT_THROW(denoise(p, {.denoiser = Denoiser::discontinuity, .reach = -1}), InputError);
     denoise(p, {Denoiser::atrous, kMaxIterations});
+    denoise(p, {.denoiser = Denoiser::discontinuity, .window = 4, .reach = 8});
     denoise(p, {Denoiser::discontinuity, 5, kMaxWindow});
 }
 
@@ -255,7 +262,7 @@ Picture cornell(std::uint32_t paths, std::uint64_t seed)
     return render_reference(world, world.cameras.at(0), s, {}, {}, report).picture;
 }
 
-TEST_P(BothFilters, TheResultDoesNotDependOnThreads)
+TEST_P(AllFilters, TheResultDoesNotDependOnThreads)
 {
     Picture const p = cornell(2, 3);
     DenoiseSettings one = GetParam(), many = GetParam();
@@ -265,7 +272,7 @@ TEST_P(BothFilters, TheResultDoesNotDependOnThreads)
     for (char const* layer : {"color", "L1", "L2"}) EXPECT_EQ(a.find(layer)->data, b.find(layer)->data);
 }
 
-TEST_P(BothFilters, TheErrorOfACornellBoxFalls)
+TEST_P(AllFilters, TheErrorOfACornellBoxFalls)
 {
     Picture const reference = cornell(512, 1), noisy = cornell(8, 2);
     // Without L0: no filter touches the edges of the lamp.
@@ -277,8 +284,10 @@ TEST_P(BothFilters, TheErrorOfACornellBoxFalls)
     auto const relmse = [&](Picture const& p) { return measure_errors(lit(p), lit(reference), 3).relmse; };
     double const before = relmse(noisy), after = relmse(filtered(noisy, GetParam()));
     RecordProperty("factor", std::to_string(before / after));
-    // 7.6 and 7.1 when this was written; more at higher resolutions, where outlines are a smaller share.
-    EXPECT_GT(before / after, GetParam().denoiser == Denoiser::atrous ? 6 : 5.5) << before << " " << after;
+    // 7.6, 7.1 and (20 pixels are a large part of this picture) 5.2 when this was written; more at higher resolutions,
+    // where outlines are a smaller share.
+    double const least = GetParam().denoiser == Denoiser::atrous ? 6 : GetParam().reach == 0 ? 5.5 : 4.5;
+    EXPECT_GT(before / after, least) << before << " " << after;
 }
 
 } // namespace
