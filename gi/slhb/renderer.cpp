@@ -40,6 +40,19 @@ bool contains(Bounds const& outer, Bounds const& inner)
                              glm::all(glm::greaterThanEqual(outer.high, inner.high)));
 }
 
+/// Everything, and room around what moves, so that an arm that swings is no reason to build all anew.
+Bounds with_room(World const& world, TriangleSoup const& soup, std::size_t first_moving)
+{
+    constexpr float kRoom = 0.25f; // of the size of what moves
+    Bounds moving;
+    for (std::size_t t = first_moving; t < soup.count; ++t)
+        for (std::size_t c = 0; c < 3; ++c)
+            if (vec3 const p = soup.vertex(t, c); all_finite(p)) moving = joined(moving, {p, p});
+    if (moving.empty()) return world.bounds;
+    vec3 const room{kRoom * max_component(moving.high - moving.low)};
+    return joined(world.bounds, {moving.low - room, moving.high + room});
+}
+
 /// Choosing among axes and lamps takes their grids alone.
 std::uint32_t texels(bool unused, int n) { return std::uint32_t(unused ? 2 : n); }
 
@@ -55,7 +68,7 @@ SlhbRenderer::SlhbRenderer(World const& world, Camera const& camera, RenderSetti
       rays_(camera_rays(camera, settings.width, settings.height, world.origin)),
       soup_(std::move(soup)),
       cut_outs_(world),
-      grid_bounds_(world.bounds)
+      grid_bounds_(with_room(world, soup_, first_moving))
 {
     end_frame();
     build_exact();
