@@ -1,6 +1,7 @@
 #include "viewer/bench_record.h"
 #include "viewer/commands.h"
 #include "viewer/dynamic.h"
+#include "viewer/dynamic_sequence.h"
 #include "viewer/report_json.h"
 
 #include <CLI/CLI.hpp>
@@ -13,6 +14,7 @@ int run(DynamicOptions& o)
 {
     o.render.out = "unused";
     o.render.method = "slhb";
+    if (o.render.budget.empty()) o.render.paths = 1;
     gi::Report report;
     DynamicResult const result = run_dynamic(o, report);
     show(result.frames, o.out, o.render.json);
@@ -26,7 +28,6 @@ int run(DynamicOptions& o)
 void add_bench_dynamic(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<DynamicOptions>();
-    o->render.paths = 1;
     o->render.bounces = 2;
     o->render.denoise = "discontinuity";
     CLI::App* const c = bench.add_subcommand("dynamic", "Frames of what moves: what each part of them costs.");
@@ -56,6 +57,7 @@ void add_bench_dynamic(CLI::App& bench, int& exit_code)
     number("--seeds", o->seeds, 1, 64, "sequences; from 4 on the lag of reuse is told from noise");
     declare_denoise(*c, o->render);
     declare_slhb(*c, o->render);
+    c->remove_option(c->get_option("--schedule")); // --structures say it
     c->add_option("--threads", o->render.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c->add_option("--out", o->out, "folder for the tables")->required();
     c->add_flag("--json", o->render.json, "print the table as JSON");
@@ -68,7 +70,13 @@ times do. Errors are against the reference of the same moment; _alone: of the sa
 error that reuse adds apart from noise, from several seeds. The summary leaves out the first frame, which builds what
 lasts; memory_MiB there is that of the last frame, with what was seen from frame 100 on; raised counts frames with
 more error than alone; not_finite, values of all pictures. The last frame is kept as a picture, with its FLIP.)");
-    c->callback([o, &exit_code] { exit_code = run(*o); });
+    c->callback([o, c, &exit_code] {
+        std::vector<NamedMethod> methods;
+        for (std::string const& s : o->structures)
+            methods.push_back({"slhb", find_structure(s).schedule, "--structures " + s});
+        check_slhb(*c, methods);
+        exit_code = run(*o);
+    });
 }
 
 } // namespace viewer

@@ -1,3 +1,4 @@
+#include "gi/base/error.h"
 #include "gi/registry/registry.h"
 #include "viewer/bench_record.h"
 #include "viewer/commands.h"
@@ -6,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <memory>
 
 namespace viewer {
@@ -25,6 +27,23 @@ int run(SweepOptions const& o)
     return kInterrupted;
 }
 
+void check_methods(CLI::App const& command, SweepOptions const& o)
+{
+    std::vector<NamedMethod> methods;
+    bool shared = false; // --schedule is that of some
+    for (std::string const& name : o.methods) {
+        std::size_t const colon = name.find(':');
+        bool const own = colon != std::string::npos;
+        shared |= name == "slhb";
+        methods.push_back({name.substr(0, colon), parse_schedule(own ? name.substr(colon + 1) : o.render.schedule),
+                           own ? "--methods " + name : "--schedule " + o.render.schedule});
+    }
+    check_slhb(command, methods);
+    if (!shared && command.get_option("--schedule")->count() > 0)
+        throw gi::InputError(fmt::format("--schedule with --methods {}", fmt::join(o.methods, ",")),
+                             "it is that of 'slhb', and the others say their own", "leave one of them out");
+}
+
 } // namespace
 
 void add_bench_sweep(CLI::App& bench, int& exit_code)
@@ -42,7 +61,8 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
     };
     list("--scene", o->scenes, "files or names, comma-separated")->required();
     list("--methods", o->methods,
-         "comma-separated, of:" + known + "\n  slhb:stored, slhb:streamed, slhb:temporal: with that schedule")
+         "comma-separated, of:" + known +
+             "\n  slhb:auto, slhb:stored, slhb:streamed, slhb:temporal: with that schedule")
         ->capture_default_str();
     list("--budgets", o->budgets, "times for a frame, comma-separated")->capture_default_str();
     RenderOptions& r = o->render;
@@ -76,7 +96,10 @@ relmse (relmse_indirect: of L2 alone), flip and bias against the reference, whic
 noise of the reference adds to relmse.
 
 Ctrl-C drops the render at hand, saves the rows so far and exits with 130; a second one ends at once.)");
-    c->callback([o, &exit_code] { exit_code = run(*o); });
+    c->callback([o, c, &exit_code] {
+        check_methods(*c, *o);
+        exit_code = run(*o);
+    });
 }
 
 } // namespace viewer

@@ -139,7 +139,7 @@ int run(RenderOptions o)
     print_losses(report);
     if (result.end != gi::RenderEnd::interrupted) return 0;
     say(std::string("interrupted: the picture so far is saved") +
-        (o.shutter_s > 0               ? "; blurred by motion, it cannot be resumed"
+        (o.shutter_s > 0               ? "; with --shutter it cannot be resumed"
          : settings.checkpoint.empty() ? "; with --out it could be resumed"
                                        : "; the same command with --resume goes on"));
     return kInterrupted;
@@ -153,7 +153,7 @@ void add_render(CLI::App& app, int& exit_code)
     CLI::App* const c = app.add_subcommand("render", "Render a scene to a picture with its error.");
     declare_options(*c, *o);
     c->callback([o, c, &exit_code] {
-        check_slhb(*c, *o);
+        check_slhb(*c, {{o->method, parse_schedule(o->schedule), "--schedule " + o->schedule}});
         check_display(*c, *o);
         exit_code = run(*o);
     });

@@ -38,6 +38,7 @@ DynamicSequence::DynamicSequence(DynamicOptions const& o, std::shared_ptr<gi::Sc
       settings_(settings),
       report_(report),
       world_(scene, time_of(o, 0), report),
+      flat_(world_.advance(time_of(o, 0))),
       renderer_(start()),
       reuse_({.most_frames = o.most_frames}),
       stages_(report)
@@ -60,6 +61,7 @@ DynamicSequence::Frame DynamicSequence::next(gi::DenoiseSettings const& filter, 
     double build_s = 0;
     if (structure_.moves && frame_ > 0) {
         s.world = seconds_of([&] { changes = world_.advance(time_of(o_, frame_)); });
+        flat_.see(changes, report_);
         build_s = seconds_of([&] {
             if (structure_.anew) {
                 renderer_.reset(); // its memory is free for the next

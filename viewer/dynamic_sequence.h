@@ -5,6 +5,7 @@
 #include "gi/image/temporal.h"
 #include "gi/transport/frame_renderer.h"
 #include "viewer/dynamic.h"
+#include "viewer/flat_triangles.h"
 
 namespace viewer {
 
@@ -47,6 +48,7 @@ private:
     gi::RenderSettings settings_;
     gi::Report& report_;
     gi::MovingWorld world_;
+    FlatTriangles flat_;
     std::unique_ptr<gi::FrameRenderer> renderer_;
     gi::TemporalReuse reuse_;
     gi::ReportReader stages_;

@@ -11,10 +11,11 @@ gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
 }
 
 FrameFollower::FrameFollower(std::shared_ptr<gi::Scene const> scene, double time_s, gi::Method const& method,
-                             gi::RenderSettings const& settings, int most_frames)
+                             gi::RenderSettings const& settings, int most_frames, std::optional<gi::dvec3> origin)
     : method_(method),
       settings_(settings),
-      world_(std::move(scene), time_s, report_),
+      world_(std::move(scene), time_s, report_, origin),
+      flat_(world_.advance(time_s)),
       reuse_({.most_frames = most_frames})
 {
     if (method.name != "slhb")
@@ -25,7 +26,9 @@ FrameFollower::FrameFollower(std::shared_ptr<gi::Scene const> scene, double time
 
 gi::World const& FrameFollower::go_to(double time_s)
 {
-    changes_.add(world_.advance(time_s));
+    gi::Changes const changes = world_.advance(time_s);
+    flat_.see(changes, report_);
+    changes_.add(changes);
     return world_.world();
 }
 

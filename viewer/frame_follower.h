@@ -2,6 +2,7 @@
 #include "gi/image/temporal.h"
 #include "gi/registry/registry.h"
 #include "gi/scene/moving_world.h"
+#include "viewer/flat_triangles.h"
 
 namespace viewer {
 
@@ -18,9 +19,11 @@ public:
         std::vector<std::string> changes; ///< since the frame before, with reasons
     };
 
+    /// @param origin  of the world, as in build_world
     /// Throws InputError where the method does not give what reuse needs.
     FrameFollower(std::shared_ptr<gi::Scene const> scene, double time_s, gi::Method const& method,
-                  gi::RenderSettings const& settings, int most_frames);
+                  gi::RenderSettings const& settings, int most_frames,
+                  std::optional<gi::dvec3> origin = std::nullopt);
 
     gi::World const& go_to(double time_s);
     /// @param report  gets the times and losses of this frame, the first one also those of the world
@@ -33,6 +36,7 @@ private:
     gi::Report report_; ///< of all frames
     gi::ReportReader added_{report_};
     gi::MovingWorld world_;
+    FlatTriangles flat_;
     gi::Changes changes_;
     std::unique_ptr<gi::FrameRenderer> renderer_;
     gi::TemporalReuse reuse_;

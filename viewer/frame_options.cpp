@@ -99,7 +99,8 @@ FrameSettings make_frame_settings(RenderOptions const& o, gi::RenderSettings con
         if (f.exr) files.push_back(f.exr->of(k));
         if (f.png) files.push_back(f.png->of(k));
         if (f.motion.path) // a path without a direction somewhere is found before the work
-            gi::camera_at(*f.motion.path, f.range.time_s(k), 1);
+            for (double const after_s : {0.0, o.shutter_s})
+                gi::camera_at(*f.motion.path, f.range.time_s(k) + after_s, 1);
     }
     check_outputs(files, {o.scene, o.environment, o.camera_path});
     return f;

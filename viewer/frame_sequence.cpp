@@ -3,6 +3,7 @@
 #include "gi/base/error.h"
 #include "gi/base/file.h"
 #include "gi/base/picture_file.h"
+#include "gi/base/rng.h"
 #include "gi/registry/registry.h"
 #include "gi/transport/fingerprint.h"
 #include "viewer/exposure.h"
@@ -16,6 +17,7 @@
 #include "viewer/video_writer.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cstdio>
 #include <fmt/format.h>
@@ -44,6 +46,7 @@ public:
         scene_ = load_lit_scene(o_, report_);
         gi::Report unused; // the frame itself reports what its world lost
         gi::World const first = world_of(f_.range.first, unused);
+        if (o.reuse > 1) origin_ = first.origin; // one world is moved on through all of them
         plan_ = to_json(gi::plan_scene(first));
         camera_ = std::make_unique<FrameCamera>(first, choice, f_.motion);
         if (!camera_->note().empty()) say(camera_->note());
@@ -57,9 +60,11 @@ public:
             o_.resume ? find_frames() : std::vector<char>(std::size_t(f_.range.count()));
         if (!f_.state.empty()) gi::write_text(f_.state, stats_command() + "\n");
         missing_ = int(std::count(there.begin(), there.end(), 0));
+        say_what_is_rendered_again(there);
         bar_.emplace("render " + fs::path(o_.scene).filename().string(), !o_.quiet);
         for (int k = f_.range.first; k < f_.range.end && !stop_.requested(); ++k) {
             bool const kept = there[std::size_t(k - f_.range.first)] != 0;
+            if (kept && is_history(there, k) && !remember(k)) break;
             if (kept ? !reuse(k) : !render(k)) break;
         }
         bar_.reset();
@@ -71,7 +76,7 @@ private:
     gi::World world_of(int frame, gi::Report& report) const
     {
         gi::StageTimer const timer(report, "world");
-        return gi::build_world(scene_, f_.scene_time_s(o_, frame), report);
+        return gi::build_world(scene_, f_.scene_time_s(o_, frame), report, origin_);
     }
 
     /// The same, moved on from the frame before.
@@ -80,8 +85,8 @@ private:
         gi::StageTimer const timer(report, "world");
         double const time_s = f_.scene_time_s(o_, frame);
         if (!follower_)
-            follower_ =
-                std::make_unique<FrameFollower>(scene_, time_s, gi::find_method(o_.method), settings_, o_.reuse);
+            follower_ = std::make_unique<FrameFollower>(scene_, time_s, gi::find_method(o_.method), settings_,
+                                                        o_.reuse, origin_);
         return follower_->go_to(time_s);
     }
 
@@ -124,11 +129,31 @@ private:
         return describe_call(o_, settings_, stop_option(settings_), "").at("command").get<std::string>();
     }
 
+    /// @param moving  where it blurs: the world, which is taken to the moment when the shutter closes
     std::map<std::string, std::string> metadata(int frame, gi::World const& world, gi::Camera const& camera,
-                                                gi::RenderResult const& result) const
+                                                gi::RenderResult const& result, gi::MovingWorld* moving) const
     {
         gi::RenderSettings const s = settings_of(frame);
-        return frame_metadata(options_of(frame), s, result, frame, gi::fingerprint(world, camera, s, o_.method));
+        std::uint64_t const opening = gi::fingerprint(world, camera, s, o_.method);
+        return frame_metadata(options_of(frame), s, result, frame, opening,
+                              moving ? motion_fingerprint(frame, *moving) : 0);
+    }
+
+    /// Of the world as the shutter closes, and of where the camera is meanwhile.
+    std::uint64_t motion_fingerprint(int frame, gi::MovingWorld& world) const
+    {
+        if (!o_.time_s) world.advance(f_.scene_time_s(o_, frame) + o_.shutter_s);
+        constexpr int kMoments = 16;
+        auto const camera = [&](int i) { return camera_of(world.world(), frame, o_.shutter_s * i / kMoments); };
+        std::uint64_t hash = gi::fingerprint(world.world(), camera(kMoments), settings_of(frame), o_.method);
+        for (int i = 1; i < kMoments; ++i) {
+            gi::Camera const c = camera(i);
+            auto const add = [&](double v) { hash = gi::mix_bits(hash ^ std::bit_cast<std::uint64_t>(v)); };
+            for (int column = 0; column < 4; ++column)
+                for (int row = 0; row < 4; ++row) add(c.world_from_camera[column][row]);
+            add(c.yfov_rad);
+        }
+        return hash;
     }
 
     void refuse_to_replace() const
@@ -157,14 +182,56 @@ private:
                 continue;
             }
             gi::Report unused; // what it lost was said when it was rendered
-            gi::World const world = world_of(k, unused);
-            std::string const other = difference(picture, metadata(k, world, camera_of(world, k), {}));
+            gi::World own;
+            std::optional<gi::MovingWorld> moving;
+            if (blurs_)
+                moving.emplace(scene_, f_.scene_time_s(o_, k), unused);
+            else
+                own = world_of(k, unused);
+            gi::World const& world = moving ? moving->world() : own;
+            std::string const other =
+                difference(picture, metadata(k, world, camera_of(world, k), {}, moving ? &*moving : nullptr));
             if (!other.empty())
                 throw gi::InputError("'" + file + "' belongs to another render", other,
                                      "delete it, or choose another --out");
             there[std::size_t(k - f_.range.first)] = 1;
         }
         return there;
+    }
+
+    /// Whether a frame that is there has light that a missing one reuses.
+    bool is_history(std::vector<char> const& there, int frame) const
+    {
+        std::size_t const next = std::size_t(frame - f_.range.first) + 1,
+                          end = std::min(there.size(), next + std::size_t(o_.reuse) - 1);
+        return std::find(there.begin() + std::ptrdiff_t(next), there.begin() + std::ptrdiff_t(end), 0) !=
+               there.begin() + std::ptrdiff_t(end);
+    }
+
+    void say_what_is_rendered_again(std::vector<char> const& there) const
+    {
+        int again = 0;
+        for (int k = f_.range.first; k < f_.range.end; ++k)
+            again += there[std::size_t(k - f_.range.first)] != 0 && is_history(there, k);
+        if (again > 0)
+            say(fmt::format(
+                "{} frames that are there are rendered again, not saved: --reuse {} needs their light. "
+                "Those that follow differ by noise from the ones of a render in one go",
+                again, o_.reuse));
+    }
+
+    /// Renders a frame that is there for the light that others reuse. @return false if it was interrupted
+    bool remember(int frame)
+    {
+        gi::Report report;
+        gi::World const& world = follow(frame, report);
+        auto const progress = [&](gi::RenderStatus const&) {
+            bar_->update(double(rendered_) / missing_, fmt::format("frame {} again, for reuse", frame));
+        };
+        FrameFollower::Frame const done = follower_->render(camera_of(world, frame), stop_, progress, report);
+        for (auto const& [stage, seconds] : report.times()) report_.add_time(stage, seconds);
+        add_losses(report_, report.losses(), frame);
+        return done.result.end != gi::RenderEnd::interrupted;
     }
 
     /// @return false if there is no more to do
@@ -214,7 +281,7 @@ private:
         std::string const remark = denoise(result.picture, denoise_, report);
         if (!remark.empty() && rendered_ == 0) say(remark);
         gi::Picture picture = std::move(result.picture);
-        picture.metadata = metadata(frame, world, camera, result);
+        picture.metadata = metadata(frame, world, camera, result, moving ? &*moving : nullptr);
         {
             gi::StageTimer const timer(report, "save");
             show_picture(frame, picture);
@@ -316,6 +383,7 @@ private:
     std::shared_ptr<gi::Scene const> scene_;
     std::unique_ptr<FrameCamera> camera_;
     std::unique_ptr<FrameFollower> follower_; ///< with --reuse
+    std::optional<gi::dvec3> origin_;         ///< of the worlds of all frames, with --reuse
     Json plan_;
     std::optional<gi::ProgressBar> bar_;
     std::vector<FrameRecord> records_; ///< in their order

@@ -194,23 +194,51 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
         ->group(kSlhbGroup);
 }
 
-void check_slhb(CLI::App const& command, RenderOptions const& o)
+namespace {
+
+/// Why a schedule does not read an option; null = it does.
+char const* why_unread(gi::Schedule schedule, std::string const& option)
 {
-    for (CLI::Option const* const option : command.get_options())
-        if (option->get_group() == kSlhbGroup && option->count() > 0 && o.method != "slhb")
-            throw gi::InputError(option->get_name() + " with --method " + o.method, "it is about method slhb",
-                                 "add --method slhb, or leave it out");
+    bool const directions = option == "--directions", axes = option == "--axes", fresh = option == "--fresh-axes";
+    switch (schedule) {
+    case gi::Schedule::stored:
+        return axes ? "all axes of --directions are used" : fresh ? "axes stay as they are" : nullptr;
+    case gi::Schedule::streamed:
+        if (fresh) return "all axes of a pass are new";
+        [[fallthrough]];
+    case gi::Schedule::temporal:
+        return directions ? "axes are drawn from all directions" : nullptr;
+    case gi::Schedule::automatic:
+        break;
+    }
+    return nullptr;
+}
+
+} // namespace
+
+void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods)
+{
+    for (CLI::Option const* const option : command.get_options()) {
+        if (option->get_group() != kSlhbGroup || option->count() == 0) continue;
+        std::string const name = option->get_name();
+        NamedMethod const* unread = nullptr; // by the first of slhb
+        bool read = false;
+        for (NamedMethod const& m : methods) {
+            if (m.method != "slhb") continue;
+            read |= why_unread(m.schedule, name) == nullptr;
+            if (unread == nullptr) unread = &m;
+        }
+        if (unread == nullptr)
+            throw gi::InputError(name + " with --method " + methods.front().method, "it is about method slhb",
+                                 "add method slhb, or leave it out");
+        if (!read)
+            throw gi::InputError(name + " with " + unread->as_given, why_unread(unread->schedule, name),
+                                 "leave one of them out");
+    }
     auto const given = [&](char const* name) { return command.get_option(name)->count() > 0; };
-    auto const refuse = [&](char const* schedule, char const* name, char const* why) {
-        if (o.schedule == schedule && given(name))
-            throw gi::InputError(std::string(name) + " with --schedule " + schedule, why, "leave one of them out");
-    };
-    refuse("stored", "--axes", "all axes of --directions are used");
-    refuse("stored", "--fresh-axes", "axes stay as they are");
-    refuse("streamed", "--fresh-axes", "all axes of a pass are new");
-    refuse("streamed", "--directions", "axes are drawn from all directions");
-    refuse("temporal", "--directions", "axes are drawn from all directions");
-    if (o.schedule == "auto" && given("--directions") && (given("--axes") || given("--fresh-axes")))
+    bool const any_schedule = std::ranges::all_of(
+        methods, [](NamedMethod const& m) { return m.method != "slhb" || m.schedule == gi::Schedule::automatic; });
+    if (any_schedule && given("--directions") && (given("--axes") || given("--fresh-axes")))
         throw gi::InputError("--directions with --axes or --fresh-axes",
                              "a set of directions is stored, and axes are drawn by the other schedules",
                              "leave one of them out");
@@ -223,9 +251,10 @@ void declare_slhb(CLI::App& c, RenderOptions& o)
         ->check(CLI::IsMember({"cpu", "cuda"}))
         ->capture_default_str()
         ->group(kSlhbGroup);
-    c.add_option("--schedule", o.schedule,
-                 "stored: one set of axes; streamed: new ones in every pass; temporal: some new; auto: "
-                 "streamed,\nstored under a sky")
+    c.add_option(
+         "--schedule", o.schedule,
+         "stored: one set of axes; streamed: new ones in every pass; temporal: some new; auto: "
+         "streamed,\nstored under a sky; where something moves stored with --reuse, streamed with --shutter")
         ->check(CLI::IsMember({"auto", "stored", "streamed", "temporal"}))
         ->capture_default_str()
         ->group(kSlhbGroup);

@@ -42,8 +42,14 @@ void declare_view_options(CLI::App& command, RenderOptions& options);
 /// Of the camera's lens, for commands that render whole pictures.
 void declare_lens_options(CLI::App& command, RenderOptions& options);
 void declare_denoise(CLI::App& command, RenderOptions& options);
-/// Throws InputError where options of method slhb are given that the method or the schedule does not read.
-void check_slhb(CLI::App const& command, RenderOptions const& options);
+/// A method that was chosen, and, of slhb, with which schedule.
+struct NamedMethod {
+    std::string method;
+    gi::Schedule schedule;
+    std::string as_given; ///< "--schedule stored"
+};
+/// Throws InputError where options of method slhb are given that none of the methods, at least one, reads.
+void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods);
 /// All of method slhb; those that decide quality but not axes and buffers.
 void declare_slhb(CLI::App& command, RenderOptions& options);
 void declare_slhb_quality(CLI::App& command, RenderOptions& options);

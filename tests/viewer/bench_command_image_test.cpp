@@ -127,6 +127,21 @@ TEST(BenchCommand, AGivenReference)
     EXPECT_NE(same.err.find("it is read as well"), std::string::npos) << same.err;
 }
 
+/// Within a budget the frames have as many paths as it allows, else one.
+TEST(BenchCommand, FramesWithinABudget)
+{
+    TemporaryFolder const folder;
+    std::string const call = "bench dynamic --triangles 2000 --frames 2 --size 16x16 --structures streamed "
+                             "--reference-paths 0 --json --out d ";
+    auto const paths = [&](std::string const& options) {
+        BenchTable const t = parse_table(run_well(call + options, folder.path()).out, "stdout");
+        EXPECT_EQ(t.rows.size(), 2u);
+        return t.rows.empty() ? 0.0 : number(cell(t, t.rows.back(), "paths"));
+    };
+    EXPECT_EQ(paths(""), 1);
+    EXPECT_GT(paths("--budget 200ms"), 1);
+}
+
 TEST(BenchCommand, WrongCallsLeaveNothing)
 {
     TemporaryFolder const folder;
@@ -156,6 +171,19 @@ TEST(BenchCommand, WrongCallsLeaveNothing)
              {"bench sweep --scene cornell,atrium --reference a.exr --out d", "several"},
              {"bench sweep --scene cornell --out file", "file"},
              {"bench sweep --scene cornell --out file/d", "file"},
+             {"bench sweep --scene cornell --methods slhb:streamed --directions icosahedron:80 --out d",
+              "--directions with --methods slhb:streamed"},
+             {"bench sweep --scene cornell --methods reference,slhb:stored --axes 8 --out d",
+              "--axes with --methods slhb:stored"},
+             {"bench sweep --scene cornell --methods slhb --schedule stored --axes 8 --out d",
+              "--axes with --schedule stored"},
+             {"bench sweep --scene cornell --methods reference --axes 8 --out d",
+              "--axes with --method reference"},
+             {"bench sweep --scene cornell --methods slhb:stored --schedule streamed --out d",
+              "--schedule with --methods slhb:stored"},
+             {"bench dynamic --triangles 2000 --schedule stored --out d", "--schedule"},
+             {"bench dynamic --triangles 2000 --structures static,appended --axes 8 --out d",
+              "--axes with --structures static"},
              {"bench report", "DIR"},
              {"bench report nowhere", "nowhere"},
              {"bench report file", "folder"},
@@ -175,9 +203,10 @@ TEST(BenchCommand, WrongCallsLeaveNothing)
 TEST(BenchCommand, ControlCKeepsTheRowsSoFar)
 {
     TemporaryFolder const folder;
-    Program program(words("bench sweep --scene cornell --methods reference --budgets 20ms,100s --repeats 1 --size 16x16 "
-                          "--reference-paths 16 --out d"),
-                    folder.path());
+    Program program(
+        words("bench sweep --scene cornell --methods reference --budgets 20ms,100s --repeats 1 --size 16x16 "
+              "--reference-paths 16 --out d"),
+        folder.path());
     while (!std::filesystem::exists(folder / "d" / "sweep.csv") && program.wait_until_catches(SIGINT, true))
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     program.send(SIGINT);
@@ -194,8 +223,9 @@ TEST(BenchCommand, ControlCKeepsTheRowsSoFar)
 TEST(BenchCommand, AnInterruptedReferenceGoesOn)
 {
     TemporaryFolder const folder;
-    std::string const call = "bench sweep --scene cornell --methods reference --budgets 20ms --repeats 1 --size 64x64 "
-                             "--reference-paths 400 --threads 1 --out d";
+    std::string const call =
+        "bench sweep --scene cornell --methods reference --budgets 20ms --repeats 1 --size 64x64 "
+        "--reference-paths 400 --threads 1 --out d";
     Program program(words(call), folder.path());
     ASSERT_TRUE(program.wait_until_catches(SIGINT, true));
     program.send(SIGINT);

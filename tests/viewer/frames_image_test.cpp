@@ -1,6 +1,7 @@
 // `lightwell render --frames`: every frame is the picture that --time gives alone, whatever interrupts them.
 
 #include "gi/base/picture_file.h"
+#include "gi/image/compare.h"
 #include "tests/viewer/run_program.h"
 
 #include <nlohmann/json.hpp>
@@ -84,6 +85,20 @@ TEST(Frames, AreThePicturesOfTheirShutters)
     }
 }
 
+/// A budget is that of the one picture: nothing is built to last for more.
+TEST(Frames, ABudgetIsThatOfOneExposure)
+{
+    TemporaryFolder const folder;
+    std::string const call = "render atrium --time 0.4 --shutter 0.04 --size 16x16 --method slhb --out e.exr ";
+    auto const lasts = [&] {
+        return contains(gi::read_picture(folder / "e.exr").metadata.at("command"), "--fresh-lamps");
+    };
+    run_well(call + "--paths 2", folder.path());
+    EXPECT_TRUE(lasts());
+    run_well(call + "--budget 500ms", folder.path());
+    EXPECT_FALSE(lasts());
+}
+
 /// The camera's motion blurs, and without any the shutter does nothing and says so.
 TEST(Frames, OfWhatStandsStillHaveNoShutter)
 {
@@ -97,6 +112,92 @@ TEST(Frames, OfWhatStandsStillHaveNoShutter)
     run_well(call + "--frames 0:2@8 --turntable 90deg --shutter 0.1 --out open_%d.exr", folder.path());
     run_well(call + "--frames 0:2@8 --turntable 90deg --out closed_%d.exr", folder.path());
     EXPECT_NE(difference(folder / "open_0.exr", folder / "closed_0.exr"), "");
+}
+
+/// The camera is where it was as each shutter opens, but goes round half as fast.
+TEST(Frames, OfAnotherMotionAreKept)
+{
+    TemporaryFolder const folder;
+    std::string const call =
+        "render cornell --size 16x16 --paths 2 --turntable --time 0 --shutter 0.04 --out f_%d.exr --frames 0:3";
+    run_well(call + "@24", folder.path());
+    Outcome const other = run(call + "@12 --resume", folder.path());
+    EXPECT_EQ(other.code, 2);
+    EXPECT_TRUE(contains(other.err, "another motion blurs it")) << other.err;
+    Outcome const same = run_well(call + "@24 --resume", folder.path());
+    EXPECT_TRUE(contains(same.out, "3 were there")) << same.out;
+}
+
+/// Two triangles that lie apart; one of them has no area in the last frames.
+void write_collapsing(std::filesystem::path const& folder, double x, int frames)
+{
+    std::filesystem::create_directory(folder);
+    for (int k = 0; k < frames; ++k) {
+        double const s = x + 0.25 * k, height = k + 1 < frames ? 1.0 : 0.0;
+        std::ofstream(folder / ("f_" + std::to_string(k) + ".obj"))
+            << "v " << s << " 0 0\nv " << s + 1 << " 0 0\nv " << s << " 1 0\n"
+            << "v " << s << " 0 2\nv " << s + 1 << " 0 2\nv " << s << " " << height << " 2\n"
+            << "f 1 2 3\nf 4 5 6\n";
+    }
+}
+
+TEST(Frames, ReportTrianglesThatCollapse)
+{
+    TemporaryFolder const folder;
+    write_collapsing(folder / "s", 0, 3);
+    std::string const what = "moved so that they have no area, or are not finite: 1";
+    std::string const call = "render s --method slhb --size 8x8 --paths 2 ";
+    Outcome const reused = run_well(call + "--frames 0:3@24 --reuse 4 --out r_%d.exr", folder.path());
+    EXPECT_TRUE(contains(reused.err, what)) << reused.err;
+    // Passes are of moments all over the shutter; the last frame stands from 2/24 to 3/24 s.
+    Outcome const exposed = run_well(call + "--paths 16 --time 0 --shutter 0.12 --out e.exr", folder.path());
+    EXPECT_TRUE(contains(exposed.err, what)) << exposed.err;
+    Outcome const timed = run_well("bench dynamic --scene s --frames 3 --fps 24 --size 8x8 --structures appended "
+                                   "--reference-paths 0 --out d",
+                                   folder.path());
+    EXPECT_TRUE(contains(timed.err, what)) << timed.err;
+}
+
+double relmse(std::filesystem::path const& picture, std::filesystem::path const& truth)
+{
+    return gi::compare(gi::read_picture(picture), gi::read_picture(truth), {"relmse"}, "color")
+        .values.front()
+        .value;
+}
+
+/// A frame that is missing has the light of those before it, which are there.
+TEST(Frames, ResumedHaveWhatTheyReuse)
+{
+    TemporaryFolder const folder;
+    std::string const how = "render cornell --method slhb --bounces 2 --size 32x32 ";
+    std::string const call = how + "--paths 1 --frames 0:6@24 --reuse 6 --out f_%d.exr";
+    run_well(how + "--paths 256 --seed 1 --out truth.exr", folder.path());
+    run_well(call, folder.path());
+    std::string const kept = file_text(folder / "f_4.exr");
+    double const whole = relmse(folder / "f_5.exr", folder / "truth.exr"),
+                 alone = relmse(folder / "f_0.exr", folder / "truth.exr");
+    std::filesystem::remove(folder / "f_5.exr");
+    Outcome const o = run_well(call + " --resume", folder.path());
+    EXPECT_TRUE(contains(o.err, "5 frames that are there are rendered again, not saved")) << o.err;
+    EXPECT_TRUE(file_text(folder / "f_4.exr") == kept);
+    double const resumed = relmse(folder / "f_5.exr", folder / "truth.exr");
+    EXPECT_LT(resumed, 0.5 * alone);
+    EXPECT_LT(resumed, 1.5 * whole);
+    Outcome const complete = run_well(call + " --resume", folder.path());
+    EXPECT_FALSE(contains(complete.err, "again")) << complete.err;
+}
+
+/// All frames of a render with reuse have one origin, that of the first.
+TEST(Frames, FarFromZeroResumeWithReuse)
+{
+    TemporaryFolder const folder;
+    write_collapsing(folder / "far", 5000, 4);
+    std::string const call =
+        "render far --method slhb --size 8x8 --paths 1 --frames 0:3@24 --reuse 2 --out f_%d.exr";
+    run_well(call, folder.path());
+    std::filesystem::remove(folder / "f_2.exr");
+    Outcome const o = run_well(call + " --resume", folder.path());
+    EXPECT_TRUE(contains(o.out, "2 were there")) << o.out;
 }
 
 TEST(Frames, OfACameraPathAreThePicturesOfTheirTimes)

@@ -141,6 +141,18 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
     EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
 }
 
+/// The camera meets what it looks at while the last shutter is open.
+TEST(WrongCalls, ACameraPathIsCheckedWhileShuttersAreOpen)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "path.yaml") << "keys:\n"
+                                           "  - {time_s: 0, from: [0, 1, 0], at: [2, 1, 0]}\n"
+                                           "  - {time_s: 2, from: [2, 1, 0], at: [0, 1, 0]}\n";
+    std::string const call = "render cornell --size 8x8 --paths 1 --camera-path path.yaml --out f_%d.exr ";
+    expect_refused(call + "--frames 0:2@2 --shutter 0.5", "camera path", folder.path());
+    run_well(call + "--frames 0:2@2", folder.path());
+}
+
 TEST(WrongCalls, OutputsAreCheckedBeforeTheWork)
 {
     TemporaryFolder const folder;
