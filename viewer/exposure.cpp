@@ -1,11 +1,14 @@
 #include "viewer/exposure.h"
 
+#include "gi/base/rng.h"
 #include "gi/scene/motion.h"
 #include "gi/slhb/settings.h"
+#include "gi/transport/fingerprint.h"
 #include "gi/transport/pass_samples.h"
 #include "viewer/flat_triangles.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace viewer {
 
@@ -63,6 +66,23 @@ gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposu
     gi::RenderResult result = renderer->frame(first, stop, progress, moments);
     if (!exposure.still) world.advance(exposure.from_s);
     return result;
+}
+
+std::uint64_t motion_fingerprint(gi::MovingWorld& world, Exposure const& exposure,
+                                 gi::RenderSettings const& settings, std::string const& method)
+{
+    if (!exposure.still) world.advance(exposure.from_s + exposure.shutter_s);
+    constexpr int kMoments = 16;
+    auto const camera = [&](int i) { return exposure.camera(world.world(), exposure.shutter_s * i / kMoments); };
+    std::uint64_t hash = gi::fingerprint(world.world(), camera(kMoments), settings, method);
+    auto const add = [&](double v) { hash = gi::mix_bits(hash ^ std::bit_cast<std::uint64_t>(v)); };
+    for (int i = 1; i < kMoments; ++i) {
+        gi::Camera const c = camera(i);
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) add(c.world_from_camera[column][row]);
+        add(c.yfov_rad);
+    }
+    return hash;
 }
 
 } // namespace viewer

@@ -26,4 +26,9 @@ gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposu
                         gi::RenderSettings const& settings, gi::StopRequest const& stop,
                         gi::RenderProgress const& progress, gi::Report& report);
 
+/// Tells exposures apart that open at the same moment: of the world as the shutter closes, and of where the camera
+/// is meanwhile. @param world  is taken to the moment when it closes
+std::uint64_t motion_fingerprint(gi::MovingWorld& world, Exposure const& exposure,
+                                 gi::RenderSettings const& settings, std::string const& method);
+
 } // namespace viewer

@@ -3,7 +3,6 @@
 #include "gi/base/error.h"
 #include "gi/base/file.h"
 #include "gi/base/picture_file.h"
-#include "gi/base/rng.h"
 #include "gi/registry/registry.h"
 #include "gi/transport/fingerprint.h"
 #include "viewer/exposure.h"
@@ -17,7 +16,6 @@
 #include "viewer/video_writer.h"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cstdio>
 #include <fmt/format.h>
@@ -95,15 +93,10 @@ private:
         return camera_->of(world, f_.range.time_s(frame) + after_s, f_.fraction(frame, after_s));
     }
 
-    /// The mean of all moments while the shutter is open.
-    gi::RenderResult expose_frame(int frame, gi::MovingWorld& world, gi::RenderProgress const& progress,
-                                  gi::Report& report)
+    Exposure exposure_of(int frame) const
     {
-        Exposure exposure{f_.scene_time_s(o_, frame), o_.shutter_s, o_.time_s.has_value(), {}};
-        exposure.camera = [this, frame](gi::World const& now, double after_s) {
-            return camera_of(now, frame, after_s);
-        };
-        return expose(gi::find_method(o_.method), world, exposure, settings_of(frame), stop_, progress, report);
+        return {f_.scene_time_s(o_, frame), o_.shutter_s, o_.time_s.has_value(),
+                [this, frame](gi::World const& now, double after_s) { return camera_of(now, frame, after_s); }};
     }
 
     /// The options of one frame. Where the same picture can be had alone, by --time, they say so.
@@ -136,24 +129,7 @@ private:
         gi::RenderSettings const s = settings_of(frame);
         std::uint64_t const opening = gi::fingerprint(world, camera, s, o_.method);
         return frame_metadata(options_of(frame), s, result, frame, opening,
-                              moving ? motion_fingerprint(frame, *moving) : 0);
-    }
-
-    /// Of the world as the shutter closes, and of where the camera is meanwhile.
-    std::uint64_t motion_fingerprint(int frame, gi::MovingWorld& world) const
-    {
-        if (!o_.time_s) world.advance(f_.scene_time_s(o_, frame) + o_.shutter_s);
-        constexpr int kMoments = 16;
-        auto const camera = [&](int i) { return camera_of(world.world(), frame, o_.shutter_s * i / kMoments); };
-        std::uint64_t hash = gi::fingerprint(world.world(), camera(kMoments), settings_of(frame), o_.method);
-        for (int i = 1; i < kMoments; ++i) {
-            gi::Camera const c = camera(i);
-            auto const add = [&](double v) { hash = gi::mix_bits(hash ^ std::bit_cast<std::uint64_t>(v)); };
-            for (int column = 0; column < 4; ++column)
-                for (int row = 0; row < 4; ++row) add(c.world_from_camera[column][row]);
-            add(c.yfov_rad);
-        }
-        return hash;
+                              moving ? motion_fingerprint(*moving, exposure_of(frame), s, o_.method) : 0);
     }
 
     void refuse_to_replace() const
@@ -268,7 +244,8 @@ private:
         };
         gi::RenderResult result;
         if (blurs_) {
-            result = expose_frame(frame, *moving, progress, report);
+            result = expose(gi::find_method(o_.method), *moving, exposure_of(frame), settings_of(frame), stop_,
+                            progress, report);
         } else if (o_.reuse == 1) {
             result = gi::find_method(o_.method).render(world, camera, settings_of(frame), stop_, progress, report);
         } else {

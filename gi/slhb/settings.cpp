@@ -150,10 +150,9 @@ SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& wor
     // Few points on lamps are exchanged from pass to pass: each has the light of as many as a window of the
     // discontinuity filter has pixels.
     constexpr int kLamps = 16, kPasses = 4; // in which what choose_settings takes in one is exchanged
-    int const in_a_pass = s.lamps;
+    int const fresh = asked.slhb.fresh_lamps > 0 ? asked.slhb.fresh_lamps : std::max(1, s.lamps / kPasses);
     if (asked.slhb.lamps == 0) s.lamps = std::max(s.lamps, kLamps);
-    if (asked.slhb.fresh_lamps == 0) s.fresh_lamps = std::max(1, in_a_pass / kPasses);
-    s.fresh_lamps = std::min(asked.slhb.fresh_lamps > 0 ? asked.slhb.fresh_lamps : s.fresh_lamps, s.lamps);
+    s.fresh_lamps = std::min(fresh, s.lamps);
     if (asked.slhb.interleave == 0)
         s.interleave = choose_interleave(asked, s, s.schedule == Schedule::stored ? 0 : s.fresh_axes,
                                          Costs(world, layers_per_texel(world, soup)));
