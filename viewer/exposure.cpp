@@ -81,6 +81,8 @@ std::uint64_t motion_fingerprint(gi::MovingWorld& world, Exposure const& exposur
         for (int column = 0; column < 4; ++column)
             for (int row = 0; row < 4; ++row) add(c.world_from_camera[column][row]);
         add(c.yfov_rad);
+        if (auto const& edge = c.off_axis)
+            for (double const v : {edge->left, edge->right, edge->bottom, edge->top}) add(v);
     }
     return hash;
 }

@@ -12,13 +12,15 @@ CameraRays camera_rays(Camera const& camera, int width, int height, dvec3 world_
     dvec3 const right(m[0]), up(m[1]), back(m[2]), position(m[3]);
     double const half_height = camera.orthographic ? camera.ymag_m : std::tan(0.5 * camera.yfov_rad);
     double const half_width = half_height * width / height;
+    ViewTangents const edge =
+        camera.off_axis.value_or(ViewTangents{-half_width, half_width, -half_height, half_height});
     CameraRays rays;
     rays.orthographic = camera.orthographic;
     rays.origin = vec3(position - world_origin);
     rays.forward = vec3(-back);
-    rays.step_x = vec3(right * (2 * half_width / width));
-    rays.step_y = vec3(-up * (2 * half_height / height));
-    rays.corner = vec3((camera.orthographic ? dvec3{0} : -back) - half_width * right + half_height * up);
+    rays.step_x = vec3(right * ((edge.right - edge.left) / width));
+    rays.step_y = vec3(-up * ((edge.top - edge.bottom) / height));
+    rays.corner = vec3((camera.orthographic ? dvec3{0} : -back) + edge.left * right + edge.top * up);
     if (camera.aperture_radius_m == 0) return rays;
     check_lens(camera);
     rays.lens_x = vec3(camera.aperture_radius_m * right);

@@ -5,16 +5,26 @@
 
 #include "gi/base/math.h"
 
+#include <optional>
 #include <string>
 
 namespace gi {
 
+/// Edges of an off-axis view, as tangents of the angles to the axis: at distance d the view reaches from
+/// (left, bottom) d to (right, top) d. left < right and bottom < top; they need not hold 0 between them.
+struct ViewTangents {
+    double left = 0, right = 0, bottom = 0, top = 0;
+
+    bool operator==(ViewTangents const&) const = default;
+};
+
 struct Camera {
     std::string name;
     bool orthographic = false;
-    double yfov_rad = 0.8; ///< perspective: full vertical field of view
-    double ymag_m = 1;     ///< orthographic: half the height of the view
-    double aspect = 0;     ///< width / height the file states, 0 = none; kept for saving, pictures follow --size
+    double yfov_rad = 0.8;                ///< perspective: full vertical field of view
+    std::optional<ViewTangents> off_axis; ///< in place of the field of view; pictures of any size fill it
+    double ymag_m = 1;                    ///< orthographic: half the height of the view
+    double aspect = 0; ///< width / height the file states, 0 = none; kept for saving, pictures follow --size
     double aperture_radius_m = 0; ///< of the lens; 0 = a pinhole, which sees all depths sharply
     double focus_distance_m = 0;  ///< along the axis, to the plane in focus; read where there is a lens
     dmat4 world_from_camera{1};
@@ -61,8 +71,8 @@ struct CameraRays {
     }
 };
 
-/// Vertical field of view is kept; the horizontal one follows width / height. Positions are relative to
-/// world_origin. Throws InputError on a lens that check_lens refuses.
+/// Vertical field of view is kept; the horizontal one follows width / height, or both are those of an off-axis
+/// view. Positions are relative to world_origin. Throws InputError on a lens that check_lens refuses.
 CameraRays camera_rays(Camera const& camera, int width, int height, dvec3 world_origin);
 /// Throws InputError on a radius or a distance that is negative or not finite, a lens that focuses at 0, and one
 /// of an orthographic camera.

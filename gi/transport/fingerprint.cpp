@@ -105,6 +105,8 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
     for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 4; ++r) h.add(camera.world_from_camera[c][r]);
     for (double const v : {camera.yfov_rad, camera.ymag_m, double(camera.orthographic)}) h.add(v);
+    if (auto const& edge = camera.off_axis)
+        for (double const v : {edge->left, edge->right, edge->bottom, edge->top}) h.add(v);
     if (camera.aperture_radius_m > 0)
         for (double const v : {camera.aperture_radius_m, camera.focus_distance_m}) h.add(v);
     if (method.starts_with("slhb")) {

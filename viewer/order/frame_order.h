@@ -1,0 +1,65 @@
+#pragma once
+// Everything that decides the pixels of one frame of the viewer, and nothing else: who is given the same orders in
+// the same sequence renders the same pixels. The live viewer makes an order per frame, a recording keeps them, the
+// leading rank of a cluster sends them, a replay reads them.
+
+#include "gi/scene/camera.h"
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace viewer {
+
+/// Something that was set: by a key, the panel, the remote protocol, a script. Keys are those of
+/// viewer/session/settings.h ("exposure", "light.0.intensity", "object.door.position").
+struct Change {
+    std::string key;
+    nlohmann::json value;
+
+    bool operator==(Change const&) const = default;
+};
+
+/// A rigid place in the room: right-handed, m, +Y up; heads and hands look along -Z.
+struct RoomPose {
+    gi::dvec3 position{0};          ///< m
+    gi::dquat rotation{1, 0, 0, 0}; ///< unit, room from body
+
+    bool operator==(RoomPose const&) const = default;
+};
+
+/// Bodies that are tracked; those that are not (yet, or any more) have no pose.
+struct Tracked {
+    std::optional<RoomPose> head, left_hand, right_hand;
+
+    bool operator==(Tracked const&) const = default;
+};
+
+/// One picture of a frame: an eye before a wall, a window, a lens of a head-mounted display.
+struct ViewOrder {
+    std::string name;          ///< "left wall, right eye"
+    gi::Camera camera;         ///< in the world
+    int width = 0, height = 0; ///< pixels to render
+    int partner = -1; ///< an earlier view of this frame that sees nearly the same: light found there is reused; -1
+                      ///< = none
+
+    bool operator==(ViewOrder const&) const = default;
+};
+
+struct FrameOrder {
+    std::uint64_t frame = 0;
+    double pose_s = 0;            ///< when the poses were taken, on the clock of the session, which starts at 0
+    double display_s = 0;         ///< when it was expected to be seen, on the same clock
+    double scene_s = 0;           ///< time of the scene's animations
+    gi::dmat4 world_from_room{1}; ///< navigation: rigid, and a scale where the user is larger or smaller
+    Tracked tracked;
+    std::vector<Change> changes; ///< since the frame before, in order
+    std::vector<ViewOrder> views;
+    int paths = 1; ///< per pixel
+
+    bool operator==(FrameOrder const&) const = default;
+};
+
+} // namespace viewer
