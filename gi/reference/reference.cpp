@@ -101,14 +101,35 @@ public:
         paths_ += result.paths;
         return result;
     }
+    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths,
+                                    StopRequest const& stop) override
+    {
+        RenderProgress const silent;
+        std::vector<RenderResult> results;
+        for (FrameView const& v : views) {
+            RenderSettings settings = settings_;
+            settings.width = v.width;
+            settings.height = v.height;
+            settings.paths = paths;
+            settings.budget_s = settings.until_relmse = 0;
+            PassLoop loop(settings, stop, silent, report_);
+            PathTracer<ExactVisibility> const through = tracer(v.camera, settings);
+            results.push_back(trace_all(
+                loop, 0, [&](Accumulator& sums, std::uint32_t n) { trace_pass(through, sums, paths_, n); },
+                world_.world(), report_));
+        }
+        paths_ += paths;
+        return results;
+    }
 
 private:
     /// Through the world as it is now.
-    PathTracer<ExactVisibility> tracer(Camera const& camera)
+    PathTracer<ExactVisibility> tracer(Camera const& camera) { return tracer(camera, settings_); }
+    PathTracer<ExactVisibility> tracer(Camera const& camera, RenderSettings const& settings)
     {
         World const& world = world_.world();
         if (!structures_.visibility) structures_.build(world, settings_.threads, report_, world.static_triangles);
-        return structures_.tracer(world, camera, settings_);
+        return structures_.tracer(world, camera, settings);
     }
 
     MovingWorld const& world_;

@@ -1,6 +1,7 @@
 #include "gi/slhb/frames.h"
 
 #include "gi/base/error.h"
+#include "gi/base/threads.h"
 #include "gi/slhb/renderer.h"
 #include "gi/slhb/settings.h"
 #include "gi/transport/pass_loop.h"
@@ -26,16 +27,16 @@ public:
             throw InputError("--packed with something that moves",
                              "the range of packed depths is that of what stays", "leave out --packed");
         auto const begun = std::chrono::steady_clock::now();
-        start(camera);
+        FrameView const eye = full_size(camera);
+        start({&eye, 1});
         start_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     }
 
     void changed(Changes const& changes) override
     {
-        if (changes.materials || changes.coverage || changes.environment) {
-            restart_ = true; // also the plan may be another one
-            return;
-        }
+        if (changes.coverage) restart_ = true; // hit buffers leave out what lets rays through
+        if (restart_) return;
+        if (changes.materials || changes.environment) renderer_->materials_changed();
         if (changes.geometry || changes.lights || changes.light_select)
             renderer_->world_moved(changes.geometry, changes.lights || changes.light_select);
     }
@@ -44,42 +45,84 @@ public:
                        Moments const& moments) override
     {
         PassLoop loop(settings_, stop, progress, report_, moments ? std::exchange(start_s_, 0) : 0);
-        see(camera);
+        see(full_size(camera));
         double const earlier = renderer_->rays();
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
             for (std::uint32_t i = 0; i < paths; ++i) {
                 if (moments) {
                     Moment const now = moments(sums.paths);
                     changed(now.changes);
-                    see(now.camera);
+                    see(full_size(now.camera));
                 }
-                renderer_->pass(passes_++, sums);
+                renderer_->pass(passes_++, {&sums, 1});
             }
         });
-        renderer_->report_work();
-        result.rays = renderer_->rays() - earlier;
-        result.options = as_options(settings_.slhb);
+        finish(result, earlier);
         result.picture = loop.sums().picture(world_.world());
-        if (!moments) renderer_->add_motion(result.picture);
-        renderer_->end_frame();
-        report_.lose("layers beyond the limit of a texel", renderer_->lost_layers() - lost_);
-        lost_ = renderer_->lost_layers();
+        if (!moments) renderer_->add_motion(0, result.picture);
+        end_frame();
         return result;
     }
 
-private:
-    void see(Camera const& camera)
+    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths,
+                                    StopRequest const& stop) override
     {
-        if (restart_) start(camera);
-        renderer_->set_camera(camera);
+        auto const begun = std::chrono::steady_clock::now();
+        see_all(views);
+        double const earlier = renderer_->rays();
+        sums_.clear();
+        for (FrameView const& v : views) sums_.emplace_back(v.width, v.height);
+        for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
+            on_threads(settings_.threads, [&] { renderer_->pass(passes_++, sums_); });
+        std::vector<RenderResult> results(views.size());
+        PathCounts lost;
+        for (std::size_t k = 0; k < views.size(); ++k) {
+            RenderResult& r = results[k];
+            r.paths = sums_[k].paths;
+            r.end = r.paths < paths ? RenderEnd::interrupted : RenderEnd::paths;
+            r.picture = sums_[k].picture(world_.world());
+            renderer_->add_motion(k, r.picture);
+            lost += sums_[k].counts;
+        }
+        report_.lose("paths cut at 1024 surfaces", lost.cut_paths);
+        report_.lose("path terms that were not finite, dropped", lost.invalid_paths);
+        finish(results[0], earlier);
+        results[0].seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        end_frame();
+        return results;
     }
 
-    void start(Camera const& camera)
+private:
+    FrameView full_size(Camera const& camera) const { return {camera, settings_.width, settings_.height}; }
+
+    void see(FrameView const& view) { see_all({&view, 1}); }
+
+    void see_all(std::span<FrameView const> views)
+    {
+        if (restart_) start(views);
+        renderer_->see(views);
+    }
+
+    void finish(RenderResult& result, double rays_before)
+    {
+        renderer_->report_work();
+        result.rays = renderer_->rays() - rays_before;
+        result.options = as_options(settings_.slhb);
+    }
+
+    void end_frame()
+    {
+        renderer_->end_frame();
+        report_.lose("layers beyond the limit of a texel", renderer_->lost_layers() - lost_);
+        lost_ = renderer_->lost_layers();
+    }
+
+    void start(std::span<FrameView const> views)
     {
         World const& world = world_.world();
         TriangleSoup soup = make_soup(world);
         settings_.slhb = choose_frame_settings(asked_, world, soup);
-        renderer_.emplace(world, camera, settings_, std::move(soup), world.static_triangles, report_);
+        renderer_.emplace(world, views, settings_, std::move(soup), world.static_triangles, report_);
         restart_ = false;
         lost_ = 0;
     }
@@ -89,6 +132,7 @@ private:
     Report& report_;
     std::optional<tbb::global_control> threads_;
     std::optional<SlhbRenderer> renderer_;
+    std::vector<Accumulator> sums_; ///< of the views
     std::uint32_t passes_ = 0;
     std::uint64_t lost_ = 0; ///< layers that were reported
     bool restart_ = false;

@@ -29,7 +29,7 @@ std::vector<std::array<vec3, 3>> corners_of(TriangleSoup const& soup, std::size_
 }
 
 void add_motion(PrimaryMap const& primary, TriangleSoup const& soup, CameraRays const& now,
-                EarlierFrame const& before, Picture& picture)
+                CameraRays const& camera_before, EarlierCorners const& before, Picture& picture)
 {
     std::vector<float>& out = picture.add("motion", 3).data;
     std::size_t const width = std::size_t(picture.width), height = std::size_t(picture.height);
@@ -50,7 +50,7 @@ void add_motion(PrimaryMap const& primary, TriangleSoup const& soup, CameraRays 
                 auto const& c = before.corners[t - before.first_moving];
                 there = c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]);
             }
-            vec3 const from = project(now, here), at = project(before.camera, there);
+            vec3 const from = project(now, here), at = project(camera_before, there);
             if (!(at.z > 0)) continue;
             to[0] = at.x - from.x;
             to[1] = at.y - from.y;

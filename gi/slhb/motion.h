@@ -6,9 +6,8 @@
 
 namespace gi {
 
-/// What motion vectors need to know of the frame before.
-struct EarlierFrame {
-    CameraRays camera;
+/// Where triangles were in the frame before.
+struct EarlierCorners {
     std::size_t first_moving = 0;             ///< triangle
     std::vector<std::array<vec3, 3>> corners; ///< of triangles from there on; empty = none has moved
 };
@@ -20,6 +19,6 @@ std::vector<std::array<vec3, 3>> corners_of(TriangleSoup const& soup, std::size_
 /// seen or it was behind the camera. What stands still before a camera that stands still has 0, 0 exactly.
 /// @param now  of the frame, whose last pass `primary` holds
 void add_motion(PrimaryMap const& primary, TriangleSoup const& soup, CameraRays const& now,
-                EarlierFrame const& before, Picture& picture);
+                CameraRays const& camera_before, EarlierCorners const& before, Picture& picture);
 
 } // namespace gi

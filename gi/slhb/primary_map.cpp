@@ -13,11 +13,12 @@ vec2 place_in_pixel(PixelFilter filter, std::uint64_t seed, std::uint32_t pass)
     return 0.5f + filter_offset(filter, sample_in_pixel(seed, pass));
 }
 
-PrimaryMap::PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, RenderSettings const& settings)
+PrimaryMap::PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, RenderSettings const& settings,
+                       int width, int height)
     : soup_(soup),
       cut_outs_(cut_outs),
-      width_(settings.width),
-      height_(settings.height),
+      width_(width),
+      height_(height),
       filter_(settings.filter),
       seed_(settings.seed)
 {
@@ -46,6 +47,14 @@ void PrimaryMap::hits(std::size_t first, std::size_t last, std::vector<PathStart
         vec2 const place{float(p % std::size_t(width_)), float(p / std::size_t(width_))};
         out.push_back({std::uint32_t(p), map_.texels[p].primitive, camera_.through(place + at_)});
     }
+}
+
+std::optional<std::size_t> PrimaryMap::pixel_near(vec3 point) const
+{
+    vec3 const at = project(camera_, point);
+    float const x = std::floor(at.x - at_.x + 0.5f), y = std::floor(at.y - at_.y + 0.5f);
+    if (!(at.z > 0 && x >= 0 && y >= 0 && x < float(width_) && y < float(height_))) return std::nullopt;
+    return std::size_t(y) * std::size_t(width_) + std::size_t(x);
 }
 
 } // namespace gi

@@ -5,6 +5,8 @@
 #include "gi/slhb/cut_outs.h"
 #include "gi/slhb/tracer.h"
 
+#include <optional>
+
 namespace gi {
 
 /// The point of every pixel that a pass looks through, (0, 0) its corner.
@@ -14,12 +16,19 @@ inline float near_plane(Bounds const& bounds) { return 1e-5f * glm::max(bounds.r
 
 class PrimaryMap {
 public:
-    PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, RenderSettings const& settings);
+    PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, RenderSettings const& settings, int width,
+               int height);
 
     /// Rasterises the view of a pass. @param camera  without a lens  @param near_m  what is nearer is not seen
     void refresh(CameraRays const& camera, float near_m, std::uint32_t pass);
     /// Of pixels first..last - 1, in rows.
     void hits(std::size_t first, std::size_t last, std::vector<PathStart>& out) const;
+
+    /// The pixel whose ray of this pass goes nearest by a point; none where that is outside.
+    std::optional<std::size_t> pixel_near(vec3 point) const;
+    std::uint32_t triangle(std::size_t pixel) const { return map_.texels[pixel].primitive; }
+    int width() const { return width_; }
+    int height() const { return height_; }
 
 private:
     TriangleSoup const& soup_;

@@ -17,14 +17,14 @@ namespace {
 constexpr std::size_t kBlock = 4096;
 
 /// Primary hits through exact rays, for the cameras that have no raster.
-void exact_hits(ExactVisibility const& exact, CameraRays const& camera, RenderSettings const& s,
+void exact_hits(ExactVisibility const& exact, CameraRays const& camera, int width, RenderSettings const& s,
                 std::uint32_t pass, std::size_t first, std::size_t last, std::vector<PathStart>& out)
 {
     std::vector<RayQuery> rays;
     out.clear();
     for (std::size_t p = first; p < last; ++p) {
         RqmcStream const stream{std::uint32_t(mix_bits(s.seed + p)), pass};
-        vec2 const place{float(p % std::size_t(s.width)) + 0.5f, float(p / std::size_t(s.width)) + 0.5f};
+        vec2 const place{float(p % std::size_t(width)) + 0.5f, float(p / std::size_t(width)) + 0.5f};
         Ray const ray = camera.through(place + filter_offset(s.filter, stream.sample2(0)));
         out.push_back({std::uint32_t(p), kNoPrimitive, ray});
         rays.push_back({.ray = ray, .seed = stream.seed + pass});
@@ -58,23 +58,25 @@ std::uint32_t texels(bool unused, int n) { return std::uint32_t(unused ? 2 : n);
 
 } // namespace
 
-SlhbRenderer::SlhbRenderer(World const& world, Camera const& camera, RenderSettings const& settings,
+SlhbRenderer::SlhbRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
                            TriangleSoup soup, std::size_t first_moving, Report& report)
     : world_(world),
       settings_(settings),
       first_moving_(first_moving),
       report_(report),
-      orthographic_(camera.orthographic),
-      rays_(camera_rays(camera, settings.width, settings.height, world.origin)),
       soup_(std::move(soup)),
       cut_outs_(world),
       grid_bounds_(with_room(world, soup_, first_moving))
 {
+    see(views);
     end_frame();
-    build_exact();
     make_axes();
     make_lamps();
-    if (!orthographic_) primary_.emplace(soup_, cut_outs_, settings_);
+}
+
+bool SlhbRenderer::orthographic() const
+{
+    return std::any_of(views_.begin(), views_.end(), [](View const& v) { return v.rays.orthographic; });
 }
 
 void SlhbRenderer::build_exact()
@@ -83,7 +85,7 @@ void SlhbRenderer::build_exact()
     auto const build = [&] {
         return std::make_unique<ExactVisibility>(world_, alpha_tests, settings_.threads, first_moving_);
     };
-    if (needs_exact_rays(world_, orthographic_)) {
+    if (needs_exact_rays(world_, orthographic())) {
         StageTimer const timer(report_, "build (Embree BVH)");
         exact_ = build();
     }
@@ -93,6 +95,8 @@ void SlhbRenderer::build_exact()
 /// Also the last surface sends paths along axes: only where the sky or exact rays count there.
 bool SlhbRenderer::to_the_end() const { return exact_ != nullptr || !view(world_).environment_radiance.empty(); }
 
+bool SlhbRenderer::walks() const { return settings_.bounces > 0 || to_the_end(); }
+
 void SlhbRenderer::make_axes()
 {
     if (axes_) {
@@ -100,7 +104,7 @@ void SlhbRenderer::make_axes()
         earlier_sets_.layers += axes_->layers();
         earlier_sets_.lost += axes_->lost();
     }
-    walks_ = settings_.bounces > 0 || to_the_end();
+    walks_ = walks();
     bool const apart = slhb_.schedule != Schedule::streamed; // else all is built in every pass anyway
     axes_.emplace(AxisSet::Source{.bounds = grid_bounds_,
                                   .soup = soup_,
@@ -158,19 +162,53 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
     if (lights) make_lamps();
 }
 
-void SlhbRenderer::end_frame() { earlier_ = {rays_, first_moving_, {}}; }
-
-void SlhbRenderer::add_motion(Picture& picture) const
+void SlhbRenderer::materials_changed()
 {
-    if (primary_) gi::add_motion(*primary_, soup_, rays_, earlier_, picture);
+    if ((exact_ != nullptr) != needs_exact_rays(world_, orthographic())) {
+        exact_.reset();
+        build_exact();
+    }
+    if (walks_ != walks()) make_axes();
+    make_lamps();
 }
 
-void SlhbRenderer::set_camera(Camera const& camera)
+void SlhbRenderer::end_frame()
 {
-    rays_ = camera_rays(camera, settings_.width, settings_.height, world_.origin);
+    earlier_ = {first_moving_, {}};
+    for (View& v : views_) v.earlier = v.rays;
 }
 
-void SlhbRenderer::pass(std::uint32_t index, Accumulator& sums)
+void SlhbRenderer::add_motion(std::size_t view, Picture& picture) const
+{
+    View const& v = views_[view];
+    if (v.primary) gi::add_motion(*v.primary, soup_, v.rays, v.earlier, earlier_, picture);
+}
+
+void SlhbRenderer::see(std::span<FrameView const> views)
+{
+    std::size_t first = 0;
+    while (views_.size() > views.size()) views_.pop_back();
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        FrameView const& now = views[k];
+        bool const known = k < views_.size() && views_[k].width == now.width && views_[k].height == now.height;
+        if (k == views_.size()) views_.emplace_back();
+        View& v = views_[k];
+        v.width = now.width;
+        v.height = now.height;
+        v.partner = now.partner;
+        v.rays = camera_rays(now.camera, now.width, now.height, world_.origin);
+        v.first = first;
+        first += v.pixels();
+        if (!known) v.earlier = v.rays;
+        if (v.rays.orthographic)
+            v.primary.reset();
+        else if (!known || !v.primary)
+            v.primary.emplace(soup_, cut_outs_, settings_, v.width, v.height);
+    }
+    if (!exact_ && !judge_) build_exact();
+}
+
+void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums)
 {
     // Surfaces that a path may leave along an axis.
     auto const sequences =
@@ -186,75 +224,134 @@ void SlhbRenderer::pass(std::uint32_t index, Accumulator& sums)
         StageTimer const timer(report_, "shadow maps");
         lamps_->refresh(index);
     }
-    if (primary_) {
+    {
         StageTimer const timer(report_, "G-buffer");
-        primary_->refresh(eye_of_pass(rays_, settings_.seed, index), near_plane(world_.bounds), index);
+        for (View& v : views_)
+            if (v.primary)
+                v.primary->refresh(eye_of_pass(v.rays, settings_.seed, index), near_plane(world_.bounds), index);
     }
     StageTimer const timer(report_, "paths");
     trace(index, sums);
-    ++sums.paths;
+    for (Accumulator& s : sums) ++s.paths;
 }
 
-void SlhbRenderer::trace(std::uint32_t index, Accumulator& sums)
+/// Of the threads that share the work of a pass.
+struct SlhbRenderer::Work {
+    struct Counts {
+        PathCounts paths;
+        SlhbCounts slhb;
+        std::uint64_t taken = 0;
+    };
+    tbb::combinable<Counts> counts;
+
+    template <class F>
+    void in_blocks(std::size_t n, F const& work)
+    {
+        tbb::parallel_for(std::size_t(0), (n + kBlock - 1) / kBlock, [&](std::size_t block) {
+            FlushDenormals const guard;
+            work(block * kBlock, std::min(n, (block + 1) * kBlock), counts.local());
+        });
+    }
+};
+
+/// Traces the paths that start at what a view sees, but for those that take their light from its partner.
+void SlhbRenderer::trace_view(View const& view, SlhbTracer::Pass const& pass, bool sharing, Work& work)
 {
-    SlhbTracer const tracer(world_, rays_, settings_, slhb_);
+    SlhbTracer const tracer(world_, view.rays, view.width, settings_, slhb_);
+    std::optional<PartnerLight> partner;
+    if (view.partner >= 0 && view.primary && views_[std::size_t(view.partner)].primary) {
+        View const& other = views_[std::size_t(view.partner)];
+        partner.emplace(world_, *other.primary, std::span(samples_).subspan(other.first, other.pixels()),
+                        other.rays, view.rays);
+    }
+    work.in_blocks(view.pixels(), [&](std::size_t first, std::size_t last, Work::Counts& local) {
+        thread_local std::vector<PathStart> starts;
+        if (view.primary)
+            view.primary->hits(first, last, starts);
+        else
+            exact_hits(*exact_, view.rays, view.width, settings_, pass.index, first, last, starts);
+        std::span const samples(&samples_[view.first + first], last - first);
+        std::span const ends =
+            sharing ? std::span(&endings_[view.first + first], last - first) : std::span<Ending>();
+        if (!partner) {
+            tracer.trace(pass, starts, samples, ends, local.paths, local.slhb);
+        } else {
+            thread_local std::vector<PathSample> traced;
+            thread_local std::vector<Ending> traced_ends;
+            std::size_t left = 0;
+            for (std::size_t k = 0; k < starts.size(); ++k) {
+                std::uint32_t& from = taken_from_[view.first + first + k];
+                from = partner->find(starts[k], samples[k]);
+                if (from == kNoPartner) starts[left++] = starts[k];
+            }
+            local.taken += starts.size() - left;
+            starts.resize(left);
+            traced.resize(left);
+            traced_ends.resize(sharing ? left : 0);
+            tracer.trace(pass, starts, traced, traced_ends, local.paths, local.slhb);
+            for (Ending& e : ends) e.layer = kNoLayerHit;
+            for (std::size_t k = 0; k < left; ++k) {
+                std::size_t const at = starts[k].stream - first;
+                samples[at] = traced[k];
+                if (sharing) ends[at] = traced_ends[k];
+            }
+        }
+        if (sharing) shared_.note(ends, std::uint32_t(view.first + first));
+    });
+}
+
+void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums)
+{
     std::uint32_t const gathered = slhb_.gather && walks_
                                        ? index / std::uint32_t(slhb_.interleave * slhb_.interleave) %
                                              std::uint32_t(axes_->first_bounce_axes())
                                        : kNoPrimitive;
     SlhbTracer::Pass const now{*axes_, *lamps_, exact_.get(), index, gathered, judge_.get()};
-    std::size_t const pixels = sums.pixels.size();
+    std::size_t const pixels = views_.back().first + views_.back().pixels();
     // Where many paths end on few layers, what a layer sends back is computed once.
     bool const sharing =
         settings_.bounces > 0 && slhb_.cone == 0 && !slhb_.exact.queries && axes_->first_bounce_layers() < pixels;
     shared_.start(sharing ? axes_->first_bounce_layers() : 0);
     samples_.resize(pixels);
     endings_.resize(sharing ? pixels : 0);
-    struct WorkCounts {
-        PathCounts paths;
-        SlhbCounts slhb;
-    };
-    tbb::combinable<WorkCounts> counts;
-    auto const in_blocks = [&](std::size_t n, auto const& work) {
-        tbb::parallel_for(std::size_t(0), (n + kBlock - 1) / kBlock, [&](std::size_t block) {
-            FlushDenormals const guard;
-            work(block * kBlock, std::min(n, (block + 1) * kBlock), counts.local());
-        });
-    };
-    in_blocks(pixels, [&](std::size_t first, std::size_t last, WorkCounts& local) {
-        thread_local std::vector<PathStart> starts;
-        if (primary_)
-            primary_->hits(first, last, starts);
-        else
-            exact_hits(*exact_, rays_, settings_, index, first, last, starts);
-        std::span const block(samples_.data() + first, last - first);
-        std::span const ends = sharing ? std::span(endings_.data() + first, last - first) : std::span<Ending>();
-        tracer.trace(now, starts, block, ends, local.paths, local.slhb);
-        if (sharing) shared_.note(ends, std::uint32_t(first));
-    });
+    taken_from_.assign(views_.size() > 1 ? pixels : 0, kNoPartner);
+    Work work;
+    for (View const& v : views_) trace_view(v, now, sharing, work);
     shared_.collect(endings_, axes_->pool());
-    in_blocks(shared_.starts().size(), [&](std::size_t first, std::size_t last, WorkCounts& local) {
+    SlhbTracer const onwards(world_, views_[0].rays, views_[0].width, settings_, slhb_);
+    work.in_blocks(shared_.starts().size(), [&](std::size_t first, std::size_t last, Work::Counts& local) {
         thread_local std::vector<PathSample> sent;
         sent.resize(last - first);
-        tracer.trace(now, std::span(shared_.starts()).subspan(first, last - first), sent, {}, local.paths,
-                     local.slhb);
+        onwards.trace(now, std::span(shared_.starts()).subspan(first, last - first), sent, {}, local.paths,
+                      local.slhb);
         shared_.keep(first, sent);
     });
-    in_blocks(pixels, [&](std::size_t first, std::size_t last, WorkCounts&) {
-        for (std::size_t p = first; p < last; ++p) {
-            if (sharing && endings_[p].layer != kNoLayerHit)
-                samples_[p].radiance[2] += endings_[p].throughput * shared_.radiance(endings_[p]);
-            sums.add(p, samples_[p], sums.paths);
-        }
-    });
+    for (std::size_t k = 0; k < views_.size(); ++k) {
+        View const& v = views_[k];
+        PathSample* const samples = samples_.data() + v.first;
+        PathSample const* const partner =
+            v.partner >= 0 ? samples_.data() + views_[std::size_t(v.partner)].first : nullptr;
+        work.in_blocks(v.pixels(), [&](std::size_t first, std::size_t last, Work::Counts&) {
+            for (std::size_t p = first; p < last; ++p) {
+                if (sharing && endings_[v.first + p].layer != kNoLayerHit)
+                    samples[p].radiance[2] +=
+                        endings_[v.first + p].throughput * shared_.radiance(endings_[v.first + p]);
+                if (partner && taken_from_[v.first + p] != kNoPartner)
+                    take_light(partner[taken_from_[v.first + p]], samples[p]);
+                sums[k].add(p, samples[p], sums[k].paths);
+            }
+        });
+        if (partner) taking_ += v.pixels();
+    }
     double direct_s = 0, indirect_s = 0;
-    counts.combine_each([&](WorkCounts const& c) {
+    work.counts.combine_each([&](Work::Counts const& c) {
         direct_s += c.slhb.direct_s;
         indirect_s += c.slhb.indirect_s;
-        sums.counts += c.paths;
+        sums[0].counts += c.paths;
         done_.queries += c.slhb.queries;
         done_.exact_rays += c.slhb.exact_rays;
         done_.shadow_lookups += c.slhb.shadow_lookups;
+        taken_ += c.taken;
     });
     report_.add_time("direct light, thread seconds", direct_s);
     report_.add_time("indirect light, thread seconds", indirect_s);
@@ -268,6 +365,7 @@ void SlhbRenderer::report_work() const
     report_.count("shadow-map look-ups", double(done_.shadow_lookups));
     report_.count("exact rays", double(done_.exact_rays));
     report_.count("layers shaded for several paths", double(shared_.shaded()));
+    if (taking_ > 0) report_.count("share of pixels lit by a partner view", double(taken_) / double(taking_));
     double const axes = double(earlier_sets_.axes + axes_->built()),
                  layers = double(earlier_sets_.layers + axes_->layers());
     report_.count("axes built", axes);

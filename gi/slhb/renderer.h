@@ -3,11 +3,14 @@
 // structures built from the world, and how a pass goes through them.
 
 #include "gi/slhb/motion.h"
+#include "gi/slhb/partner_light.h"
 #include "gi/slhb/primary_map.h"
 #include "gi/slhb/shared_endings.h"
 #include "gi/slhb/tracer.h"
 #include "gi/transport/accumulator.h"
+#include "gi/transport/frame_renderer.h"
 
+#include <deque>
 #include <memory>
 #include <optional>
 
@@ -16,21 +19,25 @@ namespace gi {
 class SlhbRenderer {
 public:
     /// Builds what lasts. `world` and `report` outlive this; the arrays of the world stay where they are.
-    /// @param settings  with those of slhb chosen  @param soup  of the world
-    SlhbRenderer(World const& world, Camera const& camera, RenderSettings const& settings, TriangleSoup soup,
-                 std::size_t first_moving, Report& report);
+    /// @param views  at least one  @param settings  with those of slhb chosen  @param soup  of the world
+    SlhbRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
+                 TriangleSoup soup, std::size_t first_moving, Report& report);
 
     /// A frame ends here: motion vectors lead to what is seen now.
     void end_frame();
     /// The world has changed: its triangles from the first that moves on, or its lights. What does not depend on
     /// that stays.
     void world_moved(bool geometry, bool lights);
-    void set_camera(Camera const& camera);
+    /// Colours, roughnesses or emission have changed, but nothing of what lets rays through.
+    void materials_changed();
+    /// From the next pass on. A view is what the view of the same index was in the frame before.
+    void see(std::span<FrameView const> views);
     /// One more path for every pixel. @param index of the pass, which decides its random numbers
-    void pass(std::uint32_t index, Accumulator& sums);
+    /// @param sums  one per view
+    void pass(std::uint32_t index, std::span<Accumulator> sums);
 
     /// Motion vectors of the last pass, to the frame that ended before it; not with orthographic cameras.
-    void add_motion(Picture& picture) const;
+    void add_motion(std::size_t view, Picture& picture) const;
     double rays() const; ///< look-ups and exact rays, so far
     /// Beyond the limit of a texel, so far.
     std::uint64_t lost_layers() const { return earlier_sets_.lost + axes_->lost(); }
@@ -38,31 +45,45 @@ public:
     void report_work() const;
 
 private:
+    /// What is kept of a view from frame to frame.
+    struct View {
+        CameraRays rays; ///< through the middle of the lens, where motion vectors are measured
+        CameraRays earlier;
+        int width = 0, height = 0, partner = -1;
+        std::optional<PrimaryMap> primary; ///< not of orthographic cameras
+        std::size_t first = 0;             ///< of its pixels among those of all views
+        std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
+    };
+    struct Work;
+
+    bool orthographic() const;
     void build_exact();
     void make_axes();
     void make_lamps();
+    bool walks() const;
     bool to_the_end() const;
-    void trace(std::uint32_t index, Accumulator& sums);
+    void trace(std::uint32_t index, std::span<Accumulator> sums);
+    void trace_view(View const& view, SlhbTracer::Pass const& pass, bool sharing, Work& work);
 
     World const& world_;
     RenderSettings settings_;
     SlhbSettings const& slhb_ = settings_.slhb;
     std::size_t first_moving_; ///< triangle
     Report& report_;
-    bool orthographic_;
-    bool walks_;      ///< paths may leave a surface along an axis
-    CameraRays rays_; ///< through the middle of the lens, where motion vectors are measured
+    std::deque<View> views_;
+    bool walks_; ///< paths may leave a surface along an axis
     TriangleSoup soup_;
     CutOuts cut_outs_;
     std::unique_ptr<ExactVisibility> exact_, judge_;
     Bounds grid_bounds_; ///< of the hit buffers
     std::optional<AxisSet> axes_;
     std::optional<Lamps> lamps_;
-    std::optional<PrimaryMap> primary_; ///< not of orthographic cameras
-    EarlierFrame earlier_;
+    EarlierCorners earlier_;
     SharedEndings shared_;
-    std::vector<PathSample> samples_;
-    std::vector<Ending> endings_;
+    std::vector<PathSample> samples_;       ///< of the pixels of all views
+    std::vector<Ending> endings_;           ///< the same
+    std::vector<std::uint32_t> taken_from_; ///< the same: pixel of the partner's view
+    std::uint64_t taken_ = 0, taking_ = 0;  ///< pixels that took light from a partner; of those that could
     SlhbCounts done_;
     /// Of sets of axes and lamps that are no more.
     struct {

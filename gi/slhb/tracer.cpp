@@ -338,12 +338,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
             s.scatterings = s.vertex = 1;
         } else if (start.triangle != kNoPrimitive) {
             // The raster says which triangle; the ray says where on its plane.
-            Surface const& surface = world_.surfaces[start.triangle];
-            vec3 const normal = glm::cross(surface.edge1, surface.edge2);
-            float const t =
-                glm::dot(normal, surface.corner - start.ray.origin) / glm::dot(normal, start.ray.direction);
-            s.barycentric = std::isfinite(t) ? barycentric_at(surface, start.ray.origin + t * start.ray.direction)
-                                             : vec2{1.0f / 3};
+            s.barycentric = barycentric_of(world_.surfaces[start.triangle], start.ray);
         }
         states[k] = s;
         vertices[k].path = std::uint32_t(k);

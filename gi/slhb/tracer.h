@@ -45,6 +45,14 @@ struct Ending {
     vec3 throughput;
 };
 
+/// Where the ray of a start from the camera meets the plane of its triangle.
+inline vec2 barycentric_of(Surface const& surface, Ray const& ray)
+{
+    vec3 const normal = glm::cross(surface.edge1, surface.edge2);
+    float const t = glm::dot(normal, surface.corner - ray.origin) / glm::dot(normal, ray.direction);
+    return std::isfinite(t) ? barycentric_at(surface, ray.origin + t * ray.direction) : vec2{1.0f / 3};
+}
+
 class SlhbTracer {
 public:
     /// What stays the same over a pass. `exact` may be null where nothing needs exact rays.
@@ -57,13 +65,14 @@ public:
         ExactVisibility const* judge = nullptr; ///< answers for SlhbSettings::exact; null = nothing is asked there
     };
 
-    SlhbTracer(World const& world, CameraRays const& camera, RenderSettings const& settings,
+    /// @param width  of the picture, pixels
+    SlhbTracer(World const& world, CameraRays const& camera, int width, RenderSettings const& settings,
                SlhbSettings const& slhb)
         : world_(view(world)),
           camera_(camera),
           bounces_(settings.bounces),
           seed_(settings.seed),
-          width_(settings.width),
+          width_(width),
           cone_(slhb.cone),
           interleave_(std::uint32_t(slhb.interleave)),
           parts_(slhb.exact)

@@ -4,6 +4,9 @@
 #include "gi/image/render_settings.h"
 #include "gi/scene/moving_world.h"
 
+#include <memory>
+#include <span>
+
 namespace gi {
 
 /// What there is at one moment while the shutter is open.
@@ -13,6 +16,14 @@ struct Moment {
 };
 /// Takes the world to the moment of a pass, counted from 0 in every frame.
 using Moments = std::function<Moment(std::uint32_t pass)>;
+
+/// One of several pictures of the same moment: an eye, a wall.
+struct FrameView {
+    Camera camera;
+    int width = 0, height = 0; ///< pixels
+    int partner = -1; ///< index of an earlier view that sees nearly the same: where it is valid, light that was
+                      ///< found there may be taken over; -1 = none
+};
 
 class FrameRenderer {
 public:
@@ -27,6 +38,11 @@ public:
     ///                 motion; `camera` is then that of no path, and there is no "motion"
     virtual RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                                Moments const& moments = {}) = 0;
+    /// Renders all views of one moment; what does not depend on the point of view is done once for all of them.
+    /// Budget, paths and size of the settings do not count here. @param paths  per pixel, >= 1
+    /// @return a result per view, in their order; `interrupted` where `stop` came first, with fewer paths
+    virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths,
+                                            StopRequest const& stop) = 0;
 };
 
 /// Starts with the world as it is; it and the report outlive the renderer.

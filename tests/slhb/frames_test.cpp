@@ -53,11 +53,13 @@ TEST_P(Frames, AreThoseOfAWorldBuiltAnew)
     MovingWorld const anew(scene, 0.5, report);
     TriangleSoup soup = make_soup(anew.world());
     settings.slhb = choose_frame_settings(settings, anew.world(), soup);
-    SlhbRenderer renderer(anew.world(), camera, settings, std::move(soup), anew.world().triangles.size(), report);
+    FrameView const eye{camera, settings.width, settings.height};
+    SlhbRenderer renderer(anew.world(), {&eye, 1}, settings, std::move(soup), anew.world().triangles.size(),
+                          report);
     Accumulator sums(settings.width, settings.height);
     for (std::uint32_t pass = 0; pass < 6; ++pass) {
         Accumulator unused(settings.width, settings.height);
-        renderer.pass(pass, pass < 4 ? unused : sums);
+        renderer.pass(pass, {pass < 4 ? &unused : &sums, 1});
     }
     EXPECT_EQ(last.find("color")->data, sums.picture(anew.world()).find("color")->data);
 }

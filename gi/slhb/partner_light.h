@@ -1,0 +1,44 @@
+#pragma once
+// Light that one view of a moment takes over from another, as the two eyes of a person see nearly the same: a
+// pixel whose surface point the partner sees too takes L1 and L2 of the partner's path there over the albedo. It
+// is valid on matt surfaces, and on glossy ones whose lobe is wide against the angle between the views; mirrors,
+// glass and narrow lobes, and what only one of the two sees, are traced. The noise of the two pictures is then
+// the same on the same surfaces, as binocular fusion likes it. Error: light is sampled up to half a pixel aside.
+
+#include "gi/slhb/primary_map.h"
+#include "gi/transport/path_sample.h"
+
+namespace gi {
+
+/// Where a pixel may take its light from: the partner's pixel, else kNoPartner.
+inline constexpr std::uint32_t kNoPartner = 0xffffffff;
+
+class PartnerLight {
+public:
+    PartnerLight(World const& world, PrimaryMap const& partner, std::span<PathSample const> partner_samples,
+                 CameraRays const& partner_camera, CameraRays const& camera)
+        : world_(view(world)),
+          partner_(partner),
+          samples_(partner_samples),
+          partner_camera_(partner_camera),
+          camera_(camera)
+    {
+    }
+
+    /// Looks for the surface a path starts at; the partner's first surfaces must be there already.
+    /// @param sample  gets what is its own (L0, albedo, normal, position, depth) where a partner is found
+    std::uint32_t find(PathStart const& start, PathSample& sample) const;
+
+private:
+    bool same_light(ShadingPoint const& at, std::uint32_t triangle, std::size_t pixel, vec3 direction) const;
+
+    WorldView world_;
+    PrimaryMap const& partner_;
+    std::span<PathSample const> samples_;
+    CameraRays partner_camera_, camera_;
+};
+
+/// L1 and L2 of the partner's path, when that has ended, over its albedo and times the sample's own.
+void take_light(PathSample const& partner, PathSample& sample);
+
+} // namespace gi
