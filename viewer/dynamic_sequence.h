@@ -5,7 +5,7 @@
 #include "gi/image/temporal.h"
 #include "gi/transport/frame_renderer.h"
 #include "viewer/dynamic.h"
-#include "viewer/flat_triangles.h"
+#include "viewer/session/flat_triangles.h"
 
 namespace viewer {
 

@@ -5,7 +5,7 @@
 #include "gi/slhb/settings.h"
 #include "gi/transport/fingerprint.h"
 #include "gi/transport/pass_samples.h"
-#include "viewer/flat_triangles.h"
+#include "viewer/session/flat_triangles.h"
 
 #include <algorithm>
 #include <bit>

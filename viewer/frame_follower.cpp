@@ -4,12 +4,6 @@
 
 namespace viewer {
 
-gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
-{
-    if (c.lights || c.materials || c.coverage || c.emitters || c.environment) return gi::SceneChange::light;
-    return c.geometry || camera_moved ? gi::SceneChange::motion : gi::SceneChange::nothing;
-}
-
 FrameFollower::FrameFollower(std::shared_ptr<gi::Scene const> scene, double time_s, gi::Method const& method,
                              gi::RenderSettings const& settings, int most_frames, std::optional<gi::dvec3> origin)
     : method_(method),

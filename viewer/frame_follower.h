@@ -2,12 +2,10 @@
 #include "gi/image/temporal.h"
 #include "gi/registry/registry.h"
 #include "gi/scene/moving_world.h"
-#include "viewer/flat_triangles.h"
+#include "viewer/session/flat_triangles.h"
+#include "viewer/session/lane.h"
 
 namespace viewer {
-
-/// What has happened between two frames, as temporal reuse sees it.
-gi::SceneChange scene_change(gi::Changes const& changes, bool camera_moved);
 
 /// Frames that follow each other: the world is moved on in place, structures of what stays are kept, and the light
 /// of earlier frames is reused.

@@ -61,6 +61,10 @@ struct World {
     // Triangles
     std::vector<uvec3> triangles;
     std::vector<std::uint32_t> triangle_material; ///< index into materials
+    struct Placed {
+        std::uint32_t node, first_triangle;
+    };
+    std::vector<Placed> placed; ///< per instance: its node of the scene, and its triangles up to the next one's
     std::uint32_t instances = 0, static_instances = 0;
     std::uint32_t static_triangles = 0, static_vertices = 0; ///< those before never change
     std::vector<Surface> surfaces;                           ///< per triangle

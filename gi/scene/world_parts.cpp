@@ -126,6 +126,7 @@ WorldParts build_world_parts(std::shared_ptr<Scene const> scene, SceneTime time_
 
     std::uint64_t unusable = 0;
     for (Instance& i : instances) {
+        world.placed.push_back({std::uint32_t(i.node), std::uint32_t(world.triangles.size())});
         if (!i.moves()) {
             append_static_triangles(world, i, report);
             continue;

@@ -1,0 +1,89 @@
+#include "viewer/session/lane.h"
+
+#include <limits>
+
+namespace viewer {
+namespace {
+
+/// Still pictures are filtered while they have few paths, and no longer when they have many: so they converge to
+/// what the method converges to.
+constexpr int kFilteredFrames = 48;
+/// Likewise light is taken from the other eye only at first.
+constexpr int kSharedFrames = 16;
+
+/// For methods that do not know where surfaces were: nothing is reused while anything moves.
+void without_motion(gi::Picture& picture)
+{
+    if (picture.find("motion") != nullptr) return;
+    gi::Layer& motion = picture.add("motion", 3);
+    std::fill(motion.data.begin(), motion.data.end(), std::numeric_limits<float>::quiet_NaN());
+}
+
+} // namespace
+
+gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
+{
+    if (c.lights || c.materials || c.coverage || c.emitters || c.environment) return gi::SceneChange::light;
+    return c.geometry || camera_moved ? gi::SceneChange::motion : gi::SceneChange::nothing;
+}
+
+Lane::Lane(std::string const& method, gi::MovingWorld const& world, Settings const& settings, int threads,
+           std::vector<ViewOrder> const& first, gi::Report& report)
+    : report_(report), threads_(threads)
+{
+    gi::RenderSettings s = render_settings(settings, threads);
+    double pixels = 0;
+    for (ViewOrder const& v : first) pixels += double(v.width) * v.height;
+    s.width = std::max(1, int(std::sqrt(pixels))); // the plan counts pixels
+    s.height = std::max(1, int(std::lround(pixels / s.width)));
+    // One set of axes for all frames: what is seen moves, and fresh axes for every frame would flicker.
+    if (s.slhb.schedule == gi::Schedule::automatic && method == "slhb") s.slhb.schedule = gi::Schedule::stored;
+    s.slhb.interleave = 1;
+    renderer_ = gi::find_method(method).frames(world, first.front().camera, s, report);
+}
+
+std::vector<gi::RenderResult> Lane::render(FrameOrder const& order, gi::Changes const& changes,
+                                           Settings const& settings, gi::StopRequest const& stop)
+{
+    if (!first_) renderer_->changed(changes);
+    bool anything_moved = first_ || seen_.size() != order.views.size() || changes.any();
+    seen_.resize(order.views.size());
+    std::vector<bool> moved(order.views.size());
+    for (std::size_t k = 0; k < order.views.size(); ++k) {
+        ViewOrder const& now = order.views[k];
+        Seen& s = seen_[k];
+        bool const same = s.reuse && s.name == now.name && s.width == now.width && s.height == now.height &&
+                          s.most_frames == settings.reuse;
+        if (!same) s.reuse = std::make_unique<gi::TemporalReuse>(gi::TemporalSettings{settings.reuse});
+        moved[k] = !same || !(s.camera == now.camera);
+        anything_moved |= moved[k];
+        s = {now.name, now.camera, now.width, now.height, std::move(s.reuse), settings.reuse};
+    }
+    first_ = false;
+    still_ = anything_moved ? 1 : still_ + 1;
+    std::vector<gi::FrameView> views;
+    for (ViewOrder const& v : order.views)
+        views.push_back(
+            {v.camera, v.width, v.height, settings.share_eyes && still_ <= kSharedFrames ? v.partner : -1});
+    std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(order.paths), stop);
+    for (std::size_t k = 0; k < results.size(); ++k)
+        finish(k, results[k], scene_change(changes, moved[k]), settings);
+    return results;
+}
+
+void Lane::finish(std::size_t view, gi::RenderResult& result, gi::SceneChange change, Settings const& settings)
+{
+    if (settings.reuse > 1) {
+        gi::StageTimer const timer(report_, "temporal reuse");
+        without_motion(result.picture);
+        seen_[view].reuse->add(result.picture, change);
+    }
+    gi::DenoiseSettings const filter = denoise_settings(settings, threads_);
+    bool const has_variance = filter.denoiser != gi::Denoiser::atrous || result.paths >= 2;
+    if (filter.denoiser == gi::Denoiser::none || !has_variance || still_ > kFilteredFrames) return;
+    gi::StageTimer const timer(report_, "denoise");
+    gi::DenoiseReport const done = gi::denoise(result.picture, filter);
+    if (done.not_finite > 0) report_.lose("pixels not filtered, as a value is not finite", done.not_finite);
+}
+
+} // namespace viewer

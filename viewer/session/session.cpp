@@ -1,0 +1,141 @@
+#include "viewer/session/session.h"
+
+#include "gi/base/error.h"
+#include "gi/scene/animation.h"
+
+#include <algorithm>
+
+namespace viewer {
+namespace {
+
+/// Settings that the structures of a method are built by.
+bool decides_method(std::string const& key)
+{
+    for (char const* const k :
+         {"method", "schedule", "directions", "resolution", "axes", "lamps", "bounces", "seed"})
+        if (key == k) return true;
+    return false;
+}
+
+} // namespace
+
+Session::Session(LoadScene load, int threads, gi::Report& report)
+    : load_(std::move(load)), threads_(threads), report_(report)
+{
+}
+
+bool Session::moves() const
+{
+    return world_ && std::any_of(scene_->playbacks.begin(), scene_->playbacks.end(), [&](gi::Playback const& p) {
+               return p.weight > 0 && p.speed != 0 && scene_->animations[std::size_t(p.animation)].duration_s > 0;
+           });
+}
+
+void Session::apply(Change const& change)
+{
+    if (change.key == "scene") return load(change);
+    if (is_scene_edit(change.key)) {
+        if (!world_) throw gi::InputError("'" + change.key + "'", "no scene is loaded", "load one first");
+        if (is_object_edit(change.key)) return place_object(change);
+        pending_.add(edit(*world_, change));
+        std::erase_if(edits_, [&](Change const& c) { return c.key == change.key; });
+        edits_.push_back(change);
+        return;
+    }
+    Settings changed = settings_;
+    set(changed, change);
+    settings_ = std::move(changed);
+    if (decides_method(change.key)) restart();
+    if (change.key == "compare") compared_.reset();
+}
+
+void Session::restart()
+{
+    main_.reset();
+    compared_.reset();
+}
+
+void Session::load(Change const& change)
+{
+    if (!change.value.is_string())
+        throw gi::InputError("'scene' = " + change.value.dump(), "it takes a name",
+                             "set a file or a built-in scene");
+    std::string const name = change.value.get<std::string>();
+    auto scene = load_(name, report_);
+    placed_.clear();
+    edits_.clear();
+    rebuild(std::move(scene));
+    name_ = name;
+}
+
+void Session::rebuild(std::shared_ptr<gi::Scene const> scene)
+{
+    auto world = std::make_unique<gi::MovingWorld>(scene, time_s_, report_);
+    restart(); // lanes look at the world
+    world_ = std::move(world);
+    scene_ = std::move(scene);
+    pending_ = {};
+    for (Change const& c : edits_) edit(*world_, c);
+}
+
+void Session::place_object(Change const& change)
+{
+    gi::Pose now = gi::evaluate_pose(*scene_, time_s_);
+    place(*scene_, placed_, now);
+    PlacedObject const object = placed_object(*scene_, now, placed_, change);
+    if (!scene_->nodes[object.node].driven) {
+        auto scene = std::make_shared<gi::Scene>(*scene_);
+        scene->nodes[object.node].driven = true;
+        rebuild(std::move(scene));
+    }
+    std::erase_if(placed_, [&](PlacedObject const& p) { return p.node == object.node; });
+    placed_.push_back(object);
+}
+
+gi::Changes Session::move_to(FrameOrder const& order)
+{
+    time_s_ = order.scene_s;
+    gi::Pose pose = gi::evaluate_pose(*scene_, time_s_);
+    place(*scene_, placed_, pose);
+    if (drive_) drive_(*scene_, order, pose);
+    gi::Changes changes = std::exchange(pending_, {});
+    changes.add(world_->advance(pose));
+    return changes;
+}
+
+SessionFrame Session::render(FrameOrder const& order, gi::StopRequest const& stop)
+{
+    if (!world_) throw gi::InputError("there is nothing to render", "no scene is loaded", "load one first");
+    gi::Changes changes;
+    {
+        gi::StageTimer const timer(report_, "world");
+        changes = move_to(order);
+    }
+    SessionFrame frame;
+    if (order.views.empty()) return frame;
+    if (!main_)
+        main_ = std::make_unique<Lane>(settings_.method, *world_, settings_, threads_, order.views, report_);
+    std::vector<gi::RenderResult> results = main_->render(order, changes, settings_, stop);
+    frame.still_frames = main_->still_frames();
+    frame.options = results[0].options;
+    for (gi::RenderResult& r : results) {
+        frame.interrupted |= r.end == gi::RenderEnd::interrupted;
+        frame.rays += r.rays;
+        frame.views.push_back({std::move(r.picture), {}});
+    }
+    if (!settings_.compare.empty() && settings_.compare != settings_.method) {
+        if (!compared_)
+            compared_ =
+                std::make_unique<Lane>(settings_.compare, *world_, settings_, threads_, order.views, report_);
+        std::vector<gi::RenderResult> others = compared_->render(order, changes, settings_, stop);
+        for (std::size_t k = 0; k < others.size(); ++k) {
+            frame.interrupted |= others[k].end == gi::RenderEnd::interrupted;
+            frame.rays += others[k].rays;
+            frame.views[k].compared = std::move(others[k].picture);
+        }
+    }
+    frame.stages_s = added_.times();
+    return frame;
+}
+
+} // namespace viewer

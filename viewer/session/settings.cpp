@@ -1,0 +1,212 @@
+#include "viewer/session/settings.h"
+
+#include "gi/base/error.h"
+#include "gi/registry/registry.h"
+
+#include <fmt/format.h>
+#include <functional>
+
+namespace viewer {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Throws InputError unless it is finite and within.
+double number(Change const& c, double low, double high)
+{
+    double const v = c.value.is_number() ? c.value.get<double>() : std::nan("");
+    if (!(v >= low && v <= high))
+        throw gi::InputError(fmt::format("'{}' = {}", c.key, c.value.dump()),
+                             fmt::format("it takes a number from {:g} to {:g}", low, high), "set one of these");
+    return v;
+}
+
+int whole(Change const& c, int low, int high)
+{
+    double const v = number(c, low, high);
+    if (v != std::floor(v))
+        throw gi::InputError(fmt::format("'{}' = {}", c.key, c.value.dump()), "it takes a whole number",
+                             fmt::format("set one from {} to {}", low, high));
+    return int(v);
+}
+
+bool yes(Change const& c)
+{
+    if (!c.value.is_boolean())
+        throw gi::InputError(fmt::format("'{}' = {}", c.key, c.value.dump()), "it takes true or false",
+                             "set one of these");
+    return c.value.get<bool>();
+}
+
+std::string one_of(Change const& c, std::vector<std::string> const& words)
+{
+    std::string all;
+    for (std::string const& w : words) {
+        if (c.value.is_string() && c.value.get<std::string>() == w) return w;
+        all += (all.empty() ? "" : ", ") + (w.empty() ? "\"\"" : w);
+    }
+    throw gi::InputError(fmt::format("'{}' = {}", c.key, c.value.dump()), "it takes a word that is known here",
+                         "set one of: " + all);
+}
+
+std::vector<std::string> method_names(bool or_none)
+{
+    std::vector<std::string> names;
+    if (or_none) names.emplace_back();
+    for (gi::Method const& m : gi::methods()) names.emplace_back(m.name);
+    return names;
+}
+
+struct Entry {
+    SettingKey about;
+    std::function<void(Settings&, Change const&)> set;
+    std::function<Json(Settings const&)> get;
+};
+
+template <class Member, class Read>
+Entry entry(std::string key, std::string type, std::string what, Member Settings::*member, Read read)
+{
+    return {{std::move(key), std::move(type), std::move(what)},
+            [member, read](Settings& s, Change const& c) { s.*member = read(c); },
+            [member](Settings const& s) { return Json(s.*member); }};
+}
+
+Entry real(std::string key, std::string what, double Settings::*member, double low, double high)
+{
+    return entry(std::move(key), "number", fmt::format("{}; {:g} to {:g}", what, low, high), member,
+                 [=](Change const& c) { return number(c, low, high); });
+}
+
+Entry count(std::string key, std::string what, int Settings::*member, int low, int high)
+{
+    return entry(std::move(key), "whole number", fmt::format("{}; {} to {}", what, low, high), member,
+                 [=](Change const& c) { return whole(c, low, high); });
+}
+
+Entry flag(std::string key, std::string what, bool Settings::*member)
+{
+    return entry(std::move(key), "yes or no", std::move(what), member, yes);
+}
+
+Entry word(std::string key, std::string const& what, std::string Settings::*member, std::vector<std::string> words)
+{
+    std::string all;
+    for (std::string const& w : words) all += (all.empty() ? "" : ", ") + (w.empty() ? "\"\" (none)" : w);
+    return entry(std::move(key), "text", what + ": " + all, member,
+                 [words = std::move(words)](Change const& c) { return one_of(c, words); });
+}
+
+std::vector<Entry> const& entries()
+{
+    static std::vector<Entry> const all{
+        word("method", "light transport", &Settings::method, method_names(false)),
+        word("compare", "a second method to look at beside it", &Settings::compare, method_names(true)),
+        word("schedule", "where the axes of slhb come from", &Settings::schedule,
+             {"auto", "stored", "streamed", "temporal"}),
+        word("directions", "set of the stored schedule", &Settings::directions,
+             {"", "icosahedron:80", "icosahedron:320", "icosahedron:1280"}),
+        count("resolution", "texels along a side of a hit buffer, 0 = chosen by the plan", &Settings::resolution,
+              0, 4096),
+        count("axes", "of a pass, streamed and temporal, 0 = chosen by the plan", &Settings::axes, 0, 4096),
+        count("lamps", "points on lamps with a shadow map, 0 = chosen by the plan", &Settings::lamps, 0, 1024),
+        count("bounces", "indirect bounces", &Settings::bounces, 0, 1024),
+        count("seed", "of the random numbers", &Settings::seed, 0, 1 << 30),
+        count("reuse", "frames that light is reused over, 1 = none", &Settings::reuse, 1, 256),
+        word("denoise", "filter", &Settings::denoise, {"none", "discontinuity", "wide", "atrous"}),
+        flag("share_eyes", "an eye may take light that the other one found", &Settings::share_eyes),
+        real("exposure", "stops", &Settings::exposure_ev, -32, 32),
+        word("tone", "curve", &Settings::tone, {"srgb", "filmic"}),
+        real("rate", "frames per second that it aims at, Hz", &Settings::rate_hz, 0.1, 1000),
+        count("paths", "per pixel and frame, 0 = what the rate allows", &Settings::paths, 0, 65536),
+        real("scale", "sides of the pictures over those of the window, 0 = what the rate allows", &Settings::scale,
+             0, 1),
+        flag("play", "clips go on", &Settings::play),
+        real("speed", "of clips", &Settings::speed, -100, 100),
+        real("eye_distance", "between the pupils, m", &Settings::eye_distance_m, 0, 1),
+        word("stereo", "how two eyes share a window", &Settings::stereo,
+             {"off", "side-by-side", "top-bottom", "anaglyph", "dubois", "rows", "columns", "checkerboard", "quad",
+              "two-windows"}),
+        flag("swap_eyes", "left for right", &Settings::swap_eyes),
+        word("view", "what is shown of two methods", &Settings::view,
+             {"picture", "split", "flicker", "difference"}),
+        real("split", "where the picture is split, of its width", &Settings::split, 0, 1),
+        flag("reproject", "show the last picture as seen from where the head is now", &Settings::reproject),
+        flag("panel", "the panel is shown", &Settings::panel),
+    };
+    return all;
+}
+
+Entry const* find(std::string const& key)
+{
+    for (Entry const& e : entries())
+        if (e.about.key == key) return &e;
+    return nullptr;
+}
+
+} // namespace
+
+std::span<SettingKey const> setting_keys()
+{
+    static std::vector<SettingKey> const keys = [] {
+        std::vector<SettingKey> all;
+        for (Entry const& e : entries()) all.push_back(e.about);
+        return all;
+    }();
+    return keys;
+}
+
+bool is_setting(std::string const& key) { return find(key) != nullptr; }
+
+void set(Settings& settings, Change const& change)
+{
+    Entry const* const e = find(change.key);
+    if (e == nullptr)
+        throw gi::InputError("there is no setting '" + change.key + "'", "it is not known here",
+                             "docs/viewer.md has the list");
+    e->set(settings, change);
+}
+
+nlohmann::json get(Settings const& settings, std::string const& key)
+{
+    Entry const* const e = find(key);
+    if (e == nullptr)
+        throw gi::InputError("there is no setting '" + key + "'", "it is not known here",
+                             "docs/viewer.md has the list");
+    return e->get(settings);
+}
+
+gi::RenderSettings render_settings(Settings const& s, int threads)
+{
+    gi::RenderSettings r;
+    r.bounces = s.bounces;
+    r.seed = std::uint64_t(s.seed);
+    r.threads = threads;
+    r.paths = 1;
+    r.slhb.schedule = s.schedule == "stored"     ? gi::Schedule::stored
+                      : s.schedule == "streamed" ? gi::Schedule::streamed
+                      : s.schedule == "temporal" ? gi::Schedule::temporal
+                                                 : gi::Schedule::automatic;
+    r.slhb.directions = s.directions;
+    r.slhb.resolution = s.resolution;
+    r.slhb.axes = s.axes;
+    r.slhb.lamps = s.lamps;
+    return r;
+}
+
+gi::DenoiseSettings denoise_settings(Settings const& s, int threads)
+{
+    gi::DenoiseSettings d;
+    d.denoiser = s.denoise == "atrous" ? gi::Denoiser::atrous
+                 : s.denoise == "none" ? gi::Denoiser::none
+                                       : gi::Denoiser::discontinuity;
+    if (s.denoise == "wide") d.reach = 2;
+    d.threads = threads;
+    return d;
+}
+
+gi::ToneMapSettings tone_settings(Settings const& s)
+{
+    return {float(s.exposure_ev), s.tone == "filmic" ? gi::ToneCurve::filmic : gi::ToneCurve::srgb};
+}
+
+} // namespace viewer

@@ -1,0 +1,57 @@
+#pragma once
+// What can be set while the viewer runs, by key: the panel, the remote protocol, recordings and replays all set
+// these and nothing else (besides what is in the scene: scene_edits.h).
+
+#include "gi/image/denoise.h"
+#include "gi/image/render_settings.h"
+#include "gi/image/tone_map.h"
+#include "viewer/order/frame_order.h"
+
+#include <span>
+
+namespace viewer {
+
+struct Settings {
+    std::string method = "slhb", compare;      ///< compare: a second method to look at beside it; empty = none
+    std::string schedule = "auto", directions; ///< as --schedule and --directions
+    int resolution = 0, axes = 0, lamps = 0;   ///< of slhb, 0 = what the plan chooses
+    int bounces = 3;
+    int seed = 0;
+    int reuse = 16; ///< frames of temporal reuse; 1 = none
+    std::string denoise = "wide";
+    bool share_eyes = true; ///< an eye may take light that the other one found
+    double exposure_ev = 0;
+    std::string tone = "srgb";
+    // Of the interactive loop
+    double rate_hz = 20;           ///< frames that it aims at
+    int paths = 0;                 ///< per pixel and frame; 0 = what the rate allows
+    double scale = 0;              ///< of the pictures' sides against the window's; 0 = what the rate allows
+    bool play = true;              ///< clips go on
+    double speed = 1;              ///< of clips
+    double eye_distance_m = 0.063; ///< between the pupils
+    std::string stereo = "off";
+    bool swap_eyes = false;
+    std::string view = "picture"; ///< picture, split, flicker, difference
+    double split = 0.5;           ///< where the picture is split, of its width
+    bool reproject = true;        ///< show the last picture as seen from where the head is now
+    bool panel = true;
+};
+
+/// A key that Settings has.
+struct SettingKey {
+    std::string key, type,
+        what; ///< type: "text", "number", "whole number", "yes or no"; what: with range and unit
+};
+std::span<SettingKey const> setting_keys();
+bool is_setting(std::string const& key);
+
+/// Throws InputError where the value is not of the key's type or range, or there is no such key.
+void set(Settings& settings, Change const& change);
+nlohmann::json get(Settings const& settings, std::string const& key);
+
+/// What they say to a method. Throws InputError on values that do not go together.
+gi::RenderSettings render_settings(Settings const& settings, int threads);
+gi::DenoiseSettings denoise_settings(Settings const& settings, int threads);
+gi::ToneMapSettings tone_settings(Settings const& settings);
+
+} // namespace viewer
