@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -61,5 +62,23 @@ struct FrameOrder {
 
     bool operator==(FrameOrder const&) const = default;
 };
+
+/// What an order may hold at most; whatever is read is held to it before memory is taken.
+struct OrderLimits {
+    static constexpr std::size_t views = 256, changes = 65536, name_bytes = 4096, value_bytes = 1 << 20,
+                                 bytes = 1 << 26;
+    static constexpr int size_px = 16384, paths = 1 << 24, value_depth = 32;
+};
+
+/// Throws InputError on an order that nothing can render: numbers that are not finite, a matrix that is not affine
+/// or flattens, rotations that are not unit, views without a size, a partner that is no earlier view, a lens that
+/// gi::check_lens refuses, or more than OrderLimits.
+void check_order(FrameOrder const& order);
+
+/// Every double in all its bits, what has its default value left out: about 150 bytes for a desktop's frame, 120
+/// more for each further view. The first byte is the version of the form. Throws InputError as check_order.
+std::vector<std::uint8_t> to_bytes(FrameOrder const& order);
+/// The order that to_bytes was given. Throws InputError on anything else.
+FrameOrder order_from_bytes(std::span<std::uint8_t const> bytes);
 
 } // namespace viewer

@@ -1,0 +1,16 @@
+// Any bytes as a frame order: an order that comes back the same, or an InputError.
+
+#include "gi/base/error.h"
+#include "viewer/order/frame_order.h"
+
+#include <cstdlib>
+
+extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
+{
+    try {
+        viewer::FrameOrder const order = viewer::order_from_bytes({data, size});
+        if (!(viewer::order_from_bytes(viewer::to_bytes(order)) == order)) std::abort();
+    } catch (gi::InputError const&) {
+    }
+    return 0;
+}
