@@ -105,6 +105,16 @@ void YamlReader::only_keys(std::set<std::string> const& known) const
     }
 }
 
+std::vector<std::string> YamlReader::keys() const
+{
+    if (!node_.IsMap())
+        throw error(path_ + " is not a map", "keys and values are needed here", "write key: value lines");
+    std::vector<std::string> out;
+    for (auto const& entry : node_)
+        if (entry.first.IsScalar()) out.push_back(entry.first.Scalar());
+    return out;
+}
+
 std::vector<YamlReader> YamlReader::items() const
 {
     if (!node_.IsSequence())

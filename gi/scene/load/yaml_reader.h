@@ -29,6 +29,8 @@ public:
     bool is_text() const { return node_.IsScalar(); }
     /// Throws unless this is a map with no other keys than these, each once; names the nearest one.
     void only_keys(std::set<std::string> const& known) const;
+    /// Of a map, in order; keys that are not text are left out. Throws unless this is a map.
+    std::vector<std::string> keys() const;
     bool has(std::string const& key) const { return node_[key].IsDefined() && !node_[key].IsNull(); }
     YamlReader at(std::string const& key) const { return {node_[key], file_, path_ + "." + key}; }
     std::vector<YamlReader> items() const;

@@ -1,0 +1,17 @@
+#pragma once
+// Light of overlapping projectors adds up. Within the band of its blend a wall's light rises from its edge as
+// 3 t^2 - 2 t^3, which with its mirror image makes one; bands of two sides multiply, so four projectors over a
+// corner make one too.
+
+#include "viewer/display/display.h"
+
+namespace viewer {
+
+/// Share of the light at (u, v) of a wall, from 0 at an edge with a band to 1 inside; 0 outside the wall.
+double blend_weight(EdgeBlend const& blend, double width_m, double height_m, double u, double v);
+/// What a pixel's value, encoded with blend.gamma, is multiplied by so that its light is multiplied by `weight`.
+double encoded_weight(EdgeBlend const& blend, double weight);
+/// Anything to do for a pass over the finished picture?
+bool needs_finish(Wall const& wall);
+
+} // namespace viewer
