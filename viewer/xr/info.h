@@ -6,7 +6,7 @@
 
 namespace viewer {
 
-struct XrInfo {
+struct HmdInfo {
     std::string runtime;         ///< name and version
     std::string system;          ///< the headset
     std::string graphics;        ///< how pictures go there: "GLX", "EGL"; empty where none do
@@ -20,6 +20,6 @@ struct XrInfo {
 };
 
 /// Asks the runtime without starting a session. Throws InputError where there is no runtime or no headset.
-XrInfo ask_runtime();
+HmdInfo ask_runtime();
 
 } // namespace viewer

@@ -5,14 +5,14 @@
 
 namespace viewer {
 
-class XrKeeper {
+class HmdKeeper {
 public:
     /// Builds the first session; throws InputError as it does. The context outlives this; nullptr = poses only.
-    XrKeeper(GlContext const* context, XrOptions const& options);
+    HmdKeeper(GlContext const* context, HmdOptions const& options);
 
     /// Polls the session. After a loss destroys it and tries to build another, at most once a second; nullptr
     /// while there is none, or once it has ended for good because it was asked to.
-    XrSession* poll();
+    HmdSession* poll();
     /// What is wrong while there is no session: "lost: ...", and why the last attempt failed.
     std::string const& trouble() const { return trouble_; }
     bool ended() const { return ended_; }
@@ -21,8 +21,8 @@ public:
 
 private:
     GlContext const* context_;
-    XrOptions options_;
-    std::unique_ptr<XrSession> session_;
+    HmdOptions options_;
+    std::unique_ptr<HmdSession> session_;
     std::string trouble_;
     double next_attempt_s_ = 0; ///< steady_clock
     bool ended_ = false;

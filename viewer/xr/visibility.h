@@ -9,16 +9,16 @@
 namespace viewer {
 
 /// Triangles that cover what is hidden, in the plane one metre before the eye: x to the right, y up, as tangents.
-struct XrVisibilityMask {
+struct HiddenMask {
     std::vector<gi::vec2> points;
     std::vector<std::uint32_t> triangles; ///< three indices each
     std::uint64_t version = 0;            ///< 0: the runtime has told nothing
 
-    bool operator==(XrVisibilityMask const&) const = default;
+    bool operator==(HiddenMask const&) const = default;
 };
 
 /// 1 per pixel whose middle is hidden, rows from the top. Triangles with an index past the points are left out.
-std::vector<std::uint8_t> hidden_pixels(XrVisibilityMask const& mask, gi::ViewTangents const& view, int width,
+std::vector<std::uint8_t> hidden_pixels(HiddenMask const& mask, gi::ViewTangents const& view, int width,
                                         int height);
 
 } // namespace viewer
