@@ -1,0 +1,42 @@
+#pragma once
+// What people do with a window, as plain values: keys, mouse, gamepads, and what happens to the window itself.
+
+#include <chrono>
+#include <cstdint>
+
+namespace viewer {
+
+enum class InputKind : std::uint8_t {
+    key,            ///< code: GLFW_KEY_*, scan code, action, modifiers
+    character,      ///< code: Unicode, after the keyboard layout
+    mouse_move,     ///< x, y: px from the window's top left corner
+    mouse_button,   ///< code: GLFW_MOUSE_BUTTON_*, action, modifiers, x, y
+    scroll,         ///< x, y: steps to the right and up
+    resize,         ///< x, y: px of the framebuffer
+    move,           ///< x, y: of the window's content on the screen, px
+    focus,          ///< action: press = gained, release = lost
+    close,          ///< the user wants the window to go; it stays until it is destroyed
+    gamepad_axis,   ///< device, code: GLFW_GAMEPAD_AXIS_*, x: -1..1 (triggers: -1 = released)
+    gamepad_button, ///< device, code: GLFW_GAMEPAD_BUTTON_*, action
+};
+
+enum class InputAction : std::uint8_t { release, press, repeat };
+/// Whether the panel used the event itself: then it is not meant for the scene.
+enum class InputFor : std::uint8_t { scene, panel };
+
+struct InputEvent {
+    using Clock = std::chrono::steady_clock;
+
+    InputKind kind = InputKind::key;
+    InputAction action = InputAction::press;
+    InputFor meant_for = InputFor::scene;
+    int window = 0; ///< Window::number(); -1 for gamepads, which have none
+    int device = 0; ///< gamepad: 0..15
+    int code = 0;
+    int scan_code = 0;
+    int modifiers = 0; ///< GLFW_MOD_*
+    double x = 0, y = 0;
+    Clock::time_point time; ///< when it was polled: GLFW does not tell when it happened
+};
+
+} // namespace viewer

@@ -1,0 +1,57 @@
+#include "viewer/gl/panel.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+#include <imgui.h>
+
+namespace viewer {
+
+Panel::Panel(Window& window)
+{
+    IMGUI_CHECKVERSION();
+    context_ = ImGui::CreateContext();
+    ImGui::SetCurrentContext(context_);
+    ImGui::GetIO().IniFilename = nullptr; // nothing is written beside the scene
+    ImGui::StyleColorsDark();
+    ImGui_ImplGlfw_InitForOpenGL(window.glfw(), true);
+    ImGui_ImplOpenGL3_Init("#version 450 core");
+}
+
+Panel::~Panel()
+{
+    ImGui::SetCurrentContext(context_);
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext(context_);
+}
+
+void Panel::begin()
+{
+    ImGui::SetCurrentContext(context_);
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+}
+
+void Panel::end()
+{
+    ImGui::Render();
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Panel::claim(std::vector<InputEvent>& events) const
+{
+    ImGui::SetCurrentContext(context_);
+    ImGuiIO const& io = ImGui::GetIO();
+    for (InputEvent& e : events) {
+        bool const keys = e.kind == InputKind::key || e.kind == InputKind::character;
+        bool const mouse =
+            e.kind == InputKind::mouse_move || e.kind == InputKind::mouse_button || e.kind == InputKind::scroll;
+        if (e.action == InputAction::release) continue;
+        if ((keys && io.WantCaptureKeyboard) || (mouse && io.WantCaptureMouse)) e.meant_for = InputFor::panel;
+    }
+}
+
+} // namespace viewer
