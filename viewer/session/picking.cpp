@@ -27,7 +27,7 @@ float distance_to(gi::Ray const& ray, gi::Surface const& s)
 
 } // namespace
 
-std::optional<Picked> pick(gi::World const& world, gi::Camera const& camera, double aspect, gi::dvec2 at)
+std::optional<Picked> pick(gi::World const& world, gi::Camera const& camera, double aspect, glm::dvec2 at)
 {
     constexpr int kSide = 4096; // any: the place is continuous
     int const width = std::max(1, int(std::lround(kSide * aspect)));

@@ -13,6 +13,6 @@ struct Picked {
 
 /// The nearest triangle on the ray of a camera through (x, y) in [0, 1]^2 of its picture, (0, 0) top left. Looks
 /// at every triangle: milliseconds for a million. Triangles without area are never met.
-std::optional<Picked> pick(gi::World const& world, gi::Camera const& camera, double aspect, gi::dvec2 at);
+std::optional<Picked> pick(gi::World const& world, gi::Camera const& camera, double aspect, glm::dvec2 at);
 
 } // namespace viewer

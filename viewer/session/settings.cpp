@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 #include "gi/registry/registry.h"
+#include "viewer/display/stereo_mode.h"
 
 #include <fmt/format.h>
 #include <functional>
@@ -54,6 +55,13 @@ std::vector<std::string> method_names(bool or_none)
     std::vector<std::string> names;
     if (or_none) names.emplace_back();
     for (gi::Method const& m : gi::methods()) names.emplace_back(m.name);
+    return names;
+}
+
+std::vector<std::string> stereo_names()
+{
+    std::vector<std::string> names;
+    for (StereoMode const mode : kStereoModes) names.emplace_back(name_of(mode));
     return names;
 }
 
@@ -123,9 +131,7 @@ std::vector<Entry> const& entries()
         flag("play", "clips go on", &Settings::play),
         real("speed", "of clips", &Settings::speed, -100, 100),
         real("eye_distance", "between the pupils, m", &Settings::eye_distance_m, 0, 1),
-        word("stereo", "how two eyes share a window", &Settings::stereo,
-             {"off", "side-by-side", "top-bottom", "anaglyph", "dubois", "rows", "columns", "checkerboard", "quad",
-              "two-windows"}),
+        word("stereo", "how two eyes share a window", &Settings::stereo, stereo_names()),
         flag("swap_eyes", "left for right", &Settings::swap_eyes),
         word("view", "what is shown of two methods", &Settings::view,
              {"picture", "split", "flicker", "difference"}),

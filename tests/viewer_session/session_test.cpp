@@ -1,0 +1,213 @@
+// The same changes and orders give the same pixels; what is set is set; what cannot be leaves all as it was.
+
+#include "viewer/session/session.h"
+
+#include "gi/base/error.h"
+#include "gi/image/metrics.h"
+#include "gi/scene/generate.h"
+#include "tests/support/scenes.h"
+#include "viewer/session/picking.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+namespace viewer::test {
+namespace {
+
+using gi::test::add_material, gi::test::add_box, gi::test::add_quad, gi::test::lambert, gi::test::emitter;
+
+/// A room with a block at a node of its own, a lamp of triangles and one of none.
+std::shared_ptr<gi::Scene const> scene_of(std::string const& name, gi::Report&)
+{
+    if (name != "room") throw gi::InputError("no scene '" + name + "'", "there is only one", "use room");
+    gi::Scene scene;
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, lambert(gi::vec3{0.6f})), true);
+    add_quad(scene, {-0.3f, 0.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(gi::vec3{10})));
+    gi::Light lamp;
+    lamp.position = {0.5f, 0.5f, 0.5f};
+    gi::test::add_light(scene, lamp);
+    gi::Scene block;
+    add_box(block, {-0.4f, -1, -0.4f}, {0.3f, 0, 0.2f}, add_material(block, lambert(gi::vec3{0.2f, 0.6f, 0.2f})),
+            false);
+    append(scene, std::move(block), "block", gi::dmat4(1));
+    return std::make_shared<gi::Scene const>(std::move(scene));
+}
+
+constexpr std::uint32_t kBlock = 2; // material
+
+gi::Camera eye(double aside = 0)
+{
+    gi::Camera camera = gi::look_at({-0.6, 0.1, 0.9}, {0.1, -0.4, 0}, 60);
+    camera.world_from_camera = camera.world_from_camera * glm::translate(gi::dmat4(1), gi::dvec3{aside, 0, 0});
+    return camera;
+}
+
+FrameOrder order(std::uint64_t frame, double aside = 0, bool stereo = false)
+{
+    FrameOrder o;
+    o.frame = frame;
+    o.views.push_back({"left", eye(aside), 40, 30, -1});
+    if (stereo) o.views.push_back({"right", eye(aside + 0.06), 40, 30, 0});
+    return o;
+}
+
+Session started(gi::Report& report)
+{
+    Session s(scene_of, 0, report);
+    s.apply({"scene", "room"});
+    s.apply({"resolution", 48});
+    s.apply({"directions", "icosahedron:80"});
+    return s;
+}
+
+std::vector<float> const& color(SessionFrame const& f, std::size_t view = 0)
+{
+    return f.views[view].picture.find("color")->data;
+}
+
+double mean(std::vector<float> const& v)
+{
+    double sum = 0;
+    for (float const x : v) sum += double(x);
+    return sum / double(v.size());
+}
+
+double relmse(std::vector<float> const& a, std::vector<float> const& b)
+{
+    return gi::measure_errors(a, b, 3).relmse;
+}
+
+TEST(Session, TheSameOrdersGiveTheSamePixels)
+{
+    std::vector<std::vector<float>> runs[2];
+    for (auto& run : runs) {
+        gi::Report report;
+        Session s = started(report);
+        for (std::uint64_t f = 0; f < 8; ++f) {
+            if (f == 2) s.apply({"light.0.intensity", {3, 2, 1}});
+            if (f == 3) s.apply({"object.block.position", {0.2, 0.1, 0}});
+            if (f == 5) s.apply({"material.2.base_color", {0.7, 0.1, 0.1}});
+            if (f == 6) s.apply({"bounces", 1});
+            run.push_back(color(s.render(order(f, 0.01 * double(f), true), {}), 1));
+        }
+    }
+    for (std::size_t f = 0; f < 8; ++f) EXPECT_EQ(runs[0][f], runs[1][f]) << "frame " << f;
+    EXPECT_GT(relmse(runs[0][2], runs[0][1]), 1e-3); // changes do show
+    EXPECT_GT(relmse(runs[0][3], runs[0][2]), 1e-3);
+    EXPECT_GT(relmse(runs[0][5], runs[0][4]), 1e-3);
+}
+
+TEST(Session, WhatStandsStillConvergesToTheReference)
+{
+    gi::Report report;
+    Session s = started(report), judge = started(report);
+    s.apply({"directions", "icosahedron:320"});
+    s.apply({"resolution", 128});
+    judge.apply({"method", "reference"});
+    SessionFrame frame, truth;
+    double first = 0;
+    for (std::uint64_t f = 0; f < 200; ++f) {
+        FrameOrder o = order(f, 0, true);
+        o.paths = 4;
+        frame = s.render(o, {});
+        truth = judge.render(o, {});
+        if (f == 0) first = relmse(color(frame, 1), color(truth, 1));
+    }
+    EXPECT_EQ(frame.still_frames, 200);
+    EXPECT_LT(relmse(color(frame, 0), color(truth, 0)), 3e-3);
+    EXPECT_LT(relmse(color(frame, 1), color(truth, 1)), 3e-3);
+    EXPECT_LT(relmse(color(frame, 1), color(truth, 1)), 0.1 * first);
+    EXPECT_NEAR(mean(color(frame, 1)) / mean(color(truth, 1)), 1, 0.02);
+}
+
+TEST(Session, ComparesTwoMethods)
+{
+    gi::Report report;
+    Session s = started(report);
+    s.apply({"compare", "reference"});
+    SessionFrame const f = s.render(order(0), {});
+    ASSERT_TRUE(f.views[0].compared.has_value());
+    EXPECT_EQ(f.views[0].compared->width, 40);
+    s.apply({"compare", ""});
+    EXPECT_FALSE(s.render(order(1), {}).views[0].compared.has_value());
+}
+
+TEST(Session, RefusesWhatCannotBeAndKeepsAll)
+{
+    gi::Report report;
+    Session s = started(report);
+    std::vector<float> const before = color(s.render(order(0), {}));
+    Settings const settings = s.settings();
+    std::vector<Change> const wrong{{"nonsense", 1},
+                                    {"bounces", -1},
+                                    {"bounces", 1.5},
+                                    {"bounces", "many"},
+                                    {"exposure", nullptr},
+                                    {"method", "magic"},
+                                    {"stereo", "both"},
+                                    {"panel", 1},
+                                    {"scene", "elsewhere"},
+                                    {"scene", 3},
+                                    {"light.7.intensity", {1, 1, 1}},
+                                    {"light.0.intensity", {1, 1}},
+                                    {"light.0.intensity", {1, 1, -1}},
+                                    {"light.0.colour", {1, 1, 1}},
+                                    {"light.", 1},
+                                    {"object.none.position", {0, 0, 0}},
+                                    {"object.block.position", {0, 0, 1e30}},
+                                    {"object.block.rotation", {0, 0, 0, 0}},
+                                    {"material.x.roughness", 0.5},
+                                    {"material.0.roughness", 1.5},
+                                    {"environment.scale", 2}};
+    for (Change const& c : wrong) EXPECT_THROW(s.apply(c), gi::InputError) << c.key << " = " << c.value;
+    for (SettingKey const& k : setting_keys()) EXPECT_EQ(get(s.settings(), k.key), get(settings, k.key)) << k.key;
+    Session fresh = started(report);
+    EXPECT_EQ(color(fresh.render(order(0), {})), before);
+    EXPECT_EQ(color(fresh.render(order(1), {})), color(s.render(order(1), {})));
+    EXPECT_THROW(Session(scene_of, 0, report).render(order(0), {}), gi::InputError);
+}
+
+TEST(Session, EveryKeyCanBeSetToWhatItIs)
+{
+    Settings s;
+    for (SettingKey const& k : setting_keys()) {
+        set(s, {k.key, get(Settings{}, k.key)});
+        EXPECT_EQ(get(s, k.key), get(Settings{}, k.key)) << k.key;
+        EXPECT_FALSE(k.what.empty());
+    }
+}
+
+TEST(Session, EditsOutliveANewWorld)
+{
+    gi::Report report;
+    Session s = started(report);
+    s.apply({"material.2.base_color", {0.9, 0, 0}});
+    s.apply({"light.0.intensity", {0, 0, 0}});
+    s.apply({"object.block.position", {0.2, 0, 0}}); // from now on it is apart from what stays
+    EXPECT_EQ(s.world().materials[kBlock].base_color, (gi::vec3{0.9f, 0, 0}));
+    EXPECT_EQ(s.world().lights[0].intensity, gi::vec3{0});
+    s.render(order(0), {});
+    auto const at = pick(s.world(), gi::look_at({0.4, 0.9, -0.1}, {0.4, 0, -0.1}, 20), 1, {0.5, 0.5});
+    ASSERT_TRUE(at.has_value());
+    EXPECT_EQ(at->material, kBlock); // where it is now, not where it was
+}
+
+TEST(Picking, FindsTheNearestObject)
+{
+    gi::Report report;
+    Session const s = started(report);
+    gi::Camera const camera = gi::look_at({0, 0.5, 0.9}, {-0.05, -0.1, -0.1}, 60);
+    auto const hit = pick(s.world(), camera, 1.5, {0.5, 0.5});
+    ASSERT_TRUE(hit.has_value());
+    gi::Scene const& scene = *s.world().scene;
+    EXPECT_EQ(scene.nodes[std::size_t(scene.nodes[hit->node].parent)].name, "block");
+    EXPECT_EQ(hit->material, kBlock);
+    EXPECT_NEAR(glm::length(hit->position - gi::dvec3{0, 0.5, 0.9}), hit->distance_m, 1e-5);
+    auto const wall = pick(s.world(), camera, 1.5, {0.02, 0.02});
+    ASSERT_TRUE(wall.has_value());
+    EXPECT_EQ(wall->material, 0u);
+    EXPECT_FALSE(pick(gi::World{}, camera, 1, {0.5, 0.5}).has_value());
+}
+
+} // namespace
+} // namespace viewer::test
