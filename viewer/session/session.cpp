@@ -118,8 +118,8 @@ SessionFrame Session::render(FrameOrder const& order, gi::StopRequest const& sto
     std::vector<gi::RenderResult> results = main_->render(order, changes, settings_, stop);
     frame.still_frames = main_->still_frames();
     frame.options = results[0].options;
+    frame.paths = int(results[0].paths);
     for (gi::RenderResult& r : results) {
-        frame.interrupted |= r.end == gi::RenderEnd::interrupted;
         frame.rays += r.rays;
         frame.views.push_back({std::move(r.picture), {}});
     }
@@ -129,7 +129,6 @@ SessionFrame Session::render(FrameOrder const& order, gi::StopRequest const& sto
                 std::make_unique<Lane>(settings_.compare, *world_, settings_, threads_, order.views, report_);
         std::vector<gi::RenderResult> others = compared_->render(order, changes, settings_, stop);
         for (std::size_t k = 0; k < others.size(); ++k) {
-            frame.interrupted |= others[k].end == gi::RenderEnd::interrupted;
             frame.rays += others[k].rays;
             frame.views[k].compared = std::move(others[k].picture);
         }

@@ -25,7 +25,7 @@ struct ViewPicture {
 struct SessionFrame {
     std::vector<ViewPicture> views; ///< as ordered
     int still_frames = 0;           ///< since anything moved or changed, this one counted
-    bool interrupted = false;       ///< fewer paths than ordered: not to be recorded as if it were whole
+    int paths = 0;                  ///< per pixel; fewer than ordered where it was stopped
     double rays = 0;                ///< and look-ups
     std::map<std::string, double> stages_s;
     std::string options; ///< what the method chose

@@ -1,0 +1,271 @@
+#include "viewer/live/live_renderer.h"
+
+#include "gi/base/error.h"
+
+#include <algorithm>
+
+namespace viewer {
+namespace {
+
+double pixels_of(std::vector<ViewOrder> const& views)
+{
+    double sum = 0;
+    for (ViewOrder const& v : views) sum += double(v.width) * v.height;
+    return sum;
+}
+
+bool same_views(std::vector<ViewOrder> const& a, std::vector<ViewOrder> const& b)
+{
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](ViewOrder const& x, ViewOrder const& y) {
+        return x.camera == y.camera && x.name == y.name;
+    });
+}
+
+} // namespace
+
+LiveRenderer::LiveRenderer(Session& session, SessionClock const& clock, FrameLink* link, Hooks hooks)
+    : session_(session), clock_(clock), link_(link), hooks_(std::move(hooks)), thread_([this] { run(); })
+{
+}
+
+LiveRenderer::~LiveRenderer() { stop(); }
+
+void LiveRenderer::stop()
+{
+    quit_ = true;
+    {
+        std::lock_guard const lock(mutex_);
+        if (refining_) refining_->request();
+    }
+    wake_.notify_all();
+    if (thread_.joinable()) thread_.join();
+}
+
+void LiveRenderer::ask(std::function<void(Session&)> question)
+{
+    {
+        std::lock_guard const lock(mutex_);
+        jobs_.push_back([this, question = std::move(question)] { question(session_); });
+    }
+    wake_.notify_all();
+}
+
+void LiveRenderer::post(Change change, std::function<void(std::string const&)> done)
+{
+    {
+        std::lock_guard const lock(mutex_);
+        jobs_.push_back([this, change = std::move(change), done = std::move(done)] {
+            std::string error;
+            try {
+                session_.apply(change);
+                changes_.push_back(change);
+            } catch (gi::InputError const& e) {
+                error = e.what();
+            }
+            if (done) done(error);
+        });
+        if (refining_) refining_->request();
+    }
+    wake_.notify_all();
+}
+
+void LiveRenderer::go_to(double scene_s)
+{
+    ask([this, scene_s](Session&) { scene_s_ = scene_s; });
+}
+
+void LiveRenderer::look(Viewpoint viewpoint)
+{
+    bool moved = false;
+    {
+        std::lock_guard const lock(mutex_);
+        moved = !same_views(viewpoint.views, viewpoint_.views) || !(viewpoint.tracked == viewpoint_.tracked) ||
+                pixels_of(viewpoint.views) != pixels_of(viewpoint_.views);
+        viewpoint_ = std::move(viewpoint);
+        if (moved) looked_ = true;
+        if (moved && refining_) refining_->request();
+    }
+    if (moved) wake_.notify_all();
+}
+
+std::shared_ptr<LiveFrame const> LiveRenderer::newest() const
+{
+    std::lock_guard const lock(mutex_);
+    return newest_;
+}
+
+std::shared_ptr<LiveFrame const> LiveRenderer::next_frame(double timeout_s)
+{
+    double const asked = clock_.now_s();
+    std::unique_lock lock(mutex_);
+    looked_ = true; // also where nothing moves
+    wake_.notify_all();
+    published_.wait_for(lock, std::chrono::duration<double>(timeout_s),
+                        [&] { return quit_ || stopped_ || (newest_ && newest_->begun_s >= asked); });
+    return newest_ && newest_->begun_s >= asked ? newest_ : nullptr;
+}
+
+void LiveRenderer::do_jobs()
+{
+    while (true) {
+        std::function<void()> job;
+        {
+            std::lock_guard const lock(mutex_);
+            if (jobs_.empty()) return;
+            job = std::move(jobs_.front());
+            jobs_.pop_front();
+        }
+        job();
+    }
+}
+
+/// Or until there is something to do.
+void LiveRenderer::wait_until(double time_s)
+{
+    std::unique_lock lock(mutex_);
+    wake_.wait_for(lock, std::chrono::duration<double>(std::max(0.0, time_s - clock_.now_s())),
+                   [&] { return quit_ || !jobs_.empty(); });
+}
+
+void LiveRenderer::run()
+{
+    try {
+        if (link_ != nullptr && !link_->leads())
+            run_following();
+        else
+            run_leading();
+    } catch (std::exception const& e) {
+        if (hooks_.failed) hooks_.failed(e.what());
+    }
+    stopped_ = true;
+    published_.notify_all();
+    if (hooks_.published) hooks_.published();
+}
+
+bool LiveRenderer::anything_moves(Viewpoint const& now) const
+{
+    Settings const& s = session_.settings();
+    return !has_last_ || !changes_.empty() || (s.play && s.speed != 0 && session_.moves()) ||
+           !same_views(now.views, last_.views) || !(now.tracked == last_.tracked) || scene_s_ != last_.scene_s;
+}
+
+FrameOrder LiveRenderer::make_order(Viewpoint const& now, bool still, FrameBudget& budget)
+{
+    Settings const& s = session_.settings();
+    budget = governor_.next(s.rate_hz, pixels_of(now.views), still, {s.paths, s.scale});
+    FrameOrder order;
+    order.frame = frame_++;
+    order.pose_s = now.pose_s;
+    order.display_s = now.display_s;
+    order.scene_s = scene_s_;
+    order.world_from_room = now.world_from_room;
+    order.tracked = now.tracked;
+    order.changes = std::exchange(changes_, {});
+    order.views = now.views;
+    for (ViewOrder& v : order.views) {
+        v.width = std::max(1, int(std::lround(v.width * budget.scale)));
+        v.height = std::max(1, int(std::lround(v.height * budget.scale)));
+    }
+    order.paths = budget.paths;
+    return order;
+}
+
+void LiveRenderer::run_leading()
+{
+    while (!quit_) {
+        do_jobs();
+        Viewpoint now;
+        {
+            std::lock_guard const lock(mutex_);
+            now = viewpoint_;
+        }
+        double const begun = clock_.now_s();
+        Settings const& s = session_.settings();
+        if (has_last_ && s.play && session_.moves()) scene_s_ += s.speed * (begun - last_begun_s_);
+        last_begun_s_ = begun;
+        bool const still = !anything_moves(now);
+        bool const rests =
+            !session_.has_scene() || now.views.empty() || (still && still_paths_ >= kConvergedPaths);
+        if (rests && !looked_) {
+            std::unique_lock lock(mutex_);
+            wake_.wait_for(lock, std::chrono::milliseconds(100),
+                           [&] { return quit_ || !jobs_.empty() || looked_; });
+            continue;
+        }
+        if (!session_.has_scene() || now.views.empty()) {
+            looked_ = false;
+            wait_until(begun + 0.01);
+            continue;
+        }
+        FrameBudget budget;
+        FrameOrder order = make_order(now, still, budget);
+        if (link_ != nullptr) link_->send(order);
+        {
+            std::lock_guard const lock(mutex_);
+            looked_ = false;
+            // Ranks must trace the same number of paths, and a comparison as many with both methods.
+            bool const may_end_early = still && link_ == nullptr && s.method == "slhb" && s.compare.empty();
+            refining_ = may_end_early ? std::make_shared<gi::StopRequest>() : nullptr;
+        }
+        if (!render(std::move(order), budget)) wait_until(clock_.now_s() + 0.2);
+        if (!still) wait_until(begun + 1 / s.rate_hz);
+    }
+    if (link_ != nullptr) link_->send({}); // no views: the end
+}
+
+void LiveRenderer::run_following()
+{
+    while (!quit_) {
+        std::optional<FrameOrder> order = link_->receive();
+        if (!order || order->views.empty()) return;
+        for (Change const& c : order->changes) session_.apply(c);
+        if (hooks_.own_views) order->views = hooks_.own_views(*order);
+        render(std::move(*order), {});
+    }
+}
+
+bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
+{
+    auto frame = std::make_shared<LiveFrame>();
+    frame->begun_s = clock_.now_s();
+    frame->budget = budget;
+    gi::StopRequest never;
+    std::shared_ptr<gi::StopRequest> const stop = refining_;
+    try {
+        frame->result = session_.render(order, stop ? *stop : never);
+    } catch (gi::InputError const& e) {
+        if (hooks_.failed) hooks_.failed(e.what());
+        frame->result = {};
+    }
+    {
+        std::lock_guard const lock(mutex_);
+        refining_ = nullptr;
+    }
+    frame->done_s = clock_.now_s();
+    bool const done = !frame->result.views.empty();
+    if (done) {
+        order.paths = frame->result.paths;
+        still_paths_ = frame->result.still_frames > 1 ? still_paths_ + std::uint32_t(order.paths)
+                                                      : std::uint32_t(order.paths);
+        if (budget.scale > 0)
+            governor_.measured({order.paths, budget.scale}, pixels_of(order.views) / (budget.scale * budget.scale),
+                               frame->done_s - frame->begun_s);
+    }
+    frame->still_paths = still_paths_;
+    frame->settings = session_.settings();
+    last_ = order;
+    has_last_ = true;
+    frame->order = std::move(order);
+    if (done && hooks_.finished) hooks_.finished(*frame);
+    if (link_ != nullptr) link_->wait_for_all(frame->order);
+    if (!done) return false;
+    {
+        std::lock_guard const lock(mutex_);
+        newest_ = std::move(frame);
+    }
+    published_.notify_all();
+    if (hooks_.published) hooks_.published();
+    return true;
+}
+
+} // namespace viewer

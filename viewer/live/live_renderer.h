@@ -1,0 +1,129 @@
+#pragma once
+// The thread that renders: it takes what was changed and where the users are, makes an order of it, renders that
+// and hands the newest frame out. Nobody waits for it: windows, sockets and trackers are other threads' business.
+//
+// While something moves it holds the rate of the settings; while nothing does it refines the picture until that
+// has kConvergedPaths per pixel, and rests. A change of the point of view while it refines ends the frame at hand
+// after its next path.
+
+#include "viewer/session/governor.h"
+#include "viewer/session/session.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <thread>
+
+namespace viewer {
+
+/// Seconds since the session began, on the steady clock.
+class SessionClock {
+public:
+    double now_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+    double at_s(std::chrono::steady_clock::time_point t) const
+    {
+        return std::chrono::duration<double>(t - start_).count();
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point start_ = Clock::now();
+};
+
+/// Where the users are and what they look through, as last known.
+struct Viewpoint {
+    double pose_s = 0, display_s = 0; ///< session clock
+    gi::dmat4 world_from_room{1};
+    Tracked tracked;
+    std::vector<ViewOrder> views; ///< at full size
+};
+
+struct LiveFrame {
+    FrameOrder order;
+    SessionFrame result;
+    FrameBudget budget;
+    double begun_s = 0, done_s = 0; ///< session clock
+    std::uint32_t still_paths = 0;  ///< per pixel since nothing moves
+    Settings settings;              ///< that it was rendered with
+};
+
+inline constexpr std::uint32_t kConvergedPaths = 4096;
+
+/// Others who render the same orders: the ranks of a cluster.
+class FrameLink {
+public:
+    virtual ~FrameLink() = default;
+    /// Orders come from elsewhere: empty at the end.
+    virtual bool leads() const = 0;
+    virtual void send(FrameOrder const& order) = 0;
+    virtual std::optional<FrameOrder> receive() = 0;
+    /// Returns when all have rendered the frame.
+    virtual void wait_for_all(FrameOrder const& order) = 0;
+};
+
+class LiveRenderer {
+public:
+    /// Called on the rendering thread.
+    struct Hooks {
+        std::function<void(LiveFrame const&)> finished; ///< before anyone sees it
+        std::function<void()> published;                ///< there is a newer frame
+        std::function<void(std::string const&)> failed; ///< a frame could not be rendered; it goes on
+        std::function<std::vector<ViewOrder>(FrameOrder const&)> own_views; ///< of a follower; empty = as ordered
+    };
+
+    /// @param session, clock, link  outlive it; link may be null
+    LiveRenderer(Session& session, SessionClock const& clock, FrameLink* link, Hooks hooks);
+    ~LiveRenderer();
+
+    /// From any thread. `done` is called on the rendering thread with what was wrong, or empty.
+    void post(Change change, std::function<void(std::string const& error)> done = {});
+    /// Called with the session between two frames.
+    void ask(std::function<void(Session&)> question);
+    void look(Viewpoint viewpoint);
+    /// To a moment of the scene's clips, s.
+    void go_to(double scene_s);
+
+    /// Null before the first.
+    std::shared_ptr<LiveFrame const> newest() const;
+    /// Waits for a frame that began after everything that was posted before; null when stopped.
+    std::shared_ptr<LiveFrame const> next_frame(double timeout_s);
+    bool stopped() const { return stopped_; } ///< a follower whose leader has ended
+    void stop();
+
+private:
+    void run();
+    void run_leading();
+    void run_following();
+    void do_jobs();
+    bool anything_moves(Viewpoint const& now) const;
+    FrameOrder make_order(Viewpoint const& now, bool still, FrameBudget& budget);
+    bool render(FrameOrder order, FrameBudget const& budget);
+    void wait_until(double time_s);
+
+    Session& session_;
+    SessionClock const& clock_;
+    FrameLink* link_;
+    Hooks hooks_;
+
+    mutable std::mutex mutex_;
+    std::condition_variable wake_, published_;
+    std::deque<std::function<void()>> jobs_;
+    Viewpoint viewpoint_;
+    bool looked_ = false; ///< since the frame at hand began
+    std::shared_ptr<gi::StopRequest> refining_;
+    std::shared_ptr<LiveFrame const> newest_;
+    std::atomic<bool> quit_{false}, stopped_{false};
+
+    // Of the rendering thread
+    Governor governor_;
+    std::vector<Change> changes_;
+    FrameOrder last_;
+    bool has_last_ = false;
+    double scene_s_ = 0, last_begun_s_ = 0;
+    std::uint64_t frame_ = 0;
+    std::uint32_t still_paths_ = 0;
+    std::thread thread_;
+};
+
+} // namespace viewer
