@@ -31,6 +31,7 @@ public:
     void put_numbers(std::span<double const> values, std::span<double const> defaults);
     /// put_count of its length, then its bytes.
     void put_text(std::string_view text);
+    void put_raw(std::span<std::uint8_t const> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
 
     Bytes const& bytes() const { return bytes_; }
     Bytes take() { return std::move(bytes_); }

@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 #include "viewer/order/bytes.h"
+#include "viewer/order/json_text.h"
 
 #include <array>
 #include <fmt/format.h>
@@ -94,16 +95,7 @@ Change get_change(ByteReader& from)
 {
     Change c;
     c.key = from.text(OrderLimits::name_bytes);
-    std::string const text = from.text(OrderLimits::value_bytes);
-    auto const limit_depth = [](int depth, nlohmann::json::parse_event_t, nlohmann::json const&) {
-        if (depth > OrderLimits::value_depth) throw BadBytes("a value is nested too deep");
-        return true;
-    };
-    try {
-        c.value = nlohmann::json::parse(text, limit_depth);
-    } catch (nlohmann::json::exception const& e) {
-        throw BadBytes(e.what());
-    }
+    c.value = parse_json(from.text(OrderLimits::value_bytes), OrderLimits::value_depth);
     return c;
 }
 

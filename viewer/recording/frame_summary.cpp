@@ -1,0 +1,60 @@
+#include "viewer/recording/frame_summary.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace viewer {
+namespace {
+
+double const kLogStep = std::log(1.005);
+
+} // namespace
+
+nlohmann::ordered_json to_json(FrameSummary const& s)
+{
+    return {{"frames", s.frames}, {"mean_ms", s.mean_ms}, {"p50_ms", s.p50_ms},   {"p95_ms", s.p95_ms},
+            {"p99_ms", s.p99_ms}, {"max_ms", s.max_ms},   {"dropped", s.dropped}, {"reprojected", s.reprojected}};
+}
+
+void FrameStatistics::add(FrameTimes const& t)
+{
+    if (frames_++ > 0) {
+        double const ms = std::max(0.0, 1000 * (t.swap_s - last_swap_s_));
+        double const bin = std::log(std::max(1000 * ms, 1.0)) / kLogStep;
+        ++bins_[std::size_t(std::min(bin, kBins - 1.0))];
+        ++intervals_;
+        sum_ms_ += ms;
+        max_ms_ = std::max(max_ms_, ms);
+    }
+    last_swap_s_ = t.swap_s;
+    dropped_ += std::uint64_t(std::max(t.dropped, 0));
+    reprojected_ += t.reprojected ? 1 : 0;
+}
+
+double FrameStatistics::percentile_ms(double fraction) const
+{
+    double const rank = fraction * double(intervals_);
+    std::uint64_t below = 0;
+    for (int i = 0; i < kBins; ++i) {
+        below += bins_[std::size_t(i)];
+        if (below > 0 && double(below) >= rank) return std::min(max_ms_, std::exp((i + 0.5) * kLogStep) / 1000);
+    }
+    return 0;
+}
+
+FrameSummary FrameStatistics::summary() const
+{
+    FrameSummary s;
+    s.frames = frames_;
+    s.dropped = dropped_;
+    s.reprojected = reprojected_;
+    if (intervals_ == 0) return s;
+    s.mean_ms = sum_ms_ / double(intervals_);
+    s.p50_ms = percentile_ms(0.5);
+    s.p95_ms = percentile_ms(0.95);
+    s.p99_ms = percentile_ms(0.99);
+    s.max_ms = max_ms_;
+    return s;
+}
+
+} // namespace viewer
