@@ -32,7 +32,8 @@ TEST_F(StereoOnX, AllModesAreThoseOfTheCpu)
 /// The X server's own picture of its screen agrees: what is read back is what is shown.
 TEST_F(StereoOnX, RowsAreWhereTheScreenHasThem)
 {
-    if (gi::test::run_shell("import -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "SKIPPED: there is no import";
+    if (gi::test::run_shell("import -version > /dev/null 2>&1") != 0)
+        GTEST_SKIP() << "SKIPPED: there is no import";
     glm::ivec2 const size{64, 48};
     Window window(settings_of(size, {21, 33}), report);
     poll_windows();
