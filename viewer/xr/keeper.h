@@ -20,6 +20,8 @@ public:
     int losses() const { return losses_; }
 
 private:
+    void build();
+
     GlContext const* context_;
     HmdOptions options_;
     std::unique_ptr<HmdSession> session_;

@@ -38,11 +38,12 @@ char const* name(HmdPhase phase);
 
 /// What became of the frames. Everything that was not shown is here.
 struct HmdCounts {
-    std::uint64_t frames = 0;    ///< begun
-    std::uint64_t pictures = 0;  ///< new ones shown
-    std::uint64_t repeated = 0;  ///< the last picture shown again
-    std::uint64_t empty = 0;     ///< ended without a picture, as asked or as none was there
-    std::uint64_t discarded = 0; ///< by the runtime (XR_FRAME_DISCARDED)
+    std::uint64_t frames = 0;      ///< begun
+    std::uint64_t pictures = 0;    ///< new ones shown
+    std::uint64_t repeated = 0;    ///< the last picture shown again
+    std::uint64_t empty = 0;       ///< ended without a picture, as asked or as none was there
+    std::uint64_t late_images = 0; ///< new pictures not shown, since the runtime was still reading the images
+    std::uint64_t discarded = 0;   ///< by the runtime (XR_FRAME_DISCARDED)
     std::uint64_t without_pose = 0;
     std::uint64_t moved_spaces = 0; ///< the runtime was recentred
     std::uint64_t lost_events = 0;  ///< of the runtime's queue
@@ -101,6 +102,7 @@ public:
 
 private:
     struct Parts;
+    void start(GlContext const* context, HmdOptions const& options);
     std::unique_ptr<Parts> parts_;
 };
 
