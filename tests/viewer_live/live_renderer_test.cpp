@@ -1,0 +1,159 @@
+// The rendering thread: frames come, changes show in the next, nothing blocks who asks.
+
+#include "viewer/live/live_renderer.h"
+
+#include "gi/base/error.h"
+#include "gi/scene/generate.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+namespace viewer::test {
+namespace {
+
+std::shared_ptr<gi::Scene const> cornell(std::string const& name, gi::Report&)
+{
+    if (name != "cornell") throw gi::InputError("no scene '" + name + "'", "there is only one", "use cornell");
+    return std::make_shared<gi::Scene const>(gi::generate_cornell());
+}
+
+struct Live {
+    gi::Report report;
+    SessionClock clock;
+    Session session{cornell, 0, report};
+    std::vector<FrameOrder> orders; ///< finished, by the rendering thread
+    std::vector<std::string> failures;
+    gi::Camera eye;
+    std::unique_ptr<LiveRenderer> renderer;
+
+    Live()
+    {
+        session.apply({"scene", "cornell"});
+        session.apply({"resolution", 64});
+        session.apply({"directions", "icosahedron:80"});
+        session.apply({"rate", 50});
+        eye = session.world().cameras.at(0);
+        LiveRenderer::Hooks hooks;
+        hooks.finished = [this](LiveFrame const& f) { orders.push_back(f.order); };
+        hooks.failed = [this](std::string const& why) { failures.push_back(why); };
+        renderer = std::make_unique<LiveRenderer>(session, clock, nullptr, hooks);
+    }
+    void look(double aside = 0)
+    {
+        Viewpoint at;
+        at.pose_s = clock.now_s();
+        gi::Camera camera = eye;
+        camera.world_from_camera = eye.world_from_camera * glm::translate(gi::dmat4(1), gi::dvec3{aside, 0, 0});
+        at.views = {{"window", camera, 64, 64, -1}};
+        renderer->look(at);
+    }
+};
+
+TEST(LiveRenderer, RendersWhatIsLookedAtAndConverges)
+{
+    Live live;
+    live.look();
+    auto const first = live.renderer->next_frame(20);
+    ASSERT_NE(first, nullptr);
+    EXPECT_EQ(first->result.views.size(), 1u);
+    std::uint32_t paths = 0;
+    for (int i = 0; i < 20; ++i) {
+        auto const frame = live.renderer->next_frame(20);
+        ASSERT_NE(frame, nullptr);
+        EXPECT_GT(frame->still_paths, paths);
+        paths = frame->still_paths;
+    }
+    live.look(0.05);
+    auto const moved = live.renderer->next_frame(20);
+    ASSERT_NE(moved, nullptr);
+    EXPECT_EQ(moved->result.still_frames, 1);
+    live.renderer->stop();
+    EXPECT_TRUE(live.failures.empty());
+    for (std::size_t i = 1; i < live.orders.size(); ++i)
+        EXPECT_EQ(live.orders[i].frame, live.orders[i - 1].frame + 1);
+}
+
+TEST(LiveRenderer, AChangeShowsInTheNextFrameAndErrorsComeBack)
+{
+    Live live;
+    live.look();
+    ASSERT_NE(live.renderer->next_frame(20), nullptr);
+    std::mutex mutex;
+    std::vector<std::string> answers;
+    auto const note = [&](std::string const& error) {
+        std::lock_guard const lock(mutex);
+        answers.push_back(error);
+    };
+    live.renderer->post({"material.0.base_color", {0.1, 0.1, 0.9}}, note);
+    live.renderer->post({"bounces", -3}, note);
+    live.renderer->post({"scene", "elsewhere"}, note);
+    auto const frame = live.renderer->next_frame(20);
+    ASSERT_NE(frame, nullptr);
+    live.renderer->stop();
+    ASSERT_EQ(answers.size(), 3u);
+    EXPECT_EQ(answers[0], "");
+    EXPECT_NE(answers[1].find("bounces"), std::string::npos);
+    EXPECT_NE(answers[2].find("elsewhere"), std::string::npos);
+    std::size_t recorded = 0;
+    for (FrameOrder const& o : live.orders) recorded += o.changes.size();
+    EXPECT_EQ(recorded, 1u);
+}
+
+/// While a frame is rendered that takes long, nothing that others call waits for it.
+TEST(LiveRenderer, NobodyWaitsForAFrame)
+{
+    Live live;
+    live.session.moves();
+    live.renderer->post({"paths", 400}); // long frames
+    live.look();
+    double longest = 0;
+    double const begun = live.clock.now_s();
+    for (int i = 0; live.clock.now_s() - begun < 1; ++i) {
+        double const before = live.clock.now_s();
+        live.look(1e-4 * i);
+        live.renderer->post({"exposure", 0.01 * (i % 100)});
+        live.renderer->newest();
+        longest = std::max(longest, live.clock.now_s() - before);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    live.renderer->stop();
+    EXPECT_LT(longest, 0.02);
+    EXPECT_FALSE(live.orders.empty());
+}
+
+/// What the thread rendered, a session that is given the same orders renders again, bit by bit.
+TEST(LiveRenderer, ItsOrdersCanBeRenderedAgain)
+{
+    struct Seen {
+        FrameOrder order;
+        std::vector<float> color;
+    };
+    std::vector<Seen> seen;
+    Live live;
+    live.renderer->stop();
+    LiveRenderer::Hooks hooks;
+    hooks.finished = [&](LiveFrame const& f) {
+        seen.push_back({f.order, f.result.views[0].picture.find("color")->data});
+    };
+    live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, nullptr, hooks);
+    for (int i = 0; i < 10; ++i) {
+        live.look(i < 6 ? 0.02 * i : 0.1);
+        if (i == 3) live.renderer->post({"light.0.intensity", {1, 1, 1}});
+        if (i == 4) live.renderer->post({"material.1.base_color", {0.2, 0.9, 0.1}});
+        ASSERT_NE(live.renderer->next_frame(20), nullptr);
+    }
+    live.renderer->stop();
+    gi::Report report;
+    Session again(cornell, 0, report);
+    for (Change const& c : std::vector<Change>{
+             {"scene", "cornell"}, {"resolution", 64}, {"directions", "icosahedron:80"}, {"rate", 50}})
+        again.apply(c);
+    ASSERT_GE(seen.size(), 10u);
+    for (Seen const& s : seen) {
+        for (Change const& c : s.order.changes) again.apply(c);
+        ASSERT_EQ(again.render(s.order, {}).views[0].picture.find("color")->data, s.color) << s.order.frame;
+    }
+}
+
+} // namespace
+} // namespace viewer::test

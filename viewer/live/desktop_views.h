@@ -1,0 +1,18 @@
+#pragma once
+#include "viewer/order/frame_order.h"
+
+namespace viewer {
+
+/// Two eyes before a desktop, without a description of it: the window is a virtual screen at the distance where
+/// both eyes' pictures coincide.
+struct DesktopStereo {
+    bool on = false;
+    double eye_distance_m = 0.063;
+    double screen_distance_m = 1; ///< > 0; what lies there has no disparity
+};
+
+/// One view for both eyes, or the left and the right one, whose frusta are off-axis so that they share the screen.
+/// @param middle  camera between the eyes, symmetric   @param width, height  of one eye's picture, pixels
+std::vector<ViewOrder> desktop_views(gi::Camera const& middle, DesktopStereo const& stereo, int width, int height);
+
+} // namespace viewer
