@@ -1,0 +1,99 @@
+// lightwell recording and lightwell remote, with a recording and a server that the test makes.
+
+#include "tests/viewer/run_program.h"
+#include "tests/viewer_recording/walk.h"
+#include "viewer/remote/remote_server.h"
+
+#include <atomic>
+
+namespace viewer::test {
+namespace {
+
+using nlohmann::json;
+
+void record_walk(std::filesystem::path const& file)
+{
+    gi::Report report;
+    Recorder recorder(file, walk_header(), report);
+    for (std::uint64_t n = 0; n < 61; ++n) recorder.append(walk_frame(n));
+}
+
+TEST(RecordingCommand, TellsWhatARecordingHolds)
+{
+    TemporaryFolder const folder;
+    record_walk(folder / "walk.lwr");
+    json const j = json::parse(run_well("recording info walk.lwr --json", folder.path()).out);
+    EXPECT_EQ(j["frames"], 61);
+    EXPECT_EQ(j["last_frame"], 60);
+    EXPECT_EQ(j["duration_s"], 1.0);
+    EXPECT_EQ(j["changes"], 14);
+    EXPECT_EQ(j["ended"], "in order");
+    EXPECT_EQ(j["scene"], "atrium");
+    EXPECT_EQ(j["views"], (json{"wall, 0 640x480", "wall, 1 640x480"}));
+    Outcome const plain = run_well("recording info walk.lwr", folder.path());
+    EXPECT_NE(plain.out.find("\nframes "), std::string::npos) << plain.out;
+    EXPECT_EQ(plain.err, "");
+}
+
+TEST(RecordingCommand, ExportsWhatIsLeftOfADamagedOne)
+{
+    TemporaryFolder const folder;
+    record_walk(folder / "walk.lwr");
+    std::filesystem::resize_file(folder / "walk.lwr", std::filesystem::file_size(folder / "walk.lwr") - 100);
+    Outcome const o = run_well("recording export walk.lwr --csv walk.csv", folder.path());
+    EXPECT_EQ(o.out, "walk.csv: 60 frames\n");
+    EXPECT_NE(o.err.find("frame 59 is the last"), std::string::npos) << o.err;
+    std::string const table = text_of(folder / "walk.csv");
+    EXPECT_NE(table.find("\n59,"), std::string::npos);
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"walk.csv", "walk.lwr"}));
+}
+
+TEST(RecordingCommand, RefusesWhatItCannotRead)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "text.lwr") << "some text";
+    record_walk(folder / "walk.lwr");
+    for (char const* call :
+         {"recording", "recording info", "recording info nowhere.lwr", "recording info text.lwr",
+          "recording export walk.lwr", "recording export walk.lwr --csv walk.lwr",
+          "recording export walk.lwr --csv none/walk.csv", "recording export text.lwr --csv a.csv"}) {
+        Outcome const o = run(call, folder.path());
+        EXPECT_EQ(o.code, 2) << call << "\n" << o.err;
+        EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << call << "\n" << o.err;
+    }
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"text.lwr", "walk.lwr"}));
+}
+
+TEST(RemoteCommand, AsksAndPrints)
+{
+    TemporaryFolder const folder;
+    gi::Report report;
+    RemoteServer server(
+        {folder / "s", {}, {}},
+        [](RemoteRequest const& r) -> std::optional<json> {
+            if (r.what == "quit") throw std::runtime_error("broken");
+            return json{{"asked", r.what}};
+        },
+        report);
+    std::atomic<bool> stop = false;
+    std::thread thread([&] {
+        while (!stop) server.poll(std::chrono::milliseconds(5));
+    });
+    Outcome const good = run_well(R"(remote s {"do":"stats"} {"do":"ping"})", folder.path());
+    EXPECT_EQ(good.out, "{\"asked\":\"stats\"}\n{\"asked\":\"ping\"}\n");
+    Outcome const bad = run(R"(remote s {"do":"quit"})", folder.path());
+    EXPECT_EQ(bad.code, 2);
+    EXPECT_NE(bad.err.find("broken"), std::string::npos) << bad.err;
+    for (char const* call :
+         {R"(remote s {"do":"fly"})", "remote s rubbish", R"(remote nowhere {"do":"ping"})",
+          R"(remote 1 {"do":"ping"})", "remote s", R"(remote s {"do":"ping"} --timeout never)"}) {
+        Outcome const o = run(call, folder.path());
+        EXPECT_EQ(o.code, 2) << call << "\n" << o.err;
+        EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << call << "\n" << o.err;
+    }
+    stop = true;
+    thread.join();
+}
+
+} // namespace
+} // namespace viewer::test

@@ -1,0 +1,88 @@
+#include "viewer/remote/request.h"
+
+#include <fmt/format.h>
+
+namespace viewer {
+
+std::span<RequestRule const> request_rules()
+{
+    using enum ArgumentType;
+    using enum Presence;
+    static std::vector<RequestRule> const rules{
+        {"ping", "does nothing", "`{}`", {}},
+        {"stats", "what --stats knows at this moment", "counts, times and losses by name", {}},
+        {"load",
+         "shows another scene",
+         "`{}`, once its first frame was shown",
+         {{"scene", text, required, "a file, or the name of a generated scene"}}},
+        {"set",
+         "sets what the panel and the keys can set",
+         "`{}`",
+         {{"key", text, required, "e.g. `exposure`, `light.0.intensity`"},
+          {"value", any, required, "of the type of the key"}}},
+        {"get", "reads what `set` sets", "`{\"value\": ...}`", {{"key", text, required, "as of `set`"}}},
+        {"camera",
+         "moves the camera; without arguments only tells where it is",
+         "`{\"position\": point, \"rotation\": rotation, \"fov_deg\": number}`",
+         {{"name", text, optional, "a camera of the scene"},
+          {"position", point, optional, "m, in the world"},
+          {"look_at", point, optional, "m, in the world; not together with `rotation`"},
+          {"rotation", rotation, optional, "world from camera, which looks along -Z"},
+          {"fov_deg", number, optional, "vertical field of view, degrees"}}},
+        {"play",
+         "lets the scene's animations run",
+         "`{}`",
+         {{"speed", number, optional, "s of the scene per s; 1 if it is not given"}}},
+        {"pause", "holds the scene's animations", "`{}`", {}},
+        {"seek", "sets the time of the scene's animations", "`{}`", {{"time_s", number, required, "s"}}},
+        {"screenshot",
+         "saves the next finished frame",
+         "`{\"file\": ..., \"frame\": ...}`, once it is on the disk",
+         {{"file", text, required, ".png as shown, .exr with all layers"},
+          {"view", integer, optional, "which of several views, from 0; 0 if it is not given"},
+          {"converged", boolean, optional, "wait until the picture refines no further"}}},
+        {"key",
+         "a key of the keyboard, as if pressed",
+         "`{\"frame\": ...}`, once a frame was shown that has seen it",
+         {{"key", text, required, "e.g. `w`, `F1`, `escape`"},
+          {"action", text, optional, "`tap` if it is not given", "tap press release"}}},
+        {"pick",
+         "what lies under a pixel",
+         "`{\"object\": name or null, \"material\": ..., \"position\": point, \"distance_m\": ...}`",
+         {{"x_px", number, required, "from the left edge of the window"},
+          {"y_px", number, required, "from its top edge"},
+          {"view", integer, optional, "as of `screenshot`"},
+          {"select", boolean, optional, "also select it, as a click does"}}},
+        {"quit", "ends the program in order", "`{}`", {}},
+    };
+    return rules;
+}
+
+std::string requests_as_markdown()
+{
+    std::string table = "| do | what it does | arguments | result |\n|---|---|---|---|\n";
+    for (RequestRule const& r : request_rules()) {
+        std::string arguments;
+        for (ArgumentRule const& a : r.arguments)
+            arguments += fmt::format("{}`{}` {}{}{}: {}", arguments.empty() ? "" : "; ", a.name, name_of(a.type),
+                                     a.presence == Presence::optional ? ", optional" : "",
+                                     *a.choices == '\0' ? "" : fmt::format(" (one of {})", a.choices), a.meaning);
+        table += fmt::format("| `{}` | {} | {} | {} |\n", r.name, r.meaning, arguments.empty() ? "—" : arguments,
+                             r.result);
+    }
+    return table;
+}
+
+std::string requests_as_text()
+{
+    std::string text;
+    for (RequestRule const& r : request_rules()) {
+        std::string call = r.name;
+        for (ArgumentRule const& a : r.arguments)
+            call += a.presence == Presence::optional ? fmt::format(" [{}]", a.name) : " " + std::string(a.name);
+        text += fmt::format("  {}: {}\n", call, r.meaning);
+    }
+    return text;
+}
+
+} // namespace viewer
