@@ -195,7 +195,7 @@ int run(Options const& o)
         if (!frame) continue;
         if (o.recentre && !is_recentred && frame->frame == 20) is_recentred = session->recentre();
         if (context) {
-            bool const is_new = frame->frame % std::uint64_t(o.every) == 0;
+            bool const is_new = session->counts().pictures == 0 || frame->frame % std::uint64_t(o.every) == 0;
             if (frame->should_render && is_new)
                 session->end_frame(uploads.upload(frame->views));
             else
