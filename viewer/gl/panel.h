@@ -10,7 +10,8 @@ namespace viewer {
 
 class Panel {
 public:
-    /// Listens to the window's input beside its queue. One panel per window; the window must outlive it.
+    /// Listens to the window's input beside its queue. One panel in the program at a time: ImGui's callbacks know
+    /// no other. The window must outlive it, and its context must be current here and at the end.
     explicit Panel(Window& window);
     ~Panel();
     Panel(Panel const&) = delete;
