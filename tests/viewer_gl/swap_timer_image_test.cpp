@@ -51,14 +51,14 @@ TEST_F(SwapOnX, SyncControlIsBelievedOnlyWhereItCounts)
     SwapTimer timer(window, report);
     SwapTime const first = timer.swap();
     if (!sync_control_listed()) {
-        EXPECT_EQ(first.method, SwapMethod::fence);
+        EXPECT_EQ(first.method, GlSwapMethod::fence);
         return;
     }
     auto const before = swaps_so_far();
     window.swap();
     auto const after = wait_for_swaps();
     bool const counts = before && after && after->swaps > before->swaps;
-    EXPECT_EQ(first.method == SwapMethod::sync_control, counts);
+    EXPECT_EQ(first.method == GlSwapMethod::sync_control, counts);
 }
 
 } // namespace

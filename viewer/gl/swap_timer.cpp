@@ -19,7 +19,7 @@ constexpr GLuint64 kFence_ns = 1'000'000'000;
 
 } // namespace
 
-char const* name_of(SwapMethod method) { return method == SwapMethod::fence ? "fence" : "sync_control"; }
+char const* name_of(GlSwapMethod method) { return method == GlSwapMethod::fence ? "fence" : "sync_control"; }
 
 SwapTimer::SwapTimer(Window& window, gi::Report& report) : window_(window), report_(report)
 {
@@ -47,7 +47,7 @@ SwapTime SwapTimer::swap()
     Clock::time_point const done = Clock::now();
     if (reached != GL_ALREADY_SIGNALED && reached != GL_CONDITION_SATISFIED)
         report_.lose("swaps whose fence was not reached within 1 s");
-    out.method = SwapMethod::fence;
+    out.method = GlSwapMethod::fence;
     out.time = called + (done - called) / 2;
     out.uncertainty_ms = ms_between(called, done) / 2 + refresh_ms_;
     return out;
@@ -63,7 +63,7 @@ bool SwapTimer::try_sync_control(Clock::time_point called, SwapTime& out)
     Clock::time_point const done = Clock::now();
     // Mesa's clock is CLOCK_MONOTONIC, that of steady_clock; the extension promises no clock at all.
     Clock::time_point const told{std::chrono::microseconds(after->time_us)};
-    out.method = SwapMethod::sync_control;
+    out.method = GlSwapMethod::sync_control;
     if (told >= called && told <= done) {
         out.time = told;
         out.uncertainty_ms = ms_between(told, done);

@@ -12,18 +12,18 @@
 
 namespace viewer {
 
-enum class SwapMethod {
+enum class GlSwapMethod {
     sync_control, ///< glXWaitForSbcOML
     fence         ///< swap + glClientWaitSync
 };
 
-char const* name_of(SwapMethod method);
+char const* name_of(GlSwapMethod method);
 
 struct SwapTime {
     using Clock = std::chrono::steady_clock;
     Clock::time_point time;    ///< best guess
     double uncertainty_ms = 0; ///< the swap took place within time +- this
-    SwapMethod method = SwapMethod::fence;
+    GlSwapMethod method = GlSwapMethod::fence;
 };
 
 class SwapTimer {

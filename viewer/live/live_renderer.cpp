@@ -185,7 +185,7 @@ void LiveRenderer::run_leading()
         last_begun_s_ = begun;
         bool const still = !anything_moves(now);
         bool const rests =
-            !session_.has_scene() || now.views.empty() || (still && still_paths_ >= kConvergedPaths);
+            !session_.has_scene() || now.views.empty() || (still && (!s.refine || still_paths_ >= kConvergedPaths));
         if (rests && !looked_) {
             std::unique_lock lock(mutex_);
             wake_.wait_for(lock, std::chrono::milliseconds(100),

@@ -78,6 +78,15 @@ void Session::rebuild(std::shared_ptr<gi::Scene const> scene)
     for (Change const& c : edits_) edit(*world_, c);
 }
 
+gi::dvec3 Session::position_of(std::string const& object) const
+{
+    if (!world_)
+        throw gi::InputError("there is no object '" + object + "'", "no scene is loaded", "load one first");
+    gi::Pose now = gi::evaluate_pose(*scene_, time_s_);
+    place(*scene_, placed_, now);
+    return placed_object(*scene_, now, placed_, {"object." + object + ".scale", 1}).position;
+}
+
 void Session::place_object(Change const& change)
 {
     gi::Pose now = gi::evaluate_pose(*scene_, time_s_);

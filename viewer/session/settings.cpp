@@ -72,36 +72,33 @@ struct Entry {
 };
 
 template <class Member, class Read>
-Entry entry(std::string key, std::string type, std::string what, Member Settings::*member, Read read)
+Entry entry(SettingKey about, Member Settings::*member, Read read)
 {
-    return {{std::move(key), std::move(type), std::move(what)},
-            [member, read](Settings& s, Change const& c) { s.*member = read(c); },
+    return {std::move(about), [member, read](Settings& s, Change const& c) { s.*member = read(c); },
             [member](Settings const& s) { return Json(s.*member); }};
 }
 
 Entry real(std::string key, std::string what, double Settings::*member, double low, double high)
 {
-    return entry(std::move(key), "number", fmt::format("{}; {:g} to {:g}", what, low, high), member,
+    return entry({std::move(key), SettingType::number, std::move(what), {}, low, high}, member,
                  [=](Change const& c) { return number(c, low, high); });
 }
 
 Entry count(std::string key, std::string what, int Settings::*member, int low, int high)
 {
-    return entry(std::move(key), "whole number", fmt::format("{}; {} to {}", what, low, high), member,
-                 [=](Change const& c) { return whole(c, low, high); });
+    return entry({std::move(key), SettingType::whole_number, std::move(what), {}, double(low), double(high)},
+                 member, [=](Change const& c) { return whole(c, low, high); });
 }
 
 Entry flag(std::string key, std::string what, bool Settings::*member)
 {
-    return entry(std::move(key), "yes or no", std::move(what), member, yes);
+    return entry({std::move(key), SettingType::yes_or_no, std::move(what), {}, 0, 1}, member, yes);
 }
 
-Entry word(std::string key, std::string const& what, std::string Settings::*member, std::vector<std::string> words)
+Entry word(std::string key, std::string what, std::string Settings::*member, std::vector<std::string> words)
 {
-    std::string all;
-    for (std::string const& w : words) all += (all.empty() ? "" : ", ") + (w.empty() ? "\"\" (none)" : w);
-    return entry(std::move(key), "text", what + ": " + all, member,
-                 [words = std::move(words)](Change const& c) { return one_of(c, words); });
+    return entry({std::move(key), SettingType::word, std::move(what), words, 0, 0}, member,
+                 [words](Change const& c) { return one_of(c, words); });
 }
 
 std::vector<Entry> const& entries()
@@ -137,6 +134,7 @@ std::vector<Entry> const& entries()
              {"picture", "split", "flicker", "difference"}),
         real("split", "where the picture is split, of its width", &Settings::split, 0, 1),
         flag("reproject", "show the last picture as seen from where the head is now", &Settings::reproject),
+        flag("refine", "goes on rendering while nothing moves", &Settings::refine),
         flag("panel", "the panel is shown", &Settings::panel),
     };
     return all;
@@ -150,6 +148,12 @@ Entry const* find(std::string const& key)
 }
 
 } // namespace
+
+char const* name_of(SettingType type)
+{
+    constexpr char const* kNames[] = {"word", "number", "whole number", "yes or no"};
+    return kNames[int(type)];
+}
 
 std::span<SettingKey const> setting_keys()
 {

@@ -34,13 +34,19 @@ struct Settings {
     std::string view = "picture"; ///< picture, split, flicker, difference
     double split = 0.5;           ///< where the picture is split, of its width
     bool reproject = true;        ///< show the last picture as seen from where the head is now
+    bool refine = true;           ///< goes on rendering while nothing moves
     bool panel = true;
 };
 
 /// A key that Settings has.
+enum class SettingType { word, number, whole_number, yes_or_no };
+char const* name_of(SettingType type);
 struct SettingKey {
-    std::string key, type,
-        what; ///< type: "text", "number", "whole number", "yes or no"; what: with range and unit
+    std::string key;
+    SettingType type = SettingType::word;
+    std::string what;               ///< for people, with its unit
+    std::vector<std::string> words; ///< that it may be
+    double low = 0, high = 0;       ///< of numbers
 };
 std::span<SettingKey const> setting_keys();
 bool is_setting(std::string const& key);

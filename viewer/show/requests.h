@@ -1,0 +1,63 @@
+#pragma once
+// What the remote control can ask of the viewer (docs/remote.md).
+
+#include "viewer/remote/remote_server.h"
+#include "viewer/show/controls.h"
+#include "viewer/show/view_state.h"
+
+#include <list>
+
+namespace viewer {
+
+class Requests {
+public:
+    /// Both outlive it.
+    Requests(ViewState& state, Controls& controls, gi::Report& report)
+        : state_(state), controls_(controls), report_(report)
+    {
+    }
+    /// As RemoteServer::Handler.
+    std::optional<nlohmann::json> handle(RemoteRequest const& request);
+    /// Answers those that waited for it. @param shown_s  when the window showed what there is
+    void presented(double shown_s, glm::ivec2 window_px, std::vector<unsigned char> const& window_bytes);
+    /// Before input is read: releases of keys that were tapped.
+    void step();
+    void answer_with(RemoteServer* server) { server_ = server; }
+    /// Window bytes are needed with the next presentation.
+    bool wants_bytes() const { return !shots_.empty(); }
+    nlohmann::json stats() const;
+
+private:
+    struct Shot {
+        std::string file;
+        int view = -1; ///< -1 = the window
+        bool converged = false;
+        double asked_s = 0;
+        std::uint64_t token = 0;
+    };
+    struct Key {
+        double pressed_s = 0;
+        std::uint64_t token = 0;
+        gi::dmat4 camera{1}; ///< before
+    };
+    struct Loaded {
+        double asked_s = 0;
+        std::uint64_t token = 0;
+    };
+    nlohmann::json camera(RemoteRequest const& r);
+    void load(RemoteRequest const& r);
+    void press(RemoteRequest const& r);
+    void pick(RemoteRequest const& r);
+    bool save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned char> const& bytes);
+
+    ViewState& state_;
+    Controls& controls_;
+    gi::Report& report_;
+    RemoteServer* server_ = nullptr;
+    std::list<Shot> shots_;
+    std::list<Key> keys_;
+    std::list<Loaded> loads_;
+    std::vector<std::pair<double, int>> releases_; ///< session time, key code
+};
+
+} // namespace viewer

@@ -1,0 +1,52 @@
+#include "viewer/show/view_state.h"
+
+namespace viewer {
+
+void ViewState::change(Change const& c, std::function<void(std::string const&)> done)
+{
+    if (is_setting(c.key)) {
+        set(settings, c);
+        renderer->post(c);
+        if (done) done({});
+        return;
+    }
+    renderer->post(c, [this, c, done = std::move(done)](std::string const& error) {
+        inbox.put([this, c, error, done] {
+            if (!error.empty()) message = error;
+            if (done) done(error);
+            refresh_facts();
+        });
+    });
+}
+
+void ViewState::refresh_facts()
+{
+    renderer->ask([this](Session& s) { inbox.put([this, now = facts_of(s)] { facts = now; }); });
+}
+
+gi::Camera ViewState::now() const
+{
+    gi::Camera c = camera;
+    c.world_from_camera = navigation.world_from_camera();
+    return c;
+}
+
+void ViewState::pick(glm::dvec2 at, double aspect, std::function<void(std::optional<Selection> const&)> done)
+{
+    renderer->ask([this, at, aspect, eye = now(), done = std::move(done)](Session& s) {
+        std::optional<Selection> found;
+        if (auto const hit = viewer::pick(s.world(), eye, aspect, at)) {
+            gi::Scene const& scene = *s.world().scene;
+            // The nearest node above it that has a name: what its author would call the thing.
+            std::int32_t node = std::int32_t(hit->node);
+            while (node >= 0 && scene.nodes[std::size_t(node)].name.empty())
+                node = scene.nodes[std::size_t(node)].parent;
+            found = Selection{*hit, node >= 0 ? scene.nodes[std::size_t(node)].name : std::to_string(hit->node),
+                              hit->material < scene.material_names.size() ? scene.material_names[hit->material]
+                                                                          : "default"};
+        }
+        inbox.put([found, done] { done(found); });
+    });
+}
+
+} // namespace viewer

@@ -1,0 +1,68 @@
+#pragma once
+// What the parts of the main loop share: settings as shown, the scene's facts, what is selected, and the way to
+// change things.
+
+#include "viewer/live/navigation.h"
+#include "viewer/session/picking.h"
+#include "viewer/show/live_error.h"
+#include "viewer/show/scene_facts.h"
+
+#include <mutex>
+
+namespace viewer {
+
+struct Selection {
+    Picked picked;
+    std::string object, material; ///< names; the node's number where it has none
+};
+
+/// Answers that come from the rendering thread, to be read by the main loop.
+class Inbox {
+public:
+    void put(std::function<void()> message)
+    {
+        std::lock_guard const lock(mutex_);
+        messages_.push_back(std::move(message));
+    }
+    void read()
+    {
+        std::vector<std::function<void()>> now;
+        {
+            std::lock_guard const lock(mutex_);
+            now.swap(messages_);
+        }
+        for (auto const& m : now) m();
+    }
+
+private:
+    std::mutex mutex_;
+    std::vector<std::function<void()>> messages_;
+};
+
+struct ViewState {
+    SessionClock clock;
+    Settings settings;
+    SceneFacts facts;
+    gi::Camera first_camera, camera; ///< the second: its lens; where it is, navigation says
+    Navigation navigation{gi::dmat4(1), 1, {}};
+    std::optional<Selection> selection;
+    std::shared_ptr<LiveFrame const> frame; ///< that is shown
+    std::optional<LiveError> live_error;
+    double screen_distance_m = 2; ///< where both eyes' pictures coincide
+    bool ends = false;
+    std::string message; ///< the last that went wrong, for the panel
+    Inbox inbox;
+    LiveRenderer* renderer = nullptr;
+    bool wants_screenshot = false;
+
+    /// Settings take effect on what is shown at once, and in the picture with the next frame. Throws InputError
+    /// where a setting cannot be so; what is wrong with an edit of the scene goes to `done`, later, by the inbox.
+    void change(Change const& change, std::function<void(std::string const&)> done = {});
+    /// Reads the facts anew, soon.
+    void refresh_facts();
+    /// The camera as it is now.
+    gi::Camera now() const;
+    void pick(glm::dvec2 at, double aspect, std::function<void(std::optional<Selection> const&)> done);
+};
+
+} // namespace viewer
