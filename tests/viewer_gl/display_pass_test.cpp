@@ -141,6 +141,21 @@ TEST_F(Display, StretchesBilinearly)
     }
 }
 
+TEST_F(Display, EmptyTargetsAreLeftAlone)
+{
+    Eyes const eyes({4, 4}, 1); // of a window that was made very small
+    DisplayPass pass;
+    TextureTarget const whole(TextureTarget::Format::bytes, {4, 4});
+    for (glm::ivec2 const size : {glm::ivec2{0, 0}, {1, 1}, {0, 3}})
+        for (StereoMode const mode : {StereoMode::off, StereoMode::side_by_side, StereoMode::top_bottom}) {
+            DisplaySettings settings;
+            settings.stereo = mode;
+            DrawTarget const target = part_of(whole.target(), {1, 1}, size);
+            pass.draw(target, {eyes.left.shown(), {}}, {eyes.right.shown(), {}}, settings);
+            EXPECT_EQ(read_bytes(target).size(), std::size_t(3 * size.x * size.y));
+        }
+}
+
 TEST_F(Display, EncodedValuesPassThrough)
 {
     glm::ivec2 const size{30, 20};

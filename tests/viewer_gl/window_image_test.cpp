@@ -1,6 +1,7 @@
 // Real windows on a real X server, real keys.
 
 #include "tests/viewer_gl/on_xvfb.h"
+#include "tests/viewer_gl/stereo_check.h"
 #include "viewer/gl/glfw_library.h"
 #include "viewer/gl/panel.h"
 
@@ -96,6 +97,23 @@ TEST_F(WindowOnX, KeysMouseAndResizeArriveAsEvents)
     EXPECT_EQ(window.position_px(), glm::ivec2(33, 44));
 }
 
+TEST_F(WindowOnX, FocusArrivesAsEvents)
+{
+    if (!have_xdotool()) GTEST_SKIP() << "SKIPPED: there is no xdotool";
+    Window window(settings_of({320, 240}, {0, 0}), report);
+    Window const other(settings_of({64, 64}, {400, 0}), report);
+    window.set_title("first of two");
+    inject("search --sync --name 'first of two' windowfocus");
+    auto const gained = [](InputEvent const& e) {
+        return e.kind == InputKind::focus && e.action == InputAction::press;
+    };
+    EXPECT_TRUE(await(window, gained));
+    glfwFocusWindow(other.glfw());
+    EXPECT_TRUE(await(window, [](InputEvent const& e) {
+        return e.kind == InputKind::focus && e.action == InputAction::release;
+    }));
+}
+
 TEST_F(WindowOnX, FullScreenFillsItsMonitor)
 {
     auto const all = monitors();
@@ -165,6 +183,7 @@ TEST_F(WindowOnX, PanelDrawsAndClaimsTheMouseOverIt)
         panel.end();
         if (frame < 2) window.swap();
     }
+    keep_picture("panel", {320, 240}, read_bytes(target_of(window)));
     unsigned char pixel[4] = {};
     glReadPixels(60, 240 - 100, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
     EXPECT_GT(pixel[0] + pixel[1] + pixel[2], 0);
