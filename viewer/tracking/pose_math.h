@@ -1,0 +1,22 @@
+#pragma once
+// Rotations as vectors and between poses.
+
+#include "viewer/order/frame_order.h"
+
+namespace viewer {
+
+/// Rotation vector (axis times angle, rad) of a unit quaternion; the shorter way, so at most pi long.
+gi::dvec3 log_rotation(gi::dquat rotation);
+/// The unit quaternion of a rotation vector.
+gi::dquat exp_rotation(gi::dvec3 vector_rad);
+/// Position and rotation on the straight way from a (t = 0) to b (t = 1).
+RoomPose between(RoomPose const& a, RoomPose const& b, double t);
+/// a after b: room from b's frame.
+RoomPose compose(RoomPose const& a, RoomPose const& b);
+RoomPose inverse(RoomPose const& a);
+gi::dmat4 to_matrix(RoomPose const& pose);
+bool is_finite(RoomPose const& pose);
+/// Angle between two orientations, rad, 0..pi.
+double angle_between(gi::dquat const& a, gi::dquat const& b);
+
+} // namespace viewer

@@ -1,0 +1,71 @@
+#include "viewer/tracking/puppet.h"
+
+#include "gi/base/error.h"
+#include "viewer/tracking/pose_math.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+
+namespace viewer {
+namespace {
+
+/// Rigid: the rotation of the matrix without its scale.
+gi::dmat4 in_world(gi::dmat4 const& world_from_room, RoomPose const& pose)
+{
+    glm::dmat3 turn(world_from_room);
+    for (int c = 0; c < 3; ++c) turn[c] = glm::normalize(turn[c]);
+    gi::dmat4 m(turn * glm::mat3_cast(pose.rotation));
+    m[3] = world_from_room * glm::dvec4(pose.position, 1);
+    return m;
+}
+
+} // namespace
+
+double height_scale(gi::Scene const& scene, gi::Avatar const& avatar, double user_eye_height_m,
+                    PuppetMeasures const& measures)
+{
+    if (!(user_eye_height_m >= 0.3 && user_eye_height_m <= 3))
+        throw gi::InputError(fmt::format("an eye height of {} m is not understood", user_eye_height_m),
+                             "people's are 0.3 to 3 m above the floor", "write it in metres, 1.65");
+    gi::Pose const rest = gi::evaluate_pose(scene, std::nullopt);
+    double lowest = std::numeric_limits<double>::infinity();
+    for (gi::Skin const& skin : scene.skins)
+        for (std::int32_t const j : skin.joints)
+            lowest = std::min(lowest, rest.world_from_node[std::size_t(j)][3].y);
+    double const head = rest.world_from_node[std::size_t(avatar.head)][3].y;
+    // An avatar stands on y = 0 unless its joints reach below; ankles are a little above the soles.
+    double const floor = std::min(0.0, lowest);
+    double const user_joint_m = user_eye_height_m + measures.head_joint_in_head.y;
+    if (!(head > floor) || !(user_joint_m > 0))
+        throw gi::InputError("the avatar's head is not above its floor", "it has no height to compare",
+                             "stand it upright, with +Y up, on y = 0");
+    return (head - floor) / user_joint_m;
+}
+
+gi::AvatarTargets puppet_targets(Tracked const& tracked, gi::dmat4 const& world_from_room,
+                                 PuppetMeasures const& measures)
+{
+    gi::AvatarTargets targets;
+    double const s = measures.avatar_per_user;
+    gi::dvec3 user_joint{0}, joint{0}; // the user's and the avatar's head joint, in the room
+    if (tracked.head) {
+        user_joint = compose(*tracked.head, {measures.head_joint_in_head, {1, 0, 0, 0}}).position;
+        joint = {user_joint.x, s * user_joint.y, user_joint.z};
+        targets.head = in_world(world_from_room, {joint, tracked.head->rotation});
+    }
+    auto const hand = [&](std::optional<RoomPose> const& pose, RoomPose const& wrist) -> std::optional<gi::dmat4> {
+        if (!pose) return std::nullopt;
+        RoomPose p = compose(*pose, wrist);
+        if (tracked.head)
+            p.position = joint + s * (p.position - user_joint);
+        else
+            p.position.y *= s;
+        return in_world(world_from_room, p);
+    };
+    targets.left_hand = hand(tracked.left_hand, measures.left_wrist_in_hand);
+    targets.right_hand = hand(tracked.right_hand, measures.right_wrist_in_hand);
+    return targets;
+}
+
+} // namespace viewer
