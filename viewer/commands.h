@@ -14,6 +14,7 @@ void add_generate(CLI::App& app, int& exit_code);
 void add_recording(CLI::App& app, int& exit_code);
 void add_remote(CLI::App& app, int& exit_code);
 void add_track(CLI::App& app, int& exit_code);
+void add_display(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 // Within bench
 void add_bench_dynamic(CLI::App& bench, int& exit_code);

@@ -32,6 +32,7 @@ Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130
     add_recording(app, exit_code);
     add_remote(app, exit_code);
     add_track(app, exit_code);
+    add_display(app, exit_code);
     add_bench(app, exit_code);
     try {
         app.parse(argc, argv);
