@@ -11,6 +11,7 @@ void add_render(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_generate(CLI::App& app, int& exit_code);
+void add_xr(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 // Within bench
 void add_bench_dynamic(CLI::App& bench, int& exit_code);

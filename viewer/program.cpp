@@ -29,6 +29,7 @@ Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130
     add_compare(app, exit_code);
     add_info(app, exit_code);
     add_generate(app, exit_code);
+    add_xr(app, exit_code);
     add_bench(app, exit_code);
     try {
         app.parse(argc, argv);
