@@ -33,6 +33,7 @@ Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130
     add_remote(app, exit_code);
     add_track(app, exit_code);
     add_display(app, exit_code);
+    add_xr(app, exit_code);
     add_bench(app, exit_code);
     try {
         app.parse(argc, argv);

@@ -178,5 +178,33 @@ TEST_F(Composited, PicturesFollowTheHeadWhileNoneIsDrawn)
     }
 }
 
+/// The runtime moves its space under a picture that was drawn before; the head has not moved, so nothing is to be
+/// seen of it.
+TEST_F(Composited, PicturesStayWhereTheRuntimeRecentres)
+{
+    int const port = free_port();
+    start_service({"--remote", std::to_string(port), "--compositor", "xcb"}, compositor_environment());
+    RemoteDriver remote(port);
+    double const turn_rad = 0.15;
+    look(remote, turn_rad);
+    Child client(client_call("--frames 10000 --every 100000 --patience 100 --graphics glx --seated"),
+                 folder.path(), "client", {"DISPLAY=" + display});
+    ASSERT_TRUE(shows_picture(client)) << client.out() << client.err();
+    std::this_thread::sleep_for(Seconds(2));
+    Photograph const before = photograph("before_recentre");
+    Child control({kScript, "client", "--dir", runtime_folder(), "--", control_program(), "-c"}, folder.path(),
+                  "ctl");
+    ASSERT_EQ(control.wait(Seconds(10)), 0) << control.out() << control.err();
+    std::this_thread::sleep_for(Seconds(2));
+    Photograph const after = photograph("after_recentre");
+    for (int eye = 0; eye < 2; ++eye) {
+        Seen const ball = before.find(before.window(), eye, Colour::white);
+        Seen const then = after.find(before.window(), eye, Colour::white);
+        EXPECT_GT(ball.share, 0.005);
+        EXPECT_NEAR(then.middle.x, ball.middle.x, 0.003);
+        EXPECT_NEAR(then.middle.y, ball.middle.y, 0.003);
+    }
+}
+
 } // namespace
 } // namespace viewer::test

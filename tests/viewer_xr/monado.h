@@ -43,6 +43,12 @@ protected:
         return call;
     }
 
+    static std::string control_program()
+    {
+        char const* const elsewhere = std::getenv("LIGHTWELL_MONADO");
+        return (elsewhere ? std::string(elsewhere) : LIGHTWELL_SOURCE_DIR "/build/monado") + "/usr/bin/monado-ctl";
+    }
+
     /// What the client prints last.
     static nlohmann::json result(std::string const& out)
     {

@@ -119,6 +119,48 @@ TEST_F(Monado, RecentreBringsTheHeadToTheMiddle)
     EXPECT_NEAR(number("left_z"), -0.5, 0.05);
 }
 
+TEST_F(Monado, SeatedUsersHaveTheHeightThatWasStated)
+{
+    int const port = free_port();
+    start_service({"--remote", std::to_string(port)});
+    RemoteDriver remote(port);
+    remote.set_head({{0, 0, 0, 1}, {0.25f, 1.75f, -0.5f}});
+    remote.send_all();
+    auto const r = run_client("--graphics none --frames 20 --seated --log " + (folder / "log.csv").string());
+    EXPECT_EQ(r["space"], "local, eyes 1.2 m above the floor");
+    // Monado's local space begins 1.6 m above its stage.
+    EXPECT_NEAR(std::stod(read_log(folder / "log.csv").back().at("head_y")), 1.75 - 1.6 + 1.2, 1e-6);
+}
+
+/// The user recentres with the runtime's own means, as by a button of the headset.
+TEST_F(Monado, RuntimeMayRecentre)
+{
+    int const port = free_port();
+    start_service({"--remote", std::to_string(port)});
+    RemoteDriver remote(port);
+    remote.set_head({{0, 0.6f, 0, 0.8f}, {0.25f, 1.75f, -0.5f}});
+    remote.send_all();
+    Child client(
+        client_call("--graphics egl --frames 80 --every 1000 --seated --log " + (folder / "log.csv").string()),
+        folder.path(), "client");
+    ASSERT_TRUE(wait_for([&] { return client.out().find("counting") != std::string::npos; }, Seconds(30)))
+        << client.out() << client.err();
+    Child control({kScript, "client", "--dir", runtime_folder(), "--", control_program(), "-c"}, folder.path(),
+                  "ctl");
+    EXPECT_EQ(control.wait(Seconds(10)), 0) << control.out() << control.err();
+    EXPECT_EQ(client.wait(Seconds(60)), 0) << client.out() << client.err();
+    auto const r = result(client.out());
+    EXPECT_EQ(r["moved_spaces"], 1) << r;
+    expect_nothing_lost(r);
+    auto const log = read_log(folder / "log.csv");
+    auto const number = [&](char const* column) { return std::stod(log.back().at(column)); };
+    EXPECT_NEAR(std::stod(log.front().at("head_x")), 0.25, 1e-6);
+    EXPECT_NEAR(number("head_x"), 0, 1e-6);
+    EXPECT_NEAR(number("head_z"), 0, 1e-6);
+    EXPECT_NEAR(number("head_qy"), 0, 1e-6);
+    EXPECT_NEAR(number("head_y"), 1.75 - 1.6 + 1.2, 1e-6) << "Monado keeps the height";
+}
+
 TEST_F(Monado, TracksHeadAndHandsWithoutPictures)
 {
     start_service({"--controllers"});

@@ -133,7 +133,7 @@ HmdSession::Parts::Parts(GlContext const* context, HmdOptions const& options)
     create.next = binding.get();
     create.systemId = runtime.system();
     check(xrCreateSession(runtime.instance(), &create, &session.handle), "xrCreateSession");
-    spaces.emplace(session.handle, options.eye_height_m);
+    spaces.emplace(session.handle, options);
     runtime.info.space = spaces->description();
     actions.emplace(runtime.instance(), session.handle);
     masks.emplace(runtime, session.handle);
@@ -275,6 +275,7 @@ std::optional<HmdFrame> HmdSession::Parts::begin()
     frame.display_s = runtime.steady_s(state.predictedDisplayTime);
     frame.period_s = double(state.predictedDisplayPeriod) * 1e-9;
     add_bodies(frame, state.predictedDisplayTime);
+    spaces->remember_head(runtime.xr_time(frame.pose_s), state.predictedDisplayTime);
     if (auto const views = views_at(state.predictedDisplayTime)) {
         frame.has_pose = true;
         last_views = *views;

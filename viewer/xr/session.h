@@ -27,9 +27,14 @@ namespace viewer {
 
 class GlContext;
 
+enum class HmdSpace {
+    stage, ///< standing: the floor of the runtime; where it knows none, as seated
+    local, ///< seated: eyes are eye_height_m above the floor when the session starts, however tall the user
+};
+
 struct HmdOptions {
-    double eye_height_m = 1.6; ///< above the floor when the session starts, 0.2 to 3; used where the runtime knows
-                               ///< no floor
+    HmdSpace space = HmdSpace::stage;
+    double eye_height_m = 1.6; ///< 0.2 to 3
 };
 
 /// Those of OpenXR, and two ends.

@@ -22,17 +22,18 @@ XrSpace make_space(XrSession session, XrReferenceSpaceType type)
 
 } // namespace
 
-Spaces::Spaces(XrSession session, double eye_height_m)
+Spaces::Spaces(XrSession session, HmdOptions const& options)
 {
     auto const offered = list_of(XR_REFERENCE_SPACE_TYPE_LOCAL, "xrEnumerateReferenceSpaces",
                                  [&](auto capacity, auto* n, auto* items) {
                                      return xrEnumerateReferenceSpaces(session, capacity, n, items);
                                  });
-    bool const has_stage =
+    bool const is_stage =
+        options.space == HmdSpace::stage &&
         std::find(offered.begin(), offered.end(), XR_REFERENCE_SPACE_TYPE_STAGE) != offered.end();
-    type_ = has_stage ? XR_REFERENCE_SPACE_TYPE_STAGE : XR_REFERENCE_SPACE_TYPE_LOCAL;
-    floor_m_ = has_stage ? 0 : eye_height_m;
-    description_ = has_stage ? "stage" : fmt::format("local, eyes {} m above the floor", eye_height_m);
+    type_ = is_stage ? XR_REFERENCE_SPACE_TYPE_STAGE : XR_REFERENCE_SPACE_TYPE_LOCAL;
+    floor_m_ = is_stage ? 0 : options.eye_height_m;
+    description_ = is_stage ? "stage" : fmt::format("local, eyes {} m above the floor", options.eye_height_m);
     room_from_space_.position.y = floor_m_;
     base_ = make_space(session, type_);
     head_ = make_space(session, XR_REFERENCE_SPACE_TYPE_VIEW);
@@ -45,6 +46,24 @@ bool Spaces::recentre(XrTime time)
     auto const head_in_space = locate(head_, base_, {}, time);
     if (head_in_space) room_from_space_ = centred(*head_in_space, floor_m_);
     return head_in_space.has_value();
+}
+
+void Spaces::remember_head(XrTime asked, XrTime time)
+{
+    constexpr std::size_t kKept = 16;
+    if (heads_.size() == kKept) heads_.erase(heads_.begin());
+    if (auto const pose = locate(head_, base_, {}, time)) heads_.push_back({asked, time, *pose});
+}
+
+/// Old from new. A frame between the change and its event has seen the new space already.
+std::optional<RoomPose> Spaces::found_by_head(XrTime change) const
+{
+    auto const before =
+        std::find_if(heads_.rbegin(), heads_.rend(), [&](SeenHead const& seen) { return seen.asked < change; });
+    if (before == heads_.rend()) return std::nullopt;
+    auto const now = locate(head_, base_, {}, before->time);
+    if (!now) return std::nullopt;
+    return after(before->space_from_head, inverse(*now));
 }
 
 bool Spaces::take(XrEventDataReferenceSpaceChangePending const& change)
@@ -60,7 +79,9 @@ bool Spaces::take(XrEventDataReferenceSpaceChangePending const& change)
 void Spaces::apply_until(XrTime time)
 {
     while (!pending_.empty() && pending_.front().time <= time) {
-        moves_.push_back(pending_.front().old_from_new);
+        auto const& [change, told] = pending_.front();
+        moves_.push_back(told ? told : found_by_head(change));
+        heads_.clear(); // they are of the space as it was
         pending_.erase(pending_.begin());
         room_from_space_ = {{0, floor_m_, 0}, {1, 0, 0, 0}};
     }

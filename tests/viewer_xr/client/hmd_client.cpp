@@ -1,7 +1,7 @@
 // A small user of a headset for tests: shows each eye a picture of its own and logs what the runtime says of every
 // frame. The room has a white ball of radius 0.25 m at (0, 1.6, -2), the sky is blue 17 degrees above the horizon,
 // the rest is red for the left eye and green for the right.
-//   hmd_client --graphics egl|glx|none --frames N [--log FILE] [--every N] [--keep] [--recentre]
+//   hmd_client --graphics egl|glx|none --frames N [--log FILE] [--every N] [--keep] [--recentre] [--seated]
 // Prints a line per change of phase and, last, counts and facts as JSON.
 
 #include "gi/base/error.h"
@@ -25,7 +25,7 @@ struct Options {
     std::string graphics = "egl", log;
     int frames = 250, every = 1;
     double patience_s = 60;
-    bool keep = false, recentre = false;
+    bool keep = false, recentre = false, seated = false;
 };
 
 double now_s()
@@ -165,7 +165,9 @@ int run(Options const& o)
     gi::Report report;
     Window window;
     std::optional<GlContext> const context = open_context(o, window, report);
-    HmdKeeper keeper(context ? &*context : nullptr, {});
+    HmdOptions options;
+    if (o.seated) options = {HmdSpace::local, 1.2};
+    HmdKeeper keeper(context ? &*context : nullptr, options);
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> const log(
         o.log.empty() ? nullptr : std::fopen(o.log.c_str(), "w"), &std::fclose);
     if (log) std::fprintf(log.get(), "%s\n", kColumns);
@@ -238,6 +240,7 @@ int main(int argc, char** argv)
     app.add_option("--patience", o.patience_s);
     app.add_flag("--keep", o.keep);
     app.add_flag("--recentre", o.recentre);
+    app.add_flag("--seated", o.seated);
     CLI11_PARSE(app, argc, argv);
     try {
         return viewer::test::run(o);
