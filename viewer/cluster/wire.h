@@ -1,0 +1,100 @@
+#pragma once
+// What the ranks of a cluster tell each other. Little-endian machines of one program: the first message of all
+// says which.
+
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace viewer {
+
+enum class Say : std::uint8_t {
+    hello,   ///< follower: who it is
+    refused, ///< leader: it does not fit, and why
+    started, ///< leader: all are there; their names
+    ping,    ///< leader: Stamp
+    pong,    ///< follower: Echo
+    order,   ///< leader: to_bytes of a FrameOrder
+    arrived, ///< follower: is ready to swap
+    go,      ///< leader: all are ready to swap
+    alive,   ///< somebody who waits or works
+    want,    ///< leader: give me the next
+    data,    ///< follower: what was wanted
+    lost,    ///< leader: a rank is gone, the others go on
+    stop,    ///< leader: a rank is gone, all stop
+    leaves,  ///< somebody ends early, and why
+    end,     ///< leader: all is done
+    goodbye  ///< follower: yes
+};
+
+/// Of a message and its answer, on the steady clocks of leader and follower, s.
+struct Echo {
+    double sent_s = 0;     ///< leader
+    double received_s = 0; ///< follower
+    double answered_s = 0; ///< follower
+};
+
+class Writer {
+public:
+    explicit Writer(Say kind) { put(kind); }
+    template <class T>
+    Writer& put(T const& value)
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        auto const* at = reinterpret_cast<std::uint8_t const*>(&value);
+        bytes_.insert(bytes_.end(), at, at + sizeof value);
+        return *this;
+    }
+    Writer& put(std::string const& text)
+    {
+        put(std::uint32_t(text.size()));
+        bytes_.insert(bytes_.end(), text.begin(), text.end());
+        return *this;
+    }
+    Writer& append(std::span<std::uint8_t const> bytes)
+    {
+        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+        return *this;
+    }
+    std::vector<std::uint8_t> take() { return std::move(bytes_); }
+    std::vector<std::uint8_t> const& bytes() const { return bytes_; }
+
+private:
+    std::vector<std::uint8_t> bytes_;
+};
+
+/// Throws std::runtime_error where a message is too short.
+class Reader {
+public:
+    explicit Reader(std::span<std::uint8_t const> bytes) : bytes_(bytes) {}
+    template <class T>
+    T get()
+    {
+        static_assert(std::is_trivially_copyable_v<T>);
+        T value;
+        std::memcpy(&value, next(sizeof value).data(), sizeof value);
+        return value;
+    }
+    std::string text()
+    {
+        auto const part = next(get<std::uint32_t>());
+        return {part.begin(), part.end()};
+    }
+    std::span<std::uint8_t const> rest() { return next(bytes_.size()); }
+
+private:
+    std::span<std::uint8_t const> next(std::size_t n)
+    {
+        if (n > bytes_.size()) throw std::runtime_error("a message of another rank is cut short");
+        auto const part = bytes_.first(n);
+        bytes_ = bytes_.subspan(n);
+        return part;
+    }
+    std::span<std::uint8_t const> bytes_;
+};
+
+} // namespace viewer
