@@ -53,7 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
         for (ssize_t n; (n = ::recv(mine.fd(), chunk, sizeof chunk, MSG_DONTWAIT)) > 0;)
             got.append(chunk, std::size_t(n));
     };
-    std::size_t const piece = data[0] % 4 == 0 ? size : std::size_t(data[0]);
+    std::size_t const piece = data[0] % 4 == 0 ? size : size / 8 + data[0] % 8;
     for (std::size_t at = 1; at < size; at += piece) {
         ::send(mine.fd(), data + at, std::min(piece, size - at), MSG_NOSIGNAL | MSG_DONTWAIT);
         turn();

@@ -4,7 +4,7 @@
 #include "tests/viewer_recording/walk.h"
 #include "viewer/remote/remote_server.h"
 
-#include <atomic>
+#include <stop_token>
 
 namespace viewer::test {
 namespace {
@@ -75,9 +75,8 @@ TEST(RemoteCommand, AsksAndPrints)
             return json{{"asked", r.what}};
         },
         report);
-    std::atomic<bool> stop = false;
-    std::thread thread([&] {
-        while (!stop) server.poll(std::chrono::milliseconds(5));
+    std::jthread const thread([&](std::stop_token const& stop) {
+        while (!stop.stop_requested()) server.poll(std::chrono::milliseconds(5));
     });
     Outcome const good = run_well(R"(remote s {"do":"stats"} {"do":"ping"})", folder.path());
     EXPECT_EQ(good.out, "{\"asked\":\"stats\"}\n{\"asked\":\"ping\"}\n");
@@ -91,8 +90,6 @@ TEST(RemoteCommand, AsksAndPrints)
         EXPECT_EQ(o.code, 2) << call << "\n" << o.err;
         EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << call << "\n" << o.err;
     }
-    stop = true;
-    thread.join();
 }
 
 } // namespace
