@@ -45,7 +45,7 @@ nlohmann::ordered_json to_json(Display const& d, std::vector<ViewSummary> const&
 
 void print_parts(Display const& d)
 {
-    for (Window const& w : d.windows)
+    for (DisplayWindow const& w : d.windows)
         fmt::print("window {}: {} x {} px at ({}, {}){}{}\n", w.name, w.width_px, w.height_px, w.x_px, w.y_px,
                    w.monitor >= 0 ? fmt::format(" of monitor {}", w.monitor) : "",
                    w.fullscreen ? ", full screen" : "");
@@ -53,7 +53,7 @@ void print_parts(Display const& d)
         fmt::print("user {}: eyes {:.4g} m apart, head at ({:.4g}, {:.4g}, {:.4g}) m{}\n", u.name,
                    u.interpupillary_m, u.head.translation_m.x, u.head.translation_m.y, u.head.translation_m.z,
                    u.tracker >= 0 ? ", tracked by " + d.trackers[std::size_t(u.tracker)].name : "");
-    for (Tracker const& t : d.trackers)
+    for (DisplayTracker const& t : d.trackers)
         fmt::print("tracker {}: {}{}{}, latency {:.4g} ms\n", t.name, name_of(t.type),
                    t.port > 0 ? fmt::format(" at {}:{}", t.address, t.port) : "",
                    t.body.empty() ? "" : ", body " + t.body, t.latency_ms);

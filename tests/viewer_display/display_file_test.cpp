@@ -51,7 +51,7 @@ TEST(DisplayFile, SaysWhatItSays)
     EXPECT_EQ(d.walls[0].viewport, Viewport{});
     EXPECT_EQ(d.walls[0].stereo, StereoMode::off);
     EXPECT_EQ(d.walls[0].user, 0);
-    EXPECT_EQ(d.windows[0], (Window{"w", 800, 600, 0, 0, -1, false}));
+    EXPECT_EQ(d.windows[0], (DisplayWindow{"w", 800, 600, 0, 0, -1, false}));
     EXPECT_EQ(d.users[0].interpupillary_m, 0.063);
     EXPECT_EQ(d.trackers[0].address, "127.0.0.1");
     Display const c = shipped("cave5.yaml");
@@ -254,11 +254,11 @@ Display random_display(std::mt19937& random)
     Display d;
     d.name = below(2) ? name(0) : "";
     for (int i = 0, n = below(3); i < n; ++i) {
-        Tracker t{name(i), TrackerType(below(5)),    "10.0.0.7",  0, "",
-                  "",      {vector(3), vector(180)}, real(0, 99), {}};
+        DisplayTracker t{name(i), DisplayTrackerType(below(5)), "10.0.0.7",  0, "",
+                         "",      {vector(3), vector(180)},     real(0, 99), {}};
         t.port = 1 + below(65535);
-        t.body = t.type == TrackerType::osc ? "/b" : t.type == TrackerType::dtrack ? "3" : "head";
-        if (t.type == TrackerType::file) t.file = "poses.csv";
+        t.body = t.type == DisplayTrackerType::osc ? "/b" : t.type == DisplayTrackerType::dtrack ? "3" : "head";
+        if (t.type == DisplayTrackerType::file) t.file = "poses.csv";
         t.filter = {FilterType(below(2)), real(0.1, 9), real(0, 9)};
         d.trackers.push_back(t);
     }

@@ -41,12 +41,12 @@ TEST(Blend, ProjectorsOfThePowerWallAddUpToOne)
 
 TEST(Blend, OutsideAndWithoutBands)
 {
-    EdgeBlend const none;
+    WallBlend const none;
     EXPECT_EQ(blend_weight(none, 2, 1, 0, 0), 1);
     EXPECT_EQ(blend_weight(none, 2, 1, 1, 1), 1);
     EXPECT_EQ(blend_weight(none, 2, 1, 1.001, 0.5), 0);
     EXPECT_EQ(blend_weight(none, 2, 1, std::numeric_limits<double>::quiet_NaN(), 0.5), 0);
-    EdgeBlend left;
+    WallBlend left;
     left.left_m = 0.5;
     EXPECT_EQ(blend_weight(left, 2, 1, 0, 0.5), 0);
     EXPECT_EQ(blend_weight(left, 2, 1, 0.125, 0.5), 0.5);
@@ -60,9 +60,9 @@ TEST(Blend, OutsideAndWithoutBands)
     EXPECT_TRUE(needs_finish(wall));
 }
 
-TEST(WarpMesh, APlainMeshChangesNothing)
+TEST(WallMesh, APlainMeshChangesNothing)
 {
-    WarpMesh const mesh = plain_mesh(5, 4);
+    WallMesh const mesh = plain_mesh(5, 4);
     EXPECT_FALSE(find_fault(mesh));
     for (double const x : {0.0, 0.1, 0.5, 0.99, 1.0})
         for (double const y : {0.0, 0.3, 1.0}) {
@@ -78,9 +78,9 @@ TEST(WarpMesh, APlainMeshChangesNothing)
               (std::vector<std::uint32_t>{0, 1, 6, 0, 6, 5}));
 }
 
-TEST(WarpMesh, BentMeshesAreLinearBetweenTheirNodes)
+TEST(WallMesh, BentMeshesAreLinearBetweenTheirNodes)
 {
-    WarpMesh mesh = plain_mesh(3, 3);
+    WallMesh mesh = plain_mesh(3, 3);
     mesh.nodes[4].place = {0.6, 0.45};
     EXPECT_FALSE(find_fault(mesh));
     auto const middle = picture_at(mesh, {0.6, 0.45});
@@ -95,23 +95,23 @@ TEST(WarpMesh, BentMeshesAreLinearBetweenTheirNodes)
     EXPECT_NEAR(picture_at(mesh, {0.4, 0.45})->x, 0.5, 1e-12);
 }
 
-TEST(WarpMesh, WhatCannotBeDrawnIsRefused)
+TEST(WallMesh, WhatCannotBeDrawnIsRefused)
 {
     auto const fault = [](auto const& spoil) {
-        WarpMesh mesh = plain_mesh(4, 3);
+        WallMesh mesh = plain_mesh(4, 3);
         spoil(mesh);
         return find_fault(mesh).value_or("");
     };
     auto const has = [](std::string const& text, char const* part) {
         return text.find(part) != std::string::npos;
     };
-    EXPECT_PRED2(has, fault([](WarpMesh& m) { m.nodes[5].place.x = 0.9; }), "folds at cell");
-    EXPECT_PRED2(has, fault([](WarpMesh& m) { m.nodes[5].place = m.nodes[4].place; }), "is flat");
-    EXPECT_PRED2(has, fault([](WarpMesh& m) { m.nodes.pop_back(); }), "need 12 nodes, there are 11");
-    EXPECT_PRED2(has, fault([](WarpMesh& m) { m.rows = 1; }), "2 to 257");
-    EXPECT_PRED2(has, fault([](WarpMesh& m) { m.nodes[0].place.y = -1.5; }), "farther outside the viewport");
-    EXPECT_PRED2(has, fault([](WarpMesh& m) { m.nodes[0].picture.y = 1.01; }), "outside the picture");
-    EXPECT_PRED2(has, fault([](WarpMesh& m) { m.nodes[0].place.x = std::numeric_limits<double>::quiet_NaN(); }),
+    EXPECT_PRED2(has, fault([](WallMesh& m) { m.nodes[5].place.x = 0.9; }), "folds at cell");
+    EXPECT_PRED2(has, fault([](WallMesh& m) { m.nodes[5].place = m.nodes[4].place; }), "is flat");
+    EXPECT_PRED2(has, fault([](WallMesh& m) { m.nodes.pop_back(); }), "need 12 nodes, there are 11");
+    EXPECT_PRED2(has, fault([](WallMesh& m) { m.rows = 1; }), "2 to 257");
+    EXPECT_PRED2(has, fault([](WallMesh& m) { m.nodes[0].place.y = -1.5; }), "farther outside the viewport");
+    EXPECT_PRED2(has, fault([](WallMesh& m) { m.nodes[0].picture.y = 1.01; }), "outside the picture");
+    EXPECT_PRED2(has, fault([](WallMesh& m) { m.nodes[0].place.x = std::numeric_limits<double>::quiet_NaN(); }),
                  "farther outside");
 }
 

@@ -95,7 +95,7 @@ TEST(Import, ParaView)
     expect_corners(d.walls[1], {{-1.5, -1.5, -1.5}, {1.5, -1.5, -1.5}, {-1.5, 1.5, -1.5}});
     EXPECT_EQ(d.walls[1].rank, 1);
     EXPECT_EQ(d.walls[1].stereo, StereoMode::quad_buffer);
-    EXPECT_EQ(d.windows[1], (Window{"front", 800, 800, 800, 0, -1, false}));
+    EXPECT_EQ(d.windows[1], (DisplayWindow{"front", 800, 800, 800, 0, -1, false}));
     EXPECT_EQ(d.users[0].interpupillary_m, 0.063);
     EXPECT_EQ(report.losses().size(), 1u); // the head
     gi::Report old;
@@ -118,7 +118,7 @@ TEST(Import, Equalizer)
     expect_corners(d.walls[2], {{1, -1, -1}, {1, -1, 1}, {1, 1, -1}});
     EXPECT_EQ(d.walls[1].name, "front");
     EXPECT_EQ(viewport_px(d.walls[1], d.windows[0]), (PixelRectangle{400, 0, 400, 400}));
-    EXPECT_EQ(d.windows[0], (Window{"cave", 1200, 400, 10, 20, -1, false}));
+    EXPECT_EQ(d.windows[0], (DisplayWindow{"cave", 1200, 400, 10, 20, -1, false}));
     EXPECT_EQ(d.walls[0].stereo, StereoMode::quad_buffer);
     EXPECT_EQ(d.users[0].interpupillary_m, 0.063);
     EXPECT_TRUE(report.losses().empty());
@@ -165,7 +165,7 @@ TEST(Import, Vrui)
     expect_corners(d.walls[2],
                    {inch * gi::dvec3{-60, 0, 36}, inch * gi::dvec3{60, 0, 36}, inch * gi::dvec3{-60, 0, -60}});
     EXPECT_EQ(d.walls[2].rank, 1);
-    EXPECT_EQ(d.windows[1], (Window{"FrontWindow", 1280, 1024, 1280, 0, -1, false}));
+    EXPECT_EQ(d.windows[1], (DisplayWindow{"FrontWindow", 1280, 1024, 1280, 0, -1, false}));
     EXPECT_NEAR(d.users[0].interpupillary_m, 2.5 * inch, 1e-12);
     Eyes const eyes = eyes_of(d.users[0], resting_head(d.users[0]));
     EXPECT_LT(glm::length(eyes.left - inch * gi::dvec3{-1.25, 64.75, 25}), 1e-12);

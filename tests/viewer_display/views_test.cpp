@@ -83,7 +83,7 @@ TEST(Views, OnlyEyesThatSeeAreOrdered)
 
 TEST(Views, NeighboursShareTheirPixelEdges)
 {
-    Window const window{"w", 1001, 301, 0, 0, -1, false};
+    DisplayWindow const window{"w", 1001, 301, 0, 0, -1, false};
     int at = 0;
     for (int i = 0; i < 3; ++i) {
         Wall wall;

@@ -40,9 +40,9 @@ TEST(PoseMath, AfterIsTheProductOfMatrices)
     RandomPoses pose;
     for (int i = 0; i < 100; ++i) {
         RoomPose const a = pose(), b = pose();
-        gi::dmat4 const m = eye_camera(Eye::left, a, {-1, 1, -1, 1}).world_from_camera *
-                            eye_camera(Eye::left, b, {-1, 1, -1, 1}).world_from_camera;
-        gi::dmat4 const expected = eye_camera(Eye::left, after(a, b), {-1, 1, -1, 1}).world_from_camera;
+        gi::dmat4 const m = eye_camera(HmdEye::left, a, {-1, 1, -1, 1}).world_from_camera *
+                            eye_camera(HmdEye::left, b, {-1, 1, -1, 1}).world_from_camera;
+        gi::dmat4 const expected = eye_camera(HmdEye::left, after(a, b), {-1, 1, -1, 1}).world_from_camera;
         for (int c = 0; c < 4; ++c) EXPECT_LT(glm::distance(m[c], expected[c]), 1e-12);
     }
 }
@@ -84,7 +84,7 @@ TEST(PoseMath, AnglesAreTheEdgesOfThePicture)
     raw.fov_rad = {-0.9f, 0.7f, 0.6f, -0.8f};
     ASSERT_TRUE(spans_view(raw));
     RoomPose const room_from_eye{{1, 1.7, -2}, turned(30, {0, 1, 0})};
-    gi::Camera const camera = eye_camera(Eye::right, room_from_eye, tangents(raw));
+    gi::Camera const camera = eye_camera(HmdEye::right, room_from_eye, tangents(raw));
     gi::CameraRays const rays = gi::camera_rays(camera, 100, 80, gi::dvec3(0));
     auto const seen_at = [&](double x_rad, double y_rad) {
         gi::dvec3 const in_eye(3 * std::tan(x_rad), 3 * std::tan(y_rad), -3);

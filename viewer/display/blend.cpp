@@ -15,18 +15,18 @@ double rise(double distance_m, double band_m)
 
 } // namespace
 
-double blend_weight(EdgeBlend const& b, double width_m, double height_m, double u, double v)
+double blend_weight(WallBlend const& b, double width_m, double height_m, double u, double v)
 {
     if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1)) return 0;
     return rise(u * width_m, b.left_m) * rise((1 - u) * width_m, b.right_m) * rise(v * height_m, b.bottom_m) *
            rise((1 - v) * height_m, b.top_m);
 }
 
-double encoded_weight(EdgeBlend const& b, double weight) { return std::pow(weight, 1 / b.gamma); }
+double encoded_weight(WallBlend const& b, double weight) { return std::pow(weight, 1 / b.gamma); }
 
 bool needs_finish(Wall const& wall)
 {
-    EdgeBlend const& b = wall.blend;
+    WallBlend const& b = wall.blend;
     return wall.warp || wall.gain != gi::dvec3{1} || b.left_m > 0 || b.right_m > 0 || b.top_m > 0 ||
            b.bottom_m > 0;
 }

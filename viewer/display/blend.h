@@ -8,9 +8,9 @@
 namespace viewer {
 
 /// Share of the light at (u, v) of a wall, from 0 at an edge with a band to 1 inside; 0 outside the wall.
-double blend_weight(EdgeBlend const& blend, double width_m, double height_m, double u, double v);
+double blend_weight(WallBlend const& blend, double width_m, double height_m, double u, double v);
 /// What a pixel's value, encoded with blend.gamma, is multiplied by so that its light is multiplied by `weight`.
-double encoded_weight(EdgeBlend const& blend, double weight);
+double encoded_weight(WallBlend const& blend, double weight);
 /// Anything to do for a pass over the finished picture?
 bool needs_finish(Wall const& wall);
 

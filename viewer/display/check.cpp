@@ -39,7 +39,7 @@ Fault names_fault(std::vector<Part> const& parts, char const* list)
     return {};
 }
 
-Fault viewport_fault(Wall const& wall, std::size_t i, Window const& window)
+Fault viewport_fault(Wall const& wall, std::size_t i, DisplayWindow const& window)
 {
     Viewport const& v = wall.viewport;
     bool const in_px = v.unit == LengthUnit::px;
@@ -84,7 +84,7 @@ Fault viewport_fault(Wall const& wall, std::size_t i, Window const& window)
 Fault finish_fault(Wall const& wall, std::size_t i)
 {
     WallFrame const frame = wall_frame(wall.corners);
-    EdgeBlend const& b = wall.blend;
+    WallBlend const& b = wall.blend;
     for (double const band : {b.left_m, b.right_m, b.top_m, b.bottom_m})
         if (!is_within(band, 0, 1e6))
             return DisplayFault{"walls",
@@ -161,7 +161,7 @@ Fault wall_fault(Display const& d, std::size_t i)
     return finish_fault(wall, i);
 }
 
-Fault window_fault(Window const& w, std::size_t i)
+Fault window_fault(DisplayWindow const& w, std::size_t i)
 {
     if (w.width_px < 1 || w.height_px < 1 || w.width_px > kLargestWindow_px || w.height_px > kLargestWindow_px)
         return DisplayFault{"windows",
@@ -224,27 +224,28 @@ Fault user_fault(Display const& d, std::size_t i)
     return {};
 }
 
-Fault tracker_fault(Tracker const& t, std::size_t i)
+Fault tracker_fault(DisplayTracker const& t, std::size_t i)
 {
     auto const fault = [&](char const* key, std::string const& problem, std::string const& why,
                            std::string const& suggestion) {
         return DisplayFault{"trackers", i, key, problem, why, suggestion};
     };
-    bool const is_network = t.type == TrackerType::osc || t.type == TrackerType::dtrack;
+    bool const is_network = t.type == DisplayTrackerType::osc || t.type == DisplayTrackerType::dtrack;
     if (is_network && !is_within(t.port, 1, 65535))
         return fault("port", fmt::format("port {}", t.port), "its packets come to a port, 1 to 65535",
-                     t.type == TrackerType::osc ? "port: 9000" : "port: 5000");
+                     t.type == DisplayTrackerType::osc ? "port: 9000" : "port: 5000");
     if (is_network && t.address.empty())
         return fault("address", "no address", "it is bound to one interface only", "address: 127.0.0.1");
-    if (t.type == TrackerType::osc && (t.body.empty() || t.body[0] != '/'))
+    if (t.type == DisplayTrackerType::osc && (t.body.empty() || t.body[0] != '/'))
         return fault("body", "'" + t.body + "' is no OSC path", "paths tell the bodies apart", "body: /head");
-    if (t.type == TrackerType::dtrack &&
+    if (t.type == DisplayTrackerType::dtrack &&
         (t.body.empty() || t.body.size() > 4 || t.body.find_first_not_of("0123456789") != std::string::npos))
         return fault("body", "'" + t.body + "' is no body of DTrack", "they have numbers from 0", "body: 0");
-    if (t.type == TrackerType::openxr && t.body != "head" && t.body != "left_hand" && t.body != "right_hand")
+    if (t.type == DisplayTrackerType::openxr && t.body != "head" && t.body != "left_hand" &&
+        t.body != "right_hand")
         return fault("body", "'" + t.body + "' is nothing that OpenXR tracks", "it has a head and two hands",
                      "head, left_hand or right_hand");
-    if ((t.type == TrackerType::file) == t.file.empty())
+    if ((t.type == DisplayTrackerType::file) == t.file.empty())
         return fault("file", t.file.empty() ? "no file" : "a file with type: " + std::string(name_of(t.type)),
                      "poses are read from one with type: file, and only then", "give it, or remove it");
     if (!is_placed(t.room_from_tracker))
@@ -273,7 +274,7 @@ Fault sharing_fault(Display const& d)
             for (int const mine : {a.window, a.second_window})
                 for (int const other : {b.window, b.second_window}) {
                     if (mine < 0 || mine != other) continue;
-                    Window const& window = d.windows[std::size_t(mine)];
+                    DisplayWindow const& window = d.windows[std::size_t(mine)];
                     if (a.rank != b.rank)
                         return DisplayFault{
                             "walls",

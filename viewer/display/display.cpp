@@ -13,32 +13,33 @@ RoomPose pose_of(Placement const& p)
     return {p.translation_m, glm::normalize(rotation)};
 }
 
-char const* name_of(TrackerType type)
+char const* name_of(DisplayTrackerType type)
 {
     switch (type) {
-    case TrackerType::osc:
+    case DisplayTrackerType::osc:
         return "osc";
-    case TrackerType::dtrack:
+    case DisplayTrackerType::dtrack:
         return "dtrack";
-    case TrackerType::openxr:
+    case DisplayTrackerType::openxr:
         return "openxr";
-    case TrackerType::file:
+    case DisplayTrackerType::file:
         return "file";
-    case TrackerType::fake:
+    case DisplayTrackerType::fake:
         break;
     }
     return "fake";
 }
 
-std::optional<TrackerType> tracker_type(std::string const& name)
+std::optional<DisplayTrackerType> tracker_type(std::string const& name)
 {
-    for (TrackerType const type :
-         {TrackerType::osc, TrackerType::dtrack, TrackerType::openxr, TrackerType::file, TrackerType::fake})
+    for (DisplayTrackerType const type :
+         {DisplayTrackerType::osc, DisplayTrackerType::dtrack, DisplayTrackerType::openxr,
+          DisplayTrackerType::file, DisplayTrackerType::fake})
         if (name == name_of(type)) return type;
     return {};
 }
 
-PixelRectangle viewport_px(Wall const& wall, Window const& window)
+PixelRectangle viewport_px(Wall const& wall, DisplayWindow const& window)
 {
     Viewport const& v = wall.viewport;
     bool const in_px = v.unit == LengthUnit::px;

@@ -36,11 +36,11 @@ struct Viewport {
 };
 
 /// Where a wall's picture fades out because a neighbour's fades in: widths on the wall, from its edges inward.
-struct EdgeBlend {
+struct WallBlend {
     double left_m = 0, right_m = 0, top_m = 0, bottom_m = 0;
     double gamma = 2.2; ///< of the projector: light = value^gamma
 
-    bool operator==(EdgeBlend const&) const = default;
+    bool operator==(WallBlend const&) const = default;
 };
 
 struct Wall {
@@ -53,23 +53,23 @@ struct Wall {
     StereoMode stereo = StereoMode::off;
     bool swap_eyes = false; ///< the right eye takes the left eye's place
     int user = 0;           ///< whose eyes it serves
-    EdgeBlend blend;
+    WallBlend blend;
     std::string warp_file; ///< as the file states it, if the mesh comes from one
-    std::optional<WarpMesh> warp;
+    std::optional<WallMesh> warp;
     gi::dvec3 gain{1}; ///< factor on red, green and blue light
     int rank = 0;      ///< the process that draws it, where several share the work
 
     bool operator==(Wall const&) const = default;
 };
 
-struct Window {
+struct DisplayWindow {
     std::string name;
     int width_px = 0, height_px = 0;
     int x_px = 0, y_px = 0; ///< on the monitor, or on the desktop where none is named
     int monitor = -1;       ///< as the window system counts them; -1 = none named
     bool fullscreen = false;
 
-    bool operator==(Window const&) const = default;
+    bool operator==(DisplayWindow const&) const = default;
 };
 
 struct User {
@@ -82,7 +82,7 @@ struct User {
     bool operator==(User const&) const = default;
 };
 
-enum class TrackerType { osc, dtrack, openxr, file, fake };
+enum class DisplayTrackerType { osc, dtrack, openxr, file, fake };
 
 enum class FilterType { none, one_euro };
 
@@ -95,9 +95,9 @@ struct TrackerFilter {
     bool operator==(TrackerFilter const&) const = default;
 };
 
-struct Tracker {
+struct DisplayTracker {
     std::string name;
-    TrackerType type = TrackerType::fake;
+    DisplayTrackerType type = DisplayTrackerType::fake;
     std::string address = "127.0.0.1"; ///< of the interface to listen at (osc, dtrack)
     int port = 0;
     std::string body; ///< osc: path; dtrack: number; openxr: head, left_hand, right_hand
@@ -106,21 +106,21 @@ struct Tracker {
     double latency_ms = 0; ///< from motion to packet, measured
     TrackerFilter filter;
 
-    bool operator==(Tracker const&) const = default;
+    bool operator==(DisplayTracker const&) const = default;
 };
 
 struct Display {
     std::string name;
     std::vector<Wall> walls;
-    std::vector<Window> windows;
+    std::vector<DisplayWindow> windows;
     std::vector<User> users;
-    std::vector<Tracker> trackers;
+    std::vector<DisplayTracker> trackers;
 
     bool operator==(Display const&) const = default;
 };
 
-char const* name_of(TrackerType type);
-std::optional<TrackerType> tracker_type(std::string const& name);
+char const* name_of(DisplayTrackerType type);
+std::optional<DisplayTrackerType> tracker_type(std::string const& name);
 
 struct PixelRectangle {
     int x = 0, y = 0, width = 0, height = 0;
@@ -128,6 +128,6 @@ struct PixelRectangle {
     bool operator==(PixelRectangle const&) const = default;
 };
 /// The wall's part of its window. Edges of fractions go to the nearest pixel, so that neighbours share them.
-PixelRectangle viewport_px(Wall const& wall, Window const& window);
+PixelRectangle viewport_px(Wall const& wall, DisplayWindow const& window);
 
 } // namespace viewer

@@ -44,9 +44,9 @@ int index_of(std::vector<Part> const& parts, YamlReader const& name, char const*
                      parts.empty() ? fmt::format("add {}", list) : "there are: " + known);
 }
 
-WarpMesh read_mesh(YamlReader const& y)
+WallMesh read_mesh(YamlReader const& y)
 {
-    WarpMesh mesh;
+    WallMesh mesh;
     mesh.columns = int(needed(y, "columns", "2").integer(2, kMostWarpNodes));
     mesh.rows = int(needed(y, "rows", "2").integer(2, kMostWarpNodes));
     for (YamlReader const& node : needed(y, "nodes", "[[0, 0, 0, 0], ...]").items()) {
@@ -75,10 +75,10 @@ void read_warp(Wall& wall, YamlReader const& y, std::filesystem::path const& fol
         throw mesh.error(*fault, "the picture would be torn", "export the mesh again, row by row from below");
 }
 
-EdgeBlend read_blend(YamlReader const& y)
+WallBlend read_blend(YamlReader const& y)
 {
     check_display_keys(y, "blend");
-    EdgeBlend blend;
+    WallBlend blend;
     for (auto const& [key, value] : {std::pair{"left_m", &blend.left_m},
                                      {"right_m", &blend.right_m},
                                      {"top_m", &blend.top_m},
@@ -134,10 +134,10 @@ Wall read_wall(YamlReader const& y, Display const& d, std::filesystem::path cons
     return wall;
 }
 
-Window read_window(YamlReader const& y)
+DisplayWindow read_window(YamlReader const& y)
 {
     check_display_keys(y, "window");
-    Window window;
+    DisplayWindow window;
     window.name = needed(y, "name", "front").text();
     auto const pair = [](YamlReader const& list, std::int64_t low, std::int64_t high) {
         auto const items = list.items();
@@ -178,10 +178,10 @@ TrackerFilter read_filter(YamlReader const& y)
     return filter;
 }
 
-Tracker read_tracker(YamlReader const& y)
+DisplayTracker read_tracker(YamlReader const& y)
 {
     check_display_keys(y, "tracker");
-    Tracker tracker;
+    DisplayTracker tracker;
     tracker.name = needed(y, "name", "head").text();
     std::string const type = needed(y, "type", "dtrack").text();
     auto const known = tracker_type(type);

@@ -27,7 +27,7 @@ private:
     std::string out_;
 };
 
-std::string mesh_text(WarpMesh const& m)
+std::string mesh_text(WallMesh const& m)
 {
     std::string out = fmt::format("\n      columns: {}\n      rows: {}\n      nodes:", m.columns, m.rows);
     for (WarpNode const& n : m.nodes)
@@ -51,7 +51,7 @@ void write_wall(Writer& w, Wall const& wall, Display const& d)
     if (wall.stereo != StereoMode::off) w.key("stereo", quoted(name_of(wall.stereo)));
     if (wall.swap_eyes) w.key("swap_eyes", "true");
     w.key("user", quoted(d.users[std::size_t(wall.user)].name));
-    if (EdgeBlend const& b = wall.blend; b != EdgeBlend{})
+    if (WallBlend const& b = wall.blend; b != WallBlend{})
         w.key("blend", fmt::format("{{left_m: {}, right_m: {}, top_m: {}, bottom_m: {}, gamma: {}}}", b.left_m,
                                    b.right_m, b.top_m, b.bottom_m, b.gamma));
     if (!wall.warp_file.empty())
@@ -62,7 +62,7 @@ void write_wall(Writer& w, Wall const& wall, Display const& d)
     if (wall.rank != 0) w.key("rank", std::to_string(wall.rank));
 }
 
-void write_window(Writer& w, Window const& window)
+void write_window(Writer& w, DisplayWindow const& window)
 {
     w.begin(window.name);
     w.key("size_px", fmt::format("[{}, {}]", window.width_px, window.height_px));
@@ -82,11 +82,11 @@ void write_user(Writer& w, User const& user, Display const& d)
     if (user.tracker >= 0) w.key("head_tracker", quoted(d.trackers[std::size_t(user.tracker)].name));
 }
 
-void write_tracker(Writer& w, Tracker const& t)
+void write_tracker(Writer& w, DisplayTracker const& t)
 {
     w.begin(t.name);
     w.key("type", name_of(t.type));
-    if (t.address != Tracker{}.address) w.key("address", quoted(t.address));
+    if (t.address != DisplayTracker{}.address) w.key("address", quoted(t.address));
     if (t.port != 0) w.key("port", std::to_string(t.port));
     if (!t.body.empty()) w.key("body", quoted(t.body));
     if (!t.file.empty()) w.key("file", quoted(t.file));
@@ -109,11 +109,11 @@ std::string to_yaml(Display const& d)
     w.line("walls:");
     for (Wall const& wall : d.walls) write_wall(w, wall, d);
     w.line("windows:");
-    for (Window const& window : d.windows) write_window(w, window);
+    for (DisplayWindow const& window : d.windows) write_window(w, window);
     w.line("users:");
     for (User const& user : d.users) write_user(w, user, d);
     if (!d.trackers.empty()) w.line("trackers:");
-    for (Tracker const& tracker : d.trackers) write_tracker(w, tracker);
+    for (DisplayTracker const& tracker : d.trackers) write_tracker(w, tracker);
     return w.take();
 }
 

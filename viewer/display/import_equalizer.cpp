@@ -113,7 +113,7 @@ void read_channel(TextNode const& node, int window, Context& c)
         c.lose("Equalizer channels without a name: nothing can be shown on them", node);
         return;
     }
-    Window const& w = c.display.windows[std::size_t(window)];
+    DisplayWindow const& w = c.display.windows[std::size_t(window)];
     Area a = read_area(node, c).value_or(Area{});
     if (a.in_pixels)
         a = {a.x / w.width_px, a.y / w.height_px, a.width / w.width_px, a.height / w.height_px, false};
@@ -126,7 +126,7 @@ void read_window(TextNode const& node, TextNode const& pipe, int rank, Context& 
 {
     c.lose_others(node, {"name", "viewport", "channel", "attributes"});
     constexpr int kPipeWidth = 1920, kPipeHeight = 1080;
-    Window window;
+    DisplayWindow window;
     window.name = free_name(c.display.windows, node.text("name", "window"));
     Area a = read_area(node, c).value_or(Area{});
     double width = kPipeWidth, height = kPipeHeight;

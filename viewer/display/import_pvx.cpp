@@ -78,7 +78,7 @@ StereoMode stereo_of(std::string const& name, XMLElement const& e, Context& c)
 }
 
 /// "640x360+60+1200"
-bool read_geometry(std::string const& text, Window& window)
+bool read_geometry(std::string const& text, DisplayWindow& window)
 {
     int width = 0, height = 0, x = 0, y = 0, used = 0;
     if (std::sscanf(text.c_str(), "%6dx%6d%n", &width, &height, &used) != 2) return false;
@@ -102,7 +102,7 @@ void read_machine(XMLElement const& m, int rank, bool default_fullscreen, Contex
         return;
     }
     std::string const name = attribute(m, "Name");
-    Window window;
+    DisplayWindow window;
     window.name = free_name(c.display.windows, name.empty() ? "machine" : name);
     window.fullscreen = m.Attribute("FullScreen") ? attribute(m, "FullScreen") == "1" : default_fullscreen;
     if (!m.Attribute("Geometry")) {

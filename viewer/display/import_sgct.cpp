@@ -151,7 +151,7 @@ void read_viewport(YamlReader const& v, int window, int rank, Stereo stereo, std
 void read_window(YamlReader const& w, int rank, std::map<std::string, int> const& users, Context& c)
 {
     lose_others(w, {"name", "id", "pos", "size", "fullscreen", "monitor", "stereo", "viewports"}, "window.", c);
-    Window window;
+    DisplayWindow window;
     window.name = free_name(c.display.windows, w.has("name") ? w.at("name").text() : "window");
     auto const pixel = [](YamlReader const& y) { return int(y.integer(-1000000, 1000000)); };
     YamlReader const size = needed(w, "size");

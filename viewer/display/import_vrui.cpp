@@ -214,7 +214,7 @@ void read_window(TextNode const& environment, std::string const& name, int rank,
     std::string const screen = s.text("screenName"), viewer = s.text("viewerName");
     auto const corners = read_screen(section_of(environment, screen, "screenName", c), c);
     if (!corners) return;
-    Window window;
+    DisplayWindow window;
     window.name = free_name(c.display.windows, name);
     window.fullscreen = s.text("windowFullscreen") == "true";
     if (TextNode const* pos = s.find("windowPos")) {

@@ -19,7 +19,7 @@ bool is_within(glm::dvec2 p, double low, double high) // false for NaN
 }
 
 /// Each triangle of a cell, lower one first.
-std::array<std::array<WarpNode const*, 3>, 2> triangles(WarpMesh const& m, int i, int j)
+std::array<std::array<WarpNode const*, 3>, 2> triangles(WallMesh const& m, int i, int j)
 {
     WarpNode const &ll = m.node(i, j), &lr = m.node(i + 1, j), &ur = m.node(i + 1, j + 1), &ul = m.node(i, j + 1);
     return {{{&ll, &lr, &ur}, {&ll, &ur, &ul}}};
@@ -27,7 +27,7 @@ std::array<std::array<WarpNode const*, 3>, 2> triangles(WarpMesh const& m, int i
 
 } // namespace
 
-std::optional<std::string> find_fault(WarpMesh const& m)
+std::optional<std::string> find_fault(WallMesh const& m)
 {
     if (m.columns < 2 || m.rows < 2 || m.columns > kMostWarpNodes || m.rows > kMostWarpNodes)
         return fmt::format("a mesh has 2 to {} columns and rows of nodes, this one {} and {}", kMostWarpNodes,
@@ -55,9 +55,9 @@ std::optional<std::string> find_fault(WarpMesh const& m)
     return {};
 }
 
-WarpMesh plain_mesh(int columns, int rows)
+WallMesh plain_mesh(int columns, int rows)
 {
-    WarpMesh mesh{columns, rows, {}};
+    WallMesh mesh{columns, rows, {}};
     for (int j = 0; j < rows; ++j)
         for (int i = 0; i < columns; ++i) {
             glm::dvec2 const p{double(i) / (columns - 1), double(j) / (rows - 1)};
@@ -66,7 +66,7 @@ WarpMesh plain_mesh(int columns, int rows)
     return mesh;
 }
 
-std::vector<std::uint32_t> triangle_indices(WarpMesh const& m)
+std::vector<std::uint32_t> triangle_indices(WallMesh const& m)
 {
     std::vector<std::uint32_t> out;
     for (int j = 0; j + 1 < m.rows; ++j)
@@ -77,7 +77,7 @@ std::vector<std::uint32_t> triangle_indices(WarpMesh const& m)
     return out;
 }
 
-std::optional<glm::dvec2> picture_at(WarpMesh const& m, glm::dvec2 p)
+std::optional<glm::dvec2> picture_at(WallMesh const& m, glm::dvec2 p)
 {
     for (int j = 0; j + 1 < m.rows; ++j)
         for (int i = 0; i + 1 < m.columns; ++i)

@@ -22,7 +22,7 @@ struct WarpNode {
     bool operator==(WarpNode const&) const = default;
 };
 
-struct WarpMesh {
+struct WallMesh {
     int columns = 0, rows = 0; ///< nodes, at least 2 each
     std::vector<WarpNode> nodes;
 
@@ -30,7 +30,7 @@ struct WarpMesh {
     {
         return nodes[std::size_t(j) * std::size_t(columns) + std::size_t(i)];
     }
-    bool operator==(WarpMesh const&) const = default;
+    bool operator==(WallMesh const&) const = default;
 };
 
 inline constexpr int kMostWarpNodes = 257; ///< along one side
@@ -38,12 +38,12 @@ inline constexpr int kMostWarpNodes = 257; ///< along one side
 /// Which cell is wrong, and how; nothing where the mesh can be drawn. Triangles must all turn the same way
 /// (mirrored is fine, folded is not), have area, and lie within one picture of the viewport; `picture` within the
 /// picture. That no two triangles far apart overlap is not looked at.
-std::optional<std::string> find_fault(WarpMesh const& mesh);
+std::optional<std::string> find_fault(WallMesh const& mesh);
 /// Nodes where they would be without a mesh.
-WarpMesh plain_mesh(int columns, int rows);
+WallMesh plain_mesh(int columns, int rows);
 /// Three nodes per triangle, for a draw call.
-std::vector<std::uint32_t> triangle_indices(WarpMesh const& mesh);
+std::vector<std::uint32_t> triangle_indices(WallMesh const& mesh);
 /// Where the point of the viewport is in the picture; nothing outside of the mesh.
-std::optional<glm::dvec2> picture_at(WarpMesh const& mesh, glm::dvec2 place);
+std::optional<glm::dvec2> picture_at(WallMesh const& mesh, glm::dvec2 place);
 
 } // namespace viewer

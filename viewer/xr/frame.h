@@ -11,7 +11,7 @@
 
 namespace viewer {
 
-enum class Eye { left = 0, right = 1 };
+enum class HmdEye { left = 0, right = 1 };
 
 /// A pose and a field of view as the runtime gave them, in its own space: what a picture is handed back with, so
 /// that the runtime can bring it to where the head is when it is seen. Bit for bit, whatever was recentred since.

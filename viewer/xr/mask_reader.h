@@ -12,7 +12,7 @@ public:
     MaskReader(Runtime const& runtime, XrSession session);
     /// Again, when the session begins and when the runtime says that they changed. Throws CallError.
     void read();
-    HiddenMask const& mask(Eye eye) const { return masks_[std::size_t(eye)]; }
+    HiddenMask const& mask(HmdEye eye) const { return masks_[std::size_t(eye)]; }
 
 private:
     XrSession session_;

@@ -39,10 +39,10 @@ gi::ViewTangents tangents(HmdRawView const& view)
     return {std::tan(double(left)), std::tan(double(right)), std::tan(double(down)), std::tan(double(up))};
 }
 
-gi::Camera eye_camera(Eye eye, RoomPose const& room_from_eye, gi::ViewTangents const& view)
+gi::Camera eye_camera(HmdEye eye, RoomPose const& room_from_eye, gi::ViewTangents const& view)
 {
     gi::Camera camera;
-    camera.name = eye == Eye::left ? "left eye" : "right eye";
+    camera.name = eye == HmdEye::left ? "left eye" : "right eye";
     camera.off_axis = view;
     camera.yfov_rad = std::atan(view.top) - std::atan(view.bottom);
     camera.world_from_camera =

@@ -15,7 +15,7 @@ RoomPose pose_of(HmdRawView const& view);
 bool spans_view(HmdRawView const& view);
 gi::ViewTangents tangents(HmdRawView const& view);
 /// The camera of an eye, in the room.
-gi::Camera eye_camera(Eye eye, RoomPose const& room_from_eye, gi::ViewTangents const& tangents);
+gi::Camera eye_camera(HmdEye eye, RoomPose const& room_from_eye, gi::ViewTangents const& tangents);
 /// Angle about +Y from -Z to where the body faces, rad, counter-clockwise from above. One that looks straight up
 /// or down faces where the top of its head, or its back, tells.
 double heading_rad(gi::dquat const& rotation);

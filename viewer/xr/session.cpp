@@ -243,8 +243,8 @@ std::optional<std::array<HmdView, 2>> HmdSession::Parts::views_at(XrTime time)
         HmdRawView const raw = raw_of(found[e]);
         if (!spans_view(raw)) return std::nullopt;
         RoomPose const room_from_eye = after(spaces->room_from_space(), pose_of(raw));
-        views[e] = {eye_camera(Eye(e), room_from_eye, tangents(raw)), runtime.info.width, runtime.info.height, raw,
-                    spaces->moves()};
+        views[e] = {eye_camera(HmdEye(e), room_from_eye, tangents(raw)), runtime.info.width, runtime.info.height,
+                    raw, spaces->moves()};
     }
     return views;
 }
@@ -435,7 +435,7 @@ bool HmdSession::recentre()
 
 RoomPose HmdSession::room_from_space() const { return parts_->spaces->room_from_space(); }
 
-HiddenMask const& HmdSession::hidden(Eye eye) const { return parts_->masks->mask(eye); }
+HiddenMask const& HmdSession::hidden(HmdEye eye) const { return parts_->masks->mask(eye); }
 
 HmdInfo const& HmdSession::info() const { return parts_->runtime.info; }
 

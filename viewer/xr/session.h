@@ -101,7 +101,7 @@ public:
 
     /// Pixels of an eye that nobody sees; none where the runtime does not tell. Grows a new version when it
     /// changes.
-    HiddenMask const& hidden(Eye eye) const;
+    HiddenMask const& hidden(HmdEye eye) const;
     HmdInfo const& info() const;
     HmdCounts const& counts() const;
 
