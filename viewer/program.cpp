@@ -26,6 +26,7 @@ int run_program(int argc, char const* const* argv)
 Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130 interrupted.)");
     int exit_code = 0;
     add_render(app, exit_code);
+    add_view(app, exit_code);
     add_compare(app, exit_code);
     add_info(app, exit_code);
     add_generate(app, exit_code);
