@@ -177,10 +177,15 @@ TEST_F(Monado, TracksHeadAndHandsWithoutPictures)
     EXPECT_LT(std::stod(last.at("hand_left_x")), std::stod(last.at("hand_right_x")));
 }
 
-TEST_F(Monado, LossIsNamedAndAnotherSessionFollows)
+class EachUse : public Monado, public ::testing::WithParamInterface<char const*> {};
+
+INSTANTIATE_TEST_SUITE_P(Uses, EachUse, ::testing::Values("egl", "none"),
+                         [](auto const& use) { return std::string(use.param); });
+
+TEST_P(EachUse, LossIsNamedAndAnotherSessionFollows)
 {
     start_service();
-    Child client(client_call("--graphics egl --keep --frames 30"), folder.path(), "client");
+    Child client(client_call(std::string("--keep --frames 30 --graphics ") + GetParam()), folder.path(), "client");
     ASSERT_TRUE(wait_for([&] { return client.out().find("focused") != std::string::npos; }, Seconds(30)))
         << client.out() << client.err();
     std::this_thread::sleep_for(Seconds(1));

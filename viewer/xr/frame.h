@@ -33,13 +33,13 @@ struct HmdView {
     bool operator==(HmdView const&) const = default;
 };
 
-/// One controller. Poses that are not tracked are empty; buttons then read as not pressed.
+/// One controller. Its pose is empty while nobody knows it. Without a controller or the focus nothing is pressed.
 struct HmdHand {
     std::string profile; ///< that the runtime has bound, "/interaction_profiles/..."; empty = no controller
     std::optional<RoomPose> aim; ///< a pointing ray starts at its position and goes along its -Z
     glm::dvec2 move{0};          ///< thumb stick or track pad, -1 to 1: right, away from the user
     bool select = false;  ///< the button for an answer: A, X, track pad; on simple controllers their only one
-    bool trigger = false; ///< pulled by more than half; where there is none, select
+    bool trigger = false; ///< pulled as far as the runtime wants; where there is none, select
     bool menu = false;
 
     bool operator==(HmdHand const&) const = default;
