@@ -24,7 +24,7 @@ TEST(PoseMath, LogAndExpAreInverse)
         EXPECT_LT(glm::distance(log_rotation(-exp_rotation(angle * axis)), angle * axis), 1e-9) << angle;
     }
     RoomPose const a{{1, 2, 3}, exp_rotation({0.3, 2, -1})};
-    RoomPose const same = compose(a, inverse(a));
+    RoomPose const same = compose(a, inverted(a));
     EXPECT_LT(glm::length(same.position), 1e-12);
     EXPECT_LT(angle_between(same.rotation, {1, 0, 0, 0}), 1e-12);
 }

@@ -32,7 +32,7 @@ RoomPose compose(RoomPose const& a, RoomPose const& b)
     return {a.position + a.rotation * b.position, glm::normalize(a.rotation * b.rotation)};
 }
 
-RoomPose inverse(RoomPose const& a)
+RoomPose inverted(RoomPose const& a)
 {
     gi::dquat const back = glm::inverse(a.rotation);
     return {-(back * a.position), back};
