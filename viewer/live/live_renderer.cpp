@@ -130,8 +130,8 @@ void LiveRenderer::wait_until(double time_s)
 void LiveRenderer::run()
 {
     try {
-        if (link_ != nullptr && !link_->leads())
-            run_following();
+        if (link_ != nullptr)
+            run_linked();
         else
             run_leading();
     } catch (std::exception const& e) {
@@ -142,11 +142,21 @@ void LiveRenderer::run()
     if (hooks_.published) hooks_.published();
 }
 
+void LiveRenderer::run_linked()
+{
+    link_->begin();
+    if (link_->leads())
+        run_leading();
+    else
+        run_following();
+    link_->end();
+}
+
 bool LiveRenderer::anything_moves(Viewpoint const& now) const
 {
     Settings const& s = session_.settings();
     return !has_last_ || !changes_.empty() || (s.play && s.speed != 0 && session_.moves()) ||
-           !same_views(now.views, last_.views) || !(now.tracked == last_.tracked) || scene_s_ != last_.scene_s;
+           !same_views(now.views, last_views_) || !(now.tracked == last_.tracked) || scene_s_ != last_.scene_s;
 }
 
 FrameOrder LiveRenderer::make_order(Viewpoint const& now, bool still, FrameBudget& budget)
@@ -184,8 +194,8 @@ void LiveRenderer::run_leading()
         if (has_last_ && s.play && session_.moves()) scene_s_ += s.speed * (begun - last_begun_s_);
         last_begun_s_ = begun;
         bool const still = !anything_moves(now);
-        bool const rests =
-            !session_.has_scene() || now.views.empty() || (still && (!s.refine || still_paths_ >= kConvergedPaths));
+        bool const rests = !session_.has_scene() || now.views.empty() ||
+                           (still && (!s.refine || still_paths_ >= kConvergedPaths));
         if (rests && !looked_) {
             std::unique_lock lock(mutex_);
             wake_.wait_for(lock, std::chrono::milliseconds(100),
@@ -210,16 +220,14 @@ void LiveRenderer::run_leading()
         if (!render(std::move(order), budget)) wait_until(clock_.now_s() + 0.2);
         if (!still) wait_until(begun + 1 / s.rate_hz);
     }
-    if (link_ != nullptr) link_->send({}); // no views: the end
 }
 
 void LiveRenderer::run_following()
 {
     while (!quit_) {
         std::optional<FrameOrder> order = link_->receive();
-        if (!order || order->views.empty()) return;
+        if (!order) return;
         for (Change const& c : order->changes) session_.apply(c);
-        if (hooks_.own_views) order->views = hooks_.own_views(*order);
         render(std::move(*order), {});
     }
 }
@@ -231,6 +239,10 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
     frame->budget = budget;
     gi::StopRequest never;
     std::shared_ptr<gi::StopRequest> const stop = refining_;
+    if (hooks_.own_views) {
+        frame->ordered = order.views;
+        order.views = hooks_.own_views(order);
+    }
     try {
         frame->result = session_.render(order, stop ? *stop : never);
     } catch (gi::InputError const& e) {
@@ -242,8 +254,8 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
         refining_ = nullptr;
     }
     frame->done_s = clock_.now_s();
-    bool const done = !frame->result.views.empty();
-    if (done) {
+    bool const done = !frame->result.views.empty() || order.views.empty(); // a rank may have no walls to draw
+    if (!frame->result.views.empty()) {
         order.paths = frame->result.paths;
         still_paths_ = frame->result.still_frames > 1 ? still_paths_ + std::uint32_t(order.paths)
                                                       : std::uint32_t(order.paths);
@@ -253,6 +265,7 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
     }
     frame->still_paths = still_paths_;
     frame->settings = session_.settings();
+    last_views_ = frame->ordered.empty() ? order.views : frame->ordered;
     last_ = order;
     has_last_ = true;
     frame->order = std::move(order);

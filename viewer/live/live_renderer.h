@@ -40,7 +40,8 @@ struct Viewpoint {
 };
 
 struct LiveFrame {
-    FrameOrder order;
+    FrameOrder order;               ///< with the views that were rendered here
+    std::vector<ViewOrder> ordered; ///< where these are not all of them: all
     SessionFrame result;
     FrameBudget budget;
     double begun_s = 0, done_s = 0; ///< session clock
@@ -50,16 +51,21 @@ struct LiveFrame {
 
 inline constexpr std::uint32_t kConvergedPaths = 4096;
 
-/// Others who render the same orders: the ranks of a cluster.
+/// Others who render the same orders: the ranks of a cluster. All but `swapped` is called on the rendering thread.
 class FrameLink {
 public:
     virtual ~FrameLink() = default;
-    /// Orders come from elsewhere: empty at the end.
+    /// First and last, on the rendering thread.
+    virtual void begin() = 0;
+    virtual void end() = 0;
     virtual bool leads() const = 0;
     virtual void send(FrameOrder const& order) = 0;
+    /// Empty at the end.
     virtual std::optional<FrameOrder> receive() = 0;
     /// Returns when all have rendered the frame.
     virtual void wait_for_all(FrameOrder const& order) = 0;
+    /// From the thread that shows frames.
+    virtual void swapped(std::uint64_t frame, double steady_s) = 0;
 };
 
 class LiveRenderer {
@@ -69,7 +75,7 @@ public:
         std::function<void(LiveFrame const&)> finished; ///< before anyone sees it
         std::function<void()> published;                ///< there is a newer frame
         std::function<void(std::string const&)> failed; ///< a frame could not be rendered; it goes on
-        std::function<std::vector<ViewOrder>(FrameOrder const&)> own_views; ///< of a follower; empty = as ordered
+        std::function<std::vector<ViewOrder>(FrameOrder const&)> own_views; ///< of a rank; empty = as ordered
     };
 
     /// @param session, clock, link  outlive it; link may be null
@@ -93,6 +99,7 @@ public:
 
 private:
     void run();
+    void run_linked();
     void run_leading();
     void run_following();
     void do_jobs();
@@ -119,6 +126,7 @@ private:
     Governor governor_;
     std::vector<Change> changes_;
     FrameOrder last_;
+    std::vector<ViewOrder> last_views_; ///< all that were ordered
     bool has_last_ = false;
     double scene_s_ = 0, last_begun_s_ = 0;
     std::uint64_t frame_ = 0;

@@ -1,0 +1,108 @@
+#include "viewer/show/user_tracking.h"
+
+#include "gi/base/error.h"
+
+namespace viewer {
+namespace {
+
+TrackerSettings settings_of(DisplayTracker const& t)
+{
+    TrackerSettings s;
+    s.name = t.name;
+    s.type = t.type == DisplayTrackerType::osc      ? TrackerType::osc
+             : t.type == DisplayTrackerType::dtrack ? TrackerType::dtrack
+             : t.type == DisplayTrackerType::file   ? TrackerType::file
+                                                    : TrackerType::fake;
+    s.address = t.address;
+    s.port = t.port > 0 ? t.port : -1;
+    s.file = t.file;
+    s.at_end = AtEnd::begin_again;
+    std::string body = t.body;
+    if (!body.empty() && body[0] == '/') body.erase(0, 1); // of OSC, the display has a path
+    if (!body.empty()) s.head.id = body;
+    s.to_room.room_from_tracker = pose_of(t.room_from_tracker);
+    s.prediction.latency_s = 1e-3 * t.latency_ms;
+    s.filter.enabled = t.filter.type == FilterType::one_euro;
+    if (s.filter.enabled) {
+        s.filter.position.min_cutoff_hz = t.filter.min_cutoff_hz;
+        s.filter.position.beta = t.filter.beta_per_m;
+    }
+    return s;
+}
+
+} // namespace
+
+UserTracking::UserTracking(Display const& display) : display_(display)
+{
+    for (DisplayTracker const& t : display.trackers) {
+        Source s;
+        if (t.type == DisplayTrackerType::openxr)
+            s.headset = std::make_unique<HmdSession>(HmdOptions{});
+        else
+            s.hub = std::make_unique<TrackerHub>(std::vector{settings_of(t)}, Polling::by_thread);
+        sources_.push_back(std::move(s));
+    }
+}
+
+Tracked UserTracking::of(Source& source, double steady_s) const
+{
+    if (source.hub) return source.hub->at(steady_s).tracked;
+    source.headset->poll();
+    auto const poses = source.headset->poses(steady_s);
+    return poses ? poses->tracked : Tracked{};
+}
+
+std::vector<std::optional<RoomPose>> UserTracking::heads(double steady_s)
+{
+    std::vector<std::optional<RoomPose>> heads;
+    for (User const& u : display_.users)
+        heads.push_back(u.tracker < 0 ? std::nullopt : of(sources_[std::size_t(u.tracker)], steady_s).head);
+    return heads;
+}
+
+Tracked UserTracking::bodies(double steady_s)
+{
+    if (display_.users.empty() || display_.users[0].tracker < 0) return {};
+    return of(sources_[std::size_t(display_.users[0].tracker)], steady_s);
+}
+
+void UserTracking::set_fake(FakeInput const& input)
+{
+    for (Source& s : sources_)
+        if (s.hub) s.hub->set_fake(input);
+}
+
+bool UserTracking::has_fake() const
+{
+    for (DisplayTracker const& t : display_.trackers)
+        if (t.type == DisplayTrackerType::fake) return true;
+    return false;
+}
+
+std::optional<double> UserTracking::age_ms(double steady_s) const
+{
+    if (display_.users.empty() || display_.users[0].tracker < 0) return std::nullopt;
+    Source const& s = sources_[std::size_t(display_.users[0].tracker)];
+    if (!s.hub) return std::nullopt;
+    for (TrackerReport const& r : s.hub->report(steady_s))
+        if (r.bodies[0].state != TrackState::never) return 1e3 * r.bodies[0].age_s;
+    return std::nullopt;
+}
+
+nlohmann::json UserTracking::stats(double steady_s) const
+{
+    nlohmann::json all = nlohmann::json::object();
+    for (Source const& s : sources_) {
+        if (!s.hub) continue;
+        for (TrackerReport const& r : s.hub->report(steady_s)) {
+            nlohmann::json& j = all[r.name] = {{"packets", r.counts.packets},
+                                               {"malformed", r.counts.malformed},
+                                               {"port", r.port},
+                                               {"head_age_ms", 1e3 * r.bodies[0].age_s}};
+            for (auto const& [what, value] : numbers(r.latency)) j[what] = value;
+        }
+    }
+    return all;
+}
+
+} // namespace viewer

@@ -1,0 +1,39 @@
+#pragma once
+// The trackers of a display at work: where the heads of its users are expected to be when a frame is seen.
+
+#include "viewer/display/display.h"
+#include "viewer/tracking/tracker_hub.h"
+#include "viewer/xr/session.h"
+
+namespace viewer {
+
+class UserTracking {
+public:
+    /// Binds sockets, opens files. Throws InputError.
+    explicit UserTracking(Display const& display);
+
+    /// @param steady_s  std::chrono::steady_clock: when the frame will be seen
+    /// @return per user; empty = not tracked
+    std::vector<std::optional<RoomPose>> heads(double steady_s);
+    /// Head and hands of the first user, for avatars and recordings.
+    Tracked bodies(double steady_s);
+    /// Keyboard and mouse, where a tracker is fake.
+    void set_fake(FakeInput const& input);
+    bool has_fake() const;
+    /// Age of the newest packet of the first user's tracker, ms; none without a tracker.
+    std::optional<double> age_ms(double steady_s) const;
+    /// Packets, losses, latencies, by tracker.
+    nlohmann::json stats(double steady_s) const;
+
+private:
+    struct Source {
+        std::unique_ptr<TrackerHub> hub;     ///< else
+        std::unique_ptr<HmdSession> headset; ///< poses only
+    };
+    Tracked of(Source& source, double steady_s) const;
+
+    Display const& display_;
+    std::vector<Source> sources_; ///< per tracker of the display
+};
+
+} // namespace viewer
