@@ -100,6 +100,7 @@ TEST(DisplayFile, EveryRefusalHasItsPlaceAndItsWords)
         {"    window: w", "    window: w\n    blend: {left_m: 1.5, right_m: 1}",
          "the bands of blending overlap each other (the wall is 2 x 2 m)"},
         {"    window: w", "    window: w\n    blend: {gamma: 0.4}", "a gamma of 0.4"},
+        {"    window: w", "    window: w\n    blend: {power: 0}", "a power of 0"},
         {"    window: w", "    window: w\n    gain: 5", "a gain of 5"},
         {"    window: w",
          "    window: w\n    warp: {columns: 2, rows: 2, nodes: [[0,0,0,0],[1,0,1,0],[1,1,0,1],[0,1,1,1]]}",
@@ -285,7 +286,8 @@ Display random_display(std::mt19937& random)
         if (below(2)) w.render_width_px = w.render_height_px = 1 + below(99);
         w.swap_eyes = below(2) == 0;
         w.user = below(int(d.users.size()));
-        if (below(2)) w.blend = {real(0, 0.02), real(0, 0.02), real(0, 0.02), real(0, 0.02), real(1, 3)};
+        if (below(2))
+            w.blend = {real(0, 0.02), real(0, 0.02), real(0, 0.02), real(0, 0.02), real(0.5, 3), real(1, 3)};
         if (below(3) == 0) {
             w.warp = plain_mesh(2 + below(3), 2 + below(3));
             for (WarpNode& node : w.warp->nodes) node.place += glm::dvec2(real(-0.01, 0.01), real(-0.01, 0.01));

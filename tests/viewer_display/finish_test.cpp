@@ -50,6 +50,8 @@ TEST(Blend, OutsideAndWithoutBands)
     left.left_m = 0.5;
     EXPECT_EQ(blend_weight(left, 2, 1, 0, 0.5), 0);
     EXPECT_EQ(blend_weight(left, 2, 1, 0.125, 0.5), 0.5);
+    EXPECT_EQ(blend_weight(left, 2, 1, 0.0625, 0.5), 0.125);
+    EXPECT_EQ(blend_weight(left, 2, 1, 0.1875, 0.5), 0.875);
     EXPECT_EQ(blend_weight(left, 2, 1, 0.25, 0.5), 1);
     Wall wall;
     EXPECT_FALSE(needs_finish(wall));

@@ -6,11 +6,11 @@
 namespace viewer {
 namespace {
 
-double rise(double distance_m, double band_m)
+double rise(double distance_m, double band_m, double power)
 {
     if (!(band_m > 0)) return 1;
     double const t = std::clamp(distance_m / band_m, 0.0, 1.0);
-    return t * t * (3 - 2 * t);
+    return t < 0.5 ? 0.5 * std::pow(2 * t, power) : 1 - 0.5 * std::pow(2 * (1 - t), power);
 }
 
 } // namespace
@@ -18,8 +18,8 @@ double rise(double distance_m, double band_m)
 double blend_weight(WallBlend const& b, double width_m, double height_m, double u, double v)
 {
     if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1)) return 0;
-    return rise(u * width_m, b.left_m) * rise((1 - u) * width_m, b.right_m) * rise(v * height_m, b.bottom_m) *
-           rise((1 - v) * height_m, b.top_m);
+    return rise(u * width_m, b.left_m, b.power) * rise((1 - u) * width_m, b.right_m, b.power) *
+           rise(v * height_m, b.bottom_m, b.power) * rise((1 - v) * height_m, b.top_m, b.power);
 }
 
 double encoded_weight(WallBlend const& b, double weight) { return std::pow(weight, 1 / b.gamma); }

@@ -1,7 +1,8 @@
 #pragma once
-// Light of overlapping projectors adds up. Within the band of its blend a wall's light rises from its edge as
-// 3 t^2 - 2 t^3, which with its mirror image makes one; bands of two sides multiply, so four projectors over a
-// corner make one too.
+// Light of overlapping projectors adds up. Within the band of its blend a wall's light rises with t, 0 at its edge
+// and 1 at the end of the band, as (2t)^p / 2 up to t = 1/2 and 1 - (2 (1 - t))^p / 2 from there on, which with
+// its mirror image makes one (Bourke 2004, "Edge blending using commodity projectors"; viewer/gl/wall_pass.h draws
+// the same). Bands of two sides multiply, so four projectors over a corner make one too.
 
 #include "viewer/display/display.h"
 

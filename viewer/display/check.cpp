@@ -101,6 +101,13 @@ Fault finish_fault(Wall const& wall, std::size_t i)
                             "the bands of blending overlap each other",
                             fmt::format("the wall is {:.4g} x {:.4g} m", frame.width_m, frame.height_m),
                             "make them narrower"};
+    if (!is_within(b.power, 0.1, 10))
+        return DisplayFault{"walls",
+                            i,
+                            "blend",
+                            fmt::format("a power of {:g}", b.power),
+                            "the light's rise has 0.1 to 10",
+                            "2 is usual, 1 is straight"};
     if (!is_within(b.gamma, 1, 4))
         return DisplayFault{
             "walls",       i, "blend", fmt::format("a gamma of {:g}", b.gamma), "projectors have 1 to 4",

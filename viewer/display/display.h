@@ -38,6 +38,7 @@ struct Viewport {
 /// Where a wall's picture fades out because a neighbour's fades in: widths on the wall, from its edges inward.
 struct WallBlend {
     double left_m = 0, right_m = 0, top_m = 0, bottom_m = 0;
+    double power = 2;   ///< of the curve in blend.h: 1 = straight
     double gamma = 2.2; ///< of the projector: light = value^gamma
 
     bool operator==(WallBlend const&) const = default;

@@ -9,7 +9,7 @@ std::map<std::string, std::set<std::string>> const& display_keys()
         {"wall",
          {"name", "lower_left_m", "lower_right_m", "upper_left_m", "window", "second_window", "viewport_px",
           "viewport_fraction", "render_px", "stereo", "swap_eyes", "user", "blend", "warp", "gain", "rank"}},
-        {"blend", {"left_m", "right_m", "top_m", "bottom_m", "gamma"}},
+        {"blend", {"left_m", "right_m", "top_m", "bottom_m", "power", "gamma"}},
         {"warp", {"file", "columns", "rows", "nodes"}},
         {"window", {"name", "size_px", "position_px", "monitor", "fullscreen"}},
         {"user",

@@ -83,6 +83,7 @@ WallBlend read_blend(YamlReader const& y)
                                      {"right_m", &blend.right_m},
                                      {"top_m", &blend.top_m},
                                      {"bottom_m", &blend.bottom_m},
+                                     {"power", &blend.power},
                                      {"gamma", &blend.gamma}})
         if (y.has(key)) *value = y.at(key).number(-kAny, kAny);
     return blend;

@@ -52,8 +52,8 @@ void write_wall(Writer& w, Wall const& wall, Display const& d)
     if (wall.swap_eyes) w.key("swap_eyes", "true");
     w.key("user", quoted(d.users[std::size_t(wall.user)].name));
     if (WallBlend const& b = wall.blend; b != WallBlend{})
-        w.key("blend", fmt::format("{{left_m: {}, right_m: {}, top_m: {}, bottom_m: {}, gamma: {}}}", b.left_m,
-                                   b.right_m, b.top_m, b.bottom_m, b.gamma));
+        w.key("blend", fmt::format("{{left_m: {}, right_m: {}, top_m: {}, bottom_m: {}, power: {}, gamma: {}}}",
+                                   b.left_m, b.right_m, b.top_m, b.bottom_m, b.power, b.gamma));
     if (!wall.warp_file.empty())
         w.key("warp", "{file: " + quoted(wall.warp_file) + "}");
     else if (wall.warp)
