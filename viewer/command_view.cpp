@@ -2,18 +2,24 @@
 #include "gi/base/file.h"
 #include "viewer/arguments.h"
 #include "viewer/commands.h"
+#include "viewer/display/display_file.h"
 #include "viewer/interrupt.h"
 #include "viewer/load_world.h"
 #include "viewer/render_options.h"
 #include "viewer/render_picture.h"
+#include "viewer/replay.h"
 #include "viewer/report_json.h"
+#include "viewer/show/cluster_link.h"
+#include "viewer/show/hmd_program.h"
 #include "viewer/show/view_program.h"
 #include "viewer/validators.h"
 #include "viewer/version.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <fmt/format.h>
+#include <fstream>
 #include <memory>
 
 namespace viewer {
@@ -22,7 +28,11 @@ namespace {
 struct ViewArguments {
     RenderOptions scene; ///< scene, camera, sky
     std::vector<std::string> settings;
-    std::string size = "1280x720", fullscreen, navigate = "fly", record, frame_log, remote, stats, screenshots;
+    std::string size, fullscreen, navigate = "fly", record, frame_log, remote, stats, screenshots, display,
+                                  on_rank_loss = "stop", replay, out, video;
+    double rank_silence_s = 5, fps = 30, eye_height_m = 1.6;
+    int paths = 0;
+    bool hmd = false, seated = false;
     std::optional<int> remote_port;
     double time_limit_s = 0;
     bool no_vsync = false;
@@ -39,6 +49,16 @@ Change parse_change(std::string const& text)
     return {text.substr(0, at), parsed.is_discarded() ? nlohmann::json(value) : parsed};
 }
 
+/// As it was given, from what the system knows of this process.
+std::string command_line()
+{
+    std::ifstream in("/proc/self/cmdline", std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    std::replace(text.begin(), text.end(), '\0', ' ');
+    if (!text.empty()) text.pop_back();
+    return text;
+}
+
 NavigationMode parse_navigation(std::string const& name)
 {
     for (NavigationMode const m : {NavigationMode::fly, NavigationMode::walk, NavigationMode::orbit})
@@ -46,15 +66,20 @@ NavigationMode parse_navigation(std::string const& name)
     throw gi::InputError("--navigate " + name, "it is not known here", "choose fly, walk or orbit");
 }
 
-ViewOptions view_options(ViewArguments const& a, std::string const& command_line)
+LoadScene loader(RenderOptions const& options)
 {
-    ViewOptions o;
-    RenderOptions const scene = a.scene;
-    o.load = [scene](std::string const& name, gi::Report& report) {
-        RenderOptions named = scene;
+    return [options](std::string const& name, gi::Report& report) {
+        RenderOptions named = options;
         named.scene = name;
         return load_lit_scene(named, report);
     };
+}
+
+ViewOptions view_options(ViewArguments const& a, std::string const& command_line, gi::Report& report)
+{
+    ViewOptions o;
+    RenderOptions const& scene = a.scene;
+    o.load = loader(scene);
     o.scene = scene.scene;
     CameraChoice const choice = camera_choice(scene);
     o.first_camera = [choice](gi::World const& world) {
@@ -63,13 +88,14 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
         return chosen.camera;
     };
     for (std::string const& s : a.settings) o.settings.push_back(parse_change(s));
-    auto const size = parse_size(a.size);
+    auto const size = parse_size(a.size.empty() ? "1280x720" : a.size);
     o.size_px = {size.first, size.second};
     o.monitor = a.fullscreen;
     o.swap_interval = a.no_vsync ? 0 : 1;
     o.threads = scene.threads;
     o.navigation = parse_navigation(a.navigate);
     o.screenshots = a.screenshots;
+    if (!a.display.empty()) o.display = load_display(a.display, report);
     o.record = a.record;
     o.frame_log = a.frame_log;
     o.header.program = version_text();
@@ -84,12 +110,24 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
     return o;
 }
 
-int run(ViewArguments const& a, std::string const& command_line)
+/// Which rank this is, before MPI has begun.
+int rank_of_environment()
 {
-    gi::Report report;
-    gi::StopRequest stop;
-    InterruptGuard const guard(stop);
-    ViewSummary const done = run_view(view_options(a, command_line), stop, report);
+    char const* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
+    return rank == nullptr ? -1 : std::atoi(rank);
+}
+
+/// Followers have no sockets, files and people of their own.
+void follow(ViewOptions& o)
+{
+    if (o.rank <= 0) return;
+    o.record.clear();
+    o.remote = {};
+    if (!o.frame_log.empty()) o.frame_log += fmt::format(".{}", o.rank);
+}
+
+int finish(ViewArguments const& a, ViewSummary const& done, ClusterLink const* link, gi::Report const& report)
+{
     nlohmann::ordered_json stats;
     stats["version"] = version_text();
     stats["gl"] = done.gl;
@@ -98,12 +136,100 @@ int run(ViewArguments const& a, std::string const& command_line)
     stats["recorded"] = done.recorded;
     stats["longest_block_ms"] = done.longest_block_ms;
     stats["frames"] = to_json(done.frames);
+    stats["trackers"] = done.trackers;
+    stats["headset"] = done.headset;
+    if (link != nullptr) stats["swap_skew"] = to_text(link->skew());
     stats["report"] = to_json(report);
     if (!a.stats.empty()) gi::write_text(a.stats, to_text(stats));
     fmt::print("{} frames rendered, {} shown{}\n", done.rendered, done.presented,
                done.recorded > 0 ? fmt::format(", {} recorded to {}", done.recorded, a.record) : "");
+    if (link != nullptr && link->skew().frames > 0) fmt::print("{}\n", to_text(link->skew()));
+    std::fflush(stdout);
     print_losses(report);
-    return 0;
+    if (link == nullptr || link->failure().empty()) return 0;
+    std::fputs(("lightwell: " + link->failure() + "\n").c_str(), stderr);
+    return 1;
+}
+
+int run(ViewArguments const& a, std::string const& command_line)
+{
+    gi::Report report;
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    ViewOptions o = view_options(a, command_line, report);
+    o.rank = Cluster::started_by_mpirun() ? rank_of_environment() : -1;
+    follow(o);
+    if (a.hmd)
+        return finish(a, run_hmd(o, {a.seated ? HmdSpace::local : HmdSpace::stage, a.eye_height_m}, stop, report),
+                      nullptr, report);
+    if (o.rank < 0) return finish(a, run_view(o, nullptr, stop, report), nullptr, report);
+    if (!o.display)
+        throw gi::InputError("view by several ranks without --display", "it is not known which walls each shows",
+                             "add --display FILE.yaml whose walls have ranks");
+    ClusterLink link({version_text(), o.scene + " on " + a.display, file_hash(o.scene) ^ file_hash(a.display)},
+                     {parse_on_rank_loss(a.on_rank_loss), a.rank_silence_s});
+    ViewSummary const done = run_view(o, &link, stop, report);
+    if (o.rank == 0) return finish(a, done, &link, report);
+    if (!link.failure().empty()) std::fputs(("lightwell: " + link.failure() + "\n").c_str(), stderr);
+    return link.failure().empty() ? 0 : 1;
+}
+
+int run_replay(ViewArguments const& a)
+{
+    gi::Report report;
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    ReplayOptions o;
+    o.file = a.replay;
+    for (std::string const& s : a.settings) o.settings.push_back(parse_change(s));
+    o.paths = a.paths;
+    if (!a.size.empty()) o.size = parse_size(a.size);
+    o.out = a.out;
+    o.video = a.video;
+    o.fps = a.fps;
+    o.threads = a.scene.threads;
+    ReplaySummary const done = replay(
+        o,
+        [](nlohmann::json const& load) {
+            RenderOptions options;
+            options.environment = load.value("environment", "");
+            options.environment_rotate_deg = load.value("environment_rotate_deg", 0.0);
+            options.environment_scale = load.value("environment_scale", 1.0);
+            options.background = load.value("background", "");
+            return loader(options);
+        },
+        stop, report);
+    fmt::print("{} frames replayed", done.frames);
+    if (as_recorded(o))
+        fmt::print(": {} as recorded bit by bit, {} not, {} unknown", done.same, done.other, done.unknown);
+    fmt::print("\n");
+    if (done.first_other) fmt::print("first other frame: {}\n", *done.first_other);
+    std::string const loss = describe_loss(done.end);
+    if (!loss.empty()) say(loss);
+    std::fflush(stdout);
+    print_losses(report);
+    return done.interrupted ? kInterrupted : done.other > 0 ? 1 : 0;
+}
+
+/// Options of walks that a replay does not read, and the other way round.
+void check_mode(CLI::App const& command, ViewArguments const& a)
+{
+    bool const replays = !a.replay.empty();
+    auto const refuse = [&](std::initializer_list<char const*> names, std::string const& when) {
+        for (char const* name : names)
+            if (command.get_option(name)->count() > 0)
+                throw gi::InputError(std::string(name) + " " + when, "it would not be read", "leave it out");
+    };
+    if (replays)
+        refuse({"scene", "--record", "--frame-log", "--remote", "--remote-port", "--display", "--hmd",
+                "--fullscreen", "--time-limit", "--navigate", "--screenshots", "--stats", "--camera", "--envmap"},
+               "with --replay");
+    else
+        refuse({"--out", "--video", "--paths", "--fps"}, "without --replay");
+    if (!replays && a.scene.scene.empty())
+        throw gi::InputError("nothing to view", "neither a scene nor --replay is given", "lightwell view atrium");
+    if (a.hmd && !a.display.empty())
+        throw gi::InputError("--hmd with --display", "a headset has its own displays", "leave out one of them");
 }
 
 } // namespace
@@ -113,20 +239,34 @@ void add_view(CLI::App& app, int& exit_code)
     auto const a = std::make_shared<ViewArguments>();
     CLI::App* const c =
         app.add_subcommand("view", "Walk through a scene: window, stereo, recording, remote control.");
-    c->add_option("scene", a->scene.scene, "a file or a generated scene, as of render")->required();
+    c->add_option("scene", a->scene.scene, "a file or a generated scene, as of render");
     declare_view_options(*c, a->scene);
     c->add_option("--set", a->settings,
                   "KEY=VALUE before the first frame, e.g. stereo=anaglyph-dubois; repeatable")
         ->take_all();
-    c->add_option("--size", a->size, "of the window, pixels")->capture_default_str();
+    c->add_option("--size", a->size, "of the window, pixels (default: 1280x720); of a replay: of each view");
     c->add_option("--fullscreen", a->fullscreen, "on the monitor of this number or name");
     c->add_flag("--no-vsync", a->no_vsync, "swap at once");
+    c->add_option("--display", a->display, "walls, users and trackers, YAML (docs/displays.md)");
+    c->add_flag("--hmd", a->hmd, "in the headset of the OpenXR runtime (docs/hmd.md)");
+    c->add_flag("--seated", a->seated, "of --hmd: no floor; the eyes begin at --eye-height");
+    c->add_option("--eye-height", a->eye_height_m, "m")->capture_default_str();
+    c->add_option("--on-rank-loss", a->on_rank_loss, "with mpirun: stop or continue")->capture_default_str();
+    c->add_option("--rank-silence", a->rank_silence_s, "s after which a rank counts as lost")
+        ->check(in_range(0.1, 3600))
+        ->capture_default_str();
     c->add_option("--navigate", a->navigate, "fly, walk or orbit")->capture_default_str();
     c->add_option("--threads", a->scene.threads, "0 = all")->check(in_range(0, 1024));
     c->add_option("--record", a->record, "recording (.lwr) of everything that decides the pixels");
     c->add_option("--frame-log", a->frame_log, "CSV of the times of every frame");
     c->add_option("--remote", a->remote, "Unix socket to be controlled by (docs/remote.md)");
     c->add_option("--remote-port", a->remote_port, "the same on 127.0.0.1; 0 = a free one");
+    c->add_option("--replay", a->replay, "render a recording again, off-screen; with --set otherwise than then");
+    c->add_option("--paths", a->paths, "of --replay: per pixel and frame; 0 = as then")
+        ->check(in_range(0, 1 << 20));
+    c->add_option("--out", a->out, "of --replay: frames of the first view, e.g. walk_%05d.png or .exr");
+    c->add_option("--video", a->video, "of --replay: .mkv (FFV1) or .mp4 (H.264)");
+    c->add_option("--fps", a->fps, "of --video")->check(in_range(0.01, 1000))->capture_default_str();
     c->add_option("--screenshots", a->screenshots, "prefix of pictures saved by F2");
     c->add_option("--time-limit", a->time_limit_s, "end after so many seconds; 0 = never")
         ->check(in_range(0, 1e9));
@@ -139,8 +279,14 @@ All settings: docs/viewer.md.
 
 Examples (they need a display):
   lightwell view atrium
-  lightwell view atrium --set stereo=anaglyph-dubois --record walk.lwr --frame-log frames.csv)");
-    c->callback([a, &app, &exit_code] { exit_code = run(*a, app.config_to_str()); });
+  lightwell view atrium --set stereo=anaglyph-dubois --record walk.lwr --frame-log frames.csv
+  lightwell view --replay walk.lwr
+  lightwell view --replay walk.lwr --set method=reference --paths 256 --video walk.mkv
+  mpirun --enable-recovery -n 4 lightwell view atrium --display cave4.yaml)");
+    c->callback([a, c, &exit_code] {
+        check_mode(*c, *a);
+        exit_code = a->replay.empty() ? run(*a, command_line()) : run_replay(*a);
+    });
 }
 
 } // namespace viewer

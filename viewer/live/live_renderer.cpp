@@ -1,6 +1,7 @@
 #include "viewer/live/live_renderer.h"
 
 #include "gi/base/error.h"
+#include "viewer/live/background_priority.h"
 
 #include <algorithm>
 
@@ -129,6 +130,7 @@ void LiveRenderer::wait_until(double time_s)
 
 void LiveRenderer::run()
 {
+    BackgroundPriority const priority;
     try {
         if (link_ != nullptr)
             run_linked();
@@ -197,6 +199,7 @@ void LiveRenderer::run_leading()
         bool const rests = !session_.has_scene() || now.views.empty() ||
                            (still && (!s.refine || still_paths_ >= kConvergedPaths));
         if (rests && !looked_) {
+            if (link_ != nullptr) link_->check();
             std::unique_lock lock(mutex_);
             wake_.wait_for(lock, std::chrono::milliseconds(100),
                            [&] { return quit_ || !jobs_.empty() || looked_; });

@@ -62,6 +62,8 @@ public:
     virtual void send(FrameOrder const& order) = 0;
     /// Empty at the end.
     virtual std::optional<FrameOrder> receive() = 0;
+    /// While there is nothing to render, now and then: throws where a rank was lost that cannot be done without.
+    virtual void check() = 0;
     /// Returns when all have rendered the frame.
     virtual void wait_for_all(FrameOrder const& order) = 0;
     /// From the thread that shows frames.

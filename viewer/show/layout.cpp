@@ -99,20 +99,18 @@ std::vector<ViewOrder> views_of_rank(Display const& display, std::span<ViewOrder
 
 std::vector<WallSettings> wall_settings(Display const& display)
 {
-    // Blending is drawn by a fine mesh of its own weights, so that it is the display's formula.
-    constexpr int kBlendNodes = 65;
     std::vector<WallSettings> all;
     for (Wall const& wall : display.walls) {
         WallSettings s;
-        WallMesh const mesh = wall.warp.value_or(plain_mesh(kBlendNodes, kBlendNodes));
+        if (wall.warp) {
+            s.mesh = {wall.warp->columns, wall.warp->rows, {}};
+            for (WarpNode const& n : wall.warp->nodes)
+                s.mesh.vertices.push_back({glm::vec2(n.place), glm::vec2(n.picture), 1});
+        }
         WallFrame const frame = wall_frame(wall.corners);
-        s.mesh.columns = mesh.columns;
-        s.mesh.rows = mesh.rows;
-        s.mesh.vertices.clear();
-        for (WarpNode const& n : mesh.nodes)
-            s.mesh.vertices.push_back(
-                {glm::vec2(n.place), glm::vec2(n.picture),
-                 float(blend_weight(wall.blend, frame.width_m, frame.height_m, n.picture.x, n.picture.y))});
+        WallBlend const& b = wall.blend;
+        s.blend = {float(b.left_m / frame.width_m), float(b.right_m / frame.width_m),
+                   float(b.bottom_m / frame.height_m), float(b.top_m / frame.height_m), float(b.power)};
         s.gain = glm::vec3(wall.gain);
         s.gamma = glm::vec3(float(wall.blend.gamma));
         all.push_back(std::move(s));

@@ -1,16 +1,14 @@
 #pragma once
-// `lightwell view`: windows, input, remote control, recording, and the thread that renders. The loop of the main
-// thread never waits for a picture: it takes input, tells the renderer where the user is, and shows what there is.
+// `lightwell view`: windows on a desktop or the walls of a display. The loop of the main thread never waits for a
+// picture: it takes input, tells the renderer where the users are, and shows what there is.
 
 #include "gi/base/progress.h"
-#include "viewer/gl/panel.h"
-#include "viewer/gl/swap_timer.h"
-#include "viewer/recording/frame_log.h"
+#include "viewer/display/display.h"
+#include "viewer/live/live_renderer.h"
+#include "viewer/live/navigation.h"
+#include "viewer/recording/frame_summary.h"
 #include "viewer/recording/recording.h"
 #include "viewer/remote/remote_server.h"
-#include "viewer/show/controls.h"
-#include "viewer/show/live_error.h"
-#include "viewer/show/presenter.h"
 
 namespace viewer {
 
@@ -24,12 +22,14 @@ struct ViewOptions {
     int swap_interval = 1;
     int threads = 0;
     NavigationMode navigation = NavigationMode::fly;
-    std::string screenshots; ///< folder of those taken by key
+    std::string screenshots; ///< prefix of those taken by key
+    std::optional<Display> display;
     std::filesystem::path record, frame_log;
     RecordingHeader header;      ///< of the recording, but for its settings
     nlohmann::json load_options; ///< what load needs to know besides the scene's name, for replays
     RemoteOptions remote;
     double time_limit_s = 0; ///< 0 = none
+    int rank = -1;           ///< of a cluster; -1 = alone
 };
 
 struct ViewSummary {
@@ -37,9 +37,11 @@ struct ViewSummary {
     std::uint64_t rendered = 0, recorded = 0, presented = 0;
     double longest_block_ms = 0; ///< of the main thread: between two looks at the input
     std::string gl;
+    nlohmann::json trackers, headset;
 };
 
 /// Until the user, the remote control, the limit or `stop` ends it. Throws InputError on what cannot be opened.
-ViewSummary run_view(ViewOptions const& options, gi::StopRequest const& stop, gi::Report& report);
+/// @param link  to the other ranks; null where there are none
+ViewSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop, gi::Report& report);
 
 } // namespace viewer

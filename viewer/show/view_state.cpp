@@ -1,5 +1,7 @@
 #include "viewer/show/view_state.h"
 
+#include "gi/base/error.h"
+
 namespace viewer {
 
 void ViewState::change(Change const& c, std::function<void(std::string const&)> done)
@@ -16,6 +18,20 @@ void ViewState::change(Change const& c, std::function<void(std::string const&)> 
             if (done) done(error);
             refresh_facts();
         });
+    });
+}
+
+void ViewState::move_selection(gi::dvec3 by)
+{
+    selection->picked.position += by;
+    renderer->ask([this, object = selection->object, by](Session& s) {
+        try {
+            gi::dvec3 const at = s.position_of(object) + by;
+            Change const moved{"object." + object + ".position", {at.x, at.y, at.z}};
+            inbox.put([this, moved] { change(moved); });
+        } catch (gi::InputError const& e) {
+            inbox.put([this, why = std::string(e.what())] { message = why; });
+        }
     });
 }
 

@@ -53,11 +53,13 @@ struct ViewState {
     std::string message; ///< the last that went wrong, for the panel
     Inbox inbox;
     LiveRenderer* renderer = nullptr;
-    bool wants_screenshot = false;
+    bool wants_screenshot = false, own_screenshot = false; ///< the second: by key
 
     /// Settings take effect on what is shown at once, and in the picture with the next frame. Throws InputError
     /// where a setting cannot be so; what is wrong with an edit of the scene goes to `done`, later, by the inbox.
     void change(Change const& change, std::function<void(std::string const&)> done = {});
+    /// By so much, m, in the world.
+    void move_selection(gi::dvec3 by);
     /// Reads the facts anew, soon.
     void refresh_facts();
     /// The camera as it is now.

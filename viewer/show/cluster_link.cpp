@@ -1,0 +1,85 @@
+#include "viewer/show/cluster_link.h"
+
+#include <cstdio>
+#include <type_traits>
+
+namespace viewer {
+
+template <class F>
+auto ClusterLink::guarded(F const& call)
+{
+    alive_.reset();
+    try {
+        for (std::string const& line : cluster_->take_news()) std::fputs(("lost: " + line + "\n").c_str(), stderr);
+        if constexpr (std::is_void_v<decltype(call())>) {
+            call();
+            alive_ = std::make_unique<KeepAlive>(*cluster_);
+        } else {
+            auto result = call();
+            alive_ = std::make_unique<KeepAlive>(*cluster_);
+            return result;
+        }
+    } catch (RankLoss const& e) {
+        failure_ = e.what();
+        throw;
+    }
+}
+
+void ClusterLink::begin() { cluster_ = std::make_unique<Cluster>(identity_, settings_); }
+
+void ClusterLink::end()
+{
+    guarded([&] {
+        report_swaps();
+        cluster_->finish();
+    });
+    alive_.reset();
+    skew_ = cluster_->swap_skew();
+    cluster_.reset();
+}
+
+bool ClusterLink::leads() const { return cluster_->leads(); }
+
+void ClusterLink::report_swaps()
+{
+    std::vector<std::pair<std::uint64_t, double>> now;
+    {
+        std::lock_guard const lock(mutex_);
+        now.swap(swaps_);
+    }
+    for (auto const& [frame, time_s] : now) cluster_->report_swap(frame, time_s);
+}
+
+void ClusterLink::send(FrameOrder const& order)
+{
+    guarded([&] {
+        report_swaps();
+        cluster_->send(order);
+    });
+}
+
+std::optional<FrameOrder> ClusterLink::receive()
+{
+    return guarded([&] {
+        report_swaps();
+        return cluster_->receive();
+    });
+}
+
+void ClusterLink::check()
+{
+    guarded([] {});
+}
+
+void ClusterLink::wait_for_all(FrameOrder const& order)
+{
+    guarded([&] { cluster_->wait(order.frame); });
+}
+
+void ClusterLink::swapped(std::uint64_t frame, double steady_s)
+{
+    std::lock_guard const lock(mutex_);
+    swaps_.emplace_back(frame, steady_s);
+}
+
+} // namespace viewer

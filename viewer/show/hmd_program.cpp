@@ -1,0 +1,215 @@
+#include "viewer/show/hmd_program.h"
+
+#include "viewer/gl/display_pass.h"
+#include "viewer/gl/reprojection.h"
+#include "viewer/gl/window.h"
+#include "viewer/show/view_core.h"
+#include "viewer/xr/keeper.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace viewer {
+namespace {
+
+/// Surfaceless where there is no display server, else of a window that nobody sees.
+struct HmdContext {
+    std::unique_ptr<Window> window;
+    std::optional<GlContext> own;
+
+    explicit HmdContext(gi::Report& report)
+    {
+        char const* const display = std::getenv("DISPLAY");
+        if (display != nullptr && *display != '\0') {
+            WindowSettings hidden;
+            hidden.size_px = {64, 64};
+            hidden.visibility = Visibility::hidden;
+            window = std::make_unique<Window>(hidden, report);
+        } else {
+            own = GlContext::surfaceless(report);
+        }
+    }
+    GlContext const& gl() const { return window ? window->gl() : *own; }
+};
+
+class HmdLoop {
+public:
+    HmdLoop(ViewOptions const& options, HmdOptions const& headset, gi::Report& report)
+        : core_(options, report), state_(core_.state), context_(report), keeper_(&context_.gl(), headset)
+    {
+        core_.start(nullptr, {});
+    }
+
+    ViewSummary run(gi::StopRequest const& stop)
+    {
+        double last = state_.clock.now_s();
+        while (core_.poll(stop) && !keeper_.ended()) {
+            HmdSession* const session = keeper_.poll();
+            if (keeper_.losses() != losses_) {
+                losses_ = keeper_.losses();
+                core_.report.lose("headset sessions lost", 1, keeper_.trouble());
+                std::fputs(fmt::format("note: {}; waiting for the headset\n", keeper_.trouble()).c_str(), stderr);
+            }
+            if (session == nullptr) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(10));
+                continue;
+            }
+            note_phase(*session);
+            std::optional<HmdFrame> const frame = session->begin_frame();
+            if (!frame) continue;
+            double const now = state_.clock.now_s();
+            act(*frame, now - last);
+            last = now;
+            show(*session, *frame);
+        }
+        core_.finish();
+        core_.summary.gl = context_.gl().description();
+        core_.summary.headset = {
+            {"losses", losses_}, {"phases", phases_}, {"shown", shown_}, {"reprojected", reprojected_}};
+        return core_.summary;
+    }
+
+private:
+    void note_phase(HmdSession const& session)
+    {
+        std::string const now = name(session.phase());
+        if (phases_.empty() || phases_.back() != now) phases_.push_back(now);
+    }
+
+    /// Left stick moves, right stick turns.
+    void act(HmdFrame const& frame, double seconds)
+    {
+        constexpr double kTurn_rad_s = 1.5;
+        NavigationInput in = core_.controls.motion(seconds);
+        in.right += frame.hands[0].move.x;
+        in.forward += frame.hands[0].move.y;
+        in.turn_right_rad += frame.hands[1].move.x * kTurn_rad_s * seconds;
+        state_.navigation.step(in, seconds);
+        for (CommandEvent const& c : core_.controls.commands()) core_.obey(c.command);
+    }
+
+    gi::dmat4 world_from_room() const
+    {
+        // The head that stands at the room's middle, at the height of the first frame, is where the navigation is.
+        return state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -start_);
+    }
+
+    void show(HmdSession& session, HmdFrame const& frame)
+    {
+        if (!started_ && frame.tracked.head) {
+            start_ = frame.tracked.head->position;
+            started_ = true;
+        }
+        Viewpoint at;
+        double const to_session = state_.clock.now_s() - steady_s();
+        at.pose_s = frame.pose_s + to_session;
+        at.display_s = frame.display_s + to_session;
+        at.world_from_room = world_from_room();
+        at.tracked = frame.tracked;
+        std::array<gi::Camera, 2> now;
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            now[eye] = frame.views[eye].camera;
+            now[eye].world_from_camera = at.world_from_room * now[eye].world_from_camera;
+            at.views.push_back({eye == 0 ? "left eye" : "right eye", now[eye], frame.views[eye].width,
+                                frame.views[eye].height, eye == 0 ? -1 : 0});
+        }
+        core_.renderer->look(std::move(at));
+        auto const newest = core_.renderer->newest();
+        if (!frame.should_render || !newest || newest->result.views.size() != 2) return session.end_frame();
+        bool const fresh = newest != state_.frame;
+        double const begun = state_.clock.now_s();
+        if (fresh) take(newest);
+        double const uploaded = state_.clock.now_s();
+        HmdPicture picture;
+        picture.views = frame.views;
+        picture.values = TextureValues::srgb;
+        picture.first_row = FirstRow::top;
+        bool moved = false;
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            gi::Camera const& rendered = newest->order.views[eye].camera;
+            moved |= !(rendered == now[eye]);
+            picture.textures[eye] =
+                draw(eye, rendered, now[eye], {frame.views[eye].width, frame.views[eye].height});
+        }
+        session.end_frame(picture);
+        ++shown_;
+        if (moved) ++reprojected_;
+        ++core_.summary.presented;
+        core_.requests.presented(state_.clock.now_s(), {0, 0}, {});
+        FrameTimes times;
+        times.frame = newest->order.frame;
+        times.pose_s = newest->order.pose_s;
+        times.display_s = frame.display_s + to_session;
+        times.swap_s = times.display_s;
+        times.swap_method = SwapMethod::openxr;
+        times.swap_uncertainty_ms = 0.5e3 * frame.period_s;
+        times.render_ms = 1e3 * (newest->done_s - newest->begun_s);
+        times.upload_ms = 1e3 * (uploaded - begun);
+        times.draw_ms = 1e3 * (state_.clock.now_s() - uploaded);
+        times.paths = newest->order.paths;
+        times.width = newest->order.views[0].width;
+        times.height = newest->order.views[0].height;
+        times.late_ms = 1e3 * (times.swap_s - newest->order.display_s);
+        times.reprojected = moved;
+        core_.log(times);
+    }
+
+    void take(std::shared_ptr<LiveFrame const> const& newest)
+    {
+        state_.frame = newest;
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            gi::Picture const& p = newest->result.views[eye].picture;
+            gi::Layer const* const depth = p.find("depth");
+            pictures_[eye].upload({p.width, p.height}, p.find("color")->data,
+                                  depth == nullptr ? std::span<float const>() : depth->data);
+        }
+    }
+
+    unsigned draw(std::size_t eye, gi::Camera const& rendered, gi::Camera const& now, glm::ivec2 size_px)
+    {
+        if (!targets_[eye] || sizes_[eye] != size_px) {
+            targets_[eye].emplace(TextureTarget::Format::bytes, size_px);
+            sizes_[eye] = size_px;
+        }
+        EyeView view;
+        view.picture = state_.settings.reproject && !(rendered == now)
+                           ? reprojections_[eye].draw(pictures_[eye], rendered, now, size_px)
+                           : pictures_[eye].shown();
+        DisplaySettings settings;
+        settings.tone = tone_settings(state_.settings);
+        pass_.draw(targets_[eye]->target(), view, view, settings);
+        return targets_[eye]->shown().texture;
+    }
+
+    static double steady_s()
+    {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    }
+
+    ViewCore core_;
+    ViewState& state_;
+    HmdContext context_;
+    DisplayPass pass_;
+    std::array<PictureTexture, 2> pictures_;
+    std::array<Reprojection, 2> reprojections_;
+    std::array<std::optional<TextureTarget>, 2> targets_;
+    std::array<glm::ivec2, 2> sizes_{};
+    HmdKeeper keeper_; ///< its sessions end before the context
+    gi::dvec3 start_{0};
+    bool started_ = false;
+    int losses_ = 0;
+    std::vector<std::string> phases_;
+    std::uint64_t shown_ = 0, reprojected_ = 0;
+};
+
+} // namespace
+
+ViewSummary run_hmd(ViewOptions const& options, HmdOptions const& headset, gi::StopRequest const& stop,
+                    gi::Report& report)
+{
+    return HmdLoop(options, headset, report).run(stop);
+}
+
+} // namespace viewer

@@ -1,0 +1,51 @@
+#pragma once
+// What a viewer has whatever it shows its pictures on: the session and its rendering thread, settings and
+// commands, remote control, recording and the log of frames.
+
+#include "viewer/recording/frame_log.h"
+#include "viewer/recording/recording.h"
+#include "viewer/remote/remote_server.h"
+#include "viewer/show/requests.h"
+#include "viewer/show/view_program.h"
+
+namespace viewer {
+
+class ViewCore {
+public:
+    /// Loads the scene, opens files and sockets. Throws InputError. All arguments outlive it.
+    ViewCore(ViewOptions const& options, gi::Report& report);
+    ~ViewCore();
+
+    /// @param link  null where this process is alone   @param published  called on the rendering thread
+    void start(FrameLink* link, std::function<void()> published,
+               std::function<std::vector<ViewOrder>(FrameOrder const&)> own_views = {});
+    /// Answers from the rendering thread, taps, sockets. False where it is time to end.
+    bool poll(gi::StopRequest const& stop);
+    /// What a key or button means, but for selecting and dragging.
+    void obey(Command command);
+    void log(FrameTimes const& times);
+    /// Ends the thread, closes files.
+    void finish();
+
+    /// A screenshot by key: the window's bytes, and all layers of its first view.
+    void save_screenshot(glm::ivec2 window_px, std::vector<unsigned char> const& bytes);
+
+    ViewOptions const& options;
+    gi::Report& report;
+    ViewState state;
+    Session session;
+    Controls controls;
+    Requests requests;
+    std::unique_ptr<LiveRenderer> renderer;
+    ViewSummary summary;
+
+private:
+    void start_at(gi::Camera const& camera);
+
+    std::unique_ptr<RemoteServer> remote_;
+    std::unique_ptr<Recorder> recorder_;
+    std::unique_ptr<FrameLog> log_;
+    double last_poll_s_ = 0;
+};
+
+} // namespace viewer
