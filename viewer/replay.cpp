@@ -82,8 +82,8 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     if (!o.video.empty()) video.emplace(o.video, o.size.value_or(largest_view(reader)), o.fps);
     Session session(load(header.settings.value("load", nlohmann::json::object())), o.threads, report);
     std::set<std::string> overridden;
-    for (auto const& [key, value] : header.settings.value("settings", nlohmann::json::object()).items())
-        session.apply({key, value});
+    nlohmann::json const settings = header.settings.value("settings", nlohmann::json::object());
+    for (auto const& [key, value] : settings.items()) session.apply({key, value});
     for (Change const& c : o.settings) {
         session.apply(c);
         overridden.insert(c.key);

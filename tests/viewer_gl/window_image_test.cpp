@@ -180,7 +180,8 @@ TEST_F(WindowOnX, PanelDrawsAndClaimsTheMouseOverIt)
         ImGui::Begin("Settings");
         ImGui::Text("text");
         ImGui::End();
-        panel.end();
+        panel.finish();
+        panel.draw();
         if (frame < 2) window.swap();
     }
     keep_picture("panel", {320, 240}, read_bytes(target_of(window)));

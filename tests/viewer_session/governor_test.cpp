@@ -17,8 +17,8 @@ double settle(Governor& g, double rate_hz, double pixels, bool still)
 {
     double seconds = 0;
     for (int i = 0; i < 60; ++i) {
-        FrameBudget const b = g.next(rate_hz, pixels, still);
-        g.measured(b, pixels, seconds = seconds_of(b, pixels));
+        FrameBudget const b = g.next(pixels, still);
+        g.measured(b, pixels, seconds = seconds_of(b, pixels), rate_hz);
     }
     return seconds;
 }
@@ -41,9 +41,9 @@ TEST(Governor, ASlowFrameIsFollowedByASmallerOne)
 {
     Governor g;
     settle(g, 30, 300e3, false);
-    FrameBudget const before = g.next(30, 300e3, false);
-    g.measured(before, 300e3, 5 * seconds_of(before, 300e3));
-    FrameBudget const after = g.next(30, 300e3, false);
+    FrameBudget const before = g.next(300e3, false);
+    g.measured(before, 300e3, 5 * seconds_of(before, 300e3), 30);
+    FrameBudget const after = g.next(300e3, false);
     EXPECT_LT(after.scale * after.scale * after.paths, 0.5 * before.scale * before.scale * before.paths);
 }
 
@@ -51,19 +51,19 @@ TEST(Governor, AStillPictureHasItsFullSize)
 {
     Governor g;
     settle(g, 60, 4e6, false);
-    EXPECT_LT(g.next(60, 4e6, false).scale, 1);
-    EXPECT_EQ(g.next(60, 4e6, true).scale, 1);
+    EXPECT_LT(g.next(4e6, false).scale, 1);
+    EXPECT_EQ(g.next(4e6, true).scale, 1);
 }
 
 TEST(Governor, WhatIsHeldFixedStays)
 {
     Governor g;
     settle(g, 60, 1e6, false);
-    FrameBudget const b = g.next(60, 1e6, false, {7, 0.6});
+    FrameBudget const b = g.next(1e6, false, {7, 0.6});
     EXPECT_EQ(b.paths, 7);
     EXPECT_EQ(b.scale, 0.6);
-    g.measured({1, 1}, 1e6, std::nan(""));
-    EXPECT_GE(g.next(60, 1e6, false).paths, 1);
+    g.measured({1, 1}, 1e6, std::nan(""), 60);
+    EXPECT_GE(g.next(1e6, false).paths, 1);
 }
 
 } // namespace

@@ -16,6 +16,7 @@ Panel::Panel(Window& window)
     ImGui::StyleColorsDark();
     ImGui_ImplGlfw_InitForOpenGL(window.glfw(), true);
     ImGui_ImplOpenGL3_Init("#version 450 core");
+    ImGui_ImplOpenGL3_NewFrame(); // makes its textures and programs
 }
 
 Panel::~Panel()
@@ -29,14 +30,14 @@ Panel::~Panel()
 void Panel::begin()
 {
     ImGui::SetCurrentContext(context_);
-    ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
 }
 
-void Panel::end()
+void Panel::finish() { ImGui::Render(); }
+
+void Panel::draw()
 {
-    ImGui::Render();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }

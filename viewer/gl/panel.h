@@ -1,6 +1,6 @@
 #pragma once
-// The place of the panel (Dear ImGui) in a window: between begin and end the caller fills it by ImGui's functions,
-// end draws it over what the window shows. Without one, windows are only pictures.
+// The place of the panel (Dear ImGui) in a window: between begin and finish the caller fills it by ImGui's
+// functions, draw draws it over what the window shows. Without one, windows are only pictures.
 
 #include "viewer/gl/window.h"
 
@@ -17,10 +17,12 @@ public:
     Panel(Panel const&) = delete;
     Panel& operator=(Panel const&) = delete;
 
-    /// The window's context must be current.
+    /// By the thread of the window's events; no context is needed. Not while another thread draws.
     void begin();
-    /// Draws into the window's back buffer, over all of it.
-    void end();
+    void finish();
+    /// What was finished last, into the window's back buffer, over all of it. The window's context is current to
+    /// the calling thread, which may be another one.
+    void draw();
     /// Marks the events that the panel takes for itself: keys while a text is typed, the mouse over it. Releases
     /// go to both, so that nothing stays held.
     void claim(std::vector<InputEvent>& events) const;

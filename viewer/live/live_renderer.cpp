@@ -164,7 +164,7 @@ bool LiveRenderer::anything_moves(Viewpoint const& now) const
 FrameOrder LiveRenderer::make_order(Viewpoint const& now, bool still, FrameBudget& budget)
 {
     Settings const& s = session_.settings();
-    budget = governor_.next(s.rate_hz, pixels_of(now.views), still, {s.paths, s.scale});
+    budget = governor_.next(pixels_of(now.views), still, {s.paths, s.scale});
     FrameOrder order;
     order.frame = frame_++;
     order.pose_s = now.pose_s;
@@ -264,7 +264,7 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
                                                       : std::uint32_t(order.paths);
         if (budget.scale > 0)
             governor_.measured({order.paths, budget.scale}, pixels_of(order.views) / (budget.scale * budget.scale),
-                               frame->done_s - frame->begun_s);
+                               frame->done_s - frame->begun_s, session_.settings().rate_hz);
     }
     frame->still_paths = still_paths_;
     frame->settings = session_.settings();

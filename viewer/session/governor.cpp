@@ -11,20 +11,17 @@ constexpr double kMargin = 0.85; // of the time between frames
 constexpr double kScales[] = {1, 0.75, 0.5, 0.375, 0.25};
 constexpr int kMostPaths = 256;
 /// A larger picture has to fit by so much: a change of size costs the light that was reused.
-constexpr double kToGrow = 1.3;
+constexpr double kToGrow = 1.15;
 
 } // namespace
 
-FrameBudget Governor::next(double rate_hz, double pixels, bool still, FrameBudget fixed) const
+FrameBudget Governor::next(double pixels, bool still, FrameBudget fixed) const
 {
-    double const time_s = kMargin / rate_hz;
-    auto const paths_at = [&](double scale) {
-        return time_s / (per_pixel_path_s_ * pixels * scale * scale) - kBesides;
-    };
+    auto const paths_at = [&](double scale) { return work_ / (pixels * scale * scale) - kBesides; };
     FrameBudget b;
     b.scale = kScales[std::size(kScales) - 1];
     for (double const scale : kScales) {
-        double const needed = scale > last_scale_ ? kToGrow * (1 + kBesides) - kBesides : 1;
+        double const needed = last_scale_ > 0 && scale > last_scale_ ? kToGrow * (1 + kBesides) - kBesides : 1;
         if (paths_at(scale) >= needed) {
             b.scale = scale;
             break;
@@ -36,14 +33,14 @@ FrameBudget Governor::next(double rate_hz, double pixels, bool still, FrameBudge
     return b;
 }
 
-void Governor::measured(FrameBudget const& budget, double pixels, double seconds)
+void Governor::measured(FrameBudget const& budget, double pixels, double seconds, double rate_hz)
 {
-    double const now = seconds / (pixels * budget.scale * budget.scale * (budget.paths + kBesides));
-    if (!(now > 0) || !std::isfinite(now)) return;
-    constexpr double kSlowly = 0.1;
-    per_pixel_path_s_ =
-        !known_ || now > per_pixel_path_s_ ? now : per_pixel_path_s_ + kSlowly * (now - per_pixel_path_s_);
-    known_ = true;
+    constexpr double kLeast = 0.05, kGrowth = 1.25;
+    double const done = pixels * budget.scale * budget.scale * (budget.paths + kBesides);
+    double const fits = kMargin / rate_hz / seconds;
+    if (!(done > 0) || !(fits > 0)) return; // nothing was rendered, or in no time
+    // Paths are whole numbers: what is left over is saved up for one more.
+    work_ = fits < 1 ? done * std::max(fits, kLeast) : std::min(kGrowth * std::max(work_, done), done * fits);
     last_scale_ = budget.scale;
 }
 

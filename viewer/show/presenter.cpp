@@ -1,6 +1,5 @@
 #include "viewer/show/presenter.h"
 
-#include "viewer/gl/window.h"
 #include "viewer/stereo/compose.h"
 
 #include <epoxy/gl.h>
@@ -28,7 +27,7 @@ void clear(DrawTarget const& target)
 
 } // namespace
 
-Presenter::Presenter(Window& window, std::vector<WallSettings> const& walls) : window_(window)
+Presenter::Presenter(std::vector<WallSettings> const& walls)
 {
     for (WallSettings const& w : walls) walls_.emplace_back(w);
 }
@@ -94,9 +93,9 @@ void Presenter::draw_on_wall(Pane const& pane, DrawTarget const& target, EyeView
     pass_.draw(target, l, r, joined);
 }
 
-void Presenter::draw(std::vector<Pane> const& panes, PresentSettings const& s, std::vector<gi::Camera> const& now)
+void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& panes,
+                     PresentSettings const& s, std::vector<gi::Camera> const& now)
 {
-    DrawTarget const whole = target_of(window_);
     clear(whole);
     for (Pane const& pane : panes) {
         EyeView left = eye(pane.left, now), right = pane.right >= 0 ? eye(pane.right, now) : left;
@@ -109,7 +108,7 @@ void Presenter::draw(std::vector<Pane> const& panes, PresentSettings const& s, s
         settings.stereo = pane.stereo == StereoMode::two_windows ? StereoMode::off : mode_on(part, pane.stereo);
         settings.comparison = s.comparison;
         settings.split = s.split;
-        settings.on_screen_px = window_.position_px() + pane.corner_px;
+        settings.on_screen_px = on_screen_px + pane.corner_px;
         if (pane.wall >= 0)
             draw_on_wall(pane, part, left, right, settings);
         else

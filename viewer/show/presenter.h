@@ -31,12 +31,15 @@ class Presenter {
 public:
     /// The window's context is current, here and in all calls.
     /// @param walls  settings of the walls that panes name; their passes are made here
-    Presenter(Window& window, std::vector<WallSettings> const& walls);
+    explicit Presenter(std::vector<WallSettings> const& walls);
 
     /// Uploads the views that these panes show.
     void take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> const& panes);
-    /// Into the back buffer. @param now  a camera per view, for reprojection; empty = as rendered
-    void draw(std::vector<Pane> const& panes, PresentSettings const& settings, std::vector<gi::Camera> const& now);
+    /// @param on_screen_px  of the target's top left corner   @param now  a camera per view, for reprojection;
+    /// empty =
+    ///                      as rendered
+    void draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& panes,
+              PresentSettings const& settings, std::vector<gi::Camera> const& now);
 
 private:
     /// Of one view.
@@ -51,7 +54,6 @@ private:
     ShownPicture bent(Pane const& pane, EyeView const& eye, DisplaySettings const& settings, std::size_t side,
                       glm::ivec2 size_px);
 
-    Window& window_;
     std::deque<Shown> shown_;
     std::shared_ptr<LiveFrame const> frame_;
     DisplayPass pass_;

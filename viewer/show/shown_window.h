@@ -10,11 +10,11 @@ struct ShownWindow {
     Window window;
     Presenter presenter;
     SwapTimer timer;
-    std::vector<Pane> panes, taken_panes; ///< now, and of the frame that was uploaded
-    glm::ivec2 shown_px{};
+    std::vector<Pane> panes, shown_panes; ///< now, and of what is being shown, as are the following
+    glm::ivec2 shown_px{}, on_screen_px{};
 
     ShownWindow(WindowSettings const& settings, std::vector<WallSettings> const& walls, gi::Report& report)
-        : window(settings, report), presenter(window, walls), timer(window, report)
+        : window(settings, report), presenter(walls), timer(window, report)
     {
     }
 };

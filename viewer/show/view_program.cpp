@@ -4,6 +4,7 @@
 #include "viewer/gl/panel.h"
 #include "viewer/show/layout.h"
 #include "viewer/show/panel_contents.h"
+#include "viewer/show/present_thread.h"
 #include "viewer/show/shown_window.h"
 #include "viewer/show/user_tracking.h"
 #include "viewer/show/view_core.h"
@@ -56,6 +57,7 @@ public:
             last = now;
             show();
         }
+        presenting_.reset();
         core_.finish();
         core_.summary.gl = windows_.empty() ? "" : windows_[0]->window.gl().description();
         if (tracking_) core_.summary.trackers = tracking_->stats(steady_s());
@@ -76,6 +78,8 @@ private:
         if (state_.settings.stereo == name_of(StereoMode::quad_buffer)) settings.quad_buffer = QuadBuffer::wanted;
         for (int i = 0; i < (two ? 2 : 1); ++i)
             windows_.push_back(std::make_unique<ShownWindow>(settings, std::vector<WallSettings>{}, core_.report));
+        windows_[0]->window.gl().make_current();
+        panel_ = std::make_unique<Panel>(windows_[0]->window);
     }
 
     void open_display(Display const& display)
@@ -104,7 +108,7 @@ private:
     {
         for (std::size_t w = 0; w < windows_.size(); ++w) {
             std::vector<InputEvent> events = windows_[w]->window.take_events();
-            if (panel_ && w == 0) panel_->claim(events);
+            if (panel_ && w == 0 && state_.settings.panel) panel_->claim(events);
             if (!events.empty()) dirty_ = true;
             for (InputEvent const& e : events) core_.controls.take(e, height_px());
         }
@@ -198,7 +202,7 @@ private:
     void show()
     {
         auto const newest = core_.renderer->newest();
-        if (!newest) return;
+        if (!newest || presenting_->busy()) return;
         double const since_s = state_.clock.now_s() - last_swap_s_;
         bool const fresh = newest != state_.frame;
         bool const moved =
@@ -209,15 +213,35 @@ private:
         if (fresh || moved || flickers || dirty_ || resized || state_.wants_screenshot) present(newest, fresh);
     }
 
+    /// What the presenting thread is given, and gives back.
+    struct Presentation {
+        std::shared_ptr<LiveFrame const> frame;
+        bool fresh = false, panel = false, wants_bytes = false, reprojected = false;
+        PresentSettings settings;
+        std::vector<gi::Camera> cameras;
+        std::vector<glm::ivec2> sizes;
+        double begun_s = 0;
+        FrameTimes times;
+        SwapTime swap;
+        double shown_s = 0;
+        std::vector<unsigned char> bytes;
+    };
+
     void present(std::shared_ptr<LiveFrame const> const& newest, bool fresh)
     {
         dirty_ = false;
-        double const begun = state_.clock.now_s();
+        auto const p = std::make_shared<Presentation>();
+        p->frame = newest;
+        p->fresh = fresh;
+        p->begun_s = state_.clock.now_s();
+        p->settings = present_settings();
+        p->wants_bytes = std::exchange(state_.wants_screenshot, false);
         std::vector<gi::Camera> rendered;
         for (ViewOrder const& v : newest->order.views) rendered.push_back(v.camera);
         bool const reprojects =
             state_.settings.reproject && link_ == nullptr && cameras_.size() == rendered.size();
-        shown_cameras_ = reprojects ? cameras_ : rendered;
+        shown_cameras_ = p->cameras = reprojects ? cameras_ : rendered;
+        p->reprojected = !(shown_cameras_ == rendered);
         if (fresh) {
             state_.frame = newest;
             if (link_ != nullptr && core_.options.display)
@@ -225,34 +249,58 @@ private:
             meter_.see(newest);
         }
         state_.live_error = meter_.latest();
-        FrameTimes times;
-        std::vector<unsigned char> bytes;
+        for (auto const& w : windows_) {
+            w->shown_px = w->window.framebuffer_px();
+            w->shown_panes = w->panes;
+            w->on_screen_px = w->window.position_px();
+        }
+        p->panel = panel_ && state_.settings.panel;
+        if (p->panel) {
+            panel_->begin();
+            fill_panel(state_, frames_per_s_);
+            panel_->finish();
+        }
+        presenting_->start([this, p] { draw(*p); },
+                           [this, p] {
+                               state_.inbox.put([this, p] { presented(*p); });
+                               glfwPostEmptyEvent();
+                           });
+    }
+
+    /// On the presenting thread.
+    void draw(Presentation& p)
+    {
         for (std::size_t w = 0; w < windows_.size(); ++w) {
             ShownWindow& shown = *windows_[w];
             shown.window.gl().make_current();
             double const from = state_.clock.now_s();
-            if (fresh) shown.presenter.take(newest, shown.panes);
+            if (p.fresh) shown.presenter.take(p.frame, shown.shown_panes);
             double const uploaded = state_.clock.now_s();
-            shown.presenter.draw(shown.panes, present_settings(), shown_cameras_);
-            shown.shown_px = shown.window.framebuffer_px();
-            if (w == 0 && state_.wants_screenshot) bytes = read_bytes(target_of(shown.window));
-            if (w == 0) draw_panel();
-            times.upload_ms += 1e3 * (uploaded - from);
-            times.draw_ms += 1e3 * (state_.clock.now_s() - uploaded);
+            shown.presenter.draw(target_of(shown.window), shown.on_screen_px, shown.shown_panes, p.settings,
+                                 p.cameras);
+            if (w == 0 && p.wants_bytes) p.bytes = read_bytes(target_of(shown.window));
+            if (w == 0 && p.panel) panel_->draw();
+            p.times.upload_ms += 1e3 * (uploaded - from);
+            p.times.draw_ms += 1e3 * (state_.clock.now_s() - uploaded);
         }
-        SwapTime swap;
+        p.swap.time = SwapTime::Clock::now();
         for (auto const& w : windows_) {
             w->window.gl().make_current();
-            swap = w->timer.swap();
+            p.swap = w->timer.swap();
         }
-        double const shown_s = windows_.empty() ? state_.clock.now_s() : state_.clock.at_s(swap.time);
-        bool const wanted = std::exchange(state_.wants_screenshot, false);
-        if (wanted && std::exchange(state_.own_screenshot, false)) core_.save_screenshot(first_px(), bytes);
-        core_.requests.presented(shown_s, first_px(), bytes);
+        for (auto const& w : windows_) w->window.gl().release();
+        p.shown_s = state_.clock.at_s(p.swap.time);
+    }
+
+    void presented(Presentation const& p)
+    {
+        glm::ivec2 const px = windows_.empty() ? glm::ivec2(0) : windows_[0]->shown_px;
+        if (p.wants_bytes && std::exchange(state_.own_screenshot, false)) core_.save_screenshot(px, p.bytes);
+        core_.requests.presented(p.shown_s, px, p.bytes);
         if (core_.requests.wants_bytes()) state_.wants_screenshot = true;
         ++core_.summary.presented;
-        if (fresh) log(*newest, times, swap, begun, shown_s, !(shown_cameras_ == rendered));
-        last_swap_s_ = shown_s;
+        if (p.fresh) log(*p.frame, p.times, p.swap, p.begun_s, p.shown_s, p.reprojected);
+        last_swap_s_ = p.shown_s;
     }
 
     void log(LiveFrame const& f, FrameTimes times, SwapTime const& swap, double begun, double shown_s,
@@ -302,26 +350,14 @@ private:
         return p;
     }
 
-    void draw_panel()
-    {
-        bool const wanted = state_.settings.panel && !core_.options.display;
-        if (!wanted) {
-            panel_.reset();
-            return;
-        }
-        if (!panel_) panel_ = std::make_unique<Panel>(windows_[0]->window);
-        panel_->begin();
-        fill_panel(state_, frames_per_s_);
-        panel_->end();
-    }
-
     ViewCore core_;
     ViewState& state_;
     FrameLink* link_;
     std::optional<UserTracking> tracking_;
     std::vector<std::unique_ptr<ShownWindow>> windows_;
-    std::vector<int> window_of_; ///< per window of the display: index into windows_; -1 = another rank's
-    std::unique_ptr<Panel> panel_;
+    std::vector<int> window_of_;   ///< per window of the display: index into windows_; -1 = another rank's
+    std::unique_ptr<Panel> panel_; ///< not on the walls of a display
+    std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: now, and as shown
     bool dirty_ = true;
