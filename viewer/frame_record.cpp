@@ -1,5 +1,6 @@
 #include "viewer/frame_record.h"
 
+#include "viewer/rank_work.h"
 #include "viewer/render_record.h"
 
 #include <algorithm>
@@ -9,6 +10,31 @@
 namespace viewer {
 
 using Json = nlohmann::ordered_json;
+
+nlohmann::json to_message(FrameRecord const& r)
+{
+    return {{"frame", r.frame},          {"reused", r.reused},
+            {"seconds", r.seconds},      {"end", int(r.result.end)},
+            {"paths", r.result.paths},   {"trace_s", r.result.seconds},
+            {"relmse", r.result.relmse}, {"options", r.result.options},
+            {"rays", r.result.rays},     {"losses", losses_json(r.losses)}};
+}
+
+FrameRecord record_of(nlohmann::json const& m)
+{
+    FrameRecord r;
+    r.frame = m.at("frame");
+    r.reused = m.at("reused");
+    r.seconds = m.at("seconds");
+    r.result.end = gi::RenderEnd(m.at("end").get<int>());
+    r.result.paths = m.at("paths");
+    r.result.seconds = m.at("trace_s");
+    r.result.relmse = m.at("relmse");
+    r.result.options = m.at("options");
+    r.result.rays = m.at("rays");
+    r.losses = losses_of(m.at("losses"));
+    return r;
+}
 
 double percentile(std::vector<double> values, double fraction)
 {

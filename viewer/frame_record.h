@@ -19,6 +19,10 @@ struct FrameRecord {
     gi::TemporalCounts reuse;         ///< likewise
 };
 
+/// For a message to another rank, and from one; without what --reuse knows.
+nlohmann::json to_message(FrameRecord const& record);
+FrameRecord record_of(nlohmann::json const& message);
+
 /// Nearest-rank percentile: the least value that `fraction` of all values do not exceed. Not empty.
 double percentile(std::vector<double> values, double fraction);
 

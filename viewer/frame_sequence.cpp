@@ -35,11 +35,11 @@ void add_losses(gi::Report& sum, std::map<std::string, gi::Report::Loss> const& 
 class Sequence {
 public:
     Sequence(RenderOptions const& o, gi::RenderSettings const& settings,
-             gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice)
-        : o_(o), settings_(settings), denoise_(denoise_settings), f_(make_frame_settings(o, settings))
+             gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work)
+        : o_(o), settings_(settings), denoise_(denoise_settings), f_(make_frame_settings(o, settings)), work_(work)
     {
-        refuse_to_replace();
-        if (!f_.video.empty())
+        if (work.leads()) refuse_to_replace();
+        if (!f_.video.empty() && work.leads())
             video_ = std::make_unique<VideoWriter>(f_.video, settings.width, settings.height, f_.range.fps());
         scene_ = load_lit_scene(o_, report_);
         gi::Report unused; // the frame itself reports what its world lost
@@ -50,26 +50,38 @@ public:
         if (!camera_->note().empty()) say(camera_->note());
         blurs_ = o.shutter_s > 0 && depends_on_time(*scene_, o.time_s.has_value(), f_.motion);
         if (o.shutter_s > 0 && !blurs_) say(kNothingMoves);
+        loaded_ = report_.losses();
     }
 
     int run()
     {
         std::vector<char> const there =
             o_.resume ? find_frames() : std::vector<char>(std::size_t(f_.range.count()));
-        if (!f_.state.empty()) gi::write_text(f_.state, stats_command() + "\n");
-        missing_ = int(std::count(there.begin(), there.end(), 0));
+        if (!f_.state.empty() && work_.leads()) gi::write_text(f_.state, stats_command() + "\n");
+        for (int k = f_.range.first; k < f_.range.end; ++k)
+            missing_ += is_mine(k) && there[std::size_t(k - f_.range.first)] == 0;
         say_what_is_rendered_again(there);
-        bar_.emplace("render " + fs::path(o_.scene).filename().string(), !o_.quiet);
+        bar_.emplace("render " + fs::path(o_.scene).filename().string(), !o_.quiet && work_.leads());
         for (int k = f_.range.first; k < f_.range.end && !stop_.requested(); ++k) {
+            if (!is_mine(k)) continue;
             bool const kept = there[std::size_t(k - f_.range.first)] != 0;
             if (kept && is_history(there, k) && !remember(k)) break;
             if (kept ? !reuse(k) : !render(k)) break;
         }
         bar_.reset();
-        return finish();
+        if (!work_.alone()) gather();
+        if (!work_.leads()) {
+            work_.finish();
+            return 0;
+        }
+        int const code = finish();
+        work_.finish();
+        return code;
     }
 
 private:
+    bool is_mine(int frame) const { return (frame - f_.range.first) % work_.size() == work_.rank(); }
+
     /// The world of a frame.
     gi::World world_of(int frame, gi::Report& report) const
     {
@@ -145,11 +157,11 @@ private:
     std::vector<char> find_frames()
     {
         std::vector<char> there(std::size_t(f_.range.count()), 0);
-        gi::ProgressBar bar("look for frames", !o_.quiet);
+        gi::ProgressBar bar("look for frames", !o_.quiet && work_.leads());
         for (int k = f_.range.first; k < f_.range.end && !stop_.requested(); ++k) {
             std::string const file = f_.exr->of(k);
             bar.update(f_.fraction(k), file);
-            if (!fs::exists(file)) continue;
+            if (!is_mine(k) || !fs::exists(file)) continue;
             gi::Picture picture;
             try {
                 picture = gi::read_exr(file);
@@ -217,7 +229,7 @@ private:
         record.frame = frame;
         record.reused = true;
         gi::Picture picture;
-        if (f_.png || video_) picture = gi::read_exr(f_.exr->of(frame));
+        if (f_.png || (video_ && work_.alone())) picture = gi::read_exr(f_.exr->of(frame));
         show_picture(frame, picture);
         records_.push_back(record);
         return true;
@@ -279,16 +291,58 @@ private:
     /// To its PNG and to the video.
     void show_picture(int frame, gi::Picture const& picture)
     {
-        if (!f_.png && !video_) return;
-        std::vector<unsigned char> bytes = display_bytes(o_, picture);
+        bool const filmed = video_ && work_.alone(); // else when all are there, in their order
+        if (!f_.png && !filmed) return;
+        std::vector<unsigned char> const bytes = display_bytes(o_, picture);
         if (f_.png) gi::write_png(f_.png->of(frame), picture.width, picture.height, bytes);
-        if (!video_) return;
+        if (filmed) film(picture, bytes);
+    }
+
+    void film(gi::Picture const& picture, std::vector<unsigned char> bytes)
+    {
         if (std::size_t const pixels = picture.pixels(); bytes.size() == 4 * pixels) {
             for (std::size_t p = 0; p < pixels; ++p) // a video has no alpha
                 for (std::size_t c = 0; c < 3; ++c) bytes[3 * p + c] = bytes[4 * p + c];
             bytes.resize(3 * pixels);
         }
         video_->add(bytes);
+    }
+
+    /// The leader gets the records of all frames, and makes the video of their files.
+    void gather()
+    {
+        work_.talk([&](Cluster& cluster) {
+            if (!work_.leads()) {
+                nlohmann::json all = {{"loaded", losses_json(loaded_)}, {"times", report_.times()}};
+                for (FrameRecord const& r : records_) all["records"].push_back(to_message(r));
+                cluster.give(nlohmann::json::to_cbor(all));
+                return;
+            }
+            for (int r = 1; r < work_.size(); ++r)
+                if (auto const bytes = cluster.take(r))
+                    add_records(nlohmann::json::from_cbor(*bytes), cluster.name(r));
+        });
+        if (!work_.leads()) return;
+        std::sort(records_.begin(), records_.end(),
+                  [](FrameRecord const& a, FrameRecord const& b) { return a.frame < b.frame; });
+        rendered_ = int(std::count_if(records_.begin(), records_.end(), [](auto const& r) { return !r.reused; }));
+        missing_ = f_.range.count() - int(records_.size()) + rendered_;
+        if (!video_) return;
+        for (FrameRecord const& r : records_) {
+            gi::Picture const picture = gi::read_exr(f_.exr->of(r.frame));
+            film(picture, display_bytes(o_, picture));
+        }
+    }
+
+    void add_records(nlohmann::json const& all, std::string const& name)
+    {
+        for (auto const& time : all.at("times")) report_.add_time(time.at(0), time.at(1));
+        add_other_losses(report_, loaded_, losses_of(all.at("loaded")), name);
+        if (!all.contains("records")) return;
+        for (nlohmann::json const& message : all.at("records")) {
+            records_.push_back(record_of(message));
+            add_losses(report_, records_.back().losses, records_.back().frame);
+        }
     }
 
     int finish()
@@ -303,11 +357,12 @@ private:
         print();
         print_losses(report_);
         if (complete) return 0;
-        std::string const done = fmt::format("interrupted: {} of {} frames are complete",
-                                             f_.range.count() - missing_ + rendered_, f_.range.count());
+        std::string const done =
+            fmt::format("{}: {} of {} frames are complete", stop_.requested() ? "interrupted" : "ranks were lost",
+                        f_.range.count() - missing_ + rendered_, f_.range.count());
         say(done + (f_.exr ? "; the same command with --resume goes on" : "; with --out they could be resumed"));
         if (has_video) say(fmt::format("'{}' can be played, as far as it goes", f_.video));
-        return kInterrupted;
+        return stop_.requested() ? kInterrupted : 1;
     }
 
     void print() const
@@ -353,9 +408,11 @@ private:
     gi::RenderSettings const& settings_;
     gi::DenoiseSettings const& denoise_;
     FrameSettings f_;
-    gi::StopRequest stop_;
+    RankWork& work_;
+    gi::StopRequest& stop_ = work_.stop();
     InterruptGuard const guard_{stop_}; ///< from before the video begins, so that its hidden file is cleaned up
     gi::Report report_;                 ///< of all frames together
+    std::map<std::string, gi::Report::Loss> loaded_; ///< before the first
     std::unique_ptr<VideoWriter> video_;
     std::shared_ptr<gi::Scene const> scene_;
     std::unique_ptr<FrameCamera> camera_;
@@ -371,9 +428,9 @@ private:
 } // namespace
 
 int render_frames(RenderOptions const& o, gi::RenderSettings const& settings,
-                  gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice)
+                  gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work)
 {
-    return Sequence(o, settings, denoise_settings, choice).run();
+    return Sequence(o, settings, denoise_settings, choice, work).run();
 }
 
 } // namespace viewer

@@ -3,15 +3,13 @@
 #include "gi/base/error.h"
 #include "gi/scene/load.h"
 #include "viewer/arguments.h"
+#include "viewer/render_picture.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 
 namespace viewer {
 namespace {
-
-void say(std::string const& text) { std::fputs(("note: " + text + "\n").c_str(), stderr); }
 
 /// By its sky, by a lamp at some node or by a material of a mesh at some node.
 bool is_lit(gi::Scene const& scene)

@@ -316,6 +316,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_flag("--json", o.json, "print the statistics instead of text");
     c.add_flag("--quiet", o.quiet, "no progress bar");
     declare_frames(c, o);
+    declare_rank_options(c, o.ranks);
     declare_slhb(c, o);
     c.footer(R"(Examples:
   lightwell render atrium --size 160x100 --paths 16 --png atrium.png --out atrium.exr

@@ -3,6 +3,7 @@
 
 #include "gi/image/denoise.h"
 #include "gi/image/render_settings.h"
+#include "viewer/rank_options.h"
 
 #include <optional>
 #include <string>
@@ -32,6 +33,7 @@ struct RenderOptions {
     bool seed_per_frame = false;
     int reuse = 1;        ///< frames
     double shutter_s = 0; ///< open for so long from the moment on
+    RankOptions ranks;
 };
 
 /// Throws InputError naming those that there are.

@@ -8,7 +8,18 @@
 
 namespace viewer {
 
-void say(std::string const& text) { std::fputs(("note: " + text + "\n").c_str(), stderr); }
+namespace {
+
+bool g_silent = false; // of this process, for good
+
+}
+
+void say(std::string const& text)
+{
+    if (!g_silent) std::fputs(("note: " + text + "\n").c_str(), stderr);
+}
+
+void be_silent() { g_silent = true; }
 
 std::string denoise(gi::Picture& picture, gi::DenoiseSettings const& settings, gi::Report& report)
 {

@@ -10,6 +10,8 @@ namespace viewer {
 
 /// "note: TEXT" on stderr.
 void say(std::string const& text);
+/// Of the ranks of a cluster only the leading one says anything; called once, before.
+void be_silent();
 
 /// @return what is to be said about it; empty = nothing
 std::string denoise(gi::Picture& picture, gi::DenoiseSettings const& settings, gi::Report& report);

@@ -53,6 +53,18 @@ struct SlhbSettings {
     ExactParts exact;          ///< on the host; for bench accuracy
 };
 
+struct Accumulator; // gi/transport/accumulator.h
+
+/// What one of several processes traces of the paths of one picture. Every path has its own random numbers, so
+/// that shares that make up 0 to RenderSettings::paths make up its picture, but for the order in which sums are
+/// rounded.
+struct PathShare {
+    std::uint32_t first = 0, count = ~std::uint32_t(0); ///< of every pixel; no more than RenderSettings::paths
+    /// Where it is not empty: called with the sums of this share before the picture is made of them, to add
+    /// others.
+    std::function<void(Accumulator&)> merge;
+};
+
 struct RenderSettings {
     int width = 512, height = 512; ///< pixels, >= 1
     std::uint32_t paths = 64;      ///< per pixel: the most that are traced
@@ -67,6 +79,7 @@ struct RenderSettings {
                                            ///< picture deletes it afterwards unless RenderResult::resumable
     SlhbSettings slhb;
     bool resume = false; ///< start from the checkpoint if it is there and fits
+    PathShare share;     ///< of one picture; frames that follow each other and checkpoints know all paths only
 };
 
 struct RenderStatus {

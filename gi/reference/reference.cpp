@@ -149,7 +149,9 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
     structures.build(world, settings.threads, report, world.triangles.size());
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, "reference") : 0;
     PathTracer<ExactVisibility> const tracer = structures.tracer(world, camera, settings);
-    auto const pass = [&](Accumulator& sums, std::uint32_t paths) { trace_pass(tracer, sums, 0, paths); };
+    auto const pass = [&](Accumulator& sums, std::uint32_t paths) {
+        trace_pass(tracer, sums, loop.first_path(), paths);
+    };
     return trace_all(loop, print, pass, world, report);
 }
 

@@ -183,7 +183,7 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
     auto const sequences =
         std::uint32_t(std::clamp(settings.bounces + (sky ? 1 : 0), 1, int(AxisSet::kSequences)));
     auto const pass = [&](Accumulator& sums) {
-        std::uint32_t const index = sums.paths;
+        std::uint32_t const index = loop.first_path() + sums.paths;
         {
             StageTimer const timer(report, "hit buffers of a pass");
             if (slhb.schedule != Schedule::stored)

@@ -29,7 +29,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     SlhbRenderer renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb") : 0;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
-        for (std::uint32_t i = 0; i < paths; ++i) renderer.pass(sums.paths, {&sums, 1});
+        for (std::uint32_t i = 0; i < paths; ++i) renderer.pass(loop.first_path() + sums.paths, {&sums, 1});
     });
     renderer.report_work();
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());

@@ -3,6 +3,7 @@
 #include "gi/base/error.h"
 #include "gi/base/file.h"
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -10,6 +11,20 @@
 #include <tbb/parallel_reduce.h>
 
 namespace gi {
+
+void Accumulator::add(Accumulator const& other)
+{
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, other.paths > 0 ? pixels.size() : 0, 4096),
+                      [&](auto const& range) {
+                          for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                              if (paths == 0) pixels[i] = PixelSums{};
+                              pixels[i].add(other.pixels[i]);
+                          }
+                      });
+    paths += other.paths;
+    counts += other.counts;
+    seconds = std::max(seconds, other.seconds); // side by side
+}
 
 dvec3 Accumulator::variance_of_mean(PixelSums const& p) const
 {

@@ -32,6 +32,16 @@ struct PixelSums {
         depth += double(s.depth);
         hits += 1;
     }
+    void add(PixelSums const& s)
+    {
+        for (std::size_t i = 0; i < 3; ++i) radiance[i] += s.radiance[i];
+        color_squared += s.color_squared;
+        albedo += s.albedo;
+        normal += s.normal;
+        position += s.position;
+        depth += s.depth;
+        hits += s.hits;
+    }
 };
 
 /// Leaves elements as they are in memory: large arrays whose every element is written anyway.
@@ -71,6 +81,8 @@ struct Accumulator {
         if (before == 0) pixels[pixel] = PixelSums{};
         pixels[pixel].add(s);
     }
+    /// All paths of another one of the same size. Sums of doubles: who is added to whom decides the last bits.
+    void add(Accumulator const& other);
     dvec3 mean(PixelSums const& p) const
     {
         return (p.radiance[0] + p.radiance[1] + p.radiance[2]) / double(paths);

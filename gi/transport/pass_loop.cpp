@@ -26,7 +26,7 @@ std::uint32_t PassLoop::next_pass(double seconds_per_path) const
     if (settings_.budget_s > 0 && seconds_per_path > 0)
         paths = std::min(paths, (settings_.budget_s - seconds_since(start_)) / seconds_per_path);
     if (settings_.until_relmse > 0) paths = std::min(paths, std::max(16.0, 0.25 * double(sums_.paths)));
-    return std::uint32_t(std::clamp(paths, 1.0, double(settings_.paths - sums_.paths)));
+    return std::uint32_t(std::clamp(paths, 1.0, double(limit() - sums_.paths)));
 }
 
 RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
@@ -43,7 +43,7 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
     double relmse = resumed > 0 ? sums_.relative_mse() : 0;
     double per_path = 0;
     while (true) {
-        if (sums_.paths >= settings_.paths) break;
+        if (sums_.paths >= limit()) break;
         if (sums_.paths > 0 && stop_.requested()) {
             result.end = RenderEnd::interrupted;
             break;
@@ -63,7 +63,7 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
         per_path = seconds_since(first_pass) / double(sums_.paths - resumed);
         if (settings_.until_relmse > 0 || progress_) relmse = sums_.relative_mse();
         if (progress_) {
-            double fraction = double(sums_.paths) / double(settings_.paths);
+            double fraction = double(sums_.paths) / double(limit());
             if (settings_.budget_s > 0) fraction = std::max(fraction, now / settings_.budget_s);
             if (settings_.until_relmse > 0 && relmse > 0)
                 fraction = std::max(fraction, settings_.until_relmse / relmse);
@@ -77,6 +77,7 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
     result.resumable = keeps_state() && (result.end == RenderEnd::interrupted ||
                                          (settings_.resume && result.end != RenderEnd::paths));
     if (result.resumable) save_checkpoint(settings_.checkpoint, sums_, print);
+    if (settings_.share.merge) settings_.share.merge(sums_);
     report_.add_time("trace", seconds_since(first_pass));
     report_.lose("paths cut at 1024 surfaces", sums_.counts.cut_paths);
     report_.lose("path terms that were not finite, dropped", sums_.counts.invalid_paths);

@@ -5,6 +5,7 @@
 #include "gi/image/render_settings.h"
 #include "gi/transport/accumulator.h"
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 
@@ -17,7 +18,8 @@ public:
     PassLoop(RenderSettings const& settings, StopRequest const& stop, RenderProgress const& progress,
              Report& report, double spent_s = 0);
 
-    /// Traces that many more paths for every pixel, into the sums.
+    /// Traces that many more paths for every pixel, into the sums. The next one has the number first_path() plus
+    /// those that the sums have.
     using Pass = std::function<void(Accumulator&, std::uint32_t paths)>;
 
     /// Everything of the result but picture and rays. Runs the passes in an arena of settings.threads.
@@ -27,6 +29,7 @@ public:
 
     bool keeps_state() const { return !settings_.checkpoint.empty(); }
     Accumulator const& sums() const { return sums_; }
+    std::uint32_t first_path() const { return settings_.share.first; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -36,6 +39,7 @@ private:
         return std::chrono::duration<double>(Clock::now() - start).count();
     }
     std::uint32_t next_pass(double seconds_per_path) const;
+    std::uint32_t limit() const { return std::min(settings_.paths, settings_.share.count); }
 
     RenderSettings const& settings_;
     StopRequest const& stop_;

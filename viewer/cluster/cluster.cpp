@@ -54,6 +54,11 @@ double Cluster::now_s()
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+void Cluster::check()
+{
+    if (!alone()) state_->pump();
+}
+
 void Cluster::send(FrameOrder const& order)
 {
     if (alone()) return;

@@ -71,6 +71,9 @@ public:
     /// Ranks lost so far, each as a sentence; those that were not fetched yet. With OnRankLoss::go_on.
     std::vector<std::string> take_news();
 
+    /// Takes note of what others say, and throws RankLoss where this rank has to stop. No call needs it.
+    void check();
+
     // Frames.
     /// Leader: to all others.
     void send(FrameOrder const& order);

@@ -159,6 +159,7 @@ void Cluster::State::take_messages()
 void Cluster::State::pump()
 {
     if (!broken.empty()) throw RankLoss(broken);
+    if (over) return;
     take_messages();
     watch_processes();
     show_life();
