@@ -199,7 +199,7 @@ int run(RenderOptions o)
         say("interrupted: " + what_stays);
         return kInterrupted;
     } catch (RankLoss const& e) {
-        std::fputs(fmt::format("lightwell: {} stops: {} ({})\n", cluster.name(), e.what(), what_stays).c_str(),
+        std::fputs(fmt::format("lightwell: {} stops: {}; {}\n", cluster.name(), e.what(), what_stays).c_str(),
                    stderr);
         return 1;
     } catch (std::exception const& e) {

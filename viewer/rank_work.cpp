@@ -138,7 +138,14 @@ void RankWork::gather(gi::RenderResult& result, gi::Report& report,
 
 void RankWork::finish()
 {
-    talk([](Cluster& cluster) { cluster.finish(); });
+    try {
+        talk([](Cluster& cluster) { cluster.finish(); });
+    } catch (RankLoss const& e) { // whose part the leader has got
+        if (!leads()) throw;
+        say(std::string(e.what()) + "; all its work was done");
+    } catch (RankInterrupted const&) {
+        if (!leads()) throw;
+    }
     alive_.reset();
 }
 

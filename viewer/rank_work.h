@@ -36,7 +36,7 @@ public:
     /// @param loaded  losses of the report before the paths; every rank has them
     void gather(gi::RenderResult& result, gi::Report& report,
                 std::map<std::string, gi::Report::Loss> const& loaded);
-    /// All that the leader had to do is done.
+    /// All that the leader had to do is done: no loss counts any more for it.
     void finish();
 
 private:
