@@ -17,8 +17,8 @@ public:
         : folder_(folder)
     {
         std::vector<std::string> arguments =
-            words("mpirun --allow-run-as-root --oversubscribe --bind-to none -n " + std::to_string(ranks) + " " +
-                  options + " " + command);
+            words("mpirun --allow-run-as-root --oversubscribe --bind-to none --mca orte_tmpdir_base " +
+                  own_.path().string() + " -n " + std::to_string(ranks) + " " + options + " " + command);
         std::vector<char*> argv;
         for (std::string& a : arguments) argv.push_back(a.data());
         argv.push_back(nullptr);
@@ -60,6 +60,7 @@ public:
 
 private:
     std::filesystem::path folder_;
+    TemporaryFolder own_; ///< what mpirun keeps meanwhile; else all of them share one in /tmp, and tidy it up
     pid_t pid_ = 0;
 };
 

@@ -100,7 +100,8 @@ constexpr char const* kRecovery = "--enable-recovery";
 
 TEST_F(Ranks, GoInLockStep)
 {
-    EXPECT_EQ(start(200, "10 stop")->wait(), 0);
+    auto const mpirun = start(200, "10 stop");
+    EXPECT_EQ(mpirun->wait(), 0) << mpirun->text();
     std::vector<std::string> const frames = log(0).frames;
     ASSERT_EQ(frames.size(), 200u);
     for (int r = 0; r < kRanks; ++r) {
@@ -257,15 +258,17 @@ TEST_F(Ranks, OneThatComputesSomethingElseIsFound)
 
 TEST_F(Ranks, WorkIsNoStall)
 {
-    EXPECT_EQ(start(20, "1 stop --busy 2 3")->wait(), 0);
-    for (int r = 0; r < kRanks; ++r) EXPECT_EQ(log(r).code, 0) << log(r).all_said();
-    EXPECT_EQ(start(20, "1 stop --busy 0 3")->wait(), 0);
-    for (int r = 0; r < kRanks; ++r) EXPECT_EQ(log(r).code, 0) << log(r).all_said();
+    for (char const* busy : {"1 stop --busy 2 3", "1 stop --busy 0 3"}) {
+        auto const mpirun = start(20, busy);
+        EXPECT_EQ(mpirun->wait(), 0) << mpirun->text();
+        for (int r = 0; r < kRanks; ++r) EXPECT_EQ(log(r).code, 0) << log(r).all_said() << mpirun->text();
+    }
 }
 
 TEST_F(Ranks, OneThatComesLateIsAwaited)
 {
-    EXPECT_EQ(start(20, "1 stop --slow-start 3 3")->wait(), 0);
+    auto const mpirun = start(20, "1 stop --slow-start 3 3");
+    EXPECT_EQ(mpirun->wait(), 0) << mpirun->text();
     for (int r = 0; r < kRanks; ++r) EXPECT_EQ(log(r).code, 0) << log(r).all_said();
 }
 
