@@ -32,7 +32,7 @@ public:
         : core_(options, report), state_(core_.state), link_(link)
     {
         if (options.display) {
-            tracking_.emplace(*options.display);
+            if (!follows()) tracking_.emplace(*options.display);
             open_display(*options.display);
         } else {
             open_desktop();
