@@ -273,14 +273,15 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
     has_last_ = true;
     frame->order = std::move(order);
     if (done && hooks_.finished) hooks_.finished(*frame);
-    if (link_ != nullptr) link_->wait_for_all(frame->order);
     if (!done) return false;
+    FrameOrder const shown = frame->order;
     {
         std::lock_guard const lock(mutex_);
         newest_ = std::move(frame);
     }
     published_.notify_all();
     if (hooks_.published) hooks_.published();
+    if (link_ != nullptr) link_->wait_for_all(shown);
     return true;
 }
 

@@ -64,9 +64,10 @@ public:
     virtual std::optional<FrameOrder> receive() = 0;
     /// While there is nothing to render, now and then: throws where a rank was lost that cannot be done without.
     virtual void check() = 0;
-    /// Returns when all have rendered the frame.
+    /// Returns when all have drawn the frame and may swap.
     virtual void wait_for_all(FrameOrder const& order) = 0;
-    /// From the thread that shows frames.
+    /// From the thread that shows frames: it is drawn; returns when all may swap.
+    virtual void drawn(std::uint64_t frame) = 0;
     virtual void swapped(std::uint64_t frame, double steady_s) = 0;
 };
 

@@ -5,6 +5,12 @@
 
 namespace viewer {
 
+namespace {
+
+constexpr std::chrono::seconds kLongestDrawing{1};
+
+} // namespace
+
 template <class F>
 auto ClusterLink::guarded(F const& call)
 {
@@ -73,7 +79,23 @@ void ClusterLink::check()
 
 void ClusterLink::wait_for_all(FrameOrder const& order)
 {
+    {
+        // A window may be hidden, or its loop about to end: nobody waits for that for ever.
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, kLongestDrawing, [&] { return drawn_ > order.frame; });
+    }
     guarded([&] { cluster_->wait(order.frame); });
+    std::lock_guard const lock(mutex_);
+    released_ = order.frame + 1;
+    changed_.notify_all();
+}
+
+void ClusterLink::drawn(std::uint64_t frame)
+{
+    std::unique_lock lock(mutex_);
+    drawn_ = frame + 1;
+    changed_.notify_all();
+    changed_.wait_for(lock, kLongestDrawing, [&] { return released_ > frame; });
 }
 
 void ClusterLink::swapped(std::uint64_t frame, double steady_s)

@@ -2,6 +2,7 @@
 #include "viewer/cluster/cluster.h"
 #include "viewer/live/live_renderer.h"
 
+#include <condition_variable>
 #include <mutex>
 
 namespace viewer {
@@ -20,6 +21,7 @@ public:
     std::optional<FrameOrder> receive() override;
     void check() override;
     void wait_for_all(FrameOrder const& order) override;
+    void drawn(std::uint64_t frame) override;
     void swapped(std::uint64_t frame, double steady_s) override;
 
     /// When all is over: of the leader. Why it ended early; empty = it did not.
@@ -38,6 +40,8 @@ private:
     SwapSkew skew_;
     std::string failure_;
     std::mutex mutex_;
+    std::condition_variable changed_;
+    std::uint64_t drawn_ = 0, released_ = 0; ///< frames, counted from 1
     std::vector<std::pair<std::uint64_t, double>> swaps_;
 };
 

@@ -9,6 +9,8 @@
 #include "viewer/show/user_tracking.h"
 #include "viewer/show/view_core.h"
 
+#include <epoxy/gl.h>
+
 #include <GLFW/glfw3.h>
 #include <algorithm>
 #include <fmt/format.h>
@@ -284,6 +286,13 @@ private:
             p.times.draw_ms += 1e3 * (state_.clock.now_s() - uploaded);
         }
         p.swap.time = SwapTime::Clock::now();
+        if (link_ != nullptr && p.fresh) {
+            for (auto const& w : windows_) { // drawn, not only asked for
+                w->window.gl().make_current();
+                glFinish();
+            }
+            link_->drawn(p.frame->order.frame);
+        }
         for (auto const& w : windows_) {
             w->window.gl().make_current();
             p.swap = w->timer.swap();
