@@ -13,14 +13,22 @@ namespace {
 /// The window may go at any time; what is then asked fails, which its caller sees by the result.
 int ignore(Display*, XErrorEvent*) { return 0; }
 
-using FakeKey = int (*)(Display*, unsigned, int, unsigned long);
-
 /// The library without its headers is what a machine with xdotool has.
-FakeKey find_fake_key()
-{
-    void* const library = dlopen("libXtst.so.6", RTLD_NOW);
-    return library ? reinterpret_cast<FakeKey>(dlsym(library, "XTestFakeKeyEvent")) : nullptr;
-}
+struct FakeInput {
+    int (*key)(Display*, unsigned code, int down, unsigned long delay_ms) = nullptr;
+    int (*button)(Display*, unsigned number, int down, unsigned long delay_ms) = nullptr;
+    int (*motion)(Display*, int screen, int x, int y, unsigned long delay_ms) = nullptr;
+
+    FakeInput()
+    {
+        void* const library = dlopen("libXtst.so.6", RTLD_NOW);
+        if (library == nullptr) return;
+        key = reinterpret_cast<decltype(key)>(dlsym(library, "XTestFakeKeyEvent"));
+        button = reinterpret_cast<decltype(button)>(dlsym(library, "XTestFakeButtonEvent"));
+        motion = reinterpret_cast<decltype(motion)>(dlsym(library, "XTestFakeMotionEvent"));
+    }
+    bool works() const { return key != nullptr && button != nullptr && motion != nullptr; }
+};
 
 Window find(Display* display, std::string const& title)
 {
@@ -47,18 +55,29 @@ Window find(Display* display, std::string const& title)
 struct XWindow::State {
     Display* display = nullptr;
     Window window = 0;
-    FakeKey fake_key = nullptr;
+    FakeInput fake;
     std::string key_problem;
 
     ~State()
     {
         if (display != nullptr) XCloseDisplay(display);
     }
+    void need_fake() const
+    {
+        if (!fake.works()) throw std::runtime_error("there is no input by XTEST: " + key_problem);
+    }
     void key(std::string const& name, int down) const
     {
+        need_fake();
         unsigned const code = XKeysymToKeycode(display, XStringToKeysym(name.c_str()));
-        if (code == 0 || fake_key == nullptr) throw std::runtime_error("cannot press " + name);
-        fake_key(display, code, down, CurrentTime);
+        if (code == 0) throw std::runtime_error("there is no key " + name);
+        fake.key(display, code, down, CurrentTime);
+        XFlush(display);
+    }
+    void button(int number, int down) const
+    {
+        need_fake();
+        fake.button(display, unsigned(number), down, CurrentTime);
         XFlush(display);
     }
 };
@@ -74,8 +93,7 @@ XWindow::XWindow(std::string const& title, std::chrono::seconds limit) : state_(
         if (std::chrono::steady_clock::now() > end) throw std::runtime_error("no window '" + title + "'");
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    s.fake_key = find_fake_key();
-    if (s.fake_key == nullptr) s.key_problem = "there is no libXtst.so.6";
+    if (!s.fake.works()) s.key_problem = "there is no libXtst.so.6";
 }
 
 XWindow::~XWindow() = default;
@@ -152,6 +170,15 @@ void XWindow::tap(std::string const& key)
     press(key);
     release(key);
 }
+void XWindow::point_at(glm::ivec2 px)
+{
+    state_->need_fake();
+    glm::ivec2 const on_screen = position_px() + px;
+    state_->fake.motion(state_->display, -1, on_screen.x, on_screen.y, CurrentTime);
+    XFlush(state_->display);
+}
+void XWindow::press_button(int number) { state_->button(number, 1); }
+void XWindow::release_button(int number) { state_->button(number, 0); }
 std::string const& XWindow::key_problem() const { return state_->key_problem; }
 
 } // namespace viewer::test

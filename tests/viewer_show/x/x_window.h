@@ -36,6 +36,10 @@ public:
     void press(std::string const& key);
     void release(std::string const& key);
     void tap(std::string const& key);
+    /// The mouse, by the same way; from the window's top left corner.
+    void point_at(glm::ivec2 px);
+    void press_button(int number);
+    void release_button(int number);
     /// Why no keys can be pressed; empty = they can.
     std::string const& key_problem() const;
 
