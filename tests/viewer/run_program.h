@@ -67,6 +67,13 @@ inline std::vector<std::string> words(std::string const& text)
     return {std::istream_iterator<std::string>(in), {}};
 }
 
+/// What is tested: the program of this build, or the one that LIGHTWELL_TEST_PROGRAM names.
+inline std::string program_path()
+{
+    char const* const other = std::getenv("LIGHTWELL_TEST_PROGRAM");
+    return other != nullptr && *other != '\0' ? other : LIGHTWELL_PROGRAM;
+}
+
 struct Outcome {
     int code = -1;  ///< exit code; -1 where a signal ended it
     int signal = 0; ///< that ended it
@@ -79,7 +86,8 @@ public:
     Program(std::vector<std::string> arguments, std::filesystem::path const& folder)
         : out_(std::tmpfile(), &std::fclose), err_(std::tmpfile(), &std::fclose)
     {
-        arguments.insert(arguments.begin(), LIGHTWELL_PROGRAM);
+        std::string const program = program_path();
+        arguments.insert(arguments.begin(), program);
         std::vector<char*> argv;
         for (std::string& a : arguments) argv.push_back(a.data());
         argv.push_back(nullptr);
@@ -88,9 +96,9 @@ public:
         posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
         posix_spawn_file_actions_adddup2(&actions, fileno(out_.get()), STDOUT_FILENO);
         posix_spawn_file_actions_adddup2(&actions, fileno(err_.get()), STDERR_FILENO);
-        int const error = posix_spawn(&pid_, LIGHTWELL_PROGRAM, &actions, nullptr, argv.data(), environ);
+        int const error = posix_spawn(&pid_, program.c_str(), &actions, nullptr, argv.data(), environ);
         posix_spawn_file_actions_destroy(&actions);
-        if (error != 0) throw std::runtime_error("cannot run " LIGHTWELL_PROGRAM ": build it first");
+        if (error != 0) throw std::runtime_error("cannot run " + program + ": build it first");
     }
     ~Program()
     {
@@ -103,6 +111,21 @@ public:
     Program& operator=(Program const&) = delete;
 
     void send(int signal) const { kill(pid_, signal); }
+    pid_t pid() const { return pid_; } ///< 0 once it was waited for
+    bool runs() const
+    {
+        siginfo_t ended{};
+        return pid_ > 0 && waitid(P_PID, id_t(pid_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+               ended.si_pid == 0;
+    }
+    /// Written so far.
+    std::string errors() const
+    {
+        std::string text(1 << 16, '\0'); // pread: the program writes by the same file position
+        ssize_t const n = pread(fileno(err_.get()), text.data(), text.size(), 0);
+        text.resize(n > 0 ? std::size_t(n) : 0);
+        return text;
+    }
 
     /// Waits until the program handles a signal itself (or no longer does); false if it ends before that.
     bool wait_until_catches(int signal, bool catches) const
