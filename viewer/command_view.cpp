@@ -38,17 +38,6 @@ struct ViewArguments {
     bool no_vsync = false;
 };
 
-/// "key=value": value as JSON where it is, else a word.
-Change parse_change(std::string const& text)
-{
-    std::size_t const at = text.find('=');
-    if (at == std::string::npos)
-        throw gi::InputError("--set " + text, "a setting has a key and a value", "write --set exposure=1.5");
-    std::string const value = text.substr(at + 1);
-    nlohmann::json const parsed = nlohmann::json::parse(value, nullptr, false);
-    return {text.substr(0, at), parsed.is_discarded() ? nlohmann::json(value) : parsed};
-}
-
 /// As it was given, from what the system knows of this process.
 std::string command_line()
 {

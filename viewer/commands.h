@@ -21,6 +21,7 @@ void add_bench(CLI::App& app, int& exit_code);
 // Within bench
 void add_bench_dynamic(CLI::App& bench, int& exit_code);
 void add_bench_sweep(CLI::App& bench, int& exit_code);
+void add_bench_views(CLI::App& bench, int& exit_code);
 void add_bench_report(CLI::App& bench, int& exit_code);
 void add_bench_rays(CLI::App& bench, int& exit_code);
 void add_bench_raster(CLI::App& bench, int& exit_code);

@@ -176,6 +176,16 @@ void set(Settings& settings, Change const& change)
     e->set(settings, change);
 }
 
+Change parse_change(std::string const& text)
+{
+    std::size_t const at = text.find('=');
+    if (at == std::string::npos)
+        throw gi::InputError("--set " + text, "a setting has a key and a value", "write --set exposure=1.5");
+    std::string const value = text.substr(at + 1);
+    Json const parsed = Json::parse(value, nullptr, false);
+    return {text.substr(0, at), parsed.is_discarded() ? Json(value) : parsed};
+}
+
 nlohmann::json get(Settings const& settings, std::string const& key)
 {
     Entry const* const e = find(key);

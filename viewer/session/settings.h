@@ -53,6 +53,8 @@ bool is_setting(std::string const& key);
 
 /// Throws InputError where the value is not of the key's type or range, or there is no such key.
 void set(Settings& settings, Change const& change);
+/// "KEY=VALUE", the value as JSON where it is that, else a word. Throws InputError.
+Change parse_change(std::string const& text);
 nlohmann::json get(Settings const& settings, std::string const& key);
 
 /// What they say to a method. Throws InputError on values that do not go together.

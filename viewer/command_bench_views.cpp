@@ -1,0 +1,189 @@
+#include "gi/base/error.h"
+#include "gi/image/metrics.h"
+#include "viewer/arguments.h"
+#include "viewer/bench/table_file.h"
+#include "viewer/bench_record.h"
+#include "viewer/commands.h"
+#include "viewer/load_world.h"
+#include "viewer/session/session.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+struct ViewsOptions {
+    std::vector<std::string> scenes{"cornell", "atrium"}, settings;
+    std::string size = "320x240", out;
+    int frames = 24, reference_paths = 512;
+    double eye_distance_m = 0.063;
+    bool json = false;
+};
+
+/// The views of a variant, seen from a camera.
+using Views = std::function<std::vector<ViewOrder>(gi::Camera const&)>;
+
+gi::Camera aside(gi::Camera camera, double m)
+{
+    camera.world_from_camera = camera.world_from_camera * glm::translate(gi::dmat4(1), gi::dvec3{m, 0, 0});
+    return camera;
+}
+
+/// Before, left, right and below the eye, 90 degrees each.
+std::vector<ViewOrder> walls(gi::Camera const& eye, int size)
+{
+    std::vector<ViewOrder> views;
+    auto const add = [&](char const* name, double angle, gi::dvec3 axis) {
+        gi::Camera wall = eye;
+        wall.world_from_camera = eye.world_from_camera * glm::rotate(gi::dmat4(1), angle, axis);
+        wall.off_axis = gi::ViewTangents{-1, 1, -1, 1};
+        views.push_back({name, wall, size, size, -1});
+    };
+    add("front", 0, {0, 1, 0});
+    add("left", 0.5 * gi::kPi, {0, 1, 0});
+    add("right", -0.5 * gi::kPi, {0, 1, 0});
+    add("floor", -0.5 * gi::kPi, {1, 0, 0});
+    return views;
+}
+
+struct Variant {
+    std::string name;
+    Views views;
+    std::unique_ptr<Session> session;
+    std::vector<double> ms;
+    SessionFrame last;
+};
+
+/// relMSE of the last view of a frame against the reference from the same place.
+double error_of(gi::World const& world, FrameOrder const& order, SessionFrame const& frame, int paths,
+                gi::Report& report)
+{
+    gi::RenderSettings s;
+    ViewOrder const& view = order.views.back();
+    s.width = view.width;
+    s.height = view.height;
+    s.paths = std::uint32_t(paths);
+    s.seed = 99;
+    s.bounces = Settings{}.bounces;
+    gi::RenderResult const truth = gi::find_method("reference").render(world, view.camera, s, {}, {}, report);
+    return gi::measure_errors(frame.views.back().picture.find("color")->data, truth.picture.find("color")->data, 3)
+        .relmse;
+}
+
+void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
+{
+    auto const [width, height] = parse_size(o.size);
+    gi::Report report;
+    int const w = width, h = height;
+    auto const load = [](std::string const& name, gi::Report& r) {
+        RenderOptions options;
+        options.scene = name;
+        return load_lit_scene(options, r);
+    };
+    double const apart = o.eye_distance_m;
+    std::vector<Variant> variants;
+    variants.push_back({"one view",
+                        [=](gi::Camera const& c) {
+                            return std::vector<ViewOrder>{{"left", c, w, h, -1}};
+                        },
+                        {},
+                        {},
+                        {}});
+    variants.push_back({"other eye alone",
+                        [=](gi::Camera const& c) {
+                            return std::vector<ViewOrder>{{"right", aside(c, apart), w, h, -1}};
+                        },
+                        {},
+                        {},
+                        {}});
+    for (int const partner : {0, -1})
+        variants.push_back(
+            {partner == 0 ? "two eyes" : "two eyes, no light shared",
+             [=](gi::Camera const& c) {
+                 return std::vector<ViewOrder>{{"left", c, w, h, -1}, {"right", aside(c, apart), w, h, partner}};
+             },
+             {},
+             {},
+             {}});
+    variants.push_back(
+        {"one wall", [=](gi::Camera const& c) { return std::vector<ViewOrder>{walls(c, h)[3]}; }, {}, {}, {}});
+    variants.push_back({"four walls", [=](gi::Camera const& c) { return walls(c, h); }, {}, {}, {}});
+    for (Variant& v : variants) {
+        v.session = std::make_unique<Session>(load, 0, report);
+        for (std::string const& text : o.settings) v.session->apply(parse_change(text));
+        v.session->apply({"scene", scene});
+    }
+    gi::Camera const start = choose_camera(variants[0].session->world(), {}).camera;
+    double const step = 0.002 * double(variants[0].session->world().bounds.radius());
+    FrameOrder order;
+    for (int f = 0; f < o.frames; ++f) // they take turns
+        for (Variant& v : variants) {
+            order.frame = std::uint64_t(f);
+            order.scene_s = f / 20.0;
+            order.views = v.views(aside(start, step * f));
+            double const s = seconds_of([&] { v.last = v.session->render(order, {}); });
+            if (f >= 4) v.ms.push_back(1e3 * s); // those before build what lasts
+        }
+    for (std::size_t k = 0; k < variants.size(); ++k) {
+        Variant& v = variants[k];
+        order.views = v.views(aside(start, step * (o.frames - 1)));
+        double const more = double(order.views.size()) - 1;
+        // Against the variant of one view that came in the same round.
+        std::vector<double> const& first = variants[k < 4 ? 0 : 4].ms;
+        std::vector<double> extra;
+        for (std::size_t f = 0; f < v.ms.size(); ++f) extra.push_back((v.ms[f] - first[f]) / std::max(1.0, more));
+        table.add({scene, v.name, double(order.views.size()),
+                   fmt::format("{}x{}", order.views[0].width, order.views[0].height), summarise(v.ms),
+                   more > 0 ? Cell(ratio(extra, first)) : Cell(),
+                   error_of(v.session->world(), order, v.last, o.reference_paths, report)});
+    }
+}
+
+int run(ViewsOptions const& o)
+{
+    check_folder(o.out);
+    make_folder(o.out);
+    BenchTable table = start_table(
+        "views", "What further views of a frame cost",
+        {"scene", "views", "count", "size", "frame_ms", "each_further_over_first", "relmse_of_last_view"});
+    for (std::string const& scene : o.scenes) {
+        measure(o, scene, table);
+        write(table, o.out);
+    }
+    show(table, o.out, o.json);
+    return 0;
+}
+
+} // namespace
+
+void add_bench_views(CLI::App& bench, int& exit_code)
+{
+    auto const o = std::make_shared<ViewsOptions>();
+    CLI::App* const c =
+        bench.add_subcommand("views", "What a second eye and further walls cost, with their error.");
+    c->add_option("--scene", o->scenes, "files or names, comma-separated")
+        ->delimiter(',')
+        ->capture_default_str()
+        ->allow_extra_args(false);
+    c->add_option("--set", o->settings, "KEY=VALUE as of view; repeatable")->take_all();
+    c->add_option("--size", o->size, "of an eye; walls are as high and square")->capture_default_str();
+    c->add_option("--frames", o->frames, "each; the camera moves")
+        ->check(CLI::Range(8, 10000))
+        ->capture_default_str();
+    c->add_option("--eye-distance", o->eye_distance_m, "m")->capture_default_str();
+    c->add_option("--reference-paths", o->reference_paths, "per pixel")->capture_default_str();
+    c->add_option("--out", o->out, "folder for views.json and views.csv")->required();
+    c->add_flag("--json", o->json, "print the table as JSON");
+    c->footer(R"(Example:
+  lightwell bench views --scene cornell --size 48x36 --frames 8 --reference-paths 16 --out views
+
+Frames as those of view, with reuse and filter, while the camera moves; variants take turns. relMSE is that of the last
+view in the last frame.)");
+    c->callback([o, &exit_code] { exit_code = run(*o); });
+}
+
+} // namespace viewer
