@@ -70,6 +70,8 @@ TEST_F(FormatsOfView, FrameLogAndRecording)
         view.ask({{"do", "key"}, {"key", key}, {"action", "release"}});
     }
     view.set("exposure", 0.5);
+    int const frame = view.ask({{"do", "stats"}}).value("frame", -1);
+    while (view.ask({{"do", "stats"}}).value("frame", -1) < frame + 2) sleep_ms(20); // one that has seen it
     Outcome const o = view.quit();
 
     Table const log = read_table(view.folder() / "frames.csv");
