@@ -136,8 +136,24 @@ TEST_F(Input, RemoteKeysAreAnsweredWithTheFrameThatHasSeenThem)
     EXPECT_GT(position().z, at.z);
     Json const wrong = view->answer({{"do", "key"}, {"key", "nothing"}});
     EXPECT_TRUE(wrong.contains("error")) << wrong;
-    // Also where it changes nothing.
+    view->quit();
+}
+
+TEST_F(Input, RemoteKeysThatChangeNothingAreAnsweredToo)
+{
+    open("cornell --size 200x150" + kStill, "Lightwell: cornell");
+    view->settle();
     EXPECT_TRUE(view->answer({{"do", "key"}, {"key", "shift"}}, std::chrono::seconds(5)).contains("result"));
+    view->quit();
+}
+
+/// "Until the picture refines no further" is at once where it does not refine.
+TEST_F(Input, ConvergedScreenshotOfAPictureThatRests)
+{
+    open("cornell --size 200x150" + kStill, "Lightwell: cornell");
+    view->settle();
+    Json const shot{{"do", "screenshot"}, {"file", view->folder() / "rests.png"}, {"converged", true}};
+    EXPECT_TRUE(view->answer(shot, std::chrono::seconds(5)).contains("result"));
     view->quit();
 }
 

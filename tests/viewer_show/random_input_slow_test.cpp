@@ -19,7 +19,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kAnswer(30); // also where a frame of the reference is being rendered
-constexpr double kGrowth = 1.05;            // of the last third's peak over that of the middle third
+// Of the last third's peak over that of the middle third. In a short walk a third may miss what needs most (the
+// larger scene with stored hit buffers needs several times what the smaller one does), so that only a rough limit
+// holds; the true one is for walks of 10 minutes and more.
+constexpr double kGrowth = 1.05, kGrowthOfShortWalks = 1.5, kShortWalk_s = 600;
 
 double seconds_from_environment(char const* name, double otherwise)
 {
@@ -401,7 +404,11 @@ TEST_F(RandomInput, NeitherCrashesNorGrows)
     client.reset();
     view->quit();
     ASSERT_GE(mib.size(), 9u);
-    EXPECT_LE(peak(mib, 2.0 / 3, 1), kGrowth * peak(mib, 1.0 / 3, 2.0 / 3));
+    double const growth = limit_s < kShortWalk_s ? kGrowthOfShortWalks : kGrowth;
+    double const middle = peak(mib, 1.0 / 3, 2.0 / 3), last = peak(mib, 2.0 / 3, 1);
+    fmt::print("peaks: {:.0f} MiB in the middle third, {:.0f} MiB in the last, which may be {} times that\n",
+               middle, last, growth);
+    EXPECT_LE(last, growth * middle);
 }
 
 } // namespace
