@@ -89,6 +89,15 @@ void LiveRenderer::look(Viewpoint viewpoint)
     if (moved) wake_.notify_all();
 }
 
+void LiveRenderer::again()
+{
+    {
+        std::lock_guard const lock(mutex_);
+        looked_ = true;
+    }
+    wake_.notify_all();
+}
+
 std::shared_ptr<LiveFrame const> LiveRenderer::newest() const
 {
     std::lock_guard const lock(mutex_);
@@ -98,9 +107,8 @@ std::shared_ptr<LiveFrame const> LiveRenderer::newest() const
 std::shared_ptr<LiveFrame const> LiveRenderer::next_frame(double timeout_s)
 {
     double const asked = clock_.now_s();
+    again();
     std::unique_lock lock(mutex_);
-    looked_ = true; // also where nothing moves
-    wake_.notify_all();
     published_.wait_for(lock, std::chrono::duration<double>(timeout_s),
                         [&] { return quit_ || stopped_ || (newest_ && newest_->begun_s >= asked); });
     return newest_ && newest_->begun_s >= asked ? newest_ : nullptr;

@@ -90,6 +90,8 @@ public:
     /// Called with the session between two frames.
     void ask(std::function<void(Session&)> question);
     void look(Viewpoint viewpoint);
+    /// One more frame, also where nothing has changed.
+    void again();
     /// To a moment of the scene's clips, s.
     void go_to(double scene_s);
 

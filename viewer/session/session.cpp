@@ -4,6 +4,7 @@
 #include "gi/scene/animation.h"
 
 #include <algorithm>
+#include <malloc.h>
 
 namespace viewer {
 namespace {
@@ -66,6 +67,7 @@ void Session::load(Change const& change)
     edits_.clear();
     rebuild(std::move(scene));
     name_ = name;
+    malloc_trim(0); // the scene before is gone: a session may load many
 }
 
 void Session::rebuild(std::shared_ptr<gi::Scene const> scene)

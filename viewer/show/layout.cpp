@@ -8,9 +8,8 @@
 
 namespace viewer {
 
-Layout desktop_layout(ViewState const& state, std::span<glm::ivec2 const> window_px)
+Layout desktop_layout(ViewState const& state, StereoMode mode, std::span<glm::ivec2 const> window_px)
 {
-    StereoMode const mode = *stereo_mode(state.settings.stereo);
     glm::ivec2 const px = window_px[0], eye_px = eye_size(mode, px);
     Layout layout;
     layout.panes.resize(window_px.size());

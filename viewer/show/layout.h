@@ -13,7 +13,8 @@ struct Layout {
 };
 
 /// One window, or two with StereoMode::two_windows. @param window_px  of each; nothing of a size of 0 is rendered
-Layout desktop_layout(ViewState const& state, std::span<glm::ivec2 const> window_px);
+/// @param mode  that the windows can show
+Layout desktop_layout(ViewState const& state, StereoMode mode, std::span<glm::ivec2 const> window_px);
 
 /// All walls. Those that no eye sees, and windows of a size of 0, have no views.
 /// @param window_px  of the display's windows, as they are; as the file has them where this is 0

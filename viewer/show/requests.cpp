@@ -50,6 +50,10 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
         state_.change({r.arguments.at("key").get<std::string>(), r.arguments.at("value")}, done);
         if (is_setting(r.arguments.at("key").get<std::string>())) return std::nullopt; // answered already
     } else if (r.what == "screenshot") {
+        std::string const file = r.arguments.at("file").get<std::string>();
+        if (!file.ends_with(".png") && !file.ends_with(".exr"))
+            throw gi::InputError("a screenshot called '" + file + "'",
+                                 "its end does not say which kind of file it is", "end it in .png or .exr");
         shots_.push_back(
             {r.arguments.at("file").get<std::string>(), r.has("view") ? r.arguments.at("view").get<int>() : -1,
              r.has("converged") && r.arguments.at("converged").get<bool>(), state_.clock.now_s(), r.token});
@@ -132,6 +136,7 @@ void Requests::press(RemoteRequest const& r)
     e.code = code;
     e.action = action == "release" ? InputAction::release : InputAction::press;
     controls_.take(e, 1);
+    state_.renderer->again();
     if (action == "tap") releases_.push_back({now + kTap_s, code});
 }
 
@@ -169,24 +174,42 @@ void Requests::pick(RemoteRequest const& r)
                 });
 }
 
-bool Requests::save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned char> const& bytes)
+namespace {
+
+void write(std::string const& file, int view, LiveFrame const& f, glm::ivec2 window_px,
+           std::vector<unsigned char> const& bytes, gi::Report& report)
 {
-    LiveFrame const& f = *state_.frame;
-    if (shot.view < 0 && !shot.file.ends_with(".exr")) {
-        gi::write_png(shot.file, window_px.x, window_px.y, bytes);
-        return true;
-    }
-    std::size_t const view = std::size_t(std::max(0, shot.view));
-    if (view >= f.result.views.size())
-        throw gi::InputError(fmt::format("view {}", view), fmt::format("there are {}", f.result.views.size()),
+    bool const exr = file.ends_with(".exr");
+    if (view < 0 && !exr) return gi::write_png(file, window_px.x, window_px.y, bytes);
+    std::size_t const k = std::size_t(std::max(0, view));
+    if (k >= f.result.views.size())
+        throw gi::InputError(fmt::format("view {}", k), fmt::format("there are {}", f.result.views.size()),
                              "count from 0");
-    gi::Picture const& picture = f.result.views[view].picture;
-    if (shot.file.ends_with(".exr"))
-        gi::write_exr(shot.file, picture, gi::PixelType::single, report_);
-    else
-        gi::write_png(shot.file, picture.width, picture.height,
-                      gi::tone_map_bytes(*picture.find("color"), tone_settings(state_.settings)));
-    return true;
+    gi::Picture const& picture = f.result.views[k].picture;
+    if (exr) return gi::write_exr(file, picture, gi::PixelType::single, report);
+    gi::write_png(file, picture.width, picture.height,
+                  gi::tone_map_bytes(*picture.find("color"), tone_settings(f.settings)));
+}
+
+} // namespace
+
+/// In the background: input does not wait for files.
+void Requests::save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned char> const& bytes)
+{
+    saving_.push_back(std::async(std::launch::async, [this, shot, window_px, bytes, frame = state_.frame] {
+        std::string wrong;
+        try {
+            write(shot.file, shot.view, *frame, window_px, bytes, report_);
+        } catch (gi::InputError const& e) {
+            wrong = e.what();
+        }
+        state_.inbox.put([this, shot, wrong, number = frame->order.frame] {
+            if (wrong.empty())
+                server_->answer(shot.token, {{"file", shot.file}, {"frame", number}});
+            else
+                server_->refuse(shot.token, wrong);
+        });
+    }));
 }
 
 void Requests::presented(double shown_s, glm::ivec2 window_px, std::vector<unsigned char> const& bytes)
@@ -195,14 +218,12 @@ void Requests::presented(double shown_s, glm::ivec2 window_px, std::vector<unsig
     LiveFrame const& f = *state_.frame;
     std::erase_if(shots_, [&](Shot const& shot) {
         if (bytes.empty() && shot.view < 0 && !shot.file.ends_with(".exr")) return false;
-        if (shot.converged && f.still_paths < kConvergedPaths) return false;
-        try {
-            save(shot, window_px, bytes);
-            server_->answer(shot.token, {{"file", shot.file}, {"frame", f.order.frame}});
-        } catch (gi::InputError const& e) {
-            server_->refuse(shot.token, e.what());
-        }
+        if (shot.converged && state_.settings.refine && f.still_paths < kConvergedPaths) return false;
+        save(shot, window_px, bytes);
         return true;
+    });
+    std::erase_if(saving_, [](std::future<void> const& s) {
+        return s.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     });
     bool const moved_on = f.order.pose_s >= 0;
     std::erase_if(keys_, [&](Key const& key) {

@@ -5,6 +5,7 @@
 #include "viewer/show/controls.h"
 #include "viewer/show/view_state.h"
 
+#include <future>
 #include <list>
 
 namespace viewer {
@@ -48,12 +49,13 @@ private:
     void load(RemoteRequest const& r);
     void press(RemoteRequest const& r);
     void pick(RemoteRequest const& r);
-    bool save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned char> const& bytes);
+    void save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned char> const& bytes);
 
     ViewState& state_;
     Controls& controls_;
     gi::Report& report_;
     RemoteServer* server_ = nullptr;
+    std::vector<std::future<void>> saving_;
     std::list<Shot> shots_;
     std::list<Key> keys_;
     std::list<Loaded> loads_;

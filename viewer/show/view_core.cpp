@@ -30,7 +30,7 @@ std::string next(std::string const& key, std::string const& now)
 } // namespace
 
 ViewCore::ViewCore(ViewOptions const& o, gi::Report& r)
-    : options(o), report(r), session(o.load, o.threads, r), requests(state, controls, r)
+    : options(o), display(o.display), report(r), session(o.load, o.threads, r), requests(state, controls, r)
 {
     for (Change const& c : o.settings) session.apply(c);
     session.apply({"scene", o.scene});
@@ -38,14 +38,6 @@ ViewCore::ViewCore(ViewOptions const& o, gi::Report& r)
     state.facts = facts_of(session);
     start_at(o.first_camera(session.world()));
     state.navigation.set_mode(o.navigation);
-    if (!o.record.empty()) {
-        RecordingHeader header = o.header;
-        header.scene = o.scene;
-        header.settings = {{"settings", all_settings(state.settings)}, {"load", o.load_options}};
-        recorder_ = std::make_unique<Recorder>(o.record, header, r);
-    }
-    if (!o.frame_log.empty())
-        log_ = std::make_unique<FrameLog>(o.frame_log, o.header.program + "\n" + o.header.command_line, r);
     if (!o.remote.socket.empty() || o.remote.port) {
         remote_ = std::make_unique<RemoteServer>(
             o.remote, [this](RemoteRequest const& request) { return requests.handle(request); }, r);
@@ -69,9 +61,26 @@ void ViewCore::start_at(gi::Camera const& camera)
     state.screen_distance_m = std::clamp(glm::length(state.facts.center - from), 0.2, 1e4);
 }
 
+void ViewCore::make_files()
+{
+    for (auto const& file : {options.record, options.frame_log})
+        if (!file.empty() && std::filesystem::exists(file))
+            throw gi::InputError("'" + file.string() + "' is there already", "it would be replaced",
+                                 "give another name, or delete it");
+    if (!options.frame_log.empty())
+        log_ = std::make_unique<FrameLog>(options.frame_log,
+                                          options.header.program + "\n" + options.header.command_line, report);
+    if (options.record.empty()) return;
+    RecordingHeader header = options.header;
+    header.scene = options.scene;
+    header.settings = {{"settings", all_settings(state.settings)}, {"load", options.load_options}};
+    recorder_ = std::make_unique<Recorder>(options.record, header, report);
+}
+
 void ViewCore::start(FrameLink* link, std::function<void()> published,
                      std::function<std::vector<ViewOrder>(FrameOrder const&)> own_views)
 {
+    make_files();
     LiveRenderer::Hooks hooks;
     hooks.finished = [this](LiveFrame const& f) {
         ++summary.rendered;

@@ -12,10 +12,12 @@ namespace viewer {
 
 class ViewCore {
 public:
-    /// Loads the scene, opens files and sockets. Throws InputError. All arguments outlive it.
+    /// Loads the scene, opens sockets. Throws InputError. All arguments outlive it.
     ViewCore(ViewOptions const& options, gi::Report& report);
     ~ViewCore();
 
+    /// Makes the files that are written, after everything that can be refused; begins to render. Throws
+    /// InputError.
     /// @param link  null where this process is alone   @param published  called on the rendering thread
     void start(FrameLink* link, std::function<void()> published,
                std::function<std::vector<ViewOrder>(FrameOrder const&)> own_views = {});
@@ -31,6 +33,7 @@ public:
     void save_screenshot(glm::ivec2 window_px, std::vector<unsigned char> const& bytes);
 
     ViewOptions const& options;
+    std::optional<Display> display; ///< as far as the windows can show it
     gi::Report& report;
     ViewState state;
     Session session;
@@ -41,6 +44,7 @@ public:
 
 private:
     void start_at(gi::Camera const& camera);
+    void make_files();
 
     std::unique_ptr<RemoteServer> remote_;
     std::unique_ptr<Recorder> recorder_;

@@ -34,15 +34,15 @@ public:
         : core_(options, report), state_(core_.state), link_(link)
     {
         if (options.display) {
-            if (!follows()) tracking_.emplace(*options.display);
-            open_display(*options.display);
+            if (!follows()) tracking_.emplace(*core_.display);
+            open_display(*core_.display);
         } else {
             open_desktop();
         }
         std::function<std::vector<ViewOrder>(FrameOrder const&)> own;
         if (link != nullptr && options.display)
-            own = [&options](FrameOrder const& order) {
-                return views_of_rank(*options.display, order.views, options.rank);
+            own = [this](FrameOrder const& order) {
+                return views_of_rank(*core_.display, order.views, core_.options.rank);
             };
         core_.start(
             link, [] { glfwPostEmptyEvent(); }, own);
@@ -84,7 +84,7 @@ private:
         panel_ = std::make_unique<Panel>(windows_[0]->window);
     }
 
-    void open_display(Display const& display)
+    void open_display(Display& display)
     {
         window_of_.assign(display.windows.size(), -1);
         for (int const w : windows_of(display, core_.options.rank)) {
@@ -103,6 +103,10 @@ private:
                     settings.quad_buffer = QuadBuffer::wanted;
             window_of_[std::size_t(w)] = int(windows_.size());
             windows_.push_back(std::make_unique<ShownWindow>(settings, wall_settings(display), core_.report));
+            if (windows_.back()->window.has_quad_buffer()) continue;
+            for (Wall& wall : display.walls)
+                if (wall.window == w && wall.stereo == StereoMode::quad_buffer)
+                    wall.stereo = StereoMode::side_by_side;
         }
     }
 
@@ -121,7 +125,7 @@ private:
             if (c.command == Command::drag) drag({c.x, c.y});
         }
         int const mode = core_.controls.stereo_mode();
-        if (mode >= 0 && !core_.options.display)
+        if (mode >= 0 && !core_.display)
             state_.change({"stereo", name_of(kStereoModes[std::size_t(mode) % std::size(kStereoModes)])});
     }
 
@@ -148,11 +152,21 @@ private:
         state_.move_selection(m_per_px * (by_px.x * gi::dvec3(m[0]) - by_px.y * gi::dvec3(m[1])));
     }
 
+    /// Where the windows have no buffers of the eyes, these are shown side by side.
+    StereoMode possible_mode()
+    {
+        StereoMode const mode = *stereo_mode(state_.settings.stereo);
+        if (mode != StereoMode::quad_buffer || windows_[0]->window.has_quad_buffer()) return mode;
+        if (!std::exchange(fallback_told_, true))
+            core_.report.lose("stereo by quad buffers, which this window has not: side by side instead");
+        return StereoMode::side_by_side;
+    }
+
     /// In the order of the display's windows where there is one.
     std::vector<glm::ivec2> window_sizes() const
     {
         std::vector<glm::ivec2> sizes;
-        if (!core_.options.display)
+        if (!core_.display)
             for (auto const& w : windows_) sizes.push_back(w->window.framebuffer_px());
         else
             for (std::size_t w = 0; w < window_of_.size(); ++w)
@@ -164,7 +178,7 @@ private:
     void set_panes(std::vector<std::vector<Pane>> const& panes)
     {
         for (std::size_t w = 0; w < panes.size(); ++w) {
-            int const at = core_.options.display ? window_of_[w] : int(w);
+            int const at = core_.display ? window_of_[w] : int(w);
             if (at >= 0) windows_[std::size_t(at)]->panes = panes[w];
         }
     }
@@ -178,8 +192,8 @@ private:
         at.display_s = at.pose_s + expected_s_;
         std::vector<glm::ivec2> const sizes = window_sizes();
         Layout layout;
-        if (core_.options.display) {
-            Display const& display = *core_.options.display;
+        if (core_.display) {
+            Display const& display = *core_.display;
             double const seen_s = steady_s() + expected_s_;
             // The head that rests stands where the navigation is.
             gi::dvec3 const rest = display.users.empty() ? gi::dvec3{0} : resting_head(display.users[0]).position;
@@ -188,7 +202,7 @@ private:
             layout = display_layout(display, tracking_->heads(seen_s), at.world_from_room, sizes);
         } else {
             at.world_from_room = state_.navigation.world_from_camera();
-            layout = desktop_layout(state_, sizes);
+            layout = desktop_layout(state_, possible_mode(), sizes);
         }
         at.views = std::move(layout.views);
         if (link_ == nullptr) {
@@ -246,8 +260,8 @@ private:
         p->reprojected = !(shown_cameras_ == rendered);
         if (fresh) {
             state_.frame = newest;
-            if (link_ != nullptr && core_.options.display)
-                set_panes(display_panes(*core_.options.display, newest->order.views, window_sizes()));
+            if (link_ != nullptr && core_.display)
+                set_panes(display_panes(*core_.display, newest->order.views, window_sizes()));
             meter_.see(newest);
         }
         state_.live_error = meter_.latest();
@@ -369,7 +383,7 @@ private:
     std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: now, and as shown
-    bool dirty_ = true;
+    bool dirty_ = true, fallback_told_ = false;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;
 };
 
