@@ -33,6 +33,10 @@ protected:
     {
         if (!has_mpirun()) GTEST_SKIP() << "no mpirun here: several machines are not tested";
     }
+    void TearDown() override
+    {
+        if (HasFailure()) std::printf("%s\n", file_text(folder_ / "mpirun.out").c_str());
+    }
     std::unique_ptr<Mpirun> start(int frames, std::string const& options, std::string const& more = "")
     {
         return std::make_unique<Mpirun>(
@@ -258,7 +262,7 @@ TEST_F(Ranks, OneThatComputesSomethingElseIsFound)
 
 TEST_F(Ranks, WorkIsNoStall)
 {
-    for (char const* busy : {"1 stop --busy 2 3", "1 stop --busy 0 3"}) {
+    for (char const* busy : {"3 stop --busy 2 5", "3 stop --busy 0 5"}) {
         auto const mpirun = start(20, busy);
         EXPECT_EQ(mpirun->wait(), 0) << mpirun->text();
         for (int r = 0; r < kRanks; ++r) EXPECT_EQ(log(r).code, 0) << log(r).all_said() << mpirun->text();
@@ -267,7 +271,7 @@ TEST_F(Ranks, WorkIsNoStall)
 
 TEST_F(Ranks, OneThatComesLateIsAwaited)
 {
-    auto const mpirun = start(20, "1 stop --slow-start 3 3");
+    auto const mpirun = start(20, "3 stop --slow-start 3 5");
     EXPECT_EQ(mpirun->wait(), 0) << mpirun->text();
     for (int r = 0; r < kRanks; ++r) EXPECT_EQ(log(r).code, 0) << log(r).all_said();
 }

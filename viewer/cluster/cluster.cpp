@@ -176,11 +176,12 @@ void Cluster::finish()
         Writer out(Say::goodbye);
         s.tell_swap(out);
         s.gone.reset();
+        s.is_leaving = true;
         s.send(0, std::move(out));
-        s.await([&s] { return s.gone.has_value(); }, [](int who) { return who == 0; }, s.settings.silence_s,
-                "at the end");
+        s.await([&s] { return s.gone.has_value() || s.peers[0].lost; }, [](int who) { return who == 0; },
+                s.settings.silence_s, "at the end");
     }
-    bool const all = leads() ? s.others_living() : *s.gone != 0;
+    bool const all = leads() ? s.others_living() : s.gone.value_or(0) != 0;
     s.messenger->flush(others, 0.5);
     s.over = true;
     if (all) s.messenger->finalize();

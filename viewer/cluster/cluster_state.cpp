@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 
 namespace viewer {
 namespace {
@@ -91,6 +92,7 @@ void Cluster::State::lose(int r, std::string const& how)
     if (lost.lost || !broken.empty() || over) return;
     std::string const text = fmt::format("{} {}", name(r), how);
     lost.lost = true;
+    if (!leads() && is_leaving) return; // the leader knew that all was done
     if (!leads()) stop(text + "; it led, so nothing can go on");
     bool const stops = settings.on_loss == OnRankLoss::stop;
     messenger->send(r, Writer(Say::stop).put(text + "; this one was left behind").take());
@@ -99,10 +101,16 @@ void Cluster::State::lose(int r, std::string const& how)
         news.push_back(text + "; the others go on");
         return;
     }
-    std::vector<int> rest;
-    for (int other : other_ranks())
-        if (living(other)) rest.push_back(other);
-    messenger->flush(rest, 0.5);
+    // Who ends at once may take along what was not read yet.
+    broken = text;
+    auto const listens = [this](int other) {
+        Peer const& p = peers[std::size_t(other)];
+        return living(other) && !p.said_goodbye && state_of(p.process, here) != ProcessState::ended;
+    };
+    auto const others = other_ranks();
+    for (double const end = now_s() + 1; now_s() < end && std::any_of(others.begin(), others.end(), listens);
+         pause(1))
+        take_messages();
     stop(text);
 }
 
@@ -138,7 +146,7 @@ void Cluster::State::take_messages()
     for (Message const& m : messenger->poll()) {
         Peer& from = peers[std::size_t(m.from)];
         if (from.lost) continue; // it was left behind
-        from.heard_s = now_s();
+        from.heard_s = listened_s;
         handle(m);
     }
 }
@@ -147,6 +155,9 @@ void Cluster::State::pump()
 {
     if (!broken.empty()) throw RankLoss(broken);
     if (over) return;
+    constexpr double kMostGap = 0.1; // longer ones are no listening: a machine that is overloaded accuses nobody
+    double const now = now_s();
+    listened_s += std::min(kMostGap, now - std::exchange(pumped_s, now));
     take_messages();
     watch_processes();
     show_life();
@@ -156,13 +167,15 @@ void Cluster::State::await(std::function<bool()> const& condition, std::function
                            double silence_s, std::string const& what_for)
 {
     double const start = now_s();
+    pump();
+    double const from = listened_s;
     while (true) {
         pump();
         if (condition()) return;
         double const now = now_s();
         for (int r : other_ranks()) {
             // Who was not listening cannot say that others were silent.
-            double const silent = now - std::max(start, peers[std::size_t(r)].heard_s);
+            double const silent = listened_s - std::max(from, peers[std::size_t(r)].heard_s);
             if (!living(r) || !waits_for(r) || silent < silence_s) continue;
             bool const stopped = state_of(peers[std::size_t(r)].process, here) == ProcessState::stopped;
             lose(r, fmt::format("has not answered for {:.1f} s ({}{})", silent, what_for,
@@ -226,8 +239,14 @@ void Cluster::State::handle(Message const& message)
         news.push_back(in.text() + "; the others go on");
         return;
     }
-    case Say::stop:
+    case Say::stop: {
+        Writer out(Say::goodbye);
+        tell_swap(out);
+        send(message.from, std::move(out));
+        int const to[] = {message.from};
+        messenger->flush(to, 0.5);
         stop(in.text());
+    }
     case Say::leaves:
         return lose(message.from, "ended early: " + in.text());
     case Say::end:

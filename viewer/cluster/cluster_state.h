@@ -27,7 +27,7 @@ struct Cluster::State {
         bool there = false; ///< has said hello; of the leader always
         bool lost = false;
         bool said_goodbye = false;
-        double heard_s = 0;
+        double heard_s = 0; ///< on the clock listened_s
         ClockOffset clock;
         std::optional<Arrival> arrival;
         std::deque<std::vector<std::uint8_t>> data;
@@ -79,11 +79,13 @@ struct Cluster::State {
     Echo last_go;                                 ///< that a follower answers
     int pongs = 0, wants = 0;
     bool is_started = false, is_ended = false, over = false;
-    Swap swap; ///< of this rank, not told yet
+    bool is_leaving = false; ///< follower: has said goodbye
+    Swap swap;               ///< of this rank, not told yet
     SwapLog swaps;
     std::vector<std::string> news;
     std::string broken; ///< why this cluster is no more; empty = it is
-    double watched_s = 0, lived_s = 0;
+    double watched_s = 0, lived_s = 0, pumped_s = 0;
+    double listened_s = 0; ///< in all; a clock that stands while this process does not run, or renders
 };
 
 } // namespace viewer

@@ -45,6 +45,8 @@ bool Messenger::started_with_others()
 
 Messenger::Messenger() : transfers_(std::make_unique<Transfers>())
 {
+    // Else hwloc asks every X server of this machine for its screens, and a server that ends meanwhile ends us.
+    setenv("HWLOC_COMPONENTS", "-gl", 0);
     int provided = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
     if (provided < MPI_THREAD_SERIALIZED)

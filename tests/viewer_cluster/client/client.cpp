@@ -122,6 +122,9 @@ int run(int argc, char** argv)
     } catch (gi::InputError const& e) {
         log << "said " << e.what() << std::endl;
         code = 2;
+    } catch (std::exception const& e) {
+        log << "said internal error: " << e.what() << std::endl;
+        code = 3;
     }
     log << "left " << code << std::endl;
     return code;
