@@ -223,8 +223,12 @@ TEST_F(Ranks, WithoutRecoveryMpirunEndsAll)
     EXPECT_NE(mpirun->wait(std::chrono::seconds(20)), 0);
     EXPECT_NE(mpirun->text().find("rank 2"), std::string::npos) << mpirun->text();
     for (int r = 0; r < kRanks; ++r) {
-        std::string const stat = file_text(fmt::format("/proc/{}/stat", log(r).pid));
-        EXPECT_TRUE(stat.empty() || stat.find(") Z ") != std::string::npos) << "still runs: " << stat;
+        auto const runs = [&] {
+            std::string const stat = file_text(fmt::format("/proc/{}/stat", log(r).pid));
+            return !stat.empty() && stat.find(") Z ") == std::string::npos;
+        };
+        while (runs() && since_signal_s() < 10) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        EXPECT_FALSE(runs()) << "rank " << r;
     }
 }
 
