@@ -5,6 +5,7 @@
 #include "viewer/display/display_file.h"
 #include "viewer/interrupt.h"
 #include "viewer/load_world.h"
+#include "viewer/rank_options.h"
 #include "viewer/render_options.h"
 #include "viewer/render_picture.h"
 #include "viewer/replay.h"
@@ -28,9 +29,10 @@ namespace {
 struct ViewArguments {
     RenderOptions scene; ///< scene, camera, sky
     std::vector<std::string> settings;
-    std::string size, fullscreen, navigate = "fly", record, frame_log, remote, stats, screenshots, display,
-                                  on_rank_loss = "stop", replay, out, video;
-    double rank_silence_s = 5, fps = 30, eye_height_m = 1.6;
+    std::string size, fullscreen, navigate = "fly", record, frame_log, remote, stats, screenshots, display, replay,
+                                  out, video;
+    RankOptions ranks;
+    double fps = 30, eye_height_m = 1.6;
     int paths = 0;
     bool hmd = false, seated = false;
     std::optional<int> remote_port;
@@ -156,7 +158,7 @@ int run(ViewArguments const& a, std::string const& command_line)
         throw gi::InputError("view by several ranks without --display", "it is not known which walls each shows",
                              "add --display FILE.yaml whose walls have ranks");
     ClusterLink link({version_text(), o.scene + " on " + a.display, file_hash(o.scene) ^ file_hash(a.display)},
-                     {parse_on_rank_loss(a.on_rank_loss), a.rank_silence_s});
+                     cluster_settings(a.ranks));
     ViewSummary const done = run_view(o, &link, stop, report);
     if (o.rank == 0) return finish(a, done, &link, report);
     if (!link.failure().empty()) std::fputs(("lightwell: " + link.failure() + "\n").c_str(), stderr);
@@ -240,10 +242,7 @@ void add_view(CLI::App& app, int& exit_code)
     c->add_flag("--hmd", a->hmd, "in the headset of the OpenXR runtime (docs/hmd.md)");
     c->add_flag("--seated", a->seated, "of --hmd: no floor; the eyes begin at --eye-height");
     c->add_option("--eye-height", a->eye_height_m, "m")->capture_default_str();
-    c->add_option("--on-rank-loss", a->on_rank_loss, "with mpirun: stop or continue")->capture_default_str();
-    c->add_option("--rank-silence", a->rank_silence_s, "s after which a rank counts as lost")
-        ->check(in_range(0.1, 3600))
-        ->capture_default_str();
+    declare_rank_options(*c, a->ranks);
     c->add_option("--navigate", a->navigate, "fly, walk or orbit")->capture_default_str();
     c->add_option("--threads", a->scene.threads, "0 = all")->check(in_range(0, 1024));
     c->add_option("--record", a->record, "recording (.lwr) of everything that decides the pixels");
@@ -271,7 +270,7 @@ Examples (they need a display):
   lightwell view atrium --set stereo=anaglyph-dubois --record walk.lwr --frame-log frames.csv
   lightwell view --replay walk.lwr
   lightwell view --replay walk.lwr --set method=reference --paths 256 --video walk.mkv
-  mpirun --enable-recovery -n 4 lightwell view atrium --display cave4.yaml)");
+  mpirun --enable-recovery --bind-to none -n 4 lightwell view atrium --display cave4.yaml)");
     c->callback([a, c, &exit_code] {
         check_mode(*c, *a);
         exit_code = a->replay.empty() ? run(*a, command_line()) : run_replay(*a);

@@ -37,9 +37,10 @@ TEST_P(HelpExamples, Run)
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
-                         testing::Values("", "render", "compare", "info", "generate", "display", "bench", "bench sweep",
-                                         "bench report", "bench raster", "bench rays", "bench accuracy",
-                                         "bench thesis", "track", "track listen", "track send", "track walk"),
+                         testing::Values("", "render", "compare", "info", "generate", "display", "bench",
+                                         "bench sweep", "bench report", "bench views", "bench raster",
+                                         "bench rays", "bench accuracy", "bench thesis", "track", "track listen",
+                                         "track send", "track walk"),
                          [](auto const& example) {
                              std::string name = *example.param == '\0' ? "program" : example.param;
                              std::replace(name.begin(), name.end(), ' ', '_');
