@@ -36,8 +36,9 @@ endfunction()
 
 # lightwell_tests(FOLDER libraries...)
 # The suffix of a file gives its label: x_test.cpp unit, x_analytic_test.cpp analytic, x_image_test.cpp image,
-# x_slow_test.cpp slow. One executable per label.
+# x_slow_test.cpp slow. One executable per label. With SERIAL they run alone: they measure how soon something answers.
 function(lightwell_tests folder)
+  cmake_parse_arguments(arg "SERIAL" "" "" ${ARGN})
   file(GLOB all CONFIGURE_DEPENDS *_test.cpp)
   foreach(label unit analytic image slow)
     set(sources ${all})
@@ -49,11 +50,11 @@ function(lightwell_tests folder)
     if(sources)
       set(target test_${folder}_${label})
       add_executable(${target} ${sources})
-      target_link_libraries(${target} PRIVATE ${ARGN} GTest::gtest GTest::gtest_main)
+      target_link_libraries(${target} PRIVATE ${arg_UNPARSED_ARGUMENTS} GTest::gtest GTest::gtest_main)
       target_compile_definitions(${target} PRIVATE
         LIGHTWELL_SOURCE_DIR="${PROJECT_SOURCE_DIR}" LIGHTWELL_PROGRAM="$<TARGET_FILE_DIR:lightwell>/lightwell")
       target_precompile_headers(${target} PRIVATE <gtest/gtest.h> <glm/glm.hpp> <string> <vector>)
-      gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${folder}." PROPERTIES LABELS ${label} TIMEOUT 600)
+      gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${folder}." PROPERTIES LABELS ${label} TIMEOUT 600 RUN_SERIAL ${arg_SERIAL})
     endif()
   endforeach()
 endfunction()

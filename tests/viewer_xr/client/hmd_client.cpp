@@ -33,7 +33,7 @@ double now_s()
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::vector<std::uint8_t> draw(HmdView const& view, Eye eye)
+std::vector<std::uint8_t> draw(HmdView const& view, HmdEye eye)
 {
     gi::CameraRays const rays = gi::camera_rays(view.camera, view.width, view.height, gi::dvec3(0));
     std::vector<std::uint8_t> pixels;
@@ -44,7 +44,7 @@ std::vector<std::uint8_t> draw(HmdView const& view, Eye eye)
             gi::vec3 const to_ball = gi::vec3(0, 1.6f, -2) - ray.origin;
             float const along = glm::dot(to_ball, ray.direction);
             bool const is_ball = along > 0 && glm::dot(to_ball, to_ball) - along * along < 0.25f * 0.25f;
-            gi::vec3 colour = eye == Eye::left ? gi::vec3(255, 0, 0) : gi::vec3(0, 255, 0);
+            gi::vec3 colour = eye == HmdEye::left ? gi::vec3(255, 0, 0) : gi::vec3(0, 255, 0);
             if (ray.direction.y > 0.3f) colour = {0, 0, 255};
             if (is_ball) colour = {255, 255, 255};
             for (int c = 0; c < 3; ++c) pixels.push_back(std::uint8_t(colour[c]));
@@ -65,7 +65,7 @@ public:
                 glTextureStorage2D(textures_[e], 1, GL_RGBA8, w, h);
             }
             glTextureSubImage2D(textures_[e], 0, 0, 0, w, h, GL_RGBA, GL_UNSIGNED_BYTE,
-                                draw(views[e], Eye(e)).data());
+                                draw(views[e], HmdEye(e)).data());
         }
         return {views, textures_, TextureValues::srgb, FirstRow::top};
     }
@@ -140,7 +140,7 @@ void say(std::string const& line)
 nlohmann::json facts(HmdSession const& s)
 {
     HmdCounts const& c = s.counts();
-    auto const mask = [&](Eye e) { return s.hidden(e).triangles.size() / 3; };
+    auto const mask = [&](HmdEye e) { return s.hidden(e).triangles.size() / 3; };
     return {{"phase", name(s.phase())},
             {"why", s.why()},
             {"runtime", s.info().runtime},
@@ -156,8 +156,8 @@ nlohmann::json facts(HmdSession const& s)
             {"without_pose", c.without_pose},
             {"moved_spaces", c.moved_spaces},
             {"lost_events", c.lost_events},
-            {"hidden_left", mask(Eye::left)},
-            {"hidden_right", mask(Eye::right)}};
+            {"hidden_left", mask(HmdEye::left)},
+            {"hidden_right", mask(HmdEye::right)}};
 }
 
 int run(Options const& o)
