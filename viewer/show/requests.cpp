@@ -136,13 +136,13 @@ void Requests::press(RemoteRequest const& r)
     e.code = code;
     e.action = action == "release" ? InputAction::release : InputAction::press;
     controls_.take(e, 1);
-    state_.renderer->again();
     if (action == "tap") releases_.push_back({now + kTap_s, code});
 }
 
 void Requests::step()
 {
     double const now = state_.clock.now_s();
+    if (!keys_.empty()) state_.renderer->again(); // by now it knows of them, and may rest
     std::erase_if(releases_, [&](auto const& release) {
         if (release.first > now) return false;
         InputEvent e;
