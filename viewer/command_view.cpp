@@ -80,7 +80,7 @@ RecordedScenes scenes_of(RenderOptions const& options, std::string const& avatar
     return s;
 }
 
-/// Of the user whose avatar it is.
+/// Of the first user; rooms whose origin is not on the floor do not tell.
 double eye_height_m(ViewArguments const& a, std::optional<Display> const& display)
 {
     if (!display || display->users.empty()) return a.eye_height_m;
@@ -97,7 +97,7 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
     RecordedScenes scenes = scenes_of(scene, a.avatar, eyes, report);
     o.load = std::move(scenes.load);
     o.drive = std::move(scenes.drive);
-    o.eye_height_m = a.eye_height_m;
+    o.eye_height_m = eyes;
     o.scene = scene.scene;
     CameraChoice const choice = camera_choice(scene);
     o.first_camera = [choice](gi::World const& world) {

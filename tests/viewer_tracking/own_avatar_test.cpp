@@ -204,6 +204,37 @@ TEST(OwnAvatar, RobotExpressive)
     expect_all("robot_expressive.glb");
 }
 
+/// Its arms hang at rest, where the back of the hand is not simply up.
+TEST(OwnAvatar, FingersPointWhereTheirTrackersDo)
+{
+    Driven d("avatar");
+    auto const fingers = [&](std::int32_t hand) {
+        dvec3 tip{0};
+        double weight = 0;
+        for (std::size_t n = 0; n < d.scene.nodes.size(); ++n)
+            for (std::int32_t const m : d.scene.nodes[n].meshes) {
+                gi::Mesh const& mesh = d.scene.meshes[std::size_t(m)];
+                auto const places = gi::deform(d.scene, d.pose, n, mesh).positions;
+                for (std::size_t v = 0; v < mesh.joints.size(); ++v) {
+                    gi::Skin const& skin = d.scene.skins[std::size_t(d.scene.nodes[n].skin)];
+                    if (skin.joints[mesh.joints[v][0]] != hand) continue;
+                    tip += double(mesh.weights[v][0]) * dvec3(places[v]);
+                    weight += double(mesh.weights[v][0]);
+                }
+            }
+        return glm::normalize(tip / weight - d.at(hand));
+    };
+    Tracked t;
+    t.head = RoomPose{{0, 1.65, 0}, {1, 0, 0, 0}};
+    for (dvec3 const turn : {dvec3{0, 0, 0}, dvec3{1.5, 0, 0}, dvec3{-1.5, 0, 0}, dvec3{0.4, -0.9, 0.7}}) {
+        t.left_hand = RoomPose{{-0.3, 1.2, -0.3}, exp_rotation(turn)};
+        t.right_hand = RoomPose{{0.3, 1.2, -0.3}, exp_rotation(turn)};
+        d.to(t);
+        for (std::int32_t const hand : {d.joints.left.hand, d.joints.right.hand})
+            EXPECT_GT(glm::dot(fingers(hand), exp_rotation(turn) * dvec3{0, 0, -1}), 0.9);
+    }
+}
+
 TEST(OwnAvatar, ALostHeadStandsInTheMiddleOfTheRoom)
 {
     Driven d("avatar", 1.7);

@@ -35,7 +35,6 @@ public:
         : core_(options, report), state_(core_.state), link_(link)
     {
         if (options.display) {
-            if (double const eyes = rest().y; eyes > 0.1) state_.navigation.set_eye_height(eyes);
             if (!follows()) tracking_.emplace(*core_.display);
             open_display(*core_.display);
         } else {

@@ -23,7 +23,7 @@ struct ViewOptions {
     int swap_interval = 1;
     int threads = 0;
     NavigationMode navigation = NavigationMode::fly;
-    double eye_height_m = 1.6; ///< above the floor, of who stands before a desktop
+    double eye_height_m = 1.6; ///< of the first user above the floor; a headset says it itself
     std::string screenshots;   ///< prefix of those taken by key
     std::optional<Display> display;
     std::filesystem::path record, frame_log;
