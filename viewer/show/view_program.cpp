@@ -6,9 +6,9 @@
 #include "viewer/show/panel_contents.h"
 #include "viewer/show/present_thread.h"
 #include "viewer/show/shown_window.h"
+#include "viewer/show/user_body.h"
 #include "viewer/show/user_tracking.h"
 #include "viewer/show/view_core.h"
-#include "viewer/tracking/key_hands.h"
 
 #include <epoxy/gl.h>
 
@@ -188,6 +188,7 @@ private:
     {
         NavigationInput const in = core_.controls.motion(seconds);
         state_.navigation.step(in, seconds);
+        body_.step(core_.controls, seconds);
         Viewpoint at;
         at.pose_s = state_.clock.now_s();
         at.display_s = at.pose_s + expected_s_;
@@ -199,11 +200,16 @@ private:
             // The head that rests stands where the navigation is.
             at.world_from_room = state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -rest());
             at.tracked = tracking_->bodies(seen_s);
-            if (core_.options.drive) lend_body(display, at.tracked, seconds);
+            if (core_.options.drive) at.tracked = body_.in_room(display, at.tracked);
             layout = display_layout(display, tracking_->heads(seen_s), at.world_from_room, sizes);
         } else {
             at.world_from_room = state_.navigation.world_from_camera();
-            if (core_.options.drive) stand(at, seconds);
+            if (core_.options.drive) {
+                gi::dmat4 const world_from_head = at.world_from_room;
+                at.world_from_room = state_.navigation.world_from_room() *
+                                     glm::translate(gi::dmat4(1), gi::dvec3{0, -core_.options.eye_height_m, 0});
+                at.tracked = body_.before_desktop(glm::inverse(at.world_from_room) * world_from_head);
+            }
             layout = desktop_layout(state_, possible_mode(), sizes);
         }
         at.views = std::move(layout.views);
@@ -219,33 +225,6 @@ private:
     gi::dvec3 rest() const
     {
         return core_.display->users.empty() ? gi::dvec3{0} : resting_head(core_.display->users[0]).position;
-    }
-
-    /// Before a desktop the camera is the head of a body that stands upright, with hands that keys raise.
-    void stand(Viewpoint& at, double seconds)
-    {
-        hands_.step(core_.controls.raises_left(), core_.controls.raises_right(), seconds);
-        gi::dmat4 const world_from_head = at.world_from_room;
-        at.world_from_room = state_.navigation.world_from_room() *
-                             glm::translate(gi::dmat4(1), gi::dvec3{0, -core_.options.eye_height_m, 0});
-        gi::dmat4 const head = glm::inverse(at.world_from_room) * world_from_head;
-        at.tracked = hands_.with_head({gi::dvec3(head[3]), glm::normalize(glm::quat_cast(glm::dmat3(head)))});
-    }
-
-    /// An avatar has the head that the walls are drawn for: the tracked one, or the one that rests. Keys raise the
-    /// hands of a user whose tracker is keyboard and mouse.
-    void lend_body(Display const& display, Tracked& tracked, double seconds)
-    {
-        if (display.users.empty()) return;
-        User const& user = display.users[0];
-        RoomPose head = tracked.head.value_or(resting_head(user));
-        head.position = eyes_of(user, head).middle;
-        tracked.head = head;
-        bool const fake =
-            user.tracker >= 0 && display.trackers[std::size_t(user.tracker)].type == DisplayTrackerType::fake;
-        if (!fake) return;
-        hands_.step(core_.controls.raises_left(), core_.controls.raises_right(), seconds);
-        tracked = hands_.with_head(head);
     }
 
     bool has_moved() const { return cameras_.size() == shown_cameras_.size() && !(cameras_ == shown_cameras_); }
@@ -417,7 +396,7 @@ private:
     std::unique_ptr<Panel> panel_; ///< not on the walls of a display
     std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;
-    KeyHands hands_;                                  ///< of an avatar
+    UserBody body_;                                   ///< of an avatar
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: now, and as shown
     bool dirty_ = true, fallback_told_ = false;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;
