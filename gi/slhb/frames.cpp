@@ -37,8 +37,8 @@ public:
         if (changes.coverage) restart_ = true; // hit buffers leave out what lets rays through
         if (restart_) return;
         if (changes.materials || changes.environment) renderer_->materials_changed();
-        if (changes.geometry || changes.lights || changes.light_select)
-            renderer_->world_moved(changes.geometry, changes.lights || changes.light_select);
+        bool const lights = changes.lights || changes.light_select || changes.emitters || changes.environment;
+        if (changes.geometry || lights) renderer_->world_moved(changes.geometry, lights);
     }
 
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,

@@ -69,6 +69,7 @@ SlhbRenderer::SlhbRenderer(World const& world, std::span<FrameView const> views,
       grid_bounds_(with_room(world, soup_, first_moving))
 {
     see(views);
+    build_exact();
     end_frame();
     make_axes();
     make_lamps();
@@ -85,11 +86,11 @@ void SlhbRenderer::build_exact()
     auto const build = [&] {
         return std::make_unique<ExactVisibility>(world_, alpha_tests, settings_.threads, first_moving_);
     };
-    if (needs_exact_rays(world_, orthographic())) {
+    if (!exact_ && needs_exact_rays(world_, orthographic())) {
         StageTimer const timer(report_, "build (Embree BVH)");
         exact_ = build();
     }
-    if (slhb_.exact.any()) judge_ = build();
+    if (!judge_ && slhb_.exact.any()) judge_ = build();
 }
 
 /// Also the last surface sends paths along axes: only where the sky or exact rays count there.
@@ -169,7 +170,6 @@ void SlhbRenderer::materials_changed()
         build_exact();
     }
     if (walks_ != walks()) make_axes();
-    make_lamps();
 }
 
 void SlhbRenderer::end_frame()
@@ -205,7 +205,7 @@ void SlhbRenderer::see(std::span<FrameView const> views)
         else if (!known || !v.primary)
             v.primary.emplace(soup_, cut_outs_, settings_, v.width, v.height);
     }
-    if (!exact_ && !judge_) build_exact();
+    if (!exact_ && orthographic()) build_exact(); // they have no raster
 }
 
 void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums)

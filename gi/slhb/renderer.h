@@ -28,7 +28,8 @@ public:
     /// The world has changed: its triangles from the first that moves on, or its lights. What does not depend on
     /// that stays.
     void world_moved(bool geometry, bool lights);
-    /// Colours, roughnesses or emission have changed, but nothing of what lets rays through.
+    /// Colours, roughnesses or the sky have changed, but nothing of what lets rays through; lights are
+    /// world_moved's.
     void materials_changed();
     /// From the next pass on. A view is what the view of the same index was in the frame before.
     void see(std::span<FrameView const> views);
