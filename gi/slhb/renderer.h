@@ -35,7 +35,7 @@ public:
     void see(std::span<FrameView const> views);
     /// One more path for every pixel. @param index of the pass, which decides its random numbers
     /// @param sums  one per view
-    void pass(std::uint32_t index, std::span<Accumulator> sums);
+    void pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings = Endings::exact);
 
     /// Motion vectors of the last pass, to the frame that ended before it; not with orthographic cameras.
     void add_motion(std::size_t view, Picture& picture) const;
@@ -63,7 +63,8 @@ private:
     void make_lamps();
     bool walks() const;
     bool to_the_end() const;
-    void trace(std::uint32_t index, std::span<Accumulator> sums);
+    void trace(std::uint32_t index, std::span<Accumulator> sums, Endings endings);
+    bool start_sharing(std::uint32_t index, std::size_t pixels, Endings endings);
     void trace_view(View const& view, SlhbTracer::Pass const& pass, bool sharing, Work& work);
 
     World const& world_;
