@@ -1,7 +1,7 @@
 #include "study/stats/pair_scale.h"
 
 #include "study/stats/error.h"
-#include "study/stats/likelihood.h"
+#include "study/stats/scores.h"
 #include "study/stats/special.h"
 
 #include <algorithm>
@@ -110,39 +110,6 @@ void check_connected(Matrix const& wins)
                    "scale the connected items by themselves, or compare across");
 }
 
-/// From scores against the first to scores against the mean.
-void set_scores(PairScale& scale, MaximumLikelihood const& fit, std::size_t n)
-{
-    std::vector<double> s(n, 0);
-    Matrix c(n, n);
-    for (std::size_t i = 1; i < n; ++i) {
-        s[i] = fit.estimate[i - 1];
-        for (std::size_t j = 1; j < n; ++j) c(i, j) = fit.covariance(i - 1, j - 1);
-    }
-    double mean = 0, mean_c = 0;
-    std::vector<double> row(n, 0);
-    for (std::size_t i = 0; i < n; ++i) {
-        mean += s[i] / double(n);
-        for (std::size_t j = 0; j < n; ++j) row[i] += c(i, j) / double(n);
-        mean_c += row[i] / double(n);
-    }
-    scale.covariance = Matrix(n, n);
-    for (std::size_t i = 0; i < n; ++i) {
-        scale.score.push_back(s[i] - mean);
-        for (std::size_t j = 0; j < n; ++j) scale.covariance(i, j) = c(i, j) - row[i] - row[j] + mean_c;
-        scale.standard_error.push_back(std::sqrt(std::max(0.0, scale.covariance(i, i))));
-    }
-}
-
-/// Estimates that run off to infinity are stopped where nothing can be gained any more; there they have no error
-/// to speak of.
-bool runs_off(MaximumLikelihood const& fit)
-{
-    for (std::size_t i = 0; i < fit.estimate.size(); ++i)
-        if (!(fit.covariance(i, i) < 1e4)) return true;
-    return false;
-}
-
 } // namespace
 
 PairScale fit_pairs(std::span<PairCount const> pairs, int items, PairSettings const& settings)
@@ -192,7 +159,10 @@ PairScale fit_pairs(std::span<PairCount const> pairs, int items, PairSettings co
     if (settings.ties == TieModel::threshold && !any_ties)
         scale.note += std::string(scale.note.empty() ? "" : "; ") + "no ties: their threshold is 0";
 
-    set_scores(scale, fit, std::size_t(items));
+    Scores centred_scores = centred(fit, std::size_t(items));
+    scale.score = std::move(centred_scores.score);
+    scale.standard_error = std::move(centred_scores.standard_error);
+    scale.covariance = std::move(centred_scores.covariance);
     auto const estimate = [&](std::size_t i) {
         return Estimate{fit.estimate[i], std::sqrt(std::max(0.0, fit.covariance(i, i)))};
     };
