@@ -15,12 +15,21 @@ namespace study {
 
 class Random {
 public:
-    /// Different streams of one seed are independent sequences. @param stream only its lower 63 bits count
+    /// @param stream only its lower 63 bits count. The states of two streams of one seed differ by what only their
+    /// numbers decide: for many of them take part().
     explicit Random(std::uint64_t seed, std::uint64_t stream = 0) : increment_((stream << 1) | 1)
     {
         next();
         state_ += seed;
         next();
+    }
+
+    /// The numbers of one part of many: a participant, a simulation. Seed and index are hashed, so that neighbours
+    /// are independent of each other.
+    static Random part(std::uint64_t seed, std::uint64_t index)
+    {
+        std::uint64_t const hashed = mix(index + mix(seed + kGolden));
+        return Random(hashed, mix(hashed + kGolden));
     }
 
     std::uint32_t next()
@@ -72,6 +81,15 @@ public:
     }
 
 private:
+    static constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15ULL;
+    /// The finaliser of SplitMix64 (Steele et al. 2014): a bijection with full avalanche.
+    static std::uint64_t mix(std::uint64_t v)
+    {
+        v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9ULL;
+        v = (v ^ (v >> 27)) * 0x94d049bb133111ebULL;
+        return v ^ (v >> 31);
+    }
+
     std::uint64_t state_ = 0, increment_;
 };
 

@@ -19,7 +19,7 @@ struct Power {
     int refused = 0; ///< simulations whose test refused its data (std::invalid_argument): they found nothing
 };
 
-/// @param significant  bool(Random&): simulates once and tests. Simulation i has stream i of the seed, whatever
+/// @param significant  bool(Random&): simulates once and tests. Simulation i has part i of the seed, whatever
 /// comes before. @throws std::invalid_argument no simulations
 template <class Experiment>
 Power simulate_power(int simulations, std::uint64_t seed, Experiment const& significant, int size = 0)
@@ -28,7 +28,7 @@ Power simulate_power(int simulations, std::uint64_t seed, Experiment const& sign
     Power p{size, 0, {}, simulations, 0};
     int found = 0;
     for (int i = 0; i < simulations; ++i) {
-        Random random(seed, std::uint64_t(i));
+        Random random = Random::part(seed, std::uint64_t(i));
         try {
             found += significant(random) ? 1 : 0;
         } catch (std::invalid_argument const&) {

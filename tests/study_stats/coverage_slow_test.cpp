@@ -21,7 +21,7 @@ TEST(Coverage, OfObserverBootstrapIntervalsOfScoresIs93To97PerCent)
     double const jod = jod_per_unit(PairModel::thurstone_v);
     int covered[items] = {};
     for (int s = 0; s < simulations; ++s) {
-        Random random(20261, std::uint64_t(s));
+        Random random = Random::part(20261, std::uint64_t(s));
         std::vector<std::vector<PairCount>> data;
         for (int o = 0; o < observers; ++o) {
             double own[items];
@@ -53,10 +53,10 @@ TEST(Coverage, OfSimulatedObserversThresholdsIs93To97PerCent)
 {
     PsychometricSettings const settings{{}, {0.5, 0}, {0.02, 0}};
     PsychometricParameters const truth{0.4, 1.1, 0.5, 0.02};
-    int const simulations = 2000, trials = 50;
+    int const simulations = 2000, trials = 120;
     int threshold = 0, scale = 0;
     for (int s = 0; s < simulations; ++s) {
-        Random random(7, std::uint64_t(s));
+        Random random = Random::part(7, std::uint64_t(s));
         std::vector<LevelCount> counts;
         for (double level : {-2.0, -1.0, 0.0, 0.5, 1.0, 2.0, 3.5}) {
             counts.push_back({level, 0, double(trials)});

@@ -76,5 +76,21 @@ TEST(Random, StreamsOfOneSeedDiffer)
     EXPECT_EQ(first, again.next());
 }
 
+TEST(Random, PartsOfASeedAreSpreadByChance)
+{
+    // 4,000 first numbers in 100 bins: chance fills them unevenly, a lattice does not.
+    auto const chi2 = [](auto const& first) {
+        std::array<int, 100> bins{};
+        for (std::uint64_t i = 0; i < 4000; ++i) ++bins[std::size_t(first(i) * 100)];
+        double sum = 0;
+        for (int const b : bins) sum += (b - 40.0) * (b - 40.0) / 40;
+        return sum;
+    };
+    double const parts = chi2([](std::uint64_t i) { return Random::part(7, i).uniform(); });
+    EXPECT_GT(parts, 57); // 0.02 % and 99.98 % points of 99 degrees of freedom
+    EXPECT_LT(parts, 155);
+    EXPECT_NE(Random::part(7, 0).next(), Random::part(8, 0).next());
+}
+
 } // namespace
 } // namespace study::test
