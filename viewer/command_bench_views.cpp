@@ -33,6 +33,16 @@ gi::Camera aside(gi::Camera camera, double m)
     return camera;
 }
 
+/// Who stands in a CAVE stands in the scene: a camera that looks into it from outside goes to its middle.
+gi::Camera inside(gi::Camera camera, gi::World const& world)
+{
+    gi::vec3 const at = gi::vec3(gi::dvec3(camera.world_from_camera[3]) - world.origin);
+    gi::Bounds const& b = world.bounds;
+    bool const is_inside = glm::all(glm::greaterThan(at, b.low)) && glm::all(glm::lessThan(at, b.high));
+    if (!is_inside) camera.world_from_camera[3] = glm::dvec4(gi::dvec3(0.5f * (b.low + b.high)) + world.origin, 1);
+    return camera;
+}
+
 /// Left, right, below and before the eye, 90 degrees each.
 std::vector<ViewOrder> walls(gi::Camera const& eye, int size)
 {
@@ -53,9 +63,12 @@ std::vector<ViewOrder> walls(gi::Camera const& eye, int size)
 struct Variant {
     std::string name;
     Views views;
-    std::unique_ptr<Session> session;
-    std::vector<double> ms;
-    SessionFrame last;
+    bool in_cave = false;
+    std::unique_ptr<gi::Report> report{};
+    std::unique_ptr<Session> session{};
+    std::vector<double> ms{};
+    std::map<std::string, std::vector<double>> stages_ms{};
+    SessionFrame last{};
 };
 
 /// relMSE of the last view of a frame against the reference from the same place.
@@ -74,10 +87,19 @@ double error_of(gi::World const& world, FrameOrder const& order, SessionFrame co
         .relmse;
 }
 
+/// What the frames of a variant spent their time on, median of each stage, ms.
+std::string stages_of(Variant const& v)
+{
+    std::string text;
+    for (auto const& [stage, ms] : v.stages_ms)
+        if (double const median = summarise(ms).median; median >= 0.05)
+            text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", stage, median);
+    return text;
+}
+
 void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
 {
     auto const [width, height] = parse_size(o.size);
-    gi::Report report;
     int const w = width, h = height;
     auto const load = [](std::string const& name, gi::Report& r) {
         RenderOptions options;
@@ -86,60 +108,54 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
     };
     double const apart = o.eye_distance_m;
     std::vector<Variant> variants;
-    variants.push_back({"one view",
-                        [=](gi::Camera const& c) {
+    variants.push_back({"one view", [=](gi::Camera const& c) {
                             return std::vector<ViewOrder>{{"left", c, w, h, -1}};
-                        },
-                        {},
-                        {},
-                        {}});
-    variants.push_back({"other eye alone",
-                        [=](gi::Camera const& c) {
+                        }});
+    variants.push_back({"other eye alone", [=](gi::Camera const& c) {
                             return std::vector<ViewOrder>{{"right", aside(c, apart), w, h, -1}};
-                        },
-                        {},
-                        {},
-                        {}});
+                        }});
     for (int const partner : {0, -1})
         variants.push_back(
-            {partner == 0 ? "two eyes" : "two eyes, no light shared",
-             [=](gi::Camera const& c) {
+            {partner == 0 ? "two eyes" : "two eyes, no light shared", [=](gi::Camera const& c) {
                  return std::vector<ViewOrder>{{"left", c, w, h, -1}, {"right", aside(c, apart), w, h, partner}};
-             },
-             {},
-             {},
-             {}});
+             }});
     variants.push_back(
-        {"one wall", [=](gi::Camera const& c) { return std::vector<ViewOrder>{walls(c, h).back()}; }, {}, {}, {}});
-    variants.push_back({"four walls", [=](gi::Camera const& c) { return walls(c, h); }, {}, {}, {}});
+        {"one wall", [=](gi::Camera const& c) { return std::vector<ViewOrder>{walls(c, h).back()}; }, true});
+    variants.push_back({"four walls", [=](gi::Camera const& c) { return walls(c, h); }, true});
     for (Variant& v : variants) {
-        v.session = std::make_unique<Session>(load, 0, report);
+        v.report = std::make_unique<gi::Report>();
+        v.session = std::make_unique<Session>(load, 0, *v.report);
         for (std::string const& text : o.settings) v.session->apply(parse_change(text));
         v.session->apply({"scene", scene});
     }
     gi::Camera const start = choose_camera(variants[0].session->world(), {}).camera;
+    gi::Camera const in_cave = inside(start, variants[0].session->world());
     double const step = 0.002 * double(variants[0].session->world().bounds.radius());
+    auto const eye = [&](Variant const& v, int f) { return aside(v.in_cave ? in_cave : start, step * f); };
     FrameOrder order;
     for (int f = 0; f < o.frames; ++f) // they take turns
         for (Variant& v : variants) {
             order.frame = std::uint64_t(f);
             order.scene_s = f / 20.0;
-            order.views = v.views(aside(start, step * f));
+            order.views = v.views(eye(v, f));
             double const s = seconds_of([&] { v.last = v.session->render(order, {}); });
-            if (f >= 4) v.ms.push_back(1e3 * s); // those before build what lasts
+            if (f < 4) continue; // they build what lasts
+            v.ms.push_back(1e3 * s);
+            for (auto const& [stage, stage_s] : v.last.stages_s) v.stages_ms[stage].push_back(1e3 * stage_s);
         }
     for (std::size_t k = 0; k < variants.size(); ++k) {
         Variant& v = variants[k];
-        order.views = v.views(aside(start, step * (o.frames - 1)));
+        order.views = v.views(eye(v, o.frames - 1));
         double const more = double(order.views.size()) - 1;
         // Against the variant of one view that came in the same round.
-        std::vector<double> const& first = variants[k < 4 ? 0 : 4].ms;
+        std::vector<double> const& first = variants[v.in_cave ? 4 : 0].ms;
         std::vector<double> extra;
         for (std::size_t f = 0; f < v.ms.size(); ++f) extra.push_back((v.ms[f] - first[f]) / std::max(1.0, more));
         table.add({scene, v.name, double(order.views.size()),
                    fmt::format("{}x{}", order.views[0].width, order.views[0].height), summarise(v.ms),
                    more > 0 ? Cell(ratio(extra, first)) : Cell(),
-                   error_of(v.session->world(), order, v.last, o.reference_paths, report)});
+                   error_of(v.session->world(), order, v.last, o.reference_paths, *v.report)});
+        table.facts.emplace_back(fmt::format("stages, ms: {}, {}", scene, v.name), stages_of(v));
     }
 }
 

@@ -28,7 +28,6 @@ public:
     void set_mode(NavigationMode mode);
     NavigationMode mode() const { return mode_; }
     void set_pivot(gi::dvec3 pivot) { pivot_ = pivot; }
-    void set_speed(double m_s) { speed_m_s_ = m_s; }
     /// Elsewhere at once. Tilt about the view's axis is taken off.
     void go_to(gi::dmat4 const& world_from_camera);
     /// @param seconds  since the last step; long pauses count as a tenth
