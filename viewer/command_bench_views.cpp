@@ -1,5 +1,7 @@
 #include "gi/base/error.h"
+#include "gi/base/picture_file.h"
 #include "gi/image/metrics.h"
+#include "gi/image/tone_map.h"
 #include "viewer/arguments.h"
 #include "viewer/bench/table_file.h"
 #include "viewer/bench_record.h"
@@ -71,9 +73,14 @@ struct Variant {
     SessionFrame last{};
 };
 
-/// relMSE of the last view of a frame against the reference from the same place.
+void write_picture(gi::Layer const& color, ViewOrder const& view, std::filesystem::path const& file)
+{
+    gi::write_png(file, view.width, view.height, gi::tone_map_bytes(color, {}));
+}
+
+/// relMSE of the last view of a frame against the reference from the same place; both are written as pictures.
 double error_of(gi::World const& world, FrameOrder const& order, SessionFrame const& frame, int paths,
-                gi::Report& report)
+                std::filesystem::path const& pictures, gi::Report& report)
 {
     gi::RenderSettings s;
     ViewOrder const& view = order.views.back();
@@ -83,8 +90,10 @@ double error_of(gi::World const& world, FrameOrder const& order, SessionFrame co
     s.seed = 99;
     s.bounces = Settings{}.bounces;
     gi::RenderResult const truth = gi::find_method("reference").render(world, view.camera, s, {}, {}, report);
-    return gi::measure_errors(frame.views.back().picture.find("color")->data, truth.picture.find("color")->data, 3)
-        .relmse;
+    gi::Layer const &seen = *frame.views.back().picture.find("color"), &right = *truth.picture.find("color");
+    write_picture(seen, view, pictures.string() + ".png");
+    write_picture(right, view, pictures.string() + " reference.png");
+    return gi::measure_errors(seen.data, right.data, 3).relmse;
 }
 
 /// What the frames of a variant spent their time on, median of each stage, ms.
@@ -154,7 +163,10 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
         table.add({scene, v.name, double(order.views.size()),
                    fmt::format("{}x{}", order.views[0].width, order.views[0].height), summarise(v.ms),
                    more > 0 ? Cell(ratio(extra, first)) : Cell(),
-                   error_of(v.session->world(), order, v.last, o.reference_paths, *v.report)});
+                   error_of(v.session->world(), order, v.last, o.reference_paths,
+                            std::filesystem::path(o.out) /
+                                fmt::format("{} {}", std::filesystem::path(scene).stem().string(), v.name),
+                            *v.report)});
         table.facts.emplace_back(fmt::format("stages, ms: {}, {}", scene, v.name), stages_of(v));
     }
 }
@@ -192,7 +204,7 @@ void add_bench_views(CLI::App& bench, int& exit_code)
         ->capture_default_str();
     c->add_option("--eye-distance", o->eye_distance_m, "m")->capture_default_str();
     c->add_option("--reference-paths", o->reference_paths, "per pixel")->capture_default_str();
-    c->add_option("--out", o->out, "folder for views.json and views.csv")->required();
+    c->add_option("--out", o->out, "folder for views.json, views.csv and pictures")->required();
     c->add_flag("--json", o->json, "print the table as JSON");
     c->footer(R"(Example:
   lightwell bench views --scene cornell --size 48x36 --frames 8 --reference-paths 16 --out views
