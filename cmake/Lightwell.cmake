@@ -18,6 +18,16 @@ if(LIGHTWELL_SANITIZE)
   target_link_options(lightwell_options INTERFACE -fsanitize=${LIGHTWELL_SANITIZE})
 endif()
 
+# lightwell_precompile(TARGET headers...): the precompiled header of a target, as others reuse it.
+function(lightwell_precompile target)
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>) # for ccache
+  target_precompile_headers(${target} PRIVATE ${ARGN})
+endfunction()
+function(lightwell_reuse_precompiled target from)
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  target_precompile_headers(${target} REUSE_FROM ${from})
+endfunction()
+
 # lightwell_library(NAME [PUBLIC targets...] [PRIVATE targets...])
 # All .cpp files of the current folder. What PUBLIC names is what its headers may include.
 function(lightwell_library name)
@@ -30,9 +40,25 @@ function(lightwell_library name)
   add_library(${name} STATIC ${sources} ${cuda_sources})
   target_link_libraries(${name} PUBLIC lightwell_options ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
   if(NOT LIGHTWELL_CUDA)
-    target_precompile_headers(${name} PRIVATE <glm/glm.hpp> <string> <vector> <map> <memory> <filesystem> <functional>)
+    lightwell_reuse_precompiled(${name} lightwell_library_headers)
   endif()
 endfunction()
+
+# One precompiled header for all libraries and one for all tests; GCC wants the same kind of code in what reuses it.
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/headers.cpp CONTENT "int main() {}\n")
+if(NOT LIGHTWELL_CUDA)
+  add_library(lightwell_library_headers STATIC ${PROJECT_BINARY_DIR}/headers.cpp)
+  target_link_libraries(lightwell_library_headers PRIVATE lightwell_options)
+  lightwell_precompile(lightwell_library_headers
+    <glm/glm.hpp> <string> <vector> <map> <memory> <filesystem> <functional> <algorithm> <optional> <span>)
+endif()
+if(NOT LIGHTWELL_FUZZ)
+  add_executable(lightwell_test_headers ${PROJECT_BINARY_DIR}/headers.cpp)
+  target_link_libraries(lightwell_test_headers PRIVATE lightwell_options GTest::gtest)
+  lightwell_precompile(lightwell_test_headers
+    <gtest/gtest.h> <glm/glm.hpp> <string> <vector> <map> <memory> <filesystem> <functional> <algorithm> <optional> <span>
+    <fstream> <sstream>)
+endif()
 
 # lightwell_tests(FOLDER libraries...)
 # The suffix of a file gives its label: x_test.cpp unit, x_analytic_test.cpp analytic, x_image_test.cpp image,
@@ -53,7 +79,7 @@ function(lightwell_tests folder)
       target_link_libraries(${target} PRIVATE ${arg_UNPARSED_ARGUMENTS} GTest::gtest GTest::gtest_main)
       target_compile_definitions(${target} PRIVATE
         LIGHTWELL_SOURCE_DIR="${PROJECT_SOURCE_DIR}" LIGHTWELL_PROGRAM="$<TARGET_FILE_DIR:lightwell>/lightwell")
-      target_precompile_headers(${target} PRIVATE <gtest/gtest.h> <glm/glm.hpp> <string> <vector>)
+      lightwell_reuse_precompiled(${target} lightwell_test_headers)
       gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${folder}." PROPERTIES LABELS ${label} TIMEOUT 600 RUN_SERIAL ${arg_SERIAL})
     endif()
   endforeach()

@@ -1,5 +1,7 @@
 #include "gi/base/error.h"
+#include "gi/base/picture_file.h"
 #include "gi/image/metrics.h"
+#include "gi/image/tone_map.h"
 #include "viewer/arguments.h"
 #include "viewer/bench/table_file.h"
 #include "viewer/bench_record.h"
@@ -33,6 +35,16 @@ gi::Camera aside(gi::Camera camera, double m)
     return camera;
 }
 
+/// Who stands in a CAVE stands in the scene: a camera that looks into it from outside goes to its middle.
+gi::Camera inside(gi::Camera camera, gi::World const& world)
+{
+    gi::vec3 const at = gi::vec3(gi::dvec3(camera.world_from_camera[3]) - world.origin);
+    gi::Bounds const& b = world.bounds;
+    bool const is_inside = glm::all(glm::greaterThan(at, b.low)) && glm::all(glm::lessThan(at, b.high));
+    if (!is_inside) camera.world_from_camera[3] = glm::dvec4(gi::dvec3(0.5f * (b.low + b.high)) + world.origin, 1);
+    return camera;
+}
+
 /// Left, right, below and before the eye, 90 degrees each.
 std::vector<ViewOrder> walls(gi::Camera const& eye, int size)
 {
@@ -53,14 +65,22 @@ std::vector<ViewOrder> walls(gi::Camera const& eye, int size)
 struct Variant {
     std::string name;
     Views views;
-    std::unique_ptr<Session> session;
-    std::vector<double> ms;
-    SessionFrame last;
+    bool in_cave = false;
+    std::unique_ptr<gi::Report> report{};
+    std::unique_ptr<Session> session{};
+    std::vector<double> ms{};
+    std::map<std::string, std::vector<double>> stages_ms{};
+    SessionFrame last{};
 };
 
-/// relMSE of the last view of a frame against the reference from the same place.
+void write_picture(gi::Layer const& color, ViewOrder const& view, std::filesystem::path const& file)
+{
+    gi::write_png(file, view.width, view.height, gi::tone_map_bytes(color, {}));
+}
+
+/// relMSE of the last view of a frame against the reference from the same place; both are written as pictures.
 double error_of(gi::World const& world, FrameOrder const& order, SessionFrame const& frame, int paths,
-                gi::Report& report)
+                std::filesystem::path const& pictures, gi::Report& report)
 {
     gi::RenderSettings s;
     ViewOrder const& view = order.views.back();
@@ -70,14 +90,25 @@ double error_of(gi::World const& world, FrameOrder const& order, SessionFrame co
     s.seed = 99;
     s.bounces = Settings{}.bounces;
     gi::RenderResult const truth = gi::find_method("reference").render(world, view.camera, s, {}, {}, report);
-    return gi::measure_errors(frame.views.back().picture.find("color")->data, truth.picture.find("color")->data, 3)
-        .relmse;
+    gi::Layer const &seen = *frame.views.back().picture.find("color"), &right = *truth.picture.find("color");
+    write_picture(seen, view, pictures.string() + ".png");
+    write_picture(right, view, pictures.string() + " reference.png");
+    return gi::measure_errors(seen.data, right.data, 3).relmse;
+}
+
+/// What the frames of a variant spent their time on, median of each stage, ms.
+std::string stages_of(Variant const& v)
+{
+    std::string text;
+    for (auto const& [stage, ms] : v.stages_ms)
+        if (double const median = summarise(ms).median; median >= 0.05)
+            text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", stage, median);
+    return text;
 }
 
 void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
 {
     auto const [width, height] = parse_size(o.size);
-    gi::Report report;
     int const w = width, h = height;
     auto const load = [](std::string const& name, gi::Report& r) {
         RenderOptions options;
@@ -86,60 +117,57 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
     };
     double const apart = o.eye_distance_m;
     std::vector<Variant> variants;
-    variants.push_back({"one view",
-                        [=](gi::Camera const& c) {
+    variants.push_back({"one view", [=](gi::Camera const& c) {
                             return std::vector<ViewOrder>{{"left", c, w, h, -1}};
-                        },
-                        {},
-                        {},
-                        {}});
-    variants.push_back({"other eye alone",
-                        [=](gi::Camera const& c) {
+                        }});
+    variants.push_back({"other eye alone", [=](gi::Camera const& c) {
                             return std::vector<ViewOrder>{{"right", aside(c, apart), w, h, -1}};
-                        },
-                        {},
-                        {},
-                        {}});
+                        }});
     for (int const partner : {0, -1})
         variants.push_back(
-            {partner == 0 ? "two eyes" : "two eyes, no light shared",
-             [=](gi::Camera const& c) {
+            {partner == 0 ? "two eyes" : "two eyes, no light shared", [=](gi::Camera const& c) {
                  return std::vector<ViewOrder>{{"left", c, w, h, -1}, {"right", aside(c, apart), w, h, partner}};
-             },
-             {},
-             {},
-             {}});
+             }});
     variants.push_back(
-        {"one wall", [=](gi::Camera const& c) { return std::vector<ViewOrder>{walls(c, h).back()}; }, {}, {}, {}});
-    variants.push_back({"four walls", [=](gi::Camera const& c) { return walls(c, h); }, {}, {}, {}});
+        {"one wall", [=](gi::Camera const& c) { return std::vector<ViewOrder>{walls(c, h).back()}; }, true});
+    variants.push_back({"four walls", [=](gi::Camera const& c) { return walls(c, h); }, true});
     for (Variant& v : variants) {
-        v.session = std::make_unique<Session>(load, 0, report);
+        v.report = std::make_unique<gi::Report>();
+        v.session = std::make_unique<Session>(load, 0, *v.report);
         for (std::string const& text : o.settings) v.session->apply(parse_change(text));
         v.session->apply({"scene", scene});
     }
     gi::Camera const start = choose_camera(variants[0].session->world(), {}).camera;
+    gi::Camera const in_cave = inside(start, variants[0].session->world());
     double const step = 0.002 * double(variants[0].session->world().bounds.radius());
+    auto const eye = [&](Variant const& v, int f) { return aside(v.in_cave ? in_cave : start, step * f); };
     FrameOrder order;
     for (int f = 0; f < o.frames; ++f) // they take turns
         for (Variant& v : variants) {
             order.frame = std::uint64_t(f);
             order.scene_s = f / 20.0;
-            order.views = v.views(aside(start, step * f));
+            order.views = v.views(eye(v, f));
             double const s = seconds_of([&] { v.last = v.session->render(order, {}); });
-            if (f >= 4) v.ms.push_back(1e3 * s); // those before build what lasts
+            if (f < 4) continue; // they build what lasts
+            v.ms.push_back(1e3 * s);
+            for (auto const& [stage, stage_s] : v.last.stages_s) v.stages_ms[stage].push_back(1e3 * stage_s);
         }
     for (std::size_t k = 0; k < variants.size(); ++k) {
         Variant& v = variants[k];
-        order.views = v.views(aside(start, step * (o.frames - 1)));
+        order.views = v.views(eye(v, o.frames - 1));
         double const more = double(order.views.size()) - 1;
         // Against the variant of one view that came in the same round.
-        std::vector<double> const& first = variants[k < 4 ? 0 : 4].ms;
+        std::vector<double> const& first = variants[v.in_cave ? 4 : 0].ms;
         std::vector<double> extra;
         for (std::size_t f = 0; f < v.ms.size(); ++f) extra.push_back((v.ms[f] - first[f]) / std::max(1.0, more));
         table.add({scene, v.name, double(order.views.size()),
                    fmt::format("{}x{}", order.views[0].width, order.views[0].height), summarise(v.ms),
                    more > 0 ? Cell(ratio(extra, first)) : Cell(),
-                   error_of(v.session->world(), order, v.last, o.reference_paths, report)});
+                   error_of(v.session->world(), order, v.last, o.reference_paths,
+                            std::filesystem::path(o.out) /
+                                fmt::format("{} {}", std::filesystem::path(scene).stem().string(), v.name),
+                            *v.report)});
+        table.facts.emplace_back(fmt::format("stages, ms: {}, {}", scene, v.name), stages_of(v));
     }
 }
 
@@ -176,7 +204,7 @@ void add_bench_views(CLI::App& bench, int& exit_code)
         ->capture_default_str();
     c->add_option("--eye-distance", o->eye_distance_m, "m")->capture_default_str();
     c->add_option("--reference-paths", o->reference_paths, "per pixel")->capture_default_str();
-    c->add_option("--out", o->out, "folder for views.json and views.csv")->required();
+    c->add_option("--out", o->out, "folder for views.json, views.csv and pictures")->required();
     c->add_flag("--json", o->json, "print the table as JSON");
     c->footer(R"(Example:
   lightwell bench views --scene cornell --size 48x36 --frames 8 --reference-paths 16 --out views

@@ -101,7 +101,7 @@ public:
         paths_ += result.paths;
         return result;
     }
-    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths,
+    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings,
                                     StopRequest const& stop) override
     {
         RenderProgress const silent;

@@ -37,8 +37,8 @@ public:
         if (changes.coverage) restart_ = true; // hit buffers leave out what lets rays through
         if (restart_) return;
         if (changes.materials || changes.environment) renderer_->materials_changed();
-        if (changes.geometry || changes.lights || changes.light_select)
-            renderer_->world_moved(changes.geometry, changes.lights || changes.light_select);
+        bool const lights = changes.lights || changes.light_select || changes.emitters || changes.environment;
+        if (changes.geometry || lights) renderer_->world_moved(changes.geometry, lights);
     }
 
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
@@ -64,7 +64,7 @@ public:
         return result;
     }
 
-    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths,
+    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings endings,
                                     StopRequest const& stop) override
     {
         auto const begun = std::chrono::steady_clock::now();
@@ -73,7 +73,7 @@ public:
         sums_.clear();
         for (FrameView const& v : views) sums_.emplace_back(v.width, v.height);
         for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
-            on_threads(settings_.threads, [&] { renderer_->pass(passes_++, sums_); });
+            on_threads(settings_.threads, [&] { renderer_->pass(passes_++, sums_, endings); });
         std::vector<RenderResult> results(views.size());
         PathCounts lost;
         for (std::size_t k = 0; k < views.size(); ++k) {

@@ -69,6 +69,7 @@ SlhbRenderer::SlhbRenderer(World const& world, std::span<FrameView const> views,
       grid_bounds_(with_room(world, soup_, first_moving))
 {
     see(views);
+    build_exact();
     end_frame();
     make_axes();
     make_lamps();
@@ -85,11 +86,11 @@ void SlhbRenderer::build_exact()
     auto const build = [&] {
         return std::make_unique<ExactVisibility>(world_, alpha_tests, settings_.threads, first_moving_);
     };
-    if (needs_exact_rays(world_, orthographic())) {
+    if (!exact_ && needs_exact_rays(world_, orthographic())) {
         StageTimer const timer(report_, "build (Embree BVH)");
         exact_ = build();
     }
-    if (slhb_.exact.any()) judge_ = build();
+    if (!judge_ && slhb_.exact.any()) judge_ = build();
 }
 
 /// Also the last surface sends paths along axes: only where the sky or exact rays count there.
@@ -169,7 +170,6 @@ void SlhbRenderer::materials_changed()
         build_exact();
     }
     if (walks_ != walks()) make_axes();
-    make_lamps();
 }
 
 void SlhbRenderer::end_frame()
@@ -205,10 +205,10 @@ void SlhbRenderer::see(std::span<FrameView const> views)
         else if (!known || !v.primary)
             v.primary.emplace(soup_, cut_outs_, settings_, v.width, v.height);
     }
-    if (!exact_ && !judge_) build_exact();
+    if (!exact_ && orthographic()) build_exact(); // they have no raster
 }
 
-void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums)
+void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings)
 {
     // Surfaces that a path may leave along an axis.
     auto const sequences =
@@ -231,7 +231,7 @@ void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums)
                 v.primary->refresh(eye_of_pass(v.rays, settings_.seed, index), near_plane(world_.bounds), index);
     }
     StageTimer const timer(report_, "paths");
-    trace(index, sums);
+    trace(index, sums, endings);
     for (Accumulator& s : sums) ++s.paths;
 }
 
@@ -296,11 +296,25 @@ void SlhbRenderer::trace_view(View const& view, SlhbTracer::Pass const& pass, bo
                 if (sharing) ends[at] = traced_ends[k];
             }
         }
-        if (sharing) shared_.note(ends, std::uint32_t(view.first + first));
+        if (sharing) shared_.note(ends, std::uint32_t(view.first + first), pass.axes.pool());
     });
 }
 
-void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums)
+/// Whether paths of this pass end on the first matt layer and share what is sent on there.
+bool SlhbRenderer::start_sharing(std::uint32_t index, std::size_t pixels, Endings endings)
+{
+    bool const possible = settings_.bounces > 0 && slhb_.cone == 0 && !slhb_.exact.queries;
+    std::size_t const layers = axes_->first_bounce_layers();
+    bool const in_cells = possible && endings == Endings::in_cells && !orthographic(),
+               on_layers = possible && layers < pixels;
+    if (in_cells)
+        shared_.start_cells(pixels, EndingCells(world_, views_[0].rays.origin, index), index);
+    else
+        shared_.start_layers(pixels, on_layers ? layers : 0, index);
+    return in_cells || on_layers;
+}
+
+void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums, Endings endings)
 {
     std::uint32_t const gathered = slhb_.gather && walks_
                                        ? index / std::uint32_t(slhb_.interleave * slhb_.interleave) %
@@ -308,10 +322,7 @@ void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums)
                                        : kNoPrimitive;
     SlhbTracer::Pass const now{*axes_, *lamps_, exact_.get(), index, gathered, judge_.get()};
     std::size_t const pixels = views_.back().first + views_.back().pixels();
-    // Where many paths end on few layers, what a layer sends back is computed once.
-    bool const sharing =
-        settings_.bounces > 0 && slhb_.cone == 0 && !slhb_.exact.queries && axes_->first_bounce_layers() < pixels;
-    shared_.start(sharing ? axes_->first_bounce_layers() : 0);
+    bool const sharing = start_sharing(index, pixels, endings);
     samples_.resize(pixels);
     endings_.resize(sharing ? pixels : 0);
     taken_from_.assign(views_.size() > 1 ? pixels : 0, kNoPartner);
@@ -334,8 +345,7 @@ void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums)
         work.in_blocks(v.pixels(), [&](std::size_t first, std::size_t last, Work::Counts&) {
             for (std::size_t p = first; p < last; ++p) {
                 if (sharing && endings_[v.first + p].layer != kNoLayerHit)
-                    samples[p].radiance[2] +=
-                        endings_[v.first + p].throughput * shared_.radiance(endings_[v.first + p]);
+                    samples[p].radiance[2] += endings_[v.first + p].throughput * shared_.radiance(v.first + p);
                 if (partner && taken_from_[v.first + p] != kNoPartner)
                     take_light(partner[taken_from_[v.first + p]], samples[p]);
                 sums[k].add(p, samples[p], sums[k].paths);
@@ -364,7 +374,7 @@ void SlhbRenderer::report_work() const
     report_.count("hit-buffer queries", double(done_.queries));
     report_.count("shadow-map look-ups", double(done_.shadow_lookups));
     report_.count("exact rays", double(done_.exact_rays));
-    report_.count("layers shaded for several paths", double(shared_.shaded()));
+    report_.count("endings shaded for several paths", double(shared_.shaded()));
     if (taking_ > 0) report_.count("share of pixels lit by a partner view", double(taken_) / double(taking_));
     double const axes = double(earlier_sets_.axes + axes_->built()),
                  layers = double(earlier_sets_.layers + axes_->layers());

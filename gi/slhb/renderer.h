@@ -28,13 +28,14 @@ public:
     /// The world has changed: its triangles from the first that moves on, or its lights. What does not depend on
     /// that stays.
     void world_moved(bool geometry, bool lights);
-    /// Colours, roughnesses or emission have changed, but nothing of what lets rays through.
+    /// Colours, roughnesses or the sky have changed, but nothing of what lets rays through; lights are
+    /// world_moved's.
     void materials_changed();
     /// From the next pass on. A view is what the view of the same index was in the frame before.
     void see(std::span<FrameView const> views);
     /// One more path for every pixel. @param index of the pass, which decides its random numbers
     /// @param sums  one per view
-    void pass(std::uint32_t index, std::span<Accumulator> sums);
+    void pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings = Endings::exact);
 
     /// Motion vectors of the last pass, to the frame that ended before it; not with orthographic cameras.
     void add_motion(std::size_t view, Picture& picture) const;
@@ -62,7 +63,8 @@ private:
     void make_lamps();
     bool walks() const;
     bool to_the_end() const;
-    void trace(std::uint32_t index, std::span<Accumulator> sums);
+    void trace(std::uint32_t index, std::span<Accumulator> sums, Endings endings);
+    bool start_sharing(std::uint32_t index, std::size_t pixels, Endings endings);
     void trace_view(View const& view, SlhbTracer::Pass const& pass, bool sharing, Work& work);
 
     World const& world_;

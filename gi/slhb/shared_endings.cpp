@@ -1,36 +1,92 @@
 #include "gi/slhb/shared_endings.h"
 
+#include "gi/base/rng.h"
+
 #include <algorithm>
 #include <atomic>
 
 namespace gi {
+namespace {
 
-void SharedEndings::start(std::size_t layers)
+constexpr std::uint32_t kNone = 0xffffffff;
+/// Far more than there are cells, so that few have the same.
+constexpr std::size_t kCellSlots = std::size_t(1) << 17;
+
+/// A bijection, so that the first of a slot is any of its paths.
+constexpr std::uint32_t kOdd = 0x9e3779b1;
+constexpr std::uint32_t inverse_of(std::uint32_t odd)
 {
-    slots_.assign(2 * layers, kNoLayerHit);
+    std::uint32_t x = odd; // Newton: each step doubles the right bits, of which odd has three
+    for (int i = 0; i < 4; ++i) x *= 2 - odd * x;
+    return x;
+}
+std::uint32_t rank_of(std::uint32_t path, std::uint32_t key) { return (path ^ key) * kOdd; }
+std::uint32_t path_of(std::uint32_t rank, std::uint32_t key) { return (rank * inverse_of(kOdd)) ^ key; }
+
+} // namespace
+
+vec3 SharedEndings::arrival(Ending const& e, AxisPool const& pool)
+{
+    vec3 const along = pool.grids[e.axis].axis;
+    return e.up ? along : -along;
+}
+
+void SharedEndings::start(std::size_t paths, std::size_t slots, std::uint32_t pass)
+{
+    order_key_ = std::uint32_t(mix_bits(pass)) & 0x7fffffff; // no path has the rank kNone
+    slots_.assign(slots, kNone);
+    start_of_.resize(slots > 0 ? paths : 0);
     starts_.clear();
 }
 
-void SharedEndings::note(std::span<Ending const> endings, std::uint32_t first_pixel)
+void SharedEndings::start_layers(std::size_t paths, std::size_t layers, std::uint32_t pass)
+{
+    cells_.reset();
+    start(paths, 2 * layers, pass);
+}
+
+void SharedEndings::start_cells(std::size_t paths, EndingCells const& cells, std::uint32_t pass)
+{
+    cells_ = cells;
+    keys_.resize(paths);
+    start(paths, kCellSlots, pass);
+}
+
+void SharedEndings::note(std::span<Ending const> endings, std::uint32_t first, AxisPool const& pool)
 {
     for (std::size_t k = 0; k < endings.size(); ++k) {
-        if (endings[k].layer == kNoLayerHit) continue;
-        std::atomic_ref<std::uint32_t> const slot(slots_[key(endings[k])]);
-        std::uint32_t const pixel = first_pixel + std::uint32_t(k);
+        Ending const& e = endings[k];
+        if (e.layer == kNoLayerHit) continue;
+        std::uint32_t const path = first + std::uint32_t(k);
+        std::size_t at = 2 * std::size_t(e.layer) + (e.up ? 1 : 0);
+        if (cells_) {
+            keys_[path] = cells_->key(e, arrival(e, pool));
+            at = keys_[path] % kCellSlots;
+        }
+        start_of_[path] = std::uint32_t(at);
+        std::atomic_ref<std::uint32_t> const slot(slots_[at]);
+        std::uint32_t const rank = rank_of(path, order_key_);
         for (std::uint32_t seen = slot.load(std::memory_order_relaxed);
-             pixel < seen && !slot.compare_exchange_weak(seen, pixel, std::memory_order_relaxed);) {
+             rank < seen && !slot.compare_exchange_weak(seen, rank, std::memory_order_relaxed);) {
         }
     }
 }
 
 void SharedEndings::collect(std::vector<Ending> const& endings, AxisPool const& pool)
 {
-    for (std::size_t k = 0; k < slots_.size(); ++k) {
-        if (slots_[k] == kNoLayerHit) continue;
-        Ending const& e = endings[slots_[k]];
-        vec3 const along = pool.grids[e.axis].axis;
-        slots_[k] = std::uint32_t(starts_.size());
-        starts_.push_back({0x80000000u | std::uint32_t(k), e.triangle, {e.position, e.up ? along : -along}, true});
+    if (slots_.empty()) return;
+    auto const add = [&](std::uint32_t path) {
+        Ending const& e = endings[path];
+        starts_.push_back({0x80000000u | path, e.triangle, {e.position, arrival(e, pool)}, true});
+        return std::uint32_t(starts_.size() - 1);
+    };
+    for (std::uint32_t& slot : slots_)
+        if (slot != kNone) slot = add(path_of(slot, order_key_));
+    for (std::uint32_t path = 0; path < endings.size(); ++path) {
+        if (endings[path].layer == kNoLayerHit) continue;
+        std::uint32_t const first = slots_[start_of_[path]];
+        bool const same = !cells_ || keys_[starts_[first].stream & 0x7fffffffu] == keys_[path];
+        start_of_[path] = same ? first : add(path);
     }
     radiance_.resize(starts_.size());
     shaded_ += starts_.size();

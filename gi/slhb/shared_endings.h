@@ -1,32 +1,41 @@
 #pragma once
-// Paths of one pass that end on the same side of the same layer: what it sends back is computed once, by one path
-// that goes on from there, and added to all of them. Each pixel's estimate is what it would be alone; neighbours
-// share noise.
+// Paths of one pass whose rest is computed once, by one of them that goes on, and added to all: those that end on
+// the same side of the same layer, or, where that is asked for, in the same cell (gi/slhb/ending_cells.h). On a
+// layer each pixel's estimate is what it would be alone; in a cell it is of what the cell sends back on average.
+// Either way pixels share noise.
 
-#include "gi/slhb/tracer.h"
+#include "gi/slhb/ending_cells.h"
+
+#include <optional>
 
 namespace gi {
 
 class SharedEndings {
 public:
-    /// @param layers  that paths may end on; 0 = nothing is shared in this pass
-    void start(std::size_t layers);
-    /// From several threads. @param first_pixel of the endings
-    void note(std::span<Ending const> endings, std::uint32_t first_pixel);
+    /// @param paths  of the pass  @param layers  that they may end on; 0 = nothing is shared in this pass
+    void start_layers(std::size_t paths, std::size_t layers, std::uint32_t pass);
+    void start_cells(std::size_t paths, EndingCells const& cells, std::uint32_t pass);
+    /// From several threads. @param first  path of the endings
+    void note(std::span<Ending const> endings, std::uint32_t first, AxisPool const& pool);
     /// After all are noted: makes the starts, in an order that does not depend on threads.
     void collect(std::vector<Ending> const& endings, AxisPool const& pool);
 
     std::vector<PathStart> const& starts() const { return starts_; }
     /// What starts first.. have brought.
     void keep(std::size_t first, std::span<PathSample const> samples);
-    vec3 radiance(Ending const& e) const { return radiance_[slots_[key(e)]]; }
+    /// What arrives from where a path ended.
+    vec3 radiance(std::size_t path) const { return radiance_[start_of_[path]]; }
     std::uint64_t shaded() const { return shaded_; }
 
 private:
-    static std::size_t key(Ending const& e) { return 2 * std::size_t(e.layer) + (e.up ? 1 : 0); }
+    static vec3 arrival(Ending const& e, AxisPool const& pool);
+    void start(std::size_t paths, std::size_t slots, std::uint32_t pass);
 
-    std::vector<std::uint32_t>
-        slots_; ///< per layer and side: the first pixel that ends there; then the index of its start
+    std::optional<EndingCells> cells_;
+    std::uint32_t order_key_ = 0;
+    std::vector<std::uint32_t> slots_;    ///< the first path that ends there, in an order of the pass
+    std::vector<std::uint32_t> start_of_; ///< of each path: its slot, later its start
+    std::vector<std::uint64_t> keys_;     ///< of each path, with cells: several cells may have one slot
     std::vector<PathStart> starts_;
     std::vector<vec3> radiance_;
     std::uint64_t shaded_ = 0;

@@ -25,6 +25,13 @@ struct FrameView {
                       ///< found there may be taken over; -1 = none
 };
 
+/// What is found of the light that surfaces send on to others.
+enum class Endings : std::uint8_t {
+    exact,
+    in_cells ///< paths that end near each other may share what is sent on there: much less work, a little blur of
+             ///< it
+};
+
 class FrameRenderer {
 public:
     virtual ~FrameRenderer() = default;
@@ -41,7 +48,7 @@ public:
     /// Renders all views of one moment; what does not depend on the point of view is done once for all of them.
     /// Budget, paths and size of the settings do not count here. @param paths  per pixel, >= 1
     /// @return a result per view, in their order; `interrupted` where `stop` came first, with fewer paths
-    virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths,
+    virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings endings,
                                             StopRequest const& stop) = 0;
 };
 

@@ -69,7 +69,7 @@ void expect_like_cpu(Scene scene, RenderSettings const& settings, std::string co
 {
     World const world = world_of(std::move(scene));
     SlhbRun const expected = render_with_slhb(world, room_camera(), settings);
-    EXPECT_EQ(expected.counts.at("layers shaded for several paths"), 0) << what;
+    EXPECT_EQ(expected.counts.at("endings shaded for several paths"), 0) << what;
     expect_same_picture(render_with_kernels(S, world, room_camera(), settings), expected, what);
 }
 

@@ -43,10 +43,10 @@ TEST(Views, AreThePicturesThatTheyWouldBeAlone)
     MovingWorld const world(room(), 0, report);
     RenderSettings s = settings_of_views(0);
     std::vector<FrameView> const all{{eye(), 64, 64}, {eye(0.5), 40, 56}, {eye(-0.2), 64, 30}};
-    auto const together = start_slhb_frames(world, eye(), s, report)->views(all, 3, {});
+    auto const together = start_slhb_frames(world, eye(), s, report)->views(all, 3, Endings::exact, {});
     ASSERT_EQ(together.size(), 3u);
     for (std::size_t k = 0; k < all.size(); ++k) {
-        auto const alone = start_slhb_frames(world, eye(), s, report)->views({&all[k], 1}, 3, {});
+        auto const alone = start_slhb_frames(world, eye(), s, report)->views({&all[k], 1}, 3, Endings::exact, {});
         EXPECT_EQ(color(together[k]), color(alone[0])) << k;
         EXPECT_EQ(together[k].picture.width, all[k].width);
     }
@@ -63,9 +63,9 @@ TEST(Views, LightTakenFromAPartnerIsTheLightThere)
     std::vector<FrameView> const own{{eye(), 64, 64}, {eye(apart), 64, 64}};
     std::vector<FrameView> taking = own;
     taking[1].partner = 0;
-    auto const a = start_slhb_frames(world, eye(), s, report)->views(own, 256, {});
+    auto const a = start_slhb_frames(world, eye(), s, report)->views(own, 256, Endings::exact, {});
     Report counted;
-    auto const b = start_slhb_frames(world, eye(), s, counted)->views(taking, 256, {});
+    auto const b = start_slhb_frames(world, eye(), s, counted)->views(taking, 256, Endings::exact, {});
     double const share = counted.counts().at("share of pixels lit by a partner view");
     EXPECT_GT(share, 0.8);
     EXPECT_LT(share, 0.99); // what only the second eye sees is traced
@@ -91,8 +91,8 @@ TEST(Views, MirrorsAreTracedForEachEye)
     std::vector<FrameView> const own{{front, 48, 48}, {right, 48, 48}};
     std::vector<FrameView> taking = own;
     taking[1].partner = 0;
-    auto const a = start_slhb_frames(world, front, s, report)->views(own, 4, {});
-    auto const b = start_slhb_frames(world, front, s, report)->views(taking, 4, {});
+    auto const a = start_slhb_frames(world, front, s, report)->views(own, 4, Endings::exact, {});
+    auto const b = start_slhb_frames(world, front, s, report)->views(taking, 4, Endings::exact, {});
     EXPECT_EQ(b[1].picture.find("L0")->data, a[1].picture.find("L0")->data);
     EXPECT_GT(relmse_of(*a[1].picture.find("color"), *a[0].picture.find("color")), 1e-3); // they do differ
 }
@@ -104,19 +104,19 @@ TEST(Views, MayChangeFromFrameToFrame)
     MovingWorld const world(room(), 0, report);
     auto const frames = start_slhb_frames(world, eye(), settings_of_views(1), report);
     std::vector<FrameView> views{{eye(), 32, 32}, {eye(0.1), 32, 32, 0}};
-    EXPECT_EQ(frames->views(views, 1, {}).size(), 2u);
+    EXPECT_EQ(frames->views(views, 1, Endings::exact, {}).size(), 2u);
     views[1].width = 20;
     views[1].camera = eye(0.3);
-    auto const resized = frames->views(views, 1, {});
+    auto const resized = frames->views(views, 1, Endings::exact, {});
     EXPECT_EQ(resized[1].picture.pixels(), 640u);
     for (std::size_t i = 0; i < 640; ++i)
         if (vec3 const m = rgb(*resized[1].picture.find("motion"), i); m.z == m.z) {
             EXPECT_EQ(vec2(m), vec2(0));
         }
     views.pop_back();
-    EXPECT_EQ(frames->views(views, 2, {}).size(), 1u);
+    EXPECT_EQ(frames->views(views, 2, Endings::exact, {}).size(), 1u);
     views.push_back({orthographic({0, 0.5, 0.8}, {0, 0, 0}, 1), 16, 16});
-    EXPECT_EQ(frames->views(views, 1, {})[1].picture.width, 16);
+    EXPECT_EQ(frames->views(views, 1, Endings::exact, {})[1].picture.width, 16);
 }
 
 } // namespace

@@ -109,9 +109,9 @@ TEST(Walking, AWorldOfNothingIsNoGround)
 
 dmat4 looking(dvec3 from, dvec3 at) { return gi::look_at(from, at, 45).world_from_camera; }
 
-Navigation walker(std::shared_ptr<Ground const> ground, dvec3 from)
+Navigation walker(std::shared_ptr<Ground const> ground, dvec3 from, double speed_m_s = 1.4)
 {
-    Navigation n(looking(from, from + dvec3{0, -0.3, -1}), 1.4, {});
+    Navigation n(looking(from, from + dvec3{0, -0.3, -1}), speed_m_s, {});
     n.set_mode(NavigationMode::walk);
     n.set_eye_height(1.7);
     n.set_ground(std::move(ground));
@@ -142,8 +142,7 @@ TEST(NavigationOnFoot, EyesFollowTheFloor)
 
 TEST(NavigationOnFoot, FastOnesDoNotGetThroughWalls)
 {
-    Navigation n = walker(ground_with({{{-10, 0, -3.01f}, {10, 3, -3}}}), {0, 1.7, 0});
-    n.set_speed(20);
+    Navigation n = walker(ground_with({{{-10, 0, -3.01f}, {10, 3, -3}}}), {0, 1.7, 0}, 20);
     for (int i = 0; i < 5; ++i) n.step({.forward = 1, .fast = true}, 0.1);
     EXPECT_GT(n.position().z, -3);
 }

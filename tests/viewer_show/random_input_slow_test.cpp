@@ -164,10 +164,10 @@ protected:
     Json set_request()
     {
         static std::vector<std::string> const keys{
-            "method",    "compare", "schedule", "directions", "resolution", "axes",     "lamps",
-            "bounces",   "seed",    "reuse",    "denoise",    "share_eyes", "exposure", "tone",
-            "rate",      "paths",   "scale",    "play",       "speed",      "stereo",   "eye_distance",
-            "swap_eyes", "view",    "split",    "reproject",  "refine",     "panel"};
+            "method",       "compare",   "schedule", "directions", "resolution", "axes",          "lamps",
+            "bounces",      "seed",      "reuse",    "denoise",    "share_eyes", "share_endings", "exposure",
+            "tone",         "rate",      "paths",    "scale",      "play",       "speed",         "stereo",
+            "eye_distance", "swap_eyes", "view",     "split",      "reproject",  "refine",        "panel"};
         static std::vector<std::string> const vectors{"object.short block.position",
                                                       "object.tall block.position",
                                                       "object.3.position",

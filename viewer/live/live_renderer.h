@@ -122,7 +122,7 @@ private:
     std::condition_variable wake_, published_;
     std::deque<std::function<void()>> jobs_;
     Viewpoint viewpoint_;
-    bool looked_ = false; ///< since the frame at hand began
+    std::atomic<bool> looked_{false}; ///< since the frame at hand began
     std::shared_ptr<gi::StopRequest> refining_;
     std::shared_ptr<LiveFrame const> newest_;
     std::atomic<bool> quit_{false}, stopped_{false};

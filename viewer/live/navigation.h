@@ -28,7 +28,6 @@ public:
     void set_mode(NavigationMode mode);
     NavigationMode mode() const { return mode_; }
     void set_pivot(gi::dvec3 pivot) { pivot_ = pivot; }
-    void set_speed(double m_s) { speed_m_s_ = m_s; }
     /// What is walked on; null = nothing is known of it, walking stays on the level.
     void set_ground(std::shared_ptr<Ground const> ground);
     /// Of the eyes above the floor when walking, m; > 0.

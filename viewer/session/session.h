@@ -49,7 +49,6 @@ public:
     std::string const& scene_name() const { return name_; }
     bool has_scene() const { return world_ != nullptr; }
     gi::World const& world() const { return world_->world(); }
-    gi::MovingWorld const& moving_world() const { return *world_; }
     /// Where an object is now, m, world. Throws InputError where there is none of that name.
     gi::dvec3 position_of(std::string const& object) const;
     bool moves() const; ///< something in the scene can move by itself

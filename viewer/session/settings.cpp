@@ -119,6 +119,8 @@ std::vector<Entry> const& entries()
         count("reuse", "frames that light is reused over, 1 = none", &Settings::reuse, 1, 256),
         word("denoise", "filter", &Settings::denoise, {"none", "discontinuity", "wide", "atrous"}),
         flag("share_eyes", "an eye may take light that the other one found", &Settings::share_eyes),
+        flag("share_endings", "paths that end near each other may share what is sent on there",
+             &Settings::share_endings),
         real("exposure", "stops", &Settings::exposure_ev, -32, 32),
         word("tone", "curve", &Settings::tone, {"srgb", "filmic"}),
         real("rate", "frames per second that it aims at, Hz", &Settings::rate_hz, 0.1, 1000),

@@ -19,7 +19,8 @@ struct Settings {
     int seed = 0;
     int reuse = 16; ///< frames of temporal reuse; 1 = none
     std::string denoise = "wide";
-    bool share_eyes = true; ///< an eye may take light that the other one found
+    bool share_eyes = true;    ///< an eye may take light that the other one found
+    bool share_endings = true; ///< paths that end near each other may share what is sent on there
     double exposure_ev = 0;
     std::string tone = "srgb";
     // Of the interactive loop

@@ -32,30 +32,18 @@ bool is_of(ViewOrder const& view, Wall const& wall)
            (view.name.size() == wall.name.size() || view.name[wall.name.size()] == ',');
 }
 
-DisplayWindow as_it_is(DisplayWindow window, glm::ivec2 px)
-{
-    window.width_px = px.x;
-    window.height_px = px.y;
-    return window;
-}
-
 } // namespace
 
 Layout display_layout(Display const& display, std::span<std::optional<RoomPose> const> heads,
-                      gi::dmat4 const& world_from_room, std::span<glm::ivec2 const> window_px)
+                      gi::dmat4 const& world_from_room)
 {
-    Display now = display;
-    for (std::size_t w = 0; w < now.windows.size(); ++w)
-        if (window_px[w].x > 0 && window_px[w].y > 0) now.windows[w] = as_it_is(now.windows[w], window_px[w]);
     Layout layout;
-    std::vector<DisplayView> const seen = views_of(now, heads);
-    layout.views = view_orders(seen, world_from_room);
-    layout.panes = display_panes(display, layout.views, window_px);
+    layout.views = view_orders(views_of(display, heads), world_from_room);
+    layout.panes = display_panes(display, layout.views);
     return layout;
 }
 
-std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<ViewOrder const> views,
-                                             std::span<glm::ivec2 const> window_px)
+std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<ViewOrder const> views)
 {
     std::vector<std::vector<Pane>> panes(display.windows.size());
     for (std::size_t w = 0; w < display.walls.size(); ++w) {
@@ -67,8 +55,7 @@ std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<V
         pane.stereo = wall.stereo;
         pane.wall = needs_finish(wall) ? int(w) : -1;
         auto const add = [&](int window, bool right_alone) {
-            glm::ivec2 const px = window_px[std::size_t(window)];
-            PixelRectangle const r = viewport_px(wall, as_it_is(display.windows[std::size_t(window)], px));
+            PixelRectangle const r = viewport_px(wall, display.windows[std::size_t(window)]);
             if (r.width <= 0 || r.height <= 0) return;
             pane.corner_px = {r.x, r.y};
             pane.size_px = {r.width, r.height};

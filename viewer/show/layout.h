@@ -17,12 +17,10 @@ struct Layout {
 Layout desktop_layout(ViewState const& state, StereoMode mode, std::span<glm::ivec2 const> window_px);
 
 /// All walls. Those that no eye sees, and windows of a size of 0, have no views.
-/// @param window_px  of the display's windows, as they are; as the file has them where this is 0
 Layout display_layout(Display const& display, std::span<std::optional<RoomPose> const> heads,
-                      gi::dmat4 const& world_from_room, std::span<glm::ivec2 const> window_px);
+                      gi::dmat4 const& world_from_room);
 /// Panes for views that were made by display_layout, here or by another process: by their names.
-std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<ViewOrder const> views,
-                                             std::span<glm::ivec2 const> window_px);
+std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<ViewOrder const> views);
 /// Of these views, those of the walls of a rank.
 std::vector<ViewOrder> views_of_rank(Display const& display, std::span<ViewOrder const> views, int rank);
 

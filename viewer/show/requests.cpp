@@ -142,7 +142,8 @@ void Requests::press(RemoteRequest const& r)
 void Requests::step()
 {
     double const now = state_.clock.now_s();
-    if (!keys_.empty()) state_.renderer->again(); // by now it knows of them, and may rest
+    // Who waits for a frame gets one, also of a picture that rests.
+    if (!keys_.empty() || !loads_.empty()) state_.renderer->again();
     std::erase_if(releases_, [&](auto const& release) {
         if (release.first > now) return false;
         InputEvent e;
@@ -225,11 +226,10 @@ void Requests::presented(double shown_s, glm::ivec2 window_px, std::vector<unsig
     std::erase_if(saving_, [](std::future<void> const& s) {
         return s.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     });
-    bool const moved_on = f.order.pose_s >= 0;
     std::erase_if(keys_, [&](Key const& key) {
         bool const in_frame = f.order.pose_s >= key.pressed_s;
         bool const moved = !(key.camera == state_.navigation.world_from_camera()) && state_.settings.reproject;
-        if (!moved_on || (!in_frame && !moved)) return false;
+        if (!in_frame && !moved) return false;
         server_->answer(
             key.token,
             {{"frame", f.order.frame}, {"after_ms", 1e3 * (shown_s - key.pressed_s)}, {"reprojected", !in_frame}});

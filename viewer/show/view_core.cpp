@@ -40,6 +40,7 @@ ViewCore::ViewCore(ViewOptions const& o, gi::Report& r)
     start_at(o.first_camera(session.world()));
     state.navigation.set_eye_height(o.eye_height_m);
     state.navigation.set_mode(o.navigation);
+    state.loaded = [this] { look_anew(); };
     if (!o.remote.socket.empty() || o.remote.port) {
         remote_ = std::make_unique<RemoteServer>(
             o.remote, [this](RemoteRequest const& request) { return requests.handle(request); }, r);
@@ -58,9 +59,26 @@ void ViewCore::start_at(gi::Camera const& camera)
     state.first_camera = state.camera = camera;
     // A walk through a scene takes seconds, whatever its size.
     double const speed = std::clamp(0.2 * state.facts.radius_m, 0.05, 20.0);
+    NavigationMode const mode = state.navigation.mode();
     state.navigation = Navigation(camera.world_from_camera, speed, state.facts.center);
+    state.navigation.set_mode(mode);
     gi::dvec3 const from(camera.world_from_camera[3]);
     state.screen_distance_m = std::clamp(glm::length(state.facts.center - from), 0.2, 1e4);
+}
+
+void ViewCore::look_anew()
+{
+    renderer->ask([this](Session& s) {
+        try {
+            state.inbox.put([this, facts = facts_of(s), camera = options.first_camera(s.world())] {
+                state.facts = facts;
+                state.selection.reset();
+                start_at(camera);
+            });
+        } catch (gi::InputError const& e) { // it has no camera of the name that was asked for
+            state.inbox.put([this, why = std::string(e.what())] { state.message = why; });
+        }
+    });
 }
 
 void ViewCore::make_files()

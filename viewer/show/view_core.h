@@ -45,6 +45,7 @@ public:
 private:
     void start_at(gi::Camera const& camera);
     void make_files();
+    void look_anew(); ///< at a scene that was loaded, from its first camera
 
     std::unique_ptr<RemoteServer> remote_;
     std::unique_ptr<Recorder> recorder_;

@@ -56,7 +56,10 @@ public:
             wait_for_windows(kLook_s);
             double const now = state_.clock.now_s();
             take_input();
-            if (!follows()) look(now - last);
+            if (follows())
+                note_sizes();
+            else
+                look(now - last);
             last = now;
             show();
         }
@@ -163,17 +166,23 @@ private:
         return StereoMode::side_by_side;
     }
 
-    /// In the order of the display's windows where there is one.
     std::vector<glm::ivec2> window_sizes() const
     {
         std::vector<glm::ivec2> sizes;
-        if (!core_.display)
-            for (auto const& w : windows_) sizes.push_back(w->window.framebuffer_px());
-        else
-            for (std::size_t w = 0; w < window_of_.size(); ++w)
-                sizes.push_back(window_of_[w] >= 0 ? windows_[std::size_t(window_of_[w])]->window.framebuffer_px()
-                                                   : glm::ivec2(0));
+        for (auto const& w : windows_) sizes.push_back(w->window.framebuffer_px());
         return sizes;
+    }
+
+    /// The windows of this process as they are, which may not be what the file wishes.
+    void note_sizes()
+    {
+        for (std::size_t w = 0; w < window_of_.size(); ++w) {
+            if (window_of_[w] < 0) continue;
+            glm::ivec2 const px = windows_[std::size_t(window_of_[w])]->window.framebuffer_px();
+            if (px.x <= 0 || px.y <= 0) continue; // minimised
+            core_.display->windows[w].width_px = px.x;
+            core_.display->windows[w].height_px = px.y;
+        }
     }
 
     void set_panes(std::vector<std::vector<Pane>> const& panes)
@@ -192,7 +201,7 @@ private:
         Viewpoint at;
         at.pose_s = state_.clock.now_s();
         at.display_s = at.pose_s + expected_s_;
-        std::vector<glm::ivec2> const sizes = window_sizes();
+        note_sizes();
         Layout layout;
         if (core_.display) {
             Display const& display = *core_.display;
@@ -201,7 +210,7 @@ private:
             at.world_from_room = state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -rest());
             at.tracked = tracking_->bodies(seen_s);
             if (core_.options.drive) at.tracked = body_.in_room(display, at.tracked);
-            layout = display_layout(display, tracking_->heads(seen_s), at.world_from_room, sizes);
+            layout = display_layout(display, tracking_->heads(seen_s), at.world_from_room);
         } else {
             at.world_from_room = state_.navigation.world_from_camera();
             if (core_.options.drive) {
@@ -210,7 +219,7 @@ private:
                                      glm::translate(gi::dmat4(1), gi::dvec3{0, -core_.options.eye_height_m, 0});
                 at.tracked = body_.before_desktop(glm::inverse(at.world_from_room) * world_from_head);
             }
-            layout = desktop_layout(state_, possible_mode(), sizes);
+            layout = desktop_layout(state_, possible_mode(), window_sizes());
         }
         at.views = std::move(layout.views);
         if (link_ == nullptr) {
@@ -274,8 +283,7 @@ private:
         p->reprojected = !(shown_cameras_ == rendered);
         if (fresh) {
             state_.frame = newest;
-            if (link_ != nullptr && core_.display)
-                set_panes(display_panes(*core_.display, newest->order.views, window_sizes()));
+            if (link_ != nullptr && core_.display) set_panes(display_panes(*core_.display, newest->order.views));
             meter_.see(newest);
         }
         state_.live_error = meter_.latest();

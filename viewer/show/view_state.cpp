@@ -15,6 +15,7 @@ void ViewState::change(Change const& c, std::function<void(std::string const&)> 
     renderer->post(c, [this, c, done = std::move(done)](std::string const& error) {
         inbox.put([this, c, error, done] {
             if (!error.empty()) message = error;
+            if (error.empty() && c.key == "scene" && loaded) loaded();
             if (done) done(error);
             refresh_facts();
         });

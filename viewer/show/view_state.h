@@ -54,6 +54,7 @@ struct ViewState {
     std::string message; ///< the last that went wrong, for the panel
     Inbox inbox;
     LiveRenderer* renderer = nullptr;
+    std::function<void()> loaded;                          ///< called after another scene was loaded
     bool wants_screenshot = false, own_screenshot = false; ///< the second: by key
 
     /// Settings take effect on what is shown at once, and in the picture with the next frame. Throws InputError

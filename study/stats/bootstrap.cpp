@@ -1,0 +1,111 @@
+#include "study/stats/bootstrap.h"
+
+#include "study/base/random.h"
+#include "study/stats/error.h"
+#include "study/stats/special.h"
+#include "study/stats/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace study {
+namespace {
+
+double tail(int observers, BootstrapSettings const& settings)
+{
+    double const plain = (1 - settings.confidence) / 2;
+    if (settings.interval == BootstrapInterval::percentile) return plain;
+    double const n = observers;
+    return normal_cdf(std::sqrt(n / (n - 1)) * student_quantile(plain, n - 1));
+}
+
+} // namespace
+
+Bootstrap bootstrap(int observers, ObserverStatistic const& statistic, BootstrapSettings const& settings)
+{
+    if (observers < 2)
+        refuse("a bootstrap of " + std::to_string(observers) + " observers",
+               "how much they differ cannot be told from fewer than two", "report the standard error of the fit");
+    if (settings.replicates < 2 || !(settings.confidence > 0 && settings.confidence < 1))
+        refuse("a bootstrap with " + std::to_string(settings.replicates) + " replicates and confidence " +
+                   std::to_string(settings.confidence),
+               "it needs two replicates or more and a probability", "use 1000 and 0.95");
+
+    Bootstrap result;
+    Random random(settings.seed);
+    std::vector<int> drawn(std::size_t(observers), 0);
+    std::string reason;
+    for (int i = 0; i < settings.replicates; ++i) {
+        for (int& d : drawn) d = int(random.below(std::uint32_t(observers)));
+        try {
+            result.replicates.push_back(statistic(drawn));
+        } catch (std::invalid_argument const& error) {
+            reason = error.what();
+            ++result.failed;
+        }
+    }
+    if (2 * result.failed > settings.replicates)
+        refuse("most replicates of the bootstrap failed, the last with: " + reason,
+               "too few observers carry the comparisons that hold the result together",
+               "collect more observers, or report the standard error of the fit");
+
+    double const low = tail(observers, settings);
+    for (std::size_t k = 0; k < result.replicates.front().size(); ++k) {
+        std::vector<double> values;
+        for (auto const& r : result.replicates) values.push_back(r[k]);
+        result.interval.push_back({quantile(values, low), quantile(values, 1 - low)});
+        result.standard_error.push_back(standard_deviation(values));
+    }
+    return result;
+}
+
+std::vector<PairCount> pool(std::vector<std::vector<PairCount>> const& observers)
+{
+    std::map<std::pair<int, int>, PairCount> sums;
+    for (auto const& observer : observers)
+        for (PairCount const& p : observer) {
+            PairCount& sum = sums[{p.first, p.second}];
+            sum.first = p.first;
+            sum.second = p.second;
+            sum.first_wins += p.first_wins;
+            sum.second_wins += p.second_wins;
+            sum.ties += p.ties;
+        }
+    std::vector<PairCount> pooled;
+    for (auto const& [unused, sum] : sums) pooled.push_back(sum);
+    return pooled;
+}
+
+Bootstrap bootstrap_pairs(std::vector<std::vector<PairCount>> const& observers, int items,
+                          PairSettings const& scaling, BootstrapSettings const& settings)
+{
+    std::vector<PairCount> const all = pool(observers);
+    check_pairs(all, items);
+    std::map<std::pair<int, int>, std::size_t> place;
+    for (std::size_t i = 0; i < all.size(); ++i) place[{all[i].first, all[i].second}] = i;
+    std::vector<std::vector<std::size_t>> where(observers.size());
+    for (std::size_t o = 0; o < observers.size(); ++o)
+        for (PairCount const& p : observers[o]) where[o].push_back(place.at({p.first, p.second}));
+
+    double const jod = jod_per_unit(scaling.model);
+    auto const scores = [&](std::span<int const> drawn) {
+        std::vector<PairCount> sums = all;
+        for (PairCount& s : sums) s.first_wins = s.second_wins = s.ties = 0;
+        for (int const d : drawn) {
+            auto const o = std::size_t(d);
+            for (std::size_t i = 0; i < observers[o].size(); ++i) {
+                PairCount& sum = sums[where[o][i]];
+                sum.first_wins += observers[o][i].first_wins;
+                sum.second_wins += observers[o][i].second_wins;
+                sum.ties += observers[o][i].ties;
+            }
+        }
+        std::vector<double> score = fit_pairs(sums, items, scaling).score;
+        for (double& s : score) s *= jod;
+        return score;
+    };
+    return bootstrap(int(observers.size()), scores, settings);
+}
+
+} // namespace study

@@ -1,0 +1,49 @@
+#pragma once
+// Resampling of observers (Efron 1979, Ann. Stat. 7:1): trials of one person are not independent of each other, so
+// people are drawn with replacement and not trials.
+
+#include "study/stats/binomial.h"
+#include "study/stats/pair_scale.h"
+
+#include <cstdint>
+#include <functional>
+
+namespace study {
+
+enum class BootstrapInterval {
+    percentile,
+    /// Percentiles at Phi(-sqrt(n/(n-1)) t), t the quantile of Student's distribution with n - 1 degrees: not too
+    /// narrow for few observers (Hesterberg 2015, Amer. Stat. 69:371, "expanded percentile").
+    expanded_percentile
+};
+
+struct BootstrapSettings {
+    int replicates = 1000;
+    double confidence = 0.95;
+    BootstrapInterval interval = BootstrapInterval::expanded_percentile;
+    std::uint64_t seed = 1;
+};
+
+struct Bootstrap {
+    std::vector<Interval> interval;              ///< per number
+    std::vector<double> standard_error;          ///< per number: standard deviation of the replicates
+    std::vector<std::vector<double>> replicates; ///< those that had a result
+    int failed = 0;                              ///< replicates without one: the statistic refused their observers
+};
+
+/// Some numbers of the observers given, who may come more than once; may refuse by std::invalid_argument.
+using ObserverStatistic = std::function<std::vector<double>(std::span<int const> observers)>;
+
+/// The same seed gives the same result. @throws std::invalid_argument fewer than 2 observers, fewer than 2
+/// replicates, a confidence outside of (0, 1), or more than half of the replicates failed
+Bootstrap bootstrap(int observers, ObserverStatistic const& statistic, BootstrapSettings const& settings = {});
+
+/// Of the scores of fit_pairs (in JOD, mean 0). @param observers  the pairs of each
+/// @throws std::invalid_argument as bootstrap and fit_pairs
+Bootstrap bootstrap_pairs(std::vector<std::vector<PairCount>> const& observers, int items,
+                          PairSettings const& scaling = {}, BootstrapSettings const& settings = {});
+
+/// All observers' pairs in one list, those shown in the same order added up.
+std::vector<PairCount> pool(std::vector<std::vector<PairCount>> const& observers);
+
+} // namespace study

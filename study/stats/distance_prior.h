@@ -1,0 +1,18 @@
+#pragma once
+// Thurstone scaling with the distance prior of pwcmp ("gaussian"; Perez-Ortiz & Mantiuk 2017, arXiv:1712.03686):
+// it maximises, over all ordered pairs c = (i, j) that met,
+//   sum_c (D_ij log P_c + D_ji log(1 - P_c) + log(0.1 + r_c)),  P_c = Phi((q_i - q_j) / 1.4826),
+//   r_c = sum_c' a_c'(c) / sum_c'' a_c'(c''),  a_c'(c) = P_c^k' (1 - P_c)^(n' - k'),
+// where k' of n' are the wins of pair c', moved by one where they were unanimous. Scores whose distances look like
+// those of other pairs are preferred, which draws unanimous pairs in. It is here to compare with that program: the
+// prior has no finite maximum where every pair was unanimous; fit_pairs has.
+
+#include "study/stats/matrix.h"
+
+namespace study {
+
+/// Scores in JOD, mean 0. @throws std::invalid_argument as pairs_of; items that are not connected; no finite
+/// maximum
+std::vector<double> scale_with_distance_prior(Matrix const& wins);
+
+} // namespace study

@@ -1,0 +1,47 @@
+#pragma once
+// Maximum likelihood by Fisher scoring with Levenberg's damping, within bounds. A model gives its log-likelihood,
+// the gradient of it and the expected information; the inverse of that is the covariance of the estimate.
+
+#include "study/stats/matrix.h"
+
+#include <functional>
+#include <limits>
+
+namespace study {
+
+struct Likelihood {
+    double log_likelihood = 0;
+    std::vector<double> gradient;
+    Matrix information; ///< expected; symmetric
+
+    /// All zero for n parameters.
+    void clear(std::size_t n);
+};
+
+/// Fills the second argument for the parameters given; -infinity or NaN as log_likelihood = impossible.
+using LikelihoodAt = std::function<void(std::span<double const>, Likelihood&)>;
+
+struct Bound {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+};
+
+struct MaximumLikelihood {
+    std::vector<double> estimate;
+    Matrix covariance; ///< of parameters that are not at a bound; zero for those that are, NaN if singular
+    double log_likelihood = 0;
+    bool converged = false;
+    std::vector<bool> at_bound;
+};
+
+/// @param start  within the bounds  @param bounds  one per parameter, or none at all
+MaximumLikelihood maximise(LikelihoodAt const& model, std::vector<double> start,
+                           std::vector<Bound> const& bounds = {}, int max_iterations = 200);
+
+/// The model with Jeffreys' prior: half the log of the determinant of the information is added. Where estimates of
+/// a binomial model run off to infinity it makes them finite, takes their bias away to first order, and does not
+/// depend on how scores are anchored (Firth 1993, Biometrika 80:27; for links other than the logit Kosmidis &
+/// Firth 2021, Biometrika 108:71). Its gradient is taken by central differences.
+LikelihoodAt with_jeffreys_prior(LikelihoodAt model);
+
+} // namespace study

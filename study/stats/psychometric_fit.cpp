@@ -1,0 +1,241 @@
+#include "study/base/random.h"
+#include "study/stats/error.h"
+#include "study/stats/likelihood.h"
+#include "study/stats/psychometric.h"
+#include "study/stats/sigmoid.h"
+#include "study/stats/summary.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace study {
+namespace {
+
+/// A level on the axis of u.
+struct Point {
+    double u, correct, trials;
+};
+
+/// What is fitted: threshold and log scale always, guess and lapse where their Rate says so.
+struct Model {
+    Sigmoid kind;
+    Rate guess, lapse;
+    std::vector<Point> points;
+    double centre = 0, range = 1; ///< of u; thresholds are fitted in units of this range from the centre
+
+    bool fits_guess() const { return guess.limit > 0; }
+    bool fits_lapse() const { return lapse.limit > 0; }
+    std::size_t count() const { return 2 + std::size_t(fits_guess()) + std::size_t(fits_lapse()); }
+
+    PsychometricParameters parameters(std::span<double const> x) const
+    {
+        return {centre + x[0] * range, std::exp(x[1]) * range, fits_guess() ? x[2] : guess.value,
+                fits_lapse() ? x[count() - 1] : lapse.value};
+    }
+
+    void evaluate(std::span<double const> x, Likelihood& l) const
+    {
+        l.clear(count());
+        PsychometricParameters const p = parameters(x);
+        double const span = 1 - p.guess - p.lapse;
+        for (Point const& point : points) {
+            double const z = (point.u - p.threshold) / p.scale;
+            SigmoidValue const f = sigmoid(kind, z);
+            double const right = std::max(1e-300, p.guess + span * f.below);
+            double const wrong = std::max(1e-300, p.lapse + span * f.above);
+            double const missed = point.trials - point.correct;
+            if (point.correct > 0) l.log_likelihood += point.correct * std::log(right);
+            if (missed > 0) l.log_likelihood += missed * std::log(wrong);
+
+            std::array<double, 4> slope{-span * f.density * range / p.scale, -span * f.density * z};
+            if (fits_guess()) slope[2] = f.above;
+            if (fits_lapse()) slope[count() - 1] = -f.below;
+            double const pull = point.correct / right - missed / wrong;
+            double const weight = point.trials / (right * wrong);
+            for (std::size_t a = 0; a < count(); ++a) {
+                l.gradient[a] += pull * slope[a];
+                for (std::size_t b = 0; b < count(); ++b) l.information(a, b) += weight * slope[a] * slope[b];
+            }
+        }
+    }
+
+    std::vector<Bound> bounds() const
+    {
+        std::vector<Bound> b{{-5, 5}, {std::log(1e-4), std::log(1e3)}};
+        if (fits_guess()) b.push_back({0, guess.limit});
+        if (fits_lapse()) b.push_back({0, lapse.limit});
+        return b;
+    }
+};
+
+std::vector<Point> checked_points(std::span<LevelCount const> counts, PsychometricShape const& shape)
+{
+    std::map<double, Point> points;
+    for (LevelCount const& c : counts) {
+        if (!(c.correct >= 0 && c.correct <= c.trials && std::isfinite(c.trials)))
+            refuse(std::to_string(c.correct) + " of " + std::to_string(c.trials) + " trials",
+                   "counts are numbers, and nobody is right more often than asked", "check the table");
+        if (!std::isfinite(c.level) || (shape.axis == Axis::log10 && !(c.level > 0)))
+            refuse("level " + std::to_string(c.level), "it has no place on the axis",
+                   shape.axis == Axis::log10 ? "use levels above 0, or a linear axis" : "use numbers");
+        if (c.trials == 0) continue;
+        Point& p = points[transformed(shape, c.level)];
+        p.u = transformed(shape, c.level);
+        p.correct += c.correct;
+        p.trials += c.trials;
+    }
+    if (points.size() < 2)
+        refuse("trials at " + std::to_string(points.size()) + " levels", "a curve needs two or more",
+               "show more levels, or report a proportion");
+    std::vector<Point> result;
+    for (auto const& [unused, p] : points) result.push_back(p);
+    return result;
+}
+
+Model make_model(std::span<LevelCount const> counts, PsychometricSettings const& settings)
+{
+    Model m{settings.shape.sigmoid, settings.guess, settings.lapse, checked_points(counts, settings.shape)};
+    double const guess = std::max(m.guess.value, m.guess.limit), lapse = std::max(m.lapse.value, m.lapse.limit);
+    if (!(m.guess.value >= 0 && m.lapse.value >= 0 && m.guess.limit >= 0 && m.lapse.limit >= 0 &&
+          guess + lapse < 1))
+        refuse("guess rate up to " + std::to_string(guess) + " and lapse rate up to " + std::to_string(lapse),
+               "together they leave no room for a curve", "use rates from 0 whose sum is below 1");
+    m.range = m.points.back().u - m.points.front().u;
+    m.centre = (m.points.back().u + m.points.front().u) / 2;
+    return m;
+}
+
+/// The best fit from the most likely places of a grid.
+MaximumLikelihood best_fit(Model const& m)
+{
+    LikelihoodAt const at = [&](std::span<double const> x, Likelihood& l) { m.evaluate(x, l); };
+    std::multimap<double, std::vector<double>> starts;
+    Likelihood l;
+    for (double threshold = -0.75; threshold <= 0.75; threshold += 0.125)
+        for (double scale : {0.01, 0.04, 0.1, 0.25, 0.6, 2.0}) {
+            std::vector<double> x{threshold, std::log(scale)};
+            if (m.fits_guess()) x.push_back(std::clamp(m.guess.value, m.guess.limit * 0.02, m.guess.limit * 0.98));
+            if (m.fits_lapse()) x.push_back(std::clamp(m.lapse.value, m.lapse.limit * 0.02, m.lapse.limit * 0.98));
+            at(x, l);
+            starts.emplace(-l.log_likelihood, x);
+        }
+    MaximumLikelihood best;
+    int tried = 0;
+    for (auto const& [unused, x] : starts) {
+        MaximumLikelihood const fit = maximise(at, x, m.bounds());
+        if (tried == 0 || fit.log_likelihood > best.log_likelihood) best = fit;
+        if (++tried == 3) break;
+    }
+    return best;
+}
+
+/// The best fit of data like those that gave `p`: nearly always the maximum next to it.
+MaximumLikelihood fit_near(Model const& m, PsychometricParameters const& p)
+{
+    std::vector<double> x{(p.threshold - m.centre) / m.range, std::log(p.scale / m.range)};
+    if (m.fits_guess()) x.push_back(std::clamp(p.guess, m.guess.limit * 0.02, m.guess.limit * 0.98));
+    if (m.fits_lapse()) x.push_back(std::clamp(p.lapse, m.lapse.limit * 0.02, m.lapse.limit * 0.98));
+    MaximumLikelihood const fit =
+        maximise([&](std::span<double const> at, Likelihood& l) { m.evaluate(at, l); }, x, m.bounds());
+    return fit.converged && !fit.at_bound[0] && !fit.at_bound[1] ? fit : best_fit(m);
+}
+
+std::string note_of(Model const& m, MaximumLikelihood const& fit)
+{
+    std::string note;
+    auto const say = [&](bool when, char const* what) {
+        if (when) note += std::string(note.empty() ? "" : "; ") + what;
+    };
+    bool const none = std::all_of(m.points.begin(), m.points.end(), [](Point const& p) { return p.correct == 0; });
+    bool const all =
+        std::all_of(m.points.begin(), m.points.end(), [](Point const& p) { return p.correct == p.trials; });
+    say(none, "no correct response at all: there is no threshold among these levels");
+    say(all, "nothing but correct responses: there is no threshold among these levels");
+    say(fit.at_bound[0], "the threshold lies far outside of the levels shown");
+    // Below a hundredth of the range the curve is a step between two levels, wherever it is.
+    say(fit.estimate[1] < std::log(0.01) || std::isnan(fit.covariance(0, 0)),
+        "responses change within one step of level: threshold and scale are known only to lie between");
+    say(fit.estimate[1] > std::log(20.0), "responses hardly change with level: the scale is not known");
+    say(m.fits_guess() && fit.estimate[2] >= m.guess.limit, "the guess rate is at its limit");
+    say(m.fits_lapse() && fit.estimate[m.count() - 1] >= m.lapse.limit, "the lapse rate is at its limit");
+    say(!fit.converged, "the fit did not converge");
+    return note;
+}
+
+PsychometricFit describe(Model const& m, PsychometricShape const& shape, MaximumLikelihood const& best)
+{
+    PsychometricFit fit;
+    fit.shape = shape;
+    fit.parameters = m.parameters(best.estimate);
+    std::array<double, 4> const unit{m.range, 1, 1, 1};
+    std::array<int, 4> const index{0, 1, m.fits_guess() ? 2 : -1, m.fits_lapse() ? int(m.count()) - 1 : -1};
+    fit.covariance = Matrix(4, 4);
+    for (std::size_t a = 0; a < 4; ++a)
+        for (std::size_t b = 0; b < 4; ++b)
+            if (index[a] >= 0 && index[b] >= 0)
+                fit.covariance(a, b) =
+                    best.covariance(std::size_t(index[a]), std::size_t(index[b])) * unit[a] * unit[b];
+    auto const error = [&](std::size_t i) { return std::sqrt(fit.covariance(i, i)); };
+    fit.standard_error = {error(0), error(1) * fit.parameters.scale, error(2), error(3)};
+    fit.converged = best.converged;
+    fit.note = note_of(m, best);
+
+    double saturated = 0, constant = 0;
+    for (Point const& p : m.points) {
+        if (p.correct > 0) saturated += p.correct * std::log(p.correct / p.trials);
+        if (p.correct < p.trials) saturated += (p.trials - p.correct) * std::log1p(-p.correct / p.trials);
+        constant += log_choose(p.trials, p.correct);
+    }
+    fit.log_likelihood = best.log_likelihood + constant;
+    fit.deviance = std::max(0.0, 2 * (saturated - best.log_likelihood));
+    fit.degrees_of_freedom = int(m.points.size()) - int(m.count());
+    if (fit.degrees_of_freedom > 0) fit.fit_p = chi_square_tail(fit.deviance, fit.degrees_of_freedom);
+    return fit;
+}
+
+} // namespace
+
+PsychometricFit fit_psychometric(std::span<LevelCount const> counts, PsychometricSettings const& settings)
+{
+    Model const m = make_model(counts, settings);
+    return describe(m, settings.shape, best_fit(m));
+}
+
+PsychometricBootstrap bootstrap_psychometric(std::span<LevelCount const> counts,
+                                             PsychometricSettings const& settings, int replicates,
+                                             double confidence, std::uint64_t seed)
+{
+    if (replicates < 2 || !(confidence > 0 && confidence < 1))
+        refuse("a bootstrap with " + std::to_string(replicates) + " replicates and confidence " +
+                   std::to_string(confidence),
+               "it needs two replicates or more and a probability", "use 1000 and 0.95");
+    PsychometricFit const fit = fit_psychometric(counts, settings);
+    Random random(seed);
+    std::vector<double> thresholds, scales;
+    int as_large = 0;
+    for (int i = 0; i < replicates; ++i) {
+        std::vector<LevelCount> simulated(counts.begin(), counts.end());
+        for (LevelCount& c : simulated) {
+            double const p = proportion_at(settings.shape, fit.parameters, c.level);
+            c.correct = 0;
+            for (int t = 0; t < int(c.trials); ++t) c.correct += random.uniform() < p;
+        }
+        Model const m = make_model(simulated, settings);
+        PsychometricFit const again = describe(m, settings.shape, fit_near(m, fit.parameters));
+        if (!again.converged) continue;
+        thresholds.push_back(again.parameters.threshold);
+        scales.push_back(again.parameters.scale);
+        as_large += again.deviance >= fit.deviance - 1e-9;
+    }
+    PsychometricBootstrap result;
+    result.replicates = int(thresholds.size());
+    double const tail = (1 - confidence) / 2;
+    result.threshold = {quantile(thresholds, tail), quantile(thresholds, 1 - tail)};
+    result.scale = {quantile(scales, tail), quantile(scales, 1 - tail)};
+    result.deviance_p = double(as_large) / std::max(1, result.replicates);
+    return result;
+}
+
+} // namespace study

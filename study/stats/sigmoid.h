@@ -1,0 +1,46 @@
+#pragma once
+// The curves of psychometric functions.
+
+#include "study/stats/psychometric.h"
+#include "study/stats/special.h"
+
+#include <cmath>
+
+namespace study {
+
+/// F(z), 1 - F(z) without cancellation, and dF/dz.
+struct SigmoidValue {
+    double below, above, density;
+};
+
+inline SigmoidValue sigmoid(Sigmoid kind, double z)
+{
+    switch (kind) {
+    case Sigmoid::gaussian:
+        return {normal_cdf(z), normal_cdf(-z), normal_pdf(z)};
+    case Sigmoid::weibull: {
+        double const e = std::exp(std::fmin(z, 700));
+        return {-std::expm1(-e), std::exp(-e), std::exp(z - e)};
+    }
+    case Sigmoid::logistic:
+        break;
+    }
+    double const e = std::exp(-std::abs(z)), small = e / (1 + e), large = 1 / (1 + e);
+    return z > 0 ? SigmoidValue{large, small, small * large} : SigmoidValue{small, large, small * large};
+}
+
+/// The z with F(z) = f, f in (0, 1).
+inline double sigmoid_quantile(Sigmoid kind, double f)
+{
+    switch (kind) {
+    case Sigmoid::gaussian:
+        return normal_quantile(f);
+    case Sigmoid::weibull:
+        return std::log(-std::log1p(-f));
+    case Sigmoid::logistic:
+        break;
+    }
+    return std::log(f / (1 - f));
+}
+
+} // namespace study

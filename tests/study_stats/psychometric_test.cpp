@@ -1,0 +1,164 @@
+// Psychometric functions against R's glm, and against observers that are simulated.
+
+#include "study/stats/psychometric.h"
+
+#include "study/base/random.h"
+#include "tests/study_stats/support/study_data.h"
+
+#include <cmath>
+
+namespace study::test {
+namespace {
+
+TEST(Psychometric, FitsAreThoseOfR)
+{
+    LIGHTWELL_NEED_STUDY_DATA();
+    auto const rows = read_csv("psychometric_qpdat.csv");
+    auto const expected = read_json("psychometric_qpdat.expected.json");
+    EXPECT_EQ(expected.size(), 12u);
+    for (auto const& e : expected) {
+        std::vector<LevelCount> counts;
+        for (auto const& r : rows)
+            if (r[0] == e["participant"] && r[1] == std::to_string(int(e["cond"])))
+                counts.push_back({std::stod(r[2]), std::stod(r[3]), std::stod(r[4])});
+        bool const probit = e["link"] == "probit";
+        PsychometricSettings settings;
+        settings.shape.sigmoid = probit ? Sigmoid::gaussian : Sigmoid::logistic;
+        PsychometricFit const f = fit_psychometric(counts, settings);
+        auto const near = [&](double value, char const* name) {
+            EXPECT_NEAR(value / double(e[name]), 1, 1e-6) << e.dump() << " " << name;
+        };
+        near(f.parameters.threshold, "threshold50");
+        near(f.standard_error.threshold, "threshold_se_delta");
+        near(f.parameters.scale, "scale");
+        near(1 / f.parameters.scale, "slope");
+        near(-f.parameters.threshold / f.parameters.scale, "intercept");
+        near(f.deviance, "deviance");
+        near(f.log_likelihood, "logLik");
+        EXPECT_EQ(f.degrees_of_freedom, int(e["df"]));
+        EXPECT_TRUE(f.converged);
+        EXPECT_EQ(f.note, "");
+    }
+}
+
+std::vector<LevelCount> simulated(PsychometricShape const& shape, PsychometricParameters const& truth,
+                                  std::vector<double> const& levels, int trials, std::uint64_t seed = 4)
+{
+    Random random(seed);
+    std::vector<LevelCount> counts;
+    for (double const level : levels) {
+        counts.push_back({level, 0, double(trials)});
+        for (int t = 0; t < trials; ++t)
+            counts.back().correct += random.uniform() < proportion_at(shape, truth, level);
+    }
+    return counts;
+}
+
+TEST(Psychometric, FindsGuessAndLapseAgainForEverySigmoidAxisAndDirection)
+{
+    for (Sigmoid const sigmoid : {Sigmoid::logistic, Sigmoid::gaussian, Sigmoid::weibull})
+        for (Axis const axis : {Axis::linear, Axis::log10})
+            for (Direction const direction : {Direction::rising, Direction::falling}) {
+                PsychometricShape const shape{sigmoid, axis, direction};
+                std::vector<double> levels;
+                double const sign = direction == Direction::rising ? 1 : -1;
+                for (double u = -3; u <= 3; u += 0.4) levels.push_back(axis == Axis::log10 ? std::pow(10, u) : u);
+                PsychometricParameters const truth{0.3 * sign, 0.4, 0.25, 0.05};
+                PsychometricSettings settings{shape, {0.2, 0.6}, {0.02, 0.3}};
+                PsychometricFit const f = fit_psychometric(simulated(shape, truth, levels, 1500), settings);
+                EXPECT_NEAR(f.parameters.threshold, truth.threshold, 4 * f.standard_error.threshold);
+                EXPECT_NEAR(f.parameters.scale, truth.scale, 4 * f.standard_error.scale);
+                EXPECT_NEAR(f.parameters.guess, truth.guess, 4 * f.standard_error.guess);
+                EXPECT_NEAR(f.parameters.lapse, truth.lapse, 4 * f.standard_error.lapse);
+                EXPECT_LT(f.standard_error.threshold, 0.05);
+                EXPECT_GT(f.fit_p, 0.001);
+                EXPECT_EQ(f.note, "");
+                double const level = level_at(shape, f.parameters, 0.75);
+                EXPECT_NEAR(proportion_at(shape, f.parameters, level), 0.75, 1e-9);
+            }
+}
+
+TEST(Psychometric, WeibullOnALogarithmicAxisIsWeibull)
+{
+    PsychometricShape const shape{Sigmoid::weibull, Axis::log10};
+    double const a = 3, b = 2.2;
+    PsychometricParameters const p{std::log10(a), std::log10(std::exp(1.0)) / b, 0.5, 0.02};
+    for (double x : {0.1, 1.0, 3.0, 9.0})
+        EXPECT_NEAR(proportion_at(shape, p, x), 0.5 + 0.48 * (1 - std::exp(-std::pow(x / a, b))), 1e-12);
+}
+
+TEST(Psychometric, WithAForgottenLapseTheScaleIsTooLarge)
+{
+    // Wichmann & Hill 2001: one lapse at an easy level, and what it does.
+    std::vector<LevelCount> const counts{{0, 10, 40}, {1, 14, 40}, {2, 26, 40},
+                                         {3, 36, 40}, {4, 40, 40}, {9, 38, 40}};
+    PsychometricSettings fixed, free;
+    free.lapse = {0.01, 0.1};
+    PsychometricFit const without = fit_psychometric(counts, fixed), with = fit_psychometric(counts, free);
+    EXPECT_GT(without.parameters.scale, 1.2 * with.parameters.scale);
+    EXPECT_GT(with.parameters.lapse, 0.01);
+    EXPECT_LT(with.deviance, without.deviance);
+    EXPECT_EQ(with.degrees_of_freedom, without.degrees_of_freedom - 1);
+}
+
+TEST(Psychometric, BootstrapAgreesWithTheErrorOfTheFit)
+{
+    PsychometricShape const shape{};
+    auto const counts = simulated(shape, {1, 2, 0.5, 0.02}, {-4, -2, 0, 1, 2, 4, 7}, 100);
+    PsychometricSettings const settings{shape, {0.5, 0}, {0.02, 0}};
+    PsychometricFit const f = fit_psychometric(counts, settings);
+    PsychometricBootstrap const b = bootstrap_psychometric(counts, settings, 400);
+    EXPECT_EQ(b.replicates, 400);
+    EXPECT_NEAR((b.threshold.high - b.threshold.low) / (2 * 1.96 * f.standard_error.threshold), 1, 0.2);
+    EXPECT_LT(b.threshold.low, f.parameters.threshold);
+    EXPECT_GT(b.threshold.high, f.parameters.threshold);
+    EXPECT_NEAR(b.deviance_p, f.fit_p, 0.1);
+    EXPECT_THROW(bootstrap_psychometric(counts, settings, 1), std::invalid_argument);
+}
+
+TEST(Psychometric, SaysWhatTheDataDoNotSettle)
+{
+    auto const note = [](std::vector<LevelCount> const& counts) { return fit_psychometric(counts).note; };
+    std::vector<LevelCount> const step{{1, 0, 10}, {2, 0, 10}, {3, 10, 10}, {4, 10, 10}};
+    EXPECT_NE(note(step), "");
+    double const at = fit_psychometric(step).parameters.threshold;
+    EXPECT_GE(at, 2);
+    EXPECT_LE(at, 3);
+    EXPECT_NE(note({{1, 0, 10}, {2, 0, 10}}).find("no correct response"), std::string::npos);
+    EXPECT_NE(note({{1, 10, 10}, {2, 10, 10}}).find("nothing but correct"), std::string::npos);
+    EXPECT_NE(note({{1, 5, 10}, {2, 5, 10}, {3, 5, 10}}), "");
+    EXPECT_NE(note({{1, 9, 10}, {2, 5, 10}, {3, 1, 10}}), ""); // the wrong way round
+}
+
+TEST(Psychometric, LeavesOutLevelsWithoutTrialsAndAddsUpEqualOnes)
+{
+    std::vector<LevelCount> const counts{{1, 2, 10}, {2, 4, 10}, {3, 9, 10}};
+    std::vector<LevelCount> const split{{3, 4, 4}, {1, 2, 10}, {2, 4, 10}, {5, 0, 0}, {3, 5, 6}};
+    EXPECT_NEAR(fit_psychometric(counts).parameters.threshold, fit_psychometric(split).parameters.threshold, 1e-9);
+    EXPECT_EQ(fit_psychometric(split).degrees_of_freedom, 1);
+    auto const trials = count_levels(std::vector<double>{2, 1, 2}, std::vector<int>{1, 0, 0});
+    ASSERT_EQ(trials.size(), 2u);
+    EXPECT_EQ(trials[1].trials, 2);
+    EXPECT_EQ(trials[1].correct, 1);
+}
+
+TEST(Psychometric, RefusesWhatIsNoCurve)
+{
+    auto const fit = [](std::vector<LevelCount> const& counts, PsychometricSettings const& s = {}) {
+        return fit_psychometric(counts, s);
+    };
+    EXPECT_THROW(fit({}), std::invalid_argument);
+    EXPECT_THROW(fit({{1, 2, 3}}), std::invalid_argument);
+    EXPECT_THROW(fit({{1, 0, 0}, {2, 0, 0}}), std::invalid_argument);
+    EXPECT_THROW(fit({{1, 4, 3}, {2, 1, 3}}), std::invalid_argument);
+    EXPECT_THROW(fit({{NAN, 1, 3}, {2, 1, 3}}), std::invalid_argument);
+    EXPECT_THROW(fit({{1, NAN, 3}, {2, 1, 3}}), std::invalid_argument);
+    EXPECT_THROW(fit({{0, 1, 3}, {2, 1, 3}}, {{Sigmoid::logistic, Axis::log10}, {}, {}}), std::invalid_argument);
+    EXPECT_THROW(fit({{1, 1, 3}, {2, 1, 3}}, {{}, {0.5, 0}, {0.02, 0.5}}), std::invalid_argument);
+    EXPECT_THROW(count_levels(std::vector<double>{1, 2}, std::vector<int>{1}), std::invalid_argument);
+    EXPECT_THROW(count_levels(std::vector<double>{NAN}, std::vector<int>{1}), std::invalid_argument);
+    EXPECT_TRUE(std::isnan(level_at({}, {0, 1, 0.5, 0}, 0.4)));
+}
+
+} // namespace
+} // namespace study::test

@@ -1,0 +1,187 @@
+// Ratings against R and sureal, rankings against choix.
+
+#include "study/stats/agreement.h"
+#include "study/stats/rankings.h"
+#include "study/stats/ratings.h"
+#include "study/stats/summary.h"
+
+#include "study/base/random.h"
+#include "tests/study_stats/support/study_data.h"
+
+#include <cmath>
+
+namespace study::test {
+namespace {
+
+Matrix nflx()
+{
+    auto const rows = read_csv("ratings_nflx_public.csv");
+    Matrix ratings(79, 26, NAN);
+    for (std::size_t r = 1; r < rows.size(); ++r)
+        ratings(std::stoul(rows[r][0]), std::stoul(rows[r][2].substr(1))) = std::stod(rows[r][3]);
+    return ratings;
+}
+
+TEST(Ratings, AreThoseOfR)
+{
+    LIGHTWELL_NEED_STUDY_DATA();
+    auto const e = read_json("ratings_nflx_public.expected.json");
+    Matrix const ratings = nflx();
+    std::vector<double> mos, deviation, error, half;
+    for (MeanOpinion const& m : mean_opinions(ratings)) {
+        EXPECT_EQ(m.observers, int(e["n_subjects"]));
+        mos.push_back(m.mean);
+        deviation.push_back(m.deviation);
+        error.push_back(m.standard_error);
+        half.push_back((m.interval.high - m.interval.low) / 2);
+    }
+    EXPECT_EQ(mos.size(), std::size_t(e["n_assets"]));
+    expect_near(mos, e["mos"], 1e-8, "mean");
+    expect_near(deviation, e["sd"], 1e-8, "deviation");
+    expect_near(error, e["se"], 1e-8, "standard error");
+    expect_near(half, e["ci95_t_halfwidth"], 1e-8, "interval");
+    EXPECT_NEAR(mean(mos), double(e["mean_mos"]), 1e-8);
+    EXPECT_NEAR(mean(error), double(e["mean_se"]), 1e-8);
+    expect_near(observer_means(ratings), e["subject_mean"], 1e-8, "observer mean");
+    Friedman const f = friedman(transposed(ratings));
+    EXPECT_NEAR(f.chi_square, double(e["friedman_chi2"]), 1e-8);
+    EXPECT_EQ(f.degrees_of_freedom, int(e["friedman_df"]));
+    EXPECT_NEAR(f.kendall_w, double(e["kendall_W_ties_corrected"]), 1e-8);
+}
+
+TEST(Ratings, NormalisedHaveMeanNoughtAndDeviationOnePerObserver)
+{
+    Matrix ratings(3, 3);
+    ratings.values = {1, 5, 4, 2, 5, NAN, 3, 5, 2};
+    Matrix const z = normalised(ratings);
+    EXPECT_NEAR(z(0, 0), -1, 1e-12);
+    EXPECT_NEAR(z(2, 0), 1, 1e-12);
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_EQ(z(j, 1), 0); // always the same rating
+    EXPECT_TRUE(std::isnan(z(1, 2)));
+    EXPECT_NEAR(z(0, 2), std::sqrt(0.5), 1e-12);
+}
+
+TEST(Ratings, ModelFindsBiasAndInconsistencyAgain)
+{
+    std::size_t const items = 300, observers = 12;
+    Random random(17);
+    std::vector<double> quality, bias{-0.8, 0.5, 0, 0, 0.3, 0, 0, -0.2, 0, 0.4, 0, -0.2};
+    for (std::size_t j = 0; j < items; ++j) quality.push_back(1 + 4 * random.uniform());
+    Matrix ratings(items, observers);
+    for (std::size_t j = 0; j < items; ++j)
+        for (std::size_t o = 0; o < observers; ++o)
+            ratings(j, o) = quality[j] + bias[o] + (o == 3 ? 1.5 : 0.4) * random.normal();
+    for (std::size_t j = 0; j < items; j += 7) ratings(j, j % observers) = NAN;
+    RatingModel const m = fit_ratings(ratings);
+    EXPECT_TRUE(m.converged);
+    EXPECT_EQ(m.note, "");
+    double squares = 0;
+    for (std::size_t o = 0; o < observers; ++o) {
+        EXPECT_NEAR(m.bias[o], bias[o], 4 * m.bias_error[o] + 0.02) << o;
+        EXPECT_NEAR(m.inconsistency[o] / (o == 3 ? 1.5 : 0.4), 1, 0.2) << o;
+    }
+    for (std::size_t j = 0; j < items; ++j)
+        squares += std::pow((m.quality[j] - quality[j]) / m.quality_error[j], 2);
+    EXPECT_NEAR(squares / items, 1, 0.35);
+}
+
+TEST(Ratings, ModelOfRealOnesLeansOnThoseWhoAgree)
+{
+    LIGHTWELL_NEED_STUDY_DATA();
+    Matrix const ratings = nflx();
+    RatingModel const m = fit_ratings(ratings);
+    EXPECT_TRUE(m.converged);
+    double largest = 0;
+    auto const mos = mean_opinions(ratings);
+    for (std::size_t j = 0; j < 79; ++j) largest = std::max(largest, std::abs(m.quality[j] - mos[j].mean));
+    EXPECT_LT(largest, 0.5);
+    auto const means = observer_means(ratings); // complete: the bias is the mean against that of all
+    for (std::size_t o = 0; o < 26; ++o) EXPECT_NEAR(m.bias[o], means[o] - mean(means), 1e-9) << o;
+}
+
+TEST(Ratings, OfNobodyOrOneAreDefined)
+{
+    Matrix ratings(3, 2);
+    ratings.values = {NAN, NAN, 4, NAN, 4, 4};
+    auto const m = mean_opinions(ratings);
+    EXPECT_EQ(m[0].observers, 0);
+    EXPECT_TRUE(std::isnan(m[0].mean));
+    EXPECT_EQ(m[1].mean, 4);
+    EXPECT_TRUE(std::isnan(m[1].interval.low));
+    EXPECT_EQ(m[2].interval.low, 4);
+    EXPECT_EQ(m[2].interval.high, 4);
+    EXPECT_TRUE(mean_opinions(Matrix(0, 0)).empty());
+
+    RatingModel const exact = fit_ratings(ratings);
+    EXPECT_NE(exact.note, "");
+    EXPECT_TRUE(std::isnan(exact.quality[0]));
+    EXPECT_NEAR(exact.quality[1], 4, 1e-9);
+    EXPECT_THROW(fit_ratings(Matrix(2, 2, NAN)), std::invalid_argument);
+    EXPECT_THROW(fit_ratings(Matrix(0, 0)), std::invalid_argument);
+    ratings(0, 0) = INFINITY;
+    EXPECT_THROW(mean_opinions(ratings), std::invalid_argument);
+    EXPECT_THROW(fit_ratings(ratings), std::invalid_argument);
+}
+
+double log_likelihood(std::vector<Choice> const& choices, std::vector<double> const& score)
+{
+    double sum = 0;
+    for (Choice const& c : choices) {
+        double total = std::exp(score[std::size_t(c.chosen)]);
+        for (int const r : c.rejected) total += std::exp(score[std::size_t(r)]);
+        sum += score[std::size_t(c.chosen)] - std::log(total);
+    }
+    return sum;
+}
+
+TEST(Rankings, MeetTheCasesOfChoix)
+{
+    LIGHTWELL_NEED_STUDY_DATA();
+    for (std::string const name : {"rankings-1", "rankings-2", "top1-1", "top1-2", "pairwise-1", "pairwise-2"}) {
+        auto const e = read_json("choix/testcase-" + name + ".json");
+        std::vector<Choice> choices;
+        for (auto const& d : e["data"]) {
+            if (name.starts_with("top1")) {
+                choices.push_back({d[0], d[1].get<std::vector<int>>()});
+                continue;
+            }
+            for (Choice const& c : choices_of(d.get<std::vector<int>>())) choices.push_back(c);
+        }
+        PlackettLuce const p = fit_plackett_luce(choices, e["n_items"]);
+        // The numbers of rankings-2 stop 2.7e-5 short of the maximum (the gradient there is 2e-5); choix itself
+        // tests all its cases to 1e-4.
+        expect_near(p.score, e["ml_est"], name == "rankings-2" ? 1e-4 : 1e-5, name);
+        EXPECT_GE(p.log_likelihood, log_likelihood(choices, e["ml_est"]) - 1e-14) << name;
+        EXPECT_NEAR(p.log_likelihood, log_likelihood(choices, p.score), 1e-12) << name;
+        EXPECT_FALSE(p.regularised) << name;
+    }
+}
+
+TEST(Rankings, AreRegularisedWhereAllAgreeAndSaySo)
+{
+    std::vector<Choice> choices;
+    for (int i = 0; i < 5; ++i)
+        for (Choice const& c : choices_of(std::vector<int>{2, 0, 1})) choices.push_back(c);
+    PlackettLuce const p = fit_plackett_luce(choices, 3);
+    EXPECT_TRUE(p.regularised);
+    EXPECT_EQ(p.note.find("converge"), std::string::npos);
+    EXPECT_GT(p.score[2], p.score[0]);
+    EXPECT_GT(p.score[0], p.score[1]);
+    EXPECT_LT(p.score[2], 10);
+}
+
+TEST(Rankings, OfOneItemAreNoughtAndBadOnesAreRefused)
+{
+    EXPECT_EQ(fit_plackett_luce({}, 1).score, std::vector<double>{0});
+    EXPECT_TRUE(choices_of({}).empty());
+    auto const fit = [](std::vector<Choice> const& c, int items) { return fit_plackett_luce(c, items); };
+    EXPECT_THROW(fit({}, 0), std::invalid_argument);
+    EXPECT_THROW(fit({}, 2), std::invalid_argument);
+    EXPECT_THROW(fit({{0, {1, 1}}}, 2), std::invalid_argument);
+    EXPECT_THROW(fit({{0, {0}}}, 2), std::invalid_argument);
+    EXPECT_THROW(fit({{0, {2}}}, 2), std::invalid_argument);
+    EXPECT_THROW(fit({{-1, {0}}}, 2), std::invalid_argument);
+}
+
+} // namespace
+} // namespace study::test
