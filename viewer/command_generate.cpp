@@ -105,6 +105,8 @@ void add_generate(CLI::App& app, int& exit_code)
   lightwell generate atrium --bays 3 --no-figure --out small_atrium.glb
   lightwell generate boxes --triangles 20000 --seed 1 --out boxes.glb
   lightwell generate sphere --triangles 20000 --out sphere.glb
+  lightwell generate mirror --out mirror.glb
+  lightwell generate avatar --out avatar.glb
   lightwell generate sky --turbidity 3 --sun-elevation 40 --sun-azimuth 120 --size 256x128 --out sky.exr
   lightwell render cornell --envmap sky.exr --envmap-scale 0.05 --size 32x32 --paths 4 --out lit.exr
 
@@ -131,6 +133,8 @@ A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them
         ->capture_default_str();
     atrium->add_flag("--no-figure", o->no_figure, "leave out the walking figure");
     add("cornell", "the Cornell box by its published measurements", [] { return gi::generate_cornell(); });
+    add("mirror", "a room with a mirror before the camera", [] { return gi::generate_mirror(); });
+    add("avatar", "a skinned mannequin, for view --avatar", [] { return gi::generate_avatar(); });
     CLI::App* const boxes =
         add("boxes", "randomly turned boxes on a grid", [o] { return gi::generate_boxes(o->triangles, o->seed); });
     CLI::App* const sphere =

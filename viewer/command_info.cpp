@@ -122,7 +122,8 @@ void add_info(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<InfoOptions>();
     CLI::App* const c = app.add_subcommand("info", "What is in a scene, what will be built for it, and why.");
-    c->add_option("SCENE", o->scene, "a scene file, a folder of OBJ or PLY frames, or atrium, cornell");
+    c->add_option("SCENE", o->scene,
+                  "a scene file, a folder of OBJ or PLY frames, or atrium, cornell, mirror, avatar");
     c->add_option("--directions", o->directions,
                   "instead of a scene: FAMILY:COUNT, a set of directions; families are\n"
                   "icosahedron, octahedron, tetrahedron, uv_grid, halton, fibonacci");

@@ -1,8 +1,10 @@
 #include "gi/base/error.h"
 #include "gi/base/file.h"
+#include "gi/scene/load.h"
 #include "viewer/arguments.h"
 #include "viewer/commands.h"
 #include "viewer/display/display_file.h"
+#include "viewer/display/views.h"
 #include "viewer/interrupt.h"
 #include "viewer/load_world.h"
 #include "viewer/rank_options.h"
@@ -13,6 +15,7 @@
 #include "viewer/show/cluster_link.h"
 #include "viewer/show/hmd_program.h"
 #include "viewer/show/view_program.h"
+#include "viewer/tracking/own_avatar.h"
 #include "viewer/validators.h"
 #include "viewer/version.h"
 
@@ -30,7 +33,7 @@ struct ViewArguments {
     RenderOptions scene; ///< scene, camera, sky
     std::vector<std::string> settings;
     std::string size, fullscreen, navigate = "fly", record, frame_log, remote, stats, screenshots, display, replay,
-                                  out, video;
+                                  out, video, avatar;
     RankOptions ranks;
     double fps = 30, eye_height_m = 1.6;
     int paths = 0;
@@ -57,20 +60,44 @@ NavigationMode parse_navigation(std::string const& name)
     throw gi::InputError("--navigate " + name, "it is not known here", "choose fly, walk or orbit");
 }
 
-LoadScene loader(RenderOptions const& options)
+/// Scenes as the options say, each with the avatar of that file ("" = none).
+RecordedScenes scenes_of(RenderOptions const& options, std::string const& avatar, double eye_height_m,
+                         gi::Report& report)
 {
-    return [options](std::string const& name, gi::Report& report) {
+    std::shared_ptr<OwnAvatar const> own;
+    if (!avatar.empty()) own = std::make_shared<OwnAvatar const>(gi::load_scene(avatar, report), eye_height_m);
+    RecordedScenes s;
+    s.load = [options, own](std::string const& name, gi::Report& r) {
         RenderOptions named = options;
         named.scene = name;
-        return load_lit_scene(named, report);
+        std::shared_ptr<gi::Scene const> const scene = load_lit_scene(named, r);
+        return own ? std::make_shared<gi::Scene const>(own->joined(*scene)) : scene;
     };
+    if (own)
+        s.drive = [own](gi::Scene const& scene, FrameOrder const& order, gi::Pose& pose) {
+            own->drive(scene, order, pose);
+        };
+    return s;
+}
+
+/// Of the first user; rooms whose origin is not on the floor do not tell.
+double eye_height_m(ViewArguments const& a, std::optional<Display> const& display)
+{
+    if (!display || display->users.empty()) return a.eye_height_m;
+    double const rests = resting_head(display->users[0]).position.y;
+    return rests >= 0.3 && rests <= 3 ? rests : a.eye_height_m;
 }
 
 ViewOptions view_options(ViewArguments const& a, std::string const& command_line, gi::Report& report)
 {
     ViewOptions o;
     RenderOptions const& scene = a.scene;
-    o.load = loader(scene);
+    if (!a.display.empty()) o.display = load_display(a.display, report);
+    double const eyes = eye_height_m(a, o.display);
+    RecordedScenes scenes = scenes_of(scene, a.avatar, eyes, report);
+    o.load = std::move(scenes.load);
+    o.drive = std::move(scenes.drive);
+    o.eye_height_m = eyes;
     o.scene = scene.scene;
     CameraChoice const choice = camera_choice(scene);
     o.first_camera = [choice](gi::World const& world) {
@@ -86,7 +113,6 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
     o.threads = scene.threads;
     o.navigation = parse_navigation(a.navigate);
     o.screenshots = a.screenshots;
-    if (!a.display.empty()) o.display = load_display(a.display, report);
     o.record = a.record;
     o.frame_log = a.frame_log;
     o.header.program = version_text();
@@ -95,6 +121,10 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
                       {"environment_rotate_deg", scene.environment_rotate_deg},
                       {"environment_scale", scene.environment_scale},
                       {"background", scene.background}};
+    if (!a.avatar.empty()) {
+        o.load_options["avatar"] = a.avatar;
+        o.load_options["eye_height_m"] = eyes;
+    }
     o.remote.socket = a.remote;
     o.remote.port = a.remote_port;
     o.time_limit_s = a.time_limit_s;
@@ -157,7 +187,9 @@ int run(ViewArguments const& a, std::string const& command_line)
     if (!o.display)
         throw gi::InputError("view by several ranks without --display", "it is not known which walls each shows",
                              "add --display FILE.yaml whose walls have ranks");
-    ClusterLink link({version_text(), o.scene + " on " + a.display, file_hash(o.scene) ^ file_hash(a.display)},
+    std::string const what = o.scene + " on " + a.display + (a.avatar.empty() ? "" : " with " + a.avatar);
+    std::uint64_t const avatar_hash = a.avatar.empty() ? 0 : file_hash(a.avatar);
+    ClusterLink link({version_text(), what, file_hash(o.scene) ^ file_hash(a.display) ^ avatar_hash},
                      cluster_settings(a.ranks));
     ViewSummary const done = run_view(o, &link, stop, report);
     if (o.rank == 0) return finish(a, done, &link, report);
@@ -181,13 +213,13 @@ int run_replay(ViewArguments const& a)
     o.threads = a.scene.threads;
     ReplaySummary const done = replay(
         o,
-        [](nlohmann::json const& load) {
+        [&report](nlohmann::json const& load) {
             RenderOptions options;
             options.environment = load.value("environment", "");
             options.environment_rotate_deg = load.value("environment_rotate_deg", 0.0);
             options.environment_scale = load.value("environment_scale", 1.0);
             options.background = load.value("background", "");
-            return loader(options);
+            return scenes_of(options, load.value("avatar", ""), load.value("eye_height_m", 1.6), report);
         },
         stop, report);
     fmt::print("{} frames replayed", done.frames);
@@ -213,7 +245,8 @@ void check_mode(CLI::App const& command, ViewArguments const& a)
     };
     if (replays)
         refuse({"scene", "--record", "--frame-log", "--remote", "--remote-port", "--display", "--hmd",
-                "--fullscreen", "--time-limit", "--navigate", "--screenshots", "--stats", "--camera", "--envmap"},
+                "--fullscreen", "--time-limit", "--navigate", "--screenshots", "--stats", "--camera", "--envmap",
+                "--avatar", "--eye-height"},
                "with --replay");
     else
         refuse({"--out", "--video", "--paths", "--fps"}, "without --replay");
@@ -240,8 +273,14 @@ void add_view(CLI::App& app, int& exit_code)
     c->add_flag("--no-vsync", a->no_vsync, "swap at once");
     c->add_option("--display", a->display, "walls, users and trackers, YAML (docs/displays.md)");
     c->add_flag("--hmd", a->hmd, "in the headset of the OpenXR runtime (docs/hmd.md)");
+    c->add_option("--avatar", a->avatar,
+                  "a skinned model, or avatar: driven by the first user's head and hands, seen in mirrors");
     c->add_flag("--seated", a->seated, "of --hmd: no floor; the eyes begin at --eye-height");
-    c->add_option("--eye-height", a->eye_height_m, "m")->capture_default_str();
+    c->add_option(
+         "--eye-height", a->eye_height_m,
+         "m above the floor: of who walks, of an avatar's user, of --seated; a display's user says his own")
+        ->check(in_range(0.2, 3))
+        ->capture_default_str();
     declare_rank_options(*c, a->ranks);
     c->add_option("--navigate", a->navigate, "fly, walk or orbit")->capture_default_str();
     c->add_option("--threads", a->scene.threads, "0 = all")->check(in_range(0, 1024));
@@ -262,12 +301,13 @@ void add_view(CLI::App& app, int& exit_code)
     c->footer(
         R"(Keys: W A S D Q E move, drag looks, wheel nears, click selects, control + drag moves what is selected,
 1..9 0 stereo, V split/flicker/difference, C compare with the reference, M method, + - exposure, space plays,
-Tab fly/walk/orbit, R first camera, P reprojection, F1 panel, F2 screenshot, F11 swaps eyes, Esc ends.
+Tab fly/walk/orbit, Z X raise the avatar's hands, R first camera, P reprojection, F1 panel, F2 screenshot, F11 swaps eyes, Esc ends.
 All settings: docs/viewer.md.
 
 Examples (they need a display):
   lightwell view atrium
   lightwell view atrium --set stereo=anaglyph-dubois --record walk.lwr --frame-log frames.csv
+  lightwell view mirror --avatar avatar --navigate walk
   lightwell view --replay walk.lwr
   lightwell view --replay walk.lwr --set method=reference --paths 256 --video walk.mkv
   mpirun --enable-recovery --bind-to none -n 4 lightwell view atrium --display cave4.yaml)");

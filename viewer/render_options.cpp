@@ -267,8 +267,9 @@ void declare_slhb(CLI::App& c, RenderOptions& o)
 
 void declare_options(CLI::App& c, RenderOptions& o)
 {
-    c.add_option("SCENE", o.scene,
-                 "glTF, YAML, OBJ, PLY, FBX, ... file, a folder of OBJ or PLY frames, or atrium, cornell")
+    c.add_option(
+         "SCENE", o.scene,
+         "glTF, YAML, OBJ, PLY, FBX, ... file, a folder of OBJ or PLY frames, or atrium, cornell, mirror, avatar")
         ->required();
     std::string known;
     for (gi::Method const& m : gi::methods()) known += fmt::format("\n  {}: {}", m.name, m.summary);

@@ -80,7 +80,9 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     RecordingHeader const& header = reader.header();
     std::optional<TimedVideo> video;
     if (!o.video.empty()) video.emplace(o.video, o.size.value_or(largest_view(reader)), o.fps);
-    Session session(load(header.settings.value("load", nlohmann::json::object())), o.threads, report);
+    RecordedScenes const scenes = load(header.settings.value("load", nlohmann::json::object()));
+    Session session(scenes.load, o.threads, report);
+    session.drive_bodies(scenes.drive);
     std::set<std::string> overridden;
     nlohmann::json const settings = header.settings.value("settings", nlohmann::json::object());
     for (auto const& [key, value] : settings.items()) session.apply({key, value});

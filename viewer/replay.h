@@ -25,8 +25,13 @@ struct ReplaySummary {
     bool interrupted = false;
 };
 
-/// How a recording's scene is read: from its name and RecordingHeader::settings["load"].
-using LoadRecorded = std::function<LoadScene(nlohmann::json const& load)>;
+/// What a recording's scenes are read and moved with.
+struct RecordedScenes {
+    LoadScene load;
+    DriveBodies drive; ///< empty = nothing but their clips moves them
+};
+/// From RecordingHeader::settings["load"].
+using LoadRecorded = std::function<RecordedScenes(nlohmann::json const& load)>;
 
 /// True where nothing is rendered otherwise than then, so that pixels must be the same.
 bool as_recorded(ReplayOptions const& options);

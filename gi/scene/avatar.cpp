@@ -87,8 +87,10 @@ Avatar::Arm make_arm(Scene const& scene, Pose const& rest, ArmJoints const& join
             arm.wrist.push_back(std::int32_t(n));
     }
     if (glm::length(fingers) < 1e-3 * near) fingers = wrist - elbow;
-    // Palms face down where arms are spread, and the body where they hang.
-    dvec3 const back = body * dvec3{0.1 * outward, 1, 0};
+    // Palms face down where arms are spread, and the body where they hang: there "up" is nearly along the fingers.
+    dvec3 back = body * dvec3{0.3 * outward, 1, 0};
+    if (double const length = glm::length(fingers); length > 0)
+        back -= glm::dot(back, fingers) / (length * length) * fingers;
     arm.joint_from_hand = glm::inverse(tracker_orientation(fingers, back)) *
                           orientation(rest.world_from_node[std::size_t(joints.hand)]);
     return arm;

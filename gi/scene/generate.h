@@ -19,6 +19,14 @@ Scene generate_atrium(AtriumOptions const& options);
 /// in metres, with RGB reflectances and emission integrated from the published spectra.
 Scene generate_cornell();
 
+/// A room of 5 x 4.6 m with a mirror on the wall, 1.6 m before the camera, which is at eye height (1.6 m); two steps
+/// to climb behind it.
+Scene generate_mirror();
+
+/// A skinned mannequin with a face, 1.77 m tall, standing on y = 0 and facing +Z, with the clip "walk": an avatar
+/// for `lightwell view --avatar`.
+Scene generate_avatar();
+
 /// `count` triangles (rounded to whole boxes of 12) as randomly rotated boxes on a grid inside a closed room with a lamp.
 Scene generate_boxes(std::uint32_t triangles, std::uint64_t seed);
 

@@ -1,7 +1,7 @@
 #pragma once
 // One door to every scene format. The extension chooses the reader: .gltf/.glb tinygltf, .yaml/.yml scene files,
 // everything else Assimp; a folder of OBJ or PLY files (or its sequence.json) is a mesh sequence. A name without a
-// file ("atrium", "cornell") is a scene that the project generates.
+// file ("atrium", "cornell", "mirror", "avatar") is a scene that the project generates.
 
 #include "gi/base/report.h"
 #include "gi/scene/camera_path.h"

@@ -331,6 +331,11 @@ TEST_F(WriteGlb, KeepsTheCornellBox)
     expect_same(scene, round_trip(scene));
 }
 
+TEST_F(WriteGlb, KeepsTheMirrorRoomAndTheAvatar)
+{
+    for (Scene const& scene : {generate_mirror(), generate_avatar()}) expect_same(scene, round_trip(scene));
+}
+
 TEST_F(WriteGlb, KeepsEverythingElse)
 {
     Scene const scene = everything();

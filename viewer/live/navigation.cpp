@@ -10,6 +10,7 @@ using gi::dmat4, gi::dvec3;
 
 constexpr double kSteepest_rad = 1.5533; // 89 degrees
 constexpr double kLongestStep_s = 0.1;
+constexpr double kRise_m_s = 2; // of the eyes, on stairs
 
 dmat4 turned(double yaw_rad, double pitch_rad)
 {
@@ -38,15 +39,23 @@ void Navigation::go_to(dmat4 const& world_from_camera)
 {
     dvec3 const back = glm::normalize(dvec3(world_from_camera[2]));
     position_ = dvec3(world_from_camera[3]);
+    standing_.reset();
     pitch_rad_ = std::clamp(std::asin(std::clamp(-back.y, -1.0, 1.0)), -kSteepest_rad, kSteepest_rad);
     // Straight up or down, the camera's own up says where it faces.
     dvec3 const level = std::abs(back.y) < 0.9999 ? back : dvec3(world_from_camera[1]) * (back.y > 0 ? -1.0 : 1.0);
     yaw_rad_ = std::atan2(level.x, level.z);
 }
 
+void Navigation::set_ground(std::shared_ptr<Ground const> ground)
+{
+    ground_ = std::move(ground);
+    standing_.reset();
+}
+
 void Navigation::set_mode(NavigationMode mode)
 {
     mode_ = mode;
+    standing_.reset();
     if (mode != NavigationMode::orbit) return;
     dvec3 const to = pivot_ - position_;
     if (double const far = glm::length(to); far > 1e-6) {
@@ -72,7 +81,29 @@ void Navigation::step(NavigationInput const& in, double seconds)
     bool const level = mode_ == NavigationMode::walk;
     dmat4 const axes = turned(yaw_rad_, level ? 0 : pitch_rad_);
     dvec3 const way{in.right, level ? 0 : in.up, -in.forward};
-    position_ += pace * dvec3(axes * glm::dvec4(way, 0)) + 0.2 * in.closer * speed_m_s_ * -dvec3(axes[2]);
+    dvec3 const by = pace * dvec3(axes * glm::dvec4(way, 0)) + 0.2 * in.closer * speed_m_s_ * -dvec3(axes[2]);
+    if (level)
+        walk_by(by, std::clamp(seconds, 0.0, kLongestStep_s));
+    else
+        position_ += by;
+}
+
+/// The foot climbs at once, the eyes follow at a steady rate.
+void Navigation::walk_by(dvec3 way_m, double seconds)
+{
+    bool const moves = way_m != dvec3{0};
+    if (moves && ground_ && !standing_) {
+        standing_ = stand_below(*ground_, position_, eye_height_m_);
+        if (standing_) position_.y = standing_->foot.y + standing_->eye_m;
+    }
+    if (!standing_) {
+        position_ += way_m;
+        return;
+    }
+    if (moves) standing_ = walk(*ground_, *standing_, way_m);
+    double const rise = std::max(kRise_m_s * seconds, glm::length(way_m));
+    double const eyes = standing_->foot.y + standing_->eye_m;
+    position_ = {standing_->foot.x, position_.y + std::clamp(eyes - position_.y, -rise, rise), standing_->foot.z};
 }
 
 dmat4 Navigation::world_from_camera() const

@@ -1,9 +1,9 @@
 #pragma once
 // How a user moves through the world: where the room (or, without one, the head) is. Three ways: fly, along the
-// view; walk, on the level, at the height where it began; orbit, round a point. Speeds are per second, so that
-// motion does not depend on the rate of frames.
+// view; walk, with the eyes at their height above the floor (walking.h), or, where no floor is below, on the
+// level; orbit, round a point. Speeds are per second, so that motion does not depend on the rate of frames.
 
-#include "gi/scene/camera.h"
+#include "viewer/live/walking.h"
 
 namespace viewer {
 
@@ -28,7 +28,12 @@ public:
     void set_mode(NavigationMode mode);
     NavigationMode mode() const { return mode_; }
     void set_pivot(gi::dvec3 pivot) { pivot_ = pivot; }
-    /// Elsewhere at once. Tilt about the view's axis is taken off.
+    /// What is walked on; null = nothing is known of it, walking stays on the level.
+    void set_ground(std::shared_ptr<Ground const> ground);
+    /// Of the eyes above the floor when walking, m; > 0.
+    void set_eye_height(double m) { eye_height_m_ = m; }
+    /// Elsewhere at once, at any height; a step on foot leads back to the floor. Tilt about the view's axis is
+    /// taken off.
     void go_to(gi::dmat4 const& world_from_camera);
     /// @param seconds  since the last step; long pauses count as a tenth
     void step(NavigationInput const& input, double seconds);
@@ -40,10 +45,15 @@ public:
     gi::dmat4 world_from_room() const;
 
 private:
+    void walk_by(gi::dvec3 way_m, double seconds);
+
     gi::dvec3 position_{0}, pivot_{0};
     double yaw_rad_ = 0, pitch_rad_ = 0; ///< 0 = -Z; positive = left, up
     double speed_m_s_ = 1;
     NavigationMode mode_ = NavigationMode::fly;
+    std::shared_ptr<Ground const> ground_;
+    std::optional<Standing> standing_; ///< while walking, from the first step on
+    double eye_height_m_ = 1.6;
 };
 
 } // namespace viewer

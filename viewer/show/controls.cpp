@@ -131,6 +131,9 @@ bool Controls::holds() const
     return std::any_of(axes_, axes_ + 4, [](double a) { return live(a) != 0; });
 }
 
+bool Controls::raises_left() const { return held_.contains(GLFW_KEY_Z); }
+bool Controls::raises_right() const { return held_.contains(GLFW_KEY_X); }
+
 NavigationInput Controls::motion(double seconds)
 {
     auto const held = [&](int a, int b) { return held_.contains(a) || held_.contains(b) ? 1.0 : 0.0; };

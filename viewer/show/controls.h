@@ -9,6 +9,7 @@
 //   click             select          M          next method         P    reproject
 //   control + drag    move what is    + -        exposure            Esc  end
 //                     selected        space      play, pause
+//   Z, X (held)       raise the avatar's left, right hand
 //   Gamepad: left stick moves, right stick looks, triggers down and up, A selects, start plays and pauses.
 
 #include "viewer/gl/input_event.h"
@@ -55,6 +56,9 @@ public:
     int stereo_mode();
     /// Something is held that moves.
     bool holds() const;
+    /// The key that raises a hand of the avatar is held.
+    bool raises_left() const;
+    bool raises_right() const;
     /// All keys are up: the window has lost its focus.
     void release_all();
 

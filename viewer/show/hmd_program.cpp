@@ -100,6 +100,7 @@ private:
     {
         if (!started_ && frame.tracked.head) {
             start_ = frame.tracked.head->position;
+            if (start_.y > 0.3) state_.navigation.set_eye_height(start_.y);
             started_ = true;
         }
         Viewpoint at;

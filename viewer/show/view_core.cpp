@@ -32,11 +32,13 @@ std::string next(std::string const& key, std::string const& now)
 ViewCore::ViewCore(ViewOptions const& o, gi::Report& r)
     : options(o), display(o.display), report(r), session(o.load, o.threads, r), requests(state, controls, r)
 {
+    if (o.drive) session.drive_bodies(o.drive);
     for (Change const& c : o.settings) session.apply(c);
     session.apply({"scene", o.scene});
     state.settings = session.settings();
     state.facts = facts_of(session);
     start_at(o.first_camera(session.world()));
+    state.navigation.set_eye_height(o.eye_height_m);
     state.navigation.set_mode(o.navigation);
     state.loaded = [this] { look_anew(); };
     if (!o.remote.socket.empty() || o.remote.port) {
@@ -116,6 +118,7 @@ void ViewCore::start(FrameLink* link, std::function<void()> published,
     };
     renderer = std::make_unique<LiveRenderer>(session, state.clock, link, hooks);
     state.renderer = renderer.get();
+    state.refresh_ground();
 }
 
 bool ViewCore::poll(gi::StopRequest const& stop)
@@ -149,6 +152,7 @@ void ViewCore::obey(Command command)
         break;
     case Command::next_navigation:
         state.navigation.set_mode(NavigationMode((int(state.navigation.mode()) + 1) % 3));
+        state.refresh_ground();
         break;
     case Command::first_camera:
         state.navigation.go_to(state.first_camera.world_from_camera);

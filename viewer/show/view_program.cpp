@@ -6,6 +6,7 @@
 #include "viewer/show/panel_contents.h"
 #include "viewer/show/present_thread.h"
 #include "viewer/show/shown_window.h"
+#include "viewer/show/user_body.h"
 #include "viewer/show/user_tracking.h"
 #include "viewer/show/view_core.h"
 
@@ -196,6 +197,7 @@ private:
     {
         NavigationInput const in = core_.controls.motion(seconds);
         state_.navigation.step(in, seconds);
+        body_.step(core_.controls, seconds);
         Viewpoint at;
         at.pose_s = state_.clock.now_s();
         at.display_s = at.pose_s + expected_s_;
@@ -205,12 +207,18 @@ private:
             Display const& display = *core_.display;
             double const seen_s = steady_s() + expected_s_;
             // The head that rests stands where the navigation is.
-            gi::dvec3 const rest = display.users.empty() ? gi::dvec3{0} : resting_head(display.users[0]).position;
-            at.world_from_room = state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -rest);
+            at.world_from_room = state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -rest());
             at.tracked = tracking_->bodies(seen_s);
+            if (core_.options.drive) at.tracked = body_.in_room(display, at.tracked);
             layout = display_layout(display, tracking_->heads(seen_s), at.world_from_room);
         } else {
             at.world_from_room = state_.navigation.world_from_camera();
+            if (core_.options.drive) {
+                gi::dmat4 const world_from_head = at.world_from_room;
+                at.world_from_room = state_.navigation.world_from_room() *
+                                     glm::translate(gi::dmat4(1), gi::dvec3{0, -core_.options.eye_height_m, 0});
+                at.tracked = body_.before_desktop(glm::inverse(at.world_from_room) * world_from_head);
+            }
             layout = desktop_layout(state_, possible_mode(), window_sizes());
         }
         at.views = std::move(layout.views);
@@ -220,6 +228,12 @@ private:
             set_panes(layout.panes);
         }
         core_.renderer->look(std::move(at));
+    }
+
+    /// Where the first user's head rests, in the room.
+    gi::dvec3 rest() const
+    {
+        return core_.display->users.empty() ? gi::dvec3{0} : resting_head(core_.display->users[0]).position;
     }
 
     bool has_moved() const { return cameras_.size() == shown_cameras_.size() && !(cameras_ == shown_cameras_); }
@@ -390,6 +404,7 @@ private:
     std::unique_ptr<Panel> panel_; ///< not on the walls of a display
     std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;
+    UserBody body_;                                   ///< of an avatar
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: now, and as shown
     bool dirty_ = true, fallback_told_ = false;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;

@@ -14,6 +14,7 @@ namespace viewer {
 
 struct ViewOptions {
     LoadScene load;
+    DriveBodies drive; ///< moves the avatar that `load` has added to the scene; empty = there is none
     std::string scene;
     std::function<gi::Camera(gi::World const&)> first_camera; ///< where a scene is looked at from at first
     std::vector<Change> settings;                             ///< set before the first frame
@@ -22,7 +23,8 @@ struct ViewOptions {
     int swap_interval = 1;
     int threads = 0;
     NavigationMode navigation = NavigationMode::fly;
-    std::string screenshots; ///< prefix of those taken by key
+    double eye_height_m = 1.6; ///< of the first user above the floor; a headset says it itself
+    std::string screenshots;   ///< prefix of those taken by key
     std::optional<Display> display;
     std::filesystem::path record, frame_log;
     RecordingHeader header;      ///< of the recording, but for its settings

@@ -39,6 +39,20 @@ void ViewState::move_selection(gi::dvec3 by)
 void ViewState::refresh_facts()
 {
     renderer->ask([this](Session& s) { inbox.put([this, now = facts_of(s)] { facts = now; }); });
+    refresh_ground();
+}
+
+void ViewState::refresh_ground()
+{
+    if (navigation.mode() != NavigationMode::walk) return;
+    renderer->ask([this, known = ground_of_](Session& s) {
+        if (!s.has_scene() || s.world().scene == known.lock()) return;
+        auto const ground = std::make_shared<Ground const>(s.world());
+        inbox.put([this, ground, scene = std::weak_ptr(s.world().scene)] {
+            navigation.set_ground(ground);
+            ground_of_ = scene;
+        });
+    });
 }
 
 gi::Camera ViewState::now() const

@@ -7,6 +7,7 @@
 #include "viewer/show/live_error.h"
 #include "viewer/show/scene_facts.h"
 
+#include <memory>
 #include <mutex>
 
 namespace viewer {
@@ -61,11 +62,16 @@ struct ViewState {
     void change(Change const& change, std::function<void(std::string const&)> done = {});
     /// By so much, m, in the world.
     void move_selection(gi::dvec3 by);
-    /// Reads the facts anew, soon.
+    /// Reads the facts anew, soon; the ground too, where it is walked on.
     void refresh_facts();
+    /// Looks soon whether the ground is still what stays in the scene. Nothing where nobody walks.
+    void refresh_ground();
     /// The camera as it is now.
     gi::Camera now() const;
     void pick(glm::dvec2 at, double aspect, std::function<void(std::optional<Selection> const&)> done);
+
+private:
+    std::weak_ptr<gi::Scene const> ground_of_; ///< whose ground the navigation has
 };
 
 } // namespace viewer

@@ -90,9 +90,12 @@ private:
         if (kind == "boxes") return generate_boxes(triangles(), seed);
         if (kind == "sphere") return generate_sphere(triangles(), seed);
         if (kind == "cornell") return generate_cornell();
+        if (kind == "mirror") return generate_mirror();
+        if (kind == "avatar") return generate_avatar();
         if (kind != "atrium")
             throw g.at("kind").error("there is no built-in scene '" + kind.substr(0, 64) + "'",
-                                     "it cannot be generated", "choose atrium, cornell, boxes or sphere");
+                                     "it cannot be generated",
+                                     "choose atrium, cornell, mirror, avatar, boxes or sphere");
         AtriumOptions o;
         double const most = folder_.empty() ? 1 : 50;
         if (g.has("bays")) o.bays = int(g.at("bays").integer(1, folder_.empty() ? 5 : 100));
