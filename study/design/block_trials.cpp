@@ -1,6 +1,7 @@
 #include "study/design/block_trials.h"
 
 #include <algorithm>
+#include <bit>
 #include <fmt/format.h>
 #include <map>
 #include <numeric>
@@ -73,6 +74,9 @@ void add_pairs(Script const& s, Block const& b, std::vector<std::vector<int>> co
 {
     Pairs const& p = *b.pairs;
     std::vector<bool> const balanced = first_comes_first(p);
+    // Thue and Morse: 0 1 1 0 1 0 0 1 ..., one of each in every two participants, and not tied to orders that
+    // alternate.
+    std::size_t const side = std::size_t(std::popcount(unsigned(participant - 1))) % 2;
     for (int repeat = 0; repeat < b.repeats; ++repeat)
         for (std::size_t c = 0; c < cells.size(); ++c)
             for (std::size_t i = 0; i < p.pairs.size(); ++i) {
@@ -82,7 +86,7 @@ void add_pairs(Script const& s, Block const& b, std::vector<std::vector<int>> co
                 t.stimuli = {with_level(cell, p.factor, p.pairs[i].first),
                              with_level(cell, p.factor, p.pairs[i].second)};
                 if (b.task == Task::pair_with_reference) t.reference = with_choice(cell, s.reference);
-                bool const flip = (c + std::size_t(repeat + participant)) % 2 == 1;
+                bool const flip = (c + std::size_t(repeat) + side) % 2 == 1;
                 bool first = true;
                 if (p.order == PairOrder::balanced) first = balanced[i] != flip;
                 if (p.order == PairOrder::random) first = random.below(2) == 0;

@@ -111,8 +111,8 @@ void add_transitions(std::string& text, Script const& s, Transitions const& t)
 
 std::string procedure_text(Procedure const& p)
 {
-    std::string text = fmt::format("    {}: {}, {} {} trials", p.name, name_of(p.method),
-                                   is_adaptive(p) ? "at most" : "", planned_trials(p));
+    std::string text = fmt::format("    {}: {}, {}{} trials", p.name, name_of(p.method),
+                                   is_adaptive(p) ? "at most " : "", planned_trials(p));
     if (p.stop.reversals > 0) text += fmt::format(" or {} reversals", p.stop.reversals);
     if (p.method == Method::staircase) text += fmt::format(", settles at {:.2f} % right", 100 * settles_at(p));
     if (p.method == Method::questplus)

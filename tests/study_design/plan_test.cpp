@@ -149,6 +149,15 @@ TEST(Pairs, ComeFirstAsOftenAsSecond)
     }
 }
 
+TEST(Pairs, AreNotTiedToOrdersThatAlternate)
+{
+    Script const s = parse("factors: {q: [a, b], scene: [s]}\nsequence: [x]\nblocks:\n"
+                           "  x: {task: pair, pairs: {factor: q}, cross: scene}\n");
+    std::map<std::string, int> count; // odd or even participant, and the order of the pair
+    for (int p = 1; p <= 8; ++p) ++count[std::to_string(p % 2) + trials_of(make_plan(s, p), Phase::main)[0].order];
+    EXPECT_EQ(count, (std::map<std::string, int>{{"0ab", 2}, {"0ba", 2}, {"1ab", 2}, {"1ba", 2}}));
+}
+
 TEST(Pairs, OfAListAreBalancedToo)
 {
     Script const s = parse("factors: {q: [a, b, c, d, e], scene: [s]}\nsequence: [x]\nblocks:\n"
