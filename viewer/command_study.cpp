@@ -73,7 +73,7 @@ nlohmann::ordered_json to_json(study::Script const& s, study::Plan const& plan)
                              {"seed", s.seed},
                              {"expected_s", double(plan.duration_us) * 1e-6}};
     for (study::PlanStep const& step : plan.steps) {
-        if (step.kind != study::StepKind::trial || step.number != 1) continue;
+        if (step.kind != study::PlanStepKind::trial || step.number != 1) continue;
         study::TrialCounts const n = count_trials(plan, step.block, step.pass);
         j["blocks"].push_back({{"name", s.blocks[std::size_t(step.block)].name},
                                {"pass", step.pass + 1},

@@ -7,15 +7,6 @@
 namespace study {
 namespace {
 
-/// SplitMix64 (Steele, Lea, Flood 2014): neighbouring numbers become unlike each other.
-std::uint64_t mix(std::uint64_t x)
-{
-    x += 0x9e3779b97f4a7c15ULL;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-    return x ^ (x >> 31);
-}
-
 std::vector<int> tokens_of(Script const& s, Block const& b, Trial const& t, Constraint const& c)
 {
     Stimulus const& a = t.stimuli[0];
@@ -116,7 +107,9 @@ std::vector<Trial> practice_of(Script const& s, Block const& b, std::vector<int>
 
 Random random_for(Script const& script, int participant, std::uint64_t purpose)
 {
-    return Random(mix(mix(script.seed) + std::uint64_t(participant)), mix(purpose));
+    Random person = Random::part(script.seed, std::uint64_t(participant));
+    std::uint64_t const high = person.next();
+    return Random::part((high << 32) | person.next(), purpose);
 }
 
 std::vector<Trial> ordered_trials(Script const& s, Block const& b, std::vector<int> const& levels, int participant,

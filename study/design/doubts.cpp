@@ -42,7 +42,7 @@ std::vector<std::string> find_doubts(Script const& s, Plan const& plan)
     std::int64_t stretch = 0, longest = 0;
     int where = -1;
     for (PlanStep const& step : plan.steps) {
-        stretch = step.kind == StepKind::trial ? stretch + step.duration_us : 0;
+        stretch = step.kind == PlanStepKind::trial ? stretch + step.duration_us : 0;
         if (stretch <= longest) continue;
         longest = stretch;
         where = step.block;

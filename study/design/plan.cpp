@@ -85,16 +85,16 @@ private:
         step.seconds = item.seconds;
         step.duration_us = std::int64_t(item.seconds * 1e6);
         if (item.kind == SequenceKind::instructions) {
-            step.kind = StepKind::instructions;
+            step.kind = PlanStepKind::instructions;
             step.duration_us = reading_us(item.text);
         } else if (item.kind == SequenceKind::questionnaire) {
-            step.kind = StepKind::questionnaire;
+            step.kind = PlanStepKind::questionnaire;
             step.questionnaire = item.index;
             step.duration_us = questionnaire_us(s_.questionnaires[std::size_t(item.index)]);
         } else if (item.kind == SequenceKind::rest) {
-            step.kind = StepKind::rest;
+            step.kind = PlanStepKind::rest;
         } else {
-            step.kind = StepKind::free_walk;
+            step.kind = PlanStepKind::free_walk;
             for (LevelChoice const& c : item.choice) levels[std::size_t(c.factor)] = c.level;
             for (LevelChoice const& c : s_.reference)
                 if (levels[std::size_t(c.factor)] < 0) levels[std::size_t(c.factor)] = c.level;
@@ -113,7 +113,7 @@ private:
         common.levels = levels;
         if (!b.instructions.empty()) {
             PlanStep step = common;
-            step.kind = StepKind::instructions;
+            step.kind = PlanStepKind::instructions;
             step.text = b.instructions;
             step.duration_us = reading_us(b.instructions);
             push(std::move(step));
@@ -137,7 +137,7 @@ private:
             if (b.break_every == 0 || since_break < b.break_every || i + 1 == trials.size()) continue;
             since_break = 0;
             PlanStep rest = common;
-            rest.kind = StepKind::rest;
+            rest.kind = PlanStepKind::rest;
             rest.seconds = b.break_s;
             rest.duration_us = std::int64_t(b.break_s * 1e6);
             push(std::move(rest));
@@ -166,7 +166,7 @@ std::string_view name_of(Phase phase)
     return phase == Phase::practice ? "practice" : phase == Phase::main ? "main" : "catch";
 }
 
-std::string_view name_of(StepKind kind)
+std::string_view name_of(PlanStepKind kind)
 {
     constexpr std::string_view kNames[] = {"instructions", "questionnaire", "trial", "break", "free_walk"};
     return kNames[std::size_t(kind)];

@@ -26,11 +26,11 @@ struct Trial {
     bool is_noise = false;             ///< there is nothing to find
 };
 
-enum class StepKind { instructions, questionnaire, trial, rest, free_walk };
-std::string_view name_of(StepKind kind);
+enum class PlanStepKind { instructions, questionnaire, trial, rest, free_walk };
+std::string_view name_of(PlanStepKind kind);
 
 struct PlanStep {
-    StepKind kind = StepKind::trial;
+    PlanStepKind kind = PlanStepKind::trial;
     int block = -1;   ///< instructions and rests within a block have it too
     int pass = 0;     ///< how often the block came before
     std::string text; ///< instructions: a file or Markdown; prompts

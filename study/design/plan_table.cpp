@@ -29,7 +29,7 @@ void add_levels(std::vector<std::string>& row, Script const& s, PlanStep const& 
     for (std::size_t f = 0; f < s.factors.size(); ++f) {
         int level = step.levels[f];
         bool is_compared = false;
-        if (step.kind == StepKind::trial) {
+        if (step.kind == PlanStepKind::trial) {
             level = step.trial.stimuli[0].levels[f];
             is_compared = (b->pairs && b->pairs->factor == int(f)) ||
                           (b->compare && b->compare->factor == int(f)) || b->rank == int(f);
@@ -60,7 +60,7 @@ void add_trial(std::vector<std::string>& row, Script const& s, PlanStep const& s
 
 std::vector<std::string> row_of(Script const& s, PlanStep const& step, std::size_t index)
 {
-    bool const is_trial = step.kind == StepKind::trial;
+    bool const is_trial = step.kind == PlanStepKind::trial;
     std::vector<std::string> row{std::to_string(index + 1), std::string(name_of(step.kind))};
     row.push_back(step.block >= 0 ? s.blocks[std::size_t(step.block)].name : "n/a");
     row.push_back(step.block >= 0 ? std::to_string(step.pass + 1) : "n/a");

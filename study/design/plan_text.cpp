@@ -65,7 +65,7 @@ std::string condition_counts(Script const& s, Plan const& plan, int block, int p
     std::vector<std::map<int, std::pair<int, int>>> levels(s.factors.size()); // level: shown, shown first
     std::map<std::string, int> answers;
     for (PlanStep const& step : plan.steps) {
-        if (step.kind != StepKind::trial || step.block != block || step.pass != pass) continue;
+        if (step.kind != PlanStepKind::trial || step.block != block || step.pass != pass) continue;
         Trial const& t = step.trial;
         if (t.phase == Phase::practice) continue;
         if (!t.answer.empty()) ++answers[t.answer];
@@ -126,7 +126,7 @@ std::vector<std::pair<int, int>> passes_of(Plan const& plan)
 {
     std::vector<std::pair<int, int>> passes;
     for (PlanStep const& step : plan.steps)
-        if (step.kind == StepKind::trial && step.number == 1) passes.emplace_back(step.block, step.pass);
+        if (step.kind == PlanStepKind::trial && step.number == 1) passes.emplace_back(step.block, step.pass);
     return passes;
 }
 
@@ -144,8 +144,8 @@ TrialCounts count_trials(Plan const& plan, int block, int pass)
     TrialCounts n;
     for (PlanStep const& step : plan.steps) {
         if (step.block != block || step.pass != pass) continue;
-        n.rests += step.kind == StepKind::rest;
-        if (step.kind != StepKind::trial) continue;
+        n.rests += step.kind == PlanStepKind::rest;
+        if (step.kind != PlanStepKind::trial) continue;
         ++(step.trial.phase == Phase::practice ? n.practice
            : step.trial.phase == Phase::main   ? n.main
                                                : n.catches);
@@ -184,7 +184,7 @@ std::string order_text(Script const& s, Plan const& plan)
 {
     std::string text;
     for (PlanStep const& step : plan.steps) {
-        if (step.kind == StepKind::trial) {
+        if (step.kind == PlanStepKind::trial) {
             if (step.number == 1) {
                 std::string const fixed = fixed_levels(s, step.levels);
                 text +=
@@ -196,7 +196,7 @@ std::string order_text(Script const& s, Plan const& plan)
         }
         std::string what = first_line(step.text);
         if (step.questionnaire >= 0) what = s.questionnaires[std::size_t(step.questionnaire)].name;
-        if (step.kind == StepKind::rest) what = fmt::format("{:g} s {}", step.seconds, what);
+        if (step.kind == PlanStepKind::rest) what = fmt::format("{:g} s {}", step.seconds, what);
         text += fmt::format("{:>12}  {} {}\n", clock_text(step.start_us), name_of(step.kind), what);
     }
     return text;

@@ -52,17 +52,17 @@ std::span<Questionnaire const> known_questionnaires();
 struct ItemScore {
     double raw = 0, scored = 0;
 };
-struct Score {
+struct SubscaleScore {
     std::string subscale;
     std::optional<double> value; ///< none where an item that it needs was not answered
 };
-struct Scores {
+struct QuestionnaireScores {
     std::vector<std::optional<ItemScore>> items; ///< as the questionnaire has them
-    std::vector<Score> subscales;
+    std::vector<SubscaleScore> subscales;
 };
 /// @param answers one per item, within its range; none = not answered
 /// Throws std::invalid_argument where there are too few, too many, or one is out of its range or not a step of it.
-Scores score(Questionnaire const& questionnaire, std::span<std::optional<double> const> answers);
+QuestionnaireScores score(Questionnaire const& questionnaire, std::span<std::optional<double> const> answers);
 
 /// The weighted NASA-TLX: sum of rating * weight / 15, where the weight of a scale is how often it was chosen in
 /// the 15 comparisons of two (Hart and Staveland 1988). @param ratings six, 0 to 100 @param weights six, 0 to 5,

@@ -35,14 +35,14 @@ std::optional<double> combine(Subscale const& s, std::vector<std::optional<ItemS
 
 } // namespace
 
-Scores score(Questionnaire const& q, std::span<std::optional<double> const> answers)
+QuestionnaireScores score(Questionnaire const& q, std::span<std::optional<double> const> answers)
 {
     if (answers.size() != q.items.size())
         throw std::invalid_argument(
             fmt::format("{} answers to the {} items of {} (each belongs to one) give one per "
                         "item, none where it was not answered",
                         answers.size(), q.items.size(), q.name));
-    Scores scores;
+    QuestionnaireScores scores;
     for (std::size_t i = 0; i < answers.size(); ++i) {
         scores.items.emplace_back();
         if (answers[i]) scores.items.back() = score_item(q.items[i], *answers[i]);

@@ -67,7 +67,7 @@ std::vector<Transitions> find_transitions(Script const& script, Plan const& plan
 {
     std::map<std::pair<int, int>, std::vector<Trial const*>> passes;
     for (PlanStep const& step : plan.steps)
-        if (step.kind == StepKind::trial && step.trial.phase != Phase::practice)
+        if (step.kind == PlanStepKind::trial && step.trial.phase != Phase::practice)
             passes[{step.block, step.pass}].push_back(&step.trial);
     std::vector<Transitions> out;
     for (auto const& [key, trials] : passes) add_pass(script, key.first, key.second, trials, out);

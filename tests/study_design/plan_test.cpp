@@ -77,7 +77,7 @@ TEST(Counterbalance, CrossesDisplaysWithBlocks)
     for (int p = 1; p <= 24; ++p) {
         std::string orders;
         for (PlanStep const& step : make_plan(s, p).steps)
-            if (step.kind == StepKind::trial && step.number == 1)
+            if (step.kind == PlanStepKind::trial && step.number == 1)
                 orders += std::to_string(step.levels[2]) + std::to_string(step.block) + " ";
         ++count[orders];
     }
@@ -94,7 +94,7 @@ TEST(Counterbalance, AssignsLevelsBetweenParticipants)
     for (int p = 1; p <= 10; ++p) {
         std::set<int> seen;
         for (PlanStep const& step : make_plan(s, p).steps)
-            if (step.kind == StepKind::trial) seen.insert(step.trial.stimuli[0].levels[light]);
+            if (step.kind == PlanStepKind::trial) seen.insert(step.trial.stimuli[0].levels[light]);
         ASSERT_EQ(seen.size(), 1u);
         ++count[*seen.begin()];
     }
@@ -292,7 +292,7 @@ TEST(Settings, OfAStimulusAreThoseOfAllItsParts)
 {
     Script const s = parse_script(example_text("visibility2026"), "v");
     for (PlanStep const& step : make_plan(s, 1).steps) {
-        if (step.kind != StepKind::trial || step.block != 2 || step.trial.phase != Phase::catches) continue;
+        if (step.kind != PlanStepKind::trial || step.block != 2 || step.trial.phase != Phase::catches) continue;
         Patch const varied = settings_of(s, s.blocks[2], step.trial.stimuli[0]);
         Patch const exact = settings_of(s, s.blocks[2], step.trial.stimuli[1]);
         std::string const view = step.levels[2] == 0 ? "window" : "openxr";

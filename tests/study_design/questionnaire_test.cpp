@@ -1,4 +1,4 @@
-// Scores of the known questionnaires, and of own ones.
+// QuestionnaireScores of the known questionnaires, and of own ones.
 
 #include "tests/study_design/samples.h"
 
@@ -18,7 +18,7 @@ std::map<std::string, double> scores_of(Questionnaire const& q, std::vector<doub
 {
     std::vector<std::optional<double>> const given(answers.begin(), answers.end());
     std::map<std::string, double> out;
-    for (Score const& s : score(q, given).subscales) out[s.subscale] = s.value.value();
+    for (SubscaleScore const& s : score(q, given).subscales) out[s.subscale] = s.value.value();
     return out;
 }
 
@@ -94,7 +94,7 @@ TEST(Scores, AreMissingWhereAnItemIs)
 {
     std::vector<std::optional<double>> answers(16, 1.0);
     answers[5] = {}; // of nausea
-    Scores const s = score(known("ssq"), answers);
+    QuestionnaireScores const s = score(known("ssq"), answers);
     EXPECT_FALSE(s.subscales[0].value);
     EXPECT_TRUE(s.subscales[1].value);
     EXPECT_TRUE(s.subscales[2].value);

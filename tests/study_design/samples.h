@@ -46,7 +46,8 @@ inline std::vector<Trial> trials_of(Plan const& plan, Phase phase, int block = 0
 {
     std::vector<Trial> out;
     for (PlanStep const& step : plan.steps)
-        if (step.kind == StepKind::trial && step.block == block && step.pass == pass && step.trial.phase == phase)
+        if (step.kind == PlanStepKind::trial && step.block == block && step.pass == pass &&
+            step.trial.phase == phase)
             out.push_back(step.trial);
     return out;
 }
@@ -56,7 +57,7 @@ inline std::vector<Trial> run_of(Plan const& plan, int block = 0)
 {
     std::vector<Trial> out;
     for (PlanStep const& step : plan.steps)
-        if (step.kind == StepKind::trial && step.block == block && step.pass == 0 &&
+        if (step.kind == PlanStepKind::trial && step.block == block && step.pass == 0 &&
             step.trial.phase != Phase::practice)
             out.push_back(step.trial);
     return out;
