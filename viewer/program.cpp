@@ -1,6 +1,7 @@
 #include "viewer/program.h"
 
 #include "gi/base/error.h"
+#include "study/base/script_error.h"
 #include "viewer/commands.h"
 #include "viewer/version.h"
 
@@ -35,6 +36,7 @@ Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130
     add_track(app, exit_code);
     add_display(app, exit_code);
     add_xr(app, exit_code);
+    add_study(app, exit_code);
     add_bench(app, exit_code);
     try {
         app.parse(argc, argv);
@@ -51,6 +53,9 @@ Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130
                    stderr);
         return 2;
     } catch (gi::InputError const& e) {
+        std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
+        return 2;
+    } catch (study::ScriptError const& e) {
         std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
         return 2;
     } catch (std::bad_alloc const&) {

@@ -37,7 +37,7 @@ TEST_P(HelpExamples, Run)
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
-                         testing::Values("", "render", "compare", "info", "generate", "display", "bench",
+                         testing::Values("", "render", "compare", "info", "generate", "display", "study", "bench",
                                          "bench sweep", "bench report", "bench views", "bench raster",
                                          "bench rays", "bench accuracy", "bench thesis", "track", "track listen",
                                          "track send", "track walk"),

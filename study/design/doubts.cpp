@@ -1,0 +1,56 @@
+#include "study/design/doubts.h"
+
+#include "study/design/counterbalance.h"
+#include "study/design/duration.h"
+#include "study/design/plan_text.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+
+namespace study {
+
+std::vector<std::string> find_doubts(Script const& s)
+{
+    std::vector<std::string> doubts;
+    std::int64_t const cycle = full_cycle(s);
+    if (s.participants.count % cycle != 0)
+        doubts.push_back(
+            fmt::format("{} participants do not have all {} combinations of orders equally often; a multiple "
+                        "of {} would",
+                        s.participants.count, cycle, cycle));
+    for (Block const& b : s.blocks) {
+        std::size_t const orders = presented_orders(b.task, false).size();
+        if (orders == 0 || !b.procedures.empty() || std::size_t(b.repeats) % orders == 0) continue;
+        doubts.push_back(
+            fmt::format("block '{}': the {} orders of presentation are balanced over all trials, but not "
+                        "within each condition; repeats: {} would do that",
+                        b.name, orders, (std::size_t(b.repeats) / orders + 1) * orders));
+    }
+    return doubts;
+}
+
+std::vector<std::string> find_doubts(Script const& s, Plan const& plan)
+{
+    constexpr std::int64_t kLongStretch_us = 20LL * 60 * 1000000;
+    std::vector<std::string> doubts;
+    if (plan.duration_us > kLongSession_us)
+        doubts.push_back(
+            fmt::format("the session is expected to take {}: people tire after about 60 minutes; repeat "
+                        "less, or make two sessions of it",
+                        clock_text(plan.duration_us)));
+    std::int64_t stretch = 0, longest = 0;
+    int where = -1;
+    for (PlanStep const& step : plan.steps) {
+        stretch = step.kind == PlanStepKind::trial ? stretch + step.duration_us : 0;
+        if (stretch <= longest) continue;
+        longest = stretch;
+        where = step.block;
+    }
+    if (longest > kLongStretch_us)
+        doubts.push_back(fmt::format("{} of trials without a break, up to block '{}'; break_every gives them",
+                                     clock_text(longest), s.blocks[std::size_t(where)].name));
+    return doubts;
+}
+
+} // namespace study

@@ -1,0 +1,15 @@
+#pragma once
+// The experiments of data/study, carried by the program: examples.cpp.in is filled by CMake.
+
+#include <span>
+#include <string_view>
+
+namespace study {
+
+struct StudyExample {
+    std::string_view name; ///< "visibility2026"
+    std::string_view text;
+};
+std::span<StudyExample const> study_examples();
+
+} // namespace study

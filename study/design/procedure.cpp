@@ -1,0 +1,96 @@
+#include "study/design/procedure.h"
+
+#include <cmath>
+
+namespace study {
+
+std::optional<Scale> scale_of(std::string_view name)
+{
+    if (name == "linear") return Scale::linear;
+    if (name == "log2") return Scale::log2;
+    if (name == "log10") return Scale::log10;
+    if (name == "db") return Scale::db;
+    return {};
+}
+
+double to_scale(Scale scale, double level)
+{
+    switch (scale) {
+    case Scale::log2:
+        return std::log2(level);
+    case Scale::log10:
+        return std::log10(level);
+    case Scale::db:
+        return 20 * std::log10(level);
+    default:
+        return level;
+    }
+}
+
+double from_scale(Scale scale, double value)
+{
+    switch (scale) {
+    case Scale::log2:
+        return std::exp2(value);
+    case Scale::log10:
+        return std::pow(10, value);
+    case Scale::db:
+        return std::pow(10, value / 20);
+    default:
+        return value;
+    }
+}
+
+std::optional<Method> method_of(std::string_view name)
+{
+    for (Method const m : {Method::constant, Method::staircase, Method::questplus, Method::adjustment})
+        if (name_of(m) == name) return m;
+    return {};
+}
+
+std::string_view name_of(Method method)
+{
+    constexpr std::string_view kNames[] = {"constant", "staircase", "questplus", "adjustment"};
+    return kNames[std::size_t(method)];
+}
+
+std::optional<Psychometric> psychometric_of(std::string_view name)
+{
+    if (name == "weibull") return Psychometric::weibull;
+    if (name == "normal") return Psychometric::normal;
+    if (name == "logistic") return Psychometric::logistic;
+    return {};
+}
+
+bool is_adaptive(Procedure const& procedure)
+{
+    return procedure.method == Method::staircase || procedure.method == Method::questplus;
+}
+
+int planned_trials(Procedure const& p)
+{
+    return is_adaptive(p) ? p.stop.trials : int(p.levels.size()) * p.trials_per_level;
+}
+
+double settles_at(Procedure const& s)
+{
+    if (s.target) return *s.target;
+    // From a fresh start, `down` right answers in a row come before `up` wrong ones in a row with a probability
+    // that grows with p; both counts start anew with an answer of the other kind.
+    auto const harder_first = [&](double p) {
+        double const q = 1 - p, all_right = std::pow(p, s.down), all_wrong = std::pow(q, s.up);
+        // Runs: P = a / (a + b - a b) with a run of rights beginning, conditioned on who begins (Feller I,
+        // XIII.8).
+        double const right = p > 0 ? all_right / p : 0,
+                     wrong = q > 0 ? all_wrong / q : 0; // after the first answer
+        return right * (p + q * (1 - wrong)) / (1 - (1 - right) * (1 - wrong));
+    };
+    double low = 0, high = 1;
+    for (int i = 0; i < 60; ++i) {
+        double const p = 0.5 * (low + high);
+        (harder_first(p) < 0.5 ? low : high) = p;
+    }
+    return 0.5 * (low + high);
+}
+
+} // namespace study

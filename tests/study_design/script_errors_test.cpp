@@ -1,0 +1,216 @@
+// What is wrong with a script is said with its place, and what to do.
+
+#include "tests/study_design/samples.h"
+
+namespace study::test {
+namespace {
+
+/// A sound script; the tests spoil it. Line numbers count from here.
+std::string const kSound = R"(schema: study/1
+id: sound
+seed: 5
+participants: {count: 12}
+factors:
+  scene: [arches, atrium]
+  quality:
+    best: {paths: 4096}
+    fair: {paths: 64}
+    poor: {paths: 4}
+  light: {day: {exposure: 0}, night: {exposure: -3}}
+reference: {quality: best}
+defaults: {stimulus_ms: 2000}
+devices: {first: [key:left], second: [key:right]}
+counterbalance:
+  light: {method: alternate}
+  tasks: {method: latin, of: [pairs, rate]}
+sequence:
+  - {questionnaire: ssq}
+  - {per: light, do: [tasks]}
+blocks:
+  pairs:
+    task: pair
+    pairs: {factor: quality}
+    cross: [scene]
+    repeats: 2
+    constraints: [{no_repeat: scene, max_run: 2}]
+  rate:
+    task: rating
+    scale: {min: 1, max: 7}
+    cross: [scene, quality]
+)";
+
+std::string spoiled(std::string const& what, std::string const& by)
+{
+    std::string text = kSound;
+    std::size_t const at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    if (at != std::string::npos) text.replace(at, what.size(), by);
+    return text;
+}
+
+struct Case {
+    char const *what, *by, *place, *mentions;
+};
+
+TEST(ScriptErrors, NameTheirPlaceAndWhatToDo)
+{
+    ASSERT_EQ(message_of(kSound), "");
+    for (Case const& c : {
+             Case{"schema: study/1", "schema: study/2", "t.yaml:1:9: ", "did you mean 'study/1'?"},
+             {"seed: 5", "sede: 5", "t.yaml:3:1: ",
+              "unknown key 'sede' in script (it would be ignored) did you mean "
+              "'seed'?"},
+             {"seed: 5", "seed: many", "t.yaml:3:7: ", "no seed"},
+             {"seed: 5", "seed: 5\nseed: 6", "t.yaml:4:1: ", "'seed' twice"},
+             {"{count: 12}", "{count: 12.5}", "t.yaml:4:23: ", "not whole"},
+             {"{count: 12}", "{count: 0}", "t.yaml:4:23: ", "between 1 and 100000"},
+             {"{count: 12}", "{count: 12, id: Anna}", "t.yaml:4:31: ", "write \"P{n:03}\""},
+             {"{count: 12}", "{count: 12, id: \"P_{n}\"}", "t.yaml:4:31: ", "names no participants"},
+             {"participants: {count: 12}\n", "", "t.yaml:1:1: ", "script has no 'participants'"},
+             {"[arches, atrium]", "[arches, arches]", "t.yaml:6:10: ", "'arches' twice in scene"},
+             {"{paths: 64}", "{paths: [64]}", "t.yaml:9:19: ", "not text"},
+             {"{paths: 64}", "64", "t.yaml:9:11: ", "not a map"},
+             {"reference: {quality: best}", "reference: {quality: bset}",
+              "t.yaml:12:22: ", "did you mean 'best'?"},
+             {"reference: {quality: best}", "reference: {qualty: best}",
+              "t.yaml:12:13: ", "did you mean 'quality'?"},
+             {"stimulus_ms: 2000", "stimulus_ms: soon", "t.yaml:13:25: ", "not a number"},
+             {"stimulus_ms: 2000", "stimulus_ms: -1", "t.yaml:13:25: ", "between 1 and"},
+             {"[key:left]", "[left]", "t.yaml:14:", "write key:left"},
+             {"second: [key:right]", "second: [key:left]",
+              "t.yaml:14:30: ", "both first and second in block 'pairs'"},
+             {"second: [key:right]", "third: [key:right]", "t.yaml:14:30: ", "the answer 'third' is not used"},
+             {"second: [key:right]", "scond: [key:right]", "t.yaml:14:30: ", "did you mean 'second'?"},
+             {"{method: alternate}", "{method: alternating}", "t.yaml:16:19: ", "did you mean 'alternate'?"},
+             {"{method: alternate}", "{method: between}", "t.yaml:20:5: ", "fixed already"},
+             {"of: [pairs, rate]", "of: [pairs]", "t.yaml:17:10: ", "fewer than two blocks"},
+             {"of: [pairs, rate]", "of: [pairs, rating]", "t.yaml:17:38: ", "did you mean 'rate'?"},
+             {"tasks: {method: latin, of", "rate: {method: latin, of",
+              "t.yaml:17:3: ", "named as the block 'rate'"},
+             {"{questionnaire: ssq}", "{questionnaire: sqs}", "t.yaml:19:21: ", "did you mean 'ssq'?"},
+             {"{questionnaire: ssq}", "{questionaire: ssq}", "t.yaml:19:6: ", "did you mean 'questionnaire'?"},
+             {"do: [tasks]", "do: [task]", "t.yaml:20:23: ", "did you mean 'tasks'?"},
+             {"do: [tasks]", "do: [pairs]", "t.yaml:28:3: ", "block 'rate' is not used"},
+             {"{per: light, do: [tasks]}", "tasks", "t.yaml:11:3: ", "factor 'light' is not used"},
+             {"task: pair\n", "task: pairs\n", "t.yaml:23:11: ", "did you mean 'pair'?"},
+             {"    cross: [scene]\n", "", "t.yaml:26:19: ", "is the same in all trials of block 'pairs'"},
+             {"cross: [scene, quality]", "cross: [quality]",
+              "t.yaml:28:3: ", "factor 'scene' has no level in block 'rate'"},
+             {"    cross: [scene]\n", "    cross: [scene, light]\n",
+              "t.yaml:22:3: ", "fixed where it runs (line 20)"},
+             {"    cross: [scene]\n", "    cross: [scene, quality]\n", "t.yaml:22:3: ", "has its levels already"},
+             {"    cross: [scene]\n", "    cross: [scene, scene]\n", "t.yaml:25:20: ", "crossed twice"},
+             {"    cross: [scene]\n", "    only: {scene: [arches, atrium]}\n",
+              "t.yaml:22:3: ", "add scene to cross"},
+             {"    pairs: {factor: quality}\n", "", "t.yaml:23:5: ", "block 'pairs' needs pairs"},
+             {"{factor: quality}", "{factor: quality, omit: [fair, poor]}",
+              "t.yaml:24:12: ", "at least 2 are needed"},
+             {"{factor: quality}", "{factor: quality, list: [[fair, fair]]}", "t.yaml:24:", "paired with itself"},
+             {"repeats: 2", "repeats: 2\n    scale: {min: 1, max: 7}",
+              "t.yaml:27:5: ", "'scale' does nothing in a block with task pair"},
+             {"repeats: 2", "repeats: 2\n    presentation: sequential\n    stimulus_ms: until_response",
+              "t.yaml:23:5: ", "add stimulus_ms"},
+             {"repeats: 2", "repeats: 2\n    practice: {trials: 99}",
+              "t.yaml:22:3: ", "practises 99 of its 12 trials"},
+             {"repeats: 2", "repeats: 2\n    practice: {trials: 2, feedback: true}",
+              "t.yaml:27:37: ", "no answer is right"},
+             {"repeats: 2", "repeats: 2\n    catch: {every: 12}",
+              "t.yaml:27:12: ", "write better: LEVEL, worse: LEVEL"},
+             {"repeats: 2", "repeats: 2\n    catch: {every: 13, better: best, worse: poor}",
+              "t.yaml:27:12: ", "write a smaller number"},
+             {"repeats: 2", "repeats: 2\n    repeats: 3", "t.yaml:27:5: ", "twice"},
+             {"repeats: 2", "repeats:", "t.yaml:26:5: ", "has no value"},
+             {"repeats: 2", "repeats: 9999", "t.yaml:22:3: ", "at most 5000 are planned"},
+             {"{no_repeat: scene, max_run: 2}", "{no_repeat: scnee}", "t.yaml:27:31: ", "did you mean 'scene'?"},
+             {"{no_repeat: scene, max_run: 2}", "{no_repeat: answer}",
+              "t.yaml:27:19: ", "is the same in all trials"},
+             {"{no_repeat: scene, max_run: 2}", "{max_run: 2}", "t.yaml:27:19: ", "this is no constraint"},
+             {"{no_repeat: scene, max_run: 2}", "{min_gap: 2, of: scene}",
+              "t.yaml:27:19: ", "the constraints of block 'pairs' cannot be kept"},
+             {"{no_repeat: scene, max_run: 2}", "{never_after: {quality: [best, poor]}}",
+              "t.yaml:27:19: ", "only no_repeat, max_run and min_gap are clear"},
+             {"{min: 1, max: 7}", "{min: 1, max: 7, step: 4}", "t.yaml:30:12: ", "2 to 100001 values"},
+             {"{min: 1, max: 7}", "{min: 1, max: 7, labels: {9: much}}", "t.yaml:30:38: ", "between 1 and 7"},
+             {"cross: [scene, quality]", "cross: [scene, quality", "t.yaml:32:1: ", "not YAML"},
+             {"  scene: [arches, atrium]\n", "  scene: [arches, atrium]\n  time: [early, late]\n",
+              "t.yaml:7:3: ", "factor 'time' is not used"},
+             {"blocks:\n", "blocks:\n  idle: {task: rating, scale: {min: 1, max: 7}, cross: [scene]}\n",
+              "t.yaml:22:3: ", "block 'idle' is not used"},
+             {"blocks:\n", "questionnaires: {own: {items: [{id: a, text: b}]}}\nblocks:\n",
+              "t.yaml:21:18: ", "questionnaire 'own' is not used"},
+             {"blocks:\n", "questionnaires: {ssq: {items: [{id: a, text: b}]}}\nblocks:\n",
+              "t.yaml:21:18: ", "known already"},
+             {"blocks:\n", "timing: {vsync: maybe}\nblocks:\n", "t.yaml:21:17: ", "there are: required, record"},
+             {"blocks:\n", "record: {markers: [lls]}\nblocks:\n", "t.yaml:21:20: ", "did you mean 'lsl'?"},
+             {"blocks:\n", "resume: {repeat: [practise]}\nblocks:\n",
+              "t.yaml:21:19: ", "did you mean 'practice'?"},
+         }) {
+        std::string const message = message_of(spoiled(c.what, c.by));
+        EXPECT_TRUE(message.starts_with(c.place)) << c.by << "\n" << message << "\nexpected at " << c.place;
+        EXPECT_NE(message.find(c.mentions), std::string::npos) << c.by << "\n" << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    }
+}
+
+std::string const kVaried = "factors: {q: {best: {paths: 4096}}}\nreference: {q: best}\n"
+                            "defaults: {stimulus_ms: 1000}\nsequence: [b]\nblocks:\n  b:\n    task: 2ifc\n"
+                            "    compare: {vary: paths, scale: log2, range: [1, 1024], harder: up}\n";
+
+TEST(ScriptErrors, OfProceduresSayWhy)
+{
+    for (auto const& [procedure, mentions] : {
+             std::pair{"procedure: {method: constant, levels: 1..2048/5}", "it must lie between 1 and 1024"},
+             {"procedure: {method: constant, levels: 8..1/5}", "rising numbers"},
+             {"procedure: {method: constant, levels: [4, 2]}", "grids rise"},
+             {"procedure: {method: constant, levels: 1..8}", "64..16384/33"},
+             {"procedure: {method: constnat, levels: 1..8/2}", "did you mean 'constant'?"},
+             {"procedure: {method: adjustment, starts: 4}", "no method of this task"},
+             {"procedure: {method: staircase, start: 2, steps: [1], stop: {reversals: 8}}", "may never end"},
+             {"procedure: {method: staircase, start: 2000, steps: [1], stop: {trials: 8}}", "start within"},
+             {"procedure: {method: staircase, start: 2, steps: [], stop: {trials: 8}}", "could not move"},
+             {"procedure: {method: staircase, start: 2, up: 1, target: 0.7, steps: [1], stop: {trials: 8}}",
+              "keep one"},
+             {"procedure: {method: questplus, threshold: 4, slope: 1, guess: 0.5, lapse: 0, stop: {trials: 8}}",
+              "one level to ask for"},
+             {"procedure: {method: questplus, threshold: 1..9/5, slope: 1, guess: 0.5, lapse: 0, stop: "
+              "{reversals: 8}}",
+              "no reversals"},
+             {"repeats: 2", "is varied by no procedure"},
+             {"interleave: []", "is varied by no procedure, or nothing to interleave"},
+             {"interleave: [{method: constant, levels: 4}, {method: constant, levels: 8}]",
+              "two procedures named"},
+         }) {
+        std::string const message = message_of(kHead + kVaried + "    " + procedure + "\n");
+        bool const is_either = std::string(mentions).find(" or nothing") != std::string::npos;
+        EXPECT_NE(message.find(is_either ? "nothing to interleave" : mentions), std::string::npos)
+            << procedure << "\n"
+            << message;
+        EXPECT_TRUE(message.starts_with("t.yaml:")) << message;
+    }
+}
+
+TEST(ScriptErrors, OfYamlThatNestsWithoutEndComeBeforeTheParser)
+{
+    EXPECT_NE(message_of(std::string(100000, '[')).find("nests deeper"), std::string::npos);
+    EXPECT_NE(message_of(std::string(2 << 20, ' ')).find("larger than 1 MiB"), std::string::npos);
+    EXPECT_NE(message_of("").find("not a map"), std::string::npos);
+    EXPECT_NE(message_of("\x01\xff").size(), 0u);
+}
+
+TEST(ScriptErrors, OfTextFilesThatAreNotThere)
+{
+    Script const s = parse("factors: {scene: [a, b]}\nsequence:\n  - {instructions: nowhere.md}\n  - b\n"
+                           "blocks: {b: {task: rating, scale: {min: 1, max: 7}, cross: scene}}\n");
+    try {
+        check_text_files(s, "/tmp");
+        FAIL() << "nowhere.md was found";
+    } catch (ScriptError const& e) {
+        EXPECT_EQ(e.where().line, 7);
+        EXPECT_EQ(e.where().column, 5);
+        EXPECT_EQ(e.problem(), "there is no file 'nowhere.md'");
+        EXPECT_EQ(e.file(), "t.yaml");
+    }
+}
+
+} // namespace
+} // namespace study::test

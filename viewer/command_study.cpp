@@ -1,0 +1,173 @@
+#include "gi/base/error.h"
+#include "gi/base/file.h"
+#include "study/design/counterbalance.h"
+#include "study/design/doubts.h"
+#include "study/design/examples.h"
+#include "study/design/plan_text.h"
+#include "study/design/script_file.h"
+#include "study/design/transitions.h"
+#include "viewer/commands.h"
+#include "viewer/outputs.h"
+#include "viewer/report_json.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+struct StudyOptions {
+    std::string script, out, example;
+    int participant = 1;
+    bool json = false;
+};
+
+study::Script load_script(std::string const& file)
+{
+    auto const bytes = gi::read_bytes(file, std::size_t(1) << 20);
+    study::Script script = study::parse_script({bytes.begin(), bytes.end()}, file);
+    check_text_files(script, std::filesystem::path(file).parent_path());
+    return script;
+}
+
+void print_doubts(std::vector<std::string> const& doubts)
+{
+    std::fflush(stdout);
+    for (std::string const& doubt : doubts) std::fputs(("doubt: " + doubt + "\n").c_str(), stderr);
+}
+
+int run_check(StudyOptions const& o)
+{
+    constexpr int kMostPlans = 2000;
+    study::Script const s = load_script(o.script);
+    int const plans = std::min(s.participants.count, kMostPlans);
+    study::Plan longest = study::make_plan(s, 1);
+    for (int p = 2; p <= plans; ++p)
+        if (study::Plan plan = study::make_plan(s, p); plan.duration_us > longest.duration_us)
+            longest = std::move(plan);
+    auto doubts = study::find_doubts(s);
+    for (std::string& doubt : study::find_doubts(s, longest)) doubts.push_back(std::move(doubt));
+    if (o.json) {
+        nlohmann::ordered_json const j{{"id", s.id},
+                                       {"participants", s.participants.count},
+                                       {"plans_made", plans},
+                                       {"full_cycle", study::full_cycle(s)},
+                                       {"longest_s", double(longest.duration_us) * 1e-6},
+                                       {"doubts", doubts}};
+        std::fputs(to_text(j).c_str(), stdout);
+        return 0;
+    }
+    std::fputs(study::script_text(s, longest).c_str(), stdout);
+    fmt::print("{} plans made, the longest is expected to take {}\n", plans,
+               study::clock_text(longest.duration_us));
+    print_doubts(doubts);
+    return 0;
+}
+
+nlohmann::ordered_json to_json(study::Script const& s, study::Plan const& plan)
+{
+    nlohmann::ordered_json j{{"id", s.id},
+                             {"participant", plan.participant},
+                             {"participant_id", plan.participant_id},
+                             {"seed", s.seed},
+                             {"expected_s", double(plan.duration_us) * 1e-6}};
+    for (study::PlanStep const& step : plan.steps) {
+        if (step.kind != study::PlanStepKind::trial || step.number != 1) continue;
+        study::TrialCounts const n = count_trials(plan, step.block, step.pass);
+        j["blocks"].push_back({{"name", s.blocks[std::size_t(step.block)].name},
+                               {"pass", step.pass + 1},
+                               {"practice", n.practice},
+                               {"main", n.main},
+                               {"catch", n.catches},
+                               {"start_s", double(step.start_us) * 1e-6}});
+    }
+    for (study::Transitions const& t : study::find_transitions(s, plan))
+        j["transitions"].push_back({{"block", s.blocks[std::size_t(t.block)].name},
+                                    {"pass", t.pass + 1},
+                                    {"subject", t.subject},
+                                    {"names", t.names},
+                                    {"counts", t.counts},
+                                    {"switched", t.switched},
+                                    {"by_chance", t.by_chance}});
+    j["doubts"] = study::find_doubts(s, plan);
+    return j;
+}
+
+int run_plan(StudyOptions const& o)
+{
+    check_outputs({o.out}, {o.script});
+    study::Script const s = load_script(o.script);
+    if (o.participant > s.participants.count)
+        throw gi::InputError(fmt::format("participant {} of {}", o.participant, s.participants.count),
+                             "the script has no more", "name a smaller number, or raise participants.count");
+    study::Plan const plan = study::make_plan(s, o.participant);
+    if (!o.out.empty()) gi::write_text(o.out, study::plan_table(s, plan));
+    if (o.json) {
+        std::fputs(to_text(to_json(s, plan)).c_str(), stdout);
+        return 0;
+    }
+    fmt::print("{}: participant {} of {} ({}), seed {}\n", s.id, plan.participant, s.participants.count,
+               plan.participant_id, s.seed);
+    std::fputs(study::order_text(s, plan).c_str(), stdout);
+    std::fputs(study::statistics_text(s, plan).c_str(), stdout);
+    fmt::print("expected duration {}\n", study::clock_text(plan.duration_us));
+    print_doubts(study::find_doubts(s, plan));
+    return 0;
+}
+
+int run_example(StudyOptions const& o)
+{
+    std::string known;
+    for (study::StudyExample const& example : study::study_examples()) {
+        known += (known.empty() ? "" : ", ") + std::string(example.name);
+        if (o.example != example.name) continue;
+        check_outputs({o.out}, {});
+        gi::write_text(o.out, example.text);
+        fmt::print("{}\n", o.out);
+        return 0;
+    }
+    throw gi::InputError("there is no example '" + o.example + "'", "the program carries others",
+                         "there are: " + known);
+}
+
+} // namespace
+
+void add_study(CLI::App& app, int& exit_code)
+{
+    auto const o = std::make_shared<StudyOptions>();
+    CLI::App* const study = app.add_subcommand("study", "Experiments from a script: check, plan.");
+    study->require_subcommand(1);
+
+    CLI::App* const check = study->add_subcommand(
+        "check", "What a script holds; every participant's plan is made, and what is wrong is said.");
+    check->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
+    check->add_flag("--json", o->json, "print JSON");
+    check->callback([o, &exit_code] { exit_code = run_check(*o); });
+
+    CLI::App* const plan = study->add_subcommand(
+        "plan", "What will happen to a participant: order, counts, transitions, expected duration.");
+    plan->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
+    plan->add_option("--participant", o->participant, "number, from 1")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    plan->add_option("--out", o->out, "write the plan as a table (TSV)");
+    plan->add_flag("--json", o->json, "print JSON, without the single steps");
+    plan->callback([o, &exit_code] { exit_code = run_plan(*o); });
+
+    CLI::App* const example =
+        study->add_subcommand("example", "Write one of the experiments that the program carries.");
+    example->add_option("NAME", o->example, "visibility2026, pairs, staircase or rating")->required();
+    example->add_option("--out", o->out, "file to write")->required();
+    example->callback([o, &exit_code] { exit_code = run_example(*o); });
+
+    study->footer(R"(Examples:
+  lightwell study example visibility2026 --out visibility2026.yaml
+  lightwell study check visibility2026.yaml
+  lightwell study plan visibility2026.yaml --participant 3 --out plan.tsv
+
+The same script and participant give the same plan, byte by byte. What is doubtful, such as more than 60 minutes, is said on
+stderr. docs/study.md has every key of a script.)");
+}
+
+} // namespace viewer
