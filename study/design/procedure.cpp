@@ -1,5 +1,7 @@
 #include "study/design/procedure.h"
 
+#include "study/stats/staircase.h"
+
 #include <cmath>
 
 namespace study {
@@ -75,22 +77,10 @@ int planned_trials(Procedure const& p)
 double settles_at(Procedure const& s)
 {
     if (s.target) return *s.target;
-    // From a fresh start, `down` right answers in a row come before `up` wrong ones in a row with a probability
-    // that grows with p; both counts start anew with an answer of the other kind.
-    auto const harder_first = [&](double p) {
-        double const q = 1 - p, all_right = std::pow(p, s.down), all_wrong = std::pow(q, s.up);
-        // Runs: P = a / (a + b - a b) with a run of rights beginning, conditioned on who begins (Feller I,
-        // XIII.8).
-        double const right = p > 0 ? all_right / p : 0,
-                     wrong = q > 0 ? all_wrong / q : 0; // after the first answer
-        return right * (p + q * (1 - wrong)) / (1 - (1 - right) * (1 - wrong));
-    };
-    double low = 0, high = 1;
-    for (int i = 0; i < 60; ++i) {
-        double const p = 0.5 * (low + high);
-        (harder_first(p) < 0.5 ? low : high) = p;
-    }
-    return 0.5 * (low + high);
+    StaircaseSettings rule;
+    rule.up = s.up;
+    rule.down = s.down;
+    return staircase_target(rule);
 }
 
 } // namespace study
