@@ -48,7 +48,7 @@ TEST(SharedEndings, InCellsBringTheSameLight)
                cells = see(world, in_box(), Endings::in_cells, 256);
     EXPECT_EQ(exact.shaded, 0);
     EXPECT_GT(cells.shaded, 100);
-    EXPECT_LT(cells.shaded, 0.5 * kSize * kSize);
+    EXPECT_LT(cells.shaded, 0.6 * kSize * kSize);
     EXPECT_NEAR(mean_of(cells.picture).mean / mean_of(exact.picture).mean, 1, 0.003);
     EXPECT_EQ(cells.picture.find("L1")->data, exact.picture.find("L1")->data)
         << "direct light is each pixel's own";

@@ -8,7 +8,7 @@ namespace {
 /// Still pictures are filtered while they have few paths, and no longer when they have many: so they converge to
 /// what the method converges to.
 constexpr int kFilteredFrames = 48;
-/// Likewise light is taken from the other eye, and endings are shared, only at first.
+/// Likewise light is taken from the other eye only at first, and endings are shared only while anything moves.
 constexpr int kSharedFrames = 16;
 
 /// For methods that do not know where surfaces were: nothing is reused while anything moves.
@@ -61,11 +61,11 @@ std::vector<gi::RenderResult> Lane::render(FrameOrder const& order, gi::Changes 
     }
     first_ = false;
     still_ = anything_moved ? 1 : still_ + 1;
-    bool const shared = still_ <= kSharedFrames;
     std::vector<gi::FrameView> views;
     for (ViewOrder const& v : order.views)
-        views.push_back({v.camera, v.width, v.height, settings.share_eyes && shared ? v.partner : -1});
-    auto const endings = settings.share_endings && shared ? gi::Endings::in_cells : gi::Endings::exact;
+        views.push_back(
+            {v.camera, v.width, v.height, settings.share_eyes && still_ <= kSharedFrames ? v.partner : -1});
+    auto const endings = settings.share_endings && anything_moved ? gi::Endings::in_cells : gi::Endings::exact;
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(order.paths), endings, stop);
     for (std::size_t k = 0; k < results.size(); ++k)
         finish(k, results[k], scene_change(changes, moved[k]), settings);
