@@ -8,7 +8,7 @@ namespace {
 /// Still pictures are filtered while they have few paths, and no longer when they have many: so they converge to
 /// what the method converges to.
 constexpr int kFilteredFrames = 48;
-/// Likewise light is taken from the other eye only at first, and endings are shared only while anything moves.
+/// Likewise light is taken from the other eye only at first.
 constexpr int kSharedFrames = 16;
 
 /// For methods that do not know where surfaces were: nothing is reused while anything moves.
@@ -65,6 +65,7 @@ std::vector<gi::RenderResult> Lane::render(FrameOrder const& order, gi::Changes 
     for (ViewOrder const& v : order.views)
         views.push_back(
             {v.camera, v.width, v.height, settings.share_eyes && still_ <= kSharedFrames ? v.partner : -1});
+    // Their blur would stay in the mean of a picture at rest.
     auto const endings = settings.share_endings && anything_moved ? gi::Endings::in_cells : gi::Endings::exact;
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(order.paths), endings, stop);
     for (std::size_t k = 0; k < results.size(); ++k)
