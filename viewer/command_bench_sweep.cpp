@@ -33,12 +33,13 @@ void check_methods(CLI::App const& command, SweepOptions const& o)
     bool shared = false; // --schedule is that of some
     for (std::string const& name : o.methods) {
         std::size_t const colon = name.find(':');
-        bool const own = colon != std::string::npos;
+        bool const own = colon != std::string::npos && !name.starts_with("vpl_");
         shared |= name == "slhb";
         methods.push_back({name.substr(0, colon), parse_schedule(own ? name.substr(colon + 1) : o.render.schedule),
                            own ? "--methods " + name : "--schedule " + o.render.schedule});
     }
     check_slhb(command, methods);
+    check_virtual_lights(command, methods);
     if (!shared && command.get_option("--schedule")->count() > 0)
         throw gi::InputError(fmt::format("--schedule with --methods {}", fmt::join(o.methods, ",")),
                              "it is that of 'slhb', and the others say their own", "leave one of them out");
@@ -62,7 +63,9 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
     list("--scene", o->scenes, "files or names, comma-separated")->required();
     list("--methods", o->methods,
          "comma-separated, of:" + known +
-             "\n  slhb:auto, slhb:stored, slhb:streamed, slhb:temporal: with that schedule")
+             "\n  slhb:auto, slhb:stored, slhb:streamed, slhb:temporal: with that schedule"
+             "\n  vpl_imperfect:30%, vpl_slhb:icosahedron:80, vpl_ao:0.5, vpl_dao:0.5: with those points, "
+             "directions, radius (m)")
         ->capture_default_str();
     list("--budgets", o->budgets, "times for a frame, comma-separated")->capture_default_str();
     RenderOptions& r = o->render;
@@ -82,6 +85,7 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
         ->capture_default_str();
     declare_denoise(*c, r);
     declare_slhb(*c, r);
+    declare_virtual_lights(*c, r);
     c->add_option("--threads", r.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c->add_option("--out", o->out, "folder for sweep.json, sweep.csv and the pictures")->required();
     c->add_flag("--json", r.json, "print the table as JSON");
@@ -89,6 +93,7 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
     c->footer(R"(Examples:
   lightwell bench sweep --scene cornell --methods reference --budgets 20ms --repeats 2 --size 32x32 --reference-paths 32 --out sweep
   lightwell bench sweep --scene cornell,atrium --methods slhb:stored,slhb:streamed --budgets 20ms --repeats 1 --size 24x24 --reference-paths 8 --out both --json
+  lightwell bench sweep --scene cornell --methods vpl_exact,vpl_slhb,vpl_imperfect:30%,vpl_imperfect:5%,vpl_ao:0.1,vpl_dao:0.1,vpl_none --light-paths 64 --budgets 20ms --repeats 1 --size 24x24 --reference-paths 8 --out visibility
 
 Columns: budget_s, what was asked for, structures, paths and filter together; frame_s, the whole call with all that the method builds for it (a method
 finishes at least one path per pixel, so it may be more); trace_s, the tracing alone; paths per pixel; Mrays_per_s;

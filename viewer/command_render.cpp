@@ -216,7 +216,9 @@ void add_render(CLI::App& app, int& exit_code)
     CLI::App* const c = app.add_subcommand("render", "Render a scene to a picture with its error.");
     declare_options(*c, *o);
     c->callback([o, c, &exit_code] {
-        check_slhb(*c, {{o->method, parse_schedule(o->schedule), "--schedule " + o->schedule}});
+        NamedMethod const method{o->method, parse_schedule(o->schedule), "--schedule " + o->schedule};
+        check_slhb(*c, {method});
+        check_virtual_lights(*c, {method});
         check_display(*c, *o);
         exit_code = run(*o);
     });

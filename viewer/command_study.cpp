@@ -4,11 +4,11 @@
 #include "study/design/doubts.h"
 #include "study/design/examples.h"
 #include "study/design/plan_text.h"
-#include "study/design/script_file.h"
 #include "study/design/transitions.h"
 #include "viewer/commands.h"
 #include "viewer/outputs.h"
 #include "viewer/report_json.h"
+#include "viewer/study_commands.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -23,14 +23,6 @@ struct StudyOptions {
     bool json = false;
 };
 
-study::Script load_script(std::string const& file)
-{
-    auto const bytes = gi::read_bytes(file, std::size_t(1) << 20);
-    study::Script script = study::parse_script({bytes.begin(), bytes.end()}, file);
-    check_text_files(script, std::filesystem::path(file).parent_path());
-    return script;
-}
-
 void print_doubts(std::vector<std::string> const& doubts)
 {
     std::fflush(stdout);
@@ -40,7 +32,7 @@ void print_doubts(std::vector<std::string> const& doubts)
 int run_check(StudyOptions const& o)
 {
     constexpr int kMostPlans = 2000;
-    study::Script const s = load_script(o.script);
+    study::Script const s = load_script(o.script).script;
     int const plans = std::min(s.participants.count, kMostPlans);
     study::Plan longest = study::make_plan(s, 1);
     for (int p = 2; p <= plans; ++p)
@@ -97,7 +89,7 @@ nlohmann::ordered_json to_json(study::Script const& s, study::Plan const& plan)
 int run_plan(StudyOptions const& o)
 {
     check_outputs({o.out}, {o.script});
-    study::Script const s = load_script(o.script);
+    study::Script const s = load_script(o.script).script;
     if (o.participant > s.participants.count)
         throw gi::InputError(fmt::format("participant {} of {}", o.participant, s.participants.count),
                              "the script has no more", "name a smaller number, or raise participants.count");
@@ -136,7 +128,8 @@ int run_example(StudyOptions const& o)
 void add_study(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<StudyOptions>();
-    CLI::App* const study = app.add_subcommand("study", "Experiments from a script: check, plan.");
+    CLI::App* const study =
+        app.add_subcommand("study", "Experiments from a script: check, plan, run, simulate, analyze, report.");
     study->require_subcommand(1);
 
     CLI::App* const check = study->add_subcommand(
@@ -161,10 +154,19 @@ void add_study(CLI::App& app, int& exit_code)
     example->add_option("--out", o->out, "file to write")->required();
     example->callback([o, &exit_code] { exit_code = run_example(*o); });
 
+    add_study_run(*study, exit_code);
+    add_study_control(*study, exit_code);
+    add_study_prepare(*study, exit_code);
+    add_study_simulate(*study, exit_code);
+    add_study_tables(*study, exit_code);
+    add_study_analyze(*study, exit_code);
+
     study->footer(R"(Examples:
   lightwell study example visibility2026 --out visibility2026.yaml
   lightwell study check visibility2026.yaml
   lightwell study plan visibility2026.yaml --participant 3 --out plan.tsv
+  lightwell study simulate visibility2026.yaml --participants 1..2 --out simulated
+  lightwell study report simulated --out report.html
 
 The same script and participant give the same plan, byte by byte. What is doubtful, such as more than 60 minutes, is said on
 stderr. docs/study.md has every key of a script.)");

@@ -6,6 +6,7 @@
 #include "gi/slhb/kernel_render.h"
 #include "viewer/arguments.h"
 #include "viewer/frame_options.h"
+#include "viewer/session/settings.h"
 #include "viewer/validators.h"
 
 #include <CLI/CLI.hpp>
@@ -104,6 +105,8 @@ gi::RenderSettings make_settings(RenderOptions& o)
     s.threads = o.threads;
     s.filter = o.filter == "tent" ? gi::PixelFilter::tent : gi::PixelFilter::box;
     s.slhb = o.slhb;
+    s.vpl = o.vpl;
+    if (!o.points.empty()) s.vpl.points = parse_points("--points " + o.points, o.points, o.vpl.point_map);
     s.slhb.schedule = parse_schedule(o.schedule);
     s.slhb.space = o.device == "cuda" ? gi::Space::device : gi::Space::host;
     check_device(o, s.slhb);
@@ -196,9 +199,15 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
 
 namespace {
 
-/// Why a schedule does not read an option; null = it does.
-char const* why_unread(gi::Schedule schedule, std::string const& option)
+/// Why a method, with its schedule, does not read an option; null = it does.
+char const* why_unread(NamedMethod const& method, std::string const& option)
 {
+    if (method.method == "vpl_slhb") {
+        for (char const* const read : {"--directions", "--hit-buffer", "--max-layers"})
+            if (option == read) return nullptr;
+        return "its walks take the stored axes of --directions";
+    }
+    gi::Schedule const schedule = method.schedule;
     bool const directions = option == "--directions", axes = option == "--axes", fresh = option == "--fresh-axes";
     switch (schedule) {
     case gi::Schedule::stored:
@@ -224,16 +233,17 @@ void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods
         NamedMethod const* unread = nullptr; // by the first of slhb
         bool read = false;
         for (NamedMethod const& m : methods) {
-            if (m.method != "slhb") continue;
-            read |= why_unread(m.schedule, name) == nullptr;
+            if (m.method != "slhb" && m.method != "vpl_slhb") continue;
+            read |= why_unread(m, name) == nullptr;
             if (unread == nullptr) unread = &m;
         }
         if (unread == nullptr)
             throw gi::InputError(name + " with --method " + methods.front().method, "it is about method slhb",
                                  "add method slhb, or leave it out");
         if (!read)
-            throw gi::InputError(name + " with " + unread->as_given, why_unread(unread->schedule, name),
-                                 "leave one of them out");
+            throw gi::InputError(name + " with " +
+                                     (unread->method == "slhb" ? unread->as_given : "--method " + unread->method),
+                                 why_unread(*unread, name), "leave one of them out");
     }
     auto const given = [&](char const* name) { return command.get_option(name)->count() > 0; };
     bool const any_schedule = std::ranges::all_of(
@@ -319,6 +329,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
     declare_frames(c, o);
     declare_rank_options(c, o.ranks);
     declare_slhb(c, o);
+    declare_virtual_lights(c, o);
     c.footer(R"(Examples:
   lightwell render atrium --size 160x100 --paths 16 --png atrium.png --out atrium.exr
   lightwell render atrium --camera courtyard --time 0.4 --size 96x64 --budget 500ms --out walk.exr --stats walk.json

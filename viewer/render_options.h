@@ -27,6 +27,8 @@ struct RenderOptions {
     int bounces = 64, threads = 0;
     std::string schedule = "auto", device = "cpu";
     gi::SlhbSettings slhb;
+    gi::VirtualLightSettings vpl;
+    std::string points; ///< "4096" or "30%"; empty = the default of vpl
     bool half = false, resume = false, json = false, quiet = false;
     std::string frames, video, turntable, camera_path; ///< empty = none
     bool turns = false;                                ///< --turntable was given, maybe without a value
@@ -55,6 +57,9 @@ void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods
 /// All of method slhb; those that decide quality but not axes and buffers.
 void declare_slhb(CLI::App& command, RenderOptions& options);
 void declare_slhb_quality(CLI::App& command, RenderOptions& options);
+/// Of the methods vpl_*, see gi/visibility; and the check that some method reads what is given.
+void declare_virtual_lights(CLI::App& command, RenderOptions& options);
+void check_virtual_lights(CLI::App const& command, std::vector<NamedMethod> const& methods);
 void declare_options(CLI::App& command, RenderOptions& options);
 
 /// Fills in the default name of the picture and checks what the options say together. Throws InputError.

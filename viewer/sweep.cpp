@@ -65,11 +65,10 @@ private:
 
 gi::RenderSettings Sweep::settings(SweepMethod const& method, double budget_s, int repeat) const
 {
-    gi::RenderSettings s = plan_.settings;
+    gi::RenderSettings s = settings_of(method, plan_.settings);
     constexpr double kLeast = 1e-4; // s; a budget of 0 would be none
     if (budget_s > 0) s.budget_s = std::max(kLeast, budget_s - filter_s_);
     s.seed = std::uint64_t(repeat) + 1;
-    s.slhb.schedule = method.schedule;
     return s;
 }
 

@@ -2,13 +2,16 @@
 
 #include "gi/base/error.h"
 #include "gi/base/picture_file.h"
+#include "gi/slhb/directions.h"
 #include "viewer/arguments.h"
 #include "viewer/bench_record.h"
 #include "viewer/load_world.h"
 #include "viewer/outputs.h"
+#include "viewer/session/settings.h"
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fmt/format.h>
 
 namespace viewer {
@@ -59,11 +62,13 @@ SweepMethod find_method(std::string const& name, std::string const& schedule_of_
 {
     std::size_t const colon = name.find(':');
     gi::Method const& method = gi::find_method(name.substr(0, colon));
-    if (colon == std::string::npos) return {name, method, parse_schedule(schedule_of_all)};
+    if (colon == std::string::npos) return {name, method, parse_schedule(schedule_of_all), ""};
+    for (char const* const graded : {"vpl_slhb", "vpl_imperfect", "vpl_ao", "vpl_dao"})
+        if (method.name == graded) return {name, method, gi::Schedule::automatic, name.substr(colon + 1)};
     if (method.name != "slhb")
         throw gi::InputError(fmt::format("--methods {}: '{}' has no schedules", name, method.name),
                              "slhb alone has axes to schedule", fmt::format("name it '{}'", method.name));
-    return {name, method, parse_schedule(name.substr(colon + 1))};
+    return {name, method, parse_schedule(name.substr(colon + 1)), ""};
 }
 
 /// A second sweep may replace what a first one wrote, but not what it reads itself.
@@ -87,7 +92,28 @@ void check_pictures(SweepOptions const& o, std::vector<std::string> const& names
 std::string picture_stem(std::string const& scene, std::string method, std::string const& budget)
 {
     std::ranges::replace(method, ':', '-');
+    std::ranges::replace(method, '%', 'p');
     return fmt::format("{}_{}_{}", scene, method, budget);
+}
+
+gi::RenderSettings settings_of(SweepMethod const& m, gi::RenderSettings s)
+{
+    s.slhb.schedule = m.schedule;
+    if (m.quality.empty()) return s;
+    std::string const what = "--methods " + m.name;
+    if (m.method.name == "vpl_imperfect") {
+        s.vpl.points = parse_points(what, m.quality, s.vpl.point_map);
+    } else if (m.method.name == "vpl_slhb") {
+        gi::make_directions(m.quality);
+        s.slhb.directions = m.quality;
+    } else {
+        char* end = nullptr;
+        s.vpl.ao_radius_m = std::strtof(m.quality.c_str(), &end);
+        if (*end != 0 || !(s.vpl.ao_radius_m >= 0 && s.vpl.ao_radius_m <= 1e9f))
+            throw gi::InputError(what, "what stands behind the colon is its radius, m",
+                                 fmt::format("write {}:0.5", m.method.name));
+    }
+    return s;
 }
 
 SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
@@ -101,6 +127,7 @@ SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
     for (std::string const& scene : o.scenes) names.push_back(std::filesystem::path(scene).stem().string());
     refuse_twins("--scene", names, names);
     plan.settings = common_settings(o.render);
+    for (SweepMethod const& m : plan.methods) settings_of(m, plan.settings);
     plan.filter = make_denoise_settings(o.render, plan.settings);
     CameraChoice const choice = camera_choice(o.render);
     if (!o.reference.empty() && o.scenes.size() > 1)

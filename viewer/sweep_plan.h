@@ -17,10 +17,14 @@ struct SweepScene {
 };
 
 struct SweepMethod {
-    std::string name; ///< in tables: "slhb", "slhb:streamed"
+    std::string name; ///< in tables: "slhb", "slhb:streamed", "vpl_imperfect:30%"
     gi::Method method;
     gi::Schedule schedule = gi::Schedule::automatic; ///< of the method slhb
+    std::string quality; ///< of vpl_slhb, vpl_imperfect, vpl_ao, vpl_dao: what stands behind the colon; or empty
 };
+
+/// The common settings with those that the method says itself. Throws InputError.
+gi::RenderSettings settings_of(SweepMethod const& method, gi::RenderSettings common);
 
 struct SweepPlan {
     gi::RenderSettings settings; ///< the same for all, but for budget and seed

@@ -53,6 +53,19 @@ struct SlhbSettings {
     ExactParts exact;          ///< on the host; for bench accuracy
 };
 
+/// Points that an imperfect shadow map can have.
+inline constexpr int kMostPoints = 1 << 17;
+
+/// For the methods vpl_*, see gi/visibility.
+struct VirtualLightSettings {
+    int light_paths = 256;    ///< from the lamps in a pass; every surface that one meets becomes a virtual light
+    float near_m = 0;         ///< virtual lights are bounded where they are about so near; 0 = 2 % of the scene's
+                              ///< radius
+    int points = 1024;        ///< drawn into an imperfect shadow map
+    int point_map = 64;       ///< texels on a side of one
+    float ao_radius_m = 0.5f; ///< farther surfaces occlude nothing, of ambient and directional occlusion
+};
+
 struct Accumulator; // gi/transport/accumulator.h
 
 /// What one of several processes traces of the paths of one picture. Every path has its own random numbers, so
@@ -78,6 +91,7 @@ struct RenderSettings {
                                            ///< render that resumes stops early; empty = never. Whoever saves the
                                            ///< picture deletes it afterwards unless RenderResult::resumable
     SlhbSettings slhb;
+    VirtualLightSettings vpl;
     bool resume = false; ///< start from the checkpoint if it is there and fits
     PathShare share;     ///< of one picture; frames that follow each other and checkpoints know all paths only
 };

@@ -118,6 +118,14 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
             h.add(std::uint64_t(v));
         h.add(o.cone);
     }
+    if (method.starts_with("vpl_")) {
+        VirtualLightSettings const& o = s.vpl;
+        for (char const c : s.slhb.directions) h.add(std::uint64_t(c));
+        for (int const v : {s.slhb.resolution, s.slhb.most_layers, o.light_paths, o.points, o.point_map})
+            h.add(std::uint64_t(v));
+        h.add(o.near_m);
+        h.add(o.ao_radius_m);
+    }
     for (std::uint64_t const v : {std::uint64_t(s.width), std::uint64_t(s.height), std::uint64_t(s.bounces),
                                   s.seed, std::uint64_t(s.filter)})
         h.add(v);

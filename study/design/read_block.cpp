@@ -290,8 +290,8 @@ Block read_block(Yaml const& name, Yaml const& y, Script const& s)
     if (y.has("ties")) b.may_tie = y.at("ties").boolean();
     if (y.has("presentation"))
         b.is_sequential = y.at("presentation").one_of({"simultaneous", "sequential"}, "presentation") == 1;
-    bool const shows_several =
-        facts(b.task).takes_pairs || b.task == Task::two_interval || b.task == Task::ranking;
+    bool const shows_several = facts(b.task).takes_pairs || b.task == Task::two_interval ||
+                               b.task == Task::ranking || b.magnitude.modulus > 0;
     if (b.is_sequential && shows_several && !b.timing.stimulus_ms)
         throw y.error(fmt::format("block '{}' shows stimuli one after another, each until the answer", b.name),
                       "there is one answer, to all of them", "add stimulus_ms: 2000");

@@ -23,7 +23,7 @@ constexpr TaskFacts kFacts[] = {
     {Task::ranking, "ranking", kSlider, false, false, false, 4000},
     {Task::rating, "rating", kSlider, false, false, true, 2500},
     {Task::magnitude, "magnitude", kSlider, false, false, true, 4000},
-    {Task::adjustment, "adjustment", kSlider, false, true, true, 15000},
+    {Task::adjustment, "adjustment", kSlider, false, true, false, 15000},
     {Task::questionnaire, "questionnaire", kSlider, false, false, true, 0},
     {Task::free_walk, "free_walk", kConfirm, false, false, true, 0},
 };

@@ -9,10 +9,10 @@
 namespace study {
 namespace {
 
-void check(std::span<Choice const> choices, int items)
+void check(std::span<ChoiceAmong const> choices, int items)
 {
     if (items < 1) refuse("rankings of no items", "there is nothing to scale", "give one item or more");
-    for (Choice const& c : choices) {
+    for (ChoiceAmong const& c : choices) {
         std::vector<int> all = c.rejected;
         all.push_back(c.chosen);
         std::sort(all.begin(), all.end());
@@ -27,16 +27,16 @@ void check(std::span<Choice const> choices, int items)
 }
 
 /// wins(i, j) = how often i was chosen where j could have been.
-Matrix wins_over(std::span<Choice const> choices, int items)
+Matrix wins_over(std::span<ChoiceAmong const> choices, int items)
 {
     auto const n = std::size_t(items);
     Matrix wins(n, n);
-    for (Choice const& c : choices)
+    for (ChoiceAmong const& c : choices)
         for (int const r : c.rejected) wins(std::size_t(c.chosen), std::size_t(r)) += 1;
     return wins;
 }
 
-void add_choice(Choice const& choice, std::span<double const> at, Likelihood& l)
+void add_choice(ChoiceAmong const& choice, std::span<double const> at, Likelihood& l)
 {
     auto const score = [&](int item) { return item == 0 ? 0 : at[std::size_t(item) - 1]; };
     std::vector<int> among = choice.rejected;
@@ -59,15 +59,15 @@ void add_choice(Choice const& choice, std::span<double const> at, Likelihood& l)
 
 } // namespace
 
-std::vector<Choice> choices_of(std::span<int const> ranking)
+std::vector<ChoiceAmong> choices_of(std::span<int const> ranking)
 {
-    std::vector<Choice> choices;
+    std::vector<ChoiceAmong> choices;
     for (std::size_t i = 0; i + 1 < ranking.size(); ++i)
         choices.push_back({ranking[i], {ranking.begin() + std::ptrdiff_t(i) + 1, ranking.end()}});
     return choices;
 }
 
-PlackettLuce fit_plackett_luce(std::span<Choice const> choices, int items)
+PlackettLuce fit_plackett_luce(std::span<ChoiceAmong const> choices, int items)
 {
     check(choices, items);
     Matrix const wins = wins_over(choices, items);
@@ -78,7 +78,7 @@ PlackettLuce fit_plackett_luce(std::span<Choice const> choices, int items)
     std::size_t const parameters = std::size_t(items) - 1;
     LikelihoodAt const model = [&](std::span<double const> at, Likelihood& l) {
         l.clear(parameters);
-        for (Choice const& c : choices) add_choice(c, at, l);
+        for (ChoiceAmong const& c : choices) add_choice(c, at, l);
     };
 
     PlackettLuce result;

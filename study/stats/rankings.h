@@ -1,5 +1,5 @@
 #pragma once
-// Plackett & Luce's model of rankings and of choices among several (Luce 1959, "Individual Choice Behavior";
+// Plackett & Luce's model of rankings and of choices among several (Luce 1959, "Individual ChoiceAmong Behavior";
 // Plackett 1975, Appl. Stat. 24:193): P(i is chosen of C) = exp(s_i) / sum_{j in C} exp(s_j); a ranking is a
 // choice of the best, then of the best of the rest, and so on. Of two items it is Bradley & Terry's model.
 
@@ -9,13 +9,13 @@
 
 namespace study {
 
-struct Choice {
+struct ChoiceAmong {
     int chosen = 0;
     std::vector<int> rejected;
 };
 
 /// @param ranking  items from the best on, not necessarily all of them
-std::vector<Choice> choices_of(std::span<int const> ranking);
+std::vector<ChoiceAmong> choices_of(std::span<int const> ranking);
 
 struct PlackettLuce {
     std::vector<double> score; ///< natural logarithm of strength, mean 0
@@ -29,6 +29,6 @@ struct PlackettLuce {
 /// Maximum likelihood; with Jeffreys' prior (likelihood.h) where that would be infinite, and `note` says so.
 /// @throws std::invalid_argument no items, an item out of range or twice in a choice, items that no chain of
 /// choices connects
-PlackettLuce fit_plackett_luce(std::span<Choice const> choices, int items);
+PlackettLuce fit_plackett_luce(std::span<ChoiceAmong const> choices, int items);
 
 } // namespace study

@@ -123,10 +123,10 @@ TEST(Ratings, OfNobodyOrOneAreDefined)
     EXPECT_THROW(fit_ratings(ratings), std::invalid_argument);
 }
 
-double log_likelihood(std::vector<Choice> const& choices, std::vector<double> const& score)
+double log_likelihood(std::vector<ChoiceAmong> const& choices, std::vector<double> const& score)
 {
     double sum = 0;
-    for (Choice const& c : choices) {
+    for (ChoiceAmong const& c : choices) {
         double total = std::exp(score[std::size_t(c.chosen)]);
         for (int const r : c.rejected) total += std::exp(score[std::size_t(r)]);
         sum += score[std::size_t(c.chosen)] - std::log(total);
@@ -139,13 +139,13 @@ TEST(Rankings, MeetTheCasesOfChoix)
     LIGHTWELL_NEED_STUDY_DATA();
     for (std::string const name : {"rankings-1", "rankings-2", "top1-1", "top1-2", "pairwise-1", "pairwise-2"}) {
         auto const e = read_json("choix/testcase-" + name + ".json");
-        std::vector<Choice> choices;
+        std::vector<ChoiceAmong> choices;
         for (auto const& d : e["data"]) {
             if (name.starts_with("top1")) {
                 choices.push_back({d[0], d[1].get<std::vector<int>>()});
                 continue;
             }
-            for (Choice const& c : choices_of(d.get<std::vector<int>>())) choices.push_back(c);
+            for (ChoiceAmong const& c : choices_of(d.get<std::vector<int>>())) choices.push_back(c);
         }
         PlackettLuce const p = fit_plackett_luce(choices, e["n_items"]);
         // The numbers of rankings-2 stop 2.7e-5 short of the maximum (the gradient there is 2e-5); choix itself
@@ -159,9 +159,9 @@ TEST(Rankings, MeetTheCasesOfChoix)
 
 TEST(Rankings, AreRegularisedWhereAllAgreeAndSaySo)
 {
-    std::vector<Choice> choices;
+    std::vector<ChoiceAmong> choices;
     for (int i = 0; i < 5; ++i)
-        for (Choice const& c : choices_of(std::vector<int>{2, 0, 1})) choices.push_back(c);
+        for (ChoiceAmong const& c : choices_of(std::vector<int>{2, 0, 1})) choices.push_back(c);
     PlackettLuce const p = fit_plackett_luce(choices, 3);
     EXPECT_TRUE(p.regularised);
     EXPECT_EQ(p.note.find("converge"), std::string::npos);
@@ -174,7 +174,7 @@ TEST(Rankings, OfOneItemAreNoughtAndBadOnesAreRefused)
 {
     EXPECT_EQ(fit_plackett_luce({}, 1).score, std::vector<double>{0});
     EXPECT_TRUE(choices_of({}).empty());
-    auto const fit = [](std::vector<Choice> const& c, int items) { return fit_plackett_luce(c, items); };
+    auto const fit = [](std::vector<ChoiceAmong> const& c, int items) { return fit_plackett_luce(c, items); };
     EXPECT_THROW(fit({}, 0), std::invalid_argument);
     EXPECT_THROW(fit({}, 2), std::invalid_argument);
     EXPECT_THROW(fit({{0, {1, 1}}}, 2), std::invalid_argument);

@@ -37,10 +37,11 @@ TEST_P(HelpExamples, Run)
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
-                         testing::Values("", "render", "compare", "info", "generate", "display", "study", "bench",
-                                         "bench sweep", "bench report", "bench views", "bench raster",
-                                         "bench rays", "bench accuracy", "bench thesis", "track", "track listen",
-                                         "track send", "track walk"),
+                         testing::Values("", "render", "compare", "info", "generate", "display", "study",
+                                         "study simulate", "study rebuild", "study export", "study analyze",
+                                         "study report", "bench", "bench sweep", "bench report", "bench views",
+                                         "bench raster", "bench rays", "bench accuracy", "bench thesis", "track",
+                                         "track listen", "track send", "track walk"),
                          [](auto const& example) {
                              std::string name = *example.param == '\0' ? "program" : example.param;
                              std::replace(name.begin(), name.end(), ' ', '_');

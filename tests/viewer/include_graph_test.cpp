@@ -52,7 +52,7 @@ Table allowed_includes()
                 // Folders of study are named in full: `base` alone is gi/base.
                 bool const in_study = target.starts_with("study/");
                 bool const is_named = target == name || (!in_study && target.ends_with("/" + name));
-                bool const in_all = name == "all" && target != "tests";
+                bool const in_all = name == "all" && target != "tests" && target != "python";
                 bool const in_gi = name == "all of `gi" && target.starts_with("gi/");
                 if (is_named || in_all || in_gi) targets.insert(target);
             }
@@ -77,7 +77,7 @@ std::vector<Include> all_includes(fs::path const& root, Table const& table)
 {
     static std::set<std::string> const kGenerated{"git_hash.h"};
     std::vector<Include> found;
-    for (char const* top : {"gi", "ar", "study", "viewer", "tests"}) {
+    for (char const* top : {"gi", "ar", "study", "viewer", "python", "tests"}) {
         if (!fs::is_directory(root / top)) continue;
         for (auto const& entry : fs::recursive_directory_iterator(root / top)) {
             static std::set<std::string> const kCode{".h", ".cpp", ".cu", ".cuh"};

@@ -33,7 +33,7 @@ json example_of(ArgumentRule const& a)
 {
     switch (a.type) {
     case ArgumentType::text:
-        return *a.choices == '\0' ? "x" : std::string(a.choices).substr(0, 3);
+        return *a.choices == '\0' ? "x" : std::string(a.choices).substr(0, std::string(a.choices).find(' '));
     case ArgumentType::number:
         return 0.5;
     case ArgumentType::integer:

@@ -144,6 +144,11 @@ TEST(Session, RefusesWhatCannotBeAndKeepsAll)
                                     {"bounces", "many"},
                                     {"exposure", nullptr},
                                     {"method", "magic"},
+                                    {"points", "many"},
+                                    {"points", 0},
+                                    {"points", "-5%"},
+                                    {"ao_radius", -1},
+                                    {"light_paths", 0},
                                     {"stereo", "both"},
                                     {"panel", 1},
                                     {"scene", "elsewhere"},
@@ -175,6 +180,46 @@ TEST(Session, EveryKeyCanBeSetToWhatItIs)
         EXPECT_EQ(get(s, k.key), get(Settings{}, k.key)) << k.key;
         EXPECT_FALSE(k.what.empty());
     }
+}
+
+TEST(Session, PointsAreANumberOrAShareOfTheTexels)
+{
+    Settings s;
+    int const texels = 64 * 64;
+    for (auto const& [value, points] : {std::pair{nlohmann::json(2048), 2048},
+                                        {nlohmann::json("512"), 512},
+                                        {nlohmann::json("25%"), texels / 4},
+                                        {nlohmann::json(90.51), 91}}) {
+        set(s, {"points", value});
+        EXPECT_EQ(render_settings(s, 0).vpl.points, points) << value;
+        Settings again; // as recordings do
+        set(again, {"points", get(s, "points")});
+        EXPECT_EQ(render_settings(again, 0).vpl.points, points) << value;
+    }
+}
+
+/// A study changes method, points and radius from stimulus to stimulus.
+TEST(Session, ApproximationsOfVisibilityAreShownLiveInStereo)
+{
+    gi::Report report;
+    Session s = started(report);
+    s.apply({"light_paths", 64});
+    double none = 0;
+    for (char const* const method : {"vpl_none", "vpl_exact", "vpl_slhb", "vpl_imperfect", "vpl_ao", "vpl_dao"}) {
+        s.apply({"method", method});
+        double sum = 0;
+        for (std::uint64_t frame = 0; frame < 4; ++frame) {
+            SessionFrame const f = s.render(order(frame, 0, true), {});
+            sum += mean(color(f)) + mean(color(f, 1));
+        }
+        if (none == 0) none = sum;
+        EXPECT_LE(sum, none * 1.001) << method;
+        EXPECT_GT(sum, 0.5 * none) << method;
+    }
+    s.apply({"ao_radius", 0.0});
+    double const before = mean(color(s.render(order(0), {})));
+    s.apply({"ao_radius", 0.8});
+    EXPECT_LT(mean(color(s.render(order(1), {}))), before) << "dao, wider";
 }
 
 TEST(Session, EditsOutliveANewWorld)

@@ -37,6 +37,16 @@ void bind(DrawTarget const& target)
         glDisable(what);
 }
 
+void clear(DrawTarget const& target, float grey)
+{
+    bind(target);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(target.corner_px.x, target.corner_px.y, target.size_px.x, target.size_px.y);
+    glClearColor(grey, grey, grey, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glDisable(GL_SCISSOR_TEST);
+}
+
 std::vector<unsigned char> read_bytes(DrawTarget const& target, unsigned buffer)
 {
     std::size_t const row = 3 * std::size_t(target.size_px.x), rows = std::size_t(target.size_px.y);

@@ -28,6 +28,8 @@ DrawTarget target_of(Window const& window);
 DrawTarget part_of(DrawTarget const& whole, glm::ivec2 top_left_px, glm::ivec2 size_px);
 /// Binds it, sets the viewport, and switches off what passes do not use (blending, depth, scissors).
 void bind(DrawTarget const& target);
+/// All of it, and nothing else, in one grey. @param grey  display-encoded, 0..1
+void clear(DrawTarget const& target, float grey = 0);
 /// R, G, B in bytes, rows from the top, whatever the order of the target's rows: what gi::write_png takes. Of a
 /// window before the swap; afterwards nobody knows what its back buffer holds. `buffer`: 0 = the one that is drawn
 /// into. Waits for the GPU.

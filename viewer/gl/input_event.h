@@ -18,6 +18,7 @@ enum class InputKind : std::uint8_t {
     close,          ///< the user wants the window to go; it stays until it is destroyed
     gamepad_axis,   ///< device, code: GLFW_GAMEPAD_AXIS_*, x: -1..1 (triggers: -1 = released)
     gamepad_button, ///< device, code: GLFW_GAMEPAD_BUTTON_*, action
+    hand_button,    ///< of a headset; device: 0 left, 1 right, code: 0 select, 1 trigger, 2 menu, action
 };
 
 enum class InputAction : std::uint8_t { release, press, repeat };

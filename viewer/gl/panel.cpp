@@ -3,17 +3,38 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>
+#include <filesystem>
 #include <imgui.h>
 
 namespace viewer {
 
-Panel::Panel(Window& window)
+namespace {
+
+/// Readable from a chair: an outline font where there is one, else the built-in one, enlarged.
+void add_font(float px)
+{
+    constexpr char const* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+    ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+    static ImWchar const kLatin[] = {0x20, 0x17f, 0x2010, 0x2027, 0x2190, 0x2193, 0};
+    if (std::filesystem::exists(kFont)) {
+        fonts.AddFontFromFileTTF(kFont, px, nullptr, kLatin);
+        return;
+    }
+    ImFontConfig enlarged;
+    enlarged.SizePixels = px;
+    fonts.AddFontDefault(&enlarged);
+}
+
+} // namespace
+
+Panel::Panel(Window& window, float font_px)
 {
     IMGUI_CHECKVERSION();
     context_ = ImGui::CreateContext();
     ImGui::SetCurrentContext(context_);
     ImGui::GetIO().IniFilename = nullptr; // nothing is written beside the scene
     ImGui::StyleColorsDark();
+    if (font_px > 0) add_font(font_px);
     ImGui_ImplGlfw_InitForOpenGL(window.glfw(), true);
     ImGui_ImplOpenGL3_Init("#version 450 core");
     ImGui_ImplOpenGL3_NewFrame(); // makes its textures and programs

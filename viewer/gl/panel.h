@@ -12,7 +12,8 @@ class Panel {
 public:
     /// Listens to the window's input beside its queue. One panel in the program at a time: ImGui's callbacks know
     /// no other. The window must outlive it, and its context must be current here and at the end.
-    explicit Panel(Window& window);
+    /// @param font_px  height of its letters; 0 = small ones for tools
+    explicit Panel(Window& window, float font_px = 0);
     ~Panel();
     Panel(Panel const&) = delete;
     Panel& operator=(Panel const&) = delete;

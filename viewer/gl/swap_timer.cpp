@@ -49,6 +49,7 @@ SwapTime SwapTimer::swap()
         report_.lose("swaps whose fence was not reached within 1 s");
     out.method = GlSwapMethod::fence;
     out.time = called + (done - called) / 2;
+    out.seen = done;
     out.uncertainty_ms = ms_between(called, done) / 2 + refresh_ms_;
     return out;
 }
@@ -71,6 +72,7 @@ bool SwapTimer::try_sync_control(Clock::time_point called, SwapTime& out)
         out.time = called + (done - called) / 2;
         out.uncertainty_ms = ms_between(called, done) / 2;
     }
+    out.seen = out.time;
     return true;
 }
 

@@ -21,7 +21,9 @@ char const* name_of(GlSwapMethod method);
 
 struct SwapTime {
     using Clock = std::chrono::steady_clock;
-    Clock::time_point time;    ///< best guess
+    Clock::time_point time; ///< best guess
+    Clock::time_point
+        seen; ///< when it was known to be done: intervals of swaps that wait for the display keep time
     double uncertainty_ms = 0; ///< the swap took place within time +- this
     GlSwapMethod method = GlSwapMethod::fence;
 };

@@ -53,6 +53,11 @@ std::span<RequestRule const> request_rules()
           {"y_px", number, required, "from its top edge"},
           {"view", integer, optional, "as of `screenshot`"},
           {"select", boolean, optional, "also select it, as a click does"}}},
+        {"session",
+         "of an experiment that runs (`study run`): what it is at, or a wish of the experimenter",
+         "`{\"doing\": ..., \"trials_done\": ..., ...}`",
+         {{"action", ArgumentType::text, Presence::required, "what to do", "status pause go_on skip abort note"},
+          {"text", ArgumentType::text, Presence::optional, "of the note"}}},
         {"quit", "ends the program in order", "`{}`", {}},
     };
     return rules;

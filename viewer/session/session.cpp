@@ -12,8 +12,8 @@ namespace {
 /// Settings that the structures of a method are built by.
 bool decides_method(std::string const& key)
 {
-    for (char const* const k :
-         {"method", "schedule", "directions", "resolution", "axes", "lamps", "bounces", "seed"})
+    for (char const* const k : {"method", "schedule", "directions", "resolution", "axes", "lamps", "light_paths",
+                                "points", "ao_radius", "bounces", "seed"})
         if (key == k) return true;
     return false;
 }

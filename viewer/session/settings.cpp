@@ -4,6 +4,7 @@
 #include "gi/registry/registry.h"
 #include "viewer/display/stereo_mode.h"
 
+#include <cstdlib>
 #include <fmt/format.h>
 #include <functional>
 
@@ -48,6 +49,13 @@ std::string one_of(Change const& c, std::vector<std::string> const& words)
     }
     throw gi::InputError(fmt::format("'{}' = {}", c.key, c.value.dump()), "it takes a word that is known here",
                          "set one of: " + all);
+}
+
+std::string points(Change const& c)
+{
+    std::string const text = c.value.is_string() ? c.value.get<std::string>() : c.value.dump();
+    parse_points(fmt::format("'{}' = {}", c.key, c.value.dump()), text, gi::VirtualLightSettings{}.point_map);
+    return text;
 }
 
 std::vector<std::string> method_names(bool or_none)
@@ -114,6 +122,17 @@ std::vector<Entry> const& entries()
               0, 4096),
         count("axes", "of a pass, streamed and temporal, 0 = chosen by the plan", &Settings::axes, 0, 4096),
         count("lamps", "points on lamps with a shadow map, 0 = chosen by the plan", &Settings::lamps, 0, 1024),
+        count("light_paths",
+              "from the lamps in a pass, of the methods vpl_*: surfaces they meet are virtual lights",
+              &Settings::light_paths, 1, 65536),
+        entry({"points",
+               SettingType::word,
+               "of an imperfect shadow map (vpl_imperfect), or 30% of its texels",
+               {"5%", "30%", "100%", "256", "1024", "4096", "16384"},
+               0,
+               0},
+              &Settings::points, points),
+        real("ao_radius", "of occluders that count, m (vpl_ao, vpl_dao)", &Settings::ao_radius_m, 0, 1e6),
         count("bounces", "indirect bounces", &Settings::bounces, 0, 1024),
         count("seed", "of the random numbers", &Settings::seed, 0, 1 << 30),
         count("reuse", "frames that light is reused over, 1 = none", &Settings::reuse, 1, 256),
@@ -197,6 +216,20 @@ nlohmann::json get(Settings const& settings, std::string const& key)
     return e->get(settings);
 }
 
+int parse_points(std::string const& name, std::string const& text, int point_map)
+{
+    char* end = nullptr;
+    double const v = std::strtod(text.c_str(), &end);
+    bool const is_share = std::string_view(end) == "%", is_number = *end == 0;
+    double const points = std::round(is_share ? v / 100 * point_map * point_map : v);
+    if (end == text.c_str() || !(is_share || is_number) || !(points >= 1 && points <= gi::kMostPoints))
+        throw gi::InputError(name,
+                             fmt::format("it takes 1 to {} points, or a share of the {} texels of a map",
+                                         gi::kMostPoints, point_map * point_map),
+                             "write 1024, or 30%");
+    return int(points);
+}
+
 gi::RenderSettings render_settings(Settings const& s, int threads)
 {
     gi::RenderSettings r;
@@ -212,6 +245,9 @@ gi::RenderSettings render_settings(Settings const& s, int threads)
     r.slhb.resolution = s.resolution;
     r.slhb.axes = s.axes;
     r.slhb.lamps = s.lamps;
+    r.vpl.light_paths = s.light_paths;
+    r.vpl.points = parse_points("'points'", s.points, r.vpl.point_map);
+    r.vpl.ao_radius_m = float(s.ao_radius_m);
     return r;
 }
 

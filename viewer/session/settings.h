@@ -15,6 +15,9 @@ struct Settings {
     std::string method = "slhb", compare;      ///< compare: a second method to look at beside it; empty = none
     std::string schedule = "auto", directions; ///< as --schedule and --directions
     int resolution = 0, axes = 0, lamps = 0;   ///< of slhb, 0 = what the plan chooses
+    int light_paths = 256;                     ///< of the methods vpl_*, as are the next
+    std::string points = "1024";               ///< of an imperfect shadow map, or "30%" of its texels
+    double ao_radius_m = 0.5;
     int bounces = 3;
     int seed = 0;
     int reuse = 16; ///< frames of temporal reuse; 1 = none
@@ -46,7 +49,7 @@ struct SettingKey {
     std::string key;
     SettingType type = SettingType::word;
     std::string what;               ///< for people, with its unit
-    std::vector<std::string> words; ///< that it may be
+    std::vector<std::string> words; ///< that it may be; of `points` some of them
     double low = 0, high = 0;       ///< of numbers
 };
 std::span<SettingKey const> setting_keys();
@@ -57,6 +60,10 @@ void set(Settings& settings, Change const& change);
 /// "KEY=VALUE", the value as JSON where it is that, else a word. Throws InputError.
 Change parse_change(std::string const& text);
 nlohmann::json get(Settings const& settings, std::string const& key);
+
+/// "1024", or "30%" of the texels of a map, rounded: points of an imperfect shadow map. Throws InputError.
+/// @param name  of the setting, for the message  @param point_map  texels on a side
+int parse_points(std::string const& name, std::string const& text, int point_map);
 
 /// What they say to a method. Throws InputError on values that do not go together.
 gi::RenderSettings render_settings(Settings const& settings, int threads);

@@ -47,6 +47,8 @@ int key_code(std::string const& name)
                                                    {"down", GLFW_KEY_DOWN},
                                                    {"left", GLFW_KEY_LEFT},
                                                    {"right", GLFW_KEY_RIGHT},
+                                                   {"enter", GLFW_KEY_ENTER},
+                                                   {"backspace", GLFW_KEY_BACKSPACE},
                                                    {"shift", GLFW_KEY_LEFT_SHIFT},
                                                    {"control", GLFW_KEY_LEFT_CONTROL},
                                                    {"f1", GLFW_KEY_F1},

@@ -1,8 +1,6 @@
 #include "viewer/show/hmd_program.h"
 
-#include "viewer/gl/display_pass.h"
-#include "viewer/gl/reprojection.h"
-#include "viewer/gl/window.h"
+#include "viewer/show/hmd_eyes.h"
 #include "viewer/show/view_core.h"
 #include "viewer/xr/keeper.h"
 
@@ -14,30 +12,18 @@
 namespace viewer {
 namespace {
 
-/// Surfaceless where there is no display server, else of a window that nobody sees.
-struct HmdContext {
-    std::unique_ptr<Window> window;
-    std::optional<GlContext> own;
-
-    explicit HmdContext(gi::Report& report)
-    {
-        char const* const display = std::getenv("DISPLAY");
-        if (display != nullptr && *display != '\0') {
-            WindowSettings hidden;
-            hidden.size_px = {64, 64};
-            hidden.visibility = Visibility::hidden;
-            window = std::make_unique<Window>(hidden, report);
-        } else {
-            own = GlContext::surfaceless(report);
-        }
-    }
-    GlContext const& gl() const { return window ? window->gl() : *own; }
-};
+WindowSettings hidden()
+{
+    WindowSettings settings;
+    settings.size_px = {64, 64};
+    settings.visibility = Visibility::hidden;
+    return settings;
+}
 
 class HmdLoop {
 public:
     HmdLoop(ViewOptions const& options, HmdOptions const& headset, gi::Report& report)
-        : core_(options, report), state_(core_.state), context_(report), keeper_(&context_.gl(), headset)
+        : core_(options, report), state_(core_.state), context_(report, hidden()), keeper_(&context_.gl(), headset)
     {
         core_.start(nullptr, {});
     }
@@ -121,19 +107,21 @@ private:
         if (!frame.should_render || !newest || newest->result.views.size() != 2) return session.end_frame();
         bool const fresh = newest != state_.frame;
         double const begun = state_.clock.now_s();
-        if (fresh) take(newest);
+        if (fresh) {
+            state_.frame = newest;
+            eyes_.take(*newest);
+        }
         double const uploaded = state_.clock.now_s();
         HmdPicture picture;
         picture.views = frame.views;
         picture.values = TextureValues::srgb;
         picture.first_row = FirstRow::top;
-        bool moved = false;
-        for (std::size_t eye = 0; eye < 2; ++eye) {
-            gi::Camera const& rendered = newest->order.views[eye].camera;
-            moved |= !(rendered == now[eye]);
-            picture.textures[eye] =
-                draw(eye, rendered, now[eye], {frame.views[eye].width, frame.views[eye].height});
-        }
+        bool const moved = !(newest->order.views[0].camera == now[0] && newest->order.views[1].camera == now[1]);
+        eyes_.draw(*newest, now,
+                   {glm::ivec2{frame.views[0].width, frame.views[0].height},
+                    glm::ivec2{frame.views[1].width, frame.views[1].height}},
+                   state_.settings.reproject, tone_settings(state_.settings));
+        picture.textures = eyes_.textures();
         session.end_frame(picture);
         ++shown_;
         if (moved) ++reprojected_;
@@ -157,33 +145,6 @@ private:
         core_.log(times);
     }
 
-    void take(std::shared_ptr<LiveFrame const> const& newest)
-    {
-        state_.frame = newest;
-        for (std::size_t eye = 0; eye < 2; ++eye) {
-            gi::Picture const& p = newest->result.views[eye].picture;
-            gi::Layer const* const depth = p.find("depth");
-            pictures_[eye].upload({p.width, p.height}, p.find("color")->data,
-                                  depth == nullptr ? std::span<float const>() : depth->data);
-        }
-    }
-
-    unsigned draw(std::size_t eye, gi::Camera const& rendered, gi::Camera const& now, glm::ivec2 size_px)
-    {
-        if (!targets_[eye] || sizes_[eye] != size_px) {
-            targets_[eye].emplace(TextureTarget::Format::bytes, size_px);
-            sizes_[eye] = size_px;
-        }
-        EyeView view;
-        view.picture = state_.settings.reproject && !(rendered == now)
-                           ? reprojections_[eye].draw(pictures_[eye], rendered, now, size_px)
-                           : pictures_[eye].shown();
-        DisplaySettings settings;
-        settings.tone = tone_settings(state_.settings);
-        pass_.draw(targets_[eye]->target(), view, view, settings);
-        return targets_[eye]->shown().texture;
-    }
-
     static double steady_s()
     {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -192,11 +153,7 @@ private:
     ViewCore core_;
     ViewState& state_;
     HmdContext context_;
-    DisplayPass pass_;
-    std::array<PictureTexture, 2> pictures_;
-    std::array<Reprojection, 2> reprojections_;
-    std::array<std::optional<TextureTarget>, 2> targets_;
-    std::array<glm::ivec2, 2> sizes_{};
+    HmdEyes eyes_;
     HmdKeeper keeper_; ///< its sessions end before the context
     gi::dvec3 start_{0};
     bool started_ = false;

@@ -2,8 +2,6 @@
 
 #include "viewer/stereo/compose.h"
 
-#include <epoxy/gl.h>
-
 namespace viewer {
 namespace {
 
@@ -16,13 +14,6 @@ std::span<float const> floats(gi::Picture const& picture, char const* layer)
 void upload(PictureTexture& to, gi::Picture const& picture)
 {
     to.upload({picture.width, picture.height}, floats(picture, "color"), floats(picture, "depth"));
-}
-
-void clear(DrawTarget const& target)
-{
-    bind(target);
-    glClearColor(0, 0, 0, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
 }
 
 } // namespace
@@ -96,7 +87,6 @@ void Presenter::draw_on_wall(Pane const& pane, DrawTarget const& target, EyeView
 void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& panes,
                      PresentSettings const& s, std::vector<gi::Camera> const& now)
 {
-    clear(whole);
     for (Pane const& pane : panes) {
         EyeView left = eye(pane.left, now), right = pane.right >= 0 ? eye(pane.right, now) : left;
         if (left.picture.texture == 0 || right.picture.texture == 0) continue;

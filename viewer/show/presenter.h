@@ -35,6 +35,7 @@ public:
 
     /// Uploads the views that these panes show.
     void take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> const& panes);
+    /// Over what is there; nothing outside of the panes is touched.
     /// @param on_screen_px  of the target's top left corner   @param now  a camera per view, for reprojection;
     /// empty =
     ///                      as rendered

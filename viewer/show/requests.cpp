@@ -44,6 +44,8 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
         state_.renderer->go_to(r.arguments.at("time_s").get<double>());
         return Json::object();
     }
+    if (r.what == "session")
+        throw gi::InputError("'session'", "no experiment runs here", "start one: lightwell study run");
     if (r.what == "load") {
         load(r);
     } else if (r.what == "set") {

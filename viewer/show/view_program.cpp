@@ -1,11 +1,12 @@
 #include "viewer/show/view_program.h"
 
 #include "gi/base/error.h"
+#include "viewer/gl/gamepads.h"
 #include "viewer/gl/panel.h"
+#include "viewer/show/display_windows.h"
 #include "viewer/show/layout.h"
 #include "viewer/show/panel_contents.h"
 #include "viewer/show/present_thread.h"
-#include "viewer/show/shown_window.h"
 #include "viewer/show/user_body.h"
 #include "viewer/show/user_tracking.h"
 #include "viewer/show/view_core.h"
@@ -36,7 +37,7 @@ public:
     {
         if (options.display) {
             if (!follows()) tracking_.emplace(*core_.display);
-            open_display(*core_.display);
+            shown_ = open_windows(*core_.display, core_.options.rank, core_.options.swap_interval, core_.report);
         } else {
             open_desktop();
         }
@@ -65,7 +66,7 @@ public:
         }
         presenting_.reset();
         core_.finish();
-        core_.summary.gl = windows_.empty() ? "" : windows_[0]->window.gl().description();
+        core_.summary.gl = shown_.windows.empty() ? "" : shown_.windows[0]->window.gl().description();
         if (tracking_) core_.summary.trackers = tracking_->stats(steady_s());
         return core_.summary;
     }
@@ -83,41 +84,17 @@ private:
         settings.swap_interval = core_.options.swap_interval;
         if (state_.settings.stereo == name_of(StereoMode::quad_buffer)) settings.quad_buffer = QuadBuffer::wanted;
         for (int i = 0; i < (two ? 2 : 1); ++i)
-            windows_.push_back(std::make_unique<ShownWindow>(settings, std::vector<WallSettings>{}, core_.report));
-        windows_[0]->window.gl().make_current();
-        panel_ = std::make_unique<Panel>(windows_[0]->window);
-    }
-
-    void open_display(Display& display)
-    {
-        window_of_.assign(display.windows.size(), -1);
-        for (int const w : windows_of(display, core_.options.rank)) {
-            DisplayWindow const& wanted = display.windows[std::size_t(w)];
-            WindowSettings settings;
-            settings.title = "Lightwell: " + wanted.name;
-            settings.size_px = {wanted.width_px, wanted.height_px};
-            settings.swap_interval = core_.options.swap_interval;
-            if (wanted.fullscreen) settings.monitor = std::to_string(std::max(0, wanted.monitor));
-            settings.position_px = glm::ivec2{wanted.x_px, wanted.y_px};
-            if (wanted.monitor >= 0 && !wanted.fullscreen)
-                for (MonitorInfo const& m : monitors())
-                    if (m.number == wanted.monitor) *settings.position_px += m.position_px;
-            for (Wall const& wall : display.walls)
-                if (wall.window == w && wall.stereo == StereoMode::quad_buffer)
-                    settings.quad_buffer = QuadBuffer::wanted;
-            window_of_[std::size_t(w)] = int(windows_.size());
-            windows_.push_back(std::make_unique<ShownWindow>(settings, wall_settings(display), core_.report));
-            if (windows_.back()->window.has_quad_buffer()) continue;
-            for (Wall& wall : display.walls)
-                if (wall.window == w && wall.stereo == StereoMode::quad_buffer)
-                    wall.stereo = StereoMode::side_by_side;
-        }
+            shown_.windows.push_back(
+                std::make_unique<ShownWindow>(settings, std::vector<WallSettings>{}, core_.report));
+        shown_.windows[0]->window.gl().make_current();
+        panel_ = std::make_unique<Panel>(shown_.windows[0]->window);
     }
 
     void take_input()
     {
-        for (std::size_t w = 0; w < windows_.size(); ++w) {
-            std::vector<InputEvent> events = windows_[w]->window.take_events();
+        for (std::size_t w = 0; w < shown_.windows.size(); ++w) {
+            std::vector<InputEvent> events = shown_.windows[w]->window.take_events();
+            if (w == 0) gamepads_.poll(events);
             if (panel_ && w == 0 && state_.settings.panel) panel_->claim(events);
             if (!events.empty()) dirty_ = true;
             for (InputEvent const& e : events) core_.controls.take(e, height_px());
@@ -133,7 +110,10 @@ private:
             state_.change({"stereo", name_of(kStereoModes[std::size_t(mode) % std::size(kStereoModes)])});
     }
 
-    glm::ivec2 first_px() const { return windows_.empty() ? glm::ivec2(0) : windows_[0]->window.framebuffer_px(); }
+    glm::ivec2 first_px() const
+    {
+        return shown_.windows.empty() ? glm::ivec2(0) : shown_.windows[0]->window.framebuffer_px();
+    }
     double height_px() const { return std::max(1, first_px().y); }
 
     void select(glm::dvec2 at_px)
@@ -160,7 +140,7 @@ private:
     StereoMode possible_mode()
     {
         StereoMode const mode = *stereo_mode(state_.settings.stereo);
-        if (mode != StereoMode::quad_buffer || windows_[0]->window.has_quad_buffer()) return mode;
+        if (mode != StereoMode::quad_buffer || shown_.windows[0]->window.has_quad_buffer()) return mode;
         if (!std::exchange(fallback_told_, true))
             core_.report.lose("stereo by quad buffers, which this window has not: side by side instead");
         return StereoMode::side_by_side;
@@ -169,27 +149,20 @@ private:
     std::vector<glm::ivec2> window_sizes() const
     {
         std::vector<glm::ivec2> sizes;
-        for (auto const& w : windows_) sizes.push_back(w->window.framebuffer_px());
+        for (auto const& w : shown_.windows) sizes.push_back(w->window.framebuffer_px());
         return sizes;
     }
 
-    /// The windows of this process as they are, which may not be what the file wishes.
     void note_sizes()
     {
-        for (std::size_t w = 0; w < window_of_.size(); ++w) {
-            if (window_of_[w] < 0) continue;
-            glm::ivec2 const px = windows_[std::size_t(window_of_[w])]->window.framebuffer_px();
-            if (px.x <= 0 || px.y <= 0) continue; // minimised
-            core_.display->windows[w].width_px = px.x;
-            core_.display->windows[w].height_px = px.y;
-        }
+        if (core_.display) viewer::note_sizes(*core_.display, shown_);
     }
 
     void set_panes(std::vector<std::vector<Pane>> const& panes)
     {
         for (std::size_t w = 0; w < panes.size(); ++w) {
-            int const at = core_.display ? window_of_[w] : int(w);
-            if (at >= 0) windows_[std::size_t(at)]->panes = panes[w];
+            int const at = core_.display ? shown_.of[w] : int(w);
+            if (at >= 0) shown_.windows[std::size_t(at)]->panes = panes[w];
         }
     }
 
@@ -247,7 +220,7 @@ private:
         bool const moved =
             state_.settings.reproject && link_ == nullptr && has_moved() && since_s > 1 / kPresentation_Hz;
         bool const flickers = state_.settings.view == "flicker" && since_s > 0.5 / kFlicker_Hz;
-        bool const resized = std::any_of(windows_.begin(), windows_.end(),
+        bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
                                          [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
         if (fresh || moved || flickers || dirty_ || resized || state_.wants_screenshot) present(newest, fresh);
     }
@@ -287,7 +260,7 @@ private:
             meter_.see(newest);
         }
         state_.live_error = meter_.latest();
-        for (auto const& w : windows_) {
+        for (auto const& w : shown_.windows) {
             w->shown_px = w->window.framebuffer_px();
             w->shown_panes = w->panes;
             w->on_screen_px = w->window.position_px();
@@ -308,12 +281,13 @@ private:
     /// On the presenting thread.
     void draw(Presentation& p)
     {
-        for (std::size_t w = 0; w < windows_.size(); ++w) {
-            ShownWindow& shown = *windows_[w];
+        for (std::size_t w = 0; w < shown_.windows.size(); ++w) {
+            ShownWindow& shown = *shown_.windows[w];
             shown.window.gl().make_current();
             double const from = state_.clock.now_s();
             if (p.fresh) shown.presenter.take(p.frame, shown.shown_panes);
             double const uploaded = state_.clock.now_s();
+            clear(target_of(shown.window));
             shown.presenter.draw(target_of(shown.window), shown.on_screen_px, shown.shown_panes, p.settings,
                                  p.cameras);
             if (w == 0 && p.wants_bytes) p.bytes = read_bytes(target_of(shown.window));
@@ -323,23 +297,23 @@ private:
         }
         p.swap.time = SwapTime::Clock::now();
         if (link_ != nullptr && p.fresh) {
-            for (auto const& w : windows_) { // drawn, not only asked for
+            for (auto const& w : shown_.windows) { // drawn, not only asked for
                 w->window.gl().make_current();
                 glFinish();
             }
             link_->drawn(p.frame->order.frame);
         }
-        for (auto const& w : windows_) {
+        for (auto const& w : shown_.windows) {
             w->window.gl().make_current();
             p.swap = w->timer.swap();
         }
-        for (auto const& w : windows_) w->window.gl().release();
+        for (auto const& w : shown_.windows) w->window.gl().release();
         p.shown_s = state_.clock.at_s(p.swap.time);
     }
 
     void presented(Presentation const& p)
     {
-        glm::ivec2 const px = windows_.empty() ? glm::ivec2(0) : windows_[0]->shown_px;
+        glm::ivec2 const px = shown_.windows.empty() ? glm::ivec2(0) : shown_.windows[0]->shown_px;
         if (p.wants_bytes && std::exchange(state_.own_screenshot, false)) core_.save_screenshot(px, p.bytes);
         core_.requests.presented(p.shown_s, px, p.bytes);
         if (core_.requests.wants_bytes()) state_.wants_screenshot = true;
@@ -399,8 +373,8 @@ private:
     ViewState& state_;
     FrameLink* link_;
     std::optional<UserTracking> tracking_;
-    std::vector<std::unique_ptr<ShownWindow>> windows_;
-    std::vector<int> window_of_;   ///< per window of the display: index into windows_; -1 = another rank's
+    Gamepads gamepads_;
+    DisplayWindows shown_;
     std::unique_ptr<Panel> panel_; ///< not on the walls of a display
     std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;

@@ -1,0 +1,97 @@
+#include "python/core/bind_render.h"
+
+#include "gi/registry/registry.h"
+#include "python/core/bind_scene.h"
+#include "python/core/convert.h"
+#include "python/core/interruptible.h"
+#include "python/core/render_keywords.h"
+#include "viewer/choose_camera.h"
+#include "viewer/render_picture.h"
+
+#include <mutex>
+#include <pybind11/stl.h>
+
+namespace bindings {
+namespace {
+
+constexpr char const* kEnds[] = {"paths", "budget", "error_target", "interrupted"};
+
+/// What is known of a render while it runs, from one thread to another.
+class Watched {
+public:
+    void put(gi::RenderStatus const& status)
+    {
+        std::lock_guard const lock(mutex_);
+        status_ = status;
+        is_new_ = true;
+    }
+    std::optional<gi::RenderStatus> take()
+    {
+        std::lock_guard const lock(mutex_);
+        if (!std::exchange(is_new_, false)) return {};
+        return status_;
+    }
+
+private:
+    std::mutex mutex_;
+    gi::RenderStatus status_;
+    bool is_new_ = false;
+};
+
+py::dict to_result(gi::RenderResult&& r, gi::Report const& report, std::string const& note)
+{
+    py::dict d;
+    d["layers"] = to_layers(std::move(r.picture));
+    d["end"] = kEnds[std::size_t(r.end)];
+    d["paths"] = r.paths;
+    d["seconds"] = r.seconds;
+    d["relmse"] = r.relmse;
+    d["options"] = r.options;
+    d["losses"] = losses_of(report);
+    d["stages_s"] = report.times();
+    d["note"] = note;
+    return d;
+}
+
+py::dict render(LoadedWorld const& scene, std::string const& method, gi::Camera const& camera,
+                py::dict const& keywords, py::dict const& options, std::string const& denoise,
+                py::object const& progress)
+{
+    gi::Method const& chosen = gi::find_method(method);
+    gi::RenderSettings const settings = settings_of(keywords, options, method);
+    gi::DenoiseSettings const filter = denoise_of(denoise, settings);
+    viewer::check_distance(*scene.world, camera);
+    gi::check_lens(camera);
+    std::shared_ptr<gi::World const> const world = scene.world;
+    gi::Report report;
+    gi::RenderResult result;
+    std::string note;
+    Watched watched;
+    auto const work = [&](gi::StopRequest const& stop) {
+        result = chosen.render(
+            *world, camera, settings, stop, [&](gi::RenderStatus const& s) { watched.put(s); }, report);
+        note = viewer::denoise(result.picture, filter, report);
+    };
+    auto const tick = [&] {
+        if (progress.is_none()) return;
+        if (auto const s = watched.take()) progress(s->fraction, s->paths, s->relmse);
+    };
+    run_interruptible(work, tick);
+    return to_result(std::move(result), report, note);
+}
+
+} // namespace
+
+void bind_render(py::module_& m)
+{
+    m.def("methods", [] {
+        std::map<std::string, std::string> methods;
+        for (gi::Method const& method : gi::methods())
+            methods.emplace(std::string(method.name), std::string(method.summary));
+        return methods;
+    });
+    m.def("render", &render, py::arg("world"), py::arg("method"), py::arg("camera"), py::arg("keywords"),
+          py::arg("options"), py::arg("denoise"), py::arg("progress"));
+}
+
+} // namespace bindings

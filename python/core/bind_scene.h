@@ -1,0 +1,23 @@
+#pragma once
+#include "gi/scene/world.h"
+
+#include <pybind11/pybind11.h>
+
+namespace bindings {
+
+namespace py = pybind11;
+
+/// A scene at one moment, as Python holds it.
+struct LoadedWorld {
+    std::string name;
+    std::shared_ptr<gi::World const> world;
+    std::map<std::string, gi::Report::Loss> losses; ///< of loading
+};
+
+/// A camera of the world by its name, its first, or one that frames it all. Throws InputError.
+gi::Camera camera_of(gi::World const& world, std::string const& name);
+
+/// Camera, World, load.
+void bind_scene(py::module_& m);
+
+} // namespace bindings

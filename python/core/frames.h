@@ -1,0 +1,61 @@
+#pragma once
+// Frames that follow each other, each made when it is asked for: a viewer::Session with its views, and the
+// settings of a stimulus of an experiment.
+
+#include "viewer/session/governor.h"
+#include "viewer/session/session.h"
+#include "viewer/trials/stimulus_place.h"
+
+#include <mutex>
+
+namespace bindings {
+
+/// How many paths a frame has: so many, or what the governor expects to fit into a time.
+struct FrameWork {
+    std::optional<int> paths;
+    double budget_s = 0.05;
+};
+
+struct MadeFrame {
+    viewer::SessionFrame frame;
+    double seconds = 0;
+    double exposure_ev = 0; ///< that it was rendered with, as `tone`
+    std::string tone;
+};
+
+class Frames {
+public:
+    /// @param threads  0 = all
+    explicit Frames(int threads);
+
+    /// Throws InputError; nothing has changed then.
+    void set(viewer::Change const& change);
+    nlohmann::json get(std::string const& key) const;
+    gi::Report const& report() const { return report_; }
+    /// Of the scene; empty = its first, or one that frames it. Throws InputError.
+    gi::Camera camera(std::string const& name) const;
+
+    /// Sets scene, settings and edits of a stimulus, taking back edits of the one before. Throws InputError.
+    void take(viewer::StimulusSettings const& stimulus);
+    /// From where the stimulus is seen, so long after its onset: its camera, moved along its path.
+    gi::Camera camera_at(viewer::StimulusSettings const& stimulus, int width, int height, double seconds,
+                         double duration_s) const;
+
+    /// @param scene_s  time of the scene's clips, s. Throws InputError without a scene or a view.
+    MadeFrame render(std::vector<viewer::ViewOrder> views, FrameWork work, double scene_s,
+                     gi::StopRequest const& stop);
+
+private:
+    void change(viewer::Change const& change);
+    gi::Camera find_camera(std::string const& name) const;
+
+    mutable std::mutex mutex_;
+    gi::Report report_;
+    viewer::SceneAccess scenes_;
+    viewer::Session session_;
+    viewer::Governor governor_;
+    std::uint64_t frame_ = 0;
+    bool is_edited_ = false;
+};
+
+} // namespace bindings

@@ -1,0 +1,23 @@
+// lightwell._core: what the package in python/lightwell, which has the documentation, is made of.
+
+#include "python/core/array.h"
+#include "python/core/bind_frames.h"
+#include "python/core/bind_image.h"
+#include "python/core/bind_render.h"
+#include "python/core/bind_scene.h"
+#include "python/core/bind_study.h"
+#include "python/core/errors.h"
+#include "viewer/version.h"
+
+PYBIND11_MODULE(_core, m)
+{
+    m.attr("version") = viewer::version_number();
+    m.attr("git_hash") = viewer::git_hash();
+    bindings::translate_errors();
+    bindings::bind_array(m);
+    bindings::bind_scene(m);
+    bindings::bind_render(m);
+    bindings::bind_image(m);
+    bindings::bind_frames(m);
+    bindings::bind_study(m);
+}

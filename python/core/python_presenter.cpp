@@ -1,0 +1,137 @@
+#include "python/core/python_presenter.h"
+
+#include "gi/base/error.h"
+#include "python/core/entry_dict.h"
+
+#include <pybind11/stl.h>
+
+namespace bindings {
+
+/// With the interpreter's lock. What is raised is kept for run(), and ends the session as a display that is lost.
+template <class Result>
+Result PythonPresenter::call(std::function<Result()> const& ask) const
+{
+    py::gil_scoped_acquire const locked;
+    try {
+        return ask();
+    } catch (py::error_already_set const& e) {
+        raised_ = std::current_exception();
+        throw std::runtime_error(e.what());
+    } catch (...) {
+        raised_ = std::current_exception();
+        throw;
+    }
+}
+
+double PythonPresenter::now() const
+{
+    return call<double>([&] { return py::cast<double>(steps_.attr("now")()); });
+}
+
+std::vector<std::pair<std::string, std::string>> PythonPresenter::about() const
+{
+    using Pairs = std::vector<std::pair<std::string, std::string>>;
+    return call<Pairs>([&] { return py::cast<Pairs>(steps_.attr("about")()); });
+}
+
+study::CalibrationDone PythonPresenter::calibrate(study::Timing const& timing)
+{
+    return call<study::CalibrationDone>([&] {
+        py::dict d;
+        d["frames"] = timing.calibrate.frames;
+        d["max_sd_ms"] = timing.calibrate.max_sd_ms;
+        d["max_deviation"] = timing.calibrate.max_deviation;
+        d["expected_hz"] = timing.expected_hz;
+        d["vsync"] = timing.vsync == study::Vsync::required ? "required" : "record";
+        return from_dict<study::CalibrationDone>(steps_.attr("calibrate")(d));
+    });
+}
+
+bool PythonPresenter::ask_consent(std::string const& markdown)
+{
+    return call<bool>([&] { return py::cast<bool>(steps_.attr("ask_consent")(markdown)); });
+}
+
+study::ParticipantAsked PythonPresenter::ask_participant(std::vector<std::string> const& questions)
+{
+    return call<study::ParticipantAsked>([&] {
+        study::ParticipantAsked asked;
+        asked.answers = py::cast<decltype(asked.answers)>(steps_.attr("ask_participant")(questions));
+        return asked;
+    });
+}
+
+study::StepDone PythonPresenter::instruct(std::string const& markdown, int step)
+{
+    return call<study::StepDone>(
+        [&] { return from_dict<study::StepDone>(steps_.attr("instruct")(markdown, step)); });
+}
+
+study::StepDone PythonPresenter::rest(std::string const& prompt, double least_s, int step)
+{
+    return call<study::StepDone>(
+        [&] { return from_dict<study::StepDone>(steps_.attr("rest")(prompt, least_s, step)); });
+}
+
+study::StepDone PythonPresenter::walk(study::TrialRequest const& where, std::string const& prompt, double seconds)
+{
+    return call<study::StepDone>(
+        [&] { return from_dict<study::StepDone>(steps_.attr("walk")(to_dict(where), prompt, seconds)); });
+}
+
+study::QuestionnaireDone PythonPresenter::ask(study::Questionnaire const& questionnaire, int step)
+{
+    return call<study::QuestionnaireDone>([&] {
+        py::list items;
+        for (study::QuestionnaireItem const& i : questionnaire.items) {
+            py::dict d;
+            d["id"] = i.id;
+            d["text"] = i.text;
+            d["low"] = i.low;
+            d["high"] = i.high;
+            d["step"] = i.step;
+            d["labels"] = i.labels;
+            items.append(d);
+        }
+        py::dict d;
+        d["name"] = questionnaire.name;
+        d["title"] = questionnaire.title;
+        d["instructions"] = questionnaire.instructions;
+        d["items"] = items;
+        return from_dict<study::QuestionnaireDone>(steps_.attr("ask")(d, step));
+    });
+}
+
+study::TrialDone PythonPresenter::show(study::TrialRequest const& trial)
+{
+    return call<study::TrialDone>(
+        [&] { return from_dict<study::TrialDone>(steps_.attr("show")(to_dict(trial))); });
+}
+
+study::Wish PythonPresenter::wish()
+{
+    return call<study::Wish>([&] {
+        static std::map<std::string, study::Wish> const kWishes{{"go_on", study::Wish::go_on},
+                                                                {"pause", study::Wish::pause},
+                                                                {"skip", study::Wish::skip},
+                                                                {"abort", study::Wish::abort}};
+        auto const word = py::cast<std::string>(steps_.attr("wish")());
+        auto const found = kWishes.find(word);
+        if (found == kWishes.end())
+            throw gi::InputError("a presenter wishes for '" + word + "'", "there is no such wish",
+                                 "choose go_on, pause, skip or abort");
+        return found->second;
+    });
+}
+
+std::vector<study::NoteTaken> PythonPresenter::notes()
+{
+    return call<std::vector<study::NoteTaken>>([&] {
+        std::vector<study::NoteTaken> notes;
+        for (py::handle const note : py::object(steps_.attr("notes")()))
+            notes.push_back(from_dict<study::NoteTaken>(note));
+        return notes;
+    });
+}
+
+} // namespace bindings

@@ -1,0 +1,20 @@
+#pragma once
+#include "gi/image/denoise.h"
+#include "gi/image/render_settings.h"
+
+#include <pybind11/pybind11.h>
+
+namespace bindings {
+
+namespace py = pybind11;
+
+/// What World.render was told, judged by the rules of `lightwell render`. Throws InputError.
+/// @param k  width, height, paths, budget_s, until_relmse, bounces, seed, threads, filter: all of them; paths,
+/// budget_s and until_relmse may be None
+/// @param options  of the method, by the names of the command line's options, with _ for -: axes, light_paths, ...
+gi::RenderSettings settings_of(py::dict const& k, py::dict const& options, std::string const& method);
+
+/// "none", "atrous", "discontinuity" or "wide". Throws InputError.
+gi::DenoiseSettings denoise_of(std::string const& name, gi::RenderSettings const& settings);
+
+} // namespace bindings

@@ -1,0 +1,44 @@
+"""Lightwell from Python: globally lit pictures as numpy arrays, live frames for stimuli, and experiments.
+
+>>> import lightwell
+>>> world = lightwell.load("cornell")
+>>> picture = world.render("slhb", size=(64, 64), paths=16)
+>>> picture.color.shape, picture.color.dtype
+((64, 64, 3), dtype('float32'))
+
+Frames are right-handed, +Y up, in metres; pictures are linear Rec. 709 radiance, W/(m2 sr), rows from the top.
+What is wrong raises `InputError`, whose message says what, why, and what to do instead.
+"""
+
+from . import study
+from ._core import Camera, git_hash, version
+from .errors import InputError, ScriptError
+from .frames import Frame, FrameRenderer, View
+from .pictures import compare, flip_map, metrics, read_picture, tone_map, write_exr, write_png
+from .scenes import Light, Rendered, World, load, methods
+
+__version__ = version
+
+__all__ = [
+    "Camera",
+    "Frame",
+    "FrameRenderer",
+    "InputError",
+    "Light",
+    "Rendered",
+    "ScriptError",
+    "View",
+    "World",
+    "compare",
+    "flip_map",
+    "git_hash",
+    "load",
+    "methods",
+    "metrics",
+    "read_picture",
+    "study",
+    "tone_map",
+    "version",
+    "write_exr",
+    "write_png",
+]

@@ -1,0 +1,29 @@
+"""Installs the package into an empty folder, without any network, and runs its tests there: what CTest calls.
+
+Exit code 77: skipped, as the tools are not there (scripts/setup --tests)."""
+
+import importlib.util
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[1]
+
+
+def main() -> int:
+    missing = [name for name in ("pip", "numpy", "pandas", "pytest") if importlib.util.find_spec(name) is None]
+    if missing:
+        print(f"SKIPPED: {sys.executable} has no {', '.join(missing)}: run scripts/setup --tests")
+        return 77
+    with tempfile.TemporaryDirectory(prefix="lightwell-python-") as folder:
+        pip = [sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check"]
+        subprocess.run([*pip, "--no-index", "--no-deps", "--target", folder, str(PACKAGE)], check=True)
+        environment = {**os.environ, "PYTHONPATH": folder, "PYTHONDONTWRITEBYTECODE": "1"}
+        pytest = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", str(PACKAGE)]
+        return subprocess.run([*pytest, *sys.argv[1:], str(PACKAGE / "tests")], env=environment).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())

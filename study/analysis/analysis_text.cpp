@@ -1,0 +1,140 @@
+#include "study/analysis/result_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace study {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::optional<double> number(std::string const& cell)
+{
+    if (cell.empty() || cell.find_first_not_of("0123456789+-.e") != std::string::npos) return {};
+    if (cell.size() > 1 && cell[0] == '0' && cell[1] != '.') return {}; // a name: participant 007
+    char* end = nullptr;
+    double const v = std::strtod(cell.c_str(), &end);
+    return end == cell.c_str() + cell.size() ? std::optional(v) : std::nullopt;
+}
+
+/// Characters, not bytes.
+std::size_t width(std::string const& text)
+{
+    return std::size_t(std::count_if(text.begin(), text.end(),
+                                     [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+Json json_of(std::string const& text)
+{
+    if (text == kNothing) return nullptr;
+    if (text == "true" || text == "false") return text == "true";
+    if (auto const v = number(text)) return *v;
+    return text;
+}
+
+bool is_number_column(Table const& t, std::size_t c)
+{
+    return std::all_of(t.rows.begin(), t.rows.end(),
+                       [&](auto const& row) { return row[c] == kNothing || number(row[c]); });
+}
+
+} // namespace
+
+std::string shown_cell(Column const& column, std::string const& text)
+{
+    if (text == kNothing) return "–";
+    auto const v = number(text);
+    if (!v) return text;
+    bool const is_p = column.name == "p" || column.name.starts_with("p_");
+    if (is_p) return *v < 0.001 ? "<0.001" : fmt::format("{:.3f}", *v);
+    if (*v == std::floor(*v) && std::abs(*v) < 1e7) return fmt::format("{:.0f}", *v);
+    if (std::abs(*v) >= 1000 && std::abs(*v) < 1e7) return fmt::format("{:.0f}", *v);
+    return std::abs(*v) >= 0.001 && std::abs(*v) < 100 ? fmt::format("{:.3f}", *v) : fmt::format("{:.4g}", *v);
+}
+
+std::string to_text(Analysis const& a)
+{
+    std::string out = fmt::format("{}: {} participants of {} planned, {} sessions, {} complete\n", a.experiment,
+                                  a.participants, a.planned, a.sessions, a.complete);
+    for (std::string const& c : a.cautions) out += "caution: " + c + "\n";
+    std::string left_out;
+    for (ResultTable const& r : result_tables(a)) {
+        if (r.is_long) {
+            left_out += fmt::format("{}{} ({})", left_out.empty() ? "" : ", ", r.name, r.table.rows.size());
+            continue;
+        }
+        out += "\n" + r.title + "\n";
+        if (!r.note.empty()) out += "  " + r.note + "\n";
+        std::vector<std::size_t> widths;
+        for (std::size_t c = 0; c < r.table.columns.size(); ++c) {
+            widths.push_back(width(r.table.columns[c].name));
+            for (auto const& row : r.table.rows)
+                widths[c] = std::max(widths[c], width(shown_cell(r.table.columns[c], row[c])));
+        }
+        auto const line = [&](auto const& text_of) {
+            std::string l = " ";
+            for (std::size_t c = 0; c < widths.size(); ++c) {
+                std::string const text = text_of(c);
+                std::string const space(widths[c] - width(text), ' ');
+                l += " " + (is_number_column(r.table, c) ? space + text : text + space);
+            }
+            out += l.substr(0, l.find_last_not_of(' ') + 1) + "\n";
+        };
+        line([&](std::size_t c) { return r.table.columns[c].name; });
+        for (auto const& row : r.table.rows)
+            line([&](std::size_t c) { return shown_cell(r.table.columns[c], row[c]); });
+    }
+    if (!left_out.empty()) out += "\nrows only in --json and --out: " + left_out + "\n";
+    return out;
+}
+
+std::string to_json(Analysis const& a)
+{
+    Json j{{"experiment", a.experiment},
+           {"title", a.title},
+           {"participants", a.participants},
+           {"participants_planned", a.planned},
+           {"sessions", a.sessions},
+           {"sessions_complete", a.complete},
+           {"sessions_simulated", a.simulated},
+           {"settings",
+            {{"excluded", a.settings.exclude},
+             {"replicates", a.settings.replicates},
+             {"confidence", a.settings.confidence},
+             {"seed", a.settings.seed}}},
+           {"cautions", a.cautions}};
+    for (ResultTable const& r : result_tables(a)) {
+        Json rows = Json::array();
+        for (auto const& row : r.table.rows) {
+            Json object = Json::object();
+            for (std::size_t c = 0; c < row.size(); ++c) object[r.table.columns[c].name] = json_of(row[c]);
+            rows.push_back(std::move(object));
+        }
+        j["tables"][r.name] = std::move(rows);
+        for (Column const& c : r.table.columns) j["columns"][r.name][c.name] = c.description;
+    }
+    for (BlockResult const& b : a.blocks) {
+        Json block = Json::object();
+        for (ScaleResult const& s : b.scales)
+            if (!s.wins.empty()) {
+                Json names = Json::array();
+                for (ScaledItem const& i : s.items) names.push_back(i.name);
+                block["wins"][s.group] = {{"items", names}, {"row_over_column", s.wins}};
+            }
+        for (ThresholdRun const& r : b.runs)
+            block["tracks"].push_back({{"participant", r.participant},
+                                       {"procedure", r.procedure},
+                                       {"cell", r.cell},
+                                       {"run", r.run},
+                                       {"levels", r.levels},
+                                       {"correct", r.correct},
+                                       {"reversals", r.reversals}});
+        if (!block.empty()) j["blocks"][b.name] = std::move(block);
+    }
+    return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace study

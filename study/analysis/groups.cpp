@@ -1,0 +1,182 @@
+#include "study/analysis/groups.h"
+
+#include "study/stats/special.h"
+#include "study/stats/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numeric>
+#include <set>
+
+namespace study {
+
+std::vector<Group> groups_of(Script const& script, std::vector<ObserverTrials> const& observers, int block,
+                             std::vector<int> const& items_of)
+{
+    std::vector<Group> groups{{"all", -1, -1}};
+    for (std::size_t f = 0; f < script.factors.size(); ++f) {
+        if (std::find(items_of.begin(), items_of.end(), int(f)) != items_of.end()) continue;
+        std::set<int> levels;
+        for (ObserverTrials const& o : observers)
+            for (TrialRow const& row : o.rows)
+                if (row.step->block == block && row.standing == Standing::counted)
+                    levels.insert(shared_level(*row.block, row.step->trial, int(f)));
+        if (levels.size() < 2) continue;
+        for (int const level : levels)
+            groups.push_back(
+                {script.factors[f].name + "=" + script.factors[f].levels[std::size_t(level)].name, int(f), level});
+    }
+    return groups;
+}
+
+std::string cell_name(Script const& script, std::vector<Group> const& groups, TrialRow const& row)
+{
+    std::string name;
+    int last = -1;
+    for (Group const& g : groups) {
+        if (g.factor < 0 || g.factor == last) continue;
+        last = g.factor;
+        int const level = shared_level(*row.block, row.step->trial, g.factor);
+        Factor const& f = script.factors[std::size_t(g.factor)];
+        name += (name.empty() ? "" : " ") + f.name + "=" + f.levels[std::size_t(level)].name;
+    }
+    return name.empty() ? "all" : name;
+}
+
+std::vector<ObserverTrials> counted(std::vector<ObserverTrials> const& observers, int block, Group const& group)
+{
+    std::vector<ObserverTrials> out;
+    for (ObserverTrials const& o : observers) {
+        out.push_back({o.participant, {}});
+        for (TrialRow const& row : o.rows)
+            if (row.step->block == block && row.standing == Standing::counted && group.has(row))
+                out.back().rows.push_back(row);
+    }
+    return out;
+}
+
+std::vector<int> rated_factors(Script const& script, Block const& block)
+{
+    std::vector<int> factors;
+    for (LevelChoice const& c : script.reference)
+        if (std::find(block.cross.begin(), block.cross.end(), c.factor) != block.cross.end())
+            factors.push_back(c.factor);
+    if (factors.empty() && !block.cross.empty()) factors.push_back(block.cross.back());
+    return factors;
+}
+
+std::vector<Uncertain> render_times(std::vector<ObserverTrials> const& observers, int items, double confidence,
+                                    std::function<int(TrialRow const&, Stimulus const&)> const& item)
+{
+    std::vector<std::vector<double>> means(std::size_t(items), std::vector<double>{});
+    for (ObserverTrials const& o : observers) {
+        std::vector<double> sum(std::size_t(items), 0), frames(std::size_t(items), 0);
+        for (TrialRow const& row : o.rows)
+            for (StimulusShown const& s : row.done->shown) {
+                Stimulus const* const stimulus = stimulus_of(row.step->trial, s.letter);
+                int const i = stimulus ? item(row, *stimulus) : -1;
+                if (i < 0 || !(s.render_ms_mean > 0)) continue;
+                double const weight = std::max(1, s.frames_shown);
+                sum[std::size_t(i)] += weight * s.render_ms_mean;
+                frames[std::size_t(i)] += weight;
+            }
+        for (std::size_t i = 0; i < means.size(); ++i)
+            if (frames[i] > 0) means[i].push_back(sum[i] / frames[i]);
+    }
+    std::vector<Uncertain> out;
+    for (auto const& m : means) out.push_back(mean_of(m, confidence));
+    return out;
+}
+
+Uncertain mean_of(std::vector<double> const& values, double confidence)
+{
+    std::vector<double> known;
+    std::copy_if(values.begin(), values.end(), std::back_inserter(known),
+                 [](double v) { return std::isfinite(v); });
+    Uncertain u;
+    u.n = int(known.size());
+    if (known.empty()) return u;
+    u.value = mean(known);
+    if (known.size() < 2) return u;
+    double const half = student_quantile((1 + confidence) / 2, double(known.size() - 1)) *
+                        standard_deviation(known) / std::sqrt(double(known.size()));
+    u.interval = {u.value - half, u.value + half};
+    return u;
+}
+
+double mean_p(std::vector<double> const& values)
+{
+    std::vector<double> known;
+    std::copy_if(values.begin(), values.end(), std::back_inserter(known),
+                 [](double v) { return std::isfinite(v); });
+    if (known.size() < 2) return kUnknown;
+    double const m = mean(known), error = standard_deviation(known) / std::sqrt(double(known.size()));
+    if (!(error > 0)) return m == 0 ? 1 : 0;
+    return 2 * student_cdf(-std::abs(m / error), double(known.size() - 1));
+}
+
+std::vector<double> holm(std::vector<double> const& p)
+{
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < p.size(); ++i)
+        if (!std::isnan(p[i])) order.push_back(i);
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
+    std::vector<double> out(p.size(), kUnknown);
+    double most = 0;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        most = std::max(most, std::min(1.0, double(order.size() - k) * p[order[k]]));
+        out[order[k]] = most;
+    }
+    return out;
+}
+
+void judge_differences(ScaleResult& scale, int reference, double level)
+{
+    std::vector<double> p;
+    for (ItemDifference const& d : scale.differences) p.push_back(d.p);
+    std::vector<double> const adjusted = holm(p);
+    for (std::size_t i = 0; i < adjusted.size(); ++i) scale.differences[i].p_holm = adjusted[i];
+
+    Cheapest best;
+    best.is_reference = reference >= 0;
+    best.against = reference;
+    for (std::size_t i = 0; i < scale.items.size() && reference < 0; ++i)
+        if (best.against < 0 || scale.items[i].score.value > scale.items[std::size_t(best.against)].score.value)
+            best.against = int(i);
+    if (best.against < 0) return;
+    for (std::size_t i = 0; i < scale.items.size(); ++i) {
+        double const cost = scale.items[i].render_ms.value;
+        if (!(cost > 0)) continue;
+        bool const is_cheaper = best.item < 0 || cost < scale.items[std::size_t(best.item)].render_ms.value;
+        if (!is_cheaper) continue;
+        if (int(i) == best.against) {
+            best.item = int(i);
+            best.difference = {0, {0, 0}, scale.observers};
+            best.p_holm = 1;
+            continue;
+        }
+        for (ItemDifference const& d : scale.differences) {
+            bool const straight = d.a == int(i) && d.b == best.against,
+                       turned = d.b == int(i) && d.a == best.against;
+            // Better than the best there is to compare with is as good as not to be told from it.
+            double const value = turned ? -d.value.value : d.value.value;
+            if ((!straight && !turned) || std::isnan(d.p_holm) || (d.p_holm < level && value < 0)) continue;
+            best.item = int(i);
+            best.difference =
+                turned ? Uncertain{-d.value.value, {-d.value.interval.high, -d.value.interval.low}, d.value.n}
+                       : d.value;
+            best.p_holm = d.p_holm;
+        }
+    }
+    if (best.item >= 0) scale.cheapest = best;
+}
+
+void add_fact(ScaleResult& scale, std::string_view name, double value)
+{
+    scale.facts.push_back({std::string(name), value});
+}
+
+void add_note(ScaleResult& scale, std::string_view text) { scale.notes.emplace_back(text); }
+
+} // namespace study

@@ -1,0 +1,297 @@
+#include "study/analysis/blocks.h"
+#include "study/stats/bootstrap.h"
+#include "study/stats/outliers.h"
+#include "study/stats/special.h"
+#include "study/stats/triads.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace study {
+namespace {
+
+/// The levels that a block pairs, as items.
+std::vector<int> paired_levels(Block const& block)
+{
+    std::vector<int> levels;
+    for (auto const& [a, b] : block.pairs->pairs) levels.insert(levels.end(), {a, b});
+    std::sort(levels.begin(), levels.end());
+    levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+    return levels;
+}
+
+struct Judgement {
+    int first = -1, second = -1; ///< items
+    double first_wins = 0;       ///< 1, 0, or 1/2 of ties
+    bool is_tie = false;
+};
+
+class Items {
+public:
+    explicit Items(Block const& block) : factor_(block.pairs->factor), levels_(paired_levels(block)) {}
+
+    int count() const { return int(levels_.size()); }
+    int level(int item) const { return levels_[std::size_t(item)]; }
+    int of(Stimulus const& s) const
+    {
+        auto const it = std::find(levels_.begin(), levels_.end(), s.levels[std::size_t(factor_)]);
+        return it == levels_.end() ? -1 : int(it - levels_.begin());
+    }
+    std::optional<Judgement> choice(TrialRow const& row) const
+    {
+        std::string order = row.step->trial.order;
+        std::erase(order, 'r');
+        if (order.size() != 2) return std::nullopt;
+        auto const* first = stimulus_of(row.step->trial, order[0]);
+        auto const* second = stimulus_of(row.step->trial, order[1]);
+        std::string const& answer = row.done->response;
+        bool const is_tie = answer == "neither";
+        if (first == nullptr || second == nullptr || (!is_tie && answer != "first" && answer != "second"))
+            return std::nullopt;
+        return Judgement{of(*first), of(*second), is_tie ? 0.5 : answer == "first" ? 1.0 : 0.0, is_tie};
+    }
+
+private:
+    int factor_;
+    std::vector<int> levels_;
+};
+
+std::vector<PairCount> counts_of(Items const& items, std::vector<TrialRow> const& rows)
+{
+    std::vector<PairCount> counts;
+    for (TrialRow const& row : rows)
+        if (auto const c = items.choice(row))
+            counts.push_back({c->first, c->second, c->is_tie ? 0 : c->first_wins,
+                              c->is_tie ? 0 : 1 - c->first_wins, c->is_tie ? 1.0 : 0.0});
+    return pool({counts});
+}
+
+void add_fit(ScaleResult& r, std::string const& name, PairScale const& fit)
+{
+    add_fact(r, name + " deviance", fit.deviance);
+    add_fact(r, name + " deviance df", double(fit.degrees_of_freedom));
+    add_fact(r, name + " deviance p", fit.fit_p);
+    if (!fit.note.empty()) add_note(r, name + ": " + fit.note);
+}
+
+/// The preference for what is first, by the likelihood ratio against a fit without it.
+void add_order_effect(ScaleResult& r, std::vector<PairCount> const& pairs, int items, PairScale const& without)
+{
+    PairSettings s;
+    s.order = OrderEffect::fitted;
+    PairScale const with = fit_pairs(pairs, items, s);
+    PairScale const plain = fit_pairs(pairs, items); // on ordered pairs, so that the deviances can be compared
+    double const drop = std::max(0.0, plain.deviance - with.deviance);
+    double moved = 0;
+    for (std::size_t i = 0; i < with.score.size(); ++i)
+        moved = std::max(moved, std::abs(with.score[i] - without.score[i]) * jod_per_unit(without.model));
+    add_fact(r, "order effect JOD", with.order->value * jod_per_unit(with.model));
+    add_fact(r, "order effect SE JOD", with.order->standard_error * jod_per_unit(with.model));
+    add_fact(r, "order effect p", chi_square_tail(drop, 1));
+    add_fact(r, "largest change of a score by it JOD", moved);
+}
+
+/// Scores of the bootstrap's replicates as errors of differences: observers, not trials, were drawn.
+void add_differences(ScaleResult& r, PairScale const& fit, std::optional<Bootstrap> const& boot, double confidence)
+{
+    double const jod = jod_per_unit(fit.model);
+    for (int a = 0; a < int(r.items.size()); ++a)
+        for (int b = a + 1; b < int(r.items.size()); ++b) {
+            Difference const wald = difference(fit, a, b);
+            ItemDifference d{a, b, {wald.value * jod, {kUnknown, kUnknown}, r.observers}};
+            double error = wald.standard_error * jod;
+            if (boot) {
+                double sum = 0, squares = 0;
+                for (auto const& replicate : boot->replicates) {
+                    double const v = replicate[std::size_t(a)] - replicate[std::size_t(b)];
+                    sum += v;
+                    squares += v * v;
+                }
+                double const n = double(boot->replicates.size()), m = sum / n;
+                // Widened as the percentiles of stats are: a bootstrap of n observers is too narrow by (n-1)/n.
+                error = std::sqrt(std::max(0.0, squares / n - m * m) * r.observers / std::max(1, r.observers - 1));
+            }
+            double const df = boot ? double(r.observers - 1) : 1e6;
+            double const half = error * student_quantile((1 + confidence) / 2, df);
+            d.value.interval = {d.value.value - half, d.value.value + half};
+            d.p = error > 0 ? 2 * student_cdf(-std::abs(d.value.value) / error, df) : kUnknown;
+            r.differences.push_back(d);
+        }
+}
+
+ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> const& trials, Items const& items,
+                           int factor, Group const& group, AnalysisSettings const& settings)
+{
+    ScaleResult r;
+    r.group = group.name;
+    r.unit = "JOD";
+    std::vector<std::vector<PairCount>> observers;
+    for (ObserverTrials const& o : trials)
+        if (auto counts = counts_of(items, o.rows); !counts.empty()) observers.push_back(std::move(counts));
+    r.observers = int(observers.size());
+    std::vector<PairCount> const pooled = pool(observers);
+    Matrix const wins = wins_of(pooled, items.count());
+    auto const render = render_times(trials, items.count(), settings.confidence,
+                                     [&](TrialRow const&, Stimulus const& s) { return items.of(s); });
+    for (int i = 0; i < items.count(); ++i) {
+        ScaledItem item;
+        item.name = script.factors[std::size_t(factor)].levels[std::size_t(items.level(i))].name;
+        item.render_ms = render[std::size_t(i)];
+        r.items.push_back(std::move(item));
+        r.wins.emplace_back();
+        for (int j = 0; j < items.count(); ++j) r.wins.back().push_back(wins(std::size_t(i), std::size_t(j)));
+    }
+    for (double const w : wins.values) r.observations += int(std::lround(2 * w));
+    r.observations /= 2;
+    try {
+        if (pooled.empty()) throw std::invalid_argument("no pair was judged");
+        std::vector<PairCount> const unordered = pairs_of(wins);
+        PairScale const fit = fit_pairs(unordered, items.count());
+        PairSettings logistic;
+        logistic.model = PairModel::bradley_terry;
+        PairScale const other = fit_pairs(unordered, items.count(), logistic);
+        std::optional<Bootstrap> boot;
+        try {
+            BootstrapSettings b;
+            b.replicates = settings.replicates;
+            b.confidence = settings.confidence;
+            b.seed = settings.seed;
+            std::vector<std::vector<PairCount>> sums;
+            for (auto const& o : observers) sums.push_back(pairs_of(wins_of(o, items.count())));
+            boot = bootstrap_pairs(sums, items.count(), {}, b);
+            if (boot->failed > 0)
+                add_note(r, fmt::format("{} of {} replicates of the bootstrap had no scale", boot->failed,
+                                        settings.replicates));
+        } catch (std::invalid_argument const& e) {
+            add_note(r, std::string("intervals are of the fit, as if all trials were of different people: ") +
+                            e.what());
+        }
+        for (std::size_t i = 0; i < r.items.size(); ++i) {
+            double const half = normal_quantile((1 + settings.confidence) / 2) * fit.standard_error[i];
+            double const jod = jod_per_unit(fit.model);
+            r.items[i].score = {fit.score[i] * jod,
+                                boot ? boot->interval[i]
+                                     : Interval{(fit.score[i] - half) * jod, (fit.score[i] + half) * jod},
+                                r.observers};
+            r.facts.push_back(
+                {"Bradley-Terry JOD " + r.items[i].name, other.score[i] * jod_per_unit(other.model)});
+        }
+        add_fit(r, "Thurstone V", fit);
+        add_fit(r, "Bradley-Terry", other);
+        add_order_effect(r, pooled, items.count(), fit);
+        add_differences(r, fit, boot, settings.confidence);
+    } catch (std::invalid_argument const& e) {
+        r.refused = e.what();
+        return r;
+    }
+    int reference = -1;
+    for (LevelChoice const& c : script.reference)
+        for (int i = 0; i < items.count() && c.factor == factor; ++i)
+            if (items.level(i) == c.level) reference = i;
+    judge_differences(r, reference, 1 - settings.confidence);
+    return r;
+}
+
+/// The first judgement of each pair by each observer in one cell: [i][j] = 1 where i was chosen. Nothing where a
+/// pair is missing or tied.
+std::optional<Matrix> complete_choices(Items const& items, std::vector<TrialRow> const& rows)
+{
+    auto const n = std::size_t(items.count());
+    Matrix m(n, n, 0);
+    for (TrialRow const& row : rows) {
+        auto const c = items.choice(row);
+        if (!c || c->is_tie) continue;
+        auto const i = std::size_t(c->first), j = std::size_t(c->second);
+        if (m(i, j) + m(j, i) == 0) (c->first_wins > 0 ? m(i, j) : m(j, i)) = 1;
+    }
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = i + 1; j < n; ++j)
+            if (m(i, j) + m(j, i) != 1) return std::nullopt;
+    return m;
+}
+
+using Cells = std::map<std::string, std::vector<std::vector<TrialRow>>>; ///< by cell and observer
+
+Cells cells_of_observers(Script const& script, std::vector<ObserverTrials> const& trials,
+                         std::vector<Group> const& groups)
+{
+    Cells cells;
+    for (std::size_t o = 0; o < trials.size(); ++o)
+        for (TrialRow const& row : trials[o].rows) {
+            auto& cell = cells[cell_name(script, groups, row)];
+            cell.resize(trials.size());
+            cell[o].push_back(row);
+        }
+    return cells;
+}
+
+void add_consistency(Items const& items, Cells const& cells, BlockResult& result,
+                     std::vector<ObserverSummary>& summaries)
+{
+    auto const n = std::size_t(items.count());
+    for (auto const& [name, rows] : cells) {
+        AgreementResult a;
+        a.cell = name;
+        Matrix sum(n, n, 0);
+        for (std::size_t o = 0; o < rows.size(); ++o) {
+            auto const choices = complete_choices(items, rows[o]);
+            if (!choices) {
+                ++a.left_out;
+                continue;
+            }
+            ++a.observers;
+            for (std::size_t k = 0; k < sum.values.size(); ++k) sum.values[k] += choices->values[k];
+            CircularTriads const t = circular_triads(*choices);
+            ObserverSummary& s = summaries[o];
+            s.triads += t.count;
+            s.most_triads += t.maximum;
+        }
+        try {
+            if (a.observers == 0) throw std::invalid_argument("nobody judged every pair");
+            a.equality = equality_test(sum);
+            a.kendall = kendall_u(sum);
+        } catch (std::invalid_argument const& e) {
+            a.refused = e.what();
+        }
+        result.agreement.push_back(std::move(a));
+    }
+    for (ObserverSummary& s : summaries)
+        if (s.most_triads > 0) s.zeta = 1 - double(s.triads) / s.most_triads;
+}
+
+void add_outliers(Items const& items, Cells const& cells, std::string const& block, std::size_t observers,
+                  std::vector<ObserverSummary>& summaries)
+{
+    std::vector<std::vector<Matrix>> wins;
+    for (auto const& [name, rows] : cells) {
+        wins.emplace_back();
+        for (std::size_t o = 0; o < observers; ++o)
+            wins.back().push_back(wins_of(counts_of(items, rows[o]), items.count()));
+    }
+    try {
+        auto const fits = observer_outliers(wins);
+        for (std::size_t o = 0; o < observers; ++o)
+            if (std::isfinite(fits[o].log_likelihood)) summaries[o].outlier_score[block] = fits[o].outlier_score;
+    } catch (std::invalid_argument const&) { // too few observers, or no scale without one of them: no scores
+    }
+}
+
+} // namespace
+
+void analyze_pairs(Script const& script, std::vector<ObserverTrials> const& observers, int block,
+                   AnalysisSettings const& settings, BlockResult& result, std::vector<ObserverSummary>& summaries)
+{
+    Block const& b = script.blocks[std::size_t(block)];
+    Items const items(b);
+    auto const groups = groups_of(script, observers, block, {b.pairs->factor});
+    for (Group const& g : groups)
+        result.scales.push_back(
+            scale_of_group(script, counted(observers, block, g), items, b.pairs->factor, g, settings));
+    auto const cells = cells_of_observers(script, counted(observers, block), groups);
+    add_consistency(items, cells, result, summaries);
+    // An observer without trials in the last cells has rows of length 0 there.
+    if (!cells.empty()) add_outliers(items, cells, b.name, observers.size(), summaries);
+}
+
+} // namespace study

@@ -1,0 +1,327 @@
+#include "study/analysis/result_details.h"
+
+#include "study/stats/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace study {
+namespace {
+
+void add(std::vector<std::string>& row, Uncertain const& u)
+{
+    row.insert(row.end(), {cell(u.value), cell(u.interval.low), cell(u.interval.high)});
+}
+
+std::vector<Column> with_interval(std::vector<Column> columns, std::vector<Column> const& more = {})
+{
+    columns.push_back({"low", "Lower end of the interval"});
+    columns.push_back({"high", "Upper end"});
+    columns.insert(columns.end(), more.begin(), more.end());
+    return columns;
+}
+
+ResultTable agreement(Analysis const& a)
+{
+    ResultTable t{
+        "agreement",
+        "Agreement of observers",
+        "Kendall's u: 1 where all agree; p of choices by coin. D: test of all items being equally good. The "
+        "first judgement of each pair counts.",
+        false,
+        {}};
+    t.table.columns = {{"block", "Block"},
+                       {"cell", "Condition"},
+                       {"observers", "Who judged every pair"},
+                       {"left_out", "Who did not"},
+                       {"u", "Kendall's coefficient of agreement"},
+                       {"u_least", "Least it can be"},
+                       {"chi_square", "Its chi-square, corrected"},
+                       {"df", "Degrees of freedom"},
+                       {"p_u", "Probability of that u or more by coin"},
+                       {"D", "Equality test"},
+                       {"D_df", "Degrees of freedom"},
+                       {"p_D", "Probability of that D or more"}};
+    for (BlockResult const& b : a.blocks)
+        for (AgreementResult const& g : b.agreement) {
+            std::vector<std::string> row{cell(b.name), cell(g.cell), cell(g.observers), cell(g.left_out)};
+            if (g.kendall)
+                row.insert(row.end(),
+                           {cell(g.kendall->u), cell(g.kendall->minimum), cell(g.kendall->chi_square_corrected),
+                            cell(g.kendall->degrees_of_freedom), cell(g.kendall->p_corrected)});
+            else
+                row.insert(row.end(), 5, cell(""));
+            if (g.equality)
+                row.insert(row.end(),
+                           {cell(g.equality->d), cell(g.equality->degrees_of_freedom), cell(g.equality->p)});
+            else
+                row.insert(row.end(), 3, cell(""));
+            t.table.rows.push_back(std::move(row));
+        }
+    return t;
+}
+
+ResultTable thresholds(Analysis const& a)
+{
+    ResultTable t{
+        "thresholds",
+        "Thresholds",
+        "Means over observers on the scale of the levels, Student's interval. Methods stand for different "
+        "shares of right answers: compare those of one share. Estimates outside of the range shown are left "
+        "out.",
+        false,
+        {}};
+    t.table.columns = with_interval({{"block", "Block"},
+                                     {"cell", "Condition"},
+                                     {"procedure", "Procedure"},
+                                     {"method", "How it was estimated"},
+                                     {"share", "Share of right answers at the threshold"},
+                                     {"level", "Threshold"}},
+                                    {{"observers", "Observers with an estimate"}});
+    for (BlockResult const& b : a.blocks)
+        for (ThresholdSummary const& s : b.thresholds) {
+            std::vector<std::string> row{cell(b.name), cell(s.cell), cell(s.procedure), cell(s.method),
+                                         cell(s.proportion)};
+            add(row, s.level);
+            row.push_back(cell(s.level.n));
+            t.table.rows.push_back(std::move(row));
+        }
+    return t;
+}
+
+ResultTable runs(Analysis const& a)
+{
+    ResultTable t{"runs", "Thresholds of single runs", "Intervals of one run, by its own trials.", true, {}};
+    t.table.columns = with_interval({{"block", "Block"},
+                                     {"participant", "Participant"},
+                                     {"cell", "Condition"},
+                                     {"procedure", "Procedure"},
+                                     {"run", "Run, from 1"},
+                                     {"trials", "Trials"},
+                                     {"reversals", "Reversals of a staircase"},
+                                     {"method", "How it was estimated"},
+                                     {"share", "Share of right answers at the threshold"},
+                                     {"level", "Threshold"}},
+                                    {{"remark", "What to think of it"}});
+    for (BlockResult const& b : a.blocks)
+        for (ThresholdRun const& r : b.runs)
+            for (ThresholdEstimate const& e : r.estimates) {
+                std::vector<std::string> row{cell(b.name),
+                                             cell(r.participant),
+                                             cell(r.cell),
+                                             cell(r.procedure),
+                                             cell(r.run),
+                                             cell(int(r.levels.size())),
+                                             cell(int(r.reversals.size())),
+                                             cell(e.method),
+                                             cell(e.proportion)};
+                add(row, e.level);
+                row.push_back(cell(e.note));
+                t.table.rows.push_back(std::move(row));
+            }
+    return t;
+}
+
+ResultTable curves(Analysis const& a)
+{
+    ResultTable t{
+        "curves",
+        "Psychometric functions of all observers together",
+        "Maximum likelihood with a lapse rate of at most 6 %; interval of the threshold by a bootstrap over "
+        "observers. Scale: in decades where levels are logarithmic.",
+        false,
+        {}};
+    t.table.columns =
+        with_interval({{"block", "Block"},
+                       {"cell", "Condition"},
+                       {"observers", "Observers"},
+                       {"trials", "Trials"},
+                       {"share", "Share of right answers at the threshold"},
+                       {"threshold", "Level"}},
+                      {{"scale", "Spread of the function"},
+                       {"lapse", "Lapse rate"},
+                       {"deviance", "Deviance"},
+                       {"df", "Degrees of freedom"},
+                       {"p_fit", "Probability of that deviance or more; rough with few trials a level"}});
+    for (BlockResult const& b : a.blocks)
+        for (CurveResult const& c : b.curves) {
+            double trials = 0;
+            for (LevelCount const& l : c.counts) trials += l.trials;
+            std::vector<std::string> row{cell(b.name), cell(c.cell), cell(c.observers), cell(trials),
+                                         cell(c.proportion)};
+            add(row, c.threshold);
+            bool const is_fitted = !c.counts.empty();
+            auto const fitted = [&](double v) { return is_fitted ? cell(v) : cell(""); };
+            row.insert(row.end(), {fitted(c.fit.parameters.scale), fitted(c.fit.parameters.lapse),
+                                   fitted(c.fit.deviance), fitted(c.fit.degrees_of_freedom), fitted(c.fit.fit_p)});
+            t.table.rows.push_back(std::move(row));
+        }
+    return t;
+}
+
+ResultTable detection(Analysis const& a)
+{
+    ResultTable t{"detection",
+                  "Right answers and d'",
+                  "Shares with Wilson's interval of all trials; d' with the log-linear correction: of all trials "
+                  "together, and the mean over observers with Student's interval.",
+                  false,
+                  {}};
+    t.table.columns = {{"block", "Block"},
+                       {"condition", "Condition"},
+                       {"observers", "Observers"},
+                       {"right", "Right answers"},
+                       {"trials", "Trials"},
+                       {"share", "Share of right answers"},
+                       {"share_low", "Lower end"},
+                       {"share_high", "Upper end"},
+                       {"dprime_all", "d' of all trials together"},
+                       {"dprime", "d', mean over observers"},
+                       {"low", "Lower end"},
+                       {"high", "Upper end"},
+                       {"model", "Model of d'"}};
+    for (BlockResult const& b : a.blocks)
+        for (DetectionResult const& d : b.detections) {
+            std::vector<std::string> row{cell(b.name),         cell(d.condition),     cell(d.observers),
+                                         cell(d.correct),      cell(d.trials),        cell(d.correct / d.trials),
+                                         cell(d.interval.low), cell(d.interval.high), cell(d.dprime)};
+            add(row, d.observer_dprime);
+            row.push_back(cell(d.model));
+            t.table.rows.push_back(std::move(row));
+        }
+    return t;
+}
+
+ResultTable questionnaires(Analysis const& a)
+{
+    ResultTable t{"questionnaires", "Questionnaires", "Mean over answers, Student's interval.", false, {}};
+    t.table.columns = with_interval({{"questionnaire", "Questionnaire"},
+                                     {"score", "Score"},
+                                     {"when", "How often it had come, or the condition in which it came"},
+                                     {"n", "Answers"},
+                                     {"mean", "Mean"}},
+                                    {{"sd", "Standard deviation"}});
+    for (QuestionnaireResult const& q : a.questionnaires) {
+        std::vector<std::string> row{cell(q.questionnaire), cell(q.score), cell(q.when), cell(q.mean.n)};
+        add(row, q.mean);
+        row.push_back(cell(q.deviation));
+        t.table.rows.push_back(std::move(row));
+    }
+    return t;
+}
+
+ResultTable changes(Analysis const& a)
+{
+    ResultTable t{"changes",
+                  "Changes of questionnaires since their first time",
+                  "Paired by participant; p by Student's test, not corrected for the number of tests.",
+                  false,
+                  {}};
+    t.table.columns = with_interval({{"questionnaire", "Questionnaire"},
+                                     {"score", "Score"},
+                                     {"from", "Time"},
+                                     {"to", "Time"},
+                                     {"n", "Participants who answered both"},
+                                     {"change", "Mean change"}},
+                                    {{"p", "Probability of such a change by chance"}});
+    for (QuestionnaireChange const& q : a.changes) {
+        std::vector<std::string> row{cell(q.questionnaire), cell(q.score), cell(q.from), cell(q.to),
+                                     cell(q.change.n)};
+        add(row, q.change);
+        row.push_back(cell(q.p));
+        t.table.rows.push_back(std::move(row));
+    }
+    return t;
+}
+
+ResultTable timing(Analysis const& a)
+{
+    ResultTable t{"timing", "Timing", "Of all trials that were carried through, also invalid ones.", false, {}};
+    t.table.columns = {{"number", "Which"}, {"value", "Value"}};
+    TimingResult const& r = a.timing;
+    auto const row = [&](std::string const& name, double value) { t.table.rows.push_back({name, cell(value)}); };
+    if (r.stimuli == 0) return t;
+    std::vector<double> periods, deviations;
+    int passed = 0;
+    for (CalibrationResult const& c : r.calibrations) {
+        periods.push_back(c.done.period_mean_ms);
+        deviations.push_back(c.done.period_sd_ms);
+        passed += c.done.passed;
+    }
+    if (!r.calibrations.empty()) {
+        row("tests of the display", double(r.calibrations.size()));
+        row("tests of the display that it passed", passed);
+        row("period of the display, median ms", quantile(periods, 0.5));
+        row("standard deviation of the period, largest ms", quantile(deviations, 1));
+    }
+    for (auto const& [method, n] : r.onset_methods) row("stimuli timed by " + (method.empty() ? "?" : method), n);
+    row("onset uncertainty, median ms", quantile(r.uncertainty_ms, 0.5));
+    row("onset uncertainty, most ms", quantile(r.uncertainty_ms, 1));
+    row("frames planned", double(r.frames_planned));
+    row("frames shown", double(r.frames_shown));
+    row("frames dropped", double(r.frames_dropped));
+    row("stimuli with dropped frames", r.stimuli_with_drops);
+    row("stimuli", r.stimuli);
+    row("time to render a frame, median of stimuli ms", quantile(r.frame_ms, 0.5));
+    row("time to render a frame, 99 % of stimuli ms", quantile(r.frame_ms, 0.99));
+    row("bookkeeping between trials, 99 % ms", quantile(r.bookkeeping_ms, 0.99));
+    return t;
+}
+
+ResultTable calibrations(Analysis const& a)
+{
+    ResultTable t{"calibrations", "Tests of the display", "", false, {}};
+    t.table.columns = {{"participant", "Participant"},
+                       {"part", "Part of the session"},
+                       {"frames", "Frames timed"},
+                       {"nominal_hz", "Refresh rate that the display names", "Hz"},
+                       {"period_ms", "Mean period", "ms"},
+                       {"sd_ms", "Standard deviation of the period", "ms"},
+                       {"passed", "Whether it passed"},
+                       {"method", "How onsets are timed"},
+                       {"reason", "Why not"}};
+    for (CalibrationResult const& c : a.timing.calibrations)
+        t.table.rows.push_back({cell(c.participant), cell(c.part), cell(c.done.frames),
+                                c.done.nominal_hz > 0 ? cell(c.done.nominal_hz) : cell(""),
+                                cell(c.done.period_mean_ms), cell(c.done.period_sd_ms), cell(c.done.passed),
+                                cell(c.done.onset_method), cell(c.done.reason)});
+    t.is_long = t.table.rows.size() > 12;
+    return t;
+}
+
+ResultTable reactions(Analysis const& a)
+{
+    ResultTable t{"reactions", "Reaction times, ms", "Quantiles of the trials that count.", false, {}};
+    t.table.columns = {{"block", "Block"},    {"trials", "Trials"},     {"q05", "5 %", "ms"},
+                       {"q25", "25 %", "ms"}, {"median", "50 %", "ms"}, {"q75", "75 %", "ms"},
+                       {"q95", "95 %", "ms"}};
+    for (ReactionResult const& r : a.timing.reactions) {
+        std::vector<std::string> row{cell(r.block), cell(int(r.ms.size()))};
+        for (double const p : {0.05, 0.25, 0.5, 0.75, 0.95}) row.push_back(cell(quantile(r.ms, p)));
+        t.table.rows.push_back(std::move(row));
+    }
+    return t;
+}
+
+ResultTable transitions(Analysis const& a)
+{
+    ResultTable t{"transitions", "Order: how often a trial differs from the one before", "", false, {}};
+    t.table.columns = {{"block", "Block"},
+                       {"of", "Of what"},
+                       {"switched", "Share of neighbours that differ"},
+                       {"by_chance", "What it would be on average over all orders of the same trials"}};
+    for (TransitionResult const& r : a.transitions)
+        t.table.rows.push_back({cell(r.block), cell(r.subject), cell(r.switched), cell(r.by_chance)});
+    return t;
+}
+
+} // namespace
+
+std::vector<ResultTable> detail_tables(Analysis const& a)
+{
+    return {agreement(a), thresholds(a), runs(a),         curves(a),    detection(a),  questionnaires(a),
+            changes(a),   timing(a),     calibrations(a), reactions(a), transitions(a)};
+}
+
+} // namespace study

@@ -1,0 +1,228 @@
+#include "study/analysis/result_tables.h"
+
+#include "study/analysis/result_details.h"
+
+#include "study/stats/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace study {
+namespace {
+
+std::string percent(double confidence) { return fmt::format("{:.0f} %", 100 * confidence); }
+
+/// Low and high of an interval as columns.
+void add_interval(std::vector<Column>& columns, std::string const& prefix, double confidence)
+{
+    columns.push_back({prefix + "low", "Lower end of the " + percent(confidence) + " interval"});
+    columns.push_back({prefix + "high", "Upper end"});
+}
+
+void add(std::vector<std::string>& row, Uncertain const& u)
+{
+    row.insert(row.end(), {cell(u.value), cell(u.interval.low), cell(u.interval.high)});
+}
+
+ResultTable exclusions(Analysis const& a)
+{
+    ResultTable t{"exclusions", "Left out, or to be looked at", "", false, {}};
+    t.table.columns = {{"participant", "Participant"},
+                       {"what", "left out, kept, or look at"},
+                       {"why", "Reason"},
+                       {"trials", "Trials concerned"}};
+    for (Exclusion const& e : a.exclusions)
+        t.table.rows.push_back({cell(e.participant), cell(e.what), cell(e.why), cell(e.trials)});
+    return t;
+}
+
+ResultTable observers(Analysis const& a)
+{
+    ResultTable t{
+        "observers",
+        "Observers",
+        "T: circular triads (a over b over c over a) of most that could be; zeta: 1 is consistent. Outlier: "
+        "interquartile ranges below the lower quartile of agreement with all others (pwcmp); near 1.5 and "
+        "above is worth a look. Bias: exact test of first as often as second.",
+        false,
+        {}};
+    t.table.columns = {{"participant", "Participant"},
+                       {"used", "Whether in the analysis"},
+                       {"complete", "Whether all sessions are"},
+                       {"trials", "Trials that count"},
+                       {"invalid", "Invalid trials, not repeated with success"},
+                       {"repeated", "Trials that were repeated later"},
+                       {"unanswered", "Trials without an answer"},
+                       {"catch_right", "Catch trials right"},
+                       {"catches", "Catch trials"},
+                       {"chose_first", "Share of answers first (or left)"},
+                       {"p_bias", "Probability of such a share or a more extreme one without bias"},
+                       {"T", "Circular triads"},
+                       {"T_most", "Most there can be"},
+                       {"zeta", "Consistency"},
+                       {"outlier", "Largest outlier score over blocks"},
+                       {"rt_median_ms", "Median reaction time", "ms"}};
+    for (ObserverSummary const& o : a.observers) {
+        double outlier = kUnknown;
+        for (auto const& [block, score] : o.outlier_score) outlier = std::fmax(outlier, score);
+        bool const has_pairs = o.most_triads > 0;
+        t.table.rows.push_back({cell(o.participant), cell(!o.is_excluded), cell(o.is_complete), cell(o.counted),
+                                cell(o.invalid), cell(o.superseded), cell(o.unanswered),
+                                o.catches > 0 ? cell(o.catches_right) : cell(""), cell(o.catches),
+                                o.choices > 0 ? cell(double(o.chose_first) / o.choices) : cell(""), cell(o.bias_p),
+                                has_pairs ? cell(o.triads) : cell(""), has_pairs ? cell(o.most_triads) : cell(""),
+                                cell(o.zeta), cell(outlier), cell(o.reaction_median_ms)});
+    }
+    return t;
+}
+
+ResultTable scores(Analysis const& a)
+{
+    ResultTable t{
+        "scores",
+        "Scores",
+        "JOD: 1 means that 75 % choose the better one (Thurstone, case V), mean 0, intervals by a bootstrap "
+        "over observers. Ratings: means of observers' means, Student's interval. Render times: of the frames "
+        "shown, interval over observers.",
+        false,
+        {}};
+    t.table.columns = {{"block", "Block"},
+                       {"group", "Trials that share this level"},
+                       {"item", "What is scored"},
+                       {"unit", "Unit of the score"},
+                       {"score", "Score"}};
+    add_interval(t.table.columns, "", a.settings.confidence);
+    t.table.columns.push_back({"observers", "Observers"});
+    t.table.columns.push_back({"render_ms", "Mean time to render a frame", "ms"});
+    add_interval(t.table.columns, "render_", a.settings.confidence);
+    for (BlockResult const& b : a.blocks)
+        for (ScaleResult const& s : b.scales)
+            for (ScaledItem const& i : s.items) {
+                std::vector<std::string> row{cell(b.name), cell(s.group), cell(i.name), cell(s.unit)};
+                add(row, i.score);
+                row.push_back(cell(i.score.n));
+                add(row, i.render_ms);
+                t.table.rows.push_back(std::move(row));
+            }
+    return t;
+}
+
+ResultTable cheapest(Analysis const& a)
+{
+    ResultTable t{
+        "cheapest",
+        "The cheapest that cannot be told from the reference",
+        "Not to be told means: no significant difference, by the p value corrected for all pairs. That is no "
+        "proof that there is none: the interval says how large it may still be. Where the reference was not "
+        "judged, the best of those judged stands in for it.",
+        false,
+        {}};
+    t.table.columns = {{"block", "Block"},
+                       {"group", "Trials that share this level"},
+                       {"item", "Cheapest"},
+                       {"render_ms", "Mean time to render a frame of it", "ms"},
+                       {"against", "What it is compared with"},
+                       {"judged", "Whether that is the reference, or the best of those judged"},
+                       {"against_ms", "Mean time to render a frame of that", "ms"},
+                       {"unit", "Unit of the difference"},
+                       {"difference", "Item minus that"}};
+    add_interval(t.table.columns, "", a.settings.confidence);
+    t.table.columns.push_back({"p_holm", "Probability of such a difference by chance, corrected (Holm)"});
+    for (BlockResult const& b : a.blocks)
+        for (ScaleResult const& s : b.scales)
+            if (s.cheapest) {
+                Cheapest const& c = *s.cheapest;
+                ScaledItem const& item = s.items[std::size_t(c.item)];
+                ScaledItem const& against = s.items[std::size_t(c.against)];
+                std::vector<std::string> row{cell(b.name),
+                                             cell(s.group),
+                                             cell(item.name),
+                                             cell(item.render_ms.value),
+                                             cell(against.name),
+                                             c.is_reference ? "reference" : "best of those judged",
+                                             cell(against.render_ms.value),
+                                             cell(s.unit)};
+                add(row, c.difference);
+                row.push_back(cell(c.p_holm));
+                t.table.rows.push_back(std::move(row));
+            }
+    return t;
+}
+
+ResultTable differences(Analysis const& a)
+{
+    ResultTable t{
+        "differences",
+        "Differences between pairs of items",
+        "p by Student's distribution on errors over observers; p_holm corrected for all pairs of the group.",
+        true,
+        {}};
+    t.table.columns = {{"block", "Block"}, {"group", "Trials that share this level"},
+                       {"a", "Item"},      {"b", "Other item"},
+                       {"unit", "Unit"},   {"difference", "a minus b"}};
+    add_interval(t.table.columns, "", a.settings.confidence);
+    t.table.columns.push_back({"p", "Probability of such a difference by chance"});
+    t.table.columns.push_back({"p_holm", "Corrected (Holm)"});
+    for (BlockResult const& b : a.blocks)
+        for (ScaleResult const& s : b.scales)
+            for (ItemDifference const& d : s.differences) {
+                std::vector<std::string> row{cell(b.name), cell(s.group), cell(s.items[std::size_t(d.a)].name),
+                                             cell(s.items[std::size_t(d.b)].name), cell(s.unit)};
+                add(row, d.value);
+                row.push_back(cell(d.p));
+                row.push_back(cell(d.p_holm));
+                t.table.rows.push_back(std::move(row));
+            }
+    return t;
+}
+
+ResultTable fits(Analysis const& a)
+{
+    ResultTable t{"fits",
+                  "Goodness of fit, order effect, tests over all items",
+                  "A small p of a deviance says that one scale does not explain the choices.",
+                  true,
+                  {}};
+    t.table.columns = {
+        {"block", "Block"}, {"group", "Trials that share this level"}, {"number", "Which"}, {"value", "Value"}};
+    for (BlockResult const& b : a.blocks)
+        for (ScaleResult const& s : b.scales)
+            for (NamedValue const& f : s.facts)
+                t.table.rows.push_back({cell(b.name), cell(s.group), cell(f.name), cell(f.value)});
+    return t;
+}
+
+ResultTable refusals(Analysis const& a)
+{
+    ResultTable t{"remarks", "What could not be computed, or only with help", "", false, {}};
+    t.table.columns = {{"block", "Block"}, {"group", "Trials that share this level"}, {"remark", "Remark"}};
+    auto const say = [&](std::string const& block, std::string const& group, std::string const& text) {
+        if (!text.empty()) t.table.rows.push_back({cell(block), cell(group), cell(text)});
+    };
+    for (BlockResult const& b : a.blocks) {
+        for (ScaleResult const& s : b.scales) {
+            say(b.name, s.group, s.refused);
+            for (std::string const& note : s.notes) say(b.name, s.group, note);
+        }
+        for (AgreementResult const& g : b.agreement) say(b.name, g.cell, g.refused);
+        for (CurveResult const& c : b.curves) {
+            say(b.name, c.cell, c.refused);
+            say(b.name, c.cell, c.fit.note);
+        }
+    }
+    return t;
+}
+
+} // namespace
+
+std::vector<ResultTable> result_tables(Analysis const& a)
+{
+    std::vector<ResultTable> all{exclusions(a), observers(a), scores(a), cheapest(a), differences(a), fits(a)};
+    for (ResultTable& t : detail_tables(a)) all.push_back(std::move(t));
+    all.push_back(refusals(a));
+    std::erase_if(all, [](ResultTable const& t) { return t.table.rows.empty(); });
+    return all;
+}
+
+} // namespace study

@@ -1,0 +1,171 @@
+#include "study/analysis/threshold_run.h"
+
+#include "study/design/procedure_settings.h"
+#include "study/stats/special.h"
+#include "study/stats/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace study {
+namespace {
+
+/// Where the middle of the rise from guessing to 1 is.
+double middle(Task task) { return (1 + guess_rate(task)) / 2; }
+
+/// The staircase gone through again; nothing where the record has other levels than it would have shown.
+std::optional<Staircase> replayed(Procedure const& p, Compare const& c, ThresholdRun const& run)
+{
+    StaircaseSettings settings = staircase_settings(p, c);
+    settings.stop = {0, 0, 1 << 20}; // the record says when it ended
+    Staircase staircase(settings);
+    for (std::size_t i = 0; i < run.levels.size(); ++i) {
+        double const level = harder_sign(c) * to_scale(c.scale, run.levels[i]);
+        if (!(std::abs(level - staircase.level()) < 1e-6 * std::max(1.0, std::abs(level)))) return std::nullopt;
+        staircase.respond(run.correct[i] != 0);
+    }
+    return staircase;
+}
+
+void add_staircase(ThresholdRun& run, Block const& b, Procedure const& p)
+{
+    ThresholdEstimate e{"mean of reversals", settles_at(p), {}, {}};
+    auto const staircase = replayed(p, *b.compare, run);
+    if (!staircase) {
+        e.note = "the levels of the record are not those that this staircase would have shown";
+    } else {
+        for (Reversal const& r : staircase->reversals()) run.reversals.push_back(r.trial);
+        // The first two still come from the start.
+        int const all = int(run.reversals.size()), last = all > 4 ? all - 2 : all;
+        if (auto const m = mean_of_reversals(*staircase, last); m && all >= 2)
+            e.level = {back_to_level(*b.compare, harder_sign(*b.compare) * *m), {kUnknown, kUnknown}, 1};
+        else
+            e.note = fmt::format("{} reversals", all);
+    }
+    run.estimates.push_back(std::move(e));
+}
+
+void add_maximum_likelihood(ThresholdRun& run, Block const& b, double proportion, AnalysisSettings const& settings)
+{
+    ThresholdEstimate e{"maximum likelihood", proportion, {}, {}};
+    try {
+        PsychometricSettings s;
+        s.shape = shape_of(*b.compare);
+        s.guess.value = guess_rate(b.task);
+        s.lapse.value = 0.02; // one run says nothing of lapses
+        auto const fit = fit_psychometric(count_levels(run.levels, run.correct), s);
+        auto const on_u = [&](double level) { return transformed(fit.shape, level); };
+        double const level = level_at(fit.shape, fit.parameters, proportion);
+        e.note = fit.note;
+        double const error = fit.standard_error.threshold;
+        if (std::isfinite(level)) {
+            e.level = {level, {kUnknown, kUnknown}, 1};
+            // The error of the threshold, carried over to a level a fixed share of the scale from it.
+            if (error > 0 && std::isfinite(error)) {
+                double const half = normal_quantile((1 + settings.confidence) / 2) * error, u = on_u(level);
+                auto const back = [&](double v) {
+                    double const x = fit.shape.direction == Direction::falling ? -v : v;
+                    return fit.shape.axis == Axis::log10 ? std::pow(10.0, x) : x;
+                };
+                e.level.interval = {std::min(back(u - half), back(u + half)),
+                                    std::max(back(u - half), back(u + half))};
+            }
+        } else if (e.note.empty())
+            e.note = "the fitted function never has this share";
+    } catch (std::invalid_argument const& error) {
+        e.note = error.what();
+    }
+    run.estimates.push_back(std::move(e));
+}
+
+void add_questplus(ThresholdRun& run, Block const& b, Procedure const& p, double proportion,
+                   AnalysisSettings const& settings)
+{
+    Compare const& c = *b.compare;
+    ThresholdEstimate e{"QUEST+ posterior", proportion, {}, {}};
+    bool const is_weibull = p.psychometric == Psychometric::weibull;
+    QuestSettings const s = quest_settings(p, c);
+    auto const on_axis = [&](double level) { return is_weibull ? level : to_scale(c.scale, level); };
+    try {
+        QuestPlus quest(s);
+        for (std::size_t i = 0; i < run.levels.size(); ++i) {
+            auto const nearest = std::min_element(s.stimuli.begin(), s.stimuli.end(), [&](double x, double y) {
+                return std::abs(x - on_axis(run.levels[i])) < std::abs(y - on_axis(run.levels[i]));
+            });
+            quest.respond(std::size_t(nearest - s.stimuli.begin()), run.correct[i] != 0);
+        }
+        // Of the scale's own unit: a posterior is even on it, not on levels.
+        auto const posterior = quest.threshold_posterior();
+        QuestParameters mean = quest.mean();
+        double m = 0, squares = 0;
+        for (std::size_t i = 0; i < posterior.size(); ++i) {
+            double const t = to_scale(c.scale, p.threshold[i]);
+            m += posterior[i] * t;
+            squares += posterior[i] * t * t;
+        }
+        double const half =
+            normal_quantile((1 + settings.confidence) / 2) * std::sqrt(std::max(0.0, squares - m * m));
+        mean.threshold = on_axis(from_scale(c.scale, m));
+        // The level where the function of the posterior's mean has that share.
+        double low = to_scale(c.scale, c.low), high = to_scale(c.scale, c.high);
+        double const width = high - low;
+        low -= width, high += width;
+        bool const falls = c.harder_up;
+        for (int i = 0; i < 100; ++i) {
+            double const mid = (low + high) / 2;
+            double const share = proportion_at(s.function, s.direction, mean, on_axis(from_scale(c.scale, mid)));
+            ((share > proportion) == falls ? low : high) = mid;
+        }
+        double const at = (low + high) / 2;
+        double const a = from_scale(c.scale, at - half), z = from_scale(c.scale, at + half);
+        e.level = {from_scale(c.scale, at), {std::min(a, z), std::max(a, z)}, 1};
+    } catch (std::invalid_argument const& error) {
+        e.note = error.what();
+    }
+    run.estimates.push_back(std::move(e));
+}
+
+} // namespace
+
+PsychometricShape shape_of(Compare const& c, Psychometric function)
+{
+    PsychometricShape s;
+    s.sigmoid = function == Psychometric::weibull  ? Sigmoid::weibull
+                : function == Psychometric::normal ? Sigmoid::gaussian
+                                                   : Sigmoid::logistic;
+    s.axis = c.scale == Scale::linear ? Axis::linear : Axis::log10;
+    s.direction = c.harder_up ? Direction::falling : Direction::rising;
+    return s;
+}
+
+double guess_rate(Task task)
+{
+    if (task == Task::oddity) return 1.0 / 3;
+    // Shares of yes and of different go down to those of false alarms, which are fitted.
+    return task == Task::yes_no || task == Task::same_different ? 0 : 0.5;
+}
+
+double back_to_level(Compare const& compare, double on_scale) { return from_scale(compare.scale, on_scale); }
+
+ThresholdRun threshold_run(Block const& b, Procedure const& p, std::vector<TrialRow> const& trials,
+                           AnalysisSettings const& settings)
+{
+    ThresholdRun run;
+    run.procedure = p.name;
+    for (TrialRow const& row : trials)
+        if (row.done->level && row.done->is_correct && !row.step->trial.is_noise) {
+            run.levels.push_back(*row.done->level);
+            run.correct.push_back(*row.done->is_correct ? 1 : 0);
+        }
+    // Every method at the middle of the rise; where a staircase settles, both at its own share too.
+    if (p.method == Method::staircase) {
+        add_staircase(run, b, p);
+        if (settles_at(p) > guess_rate(b.task)) add_maximum_likelihood(run, b, settles_at(p), settings);
+    }
+    add_maximum_likelihood(run, b, middle(b.task), settings);
+    if (p.method == Method::questplus) add_questplus(run, b, p, middle(b.task), settings);
+    return run;
+}
+
+} // namespace study

@@ -1,0 +1,298 @@
+// Ratings, magnitudes, adjusted levels; rankings.
+
+#include "study/analysis/blocks.h"
+#include "study/stats/bootstrap.h"
+#include "study/stats/rankings.h"
+#include "study/stats/ratings.h"
+#include "study/stats/special.h"
+#include "study/stats/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace study {
+namespace {
+
+/// Levels of the rated factors, as one item each.
+class RatedItems {
+public:
+    RatedItems(Script const& script, Block const& block) : script_(script), factors_(rated_factors(script, block))
+    {
+    }
+
+    std::vector<int> const& factors() const { return factors_; }
+    std::vector<std::string> const& names() const { return names_; }
+    /// New items are added as they come, so that items that were never rated are not there.
+    int of(Stimulus const& s)
+    {
+        std::vector<int> key;
+        for (int const f : factors_) key.push_back(s.levels[std::size_t(f)]);
+        auto const it = std::lower_bound(keys_.begin(), keys_.end(), key);
+        auto const at = it - keys_.begin();
+        if (it != keys_.end() && *it == key) return int(at);
+        keys_.insert(it, key);
+        std::string name;
+        for (std::size_t i = 0; i < key.size(); ++i)
+            name += (i ? " " : "") + script_.factors[std::size_t(factors_[i])].levels[std::size_t(key[i])].name;
+        names_.insert(names_.begin() + at, name.empty() ? "all" : name);
+        return int(at);
+    }
+    int reference()
+    {
+        if (factors_.empty()) return -1;
+        std::vector<int> key;
+        for (int const f : factors_)
+            for (LevelChoice const& c : script_.reference)
+                if (c.factor == f) key.push_back(c.level);
+        auto const it = std::find(keys_.begin(), keys_.end(), key);
+        return it == keys_.end() ? -1 : int(it - keys_.begin());
+    }
+
+private:
+    Script const& script_;
+    std::vector<int> factors_;
+    std::vector<std::vector<int>> keys_; ///< sorted: in the order of the script's levels
+    std::vector<std::string> names_;
+};
+
+bool is_log_axis(Block const& b)
+{
+    return b.task == Task::magnitude ||
+           (b.task == Task::adjustment && b.compare && b.compare->scale != Scale::linear);
+}
+
+/// Items x observers, NaN = not judged.
+Matrix table_of(std::vector<ObserverTrials> const& trials, RatedItems& items, bool is_log)
+{
+    for (ObserverTrials const& o : trials)
+        for (TrialRow const& row : o.rows) items.of(row.step->trial.stimuli.front());
+    Matrix sum(items.names().size(), trials.size(), 0), n = sum;
+    for (std::size_t o = 0; o < trials.size(); ++o)
+        for (TrialRow const& row : trials[o].rows) {
+            auto const i = std::size_t(items.of(row.step->trial.stimuli.front()));
+            if (!row.done->value || (is_log && !(*row.done->value > 0))) continue;
+            sum(i, o) += is_log ? std::log(*row.done->value) : *row.done->value;
+            n(i, o) += 1;
+        }
+    for (std::size_t k = 0; k < sum.values.size(); ++k)
+        sum.values[k] = n.values[k] > 0 ? sum.values[k] / n.values[k] : kUnknown;
+    return sum;
+}
+
+void add_paired_differences(ScaleResult& r, Matrix const& table, AnalysisSettings const& settings)
+{
+    for (std::size_t a = 0; a < table.rows; ++a)
+        for (std::size_t b = a + 1; b < table.rows; ++b) {
+            std::vector<double> differences;
+            for (std::size_t o = 0; o < table.columns; ++o) differences.push_back(table(a, o) - table(b, o));
+            r.differences.push_back(
+                {int(a), int(b), mean_of(differences, settings.confidence), mean_p(differences)});
+        }
+}
+
+void add_friedman(ScaleResult& r, Matrix const& table)
+{
+    try {
+        Friedman const f = friedman(transposed(table));
+        add_fact(r, "Friedman chi-square", f.chi_square);
+        add_fact(r, "Friedman df", double(f.degrees_of_freedom));
+        add_fact(r, "Friedman p", f.p);
+        add_fact(r, "Kendall W", f.kendall_w);
+        if (f.left_out > 0) add_note(r, fmt::format("Friedman's test: {} observers have gaps", f.left_out));
+    } catch (std::invalid_argument const& e) {
+        add_note(r, std::string("no Friedman test: ") + e.what());
+    }
+}
+
+void add_model(ScaleResult& r, Matrix const& table)
+{
+    try {
+        RatingModel const m = fit_ratings(table);
+        for (std::size_t i = 0; i < r.items.size(); ++i)
+            add_fact(r, "allowing for bias and inconsistency " + r.items[i].name, m.quality[i]);
+        if (!m.note.empty()) add_note(r, "model of raters: " + m.note);
+    } catch (std::invalid_argument const& e) {
+        add_note(r, std::string("no model of raters: ") + e.what());
+    }
+}
+
+void add_spread(ScaleResult& r, Block const& b, std::vector<ObserverTrials> const& trials, RatedItems& items)
+{
+    int const steps = int(std::lround((b.scale.high - b.scale.low) / b.scale.step)) + 1;
+    if (steps < 2 || steps > 101) return;
+    r.spread.assign(r.items.size(), std::vector<int>(std::size_t(steps), 0));
+    for (ObserverTrials const& o : trials)
+        for (TrialRow const& row : o.rows) {
+            if (!row.done->value) continue;
+            auto const at = std::lround((*row.done->value - b.scale.low) / b.scale.step);
+            if (at >= 0 && at < steps)
+                ++r.spread[std::size_t(items.of(row.step->trial.stimuli.front()))][std::size_t(at)];
+        }
+}
+
+ScaleResult values_of_group(Script const& script, Block const& b, std::vector<ObserverTrials> const& trials,
+                            Group const& group, AnalysisSettings const& settings)
+{
+    ScaleResult r;
+    r.group = group.name;
+    bool const is_log = is_log_axis(b);
+    r.unit = b.task == Task::rating ? "rating" : is_log ? "ln(" + std::string(facts(b.task).name) + ")" : "level";
+    RatedItems items(script, b);
+    Matrix const table = table_of(trials, items, is_log);
+    for (ObserverTrials const& o : trials) {
+        r.observers += o.rows.empty() ? 0 : 1;
+        r.observations += int(o.rows.size());
+    }
+    if (r.observations == 0) {
+        r.refused = "nobody judged anything";
+        return r;
+    }
+    int const count = int(items.names().size());
+    auto const render = render_times(trials, count, settings.confidence,
+                                     [&](TrialRow const&, Stimulus const& s) { return items.of(s); });
+    auto const opinions = mean_opinions(table, settings.confidence);
+    for (int i = 0; i < count; ++i) {
+        MeanOpinion const& m = opinions[std::size_t(i)];
+        r.items.push_back(
+            {items.names()[std::size_t(i)], {m.mean, m.interval, m.observers}, render[std::size_t(i)]});
+    }
+    add_paired_differences(r, table, settings);
+    add_friedman(r, table);
+    if (b.task == Task::rating) {
+        add_model(r, table);
+        add_spread(r, b, trials, items);
+    }
+    if (r.observers < 2) add_note(r, "one observer: no interval, and nothing about anybody else");
+    // Of adjusted levels none is better than another.
+    if (b.task != Task::adjustment) judge_differences(r, items.reference(), 1 - settings.confidence);
+    return r;
+}
+
+struct Ranked {
+    std::vector<std::vector<std::vector<int>>> rankings; ///< by observer: items, best first
+    int count = 0;
+};
+
+Ranked rankings_of(Block const& b, std::vector<ObserverTrials> const& trials)
+{
+    Ranked out;
+    for (ObserverTrials const& o : trials) {
+        std::vector<std::vector<int>> theirs;
+        for (TrialRow const& row : o.rows) {
+            std::vector<int> ranking;
+            for (char const letter : row.done->response)
+                if (Stimulus const* s = stimulus_of(row.step->trial, letter)) {
+                    auto const at =
+                        std::find(b.rank_levels.begin(), b.rank_levels.end(), s->levels[std::size_t(b.rank)]);
+                    if (at != b.rank_levels.end()) ranking.push_back(int(at - b.rank_levels.begin()));
+                }
+            if (ranking.size() > 1) theirs.push_back(std::move(ranking));
+        }
+        out.count += int(theirs.size());
+        if (!theirs.empty()) out.rankings.push_back(std::move(theirs));
+    }
+    return out;
+}
+
+std::vector<double> utilities(Ranked const& ranked, std::vector<int> const& observers, int items,
+                              std::string* note)
+{
+    std::vector<ChoiceAmong> choices;
+    for (int const o : observers)
+        for (auto const& ranking : ranked.rankings[std::size_t(o)])
+            for (ChoiceAmong& c : choices_of(ranking)) choices.push_back(std::move(c));
+    auto const fit = fit_plackett_luce(choices, items);
+    if (note) *note = fit.note;
+    return fit.score;
+}
+
+ScaleResult ranking_of_group(Script const& script, Block const& b, std::vector<ObserverTrials> const& trials,
+                             Group const& group, AnalysisSettings const& settings)
+{
+    ScaleResult r;
+    r.group = group.name;
+    r.unit = "utility";
+    Ranked const ranked = rankings_of(b, trials);
+    r.observers = int(ranked.rankings.size());
+    r.observations = ranked.count;
+    auto const n = b.rank_levels.size();
+    auto const item_of = [&](Stimulus const& s) {
+        auto const at = std::find(b.rank_levels.begin(), b.rank_levels.end(), s.levels[std::size_t(b.rank)]);
+        return at == b.rank_levels.end() ? -1 : int(at - b.rank_levels.begin());
+    };
+    auto const render = render_times(trials, int(n), settings.confidence,
+                                     [&](TrialRow const&, Stimulus const& s) { return item_of(s); });
+    for (std::size_t i = 0; i < n; ++i)
+        r.items.push_back(
+            {script.factors[std::size_t(b.rank)].levels[std::size_t(b.rank_levels[i])].name, {}, render[i]});
+    try {
+        if (ranked.rankings.empty()) throw std::invalid_argument("nobody ranked anything");
+        std::vector<int> all(ranked.rankings.size());
+        for (std::size_t o = 0; o < all.size(); ++o) all[o] = int(o);
+        std::string note;
+        std::vector<double> const score = utilities(ranked, all, int(n), &note);
+        if (!note.empty()) add_note(r, note);
+        std::optional<Bootstrap> boot;
+        try {
+            boot = bootstrap(
+                r.observers,
+                [&](std::span<int const> drawn) {
+                    return utilities(ranked, {drawn.begin(), drawn.end()}, int(n), nullptr);
+                },
+                {settings.replicates, settings.confidence, BootstrapInterval::expanded_percentile, settings.seed});
+        } catch (std::invalid_argument const& e) {
+            add_note(r, std::string("no intervals: ") + e.what());
+        }
+        for (std::size_t i = 0; i < n; ++i)
+            r.items[i].score = {score[i], boot ? boot->interval[i] : Interval{kUnknown, kUnknown}, r.observers};
+        // Mean ranks of each observer, larger = better, for tests over observers.
+        Matrix ranks(n, ranked.rankings.size(), 0), times = ranks;
+        for (std::size_t o = 0; o < ranked.rankings.size(); ++o)
+            for (auto const& ranking : ranked.rankings[o])
+                for (std::size_t place = 0; place < ranking.size(); ++place) {
+                    ranks(std::size_t(ranking[place]), o) += double(n - place);
+                    times(std::size_t(ranking[place]), o) += 1;
+                }
+        for (std::size_t k = 0; k < ranks.values.size(); ++k)
+            ranks.values[k] = times.values[k] > 0 ? ranks.values[k] / times.values[k] : kUnknown;
+        add_paired_differences(r, ranks, settings);
+        add_friedman(r, ranks);
+        for (std::size_t i = 0; i < n; ++i) {
+            double sum = 0;
+            for (std::size_t o = 0; o < ranks.columns; ++o) sum += double(n) + 1 - ranks(i, o);
+            add_fact(r, "mean rank " + r.items[i].name, sum / double(ranks.columns));
+        }
+        add_note(r, "differences and their tests are of the ranks of each observer, 1 = one place better");
+    } catch (std::invalid_argument const& e) {
+        r.refused = e.what();
+        return r;
+    }
+    int reference = -1;
+    for (LevelChoice const& c : script.reference)
+        for (std::size_t i = 0; i < n && c.factor == b.rank; ++i)
+            if (b.rank_levels[i] == c.level) reference = int(i);
+    judge_differences(r, reference, 1 - settings.confidence);
+    return r;
+}
+
+} // namespace
+
+void analyze_values(Script const& script, std::vector<ObserverTrials> const& observers, int block,
+                    AnalysisSettings const& settings, BlockResult& result)
+{
+    Block const& b = script.blocks[std::size_t(block)];
+    result.is_log = is_log_axis(b);
+    for (Group const& g : groups_of(script, observers, block, rated_factors(script, b)))
+        result.scales.push_back(values_of_group(script, b, counted(observers, block, g), g, settings));
+}
+
+void analyze_rankings(Script const& script, std::vector<ObserverTrials> const& observers, int block,
+                      AnalysisSettings const& settings, BlockResult& result)
+{
+    Block const& b = script.blocks[std::size_t(block)];
+    for (Group const& g : groups_of(script, observers, block, {b.rank}))
+        result.scales.push_back(ranking_of_group(script, b, counted(observers, block, g), g, settings));
+}
+
+} // namespace study

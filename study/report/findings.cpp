@@ -1,0 +1,104 @@
+#include "study/report/findings.h"
+
+#include "study/report/plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace study {
+namespace {
+
+std::string interval_text(Uncertain const& u)
+{
+    std::string text = short_number(u.value);
+    if (std::isfinite(u.interval.low))
+        text += fmt::format(" [{}, {}]", short_number(u.interval.low), short_number(u.interval.high));
+    return text;
+}
+
+/// Best first, those that cannot be told from the next one joined by "~".
+std::string ranking_text(ScaleResult const& s)
+{
+    std::vector<int> order;
+    for (std::size_t i = 0; i < s.items.size(); ++i) order.push_back(int(i));
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+        return s.items[std::size_t(a)].score.value > s.items[std::size_t(b)].score.value;
+    });
+    std::string text;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        if (k > 0) {
+            bool is_told = false;
+            for (ItemDifference const& d : s.differences)
+                if ((d.a == order[k] && d.b == order[k - 1]) || (d.b == order[k] && d.a == order[k - 1]))
+                    is_told = d.p_holm < 0.05;
+            text += is_told ? " &gt; " : " ~ ";
+        }
+        text += escaped(s.items[std::size_t(order[k])].name);
+    }
+    return text;
+}
+
+/// What adjusted levels were set to.
+std::string levels_text(ScaleResult const& s, bool is_log)
+{
+    std::string text;
+    for (ScaledItem const& i : s.items) {
+        Uncertain u = i.score;
+        if (is_log) u = {std::exp(u.value), {std::exp(u.interval.low), std::exp(u.interval.high)}, u.n};
+        text += (text.empty() ? "" : ", ") + escaped(i.name) + " " + interval_text(u);
+    }
+    return "set to " + text;
+}
+
+std::string cheapest_text(ScaleResult const& s)
+{
+    Cheapest const& c = *s.cheapest;
+    ScaledItem const &item = s.items[std::size_t(c.item)], &against = s.items[std::size_t(c.against)];
+    std::string const stand_in =
+        c.is_reference ? "the reference" : "the best of those judged (the reference itself was not among them),";
+    if (c.item == c.against)
+        return fmt::format(
+            "Nothing cheaper than <b>{}</b> ({} ms) is as good as {}: every cheaper one is significantly "
+            "worse.",
+            escaped(item.name), short_number(item.render_ms.value),
+            c.is_reference ? "it, the reference"
+                           : "it, the best of those judged (the reference was not among them)");
+    std::string text =
+        fmt::format("The cheapest that cannot be told from {} <b>{}</b> ({} ms) is <b>{}</b> ({} ms): difference "
+                    "{} {}, p = {:.3f} "
+                    "corrected for all pairs.",
+                    stand_in, escaped(against.name), short_number(against.render_ms.value), escaped(item.name),
+                    short_number(item.render_ms.value), interval_text(c.difference), escaped(s.unit), c.p_holm);
+    if (std::isfinite(c.difference.interval.low) && c.difference.interval.low < 0)
+        text += fmt::format(" Not to be told apart is not the same as equal: it may still be {} {} worse.",
+                            short_number(-c.difference.interval.low), escaped(s.unit));
+    return text;
+}
+
+} // namespace
+
+std::string findings(Analysis const& a)
+{
+    std::string html;
+    for (BlockResult const& b : a.blocks) {
+        if (!b.scales.empty() && b.scales.front().refused.empty()) {
+            ScaleResult const& s = b.scales.front();
+            html += fmt::format("<li><b>{}</b> ({} observers): {}. ", escaped(b.name), s.observers,
+                                b.task == "adjustment" ? levels_text(s, b.is_log) : ranking_text(s));
+            html += (s.cheapest ? cheapest_text(s) : "") + "</li>\n";
+        }
+        for (CurveResult const& c : b.curves)
+            if (c.refused.empty())
+                html += fmt::format("<li><b>{}</b>, {}: {:.0f} % right at {}.{}</li>\n", escaped(b.name),
+                                    escaped(c.cell), 100 * c.proportion, interval_text(c.threshold),
+                                    c.fit.note.empty() ? "" : " Doubtful: " + escaped(c.fit.note) + ".");
+    }
+    if (html.empty()) return {};
+    return "<h2>In short</h2>\n<ul class=\"findings\">\n" + html +
+           "</ul>\n<p class=\"note\">Best first; &gt; means significantly better than the next one (5 %, "
+           "corrected for all "
+           "pairs by Holm's procedure), ~ that this was not shown.</p>\n";
+}
+
+} // namespace study

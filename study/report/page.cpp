@@ -1,0 +1,283 @@
+#include "study/report/page.h"
+
+#include "study/analysis/threshold_run.h"
+#include "study/report/figures.h"
+#include "study/report/findings.h"
+#include "study/report/html.h"
+#include "study/report/plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace study {
+namespace {
+
+Block const* block_of(Script const& s, std::string const& name)
+{
+    for (Block const& b : s.blocks)
+        if (b.name == name) return &b;
+    return nullptr;
+}
+
+/// True scores of the items, with mean 0 as the estimates have; empty where they are not known.
+std::vector<double> true_scores(Script const& s, Block const& b, ScaleResult const& scale,
+                                ReportFacts const& facts)
+{
+    int const factor = compared_factor(b);
+    if (!facts.truth || scale.unit != "JOD" || factor < 0) return {};
+    auto const levels = facts.truth->quality_jod.find(s.factors[std::size_t(factor)].name);
+    if (levels == facts.truth->quality_jod.end()) return {};
+    std::vector<double> out;
+    double sum = 0;
+    for (ScaledItem const& item : scale.items) {
+        auto const it = levels->second.find(item.name);
+        if (it == levels->second.end()) return {};
+        out.push_back(it->second);
+        sum += it->second;
+    }
+    for (double& v : out) v -= sum / double(out.size());
+    return out;
+}
+
+double true_threshold(Block const& b, ReportFacts const& facts, double share)
+{
+    if (!facts.truth || !b.compare) return kUnknown;
+    return true_level(*facts.truth, b.compare->vary, b.compare->harder_up, guess_rate(b.task), share);
+}
+
+std::string figures(std::string const& html)
+{
+    return html.empty() ? "" : "<div class=\"figures\">\n" + html + "</div>\n";
+}
+
+/// From the lowest to the highest of all groups.
+Interval shared_range(Script const& s, Block const& b, BlockResult const& r, ReportFacts const& facts)
+{
+    Interval range{1e300, -1e300};
+    auto const hold = [&](double v) {
+        if (!std::isfinite(v)) return;
+        range.low = std::min(range.low, v);
+        range.high = std::max(range.high, v);
+    };
+    for (ScaleResult const& scale : r.scales) {
+        for (double const v : true_scores(s, b, scale, facts)) hold(v);
+        for (ScaledItem const& i : scale.items)
+            for (double const v : {i.score.value, i.score.interval.low, i.score.interval.high}) hold(v);
+    }
+    return range;
+}
+
+std::string cheapest_table(Analysis const& a, std::string const& block)
+{
+    for (ResultTable t : result_tables(a))
+        if (t.name == "cheapest") {
+            std::erase_if(t.table.rows, [&](auto const& row) { return row[0] != block; });
+            for (auto& row : t.table.rows) row.erase(row.begin());
+            t.table.columns.erase(t.table.columns.begin());
+            return t.table.rows.empty() ? "" : html_of(t);
+        }
+    return {};
+}
+
+std::string scales_html(Script const& s, Block const& b, BlockResult const& r, Analysis const& a,
+                        ReportFacts const& facts)
+{
+    std::string scales, costs, wins, spreads;
+    double const level = 1 - a.settings.confidence;
+    bool has_truth = false;
+    Interval const shared = shared_range(s, b, r, facts);
+    for (ScaleResult const& scale : r.scales) {
+        auto const truth = true_scores(s, b, scale, facts);
+        has_truth = has_truth || !truth.empty();
+        scales += scale_figure(scale, truth, shared, scale.group);
+        costs += cost_figure(scale, scale.group);
+        wins += wins_table(scale, level);
+        spreads += spread_figure(scale, b.scale, scale.group);
+    }
+    std::string html = "<h3>Scores</h3>\n<p class=\"note\">";
+    if (r.task == "pair" || r.task == "pair_with_reference")
+        html += "1 JOD: 75 % choose the better one (Thurstone, case V; mean 0). Intervals by a bootstrap over "
+                "observers. ";
+    html += "Grey bars at the right join what does not differ significantly.";
+    if (has_truth) html += " Diamonds: the truth of the simulated observers.";
+    html += "</p>\n" + figures(scales);
+    if (!spreads.empty())
+        html += "<h3>Distribution of answers</h3>\n<p class=\"note\">Shares of the answers (bars), mean and "
+                "interval over "
+                "observers (dots).</p>\n" +
+                figures(spreads);
+    if (!costs.empty()) {
+        html += "<h3>Perceived quality against time to render</h3>\n<p class=\"note\">Square: what is compared "
+                "with. Ring: "
+                "the cheapest that cannot be told from it.</p>\n" +
+                figures(costs) + cheapest_table(a, r.name);
+    }
+    if (!wins.empty())
+        html += "<h3>Pairs</h3>\n<p class=\"note\">Per cent of times that the row was chosen over the column; * "
+                "differs "
+                "significantly (corrected).</p>\n" +
+                figures(wins);
+    return html;
+}
+
+std::string thresholds_html(Block const& b, BlockResult const& r, ReportFacts const& facts)
+{
+    std::string html, curves;
+    if (!r.detections.empty())
+        html += "<h3>Right answers</h3>\n" + figures(detections_figure(r.detections, guess_rate(b.task), r.name));
+    std::string const setting = b.compare ? b.compare->vary : "level";
+    for (CurveResult const& c : r.curves)
+        curves += curve_figure(c, r, setting, true_threshold(b, facts, c.proportion));
+    if (!curves.empty())
+        html += "<h3>Psychometric functions</h3>\n<p class=\"note\">Trials of all observers and procedures "
+                "together, with "
+                "Wilson's intervals; larger dots are more trials. Shaded: interval of the threshold." +
+                std::string(facts.truth ? " Diamond: the truth of the simulated observers." : "") + "</p>\n" +
+                figures(curves);
+    if (!r.thresholds.empty()) {
+        std::map<std::string, std::vector<ThresholdSummary>> cells;
+        for (ThresholdSummary const& t : r.thresholds) cells[t.cell].push_back(t);
+        std::string drawn;
+        for (auto const& [cell, list] : cells) {
+            std::vector<double> truth;
+            for (ThresholdSummary const& t : list) truth.push_back(true_threshold(b, facts, t.proportion));
+            drawn += thresholds_figure(list, r, truth, cell);
+        }
+        html += "<h3>Thresholds by method</h3>\n" + figures(drawn);
+    }
+    std::map<std::string, std::vector<ThresholdRun>> runs;
+    for (ThresholdRun const& run : r.runs)
+        for (Procedure const& p : b.procedures)
+            if (p.name == run.procedure && is_adaptive(p)) runs[run.procedure + ", " + run.cell].push_back(run);
+    std::string tracks;
+    for (auto const& [name, list] : runs) {
+        double const share = list.front().estimates.empty() ? kUnknown : list.front().estimates.front().proportion;
+        tracks += tracks_figure(list, r, name, true_threshold(b, facts, share));
+    }
+    if (!tracks.empty()) html += "<h3>Runs</h3>\n" + tracks;
+    return html;
+}
+
+std::string block_html(Script const& s, BlockResult const& r, Analysis const& a, ReportFacts const& facts)
+{
+    Block const* const b = block_of(s, r.name);
+    if (b == nullptr) return {};
+    std::string html =
+        fmt::format("<section>\n<h2>{} <small>({})</small></h2>\n", escaped(r.name), escaped(r.task));
+    if (!r.prompt.empty()) html += fmt::format("<p>“{}”</p>\n", escaped(r.prompt));
+    for (ScaleResult const& scale : r.scales)
+        if (!scale.refused.empty())
+            html += fmt::format("<p>{}: no scale: {}</p>\n", escaped(scale.group), escaped(scale.refused));
+    if (!r.scales.empty()) html += scales_html(s, *b, r, a, facts);
+    html += thresholds_html(*b, r, facts);
+    return html + "</section>\n";
+}
+
+/// By reason; who it was where they are few.
+std::string exclusions_html(Analysis const& a)
+{
+    std::map<std::pair<std::string, std::string>, std::vector<Exclusion const*>> reasons;
+    for (Exclusion const& e : a.exclusions) reasons[{e.what, e.why}].push_back(&e);
+    ResultTable t{"exclusions", "Left out, or to be looked at", "", false, {}};
+    t.table.columns = {{"what", "left out, kept, or look at"},
+                       {"why", "Reason"},
+                       {"trials", "Trials concerned"},
+                       {"participants", "Of so many"},
+                       {"who", "Participants"}};
+    for (auto const& [key, list] : reasons) {
+        int trials = 0;
+        std::string who;
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            trials += list[i]->trials;
+            if (i < 6) who += (i ? ", " : "") + list[i]->participant;
+        }
+        if (list.size() > 6) who += ", ...";
+        t.table.rows.push_back(
+            {cell(key.first), cell(key.second), cell(trials), cell(int(list.size())), cell(who)});
+    }
+    return t.table.rows.empty() ? "" : html_of(t);
+}
+
+std::string timing_html(Analysis const& a, ReportFacts const& facts)
+{
+    std::string html = histogram(facts.frame_interval_ms, "ms", "Intervals between frames");
+    html += histogram(a.timing.frame_ms, "ms", "Time to render a frame, means of stimuli");
+    html += histogram(a.timing.uncertainty_ms, "ms", "Uncertainty of onsets");
+    for (ReactionResult const& r : a.timing.reactions) html += histogram(r.ms, "ms", "Reaction times, " + r.block);
+    return figures(html);
+}
+
+std::string provenance(std::span<RecordedSession const> sessions, ReportFacts const& facts)
+{
+    std::map<std::string, std::map<std::string, int>> values;
+    for (RecordedSession const& session : sessions)
+        for (JournalEntry const& entry : session.record.entries)
+            if (auto const* s = std::get_if<SessionStarted>(&entry)) {
+                ++values["recorded with"][s->version + (s->git_hash.empty() ? "" : " (git " + s->git_hash + ")")];
+                ++values["script"]["sha256 " + s->script_sha256.substr(0, 16)];
+                ++values["date"][s->utc.substr(0, 10)];
+                for (auto const& [key, value] : s->about) ++values[key][value];
+            }
+    std::string html = "<h2>Provenance</h2>\n<dl>\n";
+    html += fmt::format("<dt>report by</dt><dd>{}</dd>\n", escaped(facts.program));
+    for (auto const& [key, list] : values) {
+        html += "<dt>" + escaped(key) + "</dt><dd>";
+        std::size_t shown = 0;
+        for (auto const& [value, n] : list) {
+            if (++shown > 5) break;
+            html += (shown > 1 ? "; " : "") + escaped(value);
+        }
+        if (list.size() > 5) html += fmt::format("; and {} more", list.size() - 5);
+        html += "</dd>\n";
+    }
+    return html + "</dl>\n";
+}
+
+} // namespace
+
+std::string report_page(Script const& script, std::span<RecordedSession const> sessions, Analysis const& a,
+                        ReportFacts const& facts)
+{
+    std::string html =
+        fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+                    "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{}</title>\n<style>\n",
+                    escaped(a.title));
+    html += report_style();
+    html += fmt::format(
+        "</style>\n</head>\n<body>\n<header><h1>{}</h1>\n<p class=\"about\">Experiment {}: {} of {} "
+        "participants, {} sessions, {} complete. Intervals of {:.0f} %, {} replicates of bootstraps.</p>\n",
+        escaped(a.title), escaped(a.experiment), a.participants, a.planned, a.sessions, a.complete,
+        100 * a.settings.confidence, a.settings.replicates);
+    if (!a.cautions.empty()) {
+        html += "<ul class=\"cautions\">";
+        for (std::string const& c : a.cautions) html += "<li>" + escaped(c) + "</li>";
+        html += "</ul>\n";
+    }
+    html += "</header>\n<main>\n" + findings(a);
+    for (BlockResult const& b : a.blocks) html += block_html(script, b, a, facts);
+
+    auto const tables = result_tables(a);
+    auto const add = [&](std::initializer_list<std::string_view> names) {
+        for (std::string_view const name : names)
+            for (ResultTable const& t : tables)
+                if (t.name == name && !t.is_long) html += html_of(t);
+    };
+    html += "<section>\n<h2>Observers</h2>\n";
+    if (a.exclusions.empty()) html += "<p>Nothing was left out but practice.</p>\n";
+    html += exclusions_html(a);
+    add({"observers", "agreement"});
+    html += "</section>\n<section>\n<h2>Timing</h2>\n" + timing_html(a, facts);
+    add({"timing", "reactions", "calibrations"});
+    html += "</section>\n<section>\n<h2>Order</h2>\n<p class=\"note\">How one trial followed another, summed over "
+            "participants: from the row to the column.</p>\n";
+    std::string orders;
+    for (TransitionResult const& t : a.transitions) orders += transitions_table(t);
+    html += figures(orders) + "</section>\n<section>\n<h2>Numbers</h2>\n";
+    add({"scores", "thresholds", "curves", "detection", "questionnaires", "changes", "remarks"});
+    html += "</section>\n" + provenance(sessions, facts);
+    return html + "</main>\n</body>\n</html>\n";
+}
+
+} // namespace study

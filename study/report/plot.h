@@ -1,0 +1,64 @@
+#pragma once
+// Drawings as inline SVG. Colours, fonts and line widths come from the page's style sheet, by classes.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace study {
+
+/// As text or as a quoted attribute of HTML.
+std::string escaped(std::string_view text);
+/// Three digits, whole numbers up to seven: "0.05", "1250".
+std::string short_number(double value);
+/// About how wide a text is in the drawings' font of 12 px.
+double text_width(std::string_view text);
+
+struct Axis1D {
+    double low = 0, high = 1;
+    bool is_log = false;
+
+    /// 0 at low, 1 at high; values beyond are moved to just outside.
+    double position(double value) const;
+    std::vector<double> ticks(int about) const;
+};
+/// Holds all finite values (logarithmic: all above 0), with a margin at both ends. [0, 1] of none.
+Axis1D axis_over(std::vector<double> const& values, bool is_log = false, double margin = 0.06);
+
+/// A rectangle with axes; values are drawn within, texts in pixels around it.
+class Plot {
+public:
+    Plot(double width, double height, Axis1D x, Axis1D y);
+    /// Pixels between the rectangle and the borders; call before drawing.
+    void margins(double left, double top, double right, double bottom);
+
+    double x(double value) const;
+    double y(double value) const;
+    double left() const { return left_; }
+    double right() const { return width_ - right_; }
+    double top() const { return top_; }
+    double bottom() const { return height_ - bottom_; }
+
+    void x_axis(std::string const& label, int ticks = 5);
+    void y_axis(std::string const& label, int ticks = 5);
+    // In pixels.
+    void line(double x1, double y1, double x2, double y2, char const* style);
+    void dot(double cx, double cy, double r, char const* style);
+    void diamond(double cx, double cy, double r, char const* style);
+    void box(double bx, double by, double w, double h, char const* style);
+    /// @param anchor start, middle, end
+    void text(double tx, double ty, std::string_view words, char const* anchor = "start", char const* style = "");
+    void polyline(std::vector<std::pair<double, double>> const& points, char const* style);
+
+    /// @param title for those who cannot see it
+    std::string svg(std::string const& title) const;
+    /// The drawing with words below it. @param caption HTML
+    std::string figure(std::string const& title, std::string const& caption) const;
+
+private:
+    double width_, height_, left_ = 50, top_ = 12, right_ = 14, bottom_ = 42;
+    Axis1D x_, y_;
+    std::string body_;
+};
+
+} // namespace study

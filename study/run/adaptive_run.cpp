@@ -1,0 +1,81 @@
+#include "study/run/adaptive_run.h"
+
+#include "study/design/condition.h"
+#include "study/design/procedure_settings.h"
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+#include <stdexcept>
+
+namespace study {
+namespace {
+
+/// As it is shown: settings have nine digits, and sums of steps come back to the same levels.
+double as_shown(double level)
+{
+    std::string const text = level_text(level);
+    std::from_chars(text.data(), text.data() + text.size(), level);
+    return level;
+}
+
+} // namespace
+
+AdaptiveRun::AdaptiveRun(Procedure const& p, Compare const& c, std::string const& file)
+try : scale_(c.scale), sign_(harder_sign(c)),
+    method_(p.method == Method::staircase
+                ? decltype(method_)(Staircase(staircase_settings(p, c)))
+                : decltype(method_)(Quest{QuestPlus(quest_settings(p, c)), p.stimuli, 0, p.stop.trials})) {
+    choose();
+} catch (std::invalid_argument const& e) {
+    throw ScriptError(file, p.place, "procedure '" + p.name + "' cannot be run", e.what(), "");
+}
+
+void AdaptiveRun::respond(bool is_correct)
+{
+    if (auto* const staircase = std::get_if<Staircase>(&method_)) {
+        staircase->respond(is_correct);
+    } else {
+        Quest& q = std::get<Quest>(method_);
+        q.quest.respond(q.next, is_correct);
+        --q.left;
+    }
+    choose();
+}
+
+void AdaptiveRun::choose()
+{
+    if (auto const* const staircase = std::get_if<Staircase>(&method_)) {
+        is_finished_ = staircase->finished();
+        level_ = as_shown(from_scale(scale_, sign_ * staircase->level()));
+        return;
+    }
+    Quest& q = std::get<Quest>(method_);
+    is_finished_ = q.left == 0;
+    if (is_finished_) return;
+    q.next = q.quest.next();
+    level_ = as_shown(q.levels[q.next]);
+}
+
+std::vector<double> reachable_levels(Procedure const& p, Compare const& c)
+{
+    constexpr std::size_t kMost = 10000;
+    std::set<double> levels;
+    if (p.method == Method::questplus)
+        for (double const level : p.stimuli) levels.insert(as_shown(level));
+    if (p.method != Method::staircase) return {levels.begin(), levels.end()};
+    StaircaseSettings const s = staircase_settings(p, c);
+    double const sign = harder_sign(c);
+    std::vector<double> open{s.start};
+    while (!open.empty() && levels.size() <= kMost) {
+        double const at = open.back();
+        open.pop_back();
+        if (!levels.insert(as_shown(from_scale(c.scale, sign * at))).second) continue;
+        for (double const step : s.steps)
+            for (double const by : {-step, s.up_ratio * step}) open.push_back(std::clamp(at + by, s.low, s.high));
+    }
+    if (levels.size() > kMost) levels.clear();
+    return {levels.begin(), levels.end()};
+}
+
+} // namespace study

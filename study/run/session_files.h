@@ -1,0 +1,27 @@
+#pragma once
+#include "study/run/journal.h"
+#include "study/run/session.h"
+
+#include <optional>
+
+namespace study {
+
+/// The files of a session that begins or goes on.
+struct SessionFiles {
+    std::filesystem::path folder;
+    Journal journal;
+    JournalText found; ///< what the journal had before
+    bool is_new = false;
+    std::filesystem::path first_made; ///< of a new session: the outermost folder that was missing; empty = none
+
+    /// Takes a new journal away again, and the folders made for it: nothing has happened yet.
+    void discard();
+};
+
+/// @throws ScriptError as run_session does
+SessionFiles open_session(std::string const& participant_id, SessionSettings const& settings);
+
+/// @throws ScriptError where the record is of another experiment, participant, seed, script or plan
+void check_record(SessionRecord const& record, SessionStarted const& now, std::filesystem::path const& file);
+
+} // namespace study

@@ -1,0 +1,144 @@
+#include "study/tables/bids.h"
+
+#include "study/record/session_summary.h"
+#include "study/tables/events.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace study {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(Json const& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+void add_table(std::vector<TextFile>& files, std::string const& stem, Table const& table,
+               std::vector<std::pair<std::string, std::string>> const& facts)
+{
+    if (table.rows.empty()) return;
+    files.push_back({stem + ".tsv", tsv_text(table)});
+    files.push_back({stem + ".json", sidecar_json(table, facts)});
+}
+
+std::vector<std::pair<std::string, std::string>> about_task(std::string const& name, SessionStarted const& start)
+{
+    return {{"TaskName", name},
+            {"StimulusPresentation.SoftwareName", "Lightwell"},
+            {"StimulusPresentation.SoftwareVersion", start.version}};
+}
+
+/// Names that BIDS gives columns of participants.tsv a meaning of its own.
+std::string asked_column(std::string const& question)
+{
+    static std::set<std::string> const taken{
+        "participant_id", "species", "strain",   "strain_rrid", "sex",       "age",
+        "handedness",     "number",  "sessions", "complete",    "simulated", "HED"};
+    std::string name;
+    for (char const c : question)
+        name += static_cast<unsigned char>(c) < 0x80 && !std::isalnum(static_cast<unsigned char>(c)) ? '_' : c;
+    return taken.count(name) ? "asked_" + name : name;
+}
+
+std::string description_json(Script const& script, std::string const& program_version)
+{
+    return text_of({{"Name", script.title.empty() ? script.id : script.title},
+                    {"BIDSVersion", "1.10.0"},
+                    {"DatasetType", "raw"},
+                    {"GeneratedBy", {{{"Name", "Lightwell"}, {"Version", program_version}}}}});
+}
+
+std::string readme(Script const& script, std::size_t sessions)
+{
+    return fmt::format(
+        "# {}\n\n"
+        "Records of the experiment '{}', {} session{}, written by Lightwell from the journals of the sessions\n"
+        "(`journal.jsonl`, one entry per line, which are the truth). Every table can be made anew from them with\n"
+        "`lightwell study rebuild`.\n\n"
+        "* `sub-*/ses-*/beh/*_task-BLOCK_events.tsv`: a row per trial; the file beside it with the ending .json "
+        "says\n"
+        "  what its columns mean.\n"
+        "* `*_task-BLOCK_acq-stimuli_events.tsv`: a row per stimulus that was shown.\n"
+        "* `*_task-questionnaires_beh.tsv`: answers and scores.\n"
+        "* `*_task-session_events.tsv`: what was no trial: instructions, rests, notes.\n"
+        "* `session.json`: provenance. `plan.tsv`: the order of the session, written before its first trial.\n\n"
+        "Participants are numbers; nothing is stored about them but what the script asks.\n",
+        script.title.empty() ? script.id : script.title, script.id, sessions, sessions == 1 ? "" : "s");
+}
+
+} // namespace
+
+std::string session_folder(SessionStarted const& start)
+{
+    return fmt::format("sub-{}/ses-{:02}/beh", start.participant_id, start.session);
+}
+
+std::vector<TextFile> session_files(Script const& script, RecordedSession const& session)
+{
+    SessionStarted const& start = start_of(script, session);
+    std::string const folder = session_folder(start) + "/";
+    std::string const stem = fmt::format("{}sub-{}_ses-{:02}_task-", folder, start.participant_id, start.session);
+    std::vector<TrialRow> const rows = trial_rows(script, session);
+    std::vector<std::string> labels{"questionnaires", "session"};
+    std::vector<TextFile> files;
+    for (std::size_t b = 0; b < script.blocks.size(); ++b) {
+        Block const& block = script.blocks[b];
+        labels.push_back(label_of(block.name, labels));
+        auto facts = about_task(block.name, start);
+        facts.insert(facts.begin() + 1, {"TaskDescription", std::string(study::facts(block.task).name)});
+        if (!block.prompt.empty()) facts.emplace_back("Instructions", block.prompt);
+        add_table(files, stem + labels.back() + "_events", events_table(script, rows, int(b)), facts);
+        add_table(files, stem + labels.back() + "_acq-stimuli_events", stimuli_table(script, rows, int(b)), facts);
+    }
+    add_table(files, stem + "questionnaires_beh", questionnaires_table(script, session),
+              about_task("questionnaires", start));
+    add_table(files, stem + "session_events", happenings_table(session), about_task("session", start));
+    files.push_back({folder + "session.json", session_summary(session.record)});
+    return files;
+}
+
+Table participants_table(Script const& script, std::vector<RecordedSession> const& sessions)
+{
+    Table table{{{"participant_id", "Participant"},
+                 {"number", "Number of the participant, which decides every order"},
+                 {"sessions", "Sessions that were begun"},
+                 {"complete", "Whether all of them were finished"},
+                 {"simulated", "Whether a model observer answered"}}};
+    for (std::string const& question : script.participants.ask)
+        table.columns.push_back({asked_column(question), "Answer to the question: " + question});
+    std::map<std::string, std::vector<RecordedSession const*>> people;
+    for (RecordedSession const& s : sessions) people[s.plan.participant_id].push_back(&s);
+    for (auto const& [id, theirs] : people) {
+        bool complete = true, simulated = false;
+        std::map<std::string, std::string> answers;
+        for (RecordedSession const* s : theirs) {
+            complete = complete && is_complete(*s);
+            simulated = simulated || start_of(script, *s).is_simulated;
+            for (JournalEntry const& entry : s->record.entries)
+                if (auto const* asked = std::get_if<ParticipantAsked>(&entry))
+                    for (auto const& [question, answer] : asked->answers) answers[question] = answer;
+        }
+        std::vector<std::string> row{"sub-" + id, cell(theirs.front()->plan.participant), cell(int(theirs.size())),
+                                     cell(complete), cell(simulated)};
+        for (std::string const& question : script.participants.ask) row.push_back(cell(answers[question]));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+std::vector<TextFile> dataset_files(Script const& script, std::vector<RecordedSession> const& sessions,
+                                    std::string const& program_version)
+{
+    Table const participants = participants_table(script, sessions);
+    return {{"dataset_description.json", description_json(script, program_version)},
+            {"participants.tsv", tsv_text(participants)},
+            {"participants.json", sidecar_json(participants)},
+            {"README.md", readme(script, sessions.size())},
+            {".bidsignore", "*.yaml\n*.md.txt\ntruth.json\n**/journal*\n**/plan.tsv\n**/session.json\n**/*.csv\n"
+                            "**/*.csv.gz\n**/*.yaml\n**/*.lock\n"}};
+}
+
+} // namespace study

@@ -1,0 +1,30 @@
+#pragma once
+// Records in the layout of BIDS 1.10 (Gorgolewski et al. 2016, Sci. Data 3:160044;
+// https://bids-specification.readthedocs.io), modality `beh`. Everything is made from script, plan and journal,
+// and can be made anew at any time.
+
+#include "study/tables/recorded_session.h"
+#include "study/tables/table.h"
+
+namespace study {
+
+/// "sub-P001/ses-01/beh"
+std::string session_folder(SessionStarted const& start);
+
+/// Tables with their sidecars and session.json, below the folder of all records:
+///   <folder>/sub-P001_ses-01_task-NAME_events.tsv             a row per trial, NAME of each block
+///   <folder>/sub-P001_ses-01_task-NAME_acq-stimuli_events.tsv a row per stimulus
+///   <folder>/sub-P001_ses-01_task-questionnaires_beh.tsv
+///   <folder>/sub-P001_ses-01_task-session_events.tsv          what was no trial
+///   <folder>/session.json                                     provenance
+/// Blocks without a trial have no file.
+std::vector<TextFile> session_files(Script const& script, RecordedSession const& session);
+
+/// dataset_description.json, participants.tsv and .json, README, .bidsignore of all sessions together.
+std::vector<TextFile> dataset_files(Script const& script, std::vector<RecordedSession> const& sessions,
+                                    std::string const& program_version);
+
+/// participant_id, number, sessions, complete, simulated, and what the script asks participants.
+Table participants_table(Script const& script, std::vector<RecordedSession> const& sessions);
+
+} // namespace study

@@ -1,0 +1,106 @@
+#include "study/tables/dataset.h"
+
+#include "study/base/sha256.h"
+#include "study/design/script_file.h"
+#include "study/record/durable_file.h"
+#include "study/record/journal_file.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace study {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names in a folder that begin with `prefix`, sorted; none where there is no such folder.
+std::vector<fs::path> entries(fs::path const& folder, std::string const& prefix)
+{
+    std::vector<fs::path> found;
+    std::error_code failed;
+    for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed))
+        if (it->path().filename().string().starts_with(prefix)) found.push_back(it->path());
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+std::vector<fs::path> journals(fs::path const& dir)
+{
+    std::vector<fs::path> found;
+    for (fs::path const& subject : entries(dir, "sub-"))
+        for (fs::path const& session : entries(subject, "ses-"))
+            if (fs::path const file = session / "beh" / "journal.jsonl"; fs::exists(file)) found.push_back(file);
+    if (found.empty())
+        throw ScriptError(dir.string(), {}, "no session is there",
+                          "sessions are in sub-ID/ses-01/beh/journal.jsonl below that folder",
+                          "name the folder that `study run` or `study simulate` was given");
+    return found;
+}
+
+struct Text {
+    std::string file, text;
+};
+
+Text script_of(fs::path const& dir, fs::path const& named, std::string const& hash)
+{
+    if (!named.empty()) return {named.string(), read_whole(named)};
+    for (fs::path const& file : entries(dir / "code", ""))
+        if (file.extension() == ".yaml")
+            if (std::string text = read_whole(file); sha256(text) == hash) return {file.string(), text};
+    throw ScriptError((dir / "code").string(), {}, "the script of the sessions is not there",
+                      "trials cannot be understood without it", "name it with --script");
+}
+
+SessionStarted const& first_of(SessionRecord const& record, fs::path const& file)
+{
+    auto const* start = record.entries.empty() ? nullptr : std::get_if<SessionStarted>(&record.entries.front());
+    if (start == nullptr)
+        throw ScriptError(file.string(), {}, "the journal does not begin with the start of a session",
+                          "nothing can be said about what follows", "move it away, it has no finished trial");
+    return *start;
+}
+
+} // namespace
+
+fs::path kept_script(fs::path const& dir, Script const& script) { return dir / "code" / (script.id + ".yaml"); }
+
+Dataset read_dataset(fs::path const& dir, fs::path const& script)
+{
+    Dataset d;
+    std::string hash;
+    for (fs::path const& file : journals(dir)) {
+        JournalText journal = read_journal(file);
+        if (journal.torn_bytes > 0)
+            d.remarks.push_back(fmt::format("{}: {} bytes of a line that is not whole are left out", file.string(),
+                                            journal.torn_bytes));
+        if (journal.record.entries.empty()) {
+            d.remarks.push_back(fmt::format("{}: nothing has happened in this session yet", file.string()));
+            continue;
+        }
+        SessionStarted const& start = first_of(journal.record, file);
+        if (hash.empty()) {
+            Text const text = script_of(dir, script, start.script_sha256);
+            d.script = parse_script(text.text, text.file);
+            d.script_text = text.text;
+            hash = sha256(text.text);
+        }
+        if (start.script_sha256 != hash)
+            throw ScriptError(file.string(), {}, "the session was recorded with another script",
+                              fmt::format("'{}' has another hash", d.script.file),
+                              "name the script as it was then, byte for byte, with --script");
+        if (start.participant < 1 || start.participant > d.script.participants.count)
+            throw ScriptError(file.string(), {}, fmt::format("participant {}", start.participant),
+                              "the script has no such participant", "name the right script with --script");
+        Plan plan = make_plan(d.script, start.participant);
+        if (!start.plan_sha256.empty() && start.plan_sha256 != sha256(plan_table(d.script, plan)))
+            throw ScriptError(file.string(), {}, "the session was planned otherwise",
+                              fmt::format("version {} made another plan of this script", start.version),
+                              "use that version of the program");
+        d.sessions.push_back({std::move(plan), std::move(journal.record)});
+    }
+    if (d.sessions.empty())
+        throw ScriptError(dir.string(), {}, "no session has begun", "all journals are empty", "run one first");
+    return d;
+}
+
+} // namespace study

@@ -1,0 +1,301 @@
+#include "study/tables/events.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <set>
+
+namespace study {
+namespace {
+
+/// What the stimuli of a trial have in common in one row.
+struct ShownTogether {
+    double onset_s = NAN, end_s = NAN, uncertainty_ms = NAN, render_ms_mean = NAN, render_ms_p99 = NAN;
+    std::string methods, settings;
+    int planned = 0, shown = 0, dropped = 0;
+};
+
+void add_once(std::string& list, std::string const& item)
+{
+    if (item.empty() || ("," + list + ",").find("," + item + ",") != std::string::npos) return;
+    list += (list.empty() ? "" : ",") + item;
+}
+
+ShownTogether together(TrialDone const& done)
+{
+    ShownTogether t;
+    double sum = 0;
+    int frames = 0;
+    for (StimulusShown const& s : done.shown) {
+        t.onset_s = std::fmin(t.onset_s, s.onset_s);
+        t.end_s = std::fmax(t.end_s, s.onset_s + s.duration_s);
+        t.uncertainty_ms = std::fmax(t.uncertainty_ms, s.onset_uncertainty_ms);
+        t.render_ms_p99 = std::fmax(t.render_ms_p99, s.render_ms_p99);
+        add_once(t.methods, s.onset_method);
+        add_once(t.settings, s.settings_sha256);
+        t.planned += s.frames_planned;
+        t.shown += s.frames_shown;
+        t.dropped += s.frames_dropped;
+        int const weight = std::max(1, s.frames_shown);
+        sum += weight * s.render_ms_mean;
+        frames += weight;
+    }
+    if (frames > 0) t.render_ms_mean = sum / frames;
+    return t;
+}
+
+std::vector<std::pair<std::string, std::string>> const kPhases{
+    {"practice", "before the main trials, not analysed"},
+    {"main", "a trial of the experiment"},
+    {"catch", "its answer is certain: shows attention"},
+    {"repeat", "a main or catch trial once more, because the attempt before was not valid"}};
+std::vector<std::pair<std::string, std::string>> const kOnsetMethods{
+    {"oml", "GLX_OML_sync_control: the display's own time stamp"},
+    {"wp_presentation", "Wayland presentation time"},
+    {"openxr_predicted", "predicted by the headset's runtime, not measured"},
+    {"swap_finish", "after the swap and glFinish, by the monotonic clock"},
+    {"simulated", "no display"}};
+
+std::vector<Column> event_columns(Script const& s)
+{
+    std::vector<Column> columns{
+        {"onset", "Onset of the trial's first stimulus, since the beginning of the session", "s"},
+        {"duration", "From the first onset to the end of the last stimulus", "s"},
+        {"response_time", "From the onset of the last stimulus to the answer", "s"},
+        {"trial", "Number of the trial in its pass of the block, from 1"},
+        {"block", "Block of the script"},
+        {"pass", "How often the block has come, from 1"},
+        {"part", "1, and one more after each resumption of the session"},
+        {"phase", "Kind of trial", "", kPhases},
+        {"attempt", "1, and one more each time that the trial was repeated"},
+        {"repeat", "Repeat of the condition, from 1; of adaptive procedures: which run"}};
+    auto const names = factor_columns(s);
+    for (std::size_t f = 0; f < s.factors.size(); ++f)
+        columns.push_back(
+            {names[f], fmt::format("Level of the factor {}; n/a where stimuli differ in it", s.factors[f].name)});
+    std::vector<Column> const more{
+        {"cond_a", "Stimulus a"},
+        {"cond_b", "Stimulus b"},
+        {"cond_more", "Further stimuli, commas between"},
+        {"reference", "The reference, where it was shown too"},
+        {"order", "Letters of the stimuli in the order in which they were shown"},
+        {"level", "Level of what is varied"},
+        {"procedure", "Procedure that chose the level"},
+        {"response", "Answer; of rankings the letters of the stimuli, best first"},
+        {"value", "Number that was given: rating, magnitude, adjusted level"},
+        {"answer", "The right answer"},
+        {"correct", "Whether the answer was right"},
+        {"device", "Input that answered"},
+        {"response_uncertainty_ms", "response_time lies within plus or minus this, onset included", "ms"},
+        {"onset_method", "How onsets were timed", "", kOnsetMethods},
+        {"onset_uncertainty_ms", "Onsets lie within plus or minus this, as far as software can tell", "ms"},
+        {"frames_planned", "Frames of all stimuli that should have been shown"},
+        {"frames_shown", "Frames that were shown"},
+        {"frames_dropped", "Frames that came too late"},
+        {"render_ms_mean", "Mean time to render a frame", "ms"},
+        {"render_ms_p99", "99th percentile of that, of the slowest stimulus", "ms"},
+        {"settings_sha256", "Hashes of the renderer's settings of the stimuli, commas between"},
+        {"bookkeeping_ms", "Time between the trials that journal and choice of the next took", "ms"},
+        {"valid", "Whether the trial was as it should be"},
+        {"reason", "Why not"},
+        {"analysis", "Whether it counts in analyses, and why not"}};
+    columns.insert(columns.end(), more.begin(), more.end());
+    return columns;
+}
+
+std::string phase_of(TrialRow const& row)
+{
+    if (row.done->attempt > 1) return "repeat";
+    return std::string(name_of(row.step->trial.phase));
+}
+
+void add_factors(std::vector<std::string>& cells, Script const& s, TrialRow const& row)
+{
+    for (std::size_t f = 0; f < s.factors.size(); ++f) {
+        int const level = shared_level(*row.block, row.step->trial, int(f));
+        cells.push_back(level < 0 ? cell("") : cell(s.factors[f].levels[std::size_t(level)].name));
+    }
+}
+
+std::vector<std::string> event_cells(Script const& s, TrialRow const& row)
+{
+    Trial const& trial = row.step->trial;
+    TrialDone const& done = *row.done;
+    ShownTogether const t = together(done);
+    std::vector<std::string> cells{seconds_cell(t.onset_s + row.offset_s),
+                                   seconds_cell(t.end_s - t.onset_s),
+                                   done.reaction_ms ? seconds_cell(*done.reaction_ms * 1e-3) : cell(""),
+                                   cell(row.step->number),
+                                   cell(row.block->name),
+                                   cell(row.step->pass + 1),
+                                   cell(row.part),
+                                   phase_of(row),
+                                   cell(done.attempt),
+                                   cell(trial.repeat)};
+    add_factors(cells, s, row);
+    auto const label = [&](std::size_t i) {
+        return i < trial.stimuli.size() ? cell(stimulus_label(s, *row.block, trial.stimuli[i])) : cell("");
+    };
+    std::string more;
+    for (std::size_t i = 2; i < trial.stimuli.size(); ++i) more += (more.empty() ? "" : ",") + label(i);
+    std::string const procedure =
+        trial.procedure >= 0 ? row.block->procedures[std::size_t(trial.procedure)].name : "";
+    std::vector<std::string> const rest{
+        label(0),
+        label(1),
+        cell(more),
+        trial.reference ? cell(stimulus_label(s, *row.block, *trial.reference)) : cell(""),
+        cell(trial.order),
+        cell(done.level),
+        cell(procedure),
+        cell(done.response),
+        cell(done.value),
+        cell(trial.answer),
+        cell(done.is_correct),
+        cell(done.device),
+        done.reaction_ms ? cell(done.response_uncertainty_ms) : cell(""),
+        cell(t.methods),
+        cell(t.uncertainty_ms),
+        cell(t.planned),
+        cell(t.shown),
+        cell(t.dropped),
+        cell(t.render_ms_mean),
+        cell(t.render_ms_p99),
+        cell(t.settings),
+        cell(done.bookkeeping_ms),
+        cell(done.is_valid),
+        cell(done.reason),
+        row.is_kept_though_invalid ? "counted though invalid" : std::string(name_of(row.standing))};
+    cells.insert(cells.end(), rest.begin(), rest.end());
+    return cells;
+}
+
+} // namespace
+
+std::vector<std::string> factor_columns(Script const& script)
+{
+    static std::set<std::string> const taken{"onset",
+                                             "duration",
+                                             "response_time",
+                                             "trial",
+                                             "block",
+                                             "pass",
+                                             "part",
+                                             "phase",
+                                             "attempt",
+                                             "repeat",
+                                             "cond_a",
+                                             "cond_b",
+                                             "cond_more",
+                                             "reference",
+                                             "order",
+                                             "level",
+                                             "procedure",
+                                             "response",
+                                             "value",
+                                             "answer",
+                                             "correct",
+                                             "device",
+                                             "analysis",
+                                             "onset_method",
+                                             "valid",
+                                             "reason",
+                                             "frames_shown",
+                                             "frames_planned",
+                                             "frames_dropped",
+                                             "render_ms_mean",
+                                             "render_ms_p99",
+                                             "settings_sha256",
+                                             "bookkeeping_ms",
+                                             "response_uncertainty_ms",
+                                             "onset_uncertainty_ms",
+                                             "stimulus",
+                                             "place",
+                                             "questionnaire",
+                                             "time_point",
+                                             "kind",
+                                             "item",
+                                             "text",
+                                             "raw",
+                                             "reversed",
+                                             "scored",
+                                             "participant",
+                                             "participant_id",
+                                             "session",
+                                             "number",
+                                             "task",
+                                             "trial_type",
+                                             "hed",
+                                             "HED",
+                                             "start",
+                                             "time_taken",
+                                             "sample",
+                                             "channel",
+                                             "stim_file"};
+    std::vector<std::string> names;
+    for (Factor const& f : script.factors) names.push_back(taken.count(f.name) ? "factor_" + f.name : f.name);
+    return names;
+}
+
+Table events_table(Script const& script, std::vector<TrialRow> const& rows, int block)
+{
+    Table table{event_columns(script)};
+    for (TrialRow const& row : rows)
+        if (row.step->block == block) table.rows.push_back(event_cells(script, row));
+    return table;
+}
+
+Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int block)
+{
+    Table table{{{"onset", "Onset of the stimulus, since the beginning of the session", "s"},
+                 {"duration", "How long it was shown", "s"},
+                 {"trial", "Number of the trial in its pass of the block, from 1"},
+                 {"pass", "How often the block has come, from 1"},
+                 {"attempt", "1, and one more each time that the trial was repeated"},
+                 {"place", "Place in the order of presentation, from 1"},
+                 {"stimulus", "Letter of the stimulus; r is the reference"}}};
+    for (std::string const& name : factor_columns(script))
+        table.columns.push_back({name, "Level of the factor that the stimulus had"});
+    std::vector<Column> const more{{"level", "Level of what is varied, of the stimulus that has it"},
+                                   {"onset_method", "How the onset was timed", "", kOnsetMethods},
+                                   {"onset_uncertainty_ms", "The onset lies within plus or minus this", "ms"},
+                                   {"frames_planned", "Frames that should have been shown"},
+                                   {"frames_shown", "Frames that were shown"},
+                                   {"frames_dropped", "Frames that came too late"},
+                                   {"render_ms_mean", "Mean time to render a frame", "ms"},
+                                   {"render_ms_p99", "99th percentile of that", "ms"},
+                                   {"settings_sha256", "Hash of the renderer's settings"}};
+    table.columns.insert(table.columns.end(), more.begin(), more.end());
+    for (TrialRow const& row : rows) {
+        if (row.step->block != block) continue;
+        int place = 0;
+        for (StimulusShown const& s : row.done->shown) {
+            std::vector<std::string> cells{seconds_cell(s.onset_s + row.offset_s),
+                                           seconds_cell(s.duration_s),
+                                           cell(row.step->number),
+                                           cell(row.step->pass + 1),
+                                           cell(row.done->attempt),
+                                           cell(++place),
+                                           std::string(1, s.letter)};
+            Stimulus const* const stimulus = stimulus_of(row.step->trial, s.letter);
+            for (std::size_t f = 0; f < script.factors.size(); ++f)
+                cells.push_back(stimulus ? cell(script.factors[f].levels[std::size_t(stimulus->levels[f])].name)
+                                         : cell(""));
+            bool const is_varied = stimulus != nullptr && stimulus->is_varied;
+            std::vector<std::string> const rest{is_varied ? cell(row.done->level) : cell(""),
+                                                cell(s.onset_method),
+                                                cell(s.onset_uncertainty_ms),
+                                                cell(s.frames_planned),
+                                                cell(s.frames_shown),
+                                                cell(s.frames_dropped),
+                                                cell(s.render_ms_mean),
+                                                cell(s.render_ms_p99),
+                                                cell(s.settings_sha256)};
+            cells.insert(cells.end(), rest.begin(), rest.end());
+            table.rows.push_back(std::move(cells));
+        }
+    }
+    return table;
+}
+
+} // namespace study

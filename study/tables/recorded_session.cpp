@@ -1,0 +1,145 @@
+#include "study/tables/recorded_session.h"
+
+#include "study/record/moments.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+
+namespace study {
+namespace {
+
+ScriptError broken(Script const& script, RecordedSession const& session, std::string const& problem)
+{
+    return {fmt::format("journal of {}", session.plan.participant_id),
+            {},
+            problem,
+            fmt::format("'{}' plans it otherwise", script.file),
+            "use the script and the plan with which the session was recorded"};
+}
+
+Standing standing_of(Script const& script, TrialRow const& row, int attempts)
+{
+    if (row.step->trial.phase == Phase::practice) return Standing::practice;
+    if (row.done->attempt < attempts) return Standing::superseded;
+    bool const is_answered = !row.done->response.empty() || row.done->value;
+    if (!is_answered) return row.done->is_valid ? Standing::unanswered : Standing::invalid;
+    if (!row.done->is_valid && script.timing.on_bad_trial != BadTrial::keep) return Standing::invalid;
+    return row.step->trial.phase == Phase::catches ? Standing::catch_trial : Standing::counted;
+}
+
+} // namespace
+
+SessionStarted const& start_of(Script const& script, RecordedSession const& session)
+{
+    auto const& entries = session.record.entries;
+    auto const* start = entries.empty() ? nullptr : std::get_if<SessionStarted>(&entries.front());
+    if (start == nullptr) throw broken(script, session, "the journal does not begin with the start of a session");
+    if (start->experiment != script.id)
+        throw broken(script, session, fmt::format("it is of the experiment '{}'", start->experiment));
+    if (start->participant_id != session.plan.participant_id)
+        throw broken(script, session, fmt::format("it is of the participant '{}'", start->participant_id));
+    return *start;
+}
+
+bool is_complete(RecordedSession const& session)
+{
+    auto const& entries = session.record.entries;
+    return std::any_of(entries.begin(), entries.end(), [](JournalEntry const& e) {
+        auto const* end = std::get_if<SessionEnded>(&e);
+        return end != nullptr && end->is_complete;
+    });
+}
+
+std::vector<TimedEntry> timed_entries(RecordedSession const& session)
+{
+    std::vector<TimedEntry> out;
+    double offset_s = 0, last_s = 0; // last_s: since the session's beginning
+    int part = 1;
+    for (JournalEntry const& entry : session.record.entries) {
+        if (auto const* start = std::get_if<SessionStarted>(&entry)) {
+            part = start->part;
+            offset_s = (out.empty() ? 0 : last_s + std::max(0.0, start->gap_s)) - start->clock_s;
+        }
+        if (auto const moment = last_moment(entry)) last_s = std::max(last_s, *moment + offset_s);
+        out.push_back({&entry, part, offset_s});
+    }
+    return out;
+}
+
+std::string_view name_of(Standing standing)
+{
+    switch (standing) {
+    case Standing::counted:
+        return "counted";
+    case Standing::practice:
+        return "practice";
+    case Standing::catch_trial:
+        return "catch";
+    case Standing::superseded:
+        return "repeated later";
+    case Standing::invalid:
+        return "invalid";
+    case Standing::unanswered:
+        break;
+    }
+    return "no answer";
+}
+
+std::vector<TrialRow> trial_rows(Script const& script, RecordedSession const& session)
+{
+    SessionStarted const& start = start_of(script, session);
+    std::map<int, int> attempts;
+    for (JournalEntry const& entry : session.record.entries)
+        if (auto const* done = std::get_if<TrialDone>(&entry))
+            attempts[done->step] = std::max(attempts[done->step], done->attempt);
+    std::vector<TrialRow> rows;
+    for (TimedEntry const& timed : timed_entries(session)) {
+        auto const* done = std::get_if<TrialDone>(timed.entry);
+        if (done == nullptr) continue;
+        if (done->step < 0 || done->step >= int(session.plan.steps.size()) ||
+            session.plan.steps[std::size_t(done->step)].kind != PlanStepKind::trial)
+            throw broken(script, session, fmt::format("step {} is no trial", done->step + 1));
+        PlanStep const& step = session.plan.steps[std::size_t(done->step)];
+        TrialRow row{&step,      &script.blocks[std::size_t(step.block)],
+                     done,       start.session,
+                     timed.part, timed.offset_s,
+                     Standing{}, false};
+        row.standing = standing_of(script, row, attempts[done->step]);
+        row.is_kept_though_invalid = row.standing == Standing::counted && !done->is_valid;
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+Stimulus const* stimulus_of(Trial const& trial, char letter)
+{
+    if (letter == 'r') return trial.reference ? &*trial.reference : nullptr;
+    auto const i = std::size_t(letter - 'a');
+    return letter >= 'a' && i < trial.stimuli.size() ? &trial.stimuli[i] : nullptr;
+}
+
+int compared_factor(Block const& block)
+{
+    if (block.pairs) return block.pairs->factor;
+    if (block.rank >= 0) return block.rank;
+    return block.compare ? block.compare->factor : -1;
+}
+
+int shared_level(Block const& block, Trial const& trial, int factor)
+{
+    if (trial.stimuli.empty() || compared_factor(block) == factor) return -1;
+    return trial.stimuli.front().levels[std::size_t(factor)];
+}
+
+std::optional<char> chosen_letter(TrialRow const& row)
+{
+    constexpr std::string_view kPlaces[] = {"first", "second", "third"};
+    std::string order = row.step->trial.order;
+    std::erase(order, 'r');
+    for (std::size_t i = 0; i < std::size(kPlaces); ++i)
+        if (row.done->response == kPlaces[i] && i < order.size()) return order[i];
+    return std::nullopt;
+}
+
+} // namespace study

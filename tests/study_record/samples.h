@@ -1,0 +1,46 @@
+#pragma once
+#include "study/base/random.h"
+#include "study/record/entries.h"
+
+namespace study::test {
+
+/// One entry of every kind, every field set.
+inline std::vector<JournalEntry> entries_of_every_kind()
+{
+    SessionStarted started{"bounces", "P003",
+                           3,         1,
+                           2,         "2026-11-22T08:00:00.000Z",
+                           12.5,      "0.1.0",
+                           "1a2b3c4", "aa",
+                           "bb",      18446744073709551615u,
+                           "cc",      {{"device", "GPU \"x\""}, {"b", ""}},
+                           true,      -0.25};
+    StimulusShown const shown{'b', 1.0 / 3, 6.1, "oml", 0.2, 360, 359, 1, 8.25, 11.5, "dd"};
+    TrialDone trial;
+    trial.step = 41;
+    trial.attempt = 2;
+    trial.shown = {shown, shown};
+    trial.shown[1].letter = 'r';
+    trial.level = 362.03867196751236;
+    trial.response = "first";
+    trial.value = -0.0;
+    trial.is_correct = false;
+    trial.response_s = 5e-324;
+    trial.reaction_ms = 1e308;
+    trial.response_uncertainty_ms = 0.1;
+    trial.device = "key:left";
+    trial.is_valid = false;
+    trial.reason = "dropped_frames";
+    trial.bookkeeping_ms = 0.123456789012345678;
+    return {started,
+            CalibrationDone{600, 59.94, 16.683, 0.021, "oml", false, "the period varies"},
+            trial,
+            TrialDone{},
+            StepDone{7, 1.5, 2.5, "skipped"},
+            QuestionnaireDone{8, 0, 1, {3.0, std::nullopt, 0.1}},
+            ParticipantAsked{{{"age_band", "20-29"}, {"vision", "normal\n\t\"quoted\" \\ \xe2\x82\xac"}}},
+            NoteTaken{1.25, "pause", "the telephone rang"},
+            SessionEnded{100, "2026-11-22T09:00:00.000Z", true, ""}};
+}
+
+} // namespace study::test

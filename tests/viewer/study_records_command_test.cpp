@@ -1,0 +1,83 @@
+// lightwell study rebuild, export, analyze, report: what they write and refuse.
+
+#include "tests/viewer/run_program.h"
+
+#include <nlohmann/json.hpp>
+
+namespace viewer::test {
+namespace {
+
+/// Two simulated participants of the experiment `rating` in the folder `records`.
+void simulate(TemporaryFolder const& folder)
+{
+    run_well("study example rating --out rating.yaml", folder.path());
+    run_well("study simulate rating.yaml --participants 1..2 --out records", folder.path());
+}
+
+TEST(StudyRecords, AreRebuiltToTheSameBytes)
+{
+    TemporaryFolder const folder;
+    simulate(folder);
+    Outcome const first = run_well("study rebuild records --script rating.yaml", folder.path());
+    EXPECT_NE(first.out.find("records: 2 sessions, "), std::string::npos) << first.out;
+    EXPECT_EQ(file_text(folder / "records/code/rating.yaml"), file_text(folder / "rating.yaml"));
+    auto const participants = file_text(folder / "records/participants.tsv");
+    EXPECT_TRUE(participants.starts_with("participant_id\tnumber\tsessions\tcomplete\tsimulated")) << participants;
+    std::map<std::string, std::string> before;
+    for (auto const& e : std::filesystem::recursive_directory_iterator(folder / "records"))
+        if (e.is_regular_file()) before[e.path().string()] = file_text(e.path());
+    run_well("study rebuild records", folder.path()); // the script is found in code/
+    for (auto const& [file, text] : before) EXPECT_EQ(file_text(file), text) << file;
+}
+
+TEST(StudyRecords, AreAnalysedExportedAndReported)
+{
+    TemporaryFolder const folder;
+    simulate(folder);
+    run_well("study rebuild records --script rating.yaml", folder.path());
+    Outcome const text = run_well("study analyze records --replicates 100 --out numbers", folder.path());
+    EXPECT_NE(text.out.find("2 of 2 sessions were answered by model observers"), std::string::npos) << text.out;
+    auto const j = nlohmann::json::parse(run_well("study analyze records --json", folder.path()).out);
+    EXPECT_EQ(j["participants"], 2);
+    EXPECT_FALSE(j["tables"]["scores"].empty());
+    EXPECT_TRUE(j["tables"]["scores"][0]["score"].is_number());
+    EXPECT_TRUE(std::filesystem::exists(folder / "numbers/scores.csv"));
+    EXPECT_TRUE(nlohmann::json::accept(file_text(folder / "numbers/analysis.json")));
+    run_well("study export records --out exported --sqlite records.sqlite", folder.path());
+    EXPECT_TRUE(file_text(folder / "records.sqlite").starts_with("SQLite format 3"));
+    EXPECT_TRUE(file_text(folder / "exported/analysis.R").find("lmer") != std::string::npos);
+    std::ofstream(folder / "records/sub-P001/ses-01/beh/x_frames.csv")
+        << "step,attempt,shown,t_swap_s,uncertainty_ms\n1,1,0,10.000,0\n1,1,0,10.016,0\n1,1,0,10.033,0\n1,1,1,11,"
+           "0\n"
+           "1,1,1,11.016,0\n1,1,";
+    run_well("study report records --out report.html", folder.path());
+    EXPECT_NE(file_text(folder / "report.html").find("<b>Intervals between frames</b> 3 values"),
+              std::string::npos);
+    EXPECT_TRUE(file_text(folder / "report.html").starts_with("<!DOCTYPE html>"));
+}
+
+void expect_refused(std::string const& arguments, TemporaryFolder const& folder, std::string const& message)
+{
+    Outcome const o = run(arguments, folder.path());
+    EXPECT_EQ(o.code, 2) << arguments;
+    EXPECT_NE(o.err.find(message), std::string::npos) << o.err;
+}
+
+TEST(StudyRecords, ThatAreNotThereOrOfAnotherScriptAreRefused)
+{
+    TemporaryFolder const folder;
+    expect_refused("study analyze nowhere", folder, "no session is there");
+    simulate(folder);
+    std::filesystem::remove_all(folder / "records/code"); // which a session's end keeps
+    expect_refused("study analyze records", folder, "the script of the sessions is not there");
+    run_well("study example pairs --out pairs.yaml", folder.path());
+    expect_refused("study analyze records --script pairs.yaml", folder, "recorded with another script");
+    expect_refused("study analyze records --script rating.yaml --exclude P099", folder,
+                   "'P099' is to be excluded");
+    expect_refused("study export records --script rating.yaml", folder, "nothing to export to");
+    expect_refused("study report records --script rating.yaml --out no/where.html", folder, "no");
+    EXPECT_FALSE(std::filesystem::exists(folder / "records/code")) << "reading changes nothing";
+}
+
+} // namespace
+} // namespace viewer::test

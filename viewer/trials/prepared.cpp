@@ -1,0 +1,147 @@
+#include "viewer/trials/prepared.h"
+
+#include "gi/base/error.h"
+#include "gi/base/file.h"
+#include "gi/base/picture_file.h"
+#include "study/base/sha256.h"
+#include "viewer/trials/stimulus_place.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+#include <unistd.h>
+
+namespace viewer {
+namespace {
+
+constexpr int kPathsWithoutSetting = 64; ///< per pixel, where the script says nothing of quality
+
+/// Of a scene's file; built-in scenes are as the version of the program has them.
+std::string scene_hash(std::string const& scene)
+{
+    static std::map<std::pair<std::string, std::filesystem::file_time_type>, std::string> known;
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(scene, none)) return scene;
+    auto& hash = known[{scene, std::filesystem::last_write_time(scene)}];
+    if (hash.empty()) {
+        auto const bytes = gi::read_bytes(scene);
+        hash = study::sha256({reinterpret_cast<char const*>(bytes.data()), bytes.size()});
+    }
+    return hash;
+}
+
+std::string file_name(int frame, int view) { return fmt::format("{:05}_{}.exr", frame, view); }
+
+/// Only what is shown.
+gi::Picture shown_part(gi::Picture const& picture)
+{
+    gi::Picture out;
+    out.width = picture.width;
+    out.height = picture.height;
+    out.layers.push_back(*picture.find("color"));
+    return out;
+}
+
+} // namespace
+
+std::string prepared_key(PreparedStimulus const& w, std::string const& version)
+{
+    return study::sha256(fmt::format("{} {} {}x{} {} {:.6g} {} {}", w.stimulus.sha256,
+                                     scene_hash(w.stimulus.scene), w.view.size_px.x, w.view.size_px.y,
+                                     name_of(w.view.stereo), w.view.duration_s, w.view.warmup_frames, version));
+}
+
+bool prepare_stimulus(PreparedStimulus const& wanted, std::filesystem::path const& folder, std::string const& key,
+                      SceneAccess const& scenes, int threads, gi::StopRequest const& stop, gi::Report& report)
+{
+    if (std::filesystem::exists(folder / key)) return false;
+    StimulusSettings const& s = wanted.stimulus;
+    Session session(scenes.load, threads, report);
+    for (SettingKey const& k : setting_keys())
+        if (auto const value = get(s.settings, k.key); value != get(session.settings(), k.key))
+            session.apply({k.key, value});
+    session.apply({"scene", s.scene});
+    for (Change const& c : s.edits) session.apply(c);
+    StimulusPlace const place = place_of(session.world(), scenes.camera(session.world(), s.camera));
+    bool const moves = s.path != StimulusPath::none || (s.settings.play && session.moves());
+    int const frames = moves ? std::max(1, int(std::lround(wanted.view.duration_s * s.settings.rate_hz))) : 1;
+    std::filesystem::path const making = folder / fmt::format("{}.{}", key, getpid());
+    std::filesystem::create_directories(making);
+    try {
+        FrameOrder order;
+        order.paths = s.settings.paths > 0 ? s.settings.paths : kPathsWithoutSetting;
+        for (int f = -wanted.view.warmup_frames; f < frames; ++f) {
+            if (stop.requested())
+                throw gi::InputError("preparing stimuli", "it was interrupted", "start it again");
+            order.frame = std::uint64_t(f + wanted.view.warmup_frames);
+            double const seconds = std::max(0, f) / s.settings.rate_hz;
+            order.scene_s = s.settings.play ? s.settings.speed * seconds : 0;
+            order.views = stimulus_views(place, s, wanted.view, seconds);
+            SessionFrame const frame = session.render(order, {});
+            for (std::size_t v = 0; f >= 0 && v < frame.views.size(); ++v)
+                gi::write_exr(making / file_name(f, int(v)), shown_part(frame.views[v].picture),
+                              gi::PixelType::half, report);
+        }
+        nlohmann::json tone = {{"exposure", s.settings.exposure_ev}, {"tone", s.settings.tone},
+                               {"swap_eyes", s.settings.swap_eyes},  {"frames", frames},
+                               {"views", order.views.size()},        {"sha256", s.sha256}};
+        gi::write_text(making / "stimulus.json", tone.dump(1) + "\n");
+        std::filesystem::rename(making, folder / key);
+    } catch (...) {
+        std::error_code none;
+        std::filesystem::remove_all(making, none);
+        // Another process may have been faster.
+        if (!std::filesystem::exists(folder / key)) throw;
+    }
+    return true;
+}
+
+void PreparedSource::prepare(StimulusSettings const& stimulus, StimulusView const& view)
+{
+    frames_.clear();
+    std::filesystem::path const folder = folder_ / prepared_key({stimulus, view}, version_);
+    if (!std::filesystem::exists(folder / "stimulus.json"))
+        throw gi::InputError(fmt::format("a stimulus of {} is not in '{}'", stimulus.scene, folder_.string()),
+                             fmt::format("nothing was prepared for a place of {} x {} px by this version",
+                                         view.size_px.x, view.size_px.y),
+                             "run lightwell study prepare with the same script and --size");
+    auto const bytes = gi::read_bytes(folder / "stimulus.json");
+    auto const about = nlohmann::json::parse(bytes.begin(), bytes.end());
+    duration_s_ = view.duration_s;
+    int const views = about.at("views").get<int>();
+    for (int f = 0; f < about.at("frames").get<int>(); ++f) {
+        auto frame = std::make_shared<LiveFrame>();
+        frame->settings = stimulus.settings;
+        for (int v = 0; v < views; ++v) {
+            gi::Picture picture = gi::read_exr(folder / file_name(f, v));
+            ViewOrder order;
+            order.width = picture.width;
+            order.height = picture.height;
+            frame->order.views.push_back(order);
+            frame->result.views.push_back({std::move(picture), {}});
+        }
+        frames_.push_back(std::move(frame));
+    }
+}
+
+void PreparedSource::at(double seconds) { at_s_ = std::max(0.0, seconds); }
+
+void PreparedSource::change(StimulusSettings const&)
+{
+    throw gi::InputError("an adjustment of prepared stimuli", "pictures are there for planned levels only",
+                         "write stimuli: live in the block");
+}
+
+void PreparedSource::walk(NavigationInput const&, double)
+{
+    throw gi::InputError("a walk through prepared stimuli", "they are pictures", "write stimuli: live");
+}
+
+std::shared_ptr<LiveFrame const> PreparedSource::newest()
+{
+    if (frames_.empty()) return nullptr;
+    double const round = std::fmod(at_s_, duration_s_) / duration_s_;
+    return frames_[std::min(frames_.size() - 1, std::size_t(round * double(frames_.size())))];
+}
+
+} // namespace viewer

@@ -1,0 +1,149 @@
+#include "viewer/trials/stimulus_settings.h"
+
+#include "gi/base/error.h"
+#include "study/base/sha256.h"
+#include "viewer/session/scene_edits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+
+namespace viewer {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The words of scripts (`exact`, `imperfect`, `directional_ao`) and the methods that they mean.
+std::string visibility_method(std::string const& word)
+{
+    static std::map<std::string, std::string> const kMethods{{"exact", "vpl_exact"},         {"slhb", "vpl_slhb"},
+                                                             {"imperfect", "vpl_imperfect"}, {"ao", "vpl_ao"},
+                                                             {"directional_ao", "vpl_dao"},  {"none", "vpl_none"}};
+    auto const found = kMethods.find(word);
+    if (found != kMethods.end()) return found->second;
+    std::string known;
+    for (auto const& [name, method] : kMethods) known += (known.empty() ? "" : ", ") + name;
+    throw gi::InputError("gi.visibility: " + word, "there is no such approximation", "choose one of: " + known);
+}
+
+Json value_of(std::string const& text)
+{
+    Json const value = Json::parse(text, nullptr, false);
+    return value.is_discarded() ? Json(text) : value;
+}
+
+/// Levels that a procedure chooses lie between whole numbers: settings that are whole take the nearest.
+Json fitting(std::string const& key, Json const& value)
+{
+    auto const known = setting_keys();
+    auto const k = std::find_if(known.begin(), known.end(), [&](SettingKey const& s) { return s.key == key; });
+    bool const is_whole = k != known.end() && k->type == SettingType::whole_number;
+    return is_whole && value.is_number_float() ? Json(std::llround(value.get<double>())) : value;
+}
+
+StimulusPath path_of(std::string const& name)
+{
+    if (name == "orbit") return StimulusPath::orbit;
+    throw gi::InputError("camera: path:" + name, "there is no such path", "write path:orbit");
+}
+
+std::string text_of(StimulusSettings const& s)
+{
+    Json all = Json::object();
+    for (SettingKey const& k : setting_keys()) all[k.key] = get(s.settings, k.key);
+    Json edits = Json::array();
+    for (Change const& c : s.edits) edits.push_back({c.key, c.value});
+    return Json{{"scene", s.scene},    {"camera", s.camera},
+                {"path", int(s.path)}, {"view", s.view ? int(*s.view) : -1},
+                {"settings", all},     {"edits", edits}}
+        .dump();
+}
+
+} // namespace
+
+StimulusSettings stimulus_settings(study::Patch const& patch, std::string const& camera)
+{
+    StimulusSettings s;
+    s.settings.panel = false;
+    s.settings.refine = false;
+    constexpr std::string_view kPath = "path:", kGi = "gi.";
+    auto const see_from = [&](std::string const& name) {
+        if (name.starts_with(kPath))
+            s.path = path_of(name.substr(kPath.size()));
+        else
+            s.camera = name;
+    };
+    see_from(camera);
+    for (auto const& [written, text] : patch) {
+        std::string const key = written.starts_with(kGi) ? written.substr(kGi.size()) : written;
+        if (key == "scene") {
+            s.scene = text;
+        } else if (key == "camera") {
+            see_from(text);
+        } else if (key == "visibility") {
+            set(s.settings, {"method", visibility_method(text)});
+        } else if (key == "view") {
+            if (text != "window" && text != "openxr")
+                throw gi::InputError("view: " + text, "there is no such display", "choose window or openxr");
+            s.view = text == "openxr" ? StimulusViewer::headset : StimulusViewer::window;
+        } else if (is_scene_edit(key)) {
+            s.edits.push_back({key, value_of(text)});
+        } else {
+            set(s.settings, {key, fitting(key, value_of(text))});
+        }
+    }
+    if (s.scene.empty())
+        throw gi::InputError("a stimulus without a scene", "there would be nothing to show",
+                             "give a factor or defaults.settings the setting `scene`");
+    s.sha256 = study::sha256(text_of(s));
+    return s;
+}
+
+study::Block plain_block(study::Script const& script)
+{
+    study::Block block;
+    block.name = "free_walk";
+    block.settings = script.defaults.settings;
+    block.camera = script.defaults.camera;
+    return block;
+}
+
+std::vector<StimulusSettings> stimuli_of(study::Script const& script, study::Plan const& plan)
+{
+    std::map<std::string, StimulusSettings> all;
+    for (study::PlanStep const& step : plan.steps) {
+        bool const walks = step.kind == study::PlanStepKind::free_walk;
+        if (step.kind != study::PlanStepKind::trial && !walks) continue;
+        study::Block const block = step.block >= 0 ? script.blocks[std::size_t(step.block)] : plain_block(script);
+        auto const add = [&](study::Stimulus const& stimulus) {
+            try {
+                StimulusSettings s = stimulus_settings(settings_of(script, block, stimulus), block.camera);
+                all.emplace(s.sha256, std::move(s));
+            } catch (gi::InputError const& e) {
+                throw gi::InputError(fmt::format("{}: block {}, {}", script.file, block.name,
+                                                 stimulus_label(script, block, stimulus)),
+                                     e.what(), "lightwell info --settings lists all keys");
+            }
+        };
+        std::vector<study::Stimulus> stimuli = step.trial.stimuli;
+        if (walks) stimuli = {study::Stimulus{step.levels, false, {}}};
+        if (step.trial.reference) stimuli.push_back(*step.trial.reference);
+        for (study::Stimulus& stimulus : stimuli) {
+            bool const is_open = stimulus.is_varied && !stimulus.level && block.compare;
+            if (!is_open) {
+                add(stimulus);
+                continue;
+            }
+            for (double const level : {block.compare->low, block.compare->high}) {
+                stimulus.level = level;
+                add(stimulus);
+            }
+        }
+    }
+    std::vector<StimulusSettings> list;
+    for (auto& [digits, s] : all) list.push_back(std::move(s));
+    return list;
+}
+
+} // namespace viewer

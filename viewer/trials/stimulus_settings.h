@@ -1,0 +1,46 @@
+#pragma once
+// From the settings that a script gives a stimulus to those of the renderer.
+//
+// Keys are those of viewer/session/settings.h, with or without "gi." before them, edits of the scene
+// (viewer/session/scene_edits.h), and: scene (a file or a built-in name), camera (of the scene), view (window,
+// openxr), and gi.visibility, which chooses a method that approximates the visibility of indirect light
+// (gi/visibility).
+
+#include "study/design/plan.h"
+#include "viewer/session/settings.h"
+
+namespace viewer {
+
+/// How the camera moves while a stimulus is shown.
+enum class StimulusPath {
+    none,
+    orbit ///< once round a small horizontal circle, looking the same way: parallax without a new place
+};
+
+/// What it is seen in.
+enum class StimulusViewer {
+    window, ///< or the walls of a display
+    headset
+};
+
+struct StimulusSettings {
+    std::string scene, camera; ///< camera: of the scene; empty = its first
+    StimulusPath path = StimulusPath::none;
+    std::optional<StimulusViewer> view; ///< none = as the command line says
+    Settings settings;                  ///< whole: what is not said is as it is by default
+    std::vector<Change> edits;          ///< of the scene
+    std::string sha256;                 ///< of all this as text: the same digits, the same pictures
+};
+
+/// Throws InputError on a key or value that the renderer does not know, naming it.
+/// @param camera  of the block: "", a name or "path:orbit"
+StimulusSettings stimulus_settings(study::Patch const& patch, std::string const& camera);
+
+/// What a step of the sequence has that belongs to no block.
+study::Block plain_block(study::Script const& script);
+
+/// Every stimulus of a plan once, by its sha256; those whose level is chosen when the trial comes at the ends of
+/// its range. Throws InputError naming the block where one cannot be.
+std::vector<StimulusSettings> stimuli_of(study::Script const& script, study::Plan const& plan);
+
+} // namespace viewer
