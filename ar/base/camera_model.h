@@ -1,0 +1,59 @@
+#pragma once
+// From rays to pixels: the models of OpenCV's calib3d. A point of the camera's frame (x right, y down, z ahead)
+// goes to the plane z = 1, is moved there by the lens, and lands at (fx x + cx, fy y + cy). Pixel centres have
+// whole coordinates: the picture spans [-0.5, width - 0.5].
+//   radial_tangential  k1 k2 p1 p2 k3            Brown 1966
+//   rational           k1 k2 p1 p2 k3 k4 k5 k6   the same over 1 + k4 r^2 + k5 r^4 + k6 r^6
+//   fisheye            k1 k2 k3 k4               Kannala and Brandt 2006, of the angle to the axis
+
+#include <array>
+#include <glm/glm.hpp>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ar {
+
+enum class LensModel { pinhole, radial_tangential, rational, fisheye };
+/// 0, 5, 8, 4.
+int coefficient_count(LensModel lens);
+/// As calibration files spell them: "pinhole", "radial_tangential", "rational", "fisheye".
+std::string name_of(LensModel lens);
+std::optional<LensModel> lens_named(std::string const& name);
+
+struct CameraModel {
+    LensModel lens = LensModel::pinhole;
+    glm::ivec2 size_px{0};
+    double fx = 0, fy = 0;              ///< pixels
+    double cx = 0, cy = 0;              ///< pixels
+    std::array<double, 8> distortion{}; ///< in the order above; what a model does not have is 0
+
+    friend bool operator==(CameraModel const&, CameraModel const&) = default;
+};
+
+/// 3x3.
+cv::Matx33d camera_matrix(CameraModel const& camera);
+/// 1 x coefficient_count, as OpenCV's functions take it.
+cv::Mat distortion_of(CameraModel const& camera);
+
+/// Where a point of the camera's frame is seen, in pixels; nothing if it is not ahead of the camera (for fisheye:
+/// at the camera).
+std::optional<glm::dvec2> project(CameraModel const& camera, glm::dvec3 point);
+/// The direction (length 1, camera's frame) that a pixel sees. The inverse of `project` to 1e-9 where the lens has
+/// one; nothing where the iteration finds none (beyond the range of the model).
+std::optional<glm::dvec3> direction_of(CameraModel const& camera, glm::dvec2 pixel);
+
+/// The same camera for pictures of another size of the same sensor.
+CameraModel scaled(CameraModel const& camera, glm::ivec2 size_px);
+
+/// For cv::remap: where each pixel of `to` (2 floats, x and y) is found in pictures of `from`, both at one place
+/// and looking the same way. Where `from` does not see it: (-1e4, -1e4).
+cv::Mat remap_table(CameraModel const& to, CameraModel const& from);
+
+/// @throws InputError not finite, no focal length, no size, a centre far outside, a lens that folds back within
+/// the picture; `where` begins the message
+void check(CameraModel const& camera, std::string const& where);
+
+} // namespace ar
