@@ -12,6 +12,8 @@ namespace ar {
 struct Pose {
     glm::dquat rotation{1, 0, 0, 0}; ///< of length 1
     glm::dvec3 position_m{0};
+
+    friend bool operator==(Pose const&, Pose const&) = default;
 };
 
 glm::dvec3 operator*(Pose const& a_from_b, glm::dvec3 point_b);

@@ -19,6 +19,7 @@ struct Sighting {
     std::vector<SightedPoint> points;
     int markers_seen = 0;        ///< that the map of the world knows
     int markers_unknown = 0;     ///< seen, but not in the map
+    int markers_ambiguous = 0;   ///< left out: their identifier is in the picture more than once
     int candidates_rejected = 0; ///< squares without a code that is known
 };
 
