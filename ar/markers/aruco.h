@@ -1,0 +1,52 @@
+#pragma once
+// OpenCV's aruco module behind values. The only file that knows its classes is aruco.cpp: up to 4.6 they are in
+// opencv_contrib, from 4.7 on in objdetect under other names.
+
+#include "ar/markers/marker_map.h"
+
+#include <opencv2/core.hpp>
+
+namespace ar {
+
+/// How corners are found within their pixels.
+enum class Refinement {
+    none,     ///< of the contour
+    subpixel, ///< gradients around a corner (Foerstner)
+    contour,  ///< lines through the contour
+    apriltag, ///< AprilTag 2's own search for quads (Wang and Olson 2016); slow
+};
+std::string name_of(Refinement refinement);
+
+struct SearchSettings {
+    Refinement refinement = Refinement::subpixel;
+    double smallest_side_px = 12; ///< of markers
+    /// Windows of the adaptive threshold, pixels, odd.
+    int smallest_window_px = 3, largest_window_px = 23, window_step_px = 10;
+};
+
+/// A marker in a picture; pixels with whole numbers at their centres.
+struct FoundMarker {
+    int id = 0;
+    std::array<cv::Point2f, 4> corners; ///< upper left, upper right, lower right, lower left as printed
+};
+
+struct FoundMarkers {
+    std::vector<FoundMarker> markers; ///< one identifier may be there more than once
+    int rejected = 0;                 ///< squares without a known code
+};
+
+/// @param gray CV_8UC1; @param dictionary a name that exists
+FoundMarkers find_markers(cv::Mat const& gray, std::string const& dictionary, SearchSettings const& settings);
+
+struct FoundCorner {
+    int index = 0; ///< of inner_corners()
+    cv::Point2f pixel;
+};
+/// The inner corners of a board whose both neighbouring markers were found.
+std::vector<FoundCorner> find_inner_corners(cv::Mat const& gray, CharucoBoard const& board,
+                                            std::vector<FoundMarker> const& markers);
+
+/// The cells of a marker, border included, row by row from the top left; true = black.
+std::vector<std::vector<bool>> cells_of(std::string const& dictionary, int id);
+
+} // namespace ar

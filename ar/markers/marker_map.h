@@ -1,0 +1,90 @@
+#pragma once
+// What is in the world to be recognised: single markers, ChArUco boards and grids of markers, and where they are.
+// The world is in metres, right-handed, y up. A thing's own frame has x to the right and y upward as it is
+// printed, and z out of the paper towards who looks at it. Its origin is
+//   of a marker           the middle of its black square,
+//   of a board or a grid  its lower left corner: of the squares (board), of the markers' black squares (grid).
+// Lying flat on a table, printed top away from the viewer, is rotation_deg: [-90, 0, 0].
+
+#include "ar/base/pose.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace ar {
+
+struct Marker {
+    std::string dictionary; ///< as OpenCV names it: DICT_4X4_50, DICT_APRILTAG_36h11, ...
+    int id = 0;
+    double side_m = 0; ///< of the black square with its border
+    Pose world_from_marker;
+
+    friend bool operator==(Marker const&, Marker const&) = default;
+};
+
+/// A chessboard whose white squares hold markers, numbered row by row from the top left.
+struct CharucoBoard {
+    int squares_x = 0, squares_y = 0;
+    double square_m = 0, marker_m = 0;
+    std::string dictionary;
+    int first_id = 0;
+    /// The upper left square is black. Before OpenCV 4.6 it was white where squares_y is even: then true.
+    bool legacy_pattern = false;
+    Pose world_from_board;
+
+    friend bool operator==(CharucoBoard const&, CharucoBoard const&) = default;
+};
+
+/// Markers in rows and columns, numbered row by row from the top left.
+struct MarkerGrid {
+    int markers_x = 0, markers_y = 0;
+    double marker_m = 0, gap_m = 0; ///< side of a marker; white between two
+    std::string dictionary;
+    int first_id = 0;
+    Pose world_from_grid;
+
+    friend bool operator==(MarkerGrid const&, MarkerGrid const&) = default;
+};
+
+struct MarkerMap {
+    std::vector<Marker> markers;
+    std::vector<CharucoBoard> boards;
+    std::vector<MarkerGrid> grids;
+
+    friend bool operator==(MarkerMap const&, MarkerMap const&) = default;
+};
+
+/// Things are numbered, as SightedPoint::marker has it: first markers, then boards, then grids.
+int count_of(MarkerMap const& map);
+/// "marker 7 of DICT_4X4_50", "board 1 (7 x 5 squares)", "grid 1 (2 x 3 markers)".
+std::string describe(MarkerMap const& map, int thing);
+Pose world_from_thing(MarkerMap const& map, int thing);
+
+/// All names of dictionaries.
+std::vector<std::string> const& dictionary_names();
+/// The identifiers that a dictionary has: 0 to this - 1. 0: there is no such dictionary.
+int dictionary_size(std::string const& name);
+
+/// A marker as it is found, alone or as part of a board or grid.
+struct PlacedMarker {
+    int thing = 0; ///< number within the map
+    std::string dictionary;
+    int id = 0;
+    /// Of the black square, in the frame of the thing (of a lone marker: its own): upper left, upper right, lower
+    /// right, lower left as printed.
+    std::array<glm::dvec3, 4> corners_m;
+};
+std::vector<PlacedMarker> placed_markers(MarkerMap const& map);
+
+int marker_count(CharucoBoard const& board);
+/// The inner corners of a board in its frame, row by row from the top left: (squares_x - 1) x (squares_y - 1).
+std::vector<glm::dvec3> inner_corners(CharucoBoard const& board);
+/// Whether the square in this column and row, from the upper left, is black.
+bool is_black(CharucoBoard const& board, int column, int row);
+
+/// @throws InputError unknown dictionary, an identifier that it has not, one identifier twice, lengths that are not
+/// positive and finite or markers larger than their squares, rotations that are none; `where` begins the message
+void check(MarkerMap const& map, std::string const& where);
+
+} // namespace ar
