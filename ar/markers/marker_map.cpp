@@ -14,13 +14,13 @@ struct DictionarySize {
     int size;
 };
 constexpr DictionarySize kDictionaries[] = {
-    {"DICT_4X4_50", 50},          {"DICT_4X4_100", 100},         {"DICT_4X4_250", 250},
-    {"DICT_4X4_1000", 1000},      {"DICT_5X5_50", 50},           {"DICT_5X5_100", 100},
-    {"DICT_5X5_250", 250},        {"DICT_5X5_1000", 1000},       {"DICT_6X6_50", 50},
-    {"DICT_6X6_100", 100},        {"DICT_6X6_250", 250},         {"DICT_6X6_1000", 1000},
-    {"DICT_7X7_50", 50},          {"DICT_7X7_100", 100},         {"DICT_7X7_250", 250},
-    {"DICT_7X7_1000", 1000},      {"DICT_ARUCO_ORIGINAL", 1024}, {"DICT_APRILTAG_16h5", 30},
-    {"DICT_APRILTAG_25h9", 35},   {"DICT_APRILTAG_36h10", 2320}, {"DICT_APRILTAG_36h11", 587},
+    {"DICT_4X4_50", 50},        {"DICT_4X4_100", 100},         {"DICT_4X4_250", 250},
+    {"DICT_4X4_1000", 1000},    {"DICT_5X5_50", 50},           {"DICT_5X5_100", 100},
+    {"DICT_5X5_250", 250},      {"DICT_5X5_1000", 1000},       {"DICT_6X6_50", 50},
+    {"DICT_6X6_100", 100},      {"DICT_6X6_250", 250},         {"DICT_6X6_1000", 1000},
+    {"DICT_7X7_50", 50},        {"DICT_7X7_100", 100},         {"DICT_7X7_250", 250},
+    {"DICT_7X7_1000", 1000},    {"DICT_ARUCO_ORIGINAL", 1024}, {"DICT_APRILTAG_16h5", 30},
+    {"DICT_APRILTAG_25h9", 35}, {"DICT_APRILTAG_36h10", 2320}, {"DICT_APRILTAG_36h11", 587},
 };
 
 constexpr int kMostSquares = 200;
@@ -39,7 +39,8 @@ public:
     {
         if (!(v_m >= 0 && v_m <= kLongest_m) || (v_m == 0 && !may_be_zero))
             refuse(fmt::format("{} is {} m", what, v_m),
-                   fmt::format("lengths are {} and at most {:g} m", may_be_zero ? "0 or more" : "positive", kLongest_m),
+                   fmt::format("lengths are {} and at most {:g} m", may_be_zero ? "0 or more" : "positive",
+                               kLongest_m),
                    "measure it with a ruler");
     }
     void count(std::string const& what, int v, int least) const
@@ -88,7 +89,8 @@ int count_of(MarkerMap const& map) { return int(map.markers.size() + map.boards.
 std::string describe(MarkerMap const& map, int thing)
 {
     auto i = std::size_t(thing);
-    if (i < map.markers.size()) return fmt::format("marker {} of {}", map.markers[i].id, map.markers[i].dictionary);
+    if (i < map.markers.size())
+        return fmt::format("marker {} of {}", map.markers[i].id, map.markers[i].dictionary);
     i -= map.markers.size();
     if (i < map.boards.size())
         return fmt::format("board {} ({} x {} squares)", i + 1, map.boards[i].squares_x, map.boards[i].squares_y);

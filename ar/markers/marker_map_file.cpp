@@ -1,0 +1,162 @@
+#include "ar/markers/marker_map_file.h"
+
+#include "ar/base/yaml.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace ar {
+namespace {
+
+constexpr double kFar_m = 1000;
+constexpr int kMostIds = 100000, kMostSquares = 200;
+
+Pose read_pose(Yaml const& y)
+{
+    Pose p;
+    if (y.has("position_m")) {
+        auto const v = y.at("position_m", "").numbers(3, -kFar_m, kFar_m);
+        p.position_m = {v[0], v[1], v[2]};
+    }
+    if (y.has("rotation_deg")) {
+        Yaml const r = y.at("rotation_deg", "");
+        if (y.has("rotation_xyzw"))
+            throw r.error(y.path() + " has rotation_deg and rotation_xyzw", "only one of them can count",
+                          "remove one");
+        auto const v = r.numbers(3, -360, 360);
+        p.rotation = glm::normalize(glm::angleAxis(glm::radians(v[2]), glm::dvec3(0, 0, 1)) *
+                                    glm::angleAxis(glm::radians(v[1]), glm::dvec3(0, 1, 0)) *
+                                    glm::angleAxis(glm::radians(v[0]), glm::dvec3(1, 0, 0)));
+    }
+    if (y.has("rotation_xyzw")) {
+        Yaml const r = y.at("rotation_xyzw", "");
+        auto const v = r.numbers(4, -1.1, 1.1);
+        glm::dquat const q(v[3], v[0], v[1], v[2]);
+        if (!(std::abs(glm::length(q) - 1) < 1e-3))
+            throw r.error(fmt::format("the quaternion's length is {:g}", glm::length(q)), "that of rotations is 1",
+                          "write x, y, z, w with w last; [0, 0, 0, 1] is no rotation");
+        p.rotation = std::abs(glm::length(q) - 1) < 1e-12 ? q : glm::normalize(q);
+    }
+    return p;
+}
+
+std::string read_dictionary(Yaml const& y)
+{
+    Yaml const d = y.at("dictionary", "DICT_4X4_50");
+    std::string const name = d.text();
+    if (dictionary_size(name) == 0)
+        throw d.error(fmt::format("'{}' is no dictionary", name.substr(0, 64)), "its codes are not known",
+                      fmt::format("there are: {}", fmt::join(dictionary_names(), ", ")));
+    return name;
+}
+
+double read_length(Yaml const& y, std::string const& key, std::string const& example)
+{
+    return y.at(key, example).number(1e-6, kFar_m);
+}
+
+int read_first_id(Yaml const& y) { return y.has("first_id") ? y.at("first_id", "").integer(0, kMostIds) : 0; }
+
+/// Where `check` finds something wrong with the map so far, it is what was read last.
+template <class Thing>
+void add(std::vector<Thing>& things, Thing thing, MarkerMap const& map, Yaml const& y)
+{
+    things.push_back(std::move(thing));
+    Place const at = y.place();
+    check(map, fmt::format("{}:{}:{}", at.file, at.line, at.column));
+}
+
+std::string text_of(Pose const& p)
+{
+    std::string s;
+    if (p.position_m != glm::dvec3(0))
+        s += fmt::format(", position_m: [{}, {}, {}]", p.position_m.x, p.position_m.y, p.position_m.z);
+    glm::dquat const q = p.rotation;
+    if (q != glm::dquat(1, 0, 0, 0)) s += fmt::format(", rotation_xyzw: [{}, {}, {}, {}]", q.x, q.y, q.z, q.w);
+    return s;
+}
+
+} // namespace
+
+MarkerMap parse_marker_map(std::string const& text, std::string const& file)
+{
+    constexpr std::size_t kMostThings = 2000;
+    Yaml const top = Yaml::parse(text, file);
+    top.only_keys({"markers", "boards", "grids"});
+    MarkerMap map;
+    if (top.has("markers"))
+        for (Yaml const& y : top.at("markers", "").items(0, kMostThings)) {
+            y.only_keys({"dictionary", "id", "side_m", "position_m", "rotation_deg", "rotation_xyzw"});
+            add(map.markers,
+                {read_dictionary(y), y.at("id", "0").integer(0, kMostIds), read_length(y, "side_m", "0.08"),
+                 read_pose(y)},
+                map, y);
+        }
+    if (top.has("boards"))
+        for (Yaml const& y : top.at("boards", "").items(0, kMostThings)) {
+            y.only_keys({"squares_x", "squares_y", "square_m", "marker_m", "dictionary", "first_id",
+                         "legacy_pattern", "position_m", "rotation_deg", "rotation_xyzw"});
+            CharucoBoard b;
+            b.squares_x = y.at("squares_x", "8").integer(2, kMostSquares);
+            b.squares_y = y.at("squares_y", "5").integer(2, kMostSquares);
+            b.square_m = read_length(y, "square_m", "0.03");
+            b.marker_m = read_length(y, "marker_m", "0.022");
+            b.dictionary = read_dictionary(y);
+            b.first_id = read_first_id(y);
+            if (y.has("legacy_pattern")) b.legacy_pattern = y.at("legacy_pattern", "").boolean();
+            b.world_from_board = read_pose(y);
+            add(map.boards, b, map, y);
+        }
+    if (top.has("grids"))
+        for (Yaml const& y : top.at("grids", "").items(0, kMostThings)) {
+            y.only_keys({"markers_x", "markers_y", "marker_m", "gap_m", "dictionary", "first_id", "position_m",
+                         "rotation_deg", "rotation_xyzw"});
+            MarkerGrid g;
+            g.markers_x = y.at("markers_x", "2").integer(1, kMostSquares);
+            g.markers_y = y.at("markers_y", "3").integer(1, kMostSquares);
+            g.marker_m = read_length(y, "marker_m", "0.05");
+            g.gap_m = read_length(y, "gap_m", "0.01");
+            g.dictionary = read_dictionary(y);
+            g.first_id = read_first_id(y);
+            g.world_from_grid = read_pose(y);
+            add(map.grids, g, map, y);
+        }
+    if (count_of(map) == 0)
+        throw top.error("there is no marker", "nothing can be recognised", "add a marker, a board or a grid");
+    return map;
+}
+
+std::string format_marker_map(MarkerMap const& map)
+{
+    std::string s;
+    if (!map.markers.empty()) s += "markers:\n";
+    for (Marker const& m : map.markers)
+        s += fmt::format("  - {{dictionary: {}, id: {}, side_m: {}{}}}\n", m.dictionary, m.id, m.side_m,
+                         text_of(m.world_from_marker));
+    if (!map.boards.empty()) s += "boards:\n";
+    for (CharucoBoard const& b : map.boards)
+        s += fmt::format(
+            "  - {{squares_x: {}, squares_y: {}, square_m: {}, marker_m: {}, dictionary: {}, first_id: {}, "
+            "legacy_pattern: {}{}}}\n",
+            b.squares_x, b.squares_y, b.square_m, b.marker_m, b.dictionary, b.first_id, b.legacy_pattern,
+            text_of(b.world_from_board));
+    if (!map.grids.empty()) s += "grids:\n";
+    for (MarkerGrid const& g : map.grids)
+        s += fmt::format(
+            "  - {{markers_x: {}, markers_y: {}, marker_m: {}, gap_m: {}, dictionary: {}, first_id: {}{}}}\n",
+            g.markers_x, g.markers_y, g.marker_m, g.gap_m, g.dictionary, g.first_id, text_of(g.world_from_grid));
+    return s;
+}
+
+MarkerMap read_marker_map(std::filesystem::path const& file)
+{
+    return parse_marker_map(read_text(file), file.string());
+}
+
+void write_marker_map(std::filesystem::path const& file, MarkerMap const& map)
+{
+    check(map, file.string());
+    write_text(file, format_marker_map(map));
+}
+
+} // namespace ar
