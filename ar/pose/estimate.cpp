@@ -1,0 +1,285 @@
+#include "ar/pose/estimate.h"
+
+#include "ar/base/rotation_fit.h"
+#include "ar/pose/candidates.h"
+#include "ar/pose/refine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+namespace ar {
+namespace {
+
+using Points = std::vector<SightedPoint>;
+
+constexpr double kCoarseSigmas = 40; ///< within which a first guess counts as agreeing with a point
+constexpr double kLimitSigmas = 5;   ///< beyond which a refined pose does not
+constexpr double kMostScale = 5;     ///< how much worse than their sigmas points may be
+constexpr std::size_t kMarkerGuesses = 12;
+constexpr int kRandomGuesses = 40;
+constexpr std::size_t kRefinedGuesses = 4;
+constexpr double kAmbiguous = 0.01;
+
+std::map<int, Points> by_marker(Points const& points)
+{
+    std::map<int, Points> markers;
+    for (SightedPoint const& p : points) markers[p.marker].push_back(p);
+    return markers;
+}
+
+double size_px(Points const& points)
+{
+    glm::dvec2 low = points[0].pixel, high = low;
+    for (SightedPoint const& p : points) {
+        low = glm::min(low, p.pixel);
+        high = glm::max(high, p.pixel);
+    }
+    return glm::length(high - low);
+}
+
+double truncated_cost(CameraModel const& camera, Points const& points, Pose const& pose, double limit)
+{
+    double sum = 0;
+    for (SightedPoint const& p : points) {
+        double const m = std::min(limit, miss_sigmas(camera, pose, p)) / limit;
+        sum += m * m;
+    }
+    return sum;
+}
+
+void append(std::vector<Pose>& to, std::vector<Pose> const& more)
+{
+    to.insert(to.end(), more.begin(), more.end());
+}
+
+/// Of all points, of each of the larger markers, and, where few points agree, of few points drawn at random.
+std::vector<Pose> first_guesses(CameraModel const& camera, Points const& points, std::optional<Pose> const& last)
+{
+    std::vector<Pose> guesses = candidates(camera, points);
+    if (last) guesses.push_back(*last);
+    std::vector<Points> markers;
+    for (auto& [unused, own] : by_marker(points)) markers.push_back(own);
+    if (markers.size() > 1) {
+        std::stable_sort(markers.begin(), markers.end(),
+                         [](Points const& a, Points const& b) { return size_px(a) > size_px(b); });
+        for (std::size_t i = 0; i < std::min(markers.size(), kMarkerGuesses); ++i)
+            append(guesses, candidates(camera, markers[i]));
+    }
+    double best = double(points.size());
+    for (Pose const& g : guesses) best = std::min(best, truncated_cost(camera, points, g, kCoarseSigmas));
+    if (points.size() < 6 || best < 0.05 * double(points.size())) return guesses;
+    std::mt19937 random(1);
+    for (int i = 0; i < kRandomGuesses; ++i) {
+        Points few;
+        std::sample(points.begin(), points.end(), std::back_inserter(few), 5, random);
+        append(guesses, candidates(camera, few));
+    }
+    return guesses;
+}
+
+/// How much worse than their sigmas the better half of the points are, 1 to kMostScale.
+double scale_of(CameraModel const& camera, Points const& points, Pose const& pose)
+{
+    std::vector<double> misses;
+    for (SightedPoint const& p : points) misses.push_back(miss_sigmas(camera, pose, p));
+    auto const middle = misses.begin() + std::ptrdiff_t(misses.size() / 2);
+    std::nth_element(misses.begin(), middle, misses.end());
+    return std::clamp(*middle / 1.1774, 1.0, kMostScale); // the median of a Rayleigh distribution
+}
+
+/// Single points, and whole markers of which half of the points disagree.
+Points agreeing(CameraModel const& camera, Points const& points, Pose const& pose, double limit)
+{
+    Points kept;
+    for (auto const& [unused, own] : by_marker(points)) {
+        Points good;
+        for (SightedPoint const& p : own)
+            if (miss_sigmas(camera, pose, p) <= limit) good.push_back(p);
+        if (2 * good.size() > own.size()) kept.insert(kept.end(), good.begin(), good.end());
+    }
+    return kept;
+}
+
+struct Agreed {
+    Refined refined;
+    Points points;
+    double cost = 0; ///< truncated, over all points: what guesses are compared by
+};
+
+Agreed agree(CameraModel const& camera, Points const& points, Pose const& guess)
+{
+    Agreed a;
+    Pose pose = guess;
+    for (double const sigmas : {kCoarseSigmas, 3 * kLimitSigmas, kLimitSigmas})
+        pose = refine(camera, points, pose, sigmas).world_from_camera;
+    for (int round = 0; round < 4; ++round) {
+        Points const kept = agreeing(camera, points, pose, kLimitSigmas * scale_of(camera, points, pose));
+        bool const same = kept.size() == a.points.size();
+        a.points = kept;
+        if (kept.size() < 4) break;
+        a.refined = refine(camera, kept, pose);
+        pose = a.refined.world_from_camera;
+        if (same && round > 0) break;
+    }
+    a.refined.world_from_camera = pose;
+    a.cost = truncated_cost(camera, points, pose, kLimitSigmas * kMostScale);
+    return a;
+}
+
+double chi2_scale(Agreed const& a)
+{
+    double const freedom = 2.0 * double(a.points.size()) - 6;
+    return std::max(1.0, a.refined.chi2 / freedom);
+}
+
+double rms_px(CameraModel const& camera, Points const& points, Pose const& pose)
+{
+    double sum = 0;
+    for (SightedPoint const& p : points)
+        if (auto const m = miss_px(camera, pose, p)) sum += glm::dot(*m, *m);
+    return std::sqrt(sum / double(points.size()));
+}
+
+/// The best pose more than half a degree from the chosen one that the points of a plane allow. The mirrored one is
+/// tried, too: that which IPPE finds for the first may fall together with it.
+std::optional<Refined> second_pose(CameraModel const& camera, Agreed const& first, PointSet const& set)
+{
+    Pose const& chosen = first.refined.world_from_camera;
+    std::vector<Pose> starts = candidates(camera, first.points);
+    glm::dvec3 const sight = glm::normalize(set.centre_m - chosen.position_m);
+    glm::dvec3 const normal = set.axes[2];
+    glm::dvec3 const axis = glm::cross(normal, sight);
+    if (double const sine = glm::length(axis); sine > 1e-6) {
+        double const tilt = std::asin(std::min(1.0, sine)) * (glm::dot(normal, sight) < 0 ? -1 : 1);
+        // Turning the camera about the set by twice the tilt shows the plane tilted the other way.
+        glm::dquat const turn = exp_rotation(axis / sine * (-2 * tilt));
+        starts.push_back({turn * chosen.rotation, set.centre_m + turn * (chosen.position_m - set.centre_m)});
+    }
+    std::optional<Refined> best;
+    for (Pose const& start : starts) {
+        Refined const r = refine(camera, first.points, start);
+        bool const ahead = std::all_of(first.points.begin(), first.points.end(), [&](SightedPoint const& p) {
+            return miss_px(camera, r.world_from_camera, p).has_value();
+        });
+        bool const apart = angle_between_deg(r.world_from_camera.rotation, chosen.rotation) > 0.5;
+        if (ahead && apart && r.covariance && (!best || r.chi2 < best->chi2)) best = r;
+    }
+    return best;
+}
+
+double distance(Pose const& a, Pose const& b, double extent_m)
+{
+    return angle_between_deg(a.rotation, b.rotation) +
+           glm::degrees(glm::length(a.position_m - b.position_m) / std::max(1e-9, extent_m));
+}
+
+void decide(PoseEstimate& e, CameraModel const& camera, Agreed& chosen, std::optional<Pose> const& last)
+{
+    PointSet const set = survey(chosen.points);
+    if (set.shape != Shape::plane) return;
+    auto const second = second_pose(camera, chosen, set);
+    if (!second) return;
+    Refined other = *second;
+    double const scale = chi2_scale(chosen);
+    auto const likelihood = [&] {
+        return 1 / (1 + std::exp(std::clamp((other.chi2 - chosen.refined.chi2) / (2 * scale), -500.0, 500.0)));
+    };
+    double const likely = likelihood();
+    bool swap = likely > 0.5;
+    e.ambiguous = std::min(likely, 1 - likely) > kAmbiguous;
+    if (e.ambiguous && last) {
+        double const far = glm::length(set.centre_m - last->position_m);
+        swap =
+            distance(other.world_from_camera, *last, far) < distance(chosen.refined.world_from_camera, *last, far);
+    }
+    if (swap) std::swap(other, chosen.refined);
+    e.other = other.world_from_camera;
+    e.other_rms_px = rms_px(camera, chosen.points, other.world_from_camera);
+    e.other_likelihood = likelihood();
+}
+
+void count(PoseEstimate& e, Sighting const& sighting, Points const& used)
+{
+    e.points_used = int(used.size());
+    e.points_rejected = int(sighting.points.size() - used.size());
+    for (auto const& [marker, unused] : by_marker(used)) e.markers_used.push_back(marker);
+    for (auto const& [marker, unused] : by_marker(sighting.points))
+        if (!std::binary_search(e.markers_used.begin(), e.markers_used.end(), marker))
+            e.markers_rejected.push_back(marker);
+}
+
+bool is_usable(SightedPoint const& p)
+{
+    auto const finite = [](double v) { return std::abs(v) < 1e12; }; // false for NaN
+    return finite(p.world_m.x) && finite(p.world_m.y) && finite(p.world_m.z) && finite(p.pixel.x) &&
+           finite(p.pixel.y) && p.sigma_px > 0 && p.sigma_px < 1e6;
+}
+
+PoseEstimate failed(PoseFailure why, Sighting const& sighting)
+{
+    PoseEstimate e;
+    e.failure = why;
+    count(e, sighting, {});
+    return e;
+}
+
+} // namespace
+
+std::string name_of(PoseFailure failure)
+{
+    constexpr char const* names[]{"none", "too few points", "points on a line", "no agreement", "undetermined"};
+    return names[std::size_t(failure)];
+}
+
+PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera, std::optional<Pose> const& last)
+{
+    Points points;
+    std::copy_if(sighting.points.begin(), sighting.points.end(), std::back_inserter(points), is_usable);
+    PointSet const all = survey(points);
+    if (all.different < 4) return failed(PoseFailure::too_few_points, sighting);
+    if (all.shape == Shape::line || all.shape == Shape::point) return failed(PoseFailure::on_a_line, sighting);
+    // Digits are lost far from zero: the points' centre is the origin while we calculate.
+    for (SightedPoint& p : points) p.world_m -= all.centre_m;
+    std::optional<Pose> near = last;
+    if (near) near->position_m -= all.centre_m;
+
+    std::vector<Pose> guesses = first_guesses(camera, points, near);
+    std::stable_sort(guesses.begin(), guesses.end(), [&](Pose const& a, Pose const& b) {
+        return truncated_cost(camera, points, a, kCoarseSigmas) < truncated_cost(camera, points, b, kCoarseSigmas);
+    });
+    std::optional<Agreed> best;
+    for (std::size_t i = 0; i < std::min(guesses.size(), kRefinedGuesses); ++i) {
+        Agreed const a = agree(camera, points, guesses[i]);
+        if (a.points.size() >= 4 && (!best || a.cost < best->cost)) best = a;
+        if (best && best->cost < 0.05 * double(points.size())) break; // nothing is left to explain
+    }
+    if (!best || 2 * best->points.size() < points.size()) return failed(PoseFailure::no_agreement, sighting);
+    PointSet const kept = survey(best->points);
+    if (kept.different < 4 || kept.shape == Shape::line || !best->refined.covariance)
+        return failed(PoseFailure::undetermined, sighting);
+
+    PoseEstimate e;
+    e.failure = PoseFailure::none;
+    decide(e, camera, *best, near);
+    Refined const& r = best->refined;
+    e.world_from_camera = r.world_from_camera;
+    e.rms_px = rms_px(camera, best->points, r.world_from_camera);
+    double const scale = chi2_scale(*best);
+    e.covariance = scale * *r.covariance;
+    for (int i = 0; i < 3; ++i) {
+        e.position_sigma_m[i] = std::sqrt(e.covariance(i, i));
+        e.rotation_sigma_deg[i] = glm::degrees(std::sqrt(e.covariance(3 + i, 3 + i)));
+    }
+    e.world_from_camera.position_m += all.centre_m;
+    if (e.other) e.other->position_m += all.centre_m;
+    Points used = best->points;
+    count(e, sighting, used);
+    double const turn = std::max({e.rotation_sigma_deg.x, e.rotation_sigma_deg.y, e.rotation_sigma_deg.z});
+    e.confidence = double(e.points_used) / double(e.points_used + e.points_rejected) *
+                   std::min(1.0, 2 / std::sqrt(scale)) * (1 - e.other_likelihood) / (1 + turn * turn);
+    return e;
+}
+
+} // namespace ar
