@@ -6,14 +6,6 @@
 namespace ar {
 namespace {
 
-double vignetting_at(Photometry const& p, cv::Size size, int x, int y)
-{
-    double const dx = x + 0.5 - 0.5 * size.width, dy = y + 0.5 - 0.5 * size.height;
-    double const r2 =
-        4 * (dx * dx + dy * dy) / (double(size.width) * size.width + double(size.height) * size.height);
-    return 1 + r2 * (p.vignetting[0] + r2 * (p.vignetting[1] + r2 * p.vignetting[2]));
-}
-
 bool has_vignetting(Photometry const& p) { return p.vignetting != std::array<double, 3>{}; }
 
 /// The byte whose unit is nearest, by a table of cells of unit and a short walk.
@@ -64,6 +56,14 @@ Photometry srgb_photometry()
     }
     p.unit_of_byte[1] = p.unit_of_byte[2] = p.unit_of_byte[0];
     return p;
+}
+
+double vignetting_at(Photometry const& p, cv::Size size, int x, int y)
+{
+    double const dx = x + 0.5 - 0.5 * size.width, dy = y + 0.5 - 0.5 * size.height;
+    double const r2 =
+        4 * (dx * dx + dy * dy) / (double(size.width) * size.width + double(size.height) * size.height);
+    return 1 + r2 * (p.vignetting[0] + r2 * (p.vignetting[1] + r2 * p.vignetting[2]));
 }
 
 cv::Mat radiance_of(cv::Mat const& rgb, Photometry const& p, Exposure const& exposure)

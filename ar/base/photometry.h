@@ -38,6 +38,9 @@ struct Photometry {
 /// A camera whose bytes are sRGB (IEC 61966-2-1), without vignetting.
 Photometry srgb_photometry();
 
+/// What is left of the light at the centre of a pixel of a picture of that size; 1 everywhere without vignetting.
+double vignetting_at(Photometry const& photometry, cv::Size size, int x, int y);
+
 /// CV_32FC3 of CV_8UC3. Bytes of 255 become what 255 means: the light may have been brighter (see `is_clipped`).
 cv::Mat radiance_of(cv::Mat const& rgb, Photometry const& photometry, Exposure const& exposure = {});
 /// CV_8UC3 of CV_32FC3: the byte whose unit is nearest. The inverse of `radiance_of` for bytes whose unit is

@@ -1,0 +1,153 @@
+#include "ar/composite/composite.h"
+
+#include "ar/base/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <mutex>
+
+namespace ar {
+namespace {
+
+bool is_finite(cv::Vec3f const& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+
+/// One frame's constants.
+struct Frame {
+    std::array<ResponseTable, 3> const& response;
+    CompositeSettings const& settings;
+    cv::Matx33f to_unit;
+    bool noisy;
+
+    /// One channel: u the camera's unit, w and n with and without in units, a coverage.
+    float blended(float u, float w, float n, float a, bool clipped, CompositeCounts& counts) const
+    {
+        if (a >= 1) return w;
+        bool const at_limit = clipped && w < n && settings.clipped != ClippedBytes::as_measured;
+        float const seen = at_limit && settings.clipped == ClippedBytes::model ? std::max(u, n) : u;
+        if (a > 0) return w + (1 - a) * (seen - n);
+        if ((at_limit || settings.blend == Blend::ratio) && w != n) {
+            if (n > 0 && w >= 0 && w <= settings.largest_ratio * n) return seen * (w / n);
+            ++counts.ratio_limited;
+        }
+        return seen + (w - n);
+    }
+
+    cv::Vec3b pixel(cv::Vec3b const& camera, cv::Vec3f const& with, cv::Vec3f const& without, float a,
+                    float vignetting, cv::Vec3f const* random, CompositeCounts& counts) const
+    {
+        if (!(a >= 0 && a <= 1)) {
+            if (std::isnan(a)) return ++counts.not_finite, camera;
+            ++counts.coverage_range;
+            a = std::clamp(a, 0.0f, 1.0f);
+        }
+        bool const same = with == without;
+        if (a == 0 && same) return ++counts.copied, camera;
+        if (!is_finite(with) || (a < 1 && !is_finite(without))) return ++counts.not_finite, camera;
+        counts.covered += a > 0;
+        counts.clipped += a < 1 && std::max({camera[0], camera[1], camera[2]}) == 255;
+        cv::Vec3f const w = vignetting * (to_unit * with), n = vignetting * (to_unit * without);
+        cv::Vec3b out;
+        for (int c = 0; c < 3; ++c) {
+            ResponseTable const& f = response[std::size_t(c)];
+            float const u = f.unit(camera[c]);
+            float v = blended(u, w[c], n[c], a, camera[c] == 255, counts);
+            if (v < 0) {
+                ++counts.negative;
+                v = 0;
+            }
+            if (noisy) {
+                // The camera's share brings its own noise: only what is missing is added.
+                float const there = (1 - a) * (1 - a) * settings.noise.variance(c, u);
+                v += std::sqrt(std::max(0.0f, settings.noise.variance(c, v) - there)) * (*random)[c];
+            }
+            out[c] = a < 1 ? f.byte_near(v, camera[c]) : f.byte(v);
+        }
+        return out;
+    }
+};
+
+} // namespace
+
+CompositeCounts& CompositeCounts::operator+=(CompositeCounts const& o)
+{
+    pixels += o.pixels;
+    copied += o.copied;
+    covered += o.covered;
+    clipped += o.clipped;
+    negative += o.negative;
+    ratio_limited += o.ratio_limited;
+    not_finite += o.not_finite;
+    coverage_range += o.coverage_range;
+    return *this;
+}
+
+Compositor::Compositor(Photometry const& p, CompositeSettings const& settings)
+    : photometry_(p),
+      settings_(settings),
+      response_{ResponseTable(p.unit_of_byte[0]), ResponseTable(p.unit_of_byte[1]),
+                ResponseTable(p.unit_of_byte[2])}
+{
+    bool invertible = false;
+    camera_colour_ = p.colour.inv(cv::DECOMP_LU, &invertible);
+    if (!invertible)
+        throw InputError("the camera's colour matrix has no inverse", "radiance cannot be brought to its bytes",
+                         "calibrate colour again, or use the unit matrix");
+    if (!(p.radiance_per_unit > 0) || !std::isfinite(p.radiance_per_unit))
+        throw InputError(fmt::format("radiance_per_unit = {}", p.radiance_per_unit), "it must be positive",
+                         "give the radiance that has the unit 1");
+    if (!(settings.largest_ratio >= 1))
+        throw InputError(fmt::format("largest_ratio = {}", settings.largest_ratio), "it must be 1 or more",
+                         "leave it at 8");
+    for (std::size_t c = 0; c < 3; ++c)
+        if (!(settings.noise.constant[c] >= 0) || !(settings.noise.per_unit[c] >= 0))
+            throw InputError("a variance of noise below 0", "there is no such noise", "measure it again");
+    if (settings.noise.any()) noise_ = NoiseField(settings.noise);
+}
+
+cv::Matx33f Compositor::unit_of_radiance(Exposure const& exposure) const
+{
+    return camera_colour_ *
+           float(relative_exposure(exposure, photometry_.reference) / photometry_.radiance_per_unit);
+}
+
+CompositeCounts Compositor::operator()(cv::Mat const& rgb, RenderedPair const& pair, Exposure const& exposure,
+                                       cv::Mat& out, std::uint64_t frame_number)
+{
+    if (rgb.type() != CV_8UC3 || rgb.empty())
+        throw InputError("the camera's frame is not RGB of 8 bits", "its bytes cannot be given a meaning",
+                         "convert it with rgb_of()");
+    check(pair, rgb.size());
+    out.create(rgb.size(), CV_8UC3);
+    if (photometry_.vignetting != std::array<double, 3>{} && vignetting_.size() != rgb.size()) {
+        vignetting_.create(rgb.size(), CV_32FC1);
+        for (int y = 0; y < rgb.rows; ++y)
+            for (int x = 0; x < rgb.cols; ++x)
+                vignetting_.at<float>(y, x) = float(vignetting_at(photometry_, rgb.size(), x, y));
+    }
+    Frame const frame{response_, settings_, unit_of_radiance(exposure), settings_.noise.any()};
+    cv::Point const start = noise_.offset(frame_number);
+    CompositeCounts sum;
+    std::mutex adding;
+    cv::parallel_for_({0, rgb.rows}, [&](cv::Range const& rows) {
+        CompositeCounts counts;
+        for (int y = rows.start; y < rows.end; ++y) {
+            auto const* camera = rgb.ptr<cv::Vec3b>(y);
+            auto const *with = pair.with.ptr<cv::Vec3f>(y), *without = pair.without.ptr<cv::Vec3f>(y);
+            auto const* coverage = pair.coverage.ptr<float>(y);
+            auto const* fall_off = vignetting_.empty() ? nullptr : vignetting_.ptr<float>(y);
+            auto const* random =
+                frame.noisy ? noise_.tile().ptr<cv::Vec3f>((y + start.y) % NoiseField::kSize) : nullptr;
+            auto* to = out.ptr<cv::Vec3b>(y);
+            for (int x = 0; x < rgb.cols; ++x)
+                to[x] = frame.pixel(camera[x], with[x], without[x], coverage[x], fall_off ? fall_off[x] : 1.0f,
+                                    random ? random + (x + start.x) % NoiseField::kSize : nullptr, counts);
+        }
+        std::lock_guard const lock(adding);
+        sum += counts;
+    });
+    sum.pixels = rgb.total();
+    return sum;
+}
+
+} // namespace ar

@@ -1,0 +1,126 @@
+#include "ar/composite/upsample.h"
+
+#include "ar/base/error.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+namespace ar {
+namespace {
+
+void check(SurfaceGuides const& g, cv::Size size, SurfaceGuides const& other)
+{
+    auto const require = [&](cv::Mat const& picture, int type, bool needed, char const* name) {
+        if (picture.empty() ? !needed : picture.type() == type && picture.size() == size) return;
+        throw InputError(fmt::format("the guide '{}' has {} x {} pixels of type {}", name, picture.cols,
+                                     picture.rows, cv::typeToString(picture.type())),
+                         fmt::format("{} x {} of {} are needed", size.width, size.height, cv::typeToString(type)),
+                         "give each guide at both resolutions, or at none");
+    };
+    require(g.normal, CV_32FC3, !other.normal.empty(), "normal");
+    require(g.depth, CV_32FC1, !other.depth.empty(), "depth");
+    require(g.albedo, CV_32FC3, !other.albedo.empty(), "albedo");
+}
+
+constexpr float kLeastAlbedo = 0.01f;
+
+cv::Vec3f at_least(cv::Vec3f v)
+{
+    for (int c = 0; c < 3; ++c) v[c] = std::max(v[c], kLeastAlbedo);
+    return v;
+}
+
+/// How well the surface of a low pixel stands for that of a full one.
+float likeness(SurfaceGuides const& guides, cv::Point full, SurfaceGuides const& low_guides, cv::Point low,
+               UpsampleSettings const& settings)
+{
+    float w = 1;
+    if (!guides.depth.empty()) {
+        float const z = guides.depth.at<float>(full), l = low_guides.depth.at<float>(low);
+        if ((z > 0) != (l > 0)) return 0;
+        if (z > 0) w *= float(std::exp(-0.5 * std::pow((l / z - 1) / settings.depth_tolerance, 2)));
+    }
+    if (!guides.normal.empty()) {
+        float const cosine = guides.normal.at<cv::Vec3f>(full).dot(low_guides.normal.at<cv::Vec3f>(low));
+        w *= float(std::pow(std::max(0.0f, cosine), settings.normal_power));
+    }
+    return w;
+}
+
+} // namespace
+
+RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides, DirectlySeen const& seen,
+                       SurfaceGuides const& guides, UpsampleSettings const& settings, cv::Mat const& without_full,
+                       UpsampleCounts* counts)
+{
+    check(low);
+    cv::Size const size = seen.coverage.size(), low_size = low.with.size();
+    check(RenderedPair{seen.radiance, without_full.empty() ? seen.radiance : without_full, seen.coverage}, size);
+    check(guides, size, low_guides);
+    check(low_guides, low_size, guides);
+
+    // Light that the change brings to the surfaces.
+    cv::Mat change = low.with - low.without;
+    if (!low_guides.albedo.empty())
+        change.forEach<cv::Vec3f>([&](cv::Vec3f& v, int const* at) {
+            cv::Vec3f const albedo = at_least(low_guides.albedo.at<cv::Vec3f>(at[0], at[1]));
+            for (int c = 0; c < 3; ++c) v[c] /= albedo[c];
+        });
+
+    RenderedPair out;
+    out.coverage = seen.coverage;
+    if (without_full.empty())
+        cv::resize(low.without, out.without, size, 0, 0, cv::INTER_LINEAR);
+    else
+        out.without = without_full;
+    out.with.create(size, CV_32FC3);
+    std::atomic<std::size_t> without_guide = 0, no_sample = 0;
+    double const step_x = double(low_size.width) / size.width, step_y = double(low_size.height) / size.height;
+    cv::parallel_for_({0, size.height}, [&](cv::Range const& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+            for (int x = 0; x < size.width; ++x) {
+                double const lx = (x + 0.5) * step_x - 0.5, ly = (y + 0.5) * step_y - 0.5;
+                int const x0 = int(std::floor(lx)), y0 = int(std::floor(ly));
+                // Tents of the width 2: a surface that no direct neighbour shows may be one further.
+                cv::Vec3f guided(0, 0, 0), plain(0, 0, 0);
+                float guided_weight = 0, plain_weight = 0;
+                for (int j = y0 - 1; j <= y0 + 2; ++j)
+                    for (int i = x0 - 1; i <= x0 + 2; ++i) {
+                        if (i < 0 || j < 0 || i >= low_size.width || j >= low_size.height) continue;
+                        if (low.coverage.at<float>(j, i) > 0) continue;
+                        float const tent = float((1 - std::abs(i - lx) / 2) * (1 - std::abs(j - ly) / 2));
+                        if (!(tent > 0)) continue;
+                        float const near = tent * tent * tent;
+                        cv::Vec3f const v = change.at<cv::Vec3f>(j, i);
+                        float const w = near * likeness(guides, {x, y}, low_guides, {i, j}, settings);
+                        guided += w * v;
+                        guided_weight += w;
+                        plain += near * v;
+                        plain_weight += near;
+                    }
+                cv::Vec3f light(0, 0, 0);
+                if (guided_weight > 1e-6f)
+                    light = guided * (1 / guided_weight);
+                else if (plain_weight > 0) {
+                    light = plain * (1 / plain_weight);
+                    ++without_guide;
+                } else
+                    ++no_sample;
+                if (!guides.albedo.empty()) {
+                    cv::Vec3f const albedo = at_least(guides.albedo.at<cv::Vec3f>(y, x));
+                    light = light.mul(albedo);
+                }
+                float const a = seen.coverage.at<float>(y, x);
+                cv::Vec3f const place = out.without.at<cv::Vec3f>(y, x) + light;
+                out.with.at<cv::Vec3f>(y, x) =
+                    a > 0 ? seen.radiance.at<cv::Vec3f>(y, x) + (1 - std::min(a, 1.0f)) * place : place;
+            }
+    });
+    if (counts) *counts = {without_guide, no_sample};
+    return out;
+}
+
+} // namespace ar

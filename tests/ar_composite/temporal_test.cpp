@@ -1,0 +1,151 @@
+#include "ar/composite/temporal.h"
+
+#include "ar/base/error.h"
+#include "tests/ar_composite/test_pictures.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <iostream>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+namespace ar::test {
+namespace {
+
+cv::Size const kSize(96, 72);
+CameraModel const kCamera{LensModel::pinhole, {96, 72}, 90, 90, 47.5, 35.5, {}};
+
+/// A shadow of `depth` on a place of 0.5, with noise of sigma 0.05 in the shadow; nothing in the left quarter.
+RenderedPair noisy_shadow(int frame, float change = -0.2f)
+{
+    RenderedPair pair = unchanged_pair(kSize);
+    pair.without = cv::Scalar::all(0.5);
+    pair.with = pair.without.clone();
+    cv::Mat noise(kSize, CV_32FC3);
+    cv::RNG random{std::uint64_t(frame + 1)};
+    random.fill(noise, cv::RNG::NORMAL, change, 0.05);
+    cv::Mat const place = pair.with.colRange(24, 96);
+    place += noise.colRange(24, 96);
+    return pair;
+}
+
+cv::Rect const kShadow(36, 12, 50, 50); // away from its border
+
+double variance_within(RenderedPair const& pair)
+{
+    cv::Mat const change = pair.with(kShadow) - pair.without(kShadow);
+    cv::Scalar mean, deviation;
+    cv::meanStdDev(change, mean, deviation);
+    return deviation[0] * deviation[0];
+}
+
+double mean_within(RenderedPair const& pair) { return cv::mean(pair.with(kShadow) - pair.without(kShadow))[0]; }
+
+TEST(TemporalFilter, TakesNoiseAwayAndFollowsChanges)
+{
+    cv::Mat const depth(kSize, CV_32FC1, cv::Scalar(2));
+    for (float const weight : {0.1f, 0.2f, 0.5f}) {
+        TemporalFilter filter(kCamera, {.weight = weight});
+        RenderedPair out;
+        for (int i = 0; i < 60; ++i) out = filter(noisy_shadow(i), depth, {});
+        double const left = variance_within(out) / variance_within(noisy_shadow(59)),
+                     ideal = weight / (2 - weight);
+        EXPECT_NEAR(mean_within(out), -0.2, 0.005) << "no bias";
+        int lag = 0; // frames until 63 % of a step are there
+        for (; lag < 50; ++lag)
+            if (mean_within(filter(noisy_shadow(100 + lag, 0.1f), depth, {})) > -0.2 + 0.63 * 0.3) break;
+        std::cout << "weight " << weight << ": " << left << " of the variance is left (" << ideal
+                  << " without clipping), a step is followed in " << lag + 1 << " frames, "
+                  << filter.counts().clipped << " values clipped at it\n";
+        EXPECT_LT(left, 1.3 * ideal + 0.02);
+        EXPECT_LE(lag, 2) << "steps of more than the noise are clipped to the new frame's range";
+    }
+    TemporalFilter unclipped(kCamera, {.weight = 0.2f, .gamma = std::numeric_limits<float>::infinity()});
+    for (int i = 0; i < 40; ++i) unclipped(noisy_shadow(i), depth, {});
+    int lag = 0;
+    for (; lag < 50; ++lag)
+        if (mean_within(unclipped(noisy_shadow(100 + lag, 0.1f), depth, {})) > -0.2 + 0.63 * 0.3) break;
+    std::cout << "weight 0.2 without clipping: a step is followed in " << lag + 1 << " frames\n";
+    EXPECT_EQ(lag + 1, 5);
+}
+
+TEST(TemporalFilter, KeepsNothingNothing)
+{
+    cv::Mat const depth(kSize, CV_32FC1, cv::Scalar(2));
+    TemporalFilter filter(kCamera);
+    for (int i = 0; i < 5; ++i) {
+        RenderedPair const out = filter(noisy_shadow(i), depth, {});
+        EXPECT_TRUE(equal(out.with.colRange(0, 20), out.without.colRange(0, 20)));
+    }
+    // The object is taken away: nothing of it stays.
+    RenderedPair none = unchanged_pair(kSize);
+    RenderedPair const out = filter(none, depth, {});
+    EXPECT_TRUE(equal(out.with, none.with));
+    EXPECT_TRUE(equal(out.without, none.without));
+}
+
+TEST(TemporalFilter, FollowsSurfacesByPose)
+{
+    // A texture of changes on a plane at 2 m; the camera moves 3.5 pixels to the right between frames.
+    TemporalFilter filter(kCamera, {.weight = 0.1f, .gamma = std::numeric_limits<float>::infinity()});
+    cv::Mat const depth(kSize, CV_32FC1, cv::Scalar(2));
+    double const step_m = 3.5 / kCamera.fx * 2;
+    auto const change_at = [](double world_px) { return float(0.2 * std::sin(world_px / 6)); };
+    RenderedPair out;
+    double now_error = 0, still_error = 0;
+    for (int i = 0; i < 8; ++i) {
+        RenderedPair pair = unchanged_pair(kSize);
+        for (int y = 0; y < kSize.height; ++y)
+            for (int x = 0; x < kSize.width; ++x)
+                pair.with.at<cv::Vec3f>(y, x) += cv::Vec3f::all(change_at(x + 3.5 * i));
+        Pose pose;
+        pose.position_m.x = step_m * i;
+        out = filter(pair, depth, pose);
+        now_error = cv::norm(out.with.colRange(0, 60), pair.with.colRange(0, 60), cv::NORM_INF);
+        still_error = filter.counts().fresh;
+    }
+    EXPECT_LT(now_error, 0.02) << "rounding of the lookup only; without poses it is 0.3";
+    EXPECT_NEAR(still_error, 72 * 3, 72) << "what came into view";
+}
+
+TEST(TemporalFilter, DropsHistoryOfOtherSurfaces)
+{
+    TemporalFilter filter(kCamera, {.weight = 0.1f, .gamma = std::numeric_limits<float>::infinity()});
+    cv::Mat depth(kSize, CV_32FC1, cv::Scalar(2));
+    filter(noisy_shadow(1), depth, {});
+    depth.colRange(48, 96) = 1;
+    RenderedPair const in = noisy_shadow(2), out = filter(in, depth, {});
+    EXPECT_TRUE(equal(out.with.colRange(48, 96), in.with.colRange(48, 96)));
+    EXPECT_EQ(filter.counts().fresh, std::size_t(48 * 72));
+    RenderedPair covered = noisy_shadow(3);
+    covered.coverage = cv::Scalar(1);
+    EXPECT_TRUE(equal(filter(covered, depth, {}).with, covered.with)) << "another thing";
+    filter.forget();
+    EXPECT_TRUE(equal(filter(in, depth, {}).with, in.with));
+}
+
+TEST(TemporalFilter, SurvivesWhatIsNotFinite)
+{
+    TemporalFilter filter(kCamera);
+    cv::Mat const depth(kSize, CV_32FC1, cv::Scalar(2));
+    RenderedPair bad = noisy_shadow(0);
+    bad.with.at<cv::Vec3f>(30, 50)[1] = std::numeric_limits<float>::quiet_NaN();
+    filter(bad, depth, {});
+    for (int i = 1; i < 3; ++i) {
+        RenderedPair const out = filter(noisy_shadow(i), depth, {});
+        EXPECT_TRUE(cv::checkRange(out.with));
+    }
+}
+
+TEST(TemporalFilter, RefusesWhatDoesNotFit)
+{
+    CameraModel lens = kCamera;
+    lens.lens = LensModel::fisheye;
+    EXPECT_THROW(TemporalFilter{lens}, InputError);
+    EXPECT_THROW(TemporalFilter(kCamera, {.weight = 0}), InputError);
+    TemporalFilter filter(kCamera);
+    EXPECT_THROW(filter(unchanged_pair(kSize), cv::Mat(), {}), InputError);
+}
+
+} // namespace
+} // namespace ar::test

@@ -1,0 +1,121 @@
+#include "viewer/gl/ar_composite_pass.h"
+
+#include "ar/base/error.h"
+
+#include <algorithm>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+GlObject storage(GLenum format, glm::ivec2 size)
+{
+    GlObject texture(GlObject::Kind::texture, GL_TEXTURE_2D);
+    glTextureStorage2D(texture.id(), 1, format, size.x, size.y);
+    for (GLenum const filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTextureParameteri(texture.id(), filter, GL_NEAREST);
+    return texture;
+}
+
+/// Rows may have gaps between them.
+void fill(GlObject const& texture, cv::Mat const& picture, GLenum format, GLenum type)
+{
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    if (picture.step % picture.elemSize() == 0) {
+        glPixelStorei(GL_UNPACK_ROW_LENGTH, GLint(picture.step / picture.elemSize()));
+        glTextureSubImage2D(texture.id(), 0, 0, 0, picture.cols, picture.rows, format, type, picture.data);
+    } else {
+        glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+        for (int y = 0; y < picture.rows; ++y)
+            glTextureSubImage2D(texture.id(), 0, 0, y, picture.cols, 1, format, type, picture.ptr(y));
+    }
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+}
+
+std::string defines(ar::CompositeSettings const& settings)
+{
+    return fmt::format("#define RATIO {}\n#define CLIPPED {}\n#define NOISE {}\n#define CLIPPED_AS_MEASURED {}\n"
+                       "#define CLIPPED_MODEL {}\n",
+                       int(settings.blend == ar::Blend::ratio), int(settings.clipped), int(settings.noise.any()),
+                       int(ar::ClippedBytes::as_measured), int(ar::ClippedBytes::model));
+}
+
+glm::vec3 vector_of(std::array<float, 3> const& v) { return {v[0], v[1], v[2]}; }
+
+} // namespace
+
+ArCompositePass::ArCompositePass(ar::Compositor const& compositor)
+    : compositor_(compositor),
+      program_({"full_screen.vert"}, {"ar_composite.frag"}, defines(compositor.settings())),
+      response_(storage(GL_RGB32F, {256, 4}))
+{
+    cv::Mat table(4, 256, CV_32FC3);
+    for (int c = 0; c < 3; ++c) {
+        ar::ResponseTable const& r = compositor_.response(c);
+        for (int b = 0; b < 256; ++b) {
+            auto const i = std::size_t(b);
+            float const rows[4] = {r.units()[i], r.borders()[i], r.least()[i], r.most()[i]};
+            for (int y = 0; y < 4; ++y) table.at<cv::Vec3f>(y, b)[c] = rows[y];
+        }
+    }
+    fill(response_, table, GL_RGB, GL_FLOAT);
+    ar::SensorNoise const& noise = compositor_.settings().noise;
+    if (noise.any()) {
+        noise_ = storage(GL_RGB32F, {ar::NoiseField::kSize, ar::NoiseField::kSize});
+        fill(noise_, compositor_.noise().tile(), GL_RGB, GL_FLOAT);
+    }
+    auto const& v = compositor_.photometry().vignetting;
+    program_.set("vignetting", glm::vec3(v[0], v[1], v[2]));
+    program_.set("noise_constant", vector_of(noise.constant));
+    program_.set("noise_per_unit", vector_of(noise.per_unit));
+    program_.set("largest_ratio", compositor_.settings().largest_ratio);
+}
+
+void ArCompositePass::upload(cv::Mat const& rgb, ar::RenderedPair const& pair)
+{
+    if (rgb.type() != CV_8UC3 || rgb.empty())
+        throw ar::InputError("the camera's frame is not RGB of 8 bits", "its bytes cannot be given a meaning",
+                             "convert it with rgb_of()");
+    ar::check(pair, rgb.size());
+    if (glm::ivec2 const size(rgb.cols, rgb.rows); size != size_px_) {
+        size_px_ = size;
+        camera_ = storage(GL_RGB8, size);
+        with_ = storage(GL_RGB32F, size);
+        without_ = storage(GL_RGB32F, size);
+        coverage_ = storage(GL_R32F, size);
+    }
+    fill(camera_, rgb, GL_RGB, GL_UNSIGNED_BYTE);
+    fill(with_, pair.with, GL_RGB, GL_FLOAT);
+    fill(without_, pair.without, GL_RGB, GL_FLOAT);
+    fill(coverage_, pair.coverage, GL_RED, GL_FLOAT);
+}
+
+void ArCompositePass::draw(DrawTarget const& target, ar::Exposure const& exposure, std::uint64_t frame) const
+{
+    if (size_px_.x == 0 || target.size_px != size_px_)
+        throw ar::InputError(fmt::format("a composite of {} x {} pixels for a target of {} x {}", size_px_.x,
+                                         size_px_.y, target.size_px.x, target.size_px.y),
+                             "the camera's pixels are not resampled",
+                             "upload first, draw into a texture of the frame's size, and show that");
+    bind(target);
+    GlObject const* const textures[] = {&camera_,   &with_,     &without_,
+                                        &coverage_, &response_, noise_.id() != 0 ? &noise_ : &response_};
+    for (GLuint unit = 0; unit < 6; ++unit) glBindTextureUnit(unit, textures[unit]->id());
+    cv::Matx33f const m = compositor_.unit_of_radiance(exposure);
+    glm::mat3 to_unit;
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) to_unit[c][r] = m(r, c);
+    cv::Point const offset = compositor_.noise().offset(frame);
+    program_.set("corner", target.corner_px);
+    program_.set("target_size", target.size_px);
+    program_.set("top_last", int(target.rows == RowOrder::top_last));
+    program_.set("to_unit", to_unit);
+    program_.set("noise_offset", glm::ivec2(offset.x, offset.y));
+    program_.use();
+    glBindVertexArray(vertices_.id());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+} // namespace viewer
