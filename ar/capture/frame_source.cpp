@@ -1,0 +1,61 @@
+#include "ar/capture/frame_source.h"
+
+#include "ar/base/error.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace ar {
+namespace {
+
+void check_positive(std::optional<double> value, char const* name)
+{
+    if (value && !(std::isfinite(*value) && *value > 0))
+        throw InputError(fmt::format("{} = {}", name, *value), "it has to be a number above 0", "set another one");
+}
+
+void check_not_both(std::optional<bool> automatic, bool by_hand, char const* name)
+{
+    if (automatic.value_or(false) && by_hand)
+        throw InputError(fmt::format("{} is both automatic and given", name), "one would undo the other",
+                         "set one of them");
+}
+
+} // namespace
+
+void check(Controls const& c)
+{
+    check_positive(c.exposure_time_s, "the exposure time");
+    check_positive(c.gain, "the gain");
+    check_positive(c.red_gain, "the gain of red");
+    check_positive(c.blue_gain, "the gain of blue");
+    check_positive(c.frame_duration_s, "the frame duration");
+    check_not_both(c.automatic_exposure, c.exposure_time_s || c.gain, "exposure");
+    check_not_both(c.automatic_white_balance, c.red_gain || c.blue_gain, "white balance");
+    if (c.red_gain.has_value() != c.blue_gain.has_value())
+        throw InputError("one gain of white balance without the other", "cameras take both at once",
+                         "give red_gain and blue_gain");
+}
+
+std::string describe(SourceCounts const& c)
+{
+    std::string text = fmt::format("{} frames, {} dropped, {} refused", c.delivered, c.dropped, c.refused);
+    return c.refused > 0 ? text + " (last: " + c.last_refusal + ")" : text;
+}
+
+std::vector<std::string> cannot_set(Controls const& c, std::string const& why)
+{
+    std::vector<std::string> all;
+    auto const add = [&](bool is_set, char const* name) {
+        if (is_set) all.push_back(fmt::format("{} cannot be set: {}", name, why));
+    };
+    add(c.automatic_exposure.has_value(), "automatic exposure");
+    add(c.exposure_time_s.has_value(), "the exposure time");
+    add(c.gain.has_value(), "the gain");
+    add(c.automatic_white_balance.has_value(), "automatic white balance");
+    add(c.red_gain || c.blue_gain, "white balance");
+    add(c.frame_duration_s.has_value(), "the frame duration");
+    return all;
+}
+
+} // namespace ar

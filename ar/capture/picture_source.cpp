@@ -1,0 +1,120 @@
+#include "ar/capture/picture_source.h"
+
+#include "ar/base/error.h"
+#include "ar/capture/whole_picture.h"
+
+#include <cstdio>
+#include <fmt/format.h>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+namespace ar {
+namespace {
+
+constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 30;
+
+std::vector<std::uint8_t> bytes_of_file(std::filesystem::path const& file, std::string& problem)
+{
+    std::error_code error;
+    auto const size = std::filesystem::file_size(file, error);
+    std::ifstream in(file, std::ios::binary);
+    if (error || !in || size > kMostBytes) {
+        problem = error ? error.message() : size > kMostBytes ? "it has more than 1 GiB" : "it cannot be read";
+        return {};
+    }
+    std::vector<std::uint8_t> bytes(size);
+    in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
+    bytes.resize(std::size_t(in.gcount()));
+    return bytes;
+}
+
+} // namespace
+
+PictureSource::PictureSource(std::filesystem::path const& what, PictureOptions const& options)
+    : name_(what.string()), options_(options), pictures_(find_pictures(what)), player_(options.pace)
+{
+    if (!(options.frames_per_s > 0))
+        throw InputError(fmt::format("{} frames per second", options.frames_per_s), "no frame would ever be due",
+                         "choose a rate above 0");
+    if (pictures_.empty())
+        throw InputError("no pictures in '" + name_ + "'", "there is nothing to play",
+                         "name a folder of pictures, or a pattern like frame_%04d.png");
+    while (at_ < pictures_.size() && (ready_ = decoded(pictures_[at_])).empty()) ++at_;
+    if (ready_.empty())
+        throw InputError(fmt::format("none of the {} pictures of '{}' can be decoded", pictures_.size(), name_),
+                         counts().last_refusal, "look at the files");
+}
+
+cv::Mat PictureSource::decoded(NumberedPicture const& p)
+{
+    auto const refuse = [&](std::string const& why) {
+        tally_.refuse(p.number, p.file.filename().string() + ": " + why);
+        return cv::Mat();
+    };
+    std::string problem;
+    auto const bytes = bytes_of_file(p.file, problem);
+    if (problem.empty()) problem = bytes.empty() ? "it is empty" : what_is_missing(bytes);
+    if (!problem.empty()) return refuse(problem);
+    cv::Mat picture;
+    try {
+        picture = cv::imdecode(bytes, cv::IMREAD_ANYCOLOR); // of 8 bits
+    } catch (cv::Exception const& e) {
+        return refuse("it cannot be decoded: " + e.err);
+    }
+    if (picture.empty()) return refuse("it cannot be decoded");
+    if (size_px_ == glm::ivec2(0)) {
+        size_px_ = {picture.cols, picture.rows};
+        type_ = picture.type();
+    }
+    if (glm::ivec2(picture.cols, picture.rows) != size_px_)
+        return refuse(fmt::format("it has {} x {} pixels, the first one had {} x {}", picture.cols, picture.rows,
+                                  size_px_.x, size_px_.y));
+    if (picture.type() != type_) return refuse("it has colour where the first one had none, or none where it had");
+    return picture;
+}
+
+std::optional<Frame> PictureSource::next(std::chrono::milliseconds wait)
+{
+    double const until = until_s(wait);
+    while (ready_.empty() && at_ < pictures_.size())
+        if ((ready_ = decoded(pictures_[at_])).empty()) ++at_;
+    if (at_ >= pictures_.size()) return std::nullopt;
+    Frame f;
+    f.sequence = pictures_[at_].number;
+    auto const due_s = player_.wait_for(double(f.sequence) / options_.frames_per_s, until);
+    if (!due_s) return std::nullopt;
+    f.captured_s = *due_s;
+    f.origin = TimestampOrigin::file;
+    f.format = type_ == CV_8UC1 ? PixelFormat::gray8 : PixelFormat::bgr8;
+    f.size_px = size_px_;
+    f.planes[0] = std::exchange(ready_, cv::Mat());
+    f.arrived_s = steady_now_s();
+    ++at_;
+    tally_.deliver(f.sequence);
+    return f;
+}
+
+SourceState PictureSource::state() const
+{
+    if (at_ >= pictures_.size()) return {SourceState::Kind::ended, "there are no more pictures"};
+    return {};
+}
+
+SourceDescription PictureSource::description() const
+{
+    return {.name = name_,
+            .id = name_,
+            .size_px = size_px_,
+            .format = type_ == CV_8UC1 ? PixelFormat::gray8 : PixelFormat::bgr8,
+            .frames_per_s = options_.frames_per_s,
+            .is_live = false,
+            .controls = {}};
+}
+
+std::vector<std::string> PictureSource::set(Controls const& controls)
+{
+    check(controls);
+    return cannot_set(controls, "these are pictures on disk");
+}
+
+} // namespace ar

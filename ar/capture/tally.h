@@ -1,0 +1,40 @@
+#pragma once
+// Counts of a source, from the numbers of its frames: what is missing between two of them was dropped.
+
+#include "ar/capture/frame_source.h"
+
+namespace ar {
+
+class Tally {
+public:
+    void deliver(std::uint64_t sequence)
+    {
+        see(sequence);
+        ++counts_.delivered;
+    }
+    void refuse(std::uint64_t sequence, std::string reason)
+    {
+        see(sequence);
+        ++counts_.refused;
+        counts_.last_refusal = std::move(reason);
+    }
+    /// It came and is given up.
+    void drop(std::uint64_t sequence)
+    {
+        see(sequence);
+        ++counts_.dropped;
+    }
+    SourceCounts const& counts() const { return counts_; }
+
+private:
+    void see(std::uint64_t sequence)
+    {
+        if (next_ && sequence > *next_) counts_.dropped += sequence - *next_;
+        next_ = sequence + 1;
+    }
+
+    SourceCounts counts_;
+    std::optional<std::uint64_t> next_;
+};
+
+} // namespace ar
