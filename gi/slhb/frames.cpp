@@ -92,6 +92,59 @@ public:
         return results;
     }
 
+    PairResult pair(FrameView const& view, std::uint32_t paths, PairWorld const& turn,
+                    StopRequest const& stop) override
+    {
+        if (view.camera.orthographic)
+            throw InputError("pictures with and without what moves, of an orthographic camera",
+                             "its first surfaces are not rasterised", "use a perspective camera");
+        auto const begun = std::chrono::steady_clock::now();
+        // Streamed axes have what moves built into them, and are kept for both sides: the same axes with it apart.
+        if (settings_.slhb.schedule == Schedule::streamed) {
+            asked_.slhb.schedule = Schedule::temporal;
+            asked_.slhb.axes = asked_.slhb.fresh_axes = settings_.slhb.axes;
+            restart_ = true;
+        }
+        see(view);
+        double const earlier = renderer_->rays();
+        PairResult both;
+        both.coverage.assign(std::size_t(view.width) * std::size_t(view.height), 0.0f);
+        sums_.clear();
+        for (int side = 0; side < 2; ++side) sums_.emplace_back(view.width, view.height);
+        // Every other pass begins with the side that the one before it ended with: the world changes but once.
+        PairSide now = PairSide::with;
+        for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i, ++passes_)
+            for (int half = 0; half < 2; ++half) {
+                if (half == 1 || i == 0) {
+                    now = i == 0 && half == 0     ? PairSide::with
+                          : now == PairSide::with ? PairSide::without
+                                                  : PairSide::with;
+                    changed(turn(now));
+                    see(view);
+                }
+                on_threads(settings_.threads, [&] {
+                    renderer_->pass(passes_, {&sums_[std::size_t(now)], 1}, Endings::own);
+                });
+                if (now == PairSide::with) renderer_->add_coverage(0, both.coverage);
+            }
+        if (now == PairSide::without) changed(turn(PairSide::with));
+        PathCounts lost;
+        for (Accumulator const& s : sums_) {
+            RenderResult& r = &s == sums_.data() ? both.with : both.without;
+            r.paths = s.paths;
+            r.end = r.paths < paths ? RenderEnd::interrupted : RenderEnd::paths;
+            r.picture = s.picture(world_.world());
+            lost += s.counts;
+        }
+        for (float& c : both.coverage) c /= float(both.with.paths);
+        report_.lose("paths cut at 1024 surfaces", lost.cut_paths);
+        report_.lose("path terms that were not finite, dropped", lost.invalid_paths);
+        finish(both.with, earlier);
+        both.with.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        end_frame();
+        return both;
+    }
+
 private:
     FrameView full_size(Camera const& camera) const { return {camera, settings_.width, settings_.height}; }
 

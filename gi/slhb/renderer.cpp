@@ -303,7 +303,8 @@ void SlhbRenderer::trace_view(View const& view, SlhbTracer::Pass const& pass, bo
 /// Whether paths of this pass end on the first matt layer and share what is sent on there.
 bool SlhbRenderer::start_sharing(std::uint32_t index, std::size_t pixels, Endings endings)
 {
-    bool const possible = settings_.bounces > 0 && slhb_.cone == 0 && !slhb_.exact.queries;
+    bool const possible =
+        endings != Endings::own && settings_.bounces > 0 && slhb_.cone == 0 && !slhb_.exact.queries;
     std::size_t const layers = axes_->first_bounce_layers();
     bool const in_cells = possible && endings == Endings::in_cells && !orthographic(),
                on_layers = possible && layers < pixels;
@@ -365,6 +366,15 @@ void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums, Endin
     });
     report_.add_time("direct light, thread seconds", direct_s);
     report_.add_time("indirect light, thread seconds", indirect_s);
+}
+
+void SlhbRenderer::add_coverage(std::size_t view, std::span<float> counts) const
+{
+    View const& v = views_[view];
+    if (!v.primary) return;
+    for (std::size_t p = 0; p < counts.size(); ++p)
+        if (std::uint32_t const t = v.primary->triangle(p); t != kNoPrimitive && t >= first_moving_)
+            counts[p] += 1;
 }
 
 double SlhbRenderer::rays() const { return double(done_.queries + done_.shadow_lookups + done_.exact_rays); }

@@ -27,9 +27,22 @@ struct FrameView {
 
 /// What is found of the light that surfaces send on to others.
 enum class Endings : std::uint8_t {
-    exact,
+    own,     ///< each path finds it by itself: one that meets nothing new stays as it was, whatever others meet
+    exact,   ///< paths that end on one layer share it
     in_cells ///< paths that end near each other may share what is sent on there: much less work, a little blur of
              ///< it
+};
+
+/// The two pictures of a PairResult.
+enum class PairSide : std::uint8_t { with, without };
+/// Takes the world to one of them.
+using PairWorld = std::function<Changes(PairSide)>;
+
+/// Two pictures of one moment, of worlds that differ in what moves alone, by the same axes, points on lamps and
+/// random numbers: paths that meet no difference are equal in every bit.
+struct PairResult {
+    RenderResult with, without;
+    std::vector<float> coverage; ///< per pixel: share of the paths of `with` whose first surface is one that moves
 };
 
 class FrameRenderer {
@@ -50,6 +63,11 @@ public:
     /// @return a result per view, in their order; `interrupted` where `stop` came first, with fewer paths
     virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings endings,
                                             StopRequest const& stop) = 0;
+    /// One view with what moves and without it; `turn` is asked for the one and the other in turns, and comes back
+    /// to `with` before this ends. @param paths  per pixel of each, >= 1
+    /// @throws InputError where the method does not know how
+    virtual PairResult pair(FrameView const& view, std::uint32_t paths, PairWorld const& turn,
+                             StopRequest const& stop);
 };
 
 /// Starts with the world as it is; it and the report outlive the renderer.

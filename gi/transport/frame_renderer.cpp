@@ -1,0 +1,13 @@
+#include "gi/transport/frame_renderer.h"
+
+#include "gi/base/error.h"
+
+namespace gi {
+
+PairResult FrameRenderer::pair(FrameView const&, std::uint32_t, PairWorld const&, StopRequest const&)
+{
+    throw InputError("pictures with and without what moves, by this method",
+                     "it does not know how to give both the same random numbers", "use the method slhb");
+}
+
+} // namespace gi
