@@ -35,11 +35,10 @@ std::string host_name()
 }
 
 /// Before anybody sits down: everything that will be shown can be set, read, and seen from its camera.
-void check_stimuli(study::Script const& script, study::Plan const& plan, SceneAccess const& scenes)
+void check_stimuli(std::vector<StimulusSettings> stimuli, SceneAccess const& scenes)
 {
     gi::Report report; // what scenes lose counts when they are shown
     Session session(scenes.load, 0, report);
-    std::vector<StimulusSettings> stimuli = stimuli_of(script, plan);
     std::stable_sort(stimuli.begin(), stimuli.end(),
                      [](auto const& a, auto const& b) { return a.scene < b.scene; });
     bool is_edited = false;
@@ -118,8 +117,9 @@ int run(RunOptions const& o)
     InterruptGuard const guard(stop);
     if (o.hmd && !o.display.empty())
         throw gi::InputError("--hmd with --display", "a session is seen in one of them", "give one");
+    std::vector<StimulusSettings> const stimuli = stimuli_of(script, plan); // refuses settings, naming their block
     check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
-    check_stimuli(script, plan, trials.scenes);
+    check_stimuli(stimuli, trials.scenes);
     if (!o.display.empty()) trials.screen.display = load_display(o.display, report);
     trials.view = o.hmd ? StimulusViewer::headset : StimulusViewer::window;
     trials.headset.space = o.seated ? HmdSpace::local : HmdSpace::stage;
