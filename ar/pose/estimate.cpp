@@ -54,11 +54,17 @@ void append(std::vector<Pose>& to, std::vector<Pose> const& more)
     to.insert(to.end(), more.begin(), more.end());
 }
 
-/// Of all points, of each of the larger markers, and, where few points agree, of few points drawn at random.
+/// Of all points; where not all agree, of each of the larger markers, and then of few points drawn at random.
 std::vector<Pose> first_guesses(CameraModel const& camera, Points const& points, std::optional<Pose> const& last)
 {
     std::vector<Pose> guesses = candidates(camera, points);
     if (last) guesses.push_back(*last);
+    auto const some_disagree = [&] {
+        return std::none_of(guesses.begin(), guesses.end(), [&](Pose const& g) {
+            return truncated_cost(camera, points, g, kCoarseSigmas) < 0.05 * double(points.size());
+        });
+    };
+    if (!some_disagree()) return guesses;
     std::vector<Points> markers;
     for (auto& [unused, own] : by_marker(points)) markers.push_back(own);
     if (markers.size() > 1) {
@@ -67,9 +73,7 @@ std::vector<Pose> first_guesses(CameraModel const& camera, Points const& points,
         for (std::size_t i = 0; i < std::min(markers.size(), kMarkerGuesses); ++i)
             append(guesses, candidates(camera, markers[i]));
     }
-    double best = double(points.size());
-    for (Pose const& g : guesses) best = std::min(best, truncated_cost(camera, points, g, kCoarseSigmas));
-    if (points.size() < 6 || best < 0.05 * double(points.size())) return guesses;
+    if (points.size() < 6 || !some_disagree()) return guesses;
     std::mt19937 random(1);
     for (int i = 0; i < kRandomGuesses; ++i) {
         Points few;
@@ -159,6 +163,7 @@ std::optional<Refined> second_pose(CameraModel const& camera, Agreed const& firs
     }
     std::optional<Refined> best;
     for (Pose const& start : starts) {
+        if (angle_between_deg(start.rotation, chosen.rotation) < 0.5) continue; // would find the first again
         Refined const r = refine(camera, first.points, start);
         bool const ahead = std::all_of(first.points.begin(), first.points.end(), [&](SightedPoint const& p) {
             return miss_px(camera, r.world_from_camera, p).has_value();

@@ -127,7 +127,8 @@ Refined refine(CameraModel const& camera, std::span<SightedPoint const> points, 
     Pose pose = start;
     Equations e = equations(camera, points, pose, robust_sigmas);
     double damping = 1e-4;
-    for (int i = 0; i < 60; ++i) {
+    bool const rough = robust_sigmas > 0; // a step on the way
+    for (int i = 0; i < (rough ? 12 : 40); ++i) {
         cv::Matx66d a = e.a;
         for (int k = 0; k < 6; ++k) a(k, k) += damping * e.a(k, k) + 1e-300;
         Vec6 step;
@@ -143,7 +144,7 @@ Refined refine(CameraModel const& camera, std::span<SightedPoint const> points, 
         pose = tried;
         e = equations(camera, points, pose, robust_sigmas);
         damping = std::max(1e-12, damping / 8);
-        if (gained <= 1e-10 * e.cost + 1e-14) break;
+        if (gained <= (rough ? 1e-3 : 1e-8) * e.cost + 1e-14) break;
     }
     return {pose, cost(camera, points, pose, 0), inverted(e.a)};
 }

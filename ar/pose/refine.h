@@ -25,10 +25,10 @@ struct Refined {
 };
 
 /// Levenberg-Marquardt (Levenberg 1944, Marquardt 1963); the rotation is updated by rotation vectors.
-/// @param start  a pose that has the points ahead of the camera
-/// @param robust_sigmas  > 0: weights of Geman and McClure 1987 with this scale, by iterated reweighting; points
-/// far
-///                beyond it hardly count
+/// @param start a pose that has the points ahead of the camera
+/// @param robust_sigmas if > 0: weights of Geman and McClure 1987 with this scale, by iterated reweighting,
+/// roughly:
+///        points far beyond it hardly count
 Refined refine(CameraModel const& camera, std::span<SightedPoint const> points, Pose const& start,
                double robust_sigmas = 0);
 

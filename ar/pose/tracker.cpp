@@ -1,0 +1,128 @@
+#include "ar/pose/tracker.h"
+
+#include "ar/base/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace ar {
+namespace {
+
+void check(TrackerSettings const& s)
+{
+    auto const need = [](char const* name, double v) {
+        if (v > 0 && std::isfinite(v)) return;
+        throw InputError(fmt::format("tracking: {} is {}", name, v), "it must be finite and more than 0",
+                         "leave it out for the default");
+    };
+    for (OneEuroSettings const& f : {s.position, s.rotation}) {
+        need("min_cutoff_hz", f.min_cutoff_hz);
+        need("speed_cutoff_hz", f.speed_cutoff_hz);
+        need("velocity_min_cutoff_hz", f.velocity_min_cutoff_hz);
+        need("beta + 1", f.beta + 1);
+        need("velocity_beta + 1", f.velocity_beta + 1);
+    }
+    need("fresh_s", s.fresh_s);
+    need("predict_s", s.predict_s);
+    need("lost_after_s", s.lost_after_s);
+    need("jump_m_s", s.jump_m_s);
+    need("jump_deg_s", s.jump_deg_s);
+    need("jump_least_m", s.jump_least_m);
+    need("jump_least_deg", s.jump_least_deg);
+    need("jump_confirmed_by", s.jump_confirmed_by);
+    need("limit_sigmas", s.still.limit_sigmas);
+    need("keep", double(s.still.keep));
+    need("moved_after", s.still.moved_after);
+}
+
+} // namespace
+
+std::string name_of(TrackState state)
+{
+    constexpr char const* names[]{"lost", "predicted", "tracked"};
+    return names[std::size_t(state)];
+}
+
+PoseTracker::PoseTracker(TrackerSettings const& settings)
+    : settings_(settings), filter_(settings.position, settings.rotation), still_(settings.still)
+{
+    check(settings);
+}
+
+bool PoseTracker::is_jump(double captured_s, Pose const& pose) const
+{
+    double const dt = captured_s - *newest_s_;
+    Pose const expected = filter_.moved_on(std::min(dt, settings_.predict_s));
+    return glm::length(pose.position_m - expected.position_m) > settings_.jump_least_m + settings_.jump_m_s * dt ||
+           angle_between_deg(pose.rotation, expected.rotation) >
+               settings_.jump_least_deg + settings_.jump_deg_s * dt;
+}
+
+void PoseTracker::begin(double captured_s, Pose const& pose)
+{
+    filter_.restart(pose);
+    newest_s_ = captured_s;
+    jump_.reset();
+    jump_seen_ = 0;
+}
+
+void PoseTracker::add(double captured_s, PoseEstimate const& e)
+{
+    if (!e.found() || !(e.confidence >= settings_.least_confidence)) {
+        ++counts_.missed;
+        return;
+    }
+    if (!std::isfinite(captured_s) || (newest_s_ && captured_s <= *newest_s_)) {
+        ++counts_.late;
+        return;
+    }
+    Pose const& pose = e.world_from_camera;
+    if (settings_.motion == CameraMotion::tripod) {
+        counts_.moves += still_.add(e) ? 1 : 0;
+        newest_s_ = captured_s;
+    } else if (!newest_s_ || captured_s - *newest_s_ > settings_.lost_after_s) {
+        counts_.recoveries += newest_s_ ? 1 : 0;
+        begin(captured_s, pose);
+    } else if (is_jump(captured_s, pose)) {
+        bool const again = jump_ && glm::length(pose.position_m - jump_->position_m) < settings_.jump_least_m &&
+                           angle_between_deg(pose.rotation, jump_->rotation) < settings_.jump_least_deg;
+        jump_seen_ = again ? jump_seen_ + 1 : 0;
+        jump_ = pose;
+        if (jump_seen_ < settings_.jump_confirmed_by) {
+            ++counts_.jumps_refused;
+            return;
+        }
+        ++counts_.jumps_believed;
+        begin(captured_s, pose);
+    } else {
+        filter_.step(pose, captured_s - *newest_s_);
+        newest_s_ = captured_s;
+        jump_.reset();
+    }
+    confidence_ = e.confidence;
+    ++counts_.taken;
+}
+
+TrackedPose PoseTracker::at(double time_s) const
+{
+    TrackedPose t;
+    if (!newest_s_ || !std::isfinite(time_s)) return t;
+    t.age_s = time_s - *newest_s_;
+    if (settings_.motion == CameraMotion::tripod) {
+        // It stands where it stood: what is covered for a while is not lost, only less certain.
+        t.state = t.age_s <= settings_.fresh_s ? TrackState::tracked : TrackState::predicted;
+        t.world_from_camera = still_.pose()->world_from_camera;
+        t.confidence = confidence_;
+        return t;
+    }
+    if (t.age_s > settings_.lost_after_s) return t;
+    t.state = t.age_s <= settings_.fresh_s ? TrackState::tracked : TrackState::predicted;
+    t.world_from_camera = filter_.moved_on(std::clamp(t.age_s, -settings_.predict_s, settings_.predict_s));
+    double const stale = std::max(0.0, t.age_s - settings_.fresh_s);
+    t.confidence =
+        confidence_ * std::max(0.0, 1 - stale / std::max(1e-9, settings_.lost_after_s - settings_.fresh_s));
+    return t;
+}
+
+} // namespace ar

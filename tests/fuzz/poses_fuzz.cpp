@@ -1,0 +1,21 @@
+// Any text as poses of a camera: poses or an InputError, never anything else.
+
+#include "ar/base/error.h"
+#include "ar/pose/pose_file.h"
+
+#include <cmath>
+
+extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
+{
+    std::vector<char> const text(data, data + size);
+    try {
+        auto const poses = ar::parse_poses({text.data(), text.size()}, "fuzz");
+        auto const again = ar::parse_poses(ar::format_poses(poses), "again");
+        if (again.size() != poses.size()) __builtin_trap();
+        for (auto const& p : poses)
+            if (!(std::abs(glm::length(p.world_from_camera.rotation) - 1) < 1e-9)) __builtin_trap();
+        ar::pose_at(poses, 0.5 * (poses.front().time_s + poses.back().time_s), 1e16);
+    } catch (ar::InputError const&) {
+    }
+    return 0;
+}
