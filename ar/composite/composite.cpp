@@ -10,7 +10,12 @@
 namespace ar {
 namespace {
 
-bool is_finite(cv::Vec3f const& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+/// 0 times what is not finite is NaN.
+bool is_finite(cv::Vec3f const& v)
+{
+    float const zero = 0 * v[0] + 0 * v[1] + 0 * v[2];
+    return zero == 0;
+}
 
 /// One frame's constants.
 struct Frame {

@@ -41,14 +41,19 @@ Neighbourhood around(cv::Mat const& added, int radius)
     });
     cv::Size const box(2 * radius + 1, 2 * radius + 1);
     cv::dilate(n.any, n.any, cv::getStructuringElement(cv::MORPH_RECT, box));
+    n.mean = cv::Mat::zeros(added.size(), CV_32FC3);
+    n.deviation = cv::Mat::zeros(added.size(), CV_32FC3);
+    cv::Rect const where = cv::boundingRect(n.any);
+    if (where.empty()) return n;
+    cv::Mat const part = finite(where); // filters read beyond it
     cv::Mat mean, squares;
-    cv::boxFilter(finite, mean, CV_64F, box, {-1, -1}, true, cv::BORDER_REPLICATE);
-    cv::sqrBoxFilter(finite, squares, CV_64F, box, {-1, -1}, true, cv::BORDER_REPLICATE);
+    cv::boxFilter(part, mean, CV_64F, box, {-1, -1}, true, cv::BORDER_REPLICATE);
+    cv::sqrBoxFilter(part, squares, CV_64F, box, {-1, -1}, true, cv::BORDER_REPLICATE);
     cv::Mat variance = squares - mean.mul(mean);
     variance = cv::max(variance, 0.0);
     cv::sqrt(variance, variance);
-    variance.convertTo(n.deviation, CV_32F);
-    mean.convertTo(n.mean, CV_32F);
+    variance.convertTo(n.deviation(where), CV_32F);
+    mean.convertTo(n.mean(where), CV_32F);
     return n;
 }
 

@@ -37,17 +37,19 @@ cv::Vec3f at_least(cv::Vec3f v)
 float likeness(SurfaceGuides const& guides, cv::Point full, SurfaceGuides const& low_guides, cv::Point low,
                UpsampleSettings const& settings)
 {
-    float w = 1;
+    float unlike = 0;
     if (!guides.depth.empty()) {
         float const z = guides.depth.at<float>(full), l = low_guides.depth.at<float>(low);
         if ((z > 0) != (l > 0)) return 0;
-        if (z > 0) w *= float(std::exp(-0.5 * std::pow((l / z - 1) / settings.depth_tolerance, 2)));
+        if (z > 0) {
+            float const off = (l - z) / (z * float(settings.depth_tolerance));
+            unlike += 0.5f * off * off;
+        }
     }
-    if (!guides.normal.empty()) {
-        float const cosine = guides.normal.at<cv::Vec3f>(full).dot(low_guides.normal.at<cv::Vec3f>(low));
-        w *= float(std::pow(std::max(0.0f, cosine), settings.normal_power));
-    }
-    return w;
+    if (!guides.normal.empty())
+        unlike += float(settings.normal_power) *
+                  (1 - guides.normal.at<cv::Vec3f>(full).dot(low_guides.normal.at<cv::Vec3f>(low)));
+    return unlike < 20 ? std::exp(-unlike) : 0;
 }
 
 } // namespace
@@ -70,6 +72,14 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
             for (int c = 0; c < 3; ++c) v[c] /= albedo[c];
         });
 
+    // Most of a frame has no change within reach.
+    cv::Mat changed(low_size, CV_8UC1);
+    changed.forEach<uchar>([&](uchar& any, int const* at) {
+        bool const covered = low.coverage.at<float>(at[0], at[1]) > 0;
+        any = covered || change.at<cv::Vec3f>(at[0], at[1]) != cv::Vec3f(0, 0, 0) ? 255 : 0;
+    });
+    cv::dilate(changed, changed, cv::getStructuringElement(cv::MORPH_RECT, {5, 5}));
+
     RenderedPair out;
     out.coverage = seen.coverage;
     if (without_full.empty())
@@ -84,6 +94,13 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
             for (int x = 0; x < size.width; ++x) {
                 double const lx = (x + 0.5) * step_x - 0.5, ly = (y + 0.5) * step_y - 0.5;
                 int const x0 = int(std::floor(lx)), y0 = int(std::floor(ly));
+                float const a = seen.coverage.at<float>(y, x);
+                if (!changed.at<uchar>(std::clamp(y0, 0, low_size.height - 1),
+                                       std::clamp(x0, 0, low_size.width - 1)) &&
+                    !(a > 0)) {
+                    out.with.at<cv::Vec3f>(y, x) = out.without.at<cv::Vec3f>(y, x);
+                    continue;
+                }
                 // Tents of the width 2: a surface that no direct neighbour shows may be one further.
                 cv::Vec3f guided(0, 0, 0), plain(0, 0, 0);
                 float guided_weight = 0, plain_weight = 0;
@@ -113,7 +130,6 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
                     cv::Vec3f const albedo = at_least(guides.albedo.at<cv::Vec3f>(y, x));
                     light = light.mul(albedo);
                 }
-                float const a = seen.coverage.at<float>(y, x);
                 cv::Vec3f const place = out.without.at<cv::Vec3f>(y, x) + light;
                 out.with.at<cv::Vec3f>(y, x) =
                     a > 0 ? seen.radiance.at<cv::Vec3f>(y, x) + (1 - std::min(a, 1.0f)) * place : place;

@@ -22,7 +22,7 @@ struct DirectlySeen {
 };
 
 struct UpsampleSettings {
-    double normal_power = 32;      ///< weight: max(0, cosine)^power
+    double normal_power = 32;      ///< weight: exp(-power (1 - cosine)), about cosine^power
     double depth_tolerance = 0.02; ///< of the depth: the weight's sigma
 };
 
