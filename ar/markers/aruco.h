@@ -11,6 +11,7 @@ namespace ar {
 /// How corners are found within their pixels.
 enum class Refinement {
     none,     ///< of the contour
+    edges,    ///< lines through the sides (refine.h)
     subpixel, ///< gradients around a corner (Foerstner)
     contour,  ///< lines through the contour
     apriltag, ///< AprilTag 2's own search for quads (Wang and Olson 2016); slow
@@ -18,16 +19,19 @@ enum class Refinement {
 std::string name_of(Refinement refinement);
 
 struct SearchSettings {
-    Refinement refinement = Refinement::subpixel;
+    Refinement refinement = Refinement::edges;
     double smallest_side_px = 12; ///< of markers
-    /// Windows of the adaptive threshold, pixels, odd.
+    int enlarge = 1; ///< the picture by this before the search: 2 for markers with few pixels per cell
+    /// Windows of the adaptive threshold, pixels of the enlarged picture, odd.
     int smallest_window_px = 3, largest_window_px = 23, window_step_px = 10;
 };
 
 /// A marker in a picture; pixels with whole numbers at their centres.
 struct FoundMarker {
     int id = 0;
-    std::array<cv::Point2f, 4> corners; ///< upper left, upper right, lower right, lower left as printed
+    /// Upper left, upper right, lower right, lower left as printed (AprilTags: as in the pictures of their
+    /// makers).
+    std::array<cv::Point2f, 4> corners;
 };
 
 struct FoundMarkers {
@@ -42,10 +46,6 @@ struct FoundCorner {
     int index = 0; ///< of inner_corners()
     cv::Point2f pixel;
 };
-/// The inner corners of a board whose both neighbouring markers were found.
-std::vector<FoundCorner> find_inner_corners(cv::Mat const& gray, CharucoBoard const& board,
-                                            std::vector<FoundMarker> const& markers);
-
 /// The cells of a marker, border included, row by row from the top left; true = black.
 std::vector<std::vector<bool>> cells_of(std::string const& dictionary, int id);
 

@@ -1,6 +1,7 @@
 #include "ar/markers/detect.h"
 
 #include "ar/base/error.h"
+#include "ar/markers/refine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -125,9 +126,10 @@ SearchSettings search_settings(DetectorSettings const& settings, cv::Size pictur
     SearchSettings s;
     s.refinement = settings.refinement;
     int const width = std::max(picture.width, picture.height);
-    s.smallest_side_px = settings.smallest_side_px > 0 ? settings.smallest_side_px : std::max(10., width / 80.);
+    s.smallest_side_px = settings.smallest_side_px > 0 ? settings.smallest_side_px : std::max(8., width / 80.);
+    s.enlarge = settings.enlarge;
     // A window must be wider than what is thresholded is soft, and narrower than white margins matter.
-    s.smallest_window_px = width > 1400 ? 5 : 3;
+    s.smallest_window_px = s.enlarge > 1 || width > 1400 ? 5 : 3;
     s.window_step_px = width > 1400 ? 16 : 10;
     s.largest_window_px = s.smallest_window_px + 2 * s.window_step_px;
     return s;
