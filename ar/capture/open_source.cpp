@@ -1,0 +1,70 @@
+#include "ar/capture/open_source.h"
+
+#include "ar/base/error.h"
+#include "ar/capture/counter_source.h"
+#include "ar/capture/libcamera_source.h"
+#include "ar/capture/picture_source.h"
+#include "ar/capture/session_reader.h"
+#include "ar/capture/video_source.h"
+
+#include <charconv>
+
+namespace ar {
+namespace {
+
+/// What follows the prefix, if it is there.
+std::optional<std::string> after(std::string const& name, std::string const& prefix)
+{
+    return name.starts_with(prefix) ? std::optional(name.substr(prefix.size())) : std::nullopt;
+}
+
+int device_number(std::string const& text)
+{
+    int number = -1;
+    auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size() || number < 0)
+        throw InputError("device:" + text, "'" + text + "' is no number of a camera",
+                         "write device:0 for /dev/video0");
+    return number;
+}
+
+std::unique_ptr<FrameSource> open_files(std::filesystem::path const& path, OpenOptions const& o)
+{
+    std::error_code error;
+    bool const is_folder = std::filesystem::is_directory(path, error);
+    if (is_folder && std::filesystem::exists(path / kSessionFile, error))
+        return std::make_unique<SessionSource>(path, o.pace);
+    if (is_folder ||
+        (path.filename().string().find('%') != std::string::npos && !std::filesystem::exists(path, error)))
+        return std::make_unique<PictureSource>(path, PictureOptions{o.frames_per_s, o.pace});
+    return open_video(path, o.pace);
+}
+
+} // namespace
+
+std::unique_ptr<FrameSource> open_source(std::string const& name, OpenOptions const& o)
+{
+    Controls controls = o.controls;
+    if (!controls.frame_duration_s && o.frames_per_s > 0) controls.frame_duration_s = 1 / o.frames_per_s;
+    LiveOptions const live{.size_px = o.size_px,
+                           .frames_per_s = o.frames_per_s,
+                           .format = o.format,
+                           .delivery = o.delivery,
+                           .controls = o.controls};
+    if (name == "camera" || name.starts_with("camera:"))
+        return open_libcamera({.id = after(name, "camera:").value_or(""),
+                               .size_px = o.size_px,
+                               .format = o.format,
+                               .delivery = o.delivery,
+                               .controls = controls});
+    if (auto const number = after(name, "device:")) return open_device(device_number(*number), live);
+    if (auto const pipeline = after(name, "gstreamer:")) return open_pipeline(*pipeline, live);
+    if (name == "counter")
+        return std::make_unique<CounterSource>(CounterOptions{.size_px = o.size_px,
+                                                              .frames_per_s = o.frames_per_s,
+                                                              .format = o.format.value_or(PixelFormat::rgb8),
+                                                              .pace = o.pace});
+    return open_files(name, o);
+}
+
+} // namespace ar

@@ -1,0 +1,29 @@
+#pragma once
+// A source by its name, as people write it on a command line.
+
+#include "ar/capture/frame_source.h"
+
+#include <memory>
+
+namespace ar {
+
+struct OpenOptions {
+    glm::ivec2 size_px{640, 480}; ///< of cameras and the counter
+    double frames_per_s = 30;     ///< of cameras, pictures and the counter
+    std::optional<PixelFormat> format = {};
+    Pace pace = Pace::own; ///< of files
+    Delivery delivery = Delivery::newest;
+    Controls controls = {}; ///< of cameras
+};
+
+///   camera, camera:ID       libcamera's first, or the one of that id or name
+///   device:0                a V4L2 camera by its number
+///   gstreamer:PIPELINE      ends in an appsink
+///   counter                 generated
+///   a folder                a recorded session if it has a session.json, else pictures
+///   a path with %d or %04d  numbered pictures
+///   a file                  a video
+/// @throws InputError there is no such thing, or it gives no frame
+std::unique_ptr<FrameSource> open_source(std::string const& name, OpenOptions const& options = {});
+
+} // namespace ar
