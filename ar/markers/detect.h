@@ -30,7 +30,8 @@ SearchSettings search_settings(DetectorSettings const& settings, cv::Size pictur
 Sighting detect(cv::Mat const& gray, MarkerMap const& map, DetectorSettings const& settings = {});
 
 /// Pictures of one camera one after another: looks where the markers were, and at the whole picture where that
-/// finds fewer of them than before. What it finds there is what `detect` finds, for markers that it follows.
+/// finds fewer of them than before. (Thresholds depend on the part
+/// that is searched: a marker that is hardly seen may be found in one and not in the other.)
 class MarkerTracker {
 public:
     /// @throws InputError a map that `check` refuses
