@@ -55,13 +55,17 @@ Lamp lamp_of(cv::Mat const& map, cv::Mat const& rest, Texels const& region)
 {
     Lamp lamp;
     glm::dvec3 towards(0);
+    double sum = 0, sum2 = 0;
     for (cv::Point const& t : region) {
         double const sr = texel_sr(map.size(), t.y);
         cv::Vec3d const light = sr * (cv::Vec3d(map.at<cv::Vec3f>(t)) - cv::Vec3d(rest.at<cv::Vec3f>(t)));
         lamp.irradiance += light;
         towards += luminance(light) * texel_direction(map.size(), t.x, t.y);
+        sum += luminance(light);
+        sum2 += luminance(light) * luminance(light) / sr;
     }
-    lamp.solid_angle_sr = region_sr(map.size(), region);
+    double const region_size = region_sr(map.size(), region);
+    lamp.solid_angle_sr = sum2 > 0 ? std::min(region_size, sum * sum / sum2) : region_size;
     lamp.half_angle_rad = std::acos(std::clamp(1 - lamp.solid_angle_sr / (2 * std::numbers::pi), -1.0, 1.0));
     if (glm::length(towards) > 0) lamp.direction = glm::normalize(towards);
     lamp.radiance = lamp.irradiance / lamp.solid_angle_sr;

@@ -20,10 +20,12 @@ struct LampSettings {
 
 struct Lamp {
     glm::dvec3 direction{0, 1, 0}; ///< towards it, mean by light
-    double solid_angle_sr = 0;     ///< of its region
-    double half_angle_rad = 0;     ///< of the disc of that solid angle
-    cv::Vec3d irradiance;          ///< of a face turned to it: its light above what stays in the map, W/m^2
-    cv::Vec3d radiance;            ///< of the disc: irradiance over solid angle
+    /// (integral of L)^2 / integral of L^2 over its region: that of the disc if it is one, and of the core of what
+    /// has a soft surround, so that its shadows are as sharp as they should be.
+    double solid_angle_sr = 0;
+    double half_angle_rad = 0; ///< of the disc of that solid angle
+    cv::Vec3d irradiance;      ///< of a face turned to it: its light above what stays in the map, W/m^2
+    cv::Vec3d radiance;        ///< of the disc: irradiance over solid angle
 };
 
 struct SplitMap {

@@ -84,6 +84,7 @@ double linear(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055)
 
 cv::Mat read_by_opencv(std::filesystem::path const& file)
 {
+    if (!std::filesystem::is_regular_file(file)) refuse(file, "it cannot be read", "it is missing or not a file");
     cv::Mat const bgr = cv::imread(file.string(), cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH);
     if (bgr.empty()) refuse(file, "it cannot be decoded", "it is missing, damaged or of another format");
     check_size(file, bgr.cols, bgr.rows);

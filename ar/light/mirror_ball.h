@@ -33,6 +33,8 @@ double ball_distance_m(BallSight const& ball, double radius_m);
 
 /// The rim in the picture to a fraction of a pixel: steepest change of luminance across the rim of `near` within
 /// +- `search` of its half angle, in 360 places; then the cone by least squares with robust weights.
+/// A perfect mirror before what it reflects at grazing angles has no rim: real ones are darker than their
+/// surround.
 /// @param rgb CV_8UC3 or CV_32FC3
 /// @throws InputError if fewer than 60 places agree
 BallSight find_ball(cv::Mat const& rgb, CameraModel const& camera, BallSight const& near, double search = 0.15);

@@ -28,11 +28,16 @@ glm::dquat looking(double turn_deg, double up_deg)
 
 cv::Mat seen(Environment const& light, glm::dquat const& world_from_camera, double scale = 1)
 {
-    CameraModel const c = camera();
-    cv::Mat picture(c.size_px.y, c.size_px.x, CV_32FC3);
-    for (int y = 0; y < picture.rows; ++y)
-        for (int x = 0; x < picture.cols; ++x)
-            picture.at<cv::Vec3f>(y, x) = cv::Vec3f(scale * light(world_from_camera * *direction_of(c, {x, y})));
+    static std::vector<glm::dvec3> const rays = [] {
+        CameraModel const c = camera();
+        std::vector<glm::dvec3> all;
+        for (int k = 0; k < c.size_px.x * c.size_px.y; ++k)
+            all.push_back(*direction_of(c, {k % c.size_px.x, k / c.size_px.x}));
+        return all;
+    }();
+    cv::Mat picture(camera().size_px.y, camera().size_px.x, CV_32FC3);
+    for (std::size_t k = 0; k < rays.size(); ++k)
+        picture.ptr<cv::Vec3f>()[k] = cv::Vec3f(scale * light(world_from_camera * rays[k]));
     return picture;
 }
 
@@ -143,7 +148,6 @@ TEST(LiveProbe, NoticesALampThatIsSwitchedOnOrMoved)
     auto const show = [&](Environment const& light, double t) {
         glm::dquat const q = looking(0, 10);
         cv::Mat picture = seen(light, q);
-        picture.forEach<cv::Vec3f>([](cv::Vec3f&, int const*) {});
         for (auto& v : cv::Mat_<cv::Vec3f>(picture))
             for (float& c : v.val) c = std::max(0.0f, c * (1 + noise(random)));
         return probe.update(picture, {}, camera(), q, t);

@@ -7,10 +7,13 @@
 #include "ar/light/live_probe.h"
 #include "ar/light/map_file.h"
 #include "ar/light/mirror_ball.h"
+#include "ar/light/wide_lens.h"
 
 #include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
@@ -47,12 +50,28 @@ TEST(Workshop, FromItsOrthographicMirrorBall)
     ASSERT_FALSE(lamps.empty());
     double nearest = 180;
     for (Lamp const& l : lamps) nearest = std::min(nearest, angle_deg(l.direction, true_lamps[0].direction));
-    fmt::print("workshop by its mirror ball: {:.1f} % covered, relMSE of irradiance {:.5f}, strongest lamp {:.2f} "
+    fmt::print("workshop by its mirror ball: {:.1f} % covered, relMSE of irradiance {:.1e}, strongest lamp {:.2f} "
                "deg off, "
                "{} of {} lamps\n",
                100 * covered_share(seen), error, nearest, lamps.size(), true_lamps.size());
     EXPECT_LT(error, 0.02);
     EXPECT_LT(nearest, 1);
+}
+
+TEST(Workshop, FromItsAngularProbe)
+{
+    if (is_missing("envmaps/autoshop_01_angular_probe_512.exr")) GTEST_SKIP() << "SKIPPED: no shared data";
+    cv::Mat const truth = read_map(kData / "envmaps/autoshop_01_1k.hdr");
+    // Debevec's angular map is an equidistant fisheye of 360 degrees.
+    double const f = 256 / std::numbers::pi;
+    CameraModel const camera{LensModel::fisheye, {512, 512}, f, f, 255.5, 255.5, {}};
+    cv::Mat const picture = read_radiance(kData / "envmaps/autoshop_01_angular_probe_512.exr");
+    PartialMap const seen = unwrap_lens(picture, camera, {0, 1, 0, 0});
+    double const error = relative_error2(irradiance_map(filled(seen).radiance), irradiance_map(truth));
+    fmt::print("workshop by its angular map: {:.1f} % covered, relMSE of irradiance {:.1e}\n",
+               100 * covered_share(seen), error);
+    EXPECT_LT(error, 0.02);
+    EXPECT_GT(covered_share(seen), 0.95);
 }
 
 TEST(Maps, KeepTheirLightWithoutTheirLamps)
@@ -79,21 +98,42 @@ TEST(Maps, KeepTheirLightWithoutTheirLamps)
     }
 }
 
-/// The three views of data/ar/probe_views: (turn, up) in degrees of cameras that look along -z with y up.
 struct View {
-    char const* name;
-    double turn_deg, up_deg;
+    std::string picture; ///< linear
+    CameraModel camera;
+    glm::dquat world_from_camera;
 };
-constexpr std::array<View, 3> kViews{
-    {{"autoshop_view0", 0, -10}, {"autoshop_view1", 120, -15}, {"autoshop_view2", 240, 5}}};
+
+/// Of data/ar/probe_views. Its cameras look along -z with y up and its pixels' centres are at halves.
+std::vector<View> views()
+{
+    std::ifstream in(kData / "ar/probe_views/probe_views.json");
+    std::vector<View> all;
+    nlohmann::json const file = nlohmann::json::parse(in);
+    for (auto const& v : file["views"]) {
+        glm::dmat3 m;
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c)
+                m[c][r] = v["camera_to_world_rotation_rowmajor"][std::size_t(r)][std::size_t(c)];
+        glm::dquat const half_turn(0, 1, 0, 0);
+        all.push_back({v["linear"],
+                       {LensModel::pinhole,
+                        {v["width"], v["height"]},
+                        v["fx"],
+                        v["fy"],
+                        double(v["cx"]) - 0.5,
+                        double(v["cy"]) - 0.5,
+                        {}},
+                       glm::normalize(glm::quat_cast(m)) * half_turn});
+    }
+    return all;
+}
 
 TEST(Workshop, LiveProbeFromThreeViews)
 {
     if (is_missing("ar/probe_views/autoshop_view2_linear.exr")) GTEST_SKIP() << "SKIPPED: no shared data";
     cv::Mat const truth = resampled(read_map(kData / "envmaps/autoshop_01_1k.hdr"), {64, 32});
     cv::Mat const true_irradiance = irradiance_map(truth);
-    double const f = 554.2562584220409;
-    CameraModel const camera{LensModel::pinhole, {640, 480}, f, f, 319.5, 239.5, {}};
     cv::Mat dim;
     cv::multiply(truth, cv::Scalar(0.4, 0.5, 0.6), dim);
     cv::Mat const grey(32, 64, CV_32FC3, cv::mean(truth));
@@ -102,11 +142,10 @@ TEST(Workshop, LiveProbeFromThreeViews)
             LiveProbe probe(prior);
             ProbeUpdate u;
             double t = 0, off = 0;
-            for (View const& v : kViews) {
-                // Yaw about y, then pitch about x; both of a camera with y up, so half a turn about x comes last.
-                glm::dquat const q = exp_rotation({0, glm::radians(v.turn_deg), 0}) *
-                                     exp_rotation({glm::radians(v.up_deg), 0, 0}) * glm::dquat(0, 1, 0, 0);
-                cv::Mat const exr = read_radiance(kData / "ar/probe_views" / fmt::format("{}_linear.exr", v.name));
+            for (View const& v : views()) {
+                glm::dquat const q = v.world_from_camera;
+                CameraModel const& camera = v.camera;
+                cv::Mat const exr = read_radiance(kData / "ar/probe_views" / v.picture);
                 cv::Mat radiance = exr, clipped;
                 if (!linear) {
                     cv::Mat const rgb = bytes_of(exr, srgb_photometry());
@@ -138,8 +177,10 @@ TEST(Workshop, LiveProbeFromThreeViews)
                 "{:.4f}); upward {:.3f} {:.3f} {:.3f}, truth {:.3f} {:.3f} {:.3f}\n",
                 linear ? "linear" : "sRGB", name, 100 * u.known_share, error, before, up[0], up[1], up[2],
                 true_up[0], true_up[1], true_up[2]);
-            EXPECT_LT(error, prior.empty() ? 0.5 : 0.02);
-            EXPECT_LT(error, before);
+            EXPECT_LT(error, prior.empty() ? 0.5 : linear ? 0.02 : 0.1);
+            if (!prior.empty()) {
+                EXPECT_LT(error, 0.5 * before);
+            }
         }
 }
 
