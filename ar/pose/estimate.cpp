@@ -116,8 +116,13 @@ Agreed agree(CameraModel const& camera, Points const& points, Pose const& guess)
 {
     Agreed a;
     Pose pose = guess;
-    for (double const sigmas : {kCoarseSigmas, 3 * kLimitSigmas, kLimitSigmas})
-        pose = refine(camera, points, pose, sigmas).world_from_camera;
+    // Of fewer than 6 points, any 3 fit exactly with the others as outliers: robust weights would find such.
+    if (points.size() < 6)
+        pose = refine(camera, points, pose).world_from_camera;
+    else
+        for (double const limits : {8.0, 3.0, 1.0})
+            pose = refine(camera, points, pose, limits * kLimitSigmas * scale_of(camera, points, pose))
+                       .world_from_camera;
     for (int round = 0; round < 4; ++round) {
         Points const kept = agreeing(camera, points, pose, kLimitSigmas * scale_of(camera, points, pose));
         bool const same = kept.size() == a.points.size();

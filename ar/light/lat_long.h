@@ -1,0 +1,66 @@
+#pragma once
+// Environment maps: the radiance that arrives from every direction, CV_32FC3, linear RGB, twice as wide as high.
+//   u = 0.5 + atan2(x, -z) / 2 pi,  v = acos(y) / pi   (y up; v = 0 is the top row's upper edge; -z in the middle)
+// The texel (column i, row j) spans u from i / width to (i + 1) / width, and v likewise.
+
+#include "ar/base/pose.h"
+
+#include <opencv2/core.hpp>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace ar {
+
+/// (u, v), both 0..1, of a direction of length 1.
+glm::dvec2 uv_of(glm::dvec3 direction);
+glm::dvec3 direction_of_uv(glm::dvec2 uv);
+/// Of a texel's centre.
+glm::dvec3 texel_direction(cv::Size map, int column, int row);
+/// Exact: 2 pi / width (cos of upper edge - cos of lower edge).
+double texel_sr(cv::Size map, int row);
+
+/// Bilinear between the centres of texels; u wraps, v ends at the poles.
+cv::Vec3f sample(cv::Mat const& map, glm::dvec3 direction);
+
+/// Of radiance over solid angle: W / m^2 of a sphere's whole surround; divided by 4 pi it is the mean radiance.
+cv::Vec3d integral(cv::Mat const& map);
+
+/// As seen in another frame and size: the mean over each texel's solid angle, by a grid of samples as dense as
+/// the source.
+/// @param to_from takes directions of `map` to directions of the result
+cv::Mat resampled(cv::Mat const& map, cv::Size size, glm::dquat const& to_from = {1, 0, 0, 0});
+
+/// The rotation `world_from_map` that brings directions of features seen in the map (lamps, windows) to their
+/// directions in the world, and how far each is off then.
+struct MapAlignment {
+    glm::dquat world_from_map{1, 0, 0, 0};
+    std::vector<double> residual_deg;
+};
+/// @throws InputError fewer than two, as many of one as of the other not given, or all parallel
+MapAlignment align_directions(std::span<glm::dvec3 const> in_map, std::span<glm::dvec3 const> in_world);
+
+/// @throws InputError empty, not CV_32FC3, not 2 : 1, not finite, negative; `where` begins the message
+void check_map(cv::Mat const& map, std::string const& where);
+
+/// What was measured of an environment: weight 0 = nothing there, else how well.
+struct PartialMap {
+    cv::Mat radiance; ///< CV_32FC3, 0 where the weight is 0
+    cv::Mat weight;   ///< CV_32FC1
+};
+/// Share of the sphere's solid angle with weight > 0.
+double covered_share(PartialMap const& map);
+/// The mean of those that saw a direction, by their weights. All of one size.
+PartialMap merged(std::span<PartialMap const> maps);
+
+struct FilledMap {
+    cv::Mat radiance;
+    int filled_texels = 0;
+    double filled_share = 0; ///< of the sphere
+};
+/// Where nothing was measured: the solution of Laplace's equation on the sphere between what was, from coarse to
+/// fine.
+/// @throws InputError if nothing was measured at all
+FilledMap filled(PartialMap const& map);
+
+} // namespace ar
