@@ -112,8 +112,8 @@ Compositor::Compositor(Photometry const& p, CompositeSettings const& settings)
 
 cv::Matx33f Compositor::unit_of_radiance(Exposure const& exposure) const
 {
-    return camera_colour_ *
-           float(relative_exposure(exposure, photometry_.reference) / photometry_.radiance_per_unit);
+    cv::Vec3f const gains = relative_gains(exposure, photometry_.reference);
+    return cv::Matx33f::diag(gains * (1 / photometry_.radiance_per_unit)) * camera_colour_;
 }
 
 CompositeCounts Compositor::operator()(cv::Mat const& rgb, RenderedPair const& pair, Exposure const& exposure,

@@ -71,7 +71,7 @@ public:
     Photometry const& photometry() const { return photometry_; }
     CompositeSettings const& settings() const { return settings_; }
     ResponseTable const& response(int channel) const { return response_[std::size_t(channel)]; }
-    /// Unit of camera RGB of radiance: colour^-1 exposure / radiance_per_unit, without vignetting.
+    /// Unit of camera RGB of radiance: gains colour^-1 / radiance_per_unit, without vignetting.
     cv::Matx33f unit_of_radiance(Exposure const& exposure) const;
     NoiseField const& noise() const { return noise_; }
 

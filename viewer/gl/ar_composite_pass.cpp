@@ -49,18 +49,23 @@ glm::vec3 vector_of(std::array<float, 3> const& v) { return {v[0], v[1], v[2]}; 
 ArCompositePass::ArCompositePass(ar::Compositor const& compositor)
     : compositor_(compositor),
       program_({"full_screen.vert"}, {"ar_composite.frag"}, defines(compositor.settings())),
-      response_(storage(GL_RGB32F, {256, 4}))
+      response_(storage(GL_RGBA32F, {256, 3})),
+      cells_(storage(GL_R8UI, {int(ar::ResponseTable::kCells) + 1, 3}))
 {
-    cv::Mat table(4, 256, CV_32FC3);
+    cv::Mat table(3, 256, CV_32FC4), cells(3, int(ar::ResponseTable::kCells) + 1, CV_8UC1);
+    glm::vec3 cells_per_unit;
     for (int c = 0; c < 3; ++c) {
         ar::ResponseTable const& r = compositor_.response(c);
         for (int b = 0; b < 256; ++b) {
             auto const i = std::size_t(b);
-            float const rows[4] = {r.units()[i], r.borders()[i], r.least()[i], r.most()[i]};
-            for (int y = 0; y < 4; ++y) table.at<cv::Vec3f>(y, b)[c] = rows[y];
+            table.at<cv::Vec4f>(c, b) = {r.units()[i], r.borders()[i], r.least()[i], r.most()[i]};
         }
+        std::copy(r.cells().begin(), r.cells().end(), cells.ptr(c));
+        cells_per_unit[c] = r.cells_per_unit();
     }
-    fill(response_, table, GL_RGB, GL_FLOAT);
+    fill(response_, table, GL_RGBA, GL_FLOAT);
+    fill(cells_, cells, GL_RED_INTEGER, GL_UNSIGNED_BYTE);
+    program_.set("cells_per_unit", cells_per_unit);
     ar::SensorNoise const& noise = compositor_.settings().noise;
     if (noise.any()) {
         noise_ = storage(GL_RGB32F, {ar::NoiseField::kSize, ar::NoiseField::kSize});
@@ -100,9 +105,10 @@ void ArCompositePass::draw(DrawTarget const& target, ar::Exposure const& exposur
                              "the camera's pixels are not resampled",
                              "upload first, draw into a texture of the frame's size, and show that");
     bind(target);
-    GlObject const* const textures[] = {&camera_,   &with_,     &without_,
-                                        &coverage_, &response_, noise_.id() != 0 ? &noise_ : &response_};
-    for (GLuint unit = 0; unit < 6; ++unit) glBindTextureUnit(unit, textures[unit]->id());
+    GlObject const& noise = noise_.id() != 0 ? noise_ : response_;
+    GLuint unit = 0;
+    for (GlObject const* t : {&camera_, &with_, &without_, &coverage_, &response_, &cells_, &noise})
+        glBindTextureUnit(unit++, t->id());
     cv::Matx33f const m = compositor_.unit_of_radiance(exposure);
     glm::mat3 to_unit;
     for (int r = 0; r < 3; ++r)
