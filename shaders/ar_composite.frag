@@ -8,9 +8,10 @@ layout(binding = 3) uniform sampler2D coverage_picture;
 layout(binding = 4) uniform sampler2D response; // byte x channel: unit, border, least, most
 layout(binding = 5) uniform usampler2D cells;    // cell of unit x channel: a byte that is not above the nearest
 layout(binding = 6) uniform sampler2D noise_tile;
+layout(binding = 7) uniform sampler2D direct_picture;
 
 uniform ivec2 corner, target_size, noise_offset;
-uniform bool top_last;
+uniform bool top_last, has_direct;
 uniform mat3 to_unit;
 uniform vec3 vignetting;
 uniform vec3 noise_constant, noise_per_unit;
@@ -63,6 +64,14 @@ void main()
     if (!is_finite(with) || (a < 1.0 && !is_finite(without))) return;
     float left = fall_off(pixel);
     vec3 w = left * (to_unit * with), n = left * (to_unit * without);
+    bool parted = has_direct && a > 0.0 && a < 1.0;
+    vec3 d = vec3(0.0);
+    if (parted) {
+        vec3 direct = texelFetch(direct_picture, pixel, 0).rgb;
+        if (!is_finite(direct)) return;
+        d = left * (to_unit * direct);
+        w = (w - d) / (1.0 - a);
+    }
     ivec3 bytes = ivec3(camera * 255.0 + 0.5);
     vec3 random = vec3(0.0);
     if (NOISE == 1) random = texelFetch(noise_tile, (pixel + noise_offset) % textureSize(noise_tile, 0), 0).rgb;
@@ -70,7 +79,8 @@ void main()
         int b = bytes[c];
         vec4 own = texelFetch(response, ivec2(b, c), 0);
         float u = own.x;
-        float v = max(blended(u, w[c], n[c], a, b == 255), 0.0);
+        float v = blended(u, w[c], n[c], parted ? 0.0 : a, b == 255);
+        v = max(parted ? d[c] + (1.0 - a) * v : v, 0.0);
         if (NOISE == 1) {
             float there = (1.0 - a) * (1.0 - a) * (noise_constant[c] + noise_per_unit[c] * max(u, 0.0));
             v += sqrt(max(0.0, noise_constant[c] + noise_per_unit[c] * v - there)) * random[c];

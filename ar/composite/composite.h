@@ -22,7 +22,8 @@ namespace ar {
 enum class Blend {
     difference, ///< camera + with - without: exact when the model of the place is right
     /// camera with / without where nothing covers: errors of albedo cancel, light where there was next to none
-    /// does not come out right. Covered pixels and ratios beyond the limit are differences.
+    /// does not come out right. Ratios beyond the limit are differences, and so are partly covered pixels of pairs
+    /// without `direct`.
     ratio
 };
 

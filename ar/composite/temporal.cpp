@@ -164,7 +164,7 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
     depth_ = depth.clone();
     world_from_camera_ = pose;
 
-    RenderedPair out{pair.with.clone(), pair.without, pair.coverage};
+    RenderedPair out{pair.with.clone(), pair.without, pair.coverage, pair.direct};
     out.with.forEach<cv::Vec3f>([&](cv::Vec3f& v, int const* at) {
         cv::Vec3f const changed = filtered.at<cv::Vec3f>(at[0], at[1]), now = added.at<cv::Vec3f>(at[0], at[1]);
         if (changed == now) return; // what is unchanged keeps all its bits

@@ -82,6 +82,7 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
 
     RenderedPair out;
     out.coverage = seen.coverage;
+    out.direct = seen.radiance;
     if (without_full.empty())
         cv::resize(low.without, out.without, size, 0, 0, cv::INTER_LINEAR);
     else

@@ -90,11 +90,16 @@ void ArCompositePass::upload(cv::Mat const& rgb, ar::RenderedPair const& pair)
         with_ = storage(GL_RGB32F, size);
         without_ = storage(GL_RGB32F, size);
         coverage_ = storage(GL_R32F, size);
+        direct_ = {};
     }
     fill(camera_, rgb, GL_RGB, GL_UNSIGNED_BYTE);
     fill(with_, pair.with, GL_RGB, GL_FLOAT);
     fill(without_, pair.without, GL_RGB, GL_FLOAT);
     fill(coverage_, pair.coverage, GL_RED, GL_FLOAT);
+    has_direct_ = !pair.direct.empty();
+    if (!has_direct_) return;
+    if (direct_.id() == 0) direct_ = storage(GL_RGB32F, size_px_);
+    fill(direct_, pair.direct, GL_RGB, GL_FLOAT);
 }
 
 void ArCompositePass::draw(DrawTarget const& target, ar::Exposure const& exposure, std::uint64_t frame) const
@@ -107,7 +112,8 @@ void ArCompositePass::draw(DrawTarget const& target, ar::Exposure const& exposur
     bind(target);
     GlObject const& noise = noise_.id() != 0 ? noise_ : response_;
     GLuint unit = 0;
-    for (GlObject const* t : {&camera_, &with_, &without_, &coverage_, &response_, &cells_, &noise})
+    for (GlObject const* t :
+         {&camera_, &with_, &without_, &coverage_, &response_, &cells_, &noise, has_direct_ ? &direct_ : &with_})
         glBindTextureUnit(unit++, t->id());
     cv::Matx33f const m = compositor_.unit_of_radiance(exposure);
     glm::mat3 to_unit;
@@ -117,6 +123,7 @@ void ArCompositePass::draw(DrawTarget const& target, ar::Exposure const& exposur
     program_.set("corner", target.corner_px);
     program_.set("target_size", target.size_px);
     program_.set("top_last", int(target.rows == RowOrder::top_last));
+    program_.set("has_direct", int(has_direct_));
     program_.set("to_unit", to_unit);
     program_.set("noise_offset", glm::ivec2(offset.x, offset.y));
     program_.use();
