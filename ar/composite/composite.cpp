@@ -18,7 +18,7 @@ bool is_finite(cv::Vec3f const& v)
 }
 
 /// One frame's constants.
-struct Frame {
+struct Blending {
     std::array<ResponseTable, 3> const& response;
     CompositeSettings const& settings;
     cv::Matx33f to_unit;
@@ -137,7 +137,7 @@ CompositeCounts Compositor::operator()(cv::Mat const& rgb, RenderedPair const& p
             for (int x = 0; x < rgb.cols; ++x)
                 vignetting_.at<float>(y, x) = float(vignetting_at(photometry_, rgb.size(), x, y));
     }
-    Frame const frame{response_, settings_, unit_of_radiance(exposure), settings_.noise.any()};
+    Blending const blending{response_, settings_, unit_of_radiance(exposure), settings_.noise.any()};
     cv::Point const start = noise_.offset(frame_number);
     CompositeCounts sum;
     std::mutex adding;
@@ -150,12 +150,12 @@ CompositeCounts Compositor::operator()(cv::Mat const& rgb, RenderedPair const& p
             auto const* direct = pair.direct.empty() ? nullptr : pair.direct.ptr<cv::Vec3f>(y);
             auto const* fall_off = vignetting_.empty() ? nullptr : vignetting_.ptr<float>(y);
             auto const* random =
-                frame.noisy ? noise_.tile().ptr<cv::Vec3f>((y + start.y) % NoiseField::kSize) : nullptr;
+                blending.noisy ? noise_.tile().ptr<cv::Vec3f>((y + start.y) % NoiseField::kSize) : nullptr;
             auto* to = out.ptr<cv::Vec3b>(y);
             for (int x = 0; x < rgb.cols; ++x)
-                to[x] = frame.pixel(camera[x], with[x], without[x], coverage[x], direct ? direct + x : nullptr,
-                                    fall_off ? fall_off[x] : 1.0f,
-                                    random ? random + (x + start.x) % NoiseField::kSize : nullptr, counts);
+                to[x] = blending.pixel(camera[x], with[x], without[x], coverage[x], direct ? direct + x : nullptr,
+                                       fall_off ? fall_off[x] : 1.0f,
+                                       random ? random + (x + start.x) % NoiseField::kSize : nullptr, counts);
         }
         std::lock_guard const lock(adding);
         sum += counts;
