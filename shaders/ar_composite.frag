@@ -5,14 +5,17 @@ layout(binding = 0) uniform sampler2D camera_picture; // RGB8: bytes
 layout(binding = 1) uniform sampler2D with_picture;
 layout(binding = 2) uniform sampler2D without_picture;
 layout(binding = 3) uniform sampler2D coverage_picture;
-layout(binding = 4) uniform sampler2D response; // 256 x 4: units, borders, least, most of each byte
-layout(binding = 5) uniform sampler2D noise_tile;
+layout(binding = 4) uniform sampler2D response; // byte x channel: unit, border, least, most
+layout(binding = 5) uniform usampler2D cells;    // cell of unit x channel: a byte that is not above the nearest
+layout(binding = 6) uniform sampler2D noise_tile;
+layout(binding = 7) uniform sampler2D direct_picture;
 
 uniform ivec2 corner, target_size, noise_offset;
-uniform bool top_last;
+uniform bool top_last, has_direct;
 uniform mat3 to_unit;
 uniform vec3 vignetting;
 uniform vec3 noise_constant, noise_per_unit;
+uniform vec3 cells_per_unit;
 uniform float largest_ratio;
 
 out vec4 color;
@@ -29,16 +32,12 @@ float fall_off(ivec2 pixel)
 /// The byte whose unit is nearest: the first whose border is not below.
 int byte_of(float unit, int channel)
 {
-    if (!(unit > texelFetch(response, ivec2(0, 0), 0)[channel])) return 0;
-    if (unit >= texelFetch(response, ivec2(255, 0), 0)[channel]) return 255;
-    int low = 0, high = 255;
-    for (int i = 0; i < 8; ++i) {
-        int middle = (low + high) / 2;
-        bool beyond = unit > texelFetch(response, ivec2(middle, 1), 0)[channel];
-        low = beyond && low < high ? middle + 1 : low;
-        high = beyond ? high : middle;
-    }
-    return low;
+    float first = texelFetch(response, ivec2(0, channel), 0).x, last = texelFetch(response, ivec2(255, channel), 0).x;
+    if (!(unit > first)) return 0;
+    if (unit >= last) return 255;
+    int b = int(texelFetch(cells, ivec2(int((unit - first) * cells_per_unit[channel]), channel), 0).r);
+    while (b < 255 && unit > texelFetch(response, ivec2(b, channel), 0).y) ++b;
+    return b;
 }
 
 float blended(float u, float w, float n, float a, bool clipped)
@@ -65,18 +64,29 @@ void main()
     if (!is_finite(with) || (a < 1.0 && !is_finite(without))) return;
     float left = fall_off(pixel);
     vec3 w = left * (to_unit * with), n = left * (to_unit * without);
+    bool parted = has_direct && a > 0.0 && a < 1.0;
+    vec3 d = vec3(0.0);
+    if (parted) {
+        vec3 direct = texelFetch(direct_picture, pixel, 0).rgb;
+        if (!is_finite(direct)) return;
+        d = left * (to_unit * direct);
+        w = (w - d) / (1.0 - a);
+    }
     ivec3 bytes = ivec3(camera * 255.0 + 0.5);
     vec3 random = vec3(0.0);
     if (NOISE == 1) random = texelFetch(noise_tile, (pixel + noise_offset) % textureSize(noise_tile, 0), 0).rgb;
     for (int c = 0; c < 3; ++c) {
         int b = bytes[c];
-        float u = texelFetch(response, ivec2(b, 0), 0)[c];
-        float v = max(blended(u, w[c], n[c], a, b == 255), 0.0);
+        vec4 own = texelFetch(response, ivec2(b, c), 0);
+        float u = own.x;
+        float v = blended(u, w[c], n[c], parted ? 0.0 : a, b == 255);
+        v = max(parted ? d[c] + (1.0 - a) * v : v, 0.0);
         if (NOISE == 1) {
             float there = (1.0 - a) * (1.0 - a) * (noise_constant[c] + noise_per_unit[c] * max(u, 0.0));
             v += sqrt(max(0.0, noise_constant[c] + noise_per_unit[c] * v - there)) * random[c];
         }
-        bool kept = a < 1.0 && v >= texelFetch(response, ivec2(b, 2), 0)[c] && v <= texelFetch(response, ivec2(b, 3), 0)[c];
-        color[c] = float(kept ? b : byte_of(v, c)) / 255.0;
+        bool kept = a < 1.0 && v >= own.z && v <= own.w;
+        if (!kept) b = byte_of(v, c);
+        color[c] = float(b) / 255.0;
     }
 }

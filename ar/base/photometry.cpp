@@ -6,6 +6,8 @@
 namespace ar {
 namespace {
 
+double known_ratio(double a, double b) { return a > 0 && b > 0 ? a / b : 1.0; }
+
 bool has_vignetting(Photometry const& p) { return p.vignetting != std::array<double, 3>{}; }
 
 /// The byte whose unit is nearest, by a table of cells of unit and a short walk.
@@ -43,8 +45,14 @@ private:
 
 double relative_exposure(Exposure const& e, Exposure const& reference)
 {
-    auto const ratio = [](double a, double b) { return a > 0 && b > 0 ? a / b : 1.0; };
-    return ratio(e.time_s, reference.time_s) * ratio(e.gain, reference.gain);
+    return known_ratio(e.time_s, reference.time_s) * known_ratio(e.gain, reference.gain);
+}
+
+cv::Vec3f relative_gains(Exposure const& e, Exposure const& reference)
+{
+    double const all = relative_exposure(e, reference);
+    return {float(all * known_ratio(e.red_gain, reference.red_gain)), float(all),
+            float(all * known_ratio(e.blue_gain, reference.blue_gain))};
 }
 
 Photometry srgb_photometry()
@@ -70,7 +78,9 @@ cv::Mat radiance_of(cv::Mat const& rgb, Photometry const& p, Exposure const& exp
 {
     CV_Assert(rgb.type() == CV_8UC3);
     cv::Mat out(rgb.size(), CV_32FC3);
-    auto const scale = float(p.radiance_per_unit / relative_exposure(exposure, p.reference));
+    cv::Vec3f scale;
+    cv::Vec3f const gains = relative_gains(exposure, p.reference);
+    for (int c = 0; c < 3; ++c) scale[c] = float(p.radiance_per_unit / gains[c]);
     bool const vignetted = has_vignetting(p), coloured = p.colour != cv::Matx33f::eye();
     cv::parallel_for_({0, rgb.rows}, [&](cv::Range const& rows) {
         for (int y = rows.start; y < rows.end; ++y) {
@@ -79,7 +89,8 @@ cv::Mat radiance_of(cv::Mat const& rgb, Photometry const& p, Exposure const& exp
             for (int x = 0; x < rgb.cols; ++x) {
                 cv::Vec3f v(p.unit_of_byte[0][in[x][0]], p.unit_of_byte[1][in[x][1]], p.unit_of_byte[2][in[x][2]]);
                 if (vignetted) v *= float(1 / vignetting_at(p, rgb.size(), x, y));
-                to[x] = scale * (coloured ? p.colour * v : v);
+                v = v.mul(scale);
+                to[x] = coloured ? p.colour * v : v;
             }
         }
     });
@@ -92,7 +103,7 @@ cv::Mat bytes_of(cv::Mat const& radiance, Photometry const& p, Exposure const& e
     cv::Mat out(radiance.size(), CV_8UC3);
     std::array<Encoder, 3> const encode{Encoder(p.unit_of_byte[0]), Encoder(p.unit_of_byte[1]),
                                         Encoder(p.unit_of_byte[2])};
-    auto const scale = float(relative_exposure(exposure, p.reference) / p.radiance_per_unit);
+    cv::Vec3f const scale = relative_gains(exposure, p.reference) * (1 / p.radiance_per_unit);
     bool const vignetted = has_vignetting(p), coloured = p.colour != cv::Matx33f::eye();
     cv::Matx33f const camera_colour = p.colour.inv();
     cv::parallel_for_({0, radiance.rows}, [&](cv::Range const& rows) {
@@ -100,7 +111,7 @@ cv::Mat bytes_of(cv::Mat const& radiance, Photometry const& p, Exposure const& e
             auto const* in = radiance.ptr<cv::Vec3f>(y);
             auto* to = out.ptr<cv::Vec3b>(y);
             for (int x = 0; x < radiance.cols; ++x) {
-                cv::Vec3f v = scale * (coloured ? camera_colour * in[x] : in[x]);
+                cv::Vec3f v = scale.mul(coloured ? camera_colour * in[x] : in[x]);
                 if (vignetted) v *= float(vignetting_at(p, radiance.size(), x, y));
                 for (int c = 0; c < 3; ++c) to[x][c] = encode[std::size_t(c)](v[c]);
             }

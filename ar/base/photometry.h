@@ -2,7 +2,7 @@
 // Between a camera's bytes and radiance. Pictures are RGB; linear ones are CV_32FC3, in units of radiance (W/(m^2
 // sr), or whatever unit the scene has: `radiance_per_unit` says it).
 //   byte = f(unit),   unit = vignetting(r) * colour^-1 * radiance / radiance_per_unit * exposure /
-//   reference_exposure
+//   reference_exposure, channel by channel (time, gain, white balance)
 // f: response of each channel (Debevec and Malik 1997), here as its inverse, unit of byte.
 
 #include <array>
@@ -22,6 +22,9 @@ struct Exposure {
 
 /// How much more light reaches the bytes than at `reference`: time times gain. 1 where either is unknown.
 double relative_exposure(Exposure const& exposure, Exposure const& reference);
+/// The same for each channel: with the gains of white balance, which cameras that balance by themselves change
+/// from frame to frame. A gain that either does not say counts as unchanged.
+cv::Vec3f relative_gains(Exposure const& exposure, Exposure const& reference);
 
 struct Photometry {
     /// Unit of each byte, channel by channel: never falling, [0] >= 0. 1 = what white paper under the reference

@@ -27,7 +27,7 @@ cv::Mat layer_of(RenderedPair const& pair)
 
 RenderedPair pair_of(cv::Mat const& layer, RenderedPair const& pair)
 {
-    RenderedPair out{cv::Mat(layer.size(), CV_32FC3), pair.without, cv::Mat(layer.size(), CV_32FC1)};
+    RenderedPair out{cv::Mat(layer.size(), CV_32FC3), pair.without, cv::Mat(layer.size(), CV_32FC1), {}};
     layer.forEach<cv::Vec4f>([&](cv::Vec4f const& v, int const* at) {
         float const a = std::clamp(v[3], 0.0f, 1.0f);
         cv::Vec3f with(v[0], v[1], v[2]);
@@ -78,7 +78,10 @@ RenderedPair defocused(RenderedPair const& pair, double sigma_px)
     cv::Mat const kernel = spread_kernel(sigma_px);
     cv::Mat layer = layer_of(pair);
     cv::sepFilter2D(layer, layer, -1, kernel, kernel, {-1, -1}, 0, cv::BORDER_REPLICATE);
-    return pair_of(layer, pair);
+    RenderedPair out = pair_of(layer, pair);
+    if (!pair.direct.empty())
+        cv::sepFilter2D(pair.direct, out.direct, -1, kernel, kernel, {-1, -1}, 0, cv::BORDER_REPLICATE);
+    return out;
 }
 
 RenderedPair motion_blurred(RenderedPair const& pair, cv::Mat const& velocity_px, double longest_px)
@@ -109,7 +112,8 @@ RenderedPair motion_blurred(RenderedPair const& pair, cv::Mat const& velocity_px
             if (cv::Vec2f const v = path_at(x, y); v.dot(v) > best.dot(best)) best = v;
         }
     cv::Mat const layer = layer_of(pair);
-    cv::Mat blurred(size, CV_32FC4);
+    bool const parted = !pair.direct.empty();
+    cv::Mat blurred(size, CV_32FC4), direct = parted ? cv::Mat(size, CV_32FC3) : cv::Mat();
     cv::parallel_for_({0, size.height}, [&](cv::Range const& rows) {
         for (int y = rows.start; y < rows.end; ++y)
             for (int x = 0; x < size.width; ++x) {
@@ -120,6 +124,7 @@ RenderedPair motion_blurred(RenderedPair const& pair, cv::Mat const& velocity_px
                 double const length = cv::norm(path);
                 int const count = 2 * int(std::ceil(length / 2)) + 1; // odd, at most a pixel apart
                 cv::Vec4f sum(0, 0, 0, 0);
+                cv::Vec3f direct_sum(0, 0, 0);
                 for (int k = 0; k < count; ++k) {
                     float const t = (float(k) + 0.5f) / float(count) - 0.5f;
                     float const at_x = std::clamp(float(x) + t * path[0], 0.0f, float(size.width - 1));
@@ -127,13 +132,23 @@ RenderedPair motion_blurred(RenderedPair const& pair, cv::Mat const& velocity_px
                     int const x0 = int(at_x), y0 = int(at_y);
                     int const x1 = std::min(x0 + 1, size.width - 1), y1 = std::min(y0 + 1, size.height - 1);
                     float const fx = at_x - float(x0), fy = at_y - float(y0);
-                    sum += (1 - fy) * ((1 - fx) * layer.at<cv::Vec4f>(y0, x0) + fx * layer.at<cv::Vec4f>(y0, x1)) +
-                           fy * ((1 - fx) * layer.at<cv::Vec4f>(y1, x0) + fx * layer.at<cv::Vec4f>(y1, x1));
+                    auto const between = [&](auto const& a, auto const& b, auto const& c, auto const& d) {
+                        return (1 - fy) * ((1 - fx) * a + fx * b) + fy * ((1 - fx) * c + fx * d);
+                    };
+                    sum += between(layer.at<cv::Vec4f>(y0, x0), layer.at<cv::Vec4f>(y0, x1),
+                                   layer.at<cv::Vec4f>(y1, x0), layer.at<cv::Vec4f>(y1, x1));
+                    if (parted)
+                        direct_sum +=
+                            between(pair.direct.at<cv::Vec3f>(y0, x0), pair.direct.at<cv::Vec3f>(y0, x1),
+                                    pair.direct.at<cv::Vec3f>(y1, x0), pair.direct.at<cv::Vec3f>(y1, x1));
                 }
+                if (parted) direct.at<cv::Vec3f>(y, x) = direct_sum * (1 / float(count));
                 blurred.at<cv::Vec4f>(y, x) = sum * (1 / float(count));
             }
     });
-    return pair_of(blurred, pair);
+    RenderedPair out = pair_of(blurred, pair);
+    out.direct = direct;
+    return out;
 }
 
 cv::Mat image_velocity(CameraModel const& camera, cv::Mat const& depth, Pose const& before, Pose const& after)

@@ -18,7 +18,7 @@ bool is_finite(cv::Vec3f const& v)
 }
 
 /// One frame's constants.
-struct Frame {
+struct Blending {
     std::array<ResponseTable, 3> const& response;
     CompositeSettings const& settings;
     cv::Matx33f to_unit;
@@ -38,8 +38,10 @@ struct Frame {
         return seen + (w - n);
     }
 
+    /// @param direct  null: not known
     cv::Vec3b pixel(cv::Vec3b const& camera, cv::Vec3f const& with, cv::Vec3f const& without, float a,
-                    float vignetting, cv::Vec3f const* random, CompositeCounts& counts) const
+                    cv::Vec3f const* direct, float vignetting, cv::Vec3f const* random,
+                    CompositeCounts& counts) const
     {
         if (!(a >= 0 && a <= 1)) {
             if (std::isnan(a)) return ++counts.not_finite, camera;
@@ -52,11 +54,16 @@ struct Frame {
         counts.covered += a > 0;
         counts.clipped += a < 1 && std::max({camera[0], camera[1], camera[2]}) == 255;
         cv::Vec3f const w = vignetting * (to_unit * with), n = vignetting * (to_unit * without);
+        bool const parted = direct && a > 0 && a < 1;
+        if (parted && !is_finite(*direct)) return ++counts.not_finite, camera;
+        cv::Vec3f const d = parted ? vignetting * (to_unit * *direct) : cv::Vec3f(0, 0, 0);
         cv::Vec3b out;
         for (int c = 0; c < 3; ++c) {
             ResponseTable const& f = response[std::size_t(c)];
             float const u = f.unit(camera[c]);
-            float v = blended(u, w[c], n[c], a, camera[c] == 255, counts);
+            bool const clipped = camera[c] == 255;
+            float v = parted ? d[c] + (1 - a) * blended(u, (w[c] - d[c]) / (1 - a), n[c], 0, clipped, counts)
+                             : blended(u, w[c], n[c], a, clipped, counts);
             if (v < 0) {
                 ++counts.negative;
                 v = 0;
@@ -112,8 +119,8 @@ Compositor::Compositor(Photometry const& p, CompositeSettings const& settings)
 
 cv::Matx33f Compositor::unit_of_radiance(Exposure const& exposure) const
 {
-    return camera_colour_ *
-           float(relative_exposure(exposure, photometry_.reference) / photometry_.radiance_per_unit);
+    cv::Vec3f const gains = relative_gains(exposure, photometry_.reference);
+    return cv::Matx33f::diag(gains * (1 / photometry_.radiance_per_unit)) * camera_colour_;
 }
 
 CompositeCounts Compositor::operator()(cv::Mat const& rgb, RenderedPair const& pair, Exposure const& exposure,
@@ -130,7 +137,7 @@ CompositeCounts Compositor::operator()(cv::Mat const& rgb, RenderedPair const& p
             for (int x = 0; x < rgb.cols; ++x)
                 vignetting_.at<float>(y, x) = float(vignetting_at(photometry_, rgb.size(), x, y));
     }
-    Frame const frame{response_, settings_, unit_of_radiance(exposure), settings_.noise.any()};
+    Blending const blending{response_, settings_, unit_of_radiance(exposure), settings_.noise.any()};
     cv::Point const start = noise_.offset(frame_number);
     CompositeCounts sum;
     std::mutex adding;
@@ -140,13 +147,15 @@ CompositeCounts Compositor::operator()(cv::Mat const& rgb, RenderedPair const& p
             auto const* camera = rgb.ptr<cv::Vec3b>(y);
             auto const *with = pair.with.ptr<cv::Vec3f>(y), *without = pair.without.ptr<cv::Vec3f>(y);
             auto const* coverage = pair.coverage.ptr<float>(y);
+            auto const* direct = pair.direct.empty() ? nullptr : pair.direct.ptr<cv::Vec3f>(y);
             auto const* fall_off = vignetting_.empty() ? nullptr : vignetting_.ptr<float>(y);
             auto const* random =
-                frame.noisy ? noise_.tile().ptr<cv::Vec3f>((y + start.y) % NoiseField::kSize) : nullptr;
+                blending.noisy ? noise_.tile().ptr<cv::Vec3f>((y + start.y) % NoiseField::kSize) : nullptr;
             auto* to = out.ptr<cv::Vec3b>(y);
             for (int x = 0; x < rgb.cols; ++x)
-                to[x] = frame.pixel(camera[x], with[x], without[x], coverage[x], fall_off ? fall_off[x] : 1.0f,
-                                    random ? random + (x + start.x) % NoiseField::kSize : nullptr, counts);
+                to[x] = blending.pixel(camera[x], with[x], without[x], coverage[x], direct ? direct + x : nullptr,
+                                       fall_off ? fall_off[x] : 1.0f,
+                                       random ? random + (x + start.x) % NoiseField::kSize : nullptr, counts);
         }
         std::lock_guard const lock(adding);
         sum += counts;

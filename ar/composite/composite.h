@@ -22,7 +22,8 @@ namespace ar {
 enum class Blend {
     difference, ///< camera + with - without: exact when the model of the place is right
     /// camera with / without where nothing covers: errors of albedo cancel, light where there was next to none
-    /// does not come out right. Covered pixels and ratios beyond the limit are differences.
+    /// does not come out right. Ratios beyond the limit are differences, and so are partly covered pixels of pairs
+    /// without `direct`.
     ratio
 };
 
@@ -71,7 +72,7 @@ public:
     Photometry const& photometry() const { return photometry_; }
     CompositeSettings const& settings() const { return settings_; }
     ResponseTable const& response(int channel) const { return response_[std::size_t(channel)]; }
-    /// Unit of camera RGB of radiance: colour^-1 exposure / radiance_per_unit, without vignetting.
+    /// Unit of camera RGB of radiance: gains colour^-1 / radiance_per_unit, without vignetting.
     cv::Matx33f unit_of_radiance(Exposure const& exposure) const;
     NoiseField const& noise() const { return noise_; }
 

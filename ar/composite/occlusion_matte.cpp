@@ -154,7 +154,7 @@ RenderedPair with_coverage(RenderedPair const& pair, cv::Mat const& coverage, Di
     require(seen.coverage, CV_32FC1, size);
     require(unoccluded.radiance, CV_32FC3, size);
     require(unoccluded.coverage, CV_32FC1, size);
-    RenderedPair out{pair.with.clone(), pair.without, coverage.clone()};
+    RenderedPair out{pair.with.clone(), pair.without, coverage.clone(), seen.radiance.clone()};
     out.with.forEach<cv::Vec3f>([&](cv::Vec3f& v, int const* at) {
         float const a = pair.coverage.at<float>(at[0], at[1]), to = coverage.at<float>(at[0], at[1]);
         if (a == to) return;
@@ -165,6 +165,7 @@ RenderedPair with_coverage(RenderedPair const& pair, cv::Mat const& coverage, Di
         cv::Vec3f const object =
             all > 0 ? unoccluded.radiance.at<cv::Vec3f>(at[0], at[1]) * (to / all) : cv::Vec3f(0, 0, 0);
         v = object + (1 - to) * place;
+        out.direct.at<cv::Vec3f>(at[0], at[1]) = object;
     });
     return out;
 }

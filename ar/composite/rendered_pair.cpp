@@ -19,6 +19,7 @@ void check(RenderedPair const& pair, cv::Size size)
     require(pair.with, CV_32FC3, "with");
     require(pair.without, CV_32FC3, "without");
     require(pair.coverage, CV_32FC1, "coverage");
+    if (!pair.direct.empty()) require(pair.direct, CV_32FC3, "direct");
 }
 
 } // namespace ar

@@ -33,11 +33,14 @@ public:
     /// Between which units a byte is a nearest one; infinite at the ends.
     std::array<float, 256> const& least() const { return least_; }
     std::array<float, 256> const& most() const { return most_; }
+    /// By cell of unit, (unit - units()[0]) cells_per_unit() rounded down: a byte that is not above the nearest.
+    static constexpr std::size_t kCells = 4096;
+    std::array<std::uint8_t, kCells + 1> const& cells() const { return first_; }
+    float cells_per_unit() const { return scale_; }
 
 private:
-    static constexpr std::size_t kCells = 4096;
     std::array<float, 256> unit_, border_, least_, most_;
-    std::array<std::uint8_t, kCells + 1> first_; ///< by cell of unit: a byte that is not above the nearest
+    std::array<std::uint8_t, kCells + 1> first_;
     float scale_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include "ar/base/error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <mutex>
@@ -46,14 +47,15 @@ Neighbourhood around(cv::Mat const& added, int radius)
     cv::Rect const where = cv::boundingRect(n.any);
     if (where.empty()) return n;
     cv::Mat const part = finite(where); // filters read beyond it
-    cv::Mat mean, squares;
-    cv::boxFilter(part, mean, CV_64F, box, {-1, -1}, true, cv::BORDER_REPLICATE);
-    cv::sqrBoxFilter(part, squares, CV_64F, box, {-1, -1}, true, cv::BORDER_REPLICATE);
-    cv::Mat variance = squares - mean.mul(mean);
-    variance = cv::max(variance, 0.0);
-    cv::sqrt(variance, variance);
-    variance.convertTo(n.deviation(where), CV_32F);
-    mean.convertTo(n.mean(where), CV_32F);
+    cv::Mat mean, variance;             // of floats: equal values may get 3e-4 of themselves as deviation
+    cv::boxFilter(part, mean, CV_32F, box, {-1, -1}, true, cv::BORDER_REPLICATE);
+    cv::sqrBoxFilter(part, variance, CV_32F, box, {-1, -1}, true, cv::BORDER_REPLICATE);
+    mean.copyTo(n.mean(where));
+    variance.forEach<cv::Vec3f>([&](cv::Vec3f const& square, int const* at) {
+        cv::Vec3f const m = mean.at<cv::Vec3f>(at[0], at[1]);
+        cv::Vec3f& to = n.deviation.at<cv::Vec3f>(where.y + at[0], where.x + at[1]);
+        for (int c = 0; c < 3; ++c) to[c] = std::sqrt(std::max(0.0f, square[c] - m[c] * m[c]));
+    });
     return n;
 }
 
@@ -164,7 +166,7 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
     depth_ = depth.clone();
     world_from_camera_ = pose;
 
-    RenderedPair out{pair.with.clone(), pair.without, pair.coverage};
+    RenderedPair out{pair.with.clone(), pair.without, pair.coverage, pair.direct};
     out.with.forEach<cv::Vec3f>([&](cv::Vec3f& v, int const* at) {
         cv::Vec3f const changed = filtered.at<cv::Vec3f>(at[0], at[1]), now = added.at<cv::Vec3f>(at[0], at[1]);
         if (changed == now) return; // what is unchanged keeps all its bits

@@ -26,6 +26,7 @@ void check(SurfaceGuides const& g, cv::Size size, SurfaceGuides const& other)
 }
 
 constexpr float kLeastAlbedo = 0.01f;
+constexpr float kEnough = 0.1f; ///< of the bilinear weights is on the pixel's own surface
 
 cv::Vec3f at_least(cv::Vec3f v)
 {
@@ -82,6 +83,7 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
 
     RenderedPair out;
     out.coverage = seen.coverage;
+    out.direct = seen.radiance;
     if (without_full.empty())
         cv::resize(low.without, out.without, size, 0, 0, cv::INTER_LINEAR);
     else
@@ -101,22 +103,27 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
                     out.with.at<cv::Vec3f>(y, x) = out.without.at<cv::Vec3f>(y, x);
                     continue;
                 }
-                // Tents of the width 2: a surface that no direct neighbour shows may be one further.
                 cv::Vec3f guided(0, 0, 0), plain(0, 0, 0);
                 float guided_weight = 0, plain_weight = 0;
-                for (int j = y0 - 1; j <= y0 + 2; ++j)
-                    for (int i = x0 - 1; i <= x0 + 2; ++i) {
-                        if (i < 0 || j < 0 || i >= low_size.width || j >= low_size.height) continue;
-                        if (low.coverage.at<float>(j, i) > 0) continue;
+                auto const add = [&](int i, int j, float near) {
+                    if (i < 0 || j < 0 || i >= low_size.width || j >= low_size.height || !(near > 0)) return;
+                    if (low.coverage.at<float>(j, i) > 0) return;
+                    cv::Vec3f const v = change.at<cv::Vec3f>(j, i);
+                    float const w = near * likeness(guides, {x, y}, low_guides, {i, j}, settings);
+                    guided += w * v;
+                    guided_weight += w;
+                    plain += near * v;
+                    plain_weight += near;
+                };
+                float const fx = float(lx - x0), fy = float(ly - y0);
+                for (int k = 0; k < 4; ++k)
+                    add(x0 + k % 2, y0 + k / 2, (k % 2 ? fx : 1 - fx) * (k / 2 ? fy : 1 - fy));
+                // A surface that no direct neighbour shows may be one further.
+                if (guided_weight < kEnough)
+                    for (int k = 0; k < 16; ++k) {
+                        int const i = x0 - 1 + k % 4, j = y0 - 1 + k / 4;
                         float const tent = float((1 - std::abs(i - lx) / 2) * (1 - std::abs(j - ly) / 2));
-                        if (!(tent > 0)) continue;
-                        float const near = tent * tent * tent;
-                        cv::Vec3f const v = change.at<cv::Vec3f>(j, i);
-                        float const w = near * likeness(guides, {x, y}, low_guides, {i, j}, settings);
-                        guided += w * v;
-                        guided_weight += w;
-                        plain += near * v;
-                        plain_weight += near;
+                        add(i, j, kEnough * tent);
                     }
                 cv::Vec3f light(0, 0, 0);
                 if (guided_weight > 1e-6f)

@@ -82,7 +82,8 @@ cv::Mat Warp::nearest(cv::Mat const& picture) const { return remapped(picture, c
 RenderedPair Warp::operator()(RenderedPair const& pair) const
 {
     check(pair);
-    return {smooth(pair.with), smooth(pair.without), smooth(pair.coverage)};
+    return {smooth(pair.with), smooth(pair.without), smooth(pair.coverage),
+            pair.direct.empty() ? cv::Mat() : smooth(pair.direct)};
 }
 
 } // namespace ar

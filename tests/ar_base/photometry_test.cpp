@@ -72,6 +72,24 @@ TEST(RadianceOfBytes, KnowsExposure)
     EXPECT_NEAR(radiance_of(grey, p, {}).at<cv::Vec3f>(0)[0], once, 1e-6) << "unknown exposures change nothing";
 }
 
+TEST(RadianceOfBytes, KnowsWhiteBalance)
+{
+    Photometry p = srgb_photometry();
+    p.reference = {0.01, 1, 1.5, 2};
+    cv::Mat const rgb = every_byte();
+    Exposure const bluer{0.01, 1, 1.5, 4}, unknown{0.01, 1, 0, 4};
+    cv::Mat const seen = radiance_of(rgb, p, bluer), before = radiance_of(rgb, p, p.reference);
+    for (int i = 0; i < 256; ++i) {
+        cv::Vec3f const a = seen.at<cv::Vec3f>(i / 16, i % 16), b = before.at<cv::Vec3f>(i / 16, i % 16);
+        EXPECT_EQ(a[0], b[0]);
+        EXPECT_EQ(a[1], b[1]);
+        EXPECT_FLOAT_EQ(a[2], b[2] / 2);
+    }
+    EXPECT_TRUE(equal(radiance_of(rgb, p, unknown), seen)) << "what is not said is unchanged";
+    p.colour = {1.2f, -0.1f, -0.1f, -0.05f, 1.1f, -0.05f, 0, -0.2f, 1.2f};
+    EXPECT_TRUE(equal(bytes_of(radiance_of(rgb, p, bluer), p, bluer), rgb));
+}
+
 TEST(RadianceOfBytes, SaysWhatIsClipped)
 {
     cv::Mat rgb(1, 3, CV_8UC3, cv::Scalar::all(100));

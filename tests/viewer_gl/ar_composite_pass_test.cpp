@@ -52,7 +52,7 @@ ar::Photometry bent_photometry()
 TEST_F(ArCompositing, IsThatOfTheCpu)
 {
     cv::Size const size(161, 120); // rows of RGB that are no multiples of 4
-    Input const in = random_input(size);
+    Input in = random_input(size);
     ar::Exposure const exposure{0.012, 1, 0, 0};
     TextureTarget const target(TextureTarget::Format::bytes, {size.width, size.height});
     std::size_t differing = 0, all = 0;
@@ -61,6 +61,7 @@ TEST_F(ArCompositing, IsThatOfTheCpu)
             for (ar::ClippedBytes const clipped :
                  {ar::ClippedBytes::as_measured, ar::ClippedBytes::ratio, ar::ClippedBytes::model})
                 for (bool const noisy : {false, true}) {
+                    in.pair.direct = in.pair.direct.empty() ? cv::Mat(0.3 * in.pair.with) : cv::Mat();
                     ar::CompositeSettings settings;
                     settings.blend = blend;
                     settings.clipped = clipped;

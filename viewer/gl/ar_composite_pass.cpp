@@ -49,18 +49,23 @@ glm::vec3 vector_of(std::array<float, 3> const& v) { return {v[0], v[1], v[2]}; 
 ArCompositePass::ArCompositePass(ar::Compositor const& compositor)
     : compositor_(compositor),
       program_({"full_screen.vert"}, {"ar_composite.frag"}, defines(compositor.settings())),
-      response_(storage(GL_RGB32F, {256, 4}))
+      response_(storage(GL_RGBA32F, {256, 3})),
+      cells_(storage(GL_R8UI, {int(ar::ResponseTable::kCells) + 1, 3}))
 {
-    cv::Mat table(4, 256, CV_32FC3);
+    cv::Mat table(3, 256, CV_32FC4), cells(3, int(ar::ResponseTable::kCells) + 1, CV_8UC1);
+    glm::vec3 cells_per_unit;
     for (int c = 0; c < 3; ++c) {
         ar::ResponseTable const& r = compositor_.response(c);
         for (int b = 0; b < 256; ++b) {
             auto const i = std::size_t(b);
-            float const rows[4] = {r.units()[i], r.borders()[i], r.least()[i], r.most()[i]};
-            for (int y = 0; y < 4; ++y) table.at<cv::Vec3f>(y, b)[c] = rows[y];
+            table.at<cv::Vec4f>(c, b) = {r.units()[i], r.borders()[i], r.least()[i], r.most()[i]};
         }
+        std::copy(r.cells().begin(), r.cells().end(), cells.ptr(c));
+        cells_per_unit[c] = r.cells_per_unit();
     }
-    fill(response_, table, GL_RGB, GL_FLOAT);
+    fill(response_, table, GL_RGBA, GL_FLOAT);
+    fill(cells_, cells, GL_RED_INTEGER, GL_UNSIGNED_BYTE);
+    program_.set("cells_per_unit", cells_per_unit);
     ar::SensorNoise const& noise = compositor_.settings().noise;
     if (noise.any()) {
         noise_ = storage(GL_RGB32F, {ar::NoiseField::kSize, ar::NoiseField::kSize});
@@ -85,11 +90,16 @@ void ArCompositePass::upload(cv::Mat const& rgb, ar::RenderedPair const& pair)
         with_ = storage(GL_RGB32F, size);
         without_ = storage(GL_RGB32F, size);
         coverage_ = storage(GL_R32F, size);
+        direct_ = {};
     }
     fill(camera_, rgb, GL_RGB, GL_UNSIGNED_BYTE);
     fill(with_, pair.with, GL_RGB, GL_FLOAT);
     fill(without_, pair.without, GL_RGB, GL_FLOAT);
     fill(coverage_, pair.coverage, GL_RED, GL_FLOAT);
+    has_direct_ = !pair.direct.empty();
+    if (!has_direct_) return;
+    if (direct_.id() == 0) direct_ = storage(GL_RGB32F, size_px_);
+    fill(direct_, pair.direct, GL_RGB, GL_FLOAT);
 }
 
 void ArCompositePass::draw(DrawTarget const& target, ar::Exposure const& exposure, std::uint64_t frame) const
@@ -100,9 +110,11 @@ void ArCompositePass::draw(DrawTarget const& target, ar::Exposure const& exposur
                              "the camera's pixels are not resampled",
                              "upload first, draw into a texture of the frame's size, and show that");
     bind(target);
-    GlObject const* const textures[] = {&camera_,   &with_,     &without_,
-                                        &coverage_, &response_, noise_.id() != 0 ? &noise_ : &response_};
-    for (GLuint unit = 0; unit < 6; ++unit) glBindTextureUnit(unit, textures[unit]->id());
+    GlObject const& noise = noise_.id() != 0 ? noise_ : response_;
+    GLuint unit = 0;
+    for (GlObject const* t :
+         {&camera_, &with_, &without_, &coverage_, &response_, &cells_, &noise, has_direct_ ? &direct_ : &with_})
+        glBindTextureUnit(unit++, t->id());
     cv::Matx33f const m = compositor_.unit_of_radiance(exposure);
     glm::mat3 to_unit;
     for (int r = 0; r < 3; ++r)
@@ -111,6 +123,7 @@ void ArCompositePass::draw(DrawTarget const& target, ar::Exposure const& exposur
     program_.set("corner", target.corner_px);
     program_.set("target_size", target.size_px);
     program_.set("top_last", int(target.rows == RowOrder::top_last));
+    program_.set("has_direct", int(has_direct_));
     program_.set("to_unit", to_unit);
     program_.set("noise_offset", glm::ivec2(offset.x, offset.y));
     program_.use();

@@ -27,7 +27,8 @@ private:
     ar::Compositor compositor_;
     GlProgram program_;
     GlObject vertices_{GlObject::Kind::vertex_array};
-    GlObject camera_, with_, without_, coverage_, response_, noise_;
+    GlObject camera_, with_, without_, coverage_, response_, cells_, noise_, direct_;
+    bool has_direct_ = false;
     glm::ivec2 size_px_{};
 };
 
