@@ -18,6 +18,7 @@ void add_track(CLI::App& app, int& exit_code);
 void add_display(CLI::App& app, int& exit_code);
 void add_xr(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, int& exit_code);
+void add_ar(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
 // Within bench
 void add_bench_dynamic(CLI::App& bench, int& exit_code);

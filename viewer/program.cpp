@@ -1,5 +1,6 @@
 #include "viewer/program.h"
 
+#include "ar/base/error.h"
 #include "gi/base/error.h"
 #include "study/base/script_error.h"
 #include "viewer/commands.h"
@@ -37,6 +38,7 @@ Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130
     add_display(app, exit_code);
     add_xr(app, exit_code);
     add_study(app, exit_code);
+    add_ar(app, exit_code);
     add_bench(app, exit_code);
     try {
         app.parse(argc, argv);
@@ -56,6 +58,9 @@ Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130
         std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
         return 2;
     } catch (study::ScriptError const& e) {
+        std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
+        return 2;
+    } catch (ar::InputError const& e) {
         std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
         return 2;
     } catch (std::bad_alloc const&) {

@@ -109,6 +109,7 @@ public:
         double const earlier = renderer_->rays();
         PairResult both;
         both.coverage.assign(std::size_t(view.width) * std::size_t(view.height), 0.0f);
+        both.covered.assign(both.coverage.size(), vec3{0});
         sums_.clear();
         for (int side = 0; side < 2; ++side) sums_.emplace_back(view.width, view.height);
         // Every other pass begins with the side that the one before it ended with: the world changes but once.
@@ -125,7 +126,7 @@ public:
                 on_threads(settings_.threads, [&] {
                     renderer_->pass(passes_, {&sums_[std::size_t(now)], 1}, Endings::own);
                 });
-                if (now == PairSide::with) renderer_->add_coverage(0, both.coverage);
+                if (now == PairSide::with) renderer_->add_coverage(0, both.coverage, both.covered);
             }
         if (now == PairSide::without) changed(turn(PairSide::with));
         PathCounts lost;
@@ -137,6 +138,7 @@ public:
             lost += s.counts;
         }
         for (float& c : both.coverage) c /= float(both.with.paths);
+        for (vec3& r : both.covered) r /= float(both.with.paths);
         report_.lose("paths cut at 1024 surfaces", lost.cut_paths);
         report_.lose("path terms that were not finite, dropped", lost.invalid_paths);
         finish(both.with, earlier);

@@ -368,13 +368,16 @@ void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums, Endin
     report_.add_time("indirect light, thread seconds", indirect_s);
 }
 
-void SlhbRenderer::add_coverage(std::size_t view, std::span<float> counts) const
+void SlhbRenderer::add_coverage(std::size_t view, std::span<float> counts, std::span<vec3> radiance) const
 {
     View const& v = views_[view];
     if (!v.primary) return;
-    for (std::size_t p = 0; p < counts.size(); ++p)
-        if (std::uint32_t const t = v.primary->triangle(p); t != kNoPrimitive && t >= first_moving_)
-            counts[p] += 1;
+    for (std::size_t p = 0; p < counts.size(); ++p) {
+        std::uint32_t const t = v.primary->triangle(p);
+        if (t == kNoPrimitive || t < first_moving_) continue;
+        counts[p] += 1;
+        for (vec3 const part : samples_[v.first + p].radiance) radiance[p] += part;
+    }
 }
 
 double SlhbRenderer::rays() const { return double(done_.queries + done_.shadow_lookups + done_.exact_rays); }

@@ -39,9 +39,10 @@ public:
 
     /// Motion vectors of the last pass, to the frame that ended before it; not with orthographic cameras.
     void add_motion(std::size_t view, Picture& picture) const;
-    /// Adds 1 for every pixel whose path of the last pass met a triangle that can move first. @param counts  one
-    /// per pixel. Not with orthographic cameras, where nothing is added.
-    void add_coverage(std::size_t view, std::span<float> counts) const;
+    /// For every pixel whose path of the last pass met a triangle that can move first: adds 1, and what it
+    /// brought.
+    /// @param counts, radiance  one per pixel. Not with orthographic cameras, where nothing is added.
+    void add_coverage(std::size_t view, std::span<float> counts, std::span<vec3> radiance) const;
     double rays() const; ///< look-ups and exact rays, so far
     /// Beyond the limit of a texel, so far.
     std::uint64_t lost_layers() const { return earlier_sets_.lost + axes_->lost(); }

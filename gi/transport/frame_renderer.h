@@ -43,6 +43,7 @@ using PairWorld = std::function<Changes(PairSide)>;
 struct PairResult {
     RenderResult with, without;
     std::vector<float> coverage; ///< per pixel: share of the paths of `with` whose first surface is one that moves
+    std::vector<vec3> covered;   ///< radiance that those paths bring to the pixel: no more than all of it
 };
 
 class FrameRenderer {
@@ -67,7 +68,7 @@ public:
     /// to `with` before this ends. @param paths  per pixel of each, >= 1
     /// @throws InputError where the method does not know how
     virtual PairResult pair(FrameView const& view, std::uint32_t paths, PairWorld const& turn,
-                             StopRequest const& stop);
+                            StopRequest const& stop);
 };
 
 /// Starts with the world as it is; it and the report outlive the renderer.

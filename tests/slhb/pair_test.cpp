@@ -99,6 +99,8 @@ TEST_P(Pairs, DifferOnlyWhereTheObjectCounts)
         float const before = both.without.picture.find("depth")->data[p],
                     now = both.with.picture.find("depth")->data[p];
         EXPECT_EQ(both.coverage[p] == 1, now < before) << p;
+        for (int c = 0; c < 3; ++c)
+            EXPECT_EQ(both.covered[p][c], both.coverage[p] * color(both.with)[3 * p + std::size_t(c)]) << p;
     }
     EXPECT_GT(covered, 50u);
     EXPECT_GT(equal, both.coverage.size() / 2);

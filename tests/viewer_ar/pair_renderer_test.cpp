@@ -1,0 +1,94 @@
+// What a compositor needs of a renderer: nothing there, nothing changed, in every bit.
+
+#include "viewer/ar/pair_renderer.h"
+
+#include "gi/base/error.h"
+#include "gi/scene/generate.h"
+#include "viewer/ar/bridge.h"
+#include "viewer/ar/synthetic.h"
+
+#include <opencv2/imgproc.hpp>
+
+namespace viewer::test {
+namespace {
+
+PaperOnTable blank_paper() { return {cv::Mat(4, 4, CV_8UC1, cv::Scalar(255)), 0.3, 0.2, {-0.15, 0.3}}; }
+
+std::shared_ptr<gi::EnvironmentMap const> sky()
+{
+    cv::Mat map(16, 32, CV_32FC3, cv::Scalar(0.5, 0.6, 0.8));
+    cv::rectangle(map, {20, 3, 3, 3}, cv::Scalar(20, 18, 14), cv::FILLED);
+    return std::make_shared<gi::EnvironmentMap const>(environment_of(map));
+}
+
+PairPictures rendered(gi::Scene virtual_things, std::uint32_t paths, gi::Report& report, double time_s = 0,
+                      bool is_denoised = false)
+{
+    gi::RenderSettings settings;
+    settings.bounces = 2;
+    LocalScene local =
+        join_scenes(generate_desk(DeskPart::near, blank_paper()), std::move(virtual_things), gi::dmat4(1));
+    PairRenderer renderer(std::move(local), settings, report);
+    renderer.set_environment(sky());
+    ar::CameraModel camera = synthetic_camera({80, 60}).model;
+    camera.lens = ar::LensModel::pinhole;
+    return renderer.render(gi_camera(camera, synthetic_pose(0.5)), 80, 60, paths, time_s, is_denoised, {});
+}
+
+TEST(PairRenderers, WithNothingVirtualChangeNothing)
+{
+    gi::Report report;
+    PairPictures const p = rendered({}, 2, report);
+    EXPECT_EQ(cv::norm(p.with, p.without, cv::NORM_INF), 0);
+    EXPECT_EQ(cv::countNonZero(p.coverage), 0);
+    EXPECT_GT(cv::mean(p.without)[1], 0.01) << "the place is lit";
+    PairPictures const smooth = rendered({}, 2, report, 0, true);
+    EXPECT_EQ(cv::norm(smooth.with, smooth.without, cv::NORM_INF), 0);
+    EXPECT_GT(cv::norm(smooth.with, p.with, cv::NORM_INF), 0);
+}
+
+TEST(PairRenderers, PutThingsOnTheTable)
+{
+    gi::Report report;
+    PairPictures const p = rendered(generate_statue(), 8, report);
+    int const covered = cv::countNonZero(p.coverage > 0.5);
+    EXPECT_GT(covered, 100);
+    EXPECT_LT(covered, 80 * 60 / 3);
+    cv::Mat const behind = (p.coverage > 0.99) & (p.depth_m >= p.real_depth_m) & (p.real_depth_m > 0);
+    EXPECT_EQ(cv::countNonZero(behind), 0);
+    cv::Mat darker;
+    cv::cvtColor(p.without - p.with, darker, cv::COLOR_RGB2GRAY);
+    EXPECT_GT(cv::countNonZero((darker > 0.02) & (p.coverage == 0)), 40) << "shadows beside the things";
+}
+
+TEST(PairRenderers, MoveWhatHasClips)
+{
+    gi::Report report;
+    PairPictures const a = rendered(generate_statue(), 1, report, 0),
+                       b = rendered(generate_statue(), 1, report, 0.4);
+    EXPECT_GT(cv::norm(a.coverage, b.coverage, cv::NORM_L1), 5);
+}
+
+TEST(PairRenderers, TakeAwayVirtualLampsToo)
+{
+    gi::Scene lamp;
+    gi::Light light;
+    light.intensity = gi::vec3(4);
+    lamp.lights.push_back(light);
+    gi::Node node;
+    node.translation = {0.1, 0.3, 0.1};
+    node.light = 0;
+    lamp.nodes.push_back(node);
+    gi::Report report;
+    PairPictures const p = rendered(lamp, 16, report), dark = rendered({}, 16, report);
+    EXPECT_GT(cv::mean(p.with)[0], 1.2 * cv::mean(p.without)[0]);
+    EXPECT_NEAR(cv::mean(p.without)[0], cv::mean(dark.without)[0], 0.05 * cv::mean(dark.without)[0]);
+}
+
+TEST(LocalScenes, WithRealThingsThatMoveAreRefused)
+{
+    EXPECT_THROW(join_scenes(gi::generate_avatar(), {}, gi::dmat4(1)), gi::InputError);
+}
+
+} // namespace
+} // namespace viewer::test

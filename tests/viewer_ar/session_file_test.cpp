@@ -1,0 +1,71 @@
+#include "viewer/ar/session_file.h"
+
+#include "gi/base/error.h"
+
+namespace viewer::test {
+namespace {
+
+std::string const kLeast = "schema: ar/1\nframes: {source: frames}\ncamera: camera.yaml\nmarkers: markers.yaml\n";
+
+std::string refusal(std::string const& text)
+{
+    try {
+        parse_ar_session(text, "folder/s.yaml");
+    } catch (gi::InputError const& e) {
+        return e.what();
+    }
+    return "";
+}
+
+TEST(ArSessions, SayWhatTheyAreMadeOf)
+{
+    ArSession const s = parse_ar_session(kLeast + R"(light: {map: probe.exr, turn_deg: 30, scale: 2}
+real: {scene: near.glb}
+virtual: {scene: statue.glb, at: [0, 0, -0.1], turn_deg: 90, scale: 0.5}
+render: {paths: 4, resolution: 0.75, bounces: 2, seed: 9}
+composite: {blend: ratio, clipped: as_measured, largest_ratio: 4, smoothing: 0.3}
+)",
+                                         "folder/s.yaml");
+    EXPECT_EQ(s.frames.source, "folder/frames");
+    EXPECT_EQ(s.camera, "folder/camera.yaml");
+    EXPECT_EQ(s.light, "folder/probe.exr");
+    EXPECT_EQ(s.light_turn_deg, 30);
+    EXPECT_EQ(s.virtual_things.at_m, gi::dvec3(0, 0, -0.1));
+    EXPECT_EQ(s.virtual_things.scale, 0.5);
+    EXPECT_EQ(s.render.paths, 4u);
+    EXPECT_EQ(s.render.resolution, 0.75);
+    EXPECT_EQ(s.composite.blend, ar::Blend::ratio);
+    EXPECT_EQ(s.composite.clipped, ar::ClippedBytes::as_measured);
+    EXPECT_EQ(s.smoothing, 0.3);
+    ArSession const least = parse_ar_session(kLeast, "s.yaml");
+    EXPECT_TRUE(least.real.scene.empty());
+    EXPECT_TRUE(least.light.empty());
+}
+
+TEST(ArSessions, OfDevicesKeepTheirNames)
+{
+    ArSession const s = parse_ar_session("schema: ar/1\nframes: {source: 'camera:/base/cam0', size: [1280, 720], "
+                                         "format: mjpeg}\ncamera: c.yaml\nmarkers: m.yaml\n",
+                                         "folder/s.yaml");
+    EXPECT_EQ(s.frames.source, "camera:/base/cam0");
+    EXPECT_EQ(s.frames.options.size_px, glm::ivec2(1280, 720));
+    EXPECT_EQ(s.frames.options.format, ar::PixelFormat::mjpeg);
+}
+
+TEST(ArSessions, ThatAreWrongAreRefusedWithTheirPlace)
+{
+    EXPECT_NE(refusal("frames: {source: x}\ncamera: c\nmarkers: m\n").find("schema: ar/1"), std::string::npos);
+    EXPECT_NE(refusal("schema: ar/1\nframes: {source: x}\ncamera: c\n").find("no 'markers'"), std::string::npos);
+    EXPECT_NE(refusal(kLeast + "lihgt: {map: x}\n").find("s.yaml:5:1"), std::string::npos);
+    EXPECT_NE(refusal(kLeast + "light: {turn_deg: 3}\n").find("no 'map'"), std::string::npos);
+    EXPECT_NE(refusal(kLeast + "render: {paths: 0}\n").find("s.yaml:5:"), std::string::npos);
+    EXPECT_NE(refusal(kLeast + "composite: {blend: add}\n").find("difference, ratio"), std::string::npos);
+    EXPECT_NE(refusal("schema: ar/1\nframes: {}\ncamera: c\nmarkers: m\n").find("no 'source'"), std::string::npos);
+    EXPECT_NE(
+        refusal("schema: ar/1\nframes: {source: x, size: [640]}\ncamera: c\nmarkers: m\n").find("[640, 480]"),
+        std::string::npos);
+    EXPECT_NE(refusal("schema: [").find("s.yaml"), std::string::npos);
+}
+
+} // namespace
+} // namespace viewer::test

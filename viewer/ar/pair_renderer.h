@@ -1,0 +1,47 @@
+#pragma once
+// Renders a local scene with and without its virtual things, for compositing.
+
+#include "gi/base/report.h"
+#include "gi/scene/moving_world.h"
+#include "viewer/ar/local_scene.h"
+
+#include <opencv2/core.hpp>
+
+namespace viewer {
+
+/// Pictures of a pinhole camera. With and without: radiance, CV_32FC3, RGB, by the same random numbers.
+struct PairPictures {
+    cv::Mat with, without;
+    cv::Mat direct;                ///< CV_32FC3: what of `with` comes of virtual things seen first
+    cv::Mat coverage;              ///< CV_32FC1: share of the pixel where a virtual thing is seen first
+    cv::Mat depth_m, real_depth_m; ///< CV_32FC1, along the axis: first surface with and without; 0 = none
+    cv::Mat real_albedo;           ///< CV_32FC3, of the first real surface
+    cv::Mat real_normal;           ///< CV_32FC3, world
+    std::uint32_t paths = 0;       ///< per pixel of each
+};
+
+class PairRenderer {
+public:
+    /// @param settings  method slhb; the size of pictures and the paths are given with each of them
+    PairRenderer(LocalScene local, gi::RenderSettings const& settings, gi::Report& report);
+
+    /// The light of the place, from all sides; null: none.
+    void set_environment(std::shared_ptr<gi::EnvironmentMap const> map);
+    /// @param denoise  both pictures, by the a-trous filter: what is equal in both stays so but near what is not
+    PairPictures render(gi::Camera const& camera, int width, int height, std::uint32_t paths, gi::SceneTime time_s,
+                        bool denoise, gi::StopRequest const& stop);
+    gi::World const& world() const { return world_.world(); }
+
+private:
+    gi::Changes turn(gi::PairSide side, gi::SceneTime time_s);
+
+    LocalScene local_;
+    gi::RenderSettings settings_;
+    gi::Report& report_;
+    gi::MovingWorld world_;
+    std::vector<gi::Light> virtual_lights_; ///< as they are when they are there
+    gi::Changes pending_;                   ///< since the last picture
+    std::unique_ptr<gi::FrameRenderer> frames_;
+};
+
+} // namespace viewer

@@ -1,0 +1,149 @@
+#include "viewer/ar/pipeline.h"
+
+#include "ar/base/error.h"
+#include "gi/base/error.h"
+#include "gi/scene/load.h"
+#include "viewer/ar/bridge.h"
+
+#include <chrono>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Milliseconds since the last call.
+class Lap {
+public:
+    double operator()()
+    {
+        auto const now = Clock::now();
+        return std::chrono::duration<double, std::milli>(now - std::exchange(last_, now)).count();
+    }
+
+private:
+    Clock::time_point last_ = Clock::now();
+};
+
+gi::dmat4 placement(ArPlaced const& p)
+{
+    return glm::translate(gi::dmat4(1), p.at_m) *
+           glm::rotate(gi::dmat4(1), glm::radians(p.turn_deg), gi::dvec3(0, 1, 0)) *
+           glm::scale(gi::dmat4(1), gi::dvec3(p.scale));
+}
+
+gi::Scene loaded(ArPlaced const& p, gi::Report& report)
+{
+    return p.scene.empty() ? gi::Scene{} : gi::load_scene(p.scene.string(), report);
+}
+
+LocalScene local_scene(ArSession const& s, gi::Report& report)
+{
+    gi::Scene real;
+    gi::append(real, loaded(s.real, report), "real", placement(s.real));
+    return join_scenes(std::move(real), loaded(s.virtual_things, report), placement(s.virtual_things));
+}
+
+gi::RenderSettings render_settings(ArRender const& r)
+{
+    gi::RenderSettings settings;
+    settings.bounces = r.bounces;
+    settings.seed = r.seed;
+    return settings;
+}
+
+std::shared_ptr<gi::EnvironmentMap const> light_of(ArSession const& s, gi::Report& report)
+{
+    if (s.light.empty()) return nullptr;
+    gi::EnvironmentMap map = gi::load_environment(s.light, report);
+    map.rotation_rad = float(glm::radians(s.light_turn_deg));
+    map.scale = gi::vec3(float(s.light_scale));
+    return std::make_shared<gi::EnvironmentMap const>(std::move(map));
+}
+
+ar::CompositeSettings with_noise(ar::CompositeSettings settings, ar::SensorNoise const& noise)
+{
+    settings.noise = noise;
+    return settings;
+}
+
+} // namespace
+
+ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers,
+                       gi::Report& report)
+    : session_(session),
+      camera_(camera),
+      detector_(markers),
+      renderer_(local_scene(session, report), render_settings(session.render), report),
+      warp_(camera.model, ar::covering_pinhole(camera.model, session.render.resolution)),
+      compositor_(camera.photometry, with_noise(session.composite, camera.noise))
+{
+    renderer_.set_environment(light_of(session, report));
+    if (session.smoothing < 1) {
+        ar::TemporalSettings smooth;
+        smooth.weight = float(session.smoothing);
+        filter_.emplace(warp_.from(), smooth);
+    }
+}
+
+ar::RenderedPair ArPipeline::rendered(ar::Pose const& world_from_camera, double time_s,
+                                      gi::StopRequest const& stop)
+{
+    ar::CameraModel const& pinhole = warp_.from();
+    PairPictures const p =
+        renderer_.render(gi_camera(pinhole, world_from_camera), pinhole.size_px.x, pinhole.size_px.y,
+                         session_.render.paths, time_s, session_.render.denoise, stop);
+    ar::RenderedPair pair{p.with, p.without, p.coverage, p.direct};
+    if (filter_) pair = (*filter_)(pair, p.depth_m, world_from_camera);
+    return warp_(pair);
+}
+
+ArResult ArPipeline::seen(ar::Frame const& frame, std::optional<ar::Pose> const& known)
+{
+    if (frame.size_px != camera_.model.size_px)
+        throw ar::InputError(
+            fmt::format("frame {} has {} x {} pixels", frame.sequence, frame.size_px.x, frame.size_px.y),
+            fmt::format("the calibration is of {} x {}", camera_.model.size_px.x, camera_.model.size_px.y),
+            "set the camera to that size, or calibrate it at this one");
+    ArResult r;
+    Lap lap;
+    r.camera = ar::rgb_of(frame);
+    cv::Mat const gray = ar::gray_of(frame);
+    r.times.decode_ms = lap();
+    if (known) {
+        r.pose.failure = ar::PoseFailure::none;
+        r.pose.world_from_camera = *known;
+        r.pose.confidence = 1;
+    } else {
+        r.sighting = detector_.next(gray);
+        r.times.detect_ms = lap();
+        r.pose = ar::estimate_pose(r.sighting, camera_.model, last_);
+        r.times.pose_ms = lap();
+    }
+    last_ = r.pose.found() ? std::optional(r.pose.world_from_camera) : std::nullopt;
+    r.rgb = r.camera;
+    return r;
+}
+
+ArResult ArPipeline::find_pose(ar::Frame const& frame) { return seen(frame, std::nullopt); }
+
+ArResult ArPipeline::process(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known,
+                             gi::StopRequest const& stop)
+{
+    ArResult r = seen(frame, known);
+    if (!r.pose.found()) {
+        if (filter_) filter_->forget();
+        return r;
+    }
+    Lap lap;
+    r.rgb = cv::Mat(); // the camera's stays as it is
+    r.pair = rendered(r.pose.world_from_camera, time_s, stop);
+    r.times.render_ms = lap();
+    r.counts = compositor_(r.camera, *r.pair, frame.exposure, r.rgb, frame.sequence);
+    r.times.composite_ms = lap();
+    return r;
+}
+
+} // namespace viewer

@@ -1,0 +1,139 @@
+#include "viewer/ar/runner.h"
+
+#include "ar/base/error.h"
+#include "ar/markers/marker_map_file.h"
+#include "gi/base/error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double now_s() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
+
+ArFrameRecord record_of(ar::Frame const& frame, ArResult const& r, double time_s, bool is_live)
+{
+    ArFrameRecord f;
+    f.sequence = frame.sequence;
+    f.captured_s = time_s;
+    if (is_live) {
+        f.age_ms = 1e3 * (frame.arrived_s - frame.captured_s);
+        f.latency_ms = 1e3 * (now_s() - frame.captured_s);
+    }
+    f.times = r.times;
+    f.markers = r.sighting.markers_seen;
+    f.points_used = r.pose.points_used;
+    f.points_rejected = r.pose.points_rejected;
+    f.rms_px = r.pose.rms_px;
+    f.confidence = r.pose.confidence;
+    if (r.pose.found()) f.world_from_camera = r.pose.world_from_camera;
+    f.counts = r.counts;
+    return f;
+}
+
+} // namespace
+
+Spread spread_of(std::vector<double> values)
+{
+    if (values.empty()) return {};
+    std::sort(values.begin(), values.end());
+    auto const at = [&](double share) { return values[std::size_t(share * double(values.size() - 1) + 0.5)]; };
+    return {at(0.5), at(0.95), values.back()};
+}
+
+ArCamera load_ar_camera(std::filesystem::path const& file)
+{
+    cv::FileStorage in(file.string(), cv::FileStorage::READ);
+    cv::Mat matrix, lens;
+    in["camera_matrix"] >> matrix;
+    in["distortion_coefficients"] >> lens;
+    ArCamera c;
+    c.photometry = ar::srgb_photometry();
+    c.photometry.radiance_per_unit = 1;
+    c.model.lens = ar::LensModel::radial_tangential;
+    c.model.size_px = {int(in["image_width"]), int(in["image_height"])};
+    c.model.fx = matrix.at<double>(0, 0);
+    c.model.fy = matrix.at<double>(1, 1);
+    c.model.cx = matrix.at<double>(0, 2);
+    c.model.cy = matrix.at<double>(1, 2);
+    for (int i = 0; i < 5; ++i) c.model.distortion[std::size_t(i)] = lens.at<double>(i);
+    return c;
+}
+
+ArSummary run_ar(ArSession const& session, ArRunOptions const& options,
+                 std::function<void(ArFrameRecord const&, ArResult const&)> const& shown,
+                 gi::StopRequest const& stop, gi::Report& report)
+{
+    ArCamera const camera = load_ar_camera(session.camera);
+    ar::MarkerMap const markers = ar::read_marker_map(session.markers);
+    ar::OpenOptions open = session.frames.options;
+    open.pace = options.pace;
+    auto const source = ar::open_source(session.frames.source, open);
+    ArPipeline pipeline(session, camera, markers, report);
+    ArSummary summary;
+    double const begun_s = now_s();
+    std::optional<double> first_s;
+    ar::SourceDescription const about = source->description();
+    bool const is_timed = options.pace == ar::Pace::own || about.is_live;
+    while (!stop.requested() && (options.frames == 0 || int(summary.frames.size()) < options.frames)) {
+        std::optional<ar::Frame> const frame = source->next(std::chrono::milliseconds(200));
+        if (!frame) {
+            if (source->state().kind == ar::SourceState::Kind::running) continue;
+            break;
+        }
+        if (!first_s) first_s = frame->captured_s;
+        // As fast as possible, clocks say nothing of the time that passes in the pictures.
+        double const time_s = is_timed || about.frames_per_s <= 0 ? frame->captured_s - *first_s
+                                                                  : double(frame->sequence) / about.frames_per_s;
+        std::optional<ar::Pose> known;
+        if (!options.poses.empty()) known = ar::pose_at(options.poses, time_s);
+        try {
+            ArResult const r = options.find_poses_only ? pipeline.find_pose(*frame)
+                                                       : pipeline.process(*frame, time_s, known, stop);
+            summary.frames.push_back(record_of(*frame, r, time_s, is_timed));
+            if (shown) shown(summary.frames.back(), r);
+        } catch (ar::InputError const& e) {
+            ++summary.refused;
+            report.lose("frames that could not be used", 1, e.what());
+        }
+    }
+    summary.source = source->counts();
+    summary.end = source->state();
+    summary.seconds = now_s() - begun_s;
+    return summary;
+}
+
+std::string describe(ArSummary const& s)
+{
+    std::size_t const n = s.frames.size();
+    std::size_t const found = std::size_t(
+        std::count_if(s.frames.begin(), s.frames.end(), [](auto const& f) { return bool(f.world_from_camera); }));
+    std::string text =
+        fmt::format("{} frames in {:.2f} s: {:.1f} frames/s; camera found in {} ({:.1f} %)\n", n, s.seconds,
+                    n / std::max(s.seconds, 1e-9), found, n > 0 ? 100.0 * double(found) / double(n) : 0);
+    text += fmt::format("source: {}{}\n", describe(s.source),
+                        s.end.kind == ar::SourceState::Kind::lost ? "; lost: " + s.end.reason : "");
+    if (s.refused > 0) text += fmt::format("refused: {} frames\n", s.refused);
+    text += fmt::format("{:<24} {:>9} {:>9} {:>9}\n", "", "median", "95 %", "most");
+    auto const line = [&](char const* name, auto const& value) {
+        std::vector<double> values;
+        for (ArFrameRecord const& f : s.frames) values.push_back(value(f));
+        Spread const d = spread_of(std::move(values));
+        if (d.most > 0) text += fmt::format("{:<24} {:>9.2f} {:>9.2f} {:>9.2f}\n", name, d.median, d.p95, d.most);
+    };
+    line("frame's age (ms)", [](auto const& f) { return f.age_ms; });
+    line("decode (ms)", [](auto const& f) { return f.times.decode_ms; });
+    line("detect (ms)", [](auto const& f) { return f.times.detect_ms; });
+    line("pose (ms)", [](auto const& f) { return f.times.pose_ms; });
+    line("render (ms)", [](auto const& f) { return f.times.render_ms; });
+    line("composite (ms)", [](auto const& f) { return f.times.composite_ms; });
+    line("capture to result (ms)", [](auto const& f) { return f.latency_ms; });
+    line("reprojection RMS (px)", [](auto const& f) { return f.rms_px; });
+    return text;
+}
+
+} // namespace viewer

@@ -1,0 +1,152 @@
+#include "viewer/ar/session_file.h"
+
+#include "gi/base/file.h"
+#include "gi/scene/load/yaml_reader.h"
+
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+namespace fs = std::filesystem;
+using gi::YamlReader;
+
+/// One of these words.
+template <class T>
+T choice(YamlReader const& at, std::vector<std::pair<char const*, T>> const& words)
+{
+    std::string const text = at.text();
+    std::string known;
+    for (auto const& [word, value] : words) {
+        if (text == word) return value;
+        known += (known.empty() ? "" : ", ") + std::string(word);
+    }
+    throw at.error("'" + text + "' is not known here", "nothing could be done with it", "choose one of " + known);
+}
+
+class Reader {
+public:
+    Reader(YamlReader const& root, fs::path const& file) : root_(root), folder_(file.parent_path())
+    {
+        session_.file = file;
+    }
+
+    ArSession read()
+    {
+        root_.only_keys(
+            {"schema", "frames", "camera", "markers", "light", "real", "virtual", "render", "composite"});
+        if (!root_.has("schema") || root_.at("schema").text() != "ar/1")
+            throw root_.error("no 'schema: ar/1'", "this may be a file of another kind", "begin the file with it");
+        for (char const* needed : {"frames", "camera", "markers"})
+            if (!root_.has(needed))
+                throw root_.error(fmt::format("no '{}'", needed), "a session cannot begin without it", "add it");
+        read_frames(root_.at("frames"));
+        session_.camera = path(root_.at("camera"));
+        session_.markers = path(root_.at("markers"));
+        if (root_.has("light")) read_light(root_.at("light"));
+        if (root_.has("real")) session_.real = placed(root_.at("real"));
+        if (root_.has("virtual")) session_.virtual_things = placed(root_.at("virtual"));
+        if (root_.has("render")) read_render(root_.at("render"));
+        if (root_.has("composite")) read_composite(root_.at("composite"));
+        return std::move(session_);
+    }
+
+private:
+    fs::path path(YamlReader const& at) const { return folder_ / at.text(); }
+
+    void read_frames(YamlReader const& f)
+    {
+        f.only_keys({"source", "rate_hz", "size", "format"});
+        if (!f.has("source"))
+            throw f.error("no 'source'", "there is nothing to see",
+                          "name a camera, a video or a folder of pictures");
+        std::string const name = f.at("source").text();
+        bool const is_device = name == "camera" || name == "counter" || name.starts_with("camera:") ||
+                               name.starts_with("device:") || name.starts_with("gstreamer:");
+        session_.frames.source = is_device ? name : (folder_ / name).string();
+        ar::OpenOptions& o = session_.frames.options;
+        if (f.has("rate_hz")) o.frames_per_s = f.at("rate_hz").number(0.01, 1000);
+        if (f.has("size")) {
+            auto const size = f.at("size").items();
+            if (size.size() != 2)
+                throw f.at("size").error("not two numbers", "it is a width and a height", "write [640, 480]");
+            o.size_px = {int(size[0].integer(16, 16384)), int(size[1].integer(16, 16384))};
+        }
+        if (f.has("format")) {
+            using ar::PixelFormat;
+            std::vector<std::pair<char const*, PixelFormat>> const formats{
+                {"rgb8", PixelFormat::rgb8}, {"bgr8", PixelFormat::bgr8}, {"gray8", PixelFormat::gray8},
+                {"nv12", PixelFormat::nv12}, {"yuyv", PixelFormat::yuyv}, {"mjpeg", PixelFormat::mjpeg}};
+            o.format = choice<PixelFormat>(f.at("format"), formats);
+        }
+    }
+
+    void read_light(YamlReader const& l)
+    {
+        l.only_keys({"map", "turn_deg", "scale"});
+        if (!l.has("map"))
+            throw l.error("no 'map'", "there is no light to take", "give a lat-long EXR or HDR file");
+        session_.light = path(l.at("map"));
+        if (l.has("turn_deg")) session_.light_turn_deg = l.at("turn_deg").number(-360, 360);
+        if (l.has("scale")) session_.light_scale = l.at("scale").number(0, 1e9);
+    }
+
+    ArPlaced placed(YamlReader const& p) const
+    {
+        p.only_keys({"scene", "at", "turn_deg", "scale"});
+        if (!p.has("scene")) throw p.error("no 'scene'", "there is nothing to place", "give a file of a scene");
+        ArPlaced placed;
+        std::string const name = p.at("scene").text();
+        // As load_scene: a name without an extension is a scene that is generated.
+        placed.scene = fs::path(name).has_extension() ? folder_ / name : fs::path(name);
+        if (p.has("at")) placed.at_m = p.at("at").vector(-1e6, 1e6);
+        if (p.has("turn_deg")) placed.turn_deg = p.at("turn_deg").number(-360, 360);
+        if (p.has("scale")) placed.scale = p.at("scale").number(1e-6, 1e6);
+        return placed;
+    }
+
+    void read_render(YamlReader const& r)
+    {
+        r.only_keys({"paths", "resolution", "bounces", "denoise", "seed"});
+        if (r.has("denoise")) session_.render.denoise = r.at("denoise").boolean();
+        if (r.has("paths")) session_.render.paths = std::uint32_t(r.at("paths").integer(1, 65536));
+        if (r.has("resolution")) session_.render.resolution = r.at("resolution").number(0.1, 4);
+        if (r.has("bounces")) session_.render.bounces = int(r.at("bounces").integer(0, 64));
+        if (r.has("seed")) session_.render.seed = std::uint64_t(r.at("seed").integer(0, INT64_MAX));
+    }
+
+    void read_composite(YamlReader const& c)
+    {
+        c.only_keys({"blend", "clipped", "largest_ratio", "smoothing"});
+        if (c.has("smoothing")) session_.smoothing = c.at("smoothing").number(0.01, 1);
+        if (c.has("blend"))
+            session_.composite.blend = choice<ar::Blend>(
+                c.at("blend"), {{"difference", ar::Blend::difference}, {"ratio", ar::Blend::ratio}});
+        if (c.has("clipped"))
+            session_.composite.clipped =
+                choice<ar::ClippedBytes>(c.at("clipped"), {{"as_measured", ar::ClippedBytes::as_measured},
+                                                           {"ratio", ar::ClippedBytes::ratio},
+                                                           {"model", ar::ClippedBytes::model}});
+        if (c.has("largest_ratio")) session_.composite.largest_ratio = float(c.at("largest_ratio").number(1, 1e6));
+    }
+
+    YamlReader const& root_;
+    fs::path folder_;
+    ArSession session_;
+};
+
+} // namespace
+
+ArSession parse_ar_session(std::string const& text, fs::path const& file)
+{
+    YamlReader const root = YamlReader::parse(text, file.string(), "session");
+    return Reader(root, file).read();
+}
+
+ArSession read_ar_session(fs::path const& file)
+{
+    std::vector<unsigned char> const bytes = gi::read_bytes(file, std::size_t(1) << 20);
+    return parse_ar_session({bytes.begin(), bytes.end()}, file);
+}
+
+} // namespace viewer

@@ -1,0 +1,50 @@
+#pragma once
+// What an AR session is made of: SESSION.yaml. docs/ar.md has the keys.
+
+#include "ar/capture/open_source.h"
+#include "ar/composite/composite.h"
+#include "gi/base/math.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace viewer {
+
+struct ArFrames {
+    std::string source; ///< as ar::open_source takes it
+    ar::OpenOptions options;
+};
+
+struct ArPlaced {
+    std::filesystem::path scene; ///< empty = nothing
+    gi::dvec3 at_m{0};
+    double turn_deg = 0; ///< about the vertical, counter-clockwise seen from above
+    double scale = 1;
+};
+
+struct ArRender {
+    std::uint32_t paths = 1; ///< per rendered pixel and frame
+    double resolution = 0.5; ///< rendered pixels per pixel of the camera
+    int bounces = 3;
+    bool denoise = true;
+    std::uint64_t seed = 0;
+};
+
+struct ArSession {
+    std::filesystem::path file;
+    ArFrames frames;
+    std::filesystem::path camera, markers;
+    std::filesystem::path light; ///< lat-long map; empty: only lamps of the real scene
+    double light_turn_deg = 0, light_scale = 1;
+    ArPlaced real, virtual_things;
+    ArRender render;
+    double smoothing = 1; ///< weight of a new frame's light among those before, (0, 1]; 1 = each frame for itself
+    ar::CompositeSettings composite;
+};
+
+/// Paths within are relative to the file's folder. @throws gi::InputError with file:line:column
+ArSession read_ar_session(std::filesystem::path const& file);
+ArSession parse_ar_session(std::string const& text, std::filesystem::path const& file);
+
+} // namespace viewer
