@@ -163,6 +163,11 @@ TEST(Pose, OfASmallFarMarkerIsSaidToBeAmbiguousAndTheLastPoseDecides)
         };
         right_alone += near(alone);
         right_with_last += near(with);
+        if (with.ambiguous) {
+            EXPECT_GE(with.confidence,
+                      0.5 / (1 + std::pow(with.rotation_sigma_deg.x, 2) + std::pow(with.rotation_sigma_deg.y, 2)) *
+                          0.5);
+        }
     }
     fmt::print("marker of 50 mm at 2.5 m, 12 deg: {} of {} ambiguous, {} right alone, {} with the last pose\n",
                ambiguous, n, right_alone, right_with_last);
@@ -276,6 +281,18 @@ TEST(Pose, OfPicturesThatNoCameraTakesIsAFailure)
     Sighting one = noise;
     for (auto& p : one.points) p.pixel = {320, 240};
     EXPECT_FALSE(estimate_pose(one, camera_640()).found());
+}
+
+TEST(Pose, OfALastPoseThatIsNotFiniteIsThatWithoutIt)
+{
+    std::mt19937 random(17);
+    Pose const truth = looking({0.2, 1, 0.1}, {0, 0, 0});
+    Sighting const s = sight(one_marker(0.05), camera_640(), truth, 0.1, random);
+    double const nan = std::numeric_limits<double>::quiet_NaN();
+    PoseEstimate const alone = estimate_pose(s, camera_640());
+    PoseEstimate const with = estimate_pose(s, camera_640(), Pose{{nan, 0, 0, 0}, {nan, nan, 0}});
+    ASSERT_TRUE(alone.found() && with.found());
+    EXPECT_LT(glm::length(alone.world_from_camera.position_m - with.world_from_camera.position_m), 1e-6);
 }
 
 TEST(Pose, OfAFisheyeReachesBeyondTheHemisphere)
