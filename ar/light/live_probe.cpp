@@ -105,22 +105,22 @@ double LiveProbe::confidence_of(Texel const& t) const
     return t.confidence > 0 ? t.confidence * std::exp(-(now_s_ - t.seen_s) / settings_.forget_s) : 0;
 }
 
-/// How much brighter this frame is than what is known of the same directions; at first than the prior.
+/// By which this frame is to be scaled: to what is known of the same directions, else to the scaled prior, else as
+/// the frame before.
 double LiveProbe::frame_gain() const
 {
-    std::vector<std::pair<double, double>> known, before;
+    std::vector<std::pair<double, double>> known, prior;
     for (std::size_t k = 0; k < texels_.size(); ++k) {
         Sum const& s = sums_[k];
         float const sr = texel_sr_[k / std::size_t(settings_.size.width)];
-        if (s.sr < kWellSeen * sr || s.clipped_sr > 0) continue;
-        double const now = light(s.light / s.sr);
+        double const now = s.sr > 0 ? light(s.light / s.sr) : 0;
+        if (s.sr < kWellSeen * sr || s.clipped_sr > 0 || !(now > 0)) continue;
         Texel const& t = texels_[k];
-        if (double const then = light(t.value); t.confidence > 0.3f && then > 0)
-            known.emplace_back(now / then, sr);
-        if (double const then = light(prior_.at<cv::Vec3f>(int(k) / prior_.cols, int(k) % prior_.cols)); then > 0)
-            before.emplace_back(now / then, sr);
+        cv::Vec3d const before = prior_.at<cv::Vec3f>(int(k) / prior_.cols, int(k) % prior_.cols);
+        if (t.confidence > 0.3f) known.emplace_back(light(t.value) / now, sr);
+        if (has_prior_) prior.emplace_back(luminance(before.mul(scale_)) / now, sr);
     }
-    return known.size() >= 8 ? weighted_median(known) : begun_ || !has_prior_ ? 1 : weighted_median(before);
+    return known.size() >= 8 ? weighted_median(known) : prior.size() >= 8 ? weighted_median(prior) : gain_;
 }
 
 void LiveProbe::follow(ProbeUpdate& update, double time_s)
@@ -204,8 +204,8 @@ ProbeUpdate LiveProbe::update(cv::Mat const& radiance, cv::Mat const& clipped, C
     ProbeUpdate update;
     gather(radiance, clipped, world_from_camera, update);
     if (settings_.exposure == ExposureKnowledge::unknown) {
-        update.gain = 1 / frame_gain();
-        for (Sum& s : sums_) s.light *= float(update.gain);
+        update.gain = gain_ = frame_gain();
+        for (Sum& s : sums_) s.light *= float(gain_);
     }
     follow(update, time_s);
     scale_prior();

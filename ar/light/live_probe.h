@@ -102,6 +102,7 @@ private:
     std::optional<CameraModel> camera_;
     double now_s_ = 0;
     bool begun_ = false;
+    double gain_ = 1; ///< of the newest frame
     cv::Vec3d scale_{1, 1, 1};
 };
 

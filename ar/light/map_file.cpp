@@ -18,6 +18,7 @@ namespace ar {
 namespace {
 
 constexpr int kWidest = 16384;
+constexpr double kMostPerByte = 512; ///< texels that a byte of a compressed file may stand for
 
 [[noreturn]] void refuse(std::filesystem::path const& file, std::string const& problem, std::string const& why)
 {
@@ -29,6 +30,10 @@ void check_size(std::filesystem::path const& file, std::int64_t width, std::int6
 {
     if (width < 1 || height < 1 || width > kWidest || height > kWidest)
         refuse(file, fmt::format("{} x {} texels", width, height), fmt::format("1 to {} are read", kWidest));
+    double const bytes = double(std::filesystem::file_size(file));
+    if (double(width) * double(height) > kMostPerByte * bytes)
+        refuse(file, fmt::format("{} x {} texels in {} bytes", width, height, bytes),
+               "the file is cut or its header lies");
 }
 
 cv::Mat read_exr(std::filesystem::path const& file)

@@ -284,11 +284,11 @@ PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera, 
     }
     e.world_from_camera.position_m += all.centre_m;
     if (e.other) e.other->position_m += all.centre_m;
-    Points used = best->points;
-    count(e, sighting, used);
+    count(e, sighting, best->points);
     double const turn = std::max({e.rotation_sigma_deg.x, e.rotation_sigma_deg.y, e.rotation_sigma_deg.z});
+    double const own_likelihood = std::max(1 - e.other_likelihood, e.ambiguous && last ? 0.5 : 0);
     e.confidence = double(e.points_used) / double(e.points_used + e.points_rejected) *
-                   std::min(1.0, 2 / std::sqrt(scale)) * (1 - e.other_likelihood) / (1 + turn * turn);
+                   std::min(1.0, 2 / std::sqrt(scale)) * own_likelihood / (1 + turn * turn);
     return e;
 }
 

@@ -41,8 +41,8 @@ struct PoseEstimate {
     /// only if `last` decided for the pose that explains the picture less well.
     double other_likelihood = 0;
     bool ambiguous = false; ///< other_likelihood > 0.01
-    /// 0..1: share of points used, times min(1, 2 / residuals in sigmas), times (1 - other_likelihood), over
-    /// 1 + (largest standard deviation of the rotation in degrees)^2.
+    /// 0..1: share of points used, times min(1, 2 / residuals in sigmas), times (1 - other_likelihood; at least
+    /// 0.5 where `last` decided), over 1 + (largest standard deviation of the rotation in degrees)^2.
     double confidence = 0;
 
     bool found() const { return failure == PoseFailure::none; }

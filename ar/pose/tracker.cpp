@@ -50,13 +50,16 @@ PoseTracker::PoseTracker(TrackerSettings const& settings)
     check(settings);
 }
 
+bool PoseTracker::is_far(Pose const& a, Pose const& b, double dt_s) const
+{
+    return glm::length(a.position_m - b.position_m) > settings_.jump_least_m + settings_.jump_m_s * dt_s ||
+           angle_between_deg(a.rotation, b.rotation) > settings_.jump_least_deg + settings_.jump_deg_s * dt_s;
+}
+
 bool PoseTracker::is_jump(double captured_s, Pose const& pose) const
 {
     double const dt = captured_s - *newest_s_;
-    Pose const expected = filter_.moved_on(std::min(dt, settings_.predict_s));
-    return glm::length(pose.position_m - expected.position_m) > settings_.jump_least_m + settings_.jump_m_s * dt ||
-           angle_between_deg(pose.rotation, expected.rotation) >
-               settings_.jump_least_deg + settings_.jump_deg_s * dt;
+    return is_far(pose, filter_.moved_on(std::min(dt, settings_.predict_s)), dt);
 }
 
 void PoseTracker::begin(double captured_s, Pose const& pose)
@@ -85,10 +88,10 @@ void PoseTracker::add(double captured_s, PoseEstimate const& e)
         counts_.recoveries += newest_s_ ? 1 : 0;
         begin(captured_s, pose);
     } else if (is_jump(captured_s, pose)) {
-        bool const again = jump_ && glm::length(pose.position_m - jump_->position_m) < settings_.jump_least_m &&
-                           angle_between_deg(pose.rotation, jump_->rotation) < settings_.jump_least_deg;
+        bool const again = jump_ && captured_s > jump_s_ && !is_far(pose, *jump_, captured_s - jump_s_);
         jump_seen_ = again ? jump_seen_ + 1 : 0;
         jump_ = pose;
+        jump_s_ = captured_s;
         if (jump_seen_ < settings_.jump_confirmed_by) {
             ++counts_.jumps_refused;
             return;

@@ -66,6 +66,7 @@ public:
     StillCamera const& still() const { return still_; }
 
 private:
+    bool is_far(Pose const& a, Pose const& b, double dt_s) const;
     bool is_jump(double captured_s, Pose const& pose) const;
     void begin(double captured_s, Pose const& pose);
 
@@ -75,6 +76,7 @@ private:
     std::optional<double> newest_s_; ///< of what was taken
     double confidence_ = 0;
     std::optional<Pose> jump_; ///< where the last estimates were that were not believed
+    double jump_s_ = 0;        ///< when the last of them was
     int jump_seen_ = 0;
     TrackerCounts counts_;
 };

@@ -18,7 +18,7 @@ constexpr double kRadius = 0.1;
 std::vector<Disc> const kDiscs{
     {{0.3, 0.9, 0.2}, 0.06, 60}, {{-1, 0.2, 0.4}, 0.05, 60}, {{0.5, 0.4, 0.9}, 0.05, 50}};
 
-/// A camera that shows the ball with a radius of about 150 px, off the middle, and where it stands.
+/// A camera that shows the ball with a radius of about 110 px, off the middle, and where it stands.
 struct Shot {
     CameraModel camera;
     Pose world_from_camera;
@@ -26,13 +26,13 @@ struct Shot {
 
 Shot shot(double distance, double turn_rad, LensModel lens = LensModel::radial_tangential)
 {
-    double const f = 150 / std::tan(std::asin(kRadius / distance));
-    Shot s{{lens, {640, 480}, f, f * 1.003, 317, 243, {}}, {}};
+    double const f = 110 / std::tan(std::asin(kRadius / distance));
+    Shot s{{lens, {420, 320}, f, f * 1.003, 207, 162, {}}, {}};
     if (lens == LensModel::radial_tangential) s.camera.distortion = {-0.1, 0.03, 0.0005, -0.0004, 0};
     // OpenCV's axes in a world with y up, seen from the south, turned about y; the ball is a little aside.
     glm::dquat const level(0, 1, 0, 0);
     s.world_from_camera.rotation = exp_rotation({0, turn_rad, 0}) * level * exp_rotation({0.05, 0, 0.1});
-    auto const aside = direction_of(s.camera, {370, 205});
+    auto const aside = direction_of(s.camera, {245, 140});
     s.world_from_camera.position_m = -(s.world_from_camera.rotation * (distance * *aside));
     return s;
 }
@@ -47,7 +47,7 @@ cv::Mat traced(Shot const& s, Environment const& light, double reflectivity, boo
     for (int y = 0; y < picture.rows; ++y)
         for (int x = 0; x < picture.cols; ++x) {
             cv::Vec3d sum(0, 0, 0);
-            bool const near = glm::length(glm::dvec2(x - 370, y - 205)) < 200;
+            bool const near = glm::length(glm::dvec2(x - 245, y - 140)) < 145;
             for (int k = 0; k < n * n; ++k) {
                 glm::dvec2 const p(x - 0.5 + (k % n + 0.5) / n, y - 0.5 + (k / n + 0.5) / n);
                 if (!near && k > 0) {
@@ -172,7 +172,7 @@ TEST_P(Found, BallIsWhereItIsToAFractionOfAPixel)
         EXPECT_LT(std::abs(radius_px), 0.3);
         EXPECT_NEAR(ball_distance_m(found, kRadius), GetParam(), 0.003 * GetParam());
     };
-    check(find_ball(picture, s.camera, ball_of_circle(s.camera, {375, 200}, 160)), "given a circle");
+    check(find_ball(picture, s.camera, ball_of_circle(s.camera, {249, 137}, 117)), "given a circle");
     BallSight const found = find_ball(picture, s.camera);
     check(found, "by itself");
     BallSettings settings;
@@ -195,7 +195,7 @@ TEST_P(Found, BallIsWhereItIsToAFractionOfAPixel)
 TEST(MirrorBall, ThatIsNotThereIsAnError)
 {
     Shot const s = shot(1, 0);
-    cv::Mat const flat(480, 640, CV_32FC3, cv::Scalar(0.5, 0.5, 0.5));
+    cv::Mat const flat(320, 420, CV_32FC3, cv::Scalar(0.5, 0.5, 0.5));
     EXPECT_THROW(find_ball(flat, s.camera), InputError);
     EXPECT_THROW(find_ball(flat, s.camera, truth(s)), InputError);
     EXPECT_THROW(ball_of_circle(s.camera, {100, 100}, -3), InputError);
@@ -216,7 +216,7 @@ TEST(MirrorBall, PartlyOutsideThePictureCoversLess)
     BallSight const is = truth(s);
     cv::Mat const picture = traced(s, kRoom, 1, false);
     double const whole = covered_share(unwrap_ball(picture, s.camera, s.world_from_camera.rotation, is));
-    s.camera.cx -= 350; // as if the picture had been cut
+    s.camera.cx -= 230; // as if the picture had been cut
     double const cut = covered_share(unwrap_ball(picture, s.camera, s.world_from_camera.rotation, is));
     EXPECT_LT(cut, 0.75 * whole);
     EXPECT_GT(cut, 0.2);

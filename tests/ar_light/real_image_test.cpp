@@ -173,8 +173,8 @@ TEST(Workshop, LiveProbeFromThreeViews)
             cv::Vec3d const up = irradiance(harmonics_of(probe.map()), {0, 1, 0});
             cv::Vec3d const true_up = irradiance(harmonics_of(truth), {0, 1, 0});
             fmt::print(
-                "live probe, three {} views, prior {}: {:.0f} % known, relMSE of irradiance {:.4f} (prior alone "
-                "{:.4f}); upward {:.3f} {:.3f} {:.3f}, truth {:.3f} {:.3f} {:.3f}\n",
+                "live probe, three {} views, prior {}: {:.0f} % known, relMSE of irradiance {:.1e} (prior alone "
+                "{:.1e}); upward {:.3f} {:.3f} {:.3f}, truth {:.3f} {:.3f} {:.3f}\n",
                 linear ? "linear" : "sRGB", name, 100 * u.known_share, error, before, up[0], up[1], up[2],
                 true_up[0], true_up[1], true_up[2]);
             EXPECT_LT(error, prior.empty() ? 0.5 : linear ? 0.02 : 0.1);

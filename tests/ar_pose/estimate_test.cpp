@@ -278,6 +278,18 @@ TEST(Pose, OfPicturesThatNoCameraTakesIsAFailure)
     EXPECT_FALSE(estimate_pose(one, camera_640()).found());
 }
 
+TEST(Pose, OfALastPoseThatIsNotFiniteIsThatWithoutIt)
+{
+    std::mt19937 random(17);
+    Pose const truth = looking({0.2, 1, 0.1}, {0, 0, 0});
+    Sighting const s = sight(one_marker(0.05), camera_640(), truth, 0.1, random);
+    double const nan = std::numeric_limits<double>::quiet_NaN();
+    PoseEstimate const alone = estimate_pose(s, camera_640());
+    PoseEstimate const with = estimate_pose(s, camera_640(), Pose{{nan, 0, 0, 0}, {nan, nan, 0}});
+    ASSERT_TRUE(alone.found() && with.found());
+    EXPECT_LT(glm::length(alone.world_from_camera.position_m - with.world_from_camera.position_m), 1e-6);
+}
+
 TEST(Pose, OfAFisheyeReachesBeyondTheHemisphere)
 {
     CameraModel const camera = camera_640(LensModel::fisheye);
