@@ -28,8 +28,8 @@ struct ResponseFit {
 
 /// The curve of Debevec and Malik 1997 as a power law times the exponential of a polynomial, so that ln(light) of
 /// a pixel in two exposures differs by ln of their ratio: least squares over pairs of pixels (as Mitsunaga and
-/// Nayar 1999, in logarithms). cv::createCalibrateDebevec has 256 free values and was 5 to 300 % off at the ends
-/// of drawn brackets where this is 1 % (docs/results).
+/// Nayar 1999, in logarithms). cv::createCalibrateDebevec has 256 free values and was 9 to 90 % off at byte
+/// 250 of drawn brackets where this is 1 % (docs/results).
 /// @throws InputError as check(); too few pixels that are neither dark nor bright in two exposures
 ResponseFit calibrate_response(Bracket const& bracket);
 
