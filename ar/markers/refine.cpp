@@ -231,7 +231,9 @@ std::vector<FoundCorner> find_inner_corners(cv::Mat const& gray, CharucoBoard co
             }
     }
     std::vector<FoundCorner> out;
-    for (auto const& [index, p] : predictions) {
+    for (auto const& entry : predictions) {
+        int const index = entry.first;
+        Prediction const& p = entry.second;
         if (p.homographies.size() < 2) continue;
         auto const predicted = [&](glm::dvec3 m) {
             return 0.5 * (seen_at(p.homographies[0], m) + seen_at(p.homographies[1], m));

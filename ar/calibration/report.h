@@ -1,0 +1,25 @@
+#pragma once
+// A calibration as one HTML page that needs no other file: residuals over the picture, coverage, views, parameters
+// with their standard deviations, curves of the response.
+
+#include "ar/calibration/calibration_file.h"
+#include "ar/calibration/lens_choice.h"
+
+namespace ar {
+
+struct CalibrationReport {
+    LensCalibration lens;
+    std::vector<BoardView> views; ///< as given to calibrate_lens
+    std::optional<LensChoice> choice;
+    std::optional<Photometry> photometry;
+    std::optional<NoiseModel> noise;
+    /// A picture shown dimmed beneath the residuals, CV_8UC3 (RGB) or CV_8UC1; may be empty.
+    cv::Mat background;
+};
+
+std::string to_html(CalibrationReport const& report);
+
+/// @throws InputError the file cannot be written
+void write_report(std::filesystem::path const& file, CalibrationReport const& report);
+
+} // namespace ar
