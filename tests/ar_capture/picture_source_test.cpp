@@ -128,13 +128,22 @@ TEST(Pictures, PlayAtTheirOwnPace)
     PictureSource source(folder.path(), {.frames_per_s = 50});
     auto const first = source.next(0ms);
     ASSERT_TRUE(first);
-    EXPECT_FALSE(source.next(1ms)); // 20 ms until the next
     for (int i = 1; i < 5; ++i) {
         auto const f = source.next(1000ms);
         ASSERT_TRUE(f);
         EXPECT_NEAR(f->captured_s - first->captured_s, i / 50.0, 1e-9);
         EXPECT_GE(f->arrived_s, f->captured_s);
     }
+}
+
+TEST(Pictures, AreNotWaitedForLongerThanAllowed)
+{
+    TemporaryFolder folder;
+    for (int i = 0; i < 2; ++i) cv::imwrite(folder / fmt::format("{}.png", i), noise(24, 32, CV_8UC3, i));
+    PictureSource source(folder.path(), {.frames_per_s = 0.01});
+    EXPECT_TRUE(source.next(0ms));
+    EXPECT_FALSE(source.next(1ms)); // in 100 s
+    EXPECT_EQ(source.state().kind, SourceState::Kind::running);
 }
 
 TEST(WholePicture, EveryTruncationIsSeen)
