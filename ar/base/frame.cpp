@@ -11,7 +11,11 @@ namespace {
 
 cv::Mat decoded(Frame const& f, int mode)
 {
-    cv::Mat const picture = cv::imdecode(f.planes[0], mode);
+    // Anything else would be offered to every decoder there is, and that of DICOM ends the process over bad bytes.
+    cv::Mat const& bytes = f.planes[0];
+    bool const is_jpeg = bytes.type() == CV_8UC1 && bytes.isContinuous() && bytes.total() > 3 &&
+                         bytes.data[0] == 0xff && bytes.data[1] == 0xd8 && bytes.data[2] == 0xff;
+    cv::Mat const picture = is_jpeg ? cv::imdecode(bytes, mode) : cv::Mat();
     if (picture.empty())
         throw InputError(fmt::format("frame {} is no JPEG that can be decoded", f.sequence), "it has no pixels",
                          "count it as lost");

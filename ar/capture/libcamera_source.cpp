@@ -4,14 +4,13 @@
 #include "ar/capture/buffer_memory.h"
 #include "ar/capture/camera_pixels.h"
 #include "ar/capture/clock.h"
+#include "ar/capture/libcamera_controls.h"
+#include "ar/capture/libcamera_requests.h"
 #include "ar/capture/tally.h"
 
 #include <algorithm>
-#include <array>
-#include <condition_variable>
 #include <cstdlib>
 #include <cstring>
-#include <deque>
 #include <fmt/format.h>
 #include <libcamera/libcamera.h>
 #include <mutex>
@@ -19,29 +18,31 @@
 namespace ar {
 namespace {
 
-namespace lc = libcamera;
-
-std::string text_of_error(int code) { return std::strerror(code < 0 ? -code : code); }
-
 /// libcamera has one manager in a process.
 std::shared_ptr<lc::CameraManager> manager()
 {
     static std::mutex mutex;
-    static std::weak_ptr<lc::CameraManager> shared;
+    static std::unique_ptr<lc::CameraManager> running; // at most one, also while the last one is being stopped
+    static int users = 0;
     std::lock_guard const lock(mutex);
-    if (auto running = shared.lock()) return running;
-    // It would write to stderr at will; what goes wrong comes back as codes, too.
-    if (std::getenv("LIBCAMERA_LOG_LEVELS") == nullptr && std::getenv("LIBCAMERA_LOG_FILE") == nullptr)
-        lc::logSetTarget(lc::LoggingTargetNone);
-    std::shared_ptr<lc::CameraManager> made(new lc::CameraManager, [](lc::CameraManager* m) {
-        m->stop();
-        delete m;
-    });
-    if (int const error = made->start(); error != 0)
-        throw InputError("libcamera does not start", text_of_error(error),
-                         "use a device number or a video in its place");
-    shared = made;
-    return made;
+    if (users == 0) {
+        // It would write to stderr at will; what goes wrong comes back as codes, too.
+        if (std::getenv("LIBCAMERA_LOG_LEVELS") == nullptr && std::getenv("LIBCAMERA_LOG_FILE") == nullptr)
+            lc::logSetTarget(lc::LoggingTargetNone);
+        running = std::make_unique<lc::CameraManager>();
+        if (int const error = running->start(); error != 0) {
+            running.reset();
+            throw InputError("libcamera does not start", text_of_error(error),
+                             "use a device number or a video in its place");
+        }
+    }
+    ++users;
+    return {running.get(), [](lc::CameraManager*) {
+                std::lock_guard const last(mutex);
+                if (--users > 0) return;
+                running->stop();
+                running.reset();
+            }};
 }
 
 std::string name_of(lc::Camera const& camera)
@@ -66,225 +67,6 @@ std::shared_ptr<lc::Camera> find_camera(lc::CameraManager const& manager, std::s
     if (named.size() == 1) return named.front();
     throw InputError(fmt::format("{} camera '{}'", named.empty() ? "no" : "more than one", id),
                      "libcamera finds " + ids, "name one of them by its id");
-}
-
-/// The requests of a running camera: with the camera, completed and waiting here, or with a frame. Frames hold it;
-/// it outlives the source as long as there are any.
-class RequestPool {
-public:
-    struct Buffer {
-        std::unique_ptr<lc::FrameBuffer> own; ///< null where libcamera's allocator has it
-        std::vector<std::span<std::uint8_t const>> planes;
-        std::vector<int> files;
-    };
-
-    explicit RequestPool(std::shared_ptr<lc::Camera> const& camera) : camera_(camera.get()) {}
-
-    void add(lc::Stream* stream, lc::FrameBuffer* buffer, std::unique_ptr<lc::FrameBuffer> own)
-    {
-        Buffer b{std::move(own), {}, {}};
-        std::vector<BufferMemory::Plane> planes;
-        for (lc::FrameBuffer::Plane const& p : buffer->planes()) {
-            bool const is_known = p.offset != lc::FrameBuffer::Plane::kInvalidOffset;
-            planes.push_back({p.fd.get(), is_known ? p.offset : 0, p.length});
-            if (std::find(b.files.begin(), b.files.end(), p.fd.get()) == b.files.end())
-                b.files.push_back(p.fd.get());
-        }
-        b.planes = memory_.map(planes);
-        std::unique_ptr<lc::Request> request = camera_->createRequest(buffers_.size());
-        if (!request || request->addBuffer(stream, buffer) != 0)
-            throw InputError("the camera takes no buffers", "its driver refuses them", "use another camera");
-        buffers_.push_back(std::move(b));
-        requests_.push_back(std::move(request));
-    }
-
-    std::size_t size() const { return requests_.size(); }
-    Buffer const& buffer_of(lc::Request const& request) const { return buffers_[std::size_t(request.cookie())]; }
-
-    void queue_all()
-    {
-        std::lock_guard const lock(mutex_);
-        running_ = true;
-        for (auto const& request : requests_) queue(*request);
-    }
-    void stop() // before the camera is
-    {
-        std::lock_guard const lock(mutex_);
-        running_ = false;
-        completed_.clear();
-    }
-    void forget_requests()
-    {
-        std::lock_guard const lock(mutex_);
-        requests_.clear();
-        for (Buffer& b : buffers_) b.own.reset();
-    }
-
-    /// Of the camera's thread.
-    void complete(lc::Request* request)
-    {
-        std::lock_guard const lock(mutex_);
-        if (!running_ || request->status() == lc::Request::RequestCancelled) return;
-        completed_.push_back(request);
-        changed_.notify_one();
-    }
-    void lose(std::string const& reason)
-    {
-        std::lock_guard const lock(mutex_);
-        lose_locked(reason);
-    }
-
-    /// The oldest that waits, or null.
-    lc::Request* take(std::chrono::milliseconds wait)
-    {
-        std::unique_lock lock(mutex_);
-        changed_.wait_for(lock, wait, [&] { return !completed_.empty() || !lost_.empty(); });
-        if (completed_.empty()) return nullptr;
-        lc::Request* const request = completed_.front();
-        completed_.pop_front();
-        return request;
-    }
-    bool has_waiting() const
-    {
-        std::lock_guard const lock(mutex_);
-        return !completed_.empty();
-    }
-    void give_back(lc::Request* request)
-    {
-        std::lock_guard const lock(mutex_);
-        if (!running_) return;
-        for (int const file : buffer_of(*request).files) tell_driver(file, Reading::ends);
-        request->reuse(lc::Request::ReuseBuffers);
-        queue(*request);
-    }
-
-    void set_controls(lc::ControlList const& controls)
-    {
-        std::lock_guard const lock(mutex_);
-        if (!next_controls_)
-            next_controls_ = controls;
-        else
-            for (auto const& [id, value] : controls) next_controls_->set(id, value);
-    }
-    /// Empty while nothing is wrong.
-    std::string loss() const
-    {
-        std::lock_guard const lock(mutex_);
-        return lost_;
-    }
-
-private:
-    void queue(lc::Request& request)
-    {
-        if (next_controls_) {
-            for (auto const& [id, value] : *next_controls_) request.controls().set(id, value);
-            next_controls_.reset();
-        }
-        if (int const error = camera_->queueRequest(&request); error != 0)
-            lose_locked("the camera takes no more requests: " + text_of_error(error));
-    }
-    void lose_locked(std::string const& reason)
-    {
-        if (lost_.empty()) lost_ = reason;
-        changed_.notify_one();
-    }
-
-    lc::Camera* camera_; // used while running_ only
-    BufferMemory memory_;
-    std::vector<Buffer> buffers_;
-
-    mutable std::mutex mutex_; // of what follows
-    std::condition_variable changed_;
-    std::vector<std::unique_ptr<lc::Request>> requests_;
-    std::deque<lc::Request*> completed_;
-    std::optional<lc::ControlList> next_controls_;
-    std::string lost_;
-    bool running_ = false;
-};
-
-/// Controls as libcamera has them.
-class ControlTranslation {
-public:
-    ControlTranslation(lc::ControlInfoMap const& known) : known_(known), list(lc::controls::controls) {}
-
-    template <typename T>
-    bool has(lc::Control<T> const& control) const
-    {
-        return known_.find(&control) != known_.end();
-    }
-
-    template <typename T>
-    void set(lc::Control<T> const& control, T value, char const* name, double unit = 1)
-    {
-        auto const found = known_.find(&control);
-        if (found == known_.end()) return cannot(name, "this camera has no such control");
-        if constexpr (!std::is_same_v<T, bool>) {
-            lc::ControlInfo const& info = found->second;
-            if (!info.min().isNone() && !info.max().isNone()) {
-                T const low = info.min().template get<T>(), high = info.max().template get<T>();
-                if (low < high && (value < low || value > high)) {
-                    cannot(name, fmt::format("{:g} lies outside {:g} to {:g}; the nearest is taken",
-                                             double(value) * unit, double(low) * unit, double(high) * unit));
-                    value = std::clamp(value, low, high);
-                }
-            }
-        }
-        list.set(control, value);
-    }
-    template <typename T>
-    void set_pair(lc::Control<lc::Span<T const, 2>> const& control, std::array<T, 2> const& pair, char const* name)
-    {
-        if (!has(control)) return cannot(name, "this camera has no such control");
-        list.set(control, lc::Span<T const, 2>(pair));
-    }
-    void cannot(char const* name, std::string const& why)
-    {
-        problems.push_back(fmt::format("{} cannot be set: {}", name, why));
-    }
-
-private:
-    lc::ControlInfoMap const& known_;
-
-public:
-    lc::ControlList list;
-    std::vector<std::string> problems;
-};
-
-ControlTranslation translated(Controls const& c, lc::ControlInfoMap const& known)
-{
-    ControlTranslation t(known);
-    bool const by_hand = c.exposure_time_s || c.gain;
-    if (c.automatic_exposure)
-        t.set(lc::controls::AeEnable, *c.automatic_exposure, "automatic exposure");
-    else if (by_hand && t.has(lc::controls::AeEnable))
-        t.set(lc::controls::AeEnable, false, "automatic exposure");
-    if (c.exposure_time_s)
-        t.set(lc::controls::ExposureTime, std::int32_t(std::min(1e6 * *c.exposure_time_s + 0.5, 2e9)),
-              "the exposure time", 1e-6);
-    if (c.gain) t.set(lc::controls::AnalogueGain, float(*c.gain), "the gain");
-    if (c.automatic_white_balance)
-        t.set(lc::controls::AwbEnable, *c.automatic_white_balance, "automatic white balance");
-    else if (c.red_gain && t.has(lc::controls::AwbEnable))
-        t.set(lc::controls::AwbEnable, false, "automatic white balance");
-    if (c.red_gain && c.blue_gain)
-        t.set_pair<float>(lc::controls::ColourGains, {float(*c.red_gain), float(*c.blue_gain)}, "white balance");
-    if (c.frame_duration_s) {
-        auto const us = std::int64_t(std::min(1e6 * *c.frame_duration_s + 0.5, 1e15));
-        t.set_pair<std::int64_t>(lc::controls::FrameDurationLimits, {us, us}, "the frame duration");
-    }
-    return t;
-}
-
-std::vector<std::string> names_of_controls(lc::ControlInfoMap const& known)
-{
-    ControlTranslation const t(known);
-    std::vector<std::string> names;
-    if (t.has(lc::controls::ExposureTime)) names.push_back("exposure_time");
-    if (t.has(lc::controls::AnalogueGain)) names.push_back("gain");
-    if (t.has(lc::controls::ColourGains)) names.push_back("white_balance");
-    if (t.has(lc::controls::AeEnable) || t.has(lc::controls::AwbEnable)) names.push_back("automatic");
-    if (t.has(lc::controls::FrameDurationLimits)) names.push_back("frame_duration");
-    return names;
 }
 
 /// The configuration's one stream, as near to what is wanted as the camera can.

@@ -54,6 +54,7 @@ cv::Mat PictureSource::decoded(NumberedPicture const& p)
     std::string problem;
     auto const bytes = bytes_of_file(p.file, problem);
     if (problem.empty()) problem = bytes.empty() ? "it is empty" : what_is_missing(bytes);
+    if (problem.empty() && !is_picture(bytes)) problem = "it is no picture that is known here";
     if (!problem.empty()) return refuse(problem);
     cv::Mat picture;
     try {

@@ -24,7 +24,7 @@ public:
     SessionWriter(SessionWriter const&) = delete;
     SessionWriter& operator=(SessionWriter const&) = delete;
 
-    /// Copies the frame's bytes (0.1 ms for 640 x 480), so that the camera's buffer is free.
+    /// Copies the bytes of the frame, so that the buffer of the camera is free.
     /// @return false if it was lost: too much is waiting, or nothing can be written any more (see `failure`)
     /// @throws InputError planes that are not what format and size say, times that are not finite
     bool append(Frame const& frame);

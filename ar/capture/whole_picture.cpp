@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <zlib.h>
 
 namespace ar {
 namespace {
 
 constexpr std::array<std::uint8_t, 8> kPng{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+
+bool is_png(std::span<std::uint8_t const> p)
+{
+    return p.size() >= kPng.size() && std::equal(kPng.begin(), kPng.end(), p.begin());
+}
 
 std::uint32_t big_endian(std::uint8_t const* at)
 {
@@ -46,12 +52,26 @@ std::string missing_of_jpeg(std::span<std::uint8_t const> jpeg)
 
 } // namespace
 
-bool is_jpeg(std::span<std::uint8_t const> p) { return p.size() >= 2 && p[0] == 0xff && p[1] == 0xd8; }
+bool is_jpeg(std::span<std::uint8_t const> p)
+{
+    return p.size() >= 3 && p[0] == 0xff && p[1] == 0xd8 && p[2] == 0xff;
+}
+
+bool is_picture(std::span<std::uint8_t const> p)
+{
+    using namespace std::string_view_literals;
+    std::string_view const text(reinterpret_cast<char const*>(p.data()), p.size());
+    bool const is_netpbm = text.size() > 2 && text[0] == 'P' && text[1] >= '1' && text[1] <= '6';
+    bool const is_webp =
+        text.starts_with("RIFF") && text.substr(std::min<std::size_t>(8, text.size())).starts_with("WEBP");
+    return is_jpeg(p) || is_png(p) || is_netpbm || is_webp || text.starts_with("BM") ||
+           text.starts_with("II*\0"sv) || text.starts_with("MM\0*"sv);
+}
 
 std::string what_is_missing(std::span<std::uint8_t const> p)
 {
     if (is_jpeg(p)) return missing_of_jpeg(p);
-    if (p.size() >= kPng.size() && std::equal(kPng.begin(), kPng.end(), p.begin())) return missing_of_png(p);
+    if (is_png(p)) return missing_of_png(p);
     return {};
 }
 

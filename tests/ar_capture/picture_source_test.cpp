@@ -77,7 +77,7 @@ TEST(Pictures, ThatAreSpoiltAreRefusedAndNamed)
         {1, "1.png: the PNG ends within a chunk"},
         {2, "2.png: it has 32 x 20 pixels, the first one had 32 x 24"},
         {3, "3.png: it is empty"},
-        {4, "4.png: it cannot be decoded"},
+        {4, "4.png: it is no picture that is known here"},
         {5, "5.png: it has colour where the first one had none, or none where it had"}};
     PictureSource source(folder.path(), {.pace = Pace::fastest});
     EXPECT_EQ(play(source), (std::vector<std::uint64_t>{0, 6}));
@@ -116,7 +116,8 @@ TEST(Pictures, WithoutAnyThatIsGoodAreAnInputError)
         PictureSource source(folder.path());
         FAIL();
     } catch (InputError const& e) {
-        EXPECT_NE(std::string(e.what()).find("0.jpg: it cannot be decoded"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("0.jpg: it is no picture that is known here"), std::string::npos)
+            << e.what();
     }
 }
 
@@ -127,13 +128,22 @@ TEST(Pictures, PlayAtTheirOwnPace)
     PictureSource source(folder.path(), {.frames_per_s = 50});
     auto const first = source.next(0ms);
     ASSERT_TRUE(first);
-    EXPECT_FALSE(source.next(1ms)); // 20 ms until the next
     for (int i = 1; i < 5; ++i) {
         auto const f = source.next(1000ms);
         ASSERT_TRUE(f);
         EXPECT_NEAR(f->captured_s - first->captured_s, i / 50.0, 1e-9);
         EXPECT_GE(f->arrived_s, f->captured_s);
     }
+}
+
+TEST(Pictures, AreNotWaitedForLongerThanAllowed)
+{
+    TemporaryFolder folder;
+    for (int i = 0; i < 2; ++i) cv::imwrite(folder / fmt::format("{}.png", i), noise(24, 32, CV_8UC3, i));
+    PictureSource source(folder.path(), {.frames_per_s = 0.01});
+    EXPECT_TRUE(source.next(0ms));
+    EXPECT_FALSE(source.next(1ms)); // in 100 s
+    EXPECT_EQ(source.state().kind, SourceState::Kind::running);
 }
 
 TEST(WholePicture, EveryTruncationIsSeen)
@@ -148,6 +158,19 @@ TEST(WholePicture, EveryTruncationIsSeen)
         EXPECT_EQ(what_is_missing(bytes), "");
     }
     EXPECT_EQ(what_is_missing({}), "");
+}
+
+TEST(WholePicture, EveryKindThatIsReadIsKnown)
+{
+    for (char const* kind : {".png", ".jpg", ".bmp", ".tif", ".ppm", ".webp"}) {
+        std::vector<uchar> bytes;
+        cv::imencode(kind, noise(24, 32, CV_8UC3, 1), bytes);
+        EXPECT_TRUE(is_picture(bytes)) << kind;
+    }
+    std::vector<uchar> dicom(300);
+    std::copy_n("DICM", 4, dicom.begin() + 128);
+    EXPECT_FALSE(is_picture(dicom));
+    EXPECT_FALSE(is_picture({}));
 }
 
 TEST(WholePicture, ProgressiveAndRestartingJpegAreWhole)

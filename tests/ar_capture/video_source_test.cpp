@@ -156,7 +156,7 @@ TEST_F(Pipeline, TheNewestComesAndOlderOnesAreDropped)
     ASSERT_TRUE(f);
     EXPECT_EQ(f->format, PixelFormat::gray8);
     EXPECT_EQ(source->counts().delivered, 1u);
-    EXPECT_EQ(source->counts().dropped, f->sequence); // all before it
+    EXPECT_GE(source->counts().dropped, f->sequence); // all before it, and maybe more since
     EXPECT_GT(f->sequence, 0u);
 }
 

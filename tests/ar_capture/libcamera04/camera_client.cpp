@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <fstream>
 #include <set>
+#include <thread>
 #include <unistd.h>
 
 namespace {
@@ -103,7 +104,7 @@ void unplug()
 void newest()
 {
     auto source = ar::open_libcamera({});
-    std::this_thread::sleep_for(300ms); // all buffers are full by then
+    std::this_thread::sleep_for(1000ms); // all buffers are full by then
     auto const f = source->next(2000ms);
     print("newest_sequence", f ? double(f->sequence) : -1);
     print("given_up", double(source->counts().dropped));
