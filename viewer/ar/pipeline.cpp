@@ -119,10 +119,10 @@ ArResult ArPipeline::seen(ar::Frame const& frame, std::optional<ar::Pose> const&
     } else {
         r.sighting = detector_.next(gray);
         r.times.detect_ms = lap();
-        r.pose = ar::estimate_pose(r.sighting, camera_.model, last_);
+        r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(frame.captured_s));
+        tracker_.add(frame.captured_s, r.pose);
         r.times.pose_ms = lap();
     }
-    last_ = r.pose.found() ? std::optional(r.pose.world_from_camera) : std::nullopt;
     r.rgb = r.camera;
     return r;
 }

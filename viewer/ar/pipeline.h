@@ -7,7 +7,7 @@
 #include "ar/composite/temporal.h"
 #include "ar/composite/warp.h"
 #include "ar/markers/detect.h"
-#include "ar/pose/estimate.h"
+#include "ar/pose/tracker.h"
 #include "viewer/ar/pair_renderer.h"
 #include "viewer/ar/session_file.h"
 
@@ -59,7 +59,7 @@ private:
     ar::Warp warp_;
     std::optional<ar::TemporalFilter> filter_;
     ar::Compositor compositor_;
-    std::optional<ar::Pose> last_;
+    ar::PoseTracker tracker_;
 };
 
 } // namespace viewer

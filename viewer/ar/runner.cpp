@@ -1,6 +1,7 @@
 #include "viewer/ar/runner.h"
 
 #include "ar/base/error.h"
+#include "ar/calibration/calibration_file.h"
 #include "ar/markers/marker_map_file.h"
 #include "gi/base/error.h"
 
@@ -47,21 +48,13 @@ Spread spread_of(std::vector<double> values)
 
 ArCamera load_ar_camera(std::filesystem::path const& file)
 {
-    cv::FileStorage in(file.string(), cv::FileStorage::READ);
-    cv::Mat matrix, lens;
-    in["camera_matrix"] >> matrix;
-    in["distortion_coefficients"] >> lens;
-    ArCamera c;
-    c.photometry = ar::srgb_photometry();
-    c.photometry.radiance_per_unit = 1;
-    c.model.lens = ar::LensModel::radial_tangential;
-    c.model.size_px = {int(in["image_width"]), int(in["image_height"])};
-    c.model.fx = matrix.at<double>(0, 0);
-    c.model.fy = matrix.at<double>(1, 1);
-    c.model.cx = matrix.at<double>(0, 2);
-    c.model.cy = matrix.at<double>(1, 2);
-    for (int i = 0; i < 5; ++i) c.model.distortion[std::size_t(i)] = lens.at<double>(i);
-    return c;
+    ar::Calibration const c = ar::read_calibration(file);
+    ArCamera camera{c.camera, c.photometry ? *c.photometry : ar::srgb_photometry(), {}};
+    if (c.noise) {
+        camera.noise.constant.fill(float(c.noise->read));
+        camera.noise.per_unit.fill(float(c.noise->photon));
+    }
+    return camera;
 }
 
 ArSummary run_ar(ArSession const& session, ArRunOptions const& options,

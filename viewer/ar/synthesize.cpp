@@ -1,5 +1,6 @@
 #include "viewer/ar/synthesize.h"
 
+#include "ar/calibration/calibration_file.h"
 #include "ar/markers/draw.h"
 #include "ar/markers/marker_map_file.h"
 #include "ar/pose/pose_file.h"
@@ -103,10 +104,15 @@ void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, ar::
                  PaperOnTable const& paper, std::vector<ar::TimedPose> const& poses, gi::StopRequest const& stop,
                  gi::Report& report)
 {
-    cv::FileStorage out((o.folder / "camera.yaml").string(), cv::FileStorage::WRITE);
-    out << "image_width" << camera.model.size_px.x << "image_height" << camera.model.size_px.y << "camera_matrix"
-        << cv::Mat(ar::camera_matrix(camera.model)) << "distortion_coefficients"
-        << ar::distortion_of(camera.model);
+    ar::Calibration calibration;
+    calibration.camera = camera.model;
+    calibration.photometry = camera.photometry;
+    ar::NoiseModel noise;
+    noise.read = camera.read_noise * camera.read_noise;
+    noise.photon = camera.photon_noise;
+    calibration.noise = noise;
+    calibration.provenance = {{"made_by", "lightwell_ar_synthesize"}};
+    ar::write_calibration(o.folder / "camera.yaml", calibration);
     ar::write_marker_map(o.folder / "markers.yaml", markers);
     gi::write_text(o.folder / "poses.csv", ar::format_poses(poses));
     gi::write_glb(o.folder / "near.glb", generate_desk(DeskPart::near, paper), report);
