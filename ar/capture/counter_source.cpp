@@ -32,7 +32,7 @@ std::array<bool, kCells> cells_of(std::uint32_t number)
     std::uint64_t const bits = std::uint64_t(number) << 16 | crc16(number);
     std::array<bool, kCells> cells{};
     cells.front() = cells.back() = true;
-    for (int i = 0; i < 48; ++i) cells[std::size_t(i + 2)] = (bits >> (47 - i)) & 1;
+    for (int i = 0; i < 48; ++i) cells[std::size_t(i) + 2] = (bits >> (47 - i)) & 1;
     return cells;
 }
 

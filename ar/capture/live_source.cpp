@@ -21,8 +21,8 @@ enum class Kind { device, pipeline };
 
 class LiveSource final : public FrameSource {
 public:
-    LiveSource(Kind kind, std::string name, cv::VideoCapture capture, LiveOptions const& options)
-        : kind_(kind), name_(std::move(name)), options_(options), capture_(std::move(capture))
+    LiveSource(Kind kind, std::string name, cv::VideoCapture const& capture, LiveOptions const& options)
+        : kind_(kind), name_(std::move(name)), options_(options), capture_(capture)
     {
         set(options.controls);
         while (waiting_.empty() && read_one()) {
@@ -282,7 +282,7 @@ std::unique_ptr<FrameSource> open_device(int number, LiveOptions const& o)
     }
     if (o.frames_per_s > 0) capture.set(cv::CAP_PROP_FPS, o.frames_per_s);
     if (o.format && *o.format != PixelFormat::bgr8) capture.set(cv::CAP_PROP_CONVERT_RGB, 0);
-    return std::make_unique<LiveSource>(Kind::device, name, std::move(capture), o);
+    return std::make_unique<LiveSource>(Kind::device, name, capture, o);
 }
 
 std::unique_ptr<FrameSource> open_pipeline(std::string const& pipeline, LiveOptions const& o)
@@ -295,7 +295,7 @@ std::unique_ptr<FrameSource> open_pipeline(std::string const& pipeline, LiveOpti
                          "try it with gst-launch-1.0, fakesink in place of appsink");
     LiveOptions as_it_comes = o;
     as_it_comes.format.reset();
-    return std::make_unique<LiveSource>(Kind::pipeline, pipeline, std::move(capture), as_it_comes);
+    return std::make_unique<LiveSource>(Kind::pipeline, pipeline, capture, as_it_comes);
 }
 
 } // namespace ar
