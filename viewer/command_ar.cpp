@@ -1,6 +1,7 @@
 #include "ar/base/error.h"
 #include "gi/base/error.h"
 #include "gi/base/file.h"
+#include "viewer/ar/ar_window.h"
 #include "viewer/ar/runner.h"
 #include "viewer/ar/synthesize.h"
 #include "viewer/ar/truth.h"
@@ -31,7 +32,8 @@ struct SynthesizeArguments {
 struct RunArguments {
     std::string session, out, poses, truth, true_poses, frame_table;
     int frames = 0;
-    bool fast = false;
+    bool fast = false, window = false;
+    std::string monitor;
 };
 
 int run_synthesize(SynthesizeArguments const& a)
@@ -173,10 +175,14 @@ int run_session(RunArguments const& a, bool poses_only)
     InterruptGuard const guard(stop);
     std::optional<PictureFolder> folder;
     Truth truth(a);
+    std::optional<ArWindow> window;
     if (!a.out.empty()) folder.emplace(a.out);
     ArSummary const summary = run_ar(
         session, o,
-        [&](ArFrameRecord const& f, ArResult const& r) {
+        [&](ArFrameRecord& f, ArResult const& r) {
+            if (a.window && !window) window.emplace(ArWindowSettings{{r.rgb.cols, r.rgb.rows}, a.monitor}, report);
+            if (window) window->show(f, r);
+            if (window && window->wants_close()) stop.request();
             if (folder) folder->add(r.rgb);
             truth.add(f, r);
         },
@@ -184,7 +190,8 @@ int run_session(RunArguments const& a, bool poses_only)
     if (!a.frame_table.empty()) gi::write_text(a.frame_table, frame_table(summary));
     fmt::print("{}{}", describe(summary), truth.text());
     print_losses(report);
-    return stop.requested() ? kInterrupted : 0;
+    bool const was_closed = window && window->wants_close();
+    return stop.requested() && !was_closed ? kInterrupted : 0;
 }
 
 void add_session_options(CLI::App& c, RunArguments& a)
@@ -226,6 +233,8 @@ void add_ar(CLI::App& app, int& exit_code)
     add_session_options(*run_command, *run);
     run_command->add_option("--out", run->out, "Folder for the composites, as PNG");
     run_command->add_option("--poses", run->poses, "Where the camera was (CSV or TUM), in place of its markers");
+    run_command->add_flag("--window", run->window, "Show it: S before and after, H panel, Escape ends");
+    run_command->add_option("--monitor", run->monitor, "Full screen on the one of this number or name");
     run_command->add_option("--truth", run->truth,
                             "Folder of pictures with the things really there: FLIP is told");
     run_command->callback([run, &exit_code] { exit_code = run_session(*run, false); });

@@ -21,7 +21,9 @@ ArFrameRecord record_of(ar::Frame const& frame, ArResult const& r, double time_s
     ArFrameRecord f;
     f.sequence = frame.sequence;
     f.captured_s = time_s;
+    f.exposure = frame.exposure;
     if (is_live) {
+        f.captured_steady_s = frame.captured_s;
         f.age_ms = 1e3 * (frame.arrived_s - frame.captured_s);
         f.latency_ms = 1e3 * (now_s() - frame.captured_s);
     }
@@ -58,8 +60,8 @@ ArCamera load_ar_camera(std::filesystem::path const& file)
 }
 
 ArSummary run_ar(ArSession const& session, ArRunOptions const& options,
-                 std::function<void(ArFrameRecord const&, ArResult const&)> const& shown,
-                 gi::StopRequest const& stop, gi::Report& report)
+                 std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
+                 gi::Report& report)
 {
     ArCamera const camera = load_ar_camera(session.camera);
     ar::MarkerMap const markers = ar::read_marker_map(session.markers);
@@ -125,6 +127,8 @@ std::string describe(ArSummary const& s)
     line("render (ms)", [](auto const& f) { return f.times.render_ms; });
     line("composite (ms)", [](auto const& f) { return f.times.composite_ms; });
     line("capture to result (ms)", [](auto const& f) { return f.latency_ms; });
+    line("present (ms)", [](auto const& f) { return f.present_ms; });
+    line("capture to swap (ms)", [](auto const& f) { return f.swapped_ms; });
     line("reprojection RMS (px)", [](auto const& f) { return f.rms_px; });
     return text;
 }

@@ -40,10 +40,10 @@ struct ArSummary {
 
 ArCamera load_ar_camera(std::filesystem::path const& calibration);
 
-/// @param shown  called with every frame's result, if it is not empty
+/// @param shown  called with every frame's result, if it is not empty; may ask for the end by `stop`
 ArSummary run_ar(ArSession const& session, ArRunOptions const& options,
-                 std::function<void(ArFrameRecord const&, ArResult const&)> const& shown,
-                 gi::StopRequest const& stop, gi::Report& report);
+                 std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
+                 gi::Report& report);
 
 struct Spread {
     double median = 0, p95 = 0, most = 0;
