@@ -57,8 +57,8 @@ struct ColourFit {
 std::array<cv::Vec3f, 24> const& chart_linear_rgb();
 
 /// From units of patches (linear, by the response, vignetting taken off) and what they should be; least squares.
-/// The brightness of the light is divided out by the chart's neutral patches: the matrix maps what is grey in them
-/// to units alike.
+/// How bright the chart was lit is not the camera's: the brightness that alone explains the patches best is
+/// divided out.
 /// @throws InputError fewer than six patches, or patches that do not span colours
 ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f const> chart);
 

@@ -35,13 +35,11 @@ std::array<glm::dvec3, 4> square_at(double left, double top, double side)
 class Checker {
 public:
     explicit Checker(std::string where) : where_(std::move(where)) {}
-    void length(std::string const& what, double v_m, bool may_be_zero = false) const
+    void length(std::string const& what, double v_m) const
     {
-        if (!(v_m >= 0 && v_m <= kLongest_m) || (v_m == 0 && !may_be_zero))
+        if (!(v_m > 0 && v_m <= kLongest_m))
             refuse(fmt::format("{} is {} m", what, v_m),
-                   fmt::format("lengths are {} and at most {:g} m", may_be_zero ? "0 or more" : "positive",
-                               kLongest_m),
-                   "measure it with a ruler");
+                   fmt::format("lengths are positive and at most {:g} m", kLongest_m), "measure it with a ruler");
     }
     void count(std::string const& what, int v, int least) const
     {

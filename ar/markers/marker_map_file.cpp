@@ -80,7 +80,7 @@ std::string text_of(Pose const& p)
 
 MarkerMap parse_marker_map(std::string const& text, std::string const& file)
 {
-    constexpr std::size_t kMostThings = 2000;
+    constexpr std::size_t kMostThings = 500;
     Yaml const top = Yaml::parse(text, file);
     top.only_keys({"markers", "boards", "grids"});
     MarkerMap map;

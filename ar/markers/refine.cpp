@@ -35,6 +35,7 @@ bool add_edge(std::vector<EdgePoint>& points, cv::Mat const& gray, cv::Point2d f
 {
     cv::Point2d const way = to - from;
     double const length = cv::norm(way);
+    if (!(length > 1 && length < 1e5)) return false; // also where a homography ends at infinity
     cv::Point2d const out(way.y / length, -way.x / length);
     int const samples = std::clamp(int(length), 4, 80);
     int const steps = std::max(3, int(std::ceil(reach_px / 0.5)));
