@@ -131,7 +131,8 @@ public:
         TruthErrors const e = errors_against_truth(r.rgb, r.camera, truth);
         affected_.push_back(e.flip_affected);
         elsewhere_.push_back(e.flip_elsewhere);
-        camera_.push_back(e.flip_camera);
+        camera_affected_.push_back(e.camera_affected);
+        camera_elsewhere_.push_back(e.camera_elsewhere);
         share_.push_back(100 * e.affected);
     }
     std::string text() const
@@ -145,9 +146,10 @@ public:
         line("position error (mm)", mm_);
         line("rotation error (deg)", deg_);
         line("FLIP where it is affected", affected_);
-        line("  of adding nothing", camera_);
+        line("  of adding nothing", camera_affected_);
         line("  share of the picture (%)", share_);
         line("FLIP elsewhere", elsewhere_);
+        line("  of adding nothing", camera_elsewhere_);
         if (missing_ > 0) t += fmt::format("no truth of that size: {} frames\n", missing_);
         return t.empty()
                    ? t
@@ -157,7 +159,7 @@ public:
 private:
     fs::path folder_;
     std::vector<ar::TimedPose> poses_;
-    std::vector<double> mm_, deg_, affected_, elsewhere_, camera_, share_;
+    std::vector<double> mm_, deg_, affected_, elsewhere_, camera_affected_, camera_elsewhere_, share_;
     int missing_ = 0;
 };
 

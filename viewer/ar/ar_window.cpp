@@ -1,7 +1,5 @@
 #include "viewer/ar/ar_window.h"
 
-#include "viewer/gl/gl_object.h"
-
 #include <GLFW/glfw3.h>
 #include <epoxy/gl.h>
 #include <imgui.h>

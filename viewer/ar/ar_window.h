@@ -3,6 +3,7 @@
 // measured. The bytes that are shown are those of the result.
 
 #include "viewer/ar/runner.h"
+#include "viewer/gl/gl_object.h"
 #include "viewer/gl/panel.h"
 #include "viewer/gl/window.h"
 

@@ -22,7 +22,12 @@ struct ArFrameRecord {
     std::uint64_t sequence = 0;
     double captured_s = 0; ///< since the first frame
     double age_ms = 0;     ///< when it was handed over, since its capture
+    std::optional<double>
+        captured_steady_s; ///< on this machine's steady clock, where frames come at their own pace
     double latency_ms = 0; ///< when its composite was ready, since its capture
+    double present_ms = 0; ///< drawing and swap, where there is a window
+    double swapped_ms = 0; ///< when the swap was done, since its capture
+    ar::Exposure exposure;
     ArTimes times;
     int markers = 0, points_used = 0, points_rejected = 0;
     double rms_px = 0, confidence = 0;

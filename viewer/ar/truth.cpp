@@ -22,14 +22,14 @@ cv::Mat flip_of(cv::Mat const& a, cv::Mat const& b)
 
 } // namespace
 
-cv::Mat affected_by_truth(cv::Mat const& camera, cv::Mat const& truth, int noise)
+cv::Mat affected_by_truth(cv::Mat const& camera, cv::Mat const& truth)
 {
     cv::Mat difference, most, region;
     cv::absdiff(camera, truth, difference);
     std::array<cv::Mat, 3> channels;
     cv::split(difference, channels.data());
     most = cv::max(channels[0], cv::max(channels[1], channels[2]));
-    cv::dilate(most > noise, region, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
+    cv::dilate(most > 1, region, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
     return region;
 }
 
@@ -41,7 +41,9 @@ TruthErrors errors_against_truth(cv::Mat const& composite, cv::Mat const& camera
     e.affected = double(cv::countNonZero(region)) / double(region.total());
     e.flip_affected = cv::mean(flip, region)[0];
     e.flip_elsewhere = cv::mean(flip, ~region)[0];
-    e.flip_camera = cv::mean(flip_of(camera, truth), region)[0];
+    cv::Mat const nothing = flip_of(camera, truth);
+    e.camera_affected = cv::mean(nothing, region)[0];
+    e.camera_elsewhere = cv::mean(nothing, ~region)[0];
     return e;
 }
 
