@@ -30,7 +30,7 @@ struct SynthesizeArguments {
 };
 
 struct RunArguments {
-    std::string session, out, poses, truth, true_poses, frame_table;
+    std::string session, out, poses, truth, true_poses, frame_table, stats;
     int frames = 0;
     bool fast = false, window = false;
     std::string monitor;
@@ -165,7 +165,7 @@ private:
 
 int run_session(RunArguments const& a, bool poses_only)
 {
-    check_outputs({a.frame_table}, {a.session, a.poses});
+    check_outputs({a.frame_table, a.stats}, {a.session, a.poses});
     ArSession const session = read_ar_session(a.session);
     ArRunOptions o;
     o.frames = a.frames;
@@ -189,6 +189,7 @@ int run_session(RunArguments const& a, bool poses_only)
             truth.add(f, r);
         },
         stop, report);
+    if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
     if (!a.frame_table.empty()) gi::write_text(a.frame_table, frame_table(summary));
     fmt::print("{}{}", describe(summary), truth.text());
     print_losses(report);
@@ -203,6 +204,7 @@ void add_session_options(CLI::App& c, RunArguments& a)
     c.add_option("--frames", a.frames, "At most so many; 0 = all")->check(CLI::NonNegativeNumber);
     c.add_flag("--fast", a.fast, "Files: a frame as soon as the one before is done, not at their own pace");
     c.add_option("--table", a.frame_table, "CSV with a line for each frame: times, pose, counts");
+    c.add_option("--stats", a.stats, "JSON: seconds of the renderer's stages, counts, losses");
     c.add_option("--true-poses", a.true_poses, "Where the camera really was (CSV or TUM): the error is told");
 }
 

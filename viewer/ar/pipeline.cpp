@@ -51,6 +51,7 @@ gi::RenderSettings render_settings(ArRender const& r)
     gi::RenderSettings settings;
     settings.bounces = r.bounces;
     settings.seed = r.seed;
+    settings.slhb = r.slhb;
     return settings;
 }
 

@@ -2,6 +2,7 @@
 
 #include "gi/base/file.h"
 #include "gi/scene/load/yaml_reader.h"
+#include "gi/slhb/directions.h"
 
 #include <fmt/format.h>
 
@@ -107,12 +108,31 @@ private:
 
     void read_render(YamlReader const& r)
     {
-        r.only_keys({"paths", "resolution", "bounces", "denoise", "seed"});
+        r.only_keys({"paths", "resolution", "bounces", "denoise", "seed", "directions", "hit_buffer", "lamps",
+                     "fresh_lamps", "shadow_map"});
+        gi::SlhbSettings& slhb = session_.render.slhb;
+        if (r.has("directions")) slhb.directions = directions(r.at("directions"));
+        if (r.has("hit_buffer")) slhb.resolution = int(r.at("hit_buffer").integer(8, 4096));
+        if (r.has("lamps")) slhb.lamps = int(r.at("lamps").integer(1, 1024));
+        if (r.has("fresh_lamps")) slhb.fresh_lamps = int(r.at("fresh_lamps").integer(1, 1024));
+        if (r.has("shadow_map")) slhb.shadow_resolution = int(r.at("shadow_map").integer(8, 4096));
         if (r.has("denoise")) session_.render.denoise = r.at("denoise").boolean();
         if (r.has("paths")) session_.render.paths = std::uint32_t(r.at("paths").integer(1, 65536));
         if (r.has("resolution")) session_.render.resolution = r.at("resolution").number(0.1, 4);
         if (r.has("bounces")) session_.render.bounces = int(r.at("bounces").integer(0, 64));
         if (r.has("seed")) session_.render.seed = std::uint64_t(r.at("seed").integer(0, INT64_MAX));
+    }
+
+    static std::string directions(YamlReader const& at)
+    {
+        std::string const name = at.text();
+        try {
+            gi::make_directions(name);
+        } catch (gi::InputError const& e) {
+            throw at.error("'" + name + "' is no set of directions", e.what(),
+                           "write icosahedron:80 or icosahedron:320");
+        }
+        return name;
     }
 
     void read_composite(YamlReader const& c)

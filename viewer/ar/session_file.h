@@ -4,6 +4,7 @@
 #include "ar/capture/open_source.h"
 #include "ar/composite/composite.h"
 #include "gi/base/math.h"
+#include "gi/image/render_settings.h"
 
 #include <filesystem>
 #include <optional>
@@ -29,6 +30,7 @@ struct ArRender {
     int bounces = 3;
     bool denoise = true;
     std::uint64_t seed = 0;
+    gi::SlhbSettings slhb; ///< directions, resolution, lamps, fresh_lamps, shadow_resolution
 };
 
 struct ArSession {
