@@ -38,6 +38,14 @@ ArFrameRecord record_of(ar::Frame const& frame, ArResult const& r, double time_s
     return f;
 }
 
+void check_size(glm::ivec2 frames_px, glm::ivec2 calibrated_px)
+{
+    if (frames_px == calibrated_px) return;
+    throw gi::InputError(fmt::format("frames of {} x {} pixels", frames_px.x, frames_px.y),
+                         fmt::format("the calibration is of {} x {}", calibrated_px.x, calibrated_px.y),
+                         "set the camera to that size, or calibrate it at this one");
+}
+
 } // namespace
 
 Spread spread_of(std::vector<double> values)
@@ -68,6 +76,7 @@ ArSummary run_ar(ArSession const& session, ArRunOptions const& options,
     ar::OpenOptions open = session.frames.options;
     open.pace = options.pace;
     auto const source = ar::open_source(session.frames.source, open);
+    check_size(source->description().size_px, camera.model.size_px);
     ArPipeline pipeline(session, camera, markers, report);
     ArSummary summary;
     double const begun_s = now_s();

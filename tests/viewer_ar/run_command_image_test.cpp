@@ -1,0 +1,152 @@
+// Whole sessions through the program: what is true is known of every frame.
+
+#include "tests/viewer/run_program.h"
+
+#include <fmt/format.h>
+#include <opencv2/imgcodecs.hpp>
+
+namespace viewer::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+cv::Mat picture(fs::path const& file) { return cv::imread(file.string(), cv::IMREAD_COLOR); }
+
+void write(fs::path const& file, std::string const& text) { std::ofstream(file) << text; }
+
+/// A number behind these words, on the line that begins so.
+double number_behind(std::string const& text, std::string const& words, int column = 0)
+{
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) {
+        if (!line.starts_with(words)) continue;
+        std::istringstream values(line.substr(words.size()));
+        double value = std::numeric_limits<double>::quiet_NaN();
+        for (int i = 0; i <= column; ++i) values >> value;
+        return value;
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// One session for all: three frames of the camera, with what they would be with the things there.
+class ArRuns : public testing::Test {
+protected:
+    static void SetUpTestSuite()
+    {
+        folder_ = std::make_unique<TemporaryFolder>();
+        run_well("ar synthesize desk --frames 3 --size 320x240 --paths 6", folder_->path());
+        run_well("ar synthesize large --frames 2 --size 640x480 --paths 3 --no-truth", folder_->path());
+    }
+    static void TearDownTestSuite() { folder_.reset(); }
+    static fs::path desk() { return *folder_ / "desk"; }
+    static std::string session() { return file_text(desk() / "session.yaml"); }
+    static Outcome run(std::string const& command, fs::path const& in = desk())
+    {
+        return run_program(command, in);
+    }
+
+    static std::unique_ptr<TemporaryFolder> folder_;
+};
+std::unique_ptr<TemporaryFolder> ArRuns::folder_;
+
+TEST_F(ArRuns, WithNothingVirtualGiveTheCamerasFrames)
+{
+    std::string text = session();
+    std::size_t const at = text.find("virtual:");
+    text.erase(at, text.find('\n', at) + 1 - at);
+    write(desk() / "empty.yaml", text);
+    Outcome const o = run("ar run empty.yaml --fast --poses poses.csv --out unchanged --table t.csv");
+    ASSERT_EQ(o.code, 0) << o.err;
+    for (int f = 0; f < 3; ++f) {
+        std::string const name = fmt::format("{:06}.png", f);
+        EXPECT_EQ(cv::norm(picture(desk() / "frames" / name), picture(desk() / "unchanged" / name), cv::NORM_INF),
+                  0);
+    }
+    EXPECT_NE(o.out.find("camera found in 3 (100.0 %)"), std::string::npos) << o.out;
+}
+
+TEST_F(ArRuns, AreNearTheTruth)
+{
+    Outcome const o = run("ar run session.yaml --fast --poses poses.csv --truth truth");
+    ASSERT_EQ(o.code, 0) << o.err;
+    double const inside = number_behind(o.out, "FLIP where it is affected"),
+                 elsewhere = number_behind(o.out, "FLIP elsewhere"),
+                 nothing = number_behind(o.out, "  of adding nothing");
+    fmt::print("FLIP {:.3f} where it is affected ({:.3f} of adding nothing), {:.4f} elsewhere\n", inside, nothing,
+               elsewhere);
+    // Six paths for the truth and four for the composite: most of it is noise.
+    EXPECT_LT(inside, 0.6 * nothing);
+    EXPECT_LT(elsewhere, 0.03);
+}
+
+TEST_F(ArRuns, FindTheCamera)
+{
+    Outcome const o = run("ar track session.yaml --fast --true-poses poses.csv --table t.csv", *folder_ / "large");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.out.find("camera found in 2 (100.0 %)"), std::string::npos) << o.out;
+    double const mm = number_behind(o.out, "position error (mm)", 2),
+                 deg = number_behind(o.out, "rotation error (deg)", 2);
+    fmt::print("camera: {:.2f} mm, {:.3f} degrees\n", mm, deg);
+    EXPECT_LT(mm, 3);
+    EXPECT_LT(deg, 0.2);
+    std::string const table = file_text(*folder_ / "large/t.csv");
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+}
+
+TEST_F(ArRuns, WithoutMarkersPassFramesOn)
+{
+    write(desk() / "other.yaml", "markers:\n  - {dictionary: DICT_6X6_50, id: 40, side_m: 0.1}\n");
+    std::string text = session();
+    text.replace(text.find("markers.yaml"), 12, "other.yaml");
+    write(desk() / "blind.yaml", text);
+    Outcome const o = run("ar run blind.yaml --fast --out blind");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.out.find("camera found in 0 (0.0 %)"), std::string::npos) << o.out;
+    EXPECT_EQ(cv::norm(picture(desk() / "frames/000001.png"), picture(desk() / "blind/000001.png"), cv::NORM_INF),
+              0);
+}
+
+TEST_F(ArRuns, CountFramesThatAreNoFrames)
+{
+    fs::copy(desk() / "frames", desk() / "damaged");
+    std::string const bytes = file_text(desk() / "damaged/000001.png");
+    write(desk() / "damaged/000001.png", bytes.substr(0, bytes.size() / 2));
+    std::string text = session();
+    text.replace(text.find("source: frames"), 14, "source: damaged");
+    write(desk() / "damaged.yaml", text);
+    Outcome const o = run("ar run damaged.yaml --fast --poses poses.csv");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.out.find("2 frames, "), std::string::npos) << o.out;
+    EXPECT_NE(o.out.find("1 refused"), std::string::npos) << o.out;
+}
+
+TEST_F(ArRuns, RefuseACalibrationOfAnotherSize)
+{
+    fs::copy_file(*folder_ / "large/camera.yaml", desk() / "large_camera.yaml",
+                  fs::copy_options::overwrite_existing);
+    std::string text = session();
+    text.replace(text.find("camera.yaml"), 11, "large_camera.yaml");
+    write(desk() / "size.yaml", text);
+    Outcome const o = run("ar track size.yaml --fast");
+    EXPECT_EQ(o.code, 2);
+    EXPECT_NE(o.err.find("640 x 480"), std::string::npos) << o.err;
+}
+
+TEST_F(ArRuns, SayWhatIsWrongWithTheirFiles)
+{
+    auto const refused = [](std::string const& command, std::string const& with) {
+        Outcome const o = run(command);
+        EXPECT_EQ(o.code, 2) << command;
+        EXPECT_NE(o.err.find(with), std::string::npos) << o.err;
+        EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+    };
+    refused("ar run nowhere.yaml", "nowhere.yaml");
+    write(desk() / "key.yaml", session() + "colour: 3\n");
+    refused("ar run key.yaml", "key.yaml:");
+    refused("ar run session.yaml --poses missing.csv", "missing.csv");
+    refused("ar run session.yaml --truth missing", "missing");
+    refused("ar synthesize . --frames 7 --size 320x240", "holds another session");
+}
+
+} // namespace
+} // namespace viewer::test

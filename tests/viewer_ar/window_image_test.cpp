@@ -1,0 +1,33 @@
+// The session's window under an X server without a monitor.
+
+#include "tests/viewer_show/live_view.h"
+#include "tests/viewer_show/x/x_window.h"
+
+namespace viewer::test {
+namespace {
+
+class ArWindows : public OnScreen {
+protected:
+    TemporaryFolder folder;
+};
+
+TEST_F(ArWindows, ShowTheSessionUntilEscape)
+{
+    run_well("ar synthesize desk --frames 40 --size 160x120 --paths 1 --no-truth --no-denoise", folder.path());
+    Program program(words("ar run desk/session.yaml --window --poses desk/poses.csv --table t.csv"),
+                    folder.path());
+    XWindow window("Lightwell: augmented");
+    if (!window.key_problem().empty()) GTEST_SKIP() << "SKIPPED: " << window.key_problem();
+    window.focus();
+    sleep_ms(600);
+    window.tap("s");
+    window.tap("h");
+    sleep_ms(100);
+    window.tap("Escape");
+    Outcome const o = program.wait();
+    EXPECT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.out.find("capture to swap (ms)"), std::string::npos) << o.out;
+}
+
+} // namespace
+} // namespace viewer::test
