@@ -59,7 +59,7 @@ ar::Pose camera_of(std::vector<cv::Mat> const& rgb, ar::MarkerMap const& map, ar
     return pose.world_from_camera;
 }
 
-std::vector<Side> read_sides(ProbeOptions const& o, ar::Calibration const& calibration)
+std::vector<Side> read_sides(ProbeOptions const& o, ar::Calibration const& calibration, ar::MarkerMap const& map)
 {
     std::vector<double> const seconds = o.exposures.empty() ? std::vector<double>() : parse_exposures(o.exposures);
     std::size_t const each = std::max<std::size_t>(1, seconds.size());
@@ -67,7 +67,6 @@ std::vector<Side> read_sides(ProbeOptions const& o, ar::Calibration const& calib
         throw ar::InputError(fmt::format("{} pictures and {} exposures", o.pictures.size(), seconds.size()),
                              "each side needs a picture of each exposure",
                              "give all pictures of one side, then all of the next");
-    ar::MarkerMap const map = ar::read_marker_map(o.markers);
     ar::Photometry photometry = calibration.photometry ? *calibration.photometry : ar::srgb_photometry();
     if (photometry.reference.time_s == 0 && !seconds.empty()) {
         auto sorted = seconds;
@@ -107,19 +106,53 @@ std::vector<Side> read_sides(ProbeOptions const& o, ar::Calibration const& calib
     return sides;
 }
 
-ar::PartialMap unwrapped(Side const& side, ProbeOptions const& o, ar::CameraModel const& camera)
+/// Printed squares would be taken for rims: they become as bright as what is around them.
+cv::Mat without_markers(Side const& side, ar::MarkerMap const& map, ar::CameraModel const& camera)
 {
-    ar::BallSight ball;
-    if (o.ball.empty()) {
-        ball = ar::find_ball(side.radiance, camera);
-    } else {
-        auto const near = ar::predicted_ball(side.world_from_camera, parse_point("--ball", o.ball), o.radius_m);
-        if (!near)
-            throw ar::InputError("--ball " + o.ball, "it is not ahead of the camera of " + side.name,
-                                 "give its centre in the markers' world, in m");
-        ball = ar::find_ball(side.radiance, camera, *near);
+    cv::Mat picture = side.radiance.clone();
+    std::vector<std::vector<cv::Point>> corners{std::size_t(ar::count_of(map))};
+    for (ar::PlacedMarker const& m : ar::placed_markers(map))
+        for (glm::dvec3 const& corner : m.corners_m)
+            if (auto const p = project(camera, inverse(side.world_from_camera) *
+                                                   (ar::world_from_thing(map, m.thing) * corner)))
+                corners[std::size_t(m.thing)].emplace_back(cv::Point2d(p->x, p->y));
+    for (auto const& points : corners) {
+        if (points.size() < 3) continue;
+        std::vector<cv::Point> hull;
+        cv::convexHull(points, hull);
+        int const wider = std::max(3, int(0.05 * std::sqrt(cv::contourArea(hull))));
+        cv::Mat inside = cv::Mat::zeros(picture.size(), CV_8U), around;
+        cv::fillConvexPoly(inside, hull, 255);
+        cv::dilate(inside, inside, {}, {-1, -1}, wider);
+        cv::dilate(inside, around, {}, {-1, -1}, wider);
+        picture.setTo(cv::mean(picture, around - inside), inside);
     }
+    return picture;
+}
+
+ar::BallSight find_ball(Side const& side, ProbeOptions const& o, ar::MarkerMap const& map,
+                        ar::CameraModel const& camera)
+{
+    if (o.ball.empty())
+        return ar::find_ball(side.radiance, camera, ar::find_ball(without_markers(side, map, camera), camera));
+    auto const near = ar::predicted_ball(side.world_from_camera, parse_point("--ball", o.ball), o.radius_m);
+    if (!near)
+        throw ar::InputError("--ball " + o.ball, "it is not ahead of the camera of " + side.name,
+                             "give its centre in the markers' world, in m");
+    return ar::find_ball(side.radiance, camera, *near);
+}
+
+/// @param[in,out] ball_m where an earlier side found it; it has not moved since
+ar::PartialMap unwrapped(Side const& side, ProbeOptions const& o, ar::MarkerMap const& markers,
+                         ar::CameraModel const& camera, std::optional<glm::dvec3>& ball_m)
+{
+    ar::BallSight const ball = find_ball(side, o, markers, camera);
     glm::dvec3 const at = side.world_from_camera * (ar::ball_distance_m(ball, o.radius_m) * ball.axis);
+    if (!ball_m) ball_m = at;
+    if (double const off_m = glm::distance(at, *ball_m); off_m > 0.5 * o.radius_m)
+        throw ar::InputError(
+            fmt::format("{} shows the ball {:.0f} mm from where the first side does", side.name, 1e3 * off_m),
+            "something else was taken for it, or it was moved", "give --ball X,Y,Z");
     ar::BallSettings settings;
     settings.size = {o.size, o.size / 2};
     glm::dvec3 const colour = parse_color("--reflectivity", o.reflectivity);
@@ -160,15 +193,18 @@ int run_probe(ProbeOptions const& o)
     inputs.insert(inputs.end(), {o.calibration, o.markers});
     check_outputs({o.out}, inputs);
     ar::Calibration const calibration = ar::read_calibration(o.calibration);
+    ar::MarkerMap const markers = ar::read_marker_map(o.markers);
     if (!calibration.photometry)
         fmt::print(stderr, "{}: no response in it, bytes are taken for sRGB\n", o.calibration);
     std::vector<ar::PartialMap> maps;
-    for (Side const& side : read_sides(o, calibration)) maps.push_back(unwrapped(side, o, calibration.camera));
+    std::optional<glm::dvec3> ball_m;
+    for (Side const& side : read_sides(o, calibration, markers))
+        maps.push_back(unwrapped(side, o, markers, calibration.camera, ball_m));
     ar::PartialMap const seen = ar::merged(maps);
     ar::FilledMap const map = ar::filled(seen);
     ar::write_map(o.out, map.radiance);
     fmt::print("{}: {} x {}, {:.2f} % measured, {:.2f} % filled from around it\n", o.out, o.size, o.size / 2,
-               100 * ar::covered_share(seen), 100 * map.filled_share);
+               100 * ar::covered_share(seen), 100 * std::max(0.0, map.filled_share));
     print_light(map.radiance);
     return 0;
 }

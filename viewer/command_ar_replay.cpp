@@ -32,15 +32,14 @@ struct Played {
 
     double span_s() const { return last_s - first_s; }
     double rate_hz() const { return span_s() > 0 ? double(frames - 1) / span_s() : 0; }
-    /// A sentence for each kind of loss.
+    /// Each kind of loss, in words.
     std::vector<std::string> losses() const
     {
         std::vector<std::string> all;
-        if (counts.dropped > 0) all.push_back(fmt::format("{} frames were dropped", counts.dropped));
+        if (counts.dropped > 0) all.push_back(fmt::format("{} frames dropped", counts.dropped));
         if (counts.refused > 0)
-            all.push_back(fmt::format("{} frames are damaged ({})", counts.refused, counts.last_refusal));
-        if (lost_while_recording > 0)
-            all.push_back(fmt::format("{} did not fit while recording", lost_while_recording));
+            all.push_back(fmt::format("{} damaged or gone ({})", counts.refused, counts.last_refusal));
+        if (lost_while_recording > 0) all.push_back(fmt::format("{} lost while recording", lost_while_recording));
         if (end.kind == ar::SourceState::Kind::lost) all.push_back(end.reason);
         return all;
     }

@@ -49,7 +49,7 @@ TEST(ArCalibrate, FindsADrawnLensByTheBoardThatItPrinted)
                                 238.5,
                                 182.25,
                                 {-0.28, 0.09, 0.001, -0.0007, -0.01, 0, 0, 0}};
-    draw_views(folder / "views", ar::read_marker_map(folder / "m.yaml"), truth, 30);
+    draw_views(folder / "views", ar::read_marker_map(folder / "m.yaml"), truth, 20);
     Outcome const o = run_well(
         "ar calibrate views --markers m.yaml --lens radial_tangential --out camera.yaml --report report.html",
         folder.path());
