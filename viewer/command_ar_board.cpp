@@ -3,6 +3,7 @@
 #include "ar/markers/draw.h"
 #include "ar/markers/marker_map_file.h"
 #include "viewer/ar_arguments.h"
+#include "viewer/ar_board_views.h"
 #include "viewer/commands.h"
 #include "viewer/outputs.h"
 #include "viewer/validators.h"
@@ -14,9 +15,11 @@
 namespace viewer {
 namespace {
 
+constexpr int kViews = 20;
+
 struct BoardOptions {
     BoardArguments board;
-    std::string out, markers;
+    std::string out, markers, views;
     double dpi = 600, margin_m = -1;
     bool upright = false;
 };
@@ -46,6 +49,10 @@ int run_board(BoardOptions const& o)
     if (!o.markers.empty())
         fmt::print("{}: the board {}, its lower left corner in the origin\n", o.markers,
                    o.upright ? "stands upright, faces z" : "lies flat, its top away from z");
+    if (!o.views.empty()) {
+        write_board_views(o.views, board, kViews);
+        fmt::print("{}: {} views of it by the camera of truth.yaml\n", o.views, kViews);
+    }
     return 0;
 }
 
@@ -63,6 +70,7 @@ void add_ar_board(CLI::App& ar, int& exit_code)
     c->add_option("--margin", o->margin_m, "white around it, m; left out: a cell of a marker")
         ->check(in_range(0, 10));
     c->add_flag("--upright", o->upright, "in the map it stands; left out: it lies on a table");
+    c->add_option("--views", o->views, "folder for views of it by a camera that is known, to try ar calibrate");
     c->footer(R"(Examples:
   lightwell ar board --squares 7x5 --square 0.04 --marker 0.03 --out board.svg --markers markers.yaml
   lightwell ar board --squares 8x6 --square 0.02 --marker 0.014 --dictionary DICT_5X5_100 --out board.png

@@ -190,8 +190,9 @@ void add_ar_calibrate(CLI::App& ar, int& exit_code)
         ->capture_default_str();
     c->add_flag("--stills", o->stills, "nothing moves in the frames: as of a folder of pictures");
     c->footer(R"(Examples:
-  lightwell ar synthesize desk --frames 8 --size 240x180 --paths 1 --no-truth --no-denoise
-  lightwell ar calibrate desk/frames --markers desk/markers.yaml --lens pinhole --out camera.yaml --report report.html
+  lightwell ar board --squares 7x5 --out board.svg --markers markers.yaml --views views
+  lightwell ar calibrate views --markers markers.yaml --lens radial_tangential --out camera.yaml --report report.html
+  lightwell ar calibrate views --squares 7x5 --every 2 --lens fisheye --out fisheye.yaml
 
 Of cameras, videos and sessions only frames count between which the board was held still. Exit code 1: views do not suffice.)");
     c->callback([o, &exit_code] { exit_code = run_calibrate(*o); });

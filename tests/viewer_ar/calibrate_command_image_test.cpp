@@ -71,6 +71,23 @@ TEST(ArCalibrate, FindsADrawnLensByTheBoardThatItPrinted)
     EXPECT_NEAR(other.fx / truth.fx, 1, 0.01);
 }
 
+TEST(ArCalibrate, FindsTheCameraOfTheViewsOfTheBoard)
+{
+    TemporaryFolder const folder;
+    run_well("ar board --squares 8x6 --square 0.03 --marker 0.022 --out b.svg --markers m.yaml --views views",
+             folder.path());
+    run_well("ar calibrate views --markers m.yaml --lens radial_tangential --out camera.yaml", folder.path());
+    auto const is = parameters_of(ar::read_calibration(folder / "camera.yaml").camera);
+    auto const was = parameters_of(ar::read_calibration(folder / "views/truth.yaml").camera);
+    for (std::size_t i = 0; i < 4; ++i) {
+        fmt::print("{:+.3f} %\n", 100 * (is[i] / was[i] - 1));
+        EXPECT_NEAR(is[i] / was[i], 1, 0.005) << i;
+    }
+    Outcome const again = run("ar board --squares 8x6 --out b.svg --views views", folder.path());
+    EXPECT_EQ(again.code, 2);
+    EXPECT_NE(again.err.find("it exists"), std::string::npos) << again.err;
+}
+
 TEST(ArCalibrate, SaysWhichViewsAreMissing)
 {
     TemporaryFolder const folder;

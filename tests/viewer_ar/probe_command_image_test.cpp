@@ -117,6 +117,13 @@ TEST(ArProbe, GivesBackTheLightInTheWorldOfTheMarkers)
     }
     Outcome const one = run_well("ar probe a0.png a1.png a2.png --out one.exr" + rest, folder.path());
     EXPECT_NE(one.out.find("% filled from around it"), std::string::npos);
+    Outcome const behind = run("ar probe a0.png a1.png a2.png --out x.exr --ball 0.1,3,3" + rest, folder.path());
+    EXPECT_EQ(behind.code, 2);
+    EXPECT_NE(behind.err.find("--ball 0.1,3,3 (it is not ahead"), std::string::npos) << behind.err;
+    Outcome const elsewhere =
+        run("ar probe a0.png a1.png a2.png --out x.exr --ball -0.2,0.09,-0.3" + rest, folder.path());
+    EXPECT_EQ(elsewhere.code, 2) << elsewhere.out;
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.exr"));
     Outcome const odd = run("ar probe a0.png a1.png --out odd.exr" + rest, folder.path());
     EXPECT_EQ(odd.code, 2);
     EXPECT_NE(odd.err.find("2 pictures and 3 exposures"), std::string::npos) << odd.err;
