@@ -248,6 +248,14 @@ void add_ar(CLI::App& app, int& exit_code)
         ar->add_subcommand("track", "Find the camera in each frame, and how sure that is");
     add_session_options(*track_command, *track);
     track_command->callback([track, &exit_code] { exit_code = run_session(*track, true); });
+
+    add_ar_cameras(*ar, exit_code);
+    add_ar_record(*ar, exit_code);
+    add_ar_replay(*ar, exit_code);
+    add_ar_board(*ar, exit_code);
+    add_ar_calibrate(*ar, exit_code);
+    add_ar_response(*ar, exit_code);
+    add_ar_probe(*ar, exit_code);
 }
 
 } // namespace viewer

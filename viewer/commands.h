@@ -20,6 +20,14 @@ void add_xr(CLI::App& app, int& exit_code);
 void add_study(CLI::App& app, int& exit_code);
 void add_ar(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app, int& exit_code);
+// Within ar
+void add_ar_cameras(CLI::App& ar, int& exit_code);
+void add_ar_record(CLI::App& ar, int& exit_code);
+void add_ar_replay(CLI::App& ar, int& exit_code);
+void add_ar_board(CLI::App& ar, int& exit_code);
+void add_ar_calibrate(CLI::App& ar, int& exit_code);
+void add_ar_response(CLI::App& ar, int& exit_code);
+void add_ar_probe(CLI::App& ar, int& exit_code);
 // Within bench
 void add_bench_dynamic(CLI::App& bench, int& exit_code);
 void add_bench_sweep(CLI::App& bench, int& exit_code);
