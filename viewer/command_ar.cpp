@@ -214,6 +214,9 @@ void add_ar(CLI::App& app, int& exit_code)
 {
     CLI::App* const ar = app.add_subcommand("ar", "Augmented reality: virtual things in a camera's pictures");
     ar->require_subcommand(1);
+    ar->footer(R"(Examples:
+  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
+  lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --truth desk/truth --out desk/out)");
 
     auto const made = std::make_shared<SynthesizeArguments>();
     CLI::App* const synthesize = ar->add_subcommand(
@@ -230,6 +233,8 @@ void add_ar(CLI::App& app, int& exit_code)
     synthesize->add_option("--threads", made->options.quality.threads, "0 = all")->check(CLI::NonNegativeNumber);
     synthesize->add_flag("--no-truth", made->no_truth, "Leave out the pictures with the things really there");
     synthesize->add_flag("--no-denoise", made->no_denoise, "Leave frames as noisy as paths are");
+    synthesize->footer(R"(Example:
+  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth)");
     synthesize->callback([made, &exit_code] { exit_code = run_synthesize(*made); });
 
     auto const run = std::make_shared<RunArguments>();
@@ -241,12 +246,18 @@ void add_ar(CLI::App& app, int& exit_code)
     run_command->add_option("--monitor", run->monitor, "Full screen on the one of this number or name");
     run_command->add_option("--truth", run->truth,
                             "Folder of pictures with the things really there: FLIP is told");
+    run_command->footer(R"(Examples:
+  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
+  lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --table frames.csv --stats stages.json)");
     run_command->callback([run, &exit_code] { exit_code = run_session(*run, false); });
 
     auto const track = std::make_shared<RunArguments>();
     CLI::App* const track_command =
         ar->add_subcommand("track", "Find the camera in each frame, and how sure that is");
     add_session_options(*track_command, *track);
+    track_command->footer(R"(Examples:
+  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth
+  lightwell ar track desk/session.yaml --fast --true-poses desk/poses.csv)");
     track_command->callback([track, &exit_code] { exit_code = run_session(*track, true); });
 
     add_ar_cameras(*ar, exit_code);
