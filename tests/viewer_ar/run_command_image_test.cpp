@@ -79,6 +79,19 @@ TEST_F(ArRuns, AreNearTheTruth)
     EXPECT_LT(elsewhere, 0.03);
 }
 
+TEST_F(ArRuns, FollowTheLight)
+{
+    std::string text = session();
+    text.replace(text.find("probe.exr}"), 10, "probe.exr, live: 1}");
+    write(desk() / "live.yaml", text);
+    Outcome const o = run("ar run live.yaml --fast --poses poses.csv --truth truth");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.out.find("light (ms)"), std::string::npos);
+    // The place is as it was when the map was made.
+    EXPECT_LT(number_behind(o.out, "FLIP where it is affected"),
+              0.7 * number_behind(o.out, "  of adding nothing"));
+}
+
 TEST_F(ArRuns, FindTheCamera)
 {
     Outcome const o = run("ar track session.yaml --fast --true-poses poses.csv --table t.csv", *folder_ / "large");

@@ -19,7 +19,7 @@ std::string refusal(std::string const& text)
 
 TEST(ArSessions, SayWhatTheyAreMadeOf)
 {
-    ArSession const s = parse_ar_session(kLeast + R"(light: {map: probe.exr, turn_deg: 30, scale: 2}
+    ArSession const s = parse_ar_session(kLeast + R"(light: {map: probe.exr, turn_deg: 30, scale: 2, live: 10}
 real: {scene: near.glb}
 virtual: {scene: statue.glb, at: [0, 0, -0.1], turn_deg: 90, scale: 0.5}
 render: {paths: 4, resolution: 0.75, bounces: 2, seed: 9}
@@ -30,6 +30,7 @@ composite: {blend: ratio, clipped: as_measured, largest_ratio: 4, smoothing: 0.3
     EXPECT_EQ(s.camera, "folder/camera.yaml");
     EXPECT_EQ(s.light, "folder/probe.exr");
     EXPECT_EQ(s.light_turn_deg, 30);
+    EXPECT_EQ(s.live_light, 10);
     EXPECT_EQ(s.virtual_things.at_m, gi::dvec3(0, 0, -0.1));
     EXPECT_EQ(s.virtual_things.scale, 0.5);
     EXPECT_EQ(s.render.paths, 4u);

@@ -55,15 +55,6 @@ gi::RenderSettings render_settings(ArRender const& r)
     return settings;
 }
 
-std::shared_ptr<gi::EnvironmentMap const> light_of(ArSession const& s, gi::Report& report)
-{
-    if (s.light.empty()) return nullptr;
-    gi::EnvironmentMap map = gi::load_environment(s.light, report);
-    map.rotation_rad = float(glm::radians(s.light_turn_deg));
-    map.scale = gi::vec3(float(s.light_scale));
-    return std::make_shared<gi::EnvironmentMap const>(std::move(map));
-}
-
 ar::CompositeSettings with_noise(ar::CompositeSettings settings, ar::SensorNoise const& noise)
 {
     settings.noise = noise;
@@ -78,10 +69,11 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
       camera_(camera),
       detector_(markers),
       renderer_(local_scene(session, report), render_settings(session.render), report),
+      light_(session),
       warp_(camera.model, ar::covering_pinhole(camera.model, session.render.resolution)),
       compositor_(camera.photometry, with_noise(session.composite, camera.noise))
 {
-    renderer_.set_environment(light_of(session, report));
+    renderer_.set_environment(light_.begin());
     if (session.smoothing < 1) {
         ar::TemporalSettings smooth;
         smooth.weight = float(session.smoothing);
@@ -139,6 +131,10 @@ ArResult ArPipeline::process(ar::Frame const& frame, double time_s, std::optiona
         return r;
     }
     Lap lap;
+    if (auto map = light_.follow(r.camera, camera_.photometry, frame.exposure, camera_.model,
+                                 r.pose.world_from_camera.rotation, frame.captured_s))
+        renderer_.set_environment(std::move(map));
+    r.times.light_ms = lap();
     r.rgb = cv::Mat(); // the camera's stays as it is
     r.pair = rendered(r.pose.world_from_camera, time_s, stop);
     r.times.render_ms = lap();

@@ -9,12 +9,12 @@
 #include "ar/markers/detect.h"
 #include "ar/pose/tracker.h"
 #include "viewer/ar/pair_renderer.h"
-#include "viewer/ar/session_file.h"
+#include "viewer/ar/place_light.h"
 
 namespace viewer {
 
 struct ArTimes {
-    double decode_ms = 0, detect_ms = 0, pose_ms = 0, render_ms = 0, composite_ms = 0;
+    double decode_ms = 0, detect_ms = 0, pose_ms = 0, light_ms = 0, render_ms = 0, composite_ms = 0;
 };
 
 /// What the camera is, as a calibration file says.
@@ -56,6 +56,7 @@ private:
     ArCamera camera_;
     ar::MarkerTracker detector_;
     PairRenderer renderer_;
+    PlaceLight light_;
     ar::Warp warp_;
     std::optional<ar::TemporalFilter> filter_;
     ar::Compositor compositor_;

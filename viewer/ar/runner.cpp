@@ -133,6 +133,7 @@ std::string describe(ArSummary const& s)
     line("decode (ms)", [](auto const& f) { return f.times.decode_ms; });
     line("detect (ms)", [](auto const& f) { return f.times.detect_ms; });
     line("pose (ms)", [](auto const& f) { return f.times.pose_ms; });
+    line("light (ms)", [](auto const& f) { return f.times.light_ms; });
     line("render (ms)", [](auto const& f) { return f.times.render_ms; });
     line("composite (ms)", [](auto const& f) { return f.times.composite_ms; });
     line("capture to result (ms)", [](auto const& f) { return f.latency_ms; });

@@ -84,7 +84,8 @@ private:
 
     void read_light(YamlReader const& l)
     {
-        l.only_keys({"map", "turn_deg", "scale"});
+        l.only_keys({"map", "turn_deg", "scale", "live"});
+        if (l.has("live")) session_.live_light = int(l.at("live").integer(0, 100000));
         if (!l.has("map"))
             throw l.error("no 'map'", "there is no light to take", "give a lat-long EXR or HDR file");
         session_.light = path(l.at("map"));

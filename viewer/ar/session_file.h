@@ -39,6 +39,7 @@ struct ArSession {
     std::filesystem::path camera, markers;
     std::filesystem::path light; ///< lat-long map; empty: only lamps of the real scene
     double light_turn_deg = 0, light_scale = 1;
+    int live_light = 0; ///< frames after which the light is renewed from what the camera sees; 0 = it stays
     ArPlaced real, virtual_things;
     ArRender render;
     double smoothing = 1; ///< weight of a new frame's light among those before, (0, 1]; 1 = each frame for itself

@@ -1,0 +1,38 @@
+#include "viewer/ar/place_light.h"
+
+#include "ar/light/lat_long.h"
+#include "ar/light/map_file.h"
+#include "viewer/ar/bridge.h"
+
+namespace viewer {
+
+PlaceLight::PlaceLight(ArSession const& session) : every_(session.live_light)
+{
+    if (!session.light.empty()) {
+        captured_ = ar::read_map(session.light) * session.light_scale;
+        if (session.light_turn_deg != 0)
+            captured_ = ar::resampled(captured_, captured_.size(),
+                                      glm::angleAxis(glm::radians(session.light_turn_deg), glm::dvec3(0, 1, 0)));
+    }
+    if (every_ > 0) probe_.emplace(captured_);
+}
+
+std::shared_ptr<gi::EnvironmentMap const> PlaceLight::begin() const
+{
+    if (captured_.empty()) return nullptr;
+    return std::make_shared<gi::EnvironmentMap const>(environment_of(captured_));
+}
+
+std::shared_ptr<gi::EnvironmentMap const>
+PlaceLight::follow(cv::Mat const& rgb, ar::Photometry const& photometry, ar::Exposure const& exposure,
+                   ar::CameraModel const& camera, glm::dquat const& world_from_camera, double captured_s)
+{
+    if (!probe_) return nullptr;
+    ar::ProbeUpdate const update = probe_->update(ar::radiance_of(rgb, photometry, exposure), ar::is_clipped(rgb),
+                                                  camera, world_from_camera, captured_s);
+    lamps_changed_ += update.lamp_changed ? 1 : 0;
+    if (frames_++ % every_ != 0 && !update.lamp_changed) return nullptr;
+    return std::make_shared<gi::EnvironmentMap const>(environment_of(probe_->map()));
+}
+
+} // namespace viewer
