@@ -137,7 +137,7 @@ ar::BallSight find_ball(Side const& side, ProbeOptions const& o, ar::MarkerMap c
         return ar::find_ball(side.radiance, camera, ar::find_ball(without_markers(side, map, camera), camera));
     auto const near = ar::predicted_ball(side.world_from_camera, parse_point("--ball", o.ball), o.radius_m);
     if (!near)
-        throw ar::InputError("--ball " + o.ball, "it is not ahead of the camera of " + side.name,
+        throw ar::InputError("--ball " + o.ball, "it is not ahead of the camera",
                              "give its centre in the markers' world, in m");
     return ar::find_ball(side.radiance, camera, *near);
 }
@@ -146,7 +146,13 @@ ar::BallSight find_ball(Side const& side, ProbeOptions const& o, ar::MarkerMap c
 ar::PartialMap unwrapped(Side const& side, ProbeOptions const& o, ar::MarkerMap const& markers,
                          ar::CameraModel const& camera, std::optional<glm::dvec3>& ball_m)
 {
-    ar::BallSight const ball = find_ball(side, o, markers, camera);
+    ar::BallSight ball;
+    try {
+        ball = find_ball(side, o, markers, camera);
+    } catch (ar::InputError const& e) {
+        throw ar::InputError("no ball is found in " + side.name, e.what(),
+                             o.ball.empty() ? "give --ball X,Y,Z" : "measure --ball and --ball-radius again");
+    }
     glm::dvec3 const at = side.world_from_camera * (ar::ball_distance_m(ball, o.radius_m) * ball.axis);
     if (!ball_m) ball_m = at;
     if (double const off_m = glm::distance(at, *ball_m); off_m > 0.5 * o.radius_m)
