@@ -1,14 +1,12 @@
 #include "ar/base/error.h"
 #include "ar/calibration/calibration_file.h"
-#include "ar/calibration/response.h"
 #include "ar/light/irradiance.h"
 #include "ar/light/lamps.h"
 #include "ar/light/map_file.h"
 #include "ar/light/mirror_ball.h"
-#include "ar/markers/detect.h"
 #include "ar/markers/marker_map_file.h"
-#include "ar/pose/estimate.h"
 #include "viewer/ar_arguments.h"
+#include "viewer/ar_probe_sides.h"
 #include "viewer/arguments.h"
 #include "viewer/commands.h"
 #include "viewer/outputs.h"
@@ -25,89 +23,13 @@ namespace {
 
 struct ProbeOptions {
     std::vector<std::string> pictures;
-    std::string calibration, markers, ball, reflectivity = "0.6,0.6,0.6", exposures, out;
+    std::string calibration, markers, ball, reflectivity = "0.6", exposures, out;
     double radius_m = 0, camera_deg = 6;
     int size = 512;
 };
 
-/// Pictures from one place, one for each exposure.
-struct Side {
-    std::string name;
-    cv::Mat radiance; ///< CV_32FC3
-    ar::Pose world_from_camera;
-};
-
-/// From the picture that shows the most markers: dark ones of a bracket show none.
-ar::Pose camera_of(std::vector<cv::Mat> const& rgb, ar::MarkerMap const& map, ar::CameraModel const& camera,
-                   std::string const& name)
-{
-    ar::Sighting best;
-    for (cv::Mat const& picture : rgb) {
-        cv::Mat gray;
-        cv::cvtColor(picture, gray, cv::COLOR_RGB2GRAY);
-        ar::Sighting s = ar::detect(gray, map);
-        if (s.points.size() > best.points.size()) best = std::move(s);
-    }
-    ar::PoseEstimate const pose = ar::estimate_pose(best, camera);
-    if (!pose.found())
-        throw ar::InputError(
-            "the camera is not found in " + name,
-            fmt::format("{} points of markers are seen: {}", best.points.size(), name_of(pose.failure)),
-            "have the markers in the picture, lit and sharp");
-    fmt::print("{}: camera found by {} points, {:.2f} px RMS{}\n", name, pose.points_used, pose.rms_px,
-               pose.ambiguous ? "; another pose would fit as well" : "");
-    return pose.world_from_camera;
-}
-
-std::vector<Side> read_sides(ProbeOptions const& o, ar::Calibration const& calibration, ar::MarkerMap const& map)
-{
-    std::vector<double> const seconds = o.exposures.empty() ? std::vector<double>() : parse_exposures(o.exposures);
-    std::size_t const each = std::max<std::size_t>(1, seconds.size());
-    if (o.pictures.size() % each != 0)
-        throw ar::InputError(fmt::format("{} pictures and {} exposures", o.pictures.size(), seconds.size()),
-                             "each side needs a picture of each exposure",
-                             "give all pictures of one side, then all of the next");
-    ar::Photometry photometry = calibration.photometry ? *calibration.photometry : ar::srgb_photometry();
-    if (photometry.reference.time_s == 0 && !seconds.empty()) {
-        auto sorted = seconds;
-        std::sort(sorted.begin(), sorted.end());
-        photometry.reference.time_s = sorted[sorted.size() / 2];
-    }
-    ar::MergeOptions merging;
-    if (calibration.noise) merging.noise = *calibration.noise;
-    std::vector<Side> sides;
-    for (std::size_t first = 0; first < o.pictures.size(); first += each) {
-        ar::Bracket bracket;
-        for (std::size_t i = 0; i < each; ++i) {
-            bracket.rgb.push_back(read_rgb(o.pictures[first + i]));
-            glm::ivec2 const is(bracket.rgb.back().cols, bracket.rgb.back().rows);
-            if (is != calibration.camera.size_px)
-                throw ar::InputError(fmt::format("{} has {} x {} px", o.pictures[first + i], is.x, is.y),
-                                     fmt::format("the calibration is of {} x {}", calibration.camera.size_px.x,
-                                                 calibration.camera.size_px.y),
-                                     "give pictures as they came from that camera");
-            ar::Exposure e;
-            if (!seconds.empty()) e.time_s = seconds[i];
-            bracket.exposures.push_back(e);
-        }
-        Side side{o.pictures[first], {}, camera_of(bracket.rgb, map, calibration.camera, o.pictures[first])};
-        if (each > 1) {
-            ar::MergedRadiance const m = ar::merge(bracket, photometry, merging);
-            side.radiance = m.radiance;
-            fmt::print("  {} px white in the shortest exposure, {} black in the longest, {} where they disagree\n",
-                       m.saturated, m.dark, m.inconsistent);
-        } else {
-            side.radiance = ar::radiance_of(bracket.rgb[0], photometry, bracket.exposures[0]);
-            fmt::print("  {} px at an end of their range: lamps are brighter than they seem\n",
-                       cv::countNonZero(ar::is_clipped(bracket.rgb[0])));
-        }
-        sides.push_back(std::move(side));
-    }
-    return sides;
-}
-
 /// Printed squares would be taken for rims: they become as bright as what is around them.
-cv::Mat without_markers(Side const& side, ar::MarkerMap const& map, ar::CameraModel const& camera)
+cv::Mat without_markers(ProbeSide const& side, ar::MarkerMap const& map, ar::CameraModel const& camera)
 {
     cv::Mat picture = side.radiance.clone();
     std::vector<std::vector<cv::Point>> corners{std::size_t(ar::count_of(map))};
@@ -130,23 +52,29 @@ cv::Mat without_markers(Side const& side, ar::MarkerMap const& map, ar::CameraMo
     return picture;
 }
 
-ar::BallSight find_ball(Side const& side, ProbeOptions const& o, ar::MarkerMap const& map,
+ar::BallSight find_ball(ProbeSide const& side, ProbeOptions const& o, ar::MarkerMap const& map,
                         ar::CameraModel const& camera)
 {
     if (o.ball.empty())
         return ar::find_ball(side.radiance, camera, ar::find_ball(without_markers(side, map, camera), camera));
     auto const near = ar::predicted_ball(side.world_from_camera, parse_point("--ball", o.ball), o.radius_m);
     if (!near)
-        throw ar::InputError("--ball " + o.ball, "it is not ahead of the camera of " + side.name,
+        throw ar::InputError("--ball " + o.ball, "it is not ahead of the camera",
                              "give its centre in the markers' world, in m");
     return ar::find_ball(side.radiance, camera, *near);
 }
 
 /// @param[in,out] ball_m where an earlier side found it; it has not moved since
-ar::PartialMap unwrapped(Side const& side, ProbeOptions const& o, ar::MarkerMap const& markers,
+ar::PartialMap unwrapped(ProbeSide const& side, ProbeOptions const& o, ar::MarkerMap const& markers,
                          ar::CameraModel const& camera, std::optional<glm::dvec3>& ball_m)
 {
-    ar::BallSight const ball = find_ball(side, o, markers, camera);
+    ar::BallSight ball;
+    try {
+        ball = find_ball(side, o, markers, camera);
+    } catch (ar::InputError const& e) {
+        throw ar::InputError("no ball is found in " + side.name, e.what(),
+                             o.ball.empty() ? "give --ball X,Y,Z" : "measure --ball and --ball-radius again");
+    }
     glm::dvec3 const at = side.world_from_camera * (ar::ball_distance_m(ball, o.radius_m) * ball.axis);
     if (!ball_m) ball_m = at;
     if (double const off_m = glm::distance(at, *ball_m); off_m > 0.5 * o.radius_m)
@@ -192,13 +120,17 @@ int run_probe(ProbeOptions const& o)
     std::vector<std::string> inputs = o.pictures;
     inputs.insert(inputs.end(), {o.calibration, o.markers});
     check_outputs({o.out}, inputs);
+    if (o.size % 2 != 0)
+        throw ar::InputError(fmt::format("--size {}", o.size), "maps are twice as wide as high",
+                             "give an even one");
     ar::Calibration const calibration = ar::read_calibration(o.calibration);
     ar::MarkerMap const markers = ar::read_marker_map(o.markers);
     if (!calibration.photometry)
         fmt::print(stderr, "{}: no response in it, bytes are taken for sRGB\n", o.calibration);
+    auto const seconds = o.exposures.empty() ? std::vector<double>() : parse_exposures(o.exposures);
     std::vector<ar::PartialMap> maps;
     std::optional<glm::dvec3> ball_m;
-    for (Side const& side : read_sides(o, calibration, markers))
+    for (ProbeSide const& side : read_probe_sides(o.pictures, seconds, calibration, markers))
         maps.push_back(unwrapped(side, o, markers, calibration.camera, ball_m));
     ar::PartialMap const seen = ar::merged(maps);
     ar::FilledMap const map = ar::filled(seen);

@@ -83,6 +83,13 @@ TEST(ArCalibrate, FindsTheCameraOfTheViewsOfTheBoard)
         fmt::print("{:+.3f} %\n", 100 * (is[i] / was[i] - 1));
         EXPECT_NEAR(is[i] / was[i], 1, 0.005) << i;
     }
+    // In a session the board has to be held still, unless it is said that it is.
+    run_well("ar record views --rate 200 --out session", folder.path());
+    Outcome const moving = run("ar calibrate session --markers m.yaml --out moving.yaml", folder.path());
+    EXPECT_EQ(moving.code, 1) << moving.out;
+    EXPECT_NE(moving.out.find("in 20 it moves"), std::string::npos) << moving.out;
+    run_well("ar calibrate session --markers m.yaml --stills --every 3 --lens pinhole --out stills.yaml",
+             folder.path());
     Outcome const again = run("ar board --squares 8x6 --out b.svg --views views", folder.path());
     EXPECT_EQ(again.code, 2);
     EXPECT_NE(again.err.find("it exists"), std::string::npos) << again.err;

@@ -119,7 +119,8 @@ TEST(ArProbe, GivesBackTheLightInTheWorldOfTheMarkers)
     EXPECT_NE(one.out.find("% filled from around it"), std::string::npos);
     Outcome const behind = run("ar probe a0.png a1.png a2.png --out x.exr --ball 0.1,3,3" + rest, folder.path());
     EXPECT_EQ(behind.code, 2);
-    EXPECT_NE(behind.err.find("--ball 0.1,3,3 (it is not ahead"), std::string::npos) << behind.err;
+    EXPECT_NE(behind.err.find("no ball is found in a0.png (--ball 0.1,3,3 (it is not ahead"), std::string::npos)
+        << behind.err;
     Outcome const elsewhere =
         run("ar probe a0.png a1.png a2.png --out x.exr --ball -0.2,0.09,-0.3" + rest, folder.path());
     EXPECT_EQ(elsewhere.code, 2) << elsewhere.out;
