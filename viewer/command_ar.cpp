@@ -64,19 +64,18 @@ public:
             throw gi::InputError("'" + folder_.string() + "' cannot be made", problem.message(),
                                  "choose another folder");
     }
-    void add(cv::Mat const& rgb)
+    void add(std::uint64_t sequence, cv::Mat const& rgb)
     {
         cv::Mat bgr;
         cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
         std::vector<unsigned char> bytes;
         cv::imencode(".png", bgr, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1});
-        gi::write_text(folder_ / fmt::format("{:06}.png", count_++),
+        gi::write_text(folder_ / fmt::format("{:06}.png", sequence),
                        {reinterpret_cast<char const*>(bytes.data()), bytes.size()});
     }
 
 private:
     fs::path folder_;
-    int count_ = 0;
 };
 
 std::string frame_table(ArSummary const& summary)
@@ -166,10 +165,23 @@ private:
     int missing_ = 0;
 };
 
+/// Nothing that is read may be written over.
+void check_arguments(RunArguments const& a, ArSession const& s)
+{
+    check_outputs({a.frame_table, a.stats},
+                  {a.session, a.poses, a.true_poses, s.camera.string(), s.markers.string(), s.light.string(),
+                   s.real.scene.string(), s.virtual_things.scene.string()});
+    std::error_code ignored;
+    for (std::string const& read : {s.frames.source, a.truth})
+        if (!a.out.empty() && !read.empty() && fs::equivalent(a.out, read, ignored))
+            throw gi::InputError("--out '" + a.out + "' is a folder that is read",
+                                 "its pictures would be replaced", "name another folder");
+}
+
 int run_session(RunArguments const& a, bool poses_only)
 {
-    check_outputs({a.frame_table, a.stats}, {a.session, a.poses});
     ArSession const session = read_ar_session(a.session);
+    check_arguments(a, session);
     ArRunOptions o;
     o.frames = a.frames;
     o.pace = a.fast ? ar::Pace::fastest : ar::Pace::own;
@@ -182,20 +194,40 @@ int run_session(RunArguments const& a, bool poses_only)
     Truth truth(a);
     std::optional<ArWindow> window;
     if (!a.out.empty()) folder.emplace(a.out);
-    ArSummary const summary = run_ar(
-        session, o,
-        [&](ArFrameRecord& f, ArResult const& r) {
-            if (a.window && !window) window.emplace(ArWindowSettings{{r.rgb.cols, r.rgb.rows}, a.monitor}, report);
-            if (window) window->show(f, r);
-            if (window && window->wants_close()) stop.request();
-            if (folder) folder->add(r.rgb);
-            truth.add(f, r);
-        },
-        stop, report);
-    if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
-    if (!a.frame_table.empty()) gi::write_text(a.frame_table, frame_table(summary));
-    fmt::print("{}{}", describe(summary), truth.text());
-    print_losses(report);
+    auto const look = [&] {
+        if (window && window->wants_close()) stop.request();
+    };
+    o.idle = [&] {
+        if (window) window->idle();
+        look();
+    };
+    ArSummary summary;
+    auto const keep = [&] {
+        if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
+        if (!a.frame_table.empty()) gi::write_text(a.frame_table, frame_table(summary));
+        fmt::print("{}{}", describe(summary), truth.text());
+        print_losses(report);
+    };
+    auto const shown = [&](ArFrameRecord& f, ArResult const& r) {
+        if (a.window && !window) window.emplace(ArWindowSettings{{r.rgb.cols, r.rgb.rows}, a.monitor}, report);
+        if (window) window->show(f, r);
+        look();
+        if (folder) folder->add(f.sequence, r.rgb);
+        truth.add(f, r);
+    };
+    try {
+        run_ar(session, o, shown, stop, report, summary);
+    } catch (...) {
+        if (!summary.frames.empty()) keep();
+        throw;
+    }
+    keep();
+    if (summary.end.kind == ar::SourceState::Kind::lost) {
+        std::fputs(fmt::format("lightwell: the source was lost: {}\n", summary.end.reason).c_str(), stderr);
+        return 1;
+    }
+    if (summary.frames.empty() && !stop.requested())
+        throw gi::InputError("no frame could be used", describe(summary.source), "check the session's frames");
     bool const was_closed = window && window->wants_close();
     return stop.requested() && !was_closed ? kInterrupted : 0;
 }
@@ -246,7 +278,8 @@ void add_ar(CLI::App& app, int& exit_code)
     run_command->add_option("--out", run->out, "Folder for the composites, as PNG");
     run_command->add_option("--poses", run->poses, "Where the camera was (CSV or TUM), in place of its markers");
     run_command->add_flag("--window", run->window, "Show it: S before and after, H panel, Escape ends");
-    run_command->add_option("--monitor", run->monitor, "Full screen on the one of this number or name");
+    run_command->add_option("--monitor", run->monitor, "Full screen on the one of this number or name")
+        ->needs("--window");
     run_command->add_option("--truth", run->truth,
                             "Folder of pictures with the things really there: FLIP is told");
     run_command->footer(R"(Examples:

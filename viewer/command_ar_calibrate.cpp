@@ -119,7 +119,7 @@ int run_calibrate(CalibrateOptions const& o)
     bool const stills = o.stills || pictures;
     auto const lens = ar::lens_named(o.lens);
     ar::Collector collector(source->description().size_px,
-                            stills ? ar::PictureSource::stills : ar::PictureSource::live,
+                            stills ? ar::ViewSource::stills : ar::ViewSource::live,
                             lens.value_or(ar::LensModel::radial_tangential), o.views);
     gi::StopRequest stop;
     InterruptGuard const guard(stop);

@@ -64,9 +64,9 @@ Played play(ar::FrameSource& source, ReplayOptions const& o, gi::StopRequest con
         if (!frame) continue;
         if (p.frames == 0) {
             p.first_s = frame->captured_s;
-        } else if (std::uint64_t const gap = frame->sequence - last - 1; gap > 0) {
+        } else if (frame->sequence > last + 1) {
             ++p.gaps;
-            p.longest_gap = std::max(p.longest_gap, gap);
+            p.longest_gap = std::max(p.longest_gap, frame->sequence - last - 1);
         }
         last = frame->sequence;
         p.last_s = frame->captured_s;

@@ -40,7 +40,7 @@ void count_cells(cv::Mat& cells, BoardView const& view, glm::ivec2 size_px)
 
 } // namespace
 
-Collector::Collector(glm::ivec2 size_px, PictureSource source, LensModel lens, int wanted)
+Collector::Collector(glm::ivec2 size_px, ViewSource source, LensModel lens, int wanted)
     : size_px_(size_px), source_(source), lens_(lens), wanted_(wanted)
 {
     if (size_px.x < 1 || size_px.y < 1)
@@ -83,8 +83,8 @@ Offer Collector::offer(BoardView view)
     if (live_)
         if (auto const pose = camera_from_board(live_->camera, view))
             offer.rms_px = rms(residuals(live_->camera, *pose, view));
-    auto const way = source_ == PictureSource::live && last_ ? moved_px(*last_, view) : std::nullopt;
-    bool const moving = source_ == PictureSource::live && (!way || *way > kStill_px);
+    auto const way = source_ == ViewSource::live && last_ ? moved_px(*last_, view) : std::nullopt;
+    bool const moving = source_ == ViewSource::live && (!way || *way > kStill_px);
     last_ = view;
     if (moving) {
         ++counts_.moving;

@@ -6,7 +6,7 @@
 
 namespace ar {
 
-enum class PictureSource {
+enum class ViewSource {
     stills, ///< every picture is on its own
     live,   ///< the board must be held still from one frame to the next
 };
@@ -20,7 +20,7 @@ struct Offer {
 class Collector {
 public:
     /// @param lens for the live residuals; @param wanted views
-    Collector(glm::ivec2 size_px, PictureSource source, LensModel lens = LensModel::radial_tangential,
+    Collector(glm::ivec2 size_px, ViewSource source, LensModel lens = LensModel::radial_tangential,
               int wanted = 15);
 
     Offer offer(BoardView view);
@@ -45,7 +45,7 @@ private:
     Features features_of(BoardView const& view) const;
 
     glm::ivec2 size_px_;
-    PictureSource source_;
+    ViewSource source_;
     LensModel lens_;
     int wanted_;
     std::vector<BoardView> views_;

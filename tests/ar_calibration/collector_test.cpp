@@ -23,7 +23,7 @@ BoardView board_at(cv::Vec3d const& turn, glm::dvec3 at)
 
 TEST(Collector, TakesWhatIsNewAndAsksForWhatIsMissing)
 {
-    Collector c(kCamera.size_px, PictureSource::stills, LensModel::pinhole, 8);
+    Collector c(kCamera.size_px, ViewSource::stills, LensModel::pinhole, 8);
     EXPECT_EQ(c.next(), "show the board in the upper left of the picture");
     EXPECT_TRUE(c.offer(board_at({0, 0, 0}, {-0.12, -0.1, 0.5})).taken);
     EXPECT_FALSE(c.offer(board_at({0, 0.02, 0}, {-0.12, -0.1, 0.5})).taken);
@@ -46,7 +46,7 @@ TEST(Collector, TakesWhatIsNewAndAsksForWhatIsMissing)
 
 TEST(Collector, WaitsUntilTheBoardIsStill)
 {
-    Collector c(kCamera.size_px, PictureSource::live, LensModel::pinhole);
+    Collector c(kCamera.size_px, ViewSource::live, LensModel::pinhole);
     EXPECT_EQ(c.offer(board_at({0, 0, 0}, {0, 0, 0.5})).why, "hold the board still");
     EXPECT_EQ(c.offer(board_at({0, 0, 0}, {0.01, 0, 0.5})).why, "hold the board still");
     EXPECT_TRUE(c.offer(board_at({0, 0, 0}, {0.0105, 0, 0.5})).taken);

@@ -44,7 +44,7 @@ TEST_P(OfDrawnLens, IsCalibratedWithinTwoPerMille)
     settings.dots_per_m = 3000;
     DrawnWorld const world(map, truth, settings);
     cv::RNG rng(20261122);
-    Collector collector(truth.size_px, PictureSource::stills, truth.lens, 24);
+    Collector collector(truth.size_px, ViewSource::stills, truth.lens, 24);
     double corner_error = 0;
     int corners = 0, offered = 0;
     while (offered < 60 && (!collector.enough() || collector.views().size() < 24)) {

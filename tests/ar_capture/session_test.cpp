@@ -175,13 +175,20 @@ TEST(Session, OfAKilledProcessIsWholeUpToItsLastFrame)
     TemporaryFolder folder;
     pid_t const child = fork();
     if (child == 0) {
-        SessionWriter writer(folder / "s", header_of({64, 48}));
-        for (std::uint64_t i = 0;; ++i) {
-            writer.append(make_frame(PixelFormat::nv12, i, {64, 48}));
-            std::this_thread::sleep_for(1ms);
+        try {
+            SessionWriter writer(folder / "s", header_of({64, 48}));
+            for (std::uint64_t i = 0;; ++i) {
+                writer.append(make_frame(PixelFormat::nv12, i, {64, 48}));
+                std::this_thread::sleep_for(1ms);
+            }
+        } catch (...) {
+            _exit(1);
         }
     }
-    while (file_text(folder / "s/index.jsonl").size() < 5000) std::this_thread::sleep_for(5ms);
+    while (file_text(folder / "s/index.jsonl").size() < 5000) {
+        ASSERT_EQ(waitpid(child, nullptr, WNOHANG), 0) << "the child has ended";
+        std::this_thread::sleep_for(5ms);
+    }
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     SessionReader reader(folder / "s");

@@ -4,6 +4,7 @@
 
 #include "gi/base/error.h"
 #include "gi/scene/generate.h"
+#include "gi/scene/skinning.h"
 #include "viewer/ar/bridge.h"
 #include "viewer/ar/synthetic.h"
 
@@ -83,6 +84,40 @@ TEST(PairRenderers, TakeAwayVirtualLampsToo)
     PairPictures const p = rendered(lamp, 16, report), dark = rendered({}, 16, report);
     EXPECT_GT(cv::mean(p.with)[0], 1.2 * cv::mean(p.without)[0]);
     EXPECT_NEAR(cv::mean(p.without)[0], cv::mean(dark.without)[0], 0.05 * cv::mean(dark.without)[0]);
+}
+
+/// Each corner on a joint of its own: shrinking joints about themselves would leave the triangle.
+TEST(LocalScenes, TakeAwayAllOfSkins)
+{
+    gi::Scene scene;
+    gi::Mesh mesh;
+    gi::Skin skin;
+    for (std::size_t j = 0; j < 3; ++j) {
+        gi::Node joint;
+        joint.translation = {double(j == 1), double(j == 2), 3};
+        scene.nodes.push_back(joint);
+        skin.joints.push_back(std::int32_t(j));
+        skin.inverse_bind.push_back(gi::mat4(1));
+        mesh.positions.push_back({0, 0, 0});
+        mesh.joints.push_back({std::uint16_t(j), 0, 0, 0});
+        mesh.weights.push_back({1, 0, 0, 0});
+    }
+    mesh.triangles = {{0, 1, 2}};
+    scene.meshes = {mesh};
+    scene.skins = {skin};
+    gi::Node holder;
+    holder.meshes = {0};
+    holder.skin = 0;
+    scene.nodes.push_back(holder);
+    LocalScene const local = join_scenes({}, scene, gi::dmat4(1));
+    auto const size = [&](gi::PairSide side) {
+        gi::Pose const pose = local_pose(local, std::nullopt, side);
+        std::size_t const node = local.scene->nodes.size() - 1;
+        auto const at = gi::deform(*local.scene, pose, node, local.scene->meshes[0]).positions;
+        return glm::distance(at[0], at[1]) + glm::distance(at[0], at[2]);
+    };
+    EXPECT_NEAR(size(gi::PairSide::with), 2, 1e-6);
+    EXPECT_LT(size(gi::PairSide::without), 1e-9);
 }
 
 TEST(LocalScenes, WithRealThingsThatMoveAreRefused)

@@ -28,26 +28,19 @@ double number_behind(std::string const& text, std::string const& words, int colu
     return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// One session for all: three frames of the camera, with what they would be with the things there.
+/// Three frames of the camera, with what they would be with the things there.
 class ArRuns : public testing::Test {
 protected:
-    static void SetUpTestSuite()
-    {
-        folder_ = std::make_unique<TemporaryFolder>();
-        run_well("ar synthesize desk --frames 3 --size 320x240 --paths 6", folder_->path());
-        run_well("ar synthesize large --frames 2 --size 640x480 --paths 3 --no-truth", folder_->path());
-    }
-    static void TearDownTestSuite() { folder_.reset(); }
-    static fs::path desk() { return *folder_ / "desk"; }
-    static std::string session() { return file_text(desk() / "session.yaml"); }
+    ArRuns() { run_well("ar synthesize desk --frames 3 --size 240x180 --paths 6", folder_.path()); }
+    fs::path desk() const { return folder_ / "desk"; }
+    std::string session() const { return file_text(desk() / "session.yaml"); }
     static Outcome run(std::string const& command, fs::path const& in = desk())
     {
         return run_program(command, in);
     }
 
-    static std::unique_ptr<TemporaryFolder> folder_;
+    TemporaryFolder folder_;
 };
-std::unique_ptr<TemporaryFolder> ArRuns::folder_;
 
 TEST_F(ArRuns, WithNothingVirtualGiveTheCamerasFrames)
 {
@@ -92,9 +85,12 @@ TEST_F(ArRuns, FollowTheLight)
               0.7 * number_behind(o.out, "  of adding nothing"));
 }
 
-TEST_F(ArRuns, FindTheCamera)
+TEST(ArTracking, FindsTheCamera)
 {
-    Outcome const o = run("ar track session.yaml --fast --true-poses poses.csv --table t.csv", *folder_ / "large");
+    TemporaryFolder folder;
+    run_well("ar synthesize desk --frames 2 --size 640x480 --paths 3 --no-truth", folder.path());
+    Outcome const o =
+        run("ar track desk/session.yaml --fast --true-poses desk/poses.csv --table t.csv", folder.path());
     ASSERT_EQ(o.code, 0) << o.err;
     EXPECT_NE(o.out.find("camera found in 2 (100.0 %)"), std::string::npos) << o.out;
     double const mm = number_behind(o.out, "position error (mm)", 2),
@@ -102,7 +98,7 @@ TEST_F(ArRuns, FindTheCamera)
     fmt::print("camera: {:.2f} mm, {:.3f} degrees\n", mm, deg);
     EXPECT_LT(mm, 3);
     EXPECT_LT(deg, 0.2);
-    std::string const table = file_text(*folder_ / "large/t.csv");
+    std::string const table = file_text(folder / "t.csv");
     EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
 }
 
@@ -135,19 +131,18 @@ TEST_F(ArRuns, CountFramesThatAreNoFrames)
 
 TEST_F(ArRuns, RefuseACalibrationOfAnotherSize)
 {
-    fs::copy_file(*folder_ / "large/camera.yaml", desk() / "large_camera.yaml",
-                  fs::copy_options::overwrite_existing);
-    std::string text = session();
-    text.replace(text.find("camera.yaml"), 11, "large_camera.yaml");
-    write(desk() / "size.yaml", text);
-    Outcome const o = run("ar track size.yaml --fast");
+    std::string text = file_text(desk() / "camera.yaml");
+    std::size_t const at = text.find("image_width: ");
+    text.replace(at, text.find('\n', at) - at, "image_width: 320");
+    write(desk() / "camera.yaml", text);
+    Outcome const o = run("ar track session.yaml --fast");
     EXPECT_EQ(o.code, 2);
-    EXPECT_NE(o.err.find("640 x 480"), std::string::npos) << o.err;
+    EXPECT_NE(o.err.find("320 x 180"), std::string::npos) << o.err;
 }
 
 TEST_F(ArRuns, SayWhatIsWrongWithTheirFiles)
 {
-    auto const refused = [](std::string const& command, std::string const& with) {
+    auto const refused = [this](std::string const& command, std::string const& with) {
         Outcome const o = run(command);
         EXPECT_EQ(o.code, 2) << command;
         EXPECT_NE(o.err.find(with), std::string::npos) << o.err;
@@ -158,7 +153,10 @@ TEST_F(ArRuns, SayWhatIsWrongWithTheirFiles)
     refused("ar run key.yaml", "key.yaml:");
     refused("ar run session.yaml --poses missing.csv", "missing.csv");
     refused("ar run session.yaml --truth missing", "missing");
-    refused("ar synthesize . --frames 7 --size 320x240", "holds another session");
+    refused("ar synthesize . --frames 7 --size 240x180", "holds another session");
+    refused("ar run session.yaml --out frames", "a folder that is read");
+    refused("ar run session.yaml --out truth --truth truth", "a folder that is read");
+    refused("ar run session.yaml --table camera.yaml", "camera.yaml");
 }
 
 } // namespace

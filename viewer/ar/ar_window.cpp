@@ -124,9 +124,9 @@ void ArWindow::show(ArFrameRecord& record, ArResult const& result)
     take_input();
     ++frames_;
     if (!record.world_from_camera) ++lost_;
-    shown_ = is_split_ ? split(result.camera, result.rgb) : result.rgb;
+    cv::Mat const shown = is_split_ ? split(result.camera, result.rgb) : result.rgb;
     fill_panel(record);
-    draw(shown_);
+    draw(shown);
     panel_.draw();
     window_.swap();
     glFinish();

@@ -25,8 +25,8 @@ public:
     /// panel, Escape ends.
     void show(ArFrameRecord& record, ArResult const& result);
     bool wants_close() const { return wants_close_; }
-    /// What the window shows, without the panel: CV_8UC3 RGB of its size. Before the first frame: empty.
-    cv::Mat const& shown() const { return shown_; }
+    /// Between frames: keys and the window's own buttons.
+    void idle() { take_input(); }
 
 private:
     void take_input();
@@ -36,7 +36,6 @@ private:
     Window window_;
     Panel panel_;
     GlObject texture_, framebuffer_;
-    cv::Mat shown_;
     std::vector<float> latency_ms_; ///< of the last frames
     bool is_split_ = false, has_panel_ = true, wants_close_ = false;
     std::uint64_t frames_ = 0, lost_ = 0;

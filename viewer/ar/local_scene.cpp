@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <span>
 
 namespace viewer {
 namespace {
@@ -18,6 +19,15 @@ void leave_out_views(gi::Scene& scene)
     scene.cameras.clear();
     scene.environment.reset();
     scene.background = {};
+}
+
+/// All towards one point, so that nothing is left of skins whose joints are apart.
+void vanish(std::span<gi::dmat4> world_from_node)
+{
+    gi::dvec3 const at = world_from_node[0][3];
+    gi::dmat4 const gone = glm::translate(gi::dmat4(1), at) * glm::scale(gi::dmat4(1), gi::dvec3(kGone)) *
+                           glm::translate(gi::dmat4(1), -at);
+    for (gi::dmat4& m : world_from_node) m = gone * m;
 }
 
 } // namespace
@@ -44,9 +54,7 @@ LocalScene join_scenes(gi::Scene real, gi::Scene virtual_things, gi::dmat4 const
 gi::Pose local_pose(LocalScene const& local, gi::SceneTime time_s, gi::PairSide side)
 {
     gi::Pose pose = gi::evaluate_pose(*local.scene, time_s);
-    if (side == gi::PairSide::without)
-        for (std::size_t n = local.first_virtual_node; n < pose.world_from_node.size(); ++n)
-            pose.world_from_node[n] = pose.world_from_node[n] * glm::scale(gi::dmat4(1), gi::dvec3(kGone));
+    if (side == gi::PairSide::without) vanish(std::span(pose.world_from_node).subspan(local.first_virtual_node));
     return pose;
 }
 

@@ -44,10 +44,12 @@ PairPictures PairRenderer::render(gi::Camera const& camera, int width, int heigh
     }
     gi::PairResult both = frames_->pair(
         {camera, width, height}, paths, [&](gi::PairSide side) { return turn(side, time_s); }, stop);
+    denoise = denoise && both.with.paths > 1; // of one path there is no variance to go by
     cv::Mat const raw = denoise ? matrix_of(both.with.picture, "color") : cv::Mat();
     if (denoise)
         for (gi::RenderResult* const r : {&both.with, &both.without})
-            gi::denoise(r->picture, {.threads = settings_.threads});
+            report_.lose("pixels that the filter could not use",
+                         gi::denoise(r->picture, {.threads = settings_.threads}).not_finite);
     PairPictures p;
     p.with = matrix_of(both.with.picture, "color");
     p.without = matrix_of(both.without.picture, "color");
@@ -66,8 +68,6 @@ PairPictures PairRenderer::render(gi::Camera const& camera, int width, int heigh
         }
     p.real_depth_m = matrix_of(both.without.picture, "depth");
     p.depth_m = matrix_of(both.with.picture, "depth");
-    p.real_albedo = matrix_of(both.without.picture, "albedo");
-    p.real_normal = matrix_of(both.without.picture, "normal");
     p.paths = both.with.paths;
     return p;
 }

@@ -15,8 +15,6 @@ struct PairPictures {
     cv::Mat direct;                ///< CV_32FC3: what of `with` comes of virtual things seen first
     cv::Mat coverage;              ///< CV_32FC1: share of the pixel where a virtual thing is seen first
     cv::Mat depth_m, real_depth_m; ///< CV_32FC1, along the axis: first surface with and without; 0 = none
-    cv::Mat real_albedo;           ///< CV_32FC3, of the first real surface
-    cv::Mat real_normal;           ///< CV_32FC3, world
     std::uint32_t paths = 0;       ///< per pixel of each
 };
 

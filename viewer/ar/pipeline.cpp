@@ -93,7 +93,7 @@ ar::RenderedPair ArPipeline::rendered(ar::Pose const& world_from_camera, double 
     return warp_(pair);
 }
 
-ArResult ArPipeline::seen(ar::Frame const& frame, std::optional<ar::Pose> const& known)
+ArResult ArPipeline::seen(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known)
 {
     if (frame.size_px != camera_.model.size_px)
         throw ar::InputError(
@@ -112,27 +112,27 @@ ArResult ArPipeline::seen(ar::Frame const& frame, std::optional<ar::Pose> const&
     } else {
         r.sighting = detector_.next(gray);
         r.times.detect_ms = lap();
-        r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(frame.captured_s));
-        tracker_.add(frame.captured_s, r.pose);
+        r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(time_s));
+        tracker_.add(time_s, r.pose);
         r.times.pose_ms = lap();
     }
     r.rgb = r.camera;
     return r;
 }
 
-ArResult ArPipeline::find_pose(ar::Frame const& frame) { return seen(frame, std::nullopt); }
+ArResult ArPipeline::find_pose(ar::Frame const& frame, double time_s) { return seen(frame, time_s, std::nullopt); }
 
 ArResult ArPipeline::process(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known,
                              gi::StopRequest const& stop)
 {
-    ArResult r = seen(frame, known);
+    ArResult r = seen(frame, time_s, known);
     if (!r.pose.found()) {
         if (filter_) filter_->forget();
         return r;
     }
     Lap lap;
     if (auto map = light_.follow(r.camera, camera_.photometry, frame.exposure, camera_.model,
-                                 r.pose.world_from_camera.rotation, frame.captured_s))
+                                 r.pose.world_from_camera.rotation, time_s))
         renderer_.set_environment(std::move(map));
     r.times.light_ms = lap();
     r.rgb = cv::Mat(); // the camera's stays as it is

@@ -39,17 +39,17 @@ public:
     /// Loads the scenes and the light. @throws gi::InputError, ar::InputError
     ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers, gi::Report& report);
 
-    /// @param time_s  of the virtual things' clips
+    /// @param time_s  since the first frame: of the virtual things' clips, the camera's motion and the light
     /// @param known   where the camera is, in place of what the frame says
     /// @throws ar::InputError the frame cannot be decoded or has another size than the calibration
     ArResult process(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known,
                      gi::StopRequest const& stop);
 
     /// Without anything being rendered.
-    ArResult find_pose(ar::Frame const& frame);
+    ArResult find_pose(ar::Frame const& frame, double time_s);
 
 private:
-    ArResult seen(ar::Frame const& frame, std::optional<ar::Pose> const& known);
+    ArResult seen(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known);
     ar::RenderedPair rendered(ar::Pose const& world_from_camera, double time_s, gi::StopRequest const& stop);
 
     ArSession session_;

@@ -23,14 +23,14 @@ std::shared_ptr<gi::EnvironmentMap const> PlaceLight::begin() const
     return std::make_shared<gi::EnvironmentMap const>(environment_of(captured_));
 }
 
-std::shared_ptr<gi::EnvironmentMap const>
-PlaceLight::follow(cv::Mat const& rgb, ar::Photometry const& photometry, ar::Exposure const& exposure,
-                   ar::CameraModel const& camera, glm::dquat const& world_from_camera, double captured_s)
+std::shared_ptr<gi::EnvironmentMap const> PlaceLight::follow(cv::Mat const& rgb, ar::Photometry const& photometry,
+                                                             ar::Exposure const& exposure,
+                                                             ar::CameraModel const& camera,
+                                                             glm::dquat const& world_from_camera, double time_s)
 {
     if (!probe_) return nullptr;
     ar::ProbeUpdate const update = probe_->update(ar::radiance_of(rgb, photometry, exposure), ar::is_clipped(rgb),
-                                                  camera, world_from_camera, captured_s);
-    lamps_changed_ += update.lamp_changed ? 1 : 0;
+                                                  camera, world_from_camera, time_s);
     if (frames_++ % every_ != 0 && !update.lamp_changed) return nullptr;
     return std::make_shared<gi::EnvironmentMap const>(environment_of(probe_->map()));
 }

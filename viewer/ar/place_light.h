@@ -16,19 +16,17 @@ public:
     /// @throws ar::InputError the map cannot be read
     explicit PlaceLight(ArSession const& session);
 
-    /// As it was captured; null: there is no map, and no live estimate.
+    /// As it was captured; null: there is no map.
     std::shared_ptr<gi::EnvironmentMap const> begin() const;
     /// What a frame tells of it. @return a new map where it is time for one, or a lamp was switched: else null
     std::shared_ptr<gi::EnvironmentMap const> follow(cv::Mat const& rgb, ar::Photometry const& photometry,
                                                      ar::Exposure const& exposure, ar::CameraModel const& camera,
-                                                     glm::dquat const& world_from_camera, double captured_s);
-    std::uint64_t lamps_changed() const { return lamps_changed_; } ///< frames
+                                                     glm::dquat const& world_from_camera, double time_s);
 
 private:
     cv::Mat captured_; ///< in the world's frame; empty = none
     std::optional<ar::LiveProbe> probe_;
     int every_, frames_ = 0;
-    std::uint64_t lamps_changed_ = 0;
 };
 
 } // namespace viewer

@@ -38,6 +38,20 @@ ArFrameRecord record_of(ar::Frame const& frame, ArResult const& r, double time_s
     return f;
 }
 
+bool is_recording(std::string const& source)
+{
+    return std::filesystem::exists(std::filesystem::path(source) / "session.json");
+}
+
+/// Clocks round: a frame may be a microsecond before the first pose or after the last.
+std::optional<ar::Pose> told_pose(std::vector<ar::TimedPose> const& poses, double time_s)
+{
+    constexpr double rounding_s = 2e-6;
+    double const first_s = poses.front().time_s, last_s = poses.back().time_s;
+    if (time_s < first_s - rounding_s || time_s > last_s + rounding_s) return std::nullopt;
+    return ar::pose_at(poses, std::clamp(time_s, first_s, last_s));
+}
+
 void check_size(glm::ivec2 frames_px, glm::ivec2 calibrated_px)
 {
     if (frames_px == calibrated_px) return;
@@ -67,37 +81,51 @@ ArCamera load_ar_camera(std::filesystem::path const& file)
     return camera;
 }
 
-ArSummary run_ar(ArSession const& session, ArRunOptions const& options,
-                 std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
-                 gi::Report& report)
+void run_ar(ArSession const& session, ArRunOptions const& options,
+            std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
+            gi::Report& report, ArSummary& summary)
 {
     ArCamera const camera = load_ar_camera(session.camera);
     ar::MarkerMap const markers = ar::read_marker_map(session.markers);
     ar::OpenOptions open = session.frames.options;
     open.pace = options.pace;
     auto const source = ar::open_source(session.frames.source, open);
-    check_size(source->description().size_px, camera.model.size_px);
-    ArPipeline pipeline(session, camera, markers, report);
-    ArSummary summary;
-    double const begun_s = now_s();
-    std::optional<double> first_s;
     ar::SourceDescription const about = source->description();
+    check_size(about.size_px, camera.model.size_px);
+    ArPipeline pipeline(session, camera, markers, report);
+    double const begun_s = now_s();
     bool const is_timed = options.pace == ar::Pace::own || about.is_live;
+    // As fast as possible, clocks say nothing of the time that passes in pictures; recordings keep theirs.
+    bool const is_numbered = !is_timed && about.frames_per_s > 0 && !is_recording(session.frames.source);
+    std::optional<double> first_s;
+    std::uint64_t first = 0;
     while (!stop.requested() && (options.frames == 0 || int(summary.frames.size()) < options.frames)) {
         std::optional<ar::Frame> const frame = source->next(std::chrono::milliseconds(200));
+        summary.source = source->counts();
+        summary.end = source->state();
+        summary.seconds = now_s() - begun_s;
         if (!frame) {
-            if (source->state().kind == ar::SourceState::Kind::running) continue;
-            break;
+            if (summary.end.kind != ar::SourceState::Kind::running) break;
+            if (options.idle) options.idle();
+            continue;
         }
-        if (!first_s) first_s = frame->captured_s;
-        // As fast as possible, clocks say nothing of the time that passes in the pictures.
-        double const time_s = is_timed || about.frames_per_s <= 0 ? frame->captured_s - *first_s
-                                                                  : double(frame->sequence) / about.frames_per_s;
+        if (!first_s) {
+            first_s = frame->captured_s;
+            first = frame->sequence;
+        }
+        double const time_s =
+            is_numbered ? double(frame->sequence - first) / about.frames_per_s : frame->captured_s - *first_s;
         std::optional<ar::Pose> known;
-        if (!options.poses.empty()) known = ar::pose_at(options.poses, time_s);
+        bool const is_told = !options.poses.empty();
+        if (is_told) known = told_pose(options.poses, time_s);
         try {
-            ArResult const r = options.find_poses_only ? pipeline.find_pose(*frame)
-                                                       : pipeline.process(*frame, time_s, known, stop);
+            ArResult r;
+            if (is_told && !known)
+                r.rgb = r.camera = ar::rgb_of(*frame); // the file does not say
+            else if (options.find_poses_only)
+                r = pipeline.find_pose(*frame, time_s);
+            else
+                r = pipeline.process(*frame, time_s, known, stop);
             summary.frames.push_back(record_of(*frame, r, time_s, is_timed));
             if (shown) shown(summary.frames.back(), r);
         } catch (ar::InputError const& e) {
@@ -105,10 +133,7 @@ ArSummary run_ar(ArSession const& session, ArRunOptions const& options,
             report.lose("frames that could not be used", 1, e.what());
         }
     }
-    summary.source = source->counts();
-    summary.end = source->state();
     summary.seconds = now_s() - begun_s;
-    return summary;
 }
 
 std::string describe(ArSummary const& s)

@@ -15,6 +15,7 @@ struct ArRunOptions {
     ar::Pace pace = ar::Pace::own;
     std::vector<ar::TimedPose> poses; ///< where the camera was, in place of what frames say; empty = from markers
     bool find_poses_only = false;     ///< nothing is rendered
+    std::function<void()> idle;       ///< while no frame comes
 };
 
 /// What one frame took, and what came of it.
@@ -46,9 +47,10 @@ struct ArSummary {
 ArCamera load_ar_camera(std::filesystem::path const& calibration);
 
 /// @param shown  called with every frame's result, if it is not empty; may ask for the end by `stop`
-ArSummary run_ar(ArSession const& session, ArRunOptions const& options,
-                 std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
-                 gi::Report& report);
+/// @param summary  kept up to date, so that it holds what there is when `shown` throws
+void run_ar(ArSession const& session, ArRunOptions const& options,
+            std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
+            gi::Report& report, ArSummary& summary);
 
 struct Spread {
     double median = 0, p95 = 0, most = 0;

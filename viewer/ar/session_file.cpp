@@ -86,9 +86,10 @@ private:
     {
         l.only_keys({"map", "turn_deg", "scale", "live"});
         if (l.has("live")) session_.live_light = int(l.at("live").integer(0, 100000));
-        if (!l.has("map"))
-            throw l.error("no 'map'", "there is no light to take", "give a lat-long EXR or HDR file");
-        session_.light = path(l.at("map"));
+        if (l.has("map"))
+            session_.light = path(l.at("map"));
+        else if (session_.live_light == 0)
+            throw l.error("no 'map'", "there is no light to take", "give a lat-long EXR or HDR file, or live: 10");
         if (l.has("turn_deg")) session_.light_turn_deg = l.at("turn_deg").number(-360, 360);
         if (l.has("scale")) session_.light_scale = l.at("scale").number(0, 1e9);
     }

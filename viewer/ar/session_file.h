@@ -25,10 +25,10 @@ struct ArPlaced {
 };
 
 struct ArRender {
-    std::uint32_t paths = 1; ///< per rendered pixel and frame
+    std::uint32_t paths = 2; ///< per rendered pixel and frame
     double resolution = 0.5; ///< rendered pixels per pixel of the camera
     int bounces = 3;
-    bool denoise = true;
+    bool denoise = true; ///< needs two paths
     std::uint64_t seed = 0;
     gi::SlhbSettings slhb; ///< directions, resolution, lamps, fresh_lamps, shadow_resolution
 };

@@ -119,9 +119,10 @@ void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, ar::
     gi::write_glb(o.folder / "statue.glb", generate_statue(), report);
     SyntheticQuality fine = o.quality;
     fine.paths = std::max(4 * fine.paths, 32u);
-    write_probe(o.folder / "probe.exr",
-                synthetic_probe(generate_desk(DeskPart::whole, paper), {0, 0.15, 0}, 128, fine, stop, report),
-                report);
+    cv::Mat const probe =
+        synthetic_probe(generate_desk(DeskPart::whole, paper), {0, 0.15, 0}, 128, fine, stop, report);
+    if (stop.requested()) return; // a probe of few paths must not stay
+    write_probe(o.folder / "probe.exr", probe, report);
     gi::write_text(o.folder / "session.yaml", session_text(o));
 }
 
@@ -132,7 +133,7 @@ int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Repo
     check_folder(o);
     std::error_code problem;
     fs::create_directories(o.folder / "frames", problem);
-    if (o.truth) fs::create_directories(o.folder / "truth", problem);
+    if (o.truth && !problem) fs::create_directories(o.folder / "truth", problem);
     if (problem)
         throw gi::InputError("'" + o.folder.string() + "' cannot be made", problem.message(),
                              "choose another folder");
@@ -149,7 +150,7 @@ int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Repo
     gi::append(full, generate_statue(), "virtual", glm::translate(gi::dmat4(1), gi::dvec3(-0.02, 0, -0.1)));
     gi::ProgressBar bar("synthesize");
     int done = 0;
-    for (std::size_t f = 0; f < poses.size() && !stop.requested(); ++f, ++done) {
+    for (std::size_t f = 0; f < poses.size() && !stop.requested(); ++f) {
         bar.update(double(f) / double(poses.size()));
         auto const picture = [&](char const* folder, gi::Scene const& scene) {
             fs::path const file = o.folder / folder / fmt::format("{:06}.png", f);
@@ -160,6 +161,7 @@ int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Repo
         };
         picture("frames", empty);
         if (o.truth) picture("truth", full);
+        done += stop.requested() ? 0 : 1;
     }
     return done;
 }

@@ -15,8 +15,8 @@ struct TruthErrors {
     double camera_affected = 0, camera_elsewhere = 0; ///< of the camera's frame: of adding nothing
 };
 
-/// CV_8UC1, 255 where bytes of the truth and of the camera's frame differ by more than `noise`, grown by two
-/// pixels.
+/// CV_8UC1, 255 where bytes of the truth and of the camera's frame differ by more than 1 (2 % of radiance are one
+/// or two; the sensor's noise is the same in both), grown by two pixels.
 cv::Mat affected_by_truth(cv::Mat const& camera, cv::Mat const& truth);
 
 /// All CV_8UC3 RGB (sRGB), of one size.
