@@ -34,10 +34,7 @@ protected:
     ArRuns() { run_well("ar synthesize desk --frames 3 --size 240x180 --paths 6", folder_.path()); }
     fs::path desk() const { return folder_ / "desk"; }
     std::string session() const { return file_text(desk() / "session.yaml"); }
-    static Outcome run(std::string const& command, fs::path const& in = desk())
-    {
-        return run_program(command, in);
-    }
+    Outcome run(std::string const& command) const { return viewer::test::run(command, desk()); }
 
     TemporaryFolder folder_;
 };
