@@ -128,7 +128,6 @@ public:
                 });
                 if (now == PairSide::with) renderer_->add_coverage(0, both.coverage, both.covered);
             }
-        if (now == PairSide::without) changed(turn(PairSide::with));
         PathCounts lost;
         for (Accumulator const& s : sums_) {
             RenderResult& r = &s == sums_.data() ? both.with : both.without;
