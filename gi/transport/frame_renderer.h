@@ -64,8 +64,8 @@ public:
     /// @return a result per view, in their order; `interrupted` where `stop` came first, with fewer paths
     virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings endings,
                                             StopRequest const& stop) = 0;
-    /// One view with what moves and without it; `turn` is asked for the one and the other in turns, `with` first, and
-    /// leaves the world at either. @param paths  per pixel of each, >= 1
+    /// One view with what moves and without it; `turn` is asked for the one and the other in turns, `with` first,
+    /// and leaves the world at either. @param paths  per pixel of each, >= 1
     /// @throws InputError where the method does not know how
     virtual PairResult pair(FrameView const& view, std::uint32_t paths, PairWorld const& turn,
                             StopRequest const& stop);
