@@ -107,10 +107,36 @@ void print(ar::LensCalibration const& c)
                    v.used ? "" : "; left out: " + v.why);
 }
 
+/// Response and noise belong to the sensor: what the file that is replaced knew of them stays.
+ar::Calibration known_sensor(std::string const& file)
+{
+    ar::Calibration known;
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) return known;
+    ar::Calibration const before = ar::read_calibration(file);
+    known.camera.size_px = before.camera.size_px;
+    known.photometry = before.photometry;
+    known.noise = before.noise;
+    return known;
+}
+
+void say_what_is_kept(ar::Calibration& c, glm::ivec2 size_px, std::string const& file)
+{
+    if (!c.photometry && !c.noise) return;
+    if (c.camera.size_px == size_px) {
+        fmt::print("{}: response and noise are those that it had\n", file);
+        return;
+    }
+    fmt::print("warning: {} had a response for pictures of {} x {}: left out\n", file, c.camera.size_px.x,
+               c.camera.size_px.y);
+    c = {};
+}
+
 int run_calibrate(CalibrateOptions const& o)
 {
     check_outputs({o.out, o.report}, {o.source.source, o.markers});
     Finder const find = finder(o);
+    ar::Calibration calibration = known_sensor(o.out);
     auto const source = open(o.source, ar::Pace::fastest, ar::Delivery::newest);
     std::error_code error;
     bool const pictures = o.source.source.find('%') != std::string::npos ||
@@ -118,8 +144,7 @@ int run_calibrate(CalibrateOptions const& o)
                            !std::filesystem::exists(o.source.source + "/session.json", error));
     bool const stills = o.stills || pictures;
     auto const lens = ar::lens_named(o.lens);
-    ar::Collector collector(source->description().size_px,
-                            stills ? ar::ViewSource::stills : ar::ViewSource::live,
+    ar::Collector collector(source->description().size_px, stills ? ar::ViewSource::stills : ar::ViewSource::live,
                             lens.value_or(ar::LensModel::radial_tangential), o.views);
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
@@ -148,7 +173,7 @@ int run_calibrate(CalibrateOptions const& o)
     } catch (ar::InputError const& e) {
         return too_few(e.what());
     }
-    ar::Calibration calibration;
+    say_what_is_kept(calibration, report.lens.camera.size_px, o.out);
     calibration.camera = report.lens.camera;
     calibration.rms_px = report.lens.rms_px;
     calibration.covariance = report.lens.covariance;
@@ -194,7 +219,8 @@ void add_ar_calibrate(CLI::App& ar, int& exit_code)
   lightwell ar calibrate views --markers markers.yaml --lens radial_tangential --out camera.yaml --report report.html
   lightwell ar calibrate views --squares 7x5 --every 2 --lens fisheye --out fisheye.yaml
 
-Of cameras, videos and sessions only frames count between which the board was held still. Exit code 1: views do not suffice.)");
+Of cameras, videos and sessions only frames count between which the board was held still. Exit code 1: views do not suffice.
+Of a calibration that is replaced, response and noise stay.)");
     c->callback([o, &exit_code] { exit_code = run_calibrate(*o); });
 }
 

@@ -1,5 +1,6 @@
 #include "ar/markers/aruco.h"
 
+#include "ar/markers/apriltag.h"
 #include "ar/markers/refine.h"
 
 #include <algorithm>
@@ -18,9 +19,6 @@ cv::Ptr<cv::aruco::Dictionary> dictionary_named(std::string const& name)
     CV_Assert(at != names.end());
     return cv::aruco::getPredefinedDictionary(int(at - names.begin()));
 }
-
-/// OpenCV has AprilTags standing on their heads (all four families of its 4.6 against apriltag 3.3's pictures).
-bool is_upside_down(std::string const& dictionary) { return dictionary.starts_with("DICT_APRILTAG"); }
 
 double shortest_side(std::array<cv::Point2f, 4> const& c)
 {
@@ -41,6 +39,37 @@ void refine(cv::Mat const& gray, std::array<cv::Point2f, 4>& corners, int cells)
         if (cv::norm(refined[i] - corners[i]) <= 2.0 * window) corners[i] = refined[i];
 }
 
+/// Where the library of AprilTags is not asked.
+FoundMarkers find_squares(cv::Mat const& searched, std::string const& dictionary, double longest_px,
+                          SearchSettings const& s)
+{
+    auto const p = cv::aruco::DetectorParameters::create();
+    p->minMarkerPerimeterRate = 4 * s.smallest_side_px / longest_px;
+    p->maxMarkerPerimeterRate = 4;
+    p->adaptiveThreshWinSizeMin = s.smallest_window_px;
+    p->adaptiveThreshWinSizeMax = s.largest_window_px;
+    p->adaptiveThreshWinSizeStep = s.window_step_px;
+    p->perspectiveRemovePixelPerCell = 8; // more small markers are read than with 4 (docs/results)
+    if (s.refinement == Refinement::contour) p->cornerRefinementMethod = cv::aruco::CORNER_REFINE_CONTOUR;
+    if (s.refinement == Refinement::apriltag) p->cornerRefinementMethod = cv::aruco::CORNER_REFINE_APRILTAG;
+    std::vector<std::vector<cv::Point2f>> corners, rejected;
+    std::vector<int> ids;
+    cv::aruco::detectMarkers(searched, dictionary_named(dictionary), corners, ids, p, rejected);
+    FoundMarkers found;
+    found.rejected = int(rejected.size());
+    std::size_t const turn = is_apriltag(dictionary) ? 2 : 0; // OpenCV's stand on their heads
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        FoundMarker m{ids[i], {}};
+        for (std::size_t k = 0; k < 4; ++k) {
+            m.corners[k] = corners[i][(k + turn) % 4];
+            // This search has (0, 0) at the upper left edge of the first pixel.
+            if (s.refinement == Refinement::apriltag) m.corners[k] -= cv::Point2f(0.5f, 0.5f);
+        }
+        found.markers.push_back(m);
+    }
+    return found;
+}
+
 } // namespace
 
 std::string name_of(Refinement refinement)
@@ -51,40 +80,19 @@ std::string name_of(Refinement refinement)
 
 FoundMarkers find_markers(cv::Mat const& gray, std::string const& dictionary, SearchSettings const& s)
 {
-    auto const codes = dictionary_named(dictionary);
-    auto const p = cv::aruco::DetectorParameters::create();
     cv::Mat searched = gray;
     if (s.enlarge > 1) cv::resize(gray, searched, {}, s.enlarge, s.enlarge, cv::INTER_CUBIC);
-    double const longest = std::max(gray.cols, gray.rows); // the rates are of this
-    p->minMarkerPerimeterRate = 4 * s.smallest_side_px / longest;
-    p->maxMarkerPerimeterRate = 4;
-    p->adaptiveThreshWinSizeMin = s.smallest_window_px;
-    p->adaptiveThreshWinSizeMax = s.largest_window_px;
-    p->adaptiveThreshWinSizeStep = s.window_step_px;
-    // Half as many again of small tags outdoors are found with 8 in place of 4 (docs/results).
-    p->perspectiveRemovePixelPerCell = 8;
-    if (s.refinement == Refinement::contour) p->cornerRefinementMethod = cv::aruco::CORNER_REFINE_CONTOUR;
-    if (s.refinement == Refinement::apriltag) p->cornerRefinementMethod = cv::aruco::CORNER_REFINE_APRILTAG;
-    std::vector<std::vector<cv::Point2f>> corners, rejected;
-    std::vector<int> ids;
-    cv::aruco::detectMarkers(searched, codes, corners, ids, p, rejected);
-
-    FoundMarkers found;
-    found.rejected = int(rejected.size());
-    int const cells = codes->markerSize + 2;
-    std::size_t const turn = is_upside_down(dictionary) ? 2 : 0;
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-        FoundMarker m{ids[i], {}};
-        for (std::size_t k = 0; k < 4; ++k) {
-            cv::Point2f c = corners[i][(k + turn) % 4];
-            // The search for AprilTags has (0, 0) at the upper left edge of the first pixel.
-            if (s.refinement == Refinement::apriltag) c -= cv::Point2f(0.5f, 0.5f);
-            float const by = 1 / float(std::max(1, s.enlarge));
-            m.corners[k] = by * (c + cv::Point2f(0.5f, 0.5f)) - cv::Point2f(0.5f, 0.5f);
-        }
-        if (s.refinement == Refinement::subpixel) refine(gray, m.corners, cells);
-        if (s.refinement == Refinement::edges) refine_by_edges(gray, m.corners, cells_of(dictionary, m.id));
-        found.markers.push_back(m);
+    bool const by_library = is_apriltag(dictionary) && s.refinement != Refinement::contour &&
+                            s.refinement != Refinement::apriltag; // these two are searches of OpenCV's
+    double const longest = std::max(gray.cols, gray.rows);        // the rates are of this
+    FoundMarkers found = by_library ? find_apriltags(searched, dictionary, s.smallest_side_px < 16 ? 1 : 2)
+                                    : find_squares(searched, dictionary, longest, s);
+    for (FoundMarker& m : found.markers) {
+        float const by = 1 / float(std::max(1, s.enlarge));
+        for (cv::Point2f& c : m.corners) c = by * (c + cv::Point2f(0.5f, 0.5f)) - cv::Point2f(0.5f, 0.5f);
+        auto const cells = cells_of(dictionary, m.id);
+        if (s.refinement == Refinement::subpixel) refine(gray, m.corners, int(cells.size()));
+        if (s.refinement == Refinement::edges) refine_by_edges(gray, m.corners, cells);
     }
     return found;
 }
@@ -95,7 +103,7 @@ std::vector<std::vector<bool>> cells_of(std::string const& dictionary, int id)
     int const n = codes->markerSize + 2;
     cv::Mat picture;
     codes->drawMarker(id, n, picture, 1);
-    if (is_upside_down(dictionary)) cv::rotate(picture, picture, cv::ROTATE_180);
+    if (is_apriltag(dictionary)) cv::rotate(picture, picture, cv::ROTATE_180);
     std::vector<std::vector<bool>> cells(codes->markerSize + 2u, std::vector<bool>(codes->markerSize + 2u));
     for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) cells[std::size_t(y)][std::size_t(x)] = picture.at<std::uint8_t>(y, x) == 0;

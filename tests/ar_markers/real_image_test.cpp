@@ -97,7 +97,7 @@ TEST(Photographs, AprilTagTurned)
             "apriltag's, {:.3f} at most; sides {:+.3f} px\n",
             name_of(refinement), seen, expected, std::sqrt(sum / seen), most, larger / seen);
         if (refinement != Refinement::edges) continue;
-        EXPECT_GE(seen, 14);
+        EXPECT_EQ(seen, 15);
         EXPECT_LT(std::sqrt(sum / seen), 0.6);
     }
 }
@@ -134,7 +134,7 @@ TEST(Photographs, AprilTagsOutdoors)
             "apriltag_umich {} x{}: {} of apriltag's {} (by picture{}); corners {:.3f} px rms from apriltag's\n",
             name_of(refinement), enlarge, of_theirs, theirs, each, std::sqrt(sum / of_theirs));
         if (refinement != Refinement::edges) continue;
-        EXPECT_GE(of_theirs, enlarge == 2 ? 29 : 22);
+        EXPECT_EQ(of_theirs, 45);
         EXPECT_LT(std::sqrt(sum / of_theirs), 0.8);
     }
 }

@@ -77,12 +77,28 @@ TEST(ArCalibrate, FindsTheCameraOfTheViewsOfTheBoard)
     run_well("ar board --squares 8x6 --square 0.03 --marker 0.022 --out b.svg --markers m.yaml --views views",
              folder.path());
     run_well("ar calibrate views --markers m.yaml --lens radial_tangential --out camera.yaml", folder.path());
-    auto const is = parameters_of(ar::read_calibration(folder / "camera.yaml").camera);
+    ar::Calibration const found = ar::read_calibration(folder / "camera.yaml");
+    auto const is = parameters_of(found.camera);
     auto const was = parameters_of(ar::read_calibration(folder / "views/truth.yaml").camera);
     for (std::size_t i = 0; i < 4; ++i) {
         fmt::print("{:+.3f} %\n", 100 * (is[i] / was[i] - 1));
         EXPECT_NEAR(is[i] / was[i], 1, 0.005) << i;
     }
+    // What was known of the sensor stays with a new lens, unless its pictures have another size.
+    ar::Calibration known = found;
+    known.noise = ar::NoiseModel{0.002, 3e-5};
+    ar::write_calibration(folder / "camera.yaml", known);
+    run_well("ar calibrate views --markers m.yaml --lens pinhole --out camera.yaml", folder.path());
+    ar::Calibration const again_found = ar::read_calibration(folder / "camera.yaml");
+    EXPECT_EQ(again_found.camera.lens, ar::LensModel::pinhole);
+    ASSERT_TRUE(again_found.noise);
+    EXPECT_DOUBLE_EQ(again_found.noise->read, 0.002);
+    known.camera = ar::scaled(known.camera, 2 * known.camera.size_px);
+    ar::write_calibration(folder / "camera.yaml", known);
+    Outcome const other =
+        run_well("ar calibrate views --markers m.yaml --lens pinhole --out camera.yaml", folder.path());
+    EXPECT_NE(other.out.find("left out"), std::string::npos) << other.out;
+    EXPECT_FALSE(ar::read_calibration(folder / "camera.yaml").noise);
     // In a session the board has to be held still, unless it is said that it is.
     run_well("ar record views --rate 200 --out session", folder.path());
     Outcome const moving = run("ar calibrate session --markers m.yaml --out moving.yaml", folder.path());
