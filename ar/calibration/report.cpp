@@ -149,7 +149,7 @@ std::string to_html(CalibrationReport const& r)
     std::string s =
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Camera "
         "calibration</title><style>\n"
-        "body{font:15px sans-serif;max-width:960px;margin:2em auto;color:#222}table{border-collapse:collapse}\n"
+        "body{font:15px sans-serif;max-width:960px;margin:2em auto;color:#222}table{border-collapse:collapse;margin-bottom:1em}\n"
         "td,th{padding:2px 10px;text-align:left;border-bottom:1px solid #ddd}.picture{width:100%;max-width:800px;"
         "border:1px solid #ccc}\nsvg text{font:12px "
         "sans-serif;text-anchor:middle}.bar{height:10px;background:#1565c0}"

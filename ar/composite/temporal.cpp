@@ -12,52 +12,83 @@
 namespace ar {
 namespace {
 
-cv::Mat added_by(RenderedPair const& pair)
+bool is_finite(cv::Vec3f const& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+
+/// What objects add, and where that is anything.
+struct Added {
+    cv::Mat radiance; ///< CV_32FC3
+    cv::Mat any;      ///< CV_8UC1, 255 within the radius of something
+    cv::Rect where;   ///< around those
+};
+
+Added added_by(RenderedPair const& pair, int radius)
 {
-    cv::Mat added(pair.with.size(), CV_32FC3);
-    added.forEach<cv::Vec3f>([&](cv::Vec3f& v, int const* at) {
-        float const a = pair.coverage.at<float>(at[0], at[1]);
-        v = pair.with.at<cv::Vec3f>(at[0], at[1]);
-        if (a < 1) v -= (1 - a) * pair.without.at<cv::Vec3f>(at[0], at[1]);
+    Added added;
+    added.radiance.create(pair.with.size(), CV_32FC3);
+    added.any.create(pair.with.size(), CV_8UC1);
+    cv::parallel_for_({0, pair.with.rows}, [&](cv::Range const& rows) {
+        for (int y = rows.start; y < rows.end; ++y) {
+            auto const* const with = pair.with.ptr<cv::Vec3f>(y);
+            auto const* const without = pair.without.ptr<cv::Vec3f>(y);
+            auto const* const coverage = pair.coverage.ptr<float>(y);
+            auto* const v = added.radiance.ptr<cv::Vec3f>(y);
+            auto* const any = added.any.ptr<uchar>(y);
+            for (int x = 0; x < pair.with.cols; ++x) {
+                v[x] = coverage[x] < 1 ? cv::Vec3f(with[x] - (1 - coverage[x]) * without[x]) : with[x];
+                any[x] = v[x] != cv::Vec3f(0, 0, 0) ? 255 : 0;
+            }
+        }
     });
+    int const side = 2 * radius + 1;
+    cv::dilate(added.any, added.any, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
+    added.where = cv::boundingRect(added.any);
     return added;
 }
 
-bool is_finite(cv::Vec3f const& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
-
-/// Around each pixel of one picture.
+/// Means around each pixel, of the part where something is added.
 struct Neighbourhood {
-    cv::Mat mean, deviation; ///< CV_32FC3
-    cv::Mat any;             ///< CV_8UC1: 0 where nothing is added; running sums leave rounding errors there
+    cv::Mat mean, mean_square; ///< CV_32FC3; of floats: equal values may get 3e-4 of themselves as deviation
 };
 
-Neighbourhood around(cv::Mat const& added, int radius)
+Neighbourhood around(Added const& added, int radius)
 {
-    Neighbourhood n;
-    cv::Mat finite = added.clone(); // a NaN would spoil all sums after it
-    n.any.create(added.size(), CV_8UC1);
-    finite.forEach<cv::Vec3f>([&](cv::Vec3f& v, int const* at) {
-        n.any.at<uchar>(at[0], at[1]) = v != cv::Vec3f(0, 0, 0) ? 255 : 0;
+    cv::Mat finite = added.radiance(added.where).clone(); // a NaN would spoil all sums after it
+    finite.forEach<cv::Vec3f>([](cv::Vec3f& v, int const*) {
         if (!is_finite(v)) v = {0, 0, 0};
     });
+    Neighbourhood n;
     cv::Size const box(2 * radius + 1, 2 * radius + 1);
-    cv::dilate(n.any, n.any, cv::getStructuringElement(cv::MORPH_RECT, box));
-    n.mean = cv::Mat::zeros(added.size(), CV_32FC3);
-    n.deviation = cv::Mat::zeros(added.size(), CV_32FC3);
-    cv::Rect const where = cv::boundingRect(n.any);
-    if (where.empty()) return n;
-    cv::Mat const part = finite(where); // filters read beyond it
-    cv::Mat mean, variance;             // of floats: equal values may get 3e-4 of themselves as deviation
-    cv::boxFilter(part, mean, CV_32F, box, {-1, -1}, true, cv::BORDER_REPLICATE);
-    cv::sqrBoxFilter(part, variance, CV_32F, box, {-1, -1}, true, cv::BORDER_REPLICATE);
-    mean.copyTo(n.mean(where));
-    variance.forEach<cv::Vec3f>([&](cv::Vec3f const& square, int const* at) {
-        cv::Vec3f const m = mean.at<cv::Vec3f>(at[0], at[1]);
-        cv::Vec3f& to = n.deviation.at<cv::Vec3f>(where.y + at[0], where.x + at[1]);
-        for (int c = 0; c < 3; ++c) to[c] = std::sqrt(std::max(0.0f, square[c] - m[c] * m[c]));
-    });
+    cv::boxFilter(finite, n.mean, CV_32F, box, {-1, -1}, true, cv::BORDER_REPLICATE);
+    cv::boxFilter(finite.mul(finite), n.mean_square, CV_32F, box, {-1, -1}, true, cv::BORDER_REPLICATE);
     return n;
 }
+
+/// Where the surface that a pixel shows now was in the frame before.
+class PlaceBefore {
+public:
+    PlaceBefore(CameraModel const& camera, Pose const& before_from_now)
+        : camera_(camera),
+          turn_(glm::mat3_cast(before_from_now.rotation)),
+          shift_(before_from_now.position_m),
+          still_(shift_ == glm::dvec3(0) && std::abs(before_from_now.rotation.w) > 1 - 1e-15)
+    {
+    }
+    /// @param z metres along the axis, 0 = infinitely far. @return pixel and the depth then; depth below 0: unseen
+    glm::dvec3 operator()(int x, int y, double z) const
+    {
+        if (still_) return {x, y, z};
+        glm::dvec3 p = turn_ * glm::dvec3((x - camera_.cx) / camera_.fx, (y - camera_.cy) / camera_.fy, 1);
+        if (z > 0) p = z * p + shift_;
+        if (!(p.z > 0)) return {0, 0, -1};
+        return {camera_.fx * p.x / p.z + camera_.cx, camera_.fy * p.y / p.z + camera_.cy, z > 0 ? p.z : 0};
+    }
+
+private:
+    CameraModel camera_;
+    glm::dmat3 turn_;
+    glm::dvec3 shift_;
+    bool still_;
+};
 
 } // namespace
 
@@ -82,97 +113,86 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
     if (depth.type() != CV_32FC1 || depth.size() != size)
         throw InputError("depth for the temporal filter has another size or type", "surfaces cannot be followed",
                          "give metres along the axis as floats, of the size of the pair");
-    cv::Mat const added = added_by(pair);
-    Neighbourhood const near = around(added, settings_.radius_px);
-    Pose const before_from_now = inverse(world_from_camera_) * pose;
-    bool const still =
-        before_from_now.position_m == glm::dvec3(0) && std::abs(before_from_now.rotation.w) > 1 - 1e-15;
-
-    // Where the surface of a pixel was, if the frame before shows it.
-    auto const place_before = [&](int x, int y, float z) -> std::optional<std::pair<glm::dvec2, double>> {
-        if (still) return std::pair{glm::dvec2(x, y), double(z)};
-        glm::dvec3 const ray((x - camera_.cx) / camera_.fx, (y - camera_.cy) / camera_.fy, 1);
-        glm::dvec3 const p = z > 0 ? before_from_now * (double(z) * ray) : before_from_now.rotation * ray;
-        if (!(p.z > 0)) return std::nullopt;
-        return std::pair{glm::dvec2(camera_.fx * p.x / p.z + camera_.cx, camera_.fy * p.y / p.z + camera_.cy),
-                         z > 0 ? p.z : 0.0};
-    };
-    auto const history = [&](int x, int y) -> std::optional<cv::Vec3f> {
-        auto const before = place_before(x, y, depth.at<float>(y, x));
-        if (!before) return std::nullopt;
-        auto const [at, z] = *before;
-        if (!(at.x > -1 && at.y > -1 && at.x < size.width && at.y < size.height)) return std::nullopt;
-        int const x0 = int(std::floor(at.x)), y0 = int(std::floor(at.y));
-        double const fx = at.x - x0, fy = at.y - y0;
-        cv::Vec3d sum(0, 0, 0);
-        double weight = 0;
-        float const a = pair.coverage.at<float>(y, x);
-        for (int j = 0; j < 2; ++j)
-            for (int i = 0; i < 2; ++i) {
-                double const w = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
-                cv::Point const q(x0 + i, y0 + j);
-                if (!(w > 0) || q.x < 0 || q.y < 0 || q.x >= size.width || q.y >= size.height) continue;
-                if (!(std::abs(coverage_.at<float>(q) - a) <= settings_.coverage_tolerance)) continue;
-                double const d = depth_.at<float>(q);
-                if ((d > 0) != (z > 0) || std::abs(d - z) > settings_.depth_tolerance * z) continue;
-                cv::Vec3f const v = added_.at<cv::Vec3f>(q);
-                if (!is_finite(v)) continue;
-                sum += w * cv::Vec3d(v);
-                weight += w;
-            }
-        if (!(weight > 1e-3)) return std::nullopt;
-        return cv::Vec3f(sum * (1 / weight));
-    };
-
+    Added const added = added_by(pair, settings_.radius_px);
+    cv::Rect const where = added.where;
     counts_ = {};
-    cv::Mat filtered = added.clone();
-    std::mutex adding;
-    if (!added_.empty())
-        cv::parallel_for_({0, size.height}, [&](cv::Range const& rows) {
+    RenderedPair out{pair.with.clone(), pair.without, pair.coverage, pair.direct};
+    cv::Mat filtered = added.radiance.clone();
+    if (added_.empty()) {
+        counts_.fresh = filtered.total();
+    } else {
+        counts_.followed = filtered.total() - std::size_t(where.area()); // nothing is there, as before
+        PlaceBefore const place_before(camera_, inverse(world_from_camera_) * pose);
+        auto const history = [&](int x, int y, float a) -> std::optional<cv::Vec3f> {
+            glm::dvec3 const before = place_before(x, y, depth.at<float>(y, x));
+            double const z = before.z;
+            if (!(z >= 0 && before.x > -1 && before.y > -1 && before.x < size.width && before.y < size.height))
+                return std::nullopt;
+            int const x0 = int(std::floor(before.x)), y0 = int(std::floor(before.y));
+            float const fx = float(before.x - x0), fy = float(before.y - y0);
+            cv::Vec3f sum(0, 0, 0);
+            float weight = 0;
+            for (int j = 0; j < 2; ++j)
+                for (int i = 0; i < 2; ++i) {
+                    float const w = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
+                    cv::Point const q(x0 + i, y0 + j);
+                    if (!(w > 0) || q.x < 0 || q.y < 0 || q.x >= size.width || q.y >= size.height) continue;
+                    if (!(std::abs(coverage_.at<float>(q) - a) <= settings_.coverage_tolerance)) continue;
+                    double const d = depth_.at<float>(q);
+                    if ((d > 0) != (z > 0) || std::abs(d - z) > settings_.depth_tolerance * z) continue;
+                    cv::Vec3f const v = added_.at<cv::Vec3f>(q);
+                    if (!is_finite(v)) continue;
+                    sum += w * v;
+                    weight += w;
+                }
+            if (!(weight > 1e-3f)) return std::nullopt;
+            return sum * (1 / weight);
+        };
+        Neighbourhood const near = where.empty() ? Neighbourhood{} : around(added, settings_.radius_px);
+        std::mutex adding;
+        cv::parallel_for_({where.y, where.y + where.height}, [&](cv::Range const& rows) {
             TemporalCounts counts;
             for (int y = rows.start; y < rows.end; ++y)
-                for (int x = 0; x < size.width; ++x) {
-                    cv::Vec3f& v = filtered.at<cv::Vec3f>(y, x);
-                    if (near.any.at<uchar>(y, x) == 0) {
+                for (int x = where.x; x < where.x + where.width; ++x) {
+                    if (added.any.at<uchar>(y, x) == 0) {
                         ++counts.followed;
                         continue;
                     }
-                    cv::Vec3f const m = near.mean.at<cv::Vec3f>(y, x), s = near.deviation.at<cv::Vec3f>(y, x);
-                    auto const h = history(x, y);
-                    if (!h || !is_finite(v)) {
+                    cv::Vec3f const now = added.radiance.at<cv::Vec3f>(y, x);
+                    float const a = pair.coverage.at<float>(y, x);
+                    auto const h = history(x, y, a);
+                    if (!h || !is_finite(now)) {
                         ++counts.fresh;
                         continue;
                     }
                     ++counts.followed;
+                    cv::Vec3f const m = near.mean.at<cv::Vec3f>(y - where.y, x - where.x);
+                    cv::Vec3f const square = near.mean_square.at<cv::Vec3f>(y - where.y, x - where.x);
+                    cv::Vec3f v;
                     for (int c = 0; c < 3; ++c) {
-                        float const reach = settings_.gamma * s[c];
+                        float const reach = settings_.gamma * std::sqrt(std::max(0.0f, square[c] - m[c] * m[c]));
                         float held = (*h)[c];
                         if (held < m[c] - reach || held > m[c] + reach) {
                             ++counts.clipped;
                             held = held < m[c] ? m[c] - reach : m[c] + reach;
                         }
-                        v[c] = held + settings_.weight * (v[c] - held);
+                        v[c] = held + settings_.weight * (now[c] - held);
                     }
+                    if (v == now) continue; // what is unchanged keeps all its bits
+                    filtered.at<cv::Vec3f>(y, x) = v;
+                    out.with.at<cv::Vec3f>(y, x) =
+                        a < 1 ? cv::Vec3f(v + (1 - a) * pair.without.at<cv::Vec3f>(y, x)) : v;
                 }
             std::lock_guard const lock(adding);
             counts_.followed += counts.followed;
             counts_.fresh += counts.fresh;
             counts_.clipped += counts.clipped;
         });
-    else
-        counts_.fresh = added.total();
+    }
     added_ = filtered;
     coverage_ = pair.coverage.clone();
     depth_ = depth.clone();
     world_from_camera_ = pose;
-
-    RenderedPair out{pair.with.clone(), pair.without, pair.coverage, pair.direct};
-    out.with.forEach<cv::Vec3f>([&](cv::Vec3f& v, int const* at) {
-        cv::Vec3f const changed = filtered.at<cv::Vec3f>(at[0], at[1]), now = added.at<cv::Vec3f>(at[0], at[1]);
-        if (changed == now) return; // what is unchanged keeps all its bits
-        float const a = pair.coverage.at<float>(at[0], at[1]);
-        v = a < 1 ? changed + (1 - a) * pair.without.at<cv::Vec3f>(at[0], at[1]) : changed;
-    });
     return out;
 }
 
