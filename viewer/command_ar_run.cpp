@@ -3,7 +3,7 @@
 #include "viewer/ar/ar_window.h"
 #include "viewer/ar/frame_table.h"
 #include "viewer/ar/frame_truth.h"
-#include "viewer/ar/picture_folder.h"
+#include "viewer/ar_recording.h"
 #include "viewer/commands.h"
 #include "viewer/interrupt.h"
 #include "viewer/outputs.h"
@@ -19,16 +19,16 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunArguments {
-    std::string session, out, poses, truth, true_poses, frame_table, stats;
+    std::string session, out, video, record_input, poses, truth, true_poses, frame_table, stats;
     int frames = 0;
-    bool fast = false, window = false;
+    bool fast = false, window = false, gpu = false;
     std::string monitor;
 };
 
 /// Nothing that is read may be written over.
 void check_arguments(RunArguments const& a, ArSession const& s)
 {
-    check_outputs({a.frame_table, a.stats},
+    check_outputs({a.frame_table, a.stats, a.video},
                   {a.session, a.poses, a.true_poses, s.camera.string(), s.markers.string(), s.light.string(),
                    s.real.scene.string(), s.virtual_things.scene.string()});
     std::error_code ignored;
@@ -42,18 +42,29 @@ int run_session(RunArguments const& a, bool poses_only)
 {
     ArSession const session = read_ar_session(a.session);
     check_arguments(a, session);
+    if (!a.video.empty()) {
+        glm::ivec2 const size_px = load_ar_camera(session.camera).model.size_px;
+        check_video(a.video, size_px.x, size_px.y, 30);
+    }
     ArRunOptions o;
     o.frames = a.frames;
     o.pace = a.fast ? ar::Pace::fastest : ar::Pace::own;
     o.find_poses_only = poses_only;
+    if (a.gpu) o.composite = CompositeBy::window;
     if (!a.poses.empty()) o.poses = ar::read_poses(a.poses);
     gi::Report report;
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
-    std::optional<PictureFolder> folder;
     FrameTruth truth(a.truth, a.true_poses);
+    ArRecording recording({a.out, a.video, a.record_input, session.camera.string(),
+                           a.fast ? PictureThread::WhenFull::wait : PictureThread::WhenFull::lose});
     std::optional<ArWindow> window;
-    if (!a.out.empty()) folder.emplace(a.out);
+    std::optional<ar::Compositor> compositor;
+    o.opened = [&](ar::SourceDescription const& source, ArPipeline const& pipeline) {
+        if (a.gpu) compositor = pipeline.compositor();
+        recording.begin(source);
+    };
+    if (!a.record_input.empty()) o.taken = [&](ar::Frame const& f) { recording.add_input(f); };
     auto const look = [&] {
         if (window && window->wants_close()) stop.request();
     };
@@ -65,18 +76,23 @@ int run_session(RunArguments const& a, bool poses_only)
     auto const keep = [&] {
         if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
         if (!a.frame_table.empty()) gi::write_text(a.frame_table, frame_table(summary));
-        fmt::print("{}{}", describe(summary), describe(truth.errors()));
+        fmt::print("{}{}{}", describe(summary), describe(truth.errors()), recording.text());
         print_losses(report);
     };
     auto const shown = [&](ArFrameRecord& f, ArResult const& r) {
-        if (a.window && !window) window.emplace(ArWindowSettings{{r.rgb.cols, r.rgb.rows}, a.monitor}, report);
+        if (a.window && !window) {
+            ArWindowSettings settings{.size_px = {r.rgb.cols, r.rgb.rows}, .monitor = a.monitor};
+            settings.compositor = compositor ? &*compositor : nullptr;
+            window.emplace(settings, report);
+        }
         if (window) window->show(f, r);
         look();
-        if (folder) folder->add(f.sequence, r.rgb);
+        recording.add(f, r.rgb);
         truth.add(f, r);
     };
     try {
         run_ar(session, o, shown, stop, report, summary);
+        recording.finish();
     } catch (...) {
         if (!summary.frames.empty()) keep();
         throw;
@@ -84,6 +100,13 @@ int run_session(RunArguments const& a, bool poses_only)
     keep();
     if (summary.end.kind == ar::SourceState::Kind::lost) {
         std::fputs(fmt::format("lightwell: the source was lost: {}\n", summary.end.reason).c_str(), stderr);
+        return 1;
+    }
+    if (!recording.failure().empty()) {
+        std::fputs(fmt::format("lightwell: '{}' was cut off ({}) what was written until then can be played\n",
+                               a.record_input, recording.failure())
+                       .c_str(),
+                   stderr);
         return 1;
     }
     if (summary.frames.empty() && !stop.requested())
@@ -111,15 +134,30 @@ void add_ar_run(CLI::App& ar, int& exit_code)
     CLI::App* const run_command = ar.add_subcommand("run", "Add virtual things to frames, live or from files");
     add_session_options(*run_command, *run);
     run_command->add_option("--out", run->out, "Folder for the composites, as PNG");
+    run_command->add_option("--video", run->video,
+                            "The composites as a video, .mkv (lossless) or .mp4, each shown until the next");
+    run_command
+        ->add_option("--record-input", run->record_input, "Folder to make: the camera's frames as a session")
+        ->excludes("--fast");
     run_command->add_option("--poses", run->poses, "Where the camera was (CSV or TUM), in place of its markers");
-    run_command->add_flag("--window", run->window, "Show it: S before and after, H panel, Escape ends");
+    CLI::Option* const window =
+        run_command->add_flag("--window", run->window, "Show it: S before and after, H panel, Escape ends");
     run_command->add_option("--monitor", run->monitor, "Full screen on the one of this number or name")
         ->needs("--window");
     run_command->add_option("--truth", run->truth,
                             "Folder of pictures with the things really there: FLIP is told");
+    run_command
+        ->add_flag("--gpu", run->gpu, "Composites are made by the window's GPU: the same within a byte, no counts")
+        ->needs(window)
+        ->excludes("--out")
+        ->excludes("--video")
+        ->excludes("--truth");
     run_command->footer(R"(Examples:
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
-  lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --table frames.csv --stats stages.json)");
+  lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --table frames.csv --stats stages.json
+  lightwell ar run desk/session.yaml --poses desk/poses.csv --video desk.mkv --record-input desk/recorded
+
+A frame that is rendered too late for a newer one is given up and counted as overtaken; with --fast none is.)");
     run_command->callback([run, &exit_code] { exit_code = run_session(*run, false); });
 }
 
