@@ -16,6 +16,7 @@
 #include "viewer/validators.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fmt/format.h>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -59,6 +60,14 @@ std::vector<double> values_of(std::vector<ArFrameRecord> const& frames, double (
     std::vector<double> values;
     for (ArFrameRecord const& f : frames) values.push_back(value(f));
     return values;
+}
+
+/// Frames whose camera was found: into others nothing is rendered.
+double found_percent(std::vector<ArFrameRecord> const& frames)
+{
+    auto const found = std::count_if(frames.begin(), frames.end(),
+                                     [](ArFrameRecord const& f) { return f.world_from_camera.has_value(); });
+    return frames.empty() ? 0 : 100 * double(found) / double(frames.size());
 }
 
 /// Median, 95 % and most of each stage.
@@ -139,7 +148,7 @@ void measure(BenchArguments const& a, ArSession session, MeasureSettings const& 
         if (stop.requested()) return;
         bool const swapped = settings.in_window;
         auto const [plain, bytes] = plain_over_ours(m);
-        table.add({size, double(paths), resolution, m.frames_per_s,
+        table.add({size, double(paths), resolution, m.frames_per_s, found_percent(m.fast),
                    cell_of(values_of(
                        m.own, swapped ? [](ArFrameRecord const& f) { return f.swapped_ms; }
                                       : [](ArFrameRecord const& f) { return f.latency_ms; })),
@@ -175,11 +184,11 @@ int run_bench(BenchArguments const& a)
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     char const* const latency = a.window ? "capture_to_swap_ms" : "capture_to_result_ms";
-    BenchTable table =
-        start_table("ar", "Frames per second and latency of augmented reality, with the error",
-                    {"size", "paths", "resolution", "fast_frames_per_s", latency, "own_frames", "own_overtaken",
-                     "flip_affected", "flip_of_adding_nothing", "flip_elsewhere", "position_mm", "rotation_deg",
-                     "opencv_share_of_detect", "plain_opencv_over_composite", "plain_opencv_differs_bytes"});
+    BenchTable table = start_table("ar", "Frames per second and latency of augmented reality, with the error",
+                                   {"size", "paths", "resolution", "fast_frames_per_s", "found_percent", latency,
+                                    "own_frames", "own_overtaken", "flip_affected", "flip_of_adding_nothing",
+                                    "flip_elsewhere", "position_mm", "rotation_deg", "opencv_share_of_detect",
+                                    "plain_opencv_over_composite", "plain_opencv_differs_bytes"});
     BenchTable stages =
         start_table("ar_stages", "Stages of a frame",
                     {"size", "paths", "resolution", "pace", "stage", "median_ms", "p95_ms", "most_ms"});
@@ -189,7 +198,7 @@ int run_bench(BenchArguments const& a)
     if (!a.session.empty()) {
         ArSession const session = read_ar_session(a.session);
         fs::path const folder = fs::path(a.session).parent_path();
-        MeasureSettings settings{{}, {}, a.window};
+        MeasureSettings settings{a.frames, {}, {}, a.window};
         if (fs::is_directory(folder / "truth")) settings.truth = folder / "truth";
         if (fs::exists(folder / "poses.csv")) settings.true_poses = folder / "poses.csv";
         measure(a, session, settings, true, table, stages, stop, report);
@@ -198,7 +207,7 @@ int run_bench(BenchArguments const& a)
             auto const [width, height] = parse_size(size);
             fs::path const file = synthetic_session(a, {width, height}, stop, report);
             if (stop.requested()) break;
-            MeasureSettings settings{{}, file.parent_path() / "poses.csv", a.window};
+            MeasureSettings settings{a.frames, {}, file.parent_path() / "poses.csv", a.window};
             if (a.truth_paths > 0) settings.truth = file.parent_path() / "truth";
             measure(a, read_ar_session(file), settings, false, table, stages, stop, report);
             if (stop.requested()) break;
@@ -323,7 +332,7 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
         ->check(in_range(0.05, 4))
         ->excludes(session)
         ->capture_default_str();
-    c->add_option("--frames", a->frames, "Of each desk; with --counter: to be shown")
+    c->add_option("--frames", a->frames, "Of each desk or session; with --counter: to be shown")
         ->check(CLI::Range(2, 100000))
         ->capture_default_str();
     c->add_option("--truth-paths", a->truth_paths, "Of the desk's frames and truth, per pixel; 0 = no truth")
@@ -337,7 +346,7 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
     c->add_option("--out", a->out, "Folder for the tables, as JSON and CSV");
     c->add_flag("--json", a->json, "Print the tables as JSON");
     c->footer(R"(Examples:
-  lightwell ar bench --size 160x120 --frames 3 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table
+  lightwell ar bench --size 480x360 --frames 3 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table
   lightwell ar bench --counter --size 320x240 --frames 10
 
 Each quality is run twice: as fast as possible (frames per second, error; nothing is given up) and at the camera's own pace of

@@ -21,7 +21,7 @@ TEST(ArBench, TellsSpeedWithItsError)
 {
     TemporaryFolder const folder;
     std::string const call =
-        "ar bench --size 160x120 --frames 3 --paths 1,2 --truth-paths 2 --folder desks --out table";
+        "ar bench --size 480x360 --frames 3 --paths 1,2 --truth-paths 2 --folder desks --out table";
     Outcome const o = run_well(call, folder.path());
     EXPECT_NE(o.out.find("render"), std::string::npos) << o.out;
     Json const table = Json::parse(file_text(folder / "table/ar.json"));
@@ -30,6 +30,11 @@ TEST(ArBench, TellsSpeedWithItsError)
         EXPECT_GT(value_of(table, "fast_frames_per_s", row), 0);
         EXPECT_GT(value_of(table, "flip_affected", row), 0);
         EXPECT_GT(value_of(table, "flip_of_adding_nothing", row), value_of(table, "flip_elsewhere", row));
+        EXPECT_EQ(value_of(table, "found_percent", row), 100);
+        EXPECT_LT(value_of(table, "flip_affected", row), value_of(table, "flip_of_adding_nothing", row));
+        EXPECT_GT(value_of(table, "plain_opencv_over_composite", row), 0);
+        EXPECT_LT(value_of(table, "plain_opencv_differs_bytes", row), 1);
+        EXPECT_LT(value_of(table, "position_mm", row), 10);
         EXPECT_GT(value_of(table, "opencv_share_of_detect", row), 0);
     }
     Json const stages = Json::parse(file_text(folder / "table/ar_stages.json"));

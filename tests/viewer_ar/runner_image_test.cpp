@@ -5,10 +5,13 @@
 #include "ar/capture/clock.h"
 #include "ar/markers/marker_map_file.h"
 #include "tests/viewer/run_program.h"
+#include "viewer/ar/loop_source.h"
 #include "viewer/ar/synthesize.h"
 
 #include <atomic>
-#include <opencv2/core.hpp>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace viewer::test {
 namespace {
@@ -138,6 +141,28 @@ TEST_F(ArThreads, WaitWhereNothingMayBeLost)
         stop, report, summary);
     EXPECT_EQ(seen, (std::vector<std::uint64_t>{0, 1, 2}));
     EXPECT_EQ(summary.overtaken + summary.unfinished, 0u);
+}
+
+TEST_F(ArThreads, TakeFramesThatComeAgainAndAgain)
+{
+    ar::OpenOptions open = session().frames.options;
+    open.pace = ar::Pace::fastest;
+    LoopSource source(read_frames(*ar::open_source(session().frames.source, open), 3), 200);
+    ArRunOptions o;
+    o.frames = 5;
+    o.find_poses_only = true;
+    std::map<std::uint64_t, cv::Mat> shown;
+    run_ar(
+        session(), source, o, [&](ArFrameRecord& f, ArResult const& r) { shown[f.sequence] = r.camera; }, stop,
+        report, summary);
+    ASSERT_EQ(shown.size(), 5u);
+    EXPECT_EQ(summary.source.delivered, all_of(summary));
+    for (auto const& [number, rgb] : shown) {
+        std::uint64_t const k = number % 4, frame = k <= 2 ? k : 4 - k;
+        cv::Mat bgr = cv::imread(*folder / ("frames/00000" + std::to_string(frame) + ".png"));
+        cv::cvtColor(bgr, bgr, cv::COLOR_BGR2RGB);
+        EXPECT_EQ(cv::norm(rgb, bgr, cv::NORM_INF), 0) << number;
+    }
 }
 
 TEST_F(ArThreads, HandOnWhatIsThrown)

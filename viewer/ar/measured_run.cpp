@@ -1,6 +1,7 @@
 #include "viewer/ar/measured_run.h"
 
 #include "ar/capture/clock.h"
+#include "viewer/ar/loop_source.h"
 
 namespace viewer {
 namespace {
@@ -12,6 +13,13 @@ std::vector<ArFrameRecord> settled(std::vector<ArFrameRecord> frames)
     return frames;
 }
 
+ar::OpenOptions files_at_once(ArSession const& session)
+{
+    ar::OpenOptions open = session.frames.options;
+    open.pace = ar::Pace::fastest;
+    return open;
+}
+
 } // namespace
 
 MeasuredRun measure_run(ArSession const& session, MeasureSettings const& settings, gi::StopRequest& stop,
@@ -20,6 +28,7 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
     MeasuredRun m;
     ArRunOptions o;
     o.pace = ar::Pace::fastest;
+    o.frames = settings.frames;
     o.opened = [&](ar::SourceDescription const&, ArPipeline const& p) { m.compositor = p.compositor(); };
     std::vector<ArResult> results; // judged afterwards: that takes longer than a frame
     std::vector<double> shown_s;
@@ -28,7 +37,7 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
         session, o,
         [&](ArFrameRecord&, ArResult const& r) {
             shown_s.push_back(ar::steady_now_s());
-            if (r.pair) m.last = r;
+            if (r.pair || !m.last.pair) m.last = r;
             results.emplace_back();
             results.back().rgb = r.rgb;
             results.back().camera = r.camera;
@@ -48,9 +57,17 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
         if (window) window->idle();
         if (window && window->wants_close()) stop.request();
     };
+    o.frames = settings.frames + 1;
+    std::unique_ptr<ar::FrameSource> camera = ar::open_source(session.frames.source, files_at_once(session));
+    if (!camera->description().is_live) {
+        double const rate_hz = session.frames.options.frames_per_s;
+        std::vector<ar::Frame> frames = read_frames(*camera, settings.frames);
+        if (frames.empty()) return m;
+        camera = std::make_unique<LoopSource>(std::move(frames), rate_hz);
+    }
     ArSummary own;
     run_ar(
-        session, o,
+        session, *camera, o,
         [&](ArFrameRecord& f, ArResult const& r) {
             if (settings.in_window && !window)
                 window.emplace(ArWindowSettings{.size_px = {r.camera.cols, r.camera.rows}}, report);

@@ -1,5 +1,6 @@
 #pragma once
-// One session at one quality, measured: how fast, how late, how far from the truth.
+// One session at one quality, measured: how fast, how late, how far from the truth. At own pace frames of files
+// are read before, and come again and again as a camera would give them.
 
 #include "viewer/ar/ar_window.h"
 #include "viewer/ar/frame_truth.h"
@@ -13,12 +14,13 @@ struct MeasuredRun {
     std::uint64_t overtaken = 0; ///< at own pace
     std::uint64_t refused = 0;
     FrameErrors errors; ///< of what came out as fast as possible
-    /// The last composite's parts, and what puts them together.
+    /// The last composite's parts (without a pair if there is no composite), and what puts them together.
     ArResult last;
     std::optional<ar::Compositor> compositor;
 };
 
 struct MeasureSettings {
+    int frames = 20;                         ///< at most of files, and as many at own pace
     std::filesystem::path truth, true_poses; ///< folder, file; empty = not known
     bool in_window = false;                  ///< at own pace
 };

@@ -70,12 +70,19 @@ void run_ar(ArSession const& session, ArRunOptions const& options,
             std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
             gi::Report& report, ArSummary& summary)
 {
-    ArCamera const camera = load_ar_camera(session.camera);
-    ar::MarkerMap const markers = ar::read_marker_map(session.markers);
     ar::OpenOptions open = session.frames.options;
     open.pace = options.pace;
     auto const source = ar::open_source(session.frames.source, open);
-    ar::SourceDescription const about = source->description();
+    run_ar(session, *source, options, shown, stop, report, summary);
+}
+
+void run_ar(ArSession const& session, ar::FrameSource& source, ArRunOptions const& options,
+            std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
+            gi::Report& report, ArSummary& summary)
+{
+    ArCamera const camera = load_ar_camera(session.camera);
+    ar::MarkerMap const markers = ar::read_marker_map(session.markers);
+    ar::SourceDescription const about = source.description();
     check_size(about.size_px, camera.model.size_px);
     ArPipeline pipeline(session, camera, markers, report);
     if (options.opened) options.opened(about, pipeline);
@@ -83,7 +90,7 @@ void run_ar(ArSession const& session, ArRunOptions const& options,
     double const begun_s = ar::steady_now_s();
     // As fast as possible, clocks say nothing of the time that passes in pictures; recordings keep theirs.
     bool const is_numbered = !is_timed && about.frames_per_s > 0 && !is_recording(session.frames.source);
-    RunThreads ahead(*source, pipeline, options, is_timed,
+    RunThreads ahead(source, pipeline, options, is_timed,
                      is_numbered ? std::optional(about.frames_per_s) : std::nullopt, report);
     while (!stop.requested() && !ahead.has_ended() &&
            (options.frames == 0 || int(summary.frames.size()) < options.frames)) {

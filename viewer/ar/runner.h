@@ -69,6 +69,10 @@ ArCamera load_ar_camera(std::filesystem::path const& calibration);
 void run_ar(ArSession const& session, ArRunOptions const& options,
             std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
             gi::Report& report, ArSummary& summary);
+/// The same, of a source that is open, in place of the session's.
+void run_ar(ArSession const& session, ar::FrameSource& source, ArRunOptions const& options,
+            std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
+            gi::Report& report, ArSummary& summary);
 
 struct Spread {
     double median = 0, p95 = 0, most = 0;
