@@ -126,6 +126,31 @@ TEST_F(ArRuns, CountFramesThatAreNoFrames)
     EXPECT_NE(o.out.find("1 refused"), std::string::npos) << o.out;
 }
 
+TEST_F(ArRuns, KeepResultAndInput)
+{
+    Outcome const o =
+        run("ar run session.yaml --poses poses.csv --video run.mkv --record-input recorded --out out");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.out.find("recorded: 3 frames; 0 lost"), std::string::npos) << o.out;
+    EXPECT_TRUE(fs::exists(desk() / "run.mkv"));
+    EXPECT_FALSE(fs::exists(desk() / ".run.unfinished.mkv"));
+    // What was recorded is what was filmed: it runs again.
+    std::string text = session();
+    text.replace(text.find("source: frames"), 14, "source: recorded");
+    write(desk() / "again.yaml", text);
+    Outcome const again = run("ar run again.yaml --fast --video again.mkv --out again");
+    ASSERT_EQ(again.code, 0) << again.err;
+    EXPECT_NE(again.out.find("again.mkv: 3 pictures at 30 Hz, 0 of them repeated"), std::string::npos)
+        << again.out;
+    EXPECT_EQ(std::distance(fs::directory_iterator(desk() / "again"), {}), 3);
+
+    Outcome const twice = run("ar run session.yaml --record-input recorded");
+    EXPECT_EQ(twice.code, 2);
+    EXPECT_NE(twice.err.find("recorded"), std::string::npos) << twice.err;
+    EXPECT_EQ(run("ar run session.yaml --fast --video run.avi").code, 2);
+    EXPECT_EQ(run("ar run session.yaml --fast --record-input other").code, 2);
+}
+
 TEST_F(ArRuns, RefuseACalibrationOfAnotherSize)
 {
     std::string text = file_text(desk() / "camera.yaml");

@@ -35,5 +35,21 @@ TEST_F(ArWindows, ShowTheSessionUntilEscape)
     EXPECT_LT(std::count(table.begin(), table.end(), '\n'), 41) << "Escape ends it";
 }
 
+TEST_F(ArWindows, ShowEachFrameWithItsOwnThings)
+{
+    // Reads number and ball back from the window's buffer.
+    Outcome const o = run("ar bench --counter --window --size 320x240 --frames 12", folder.path());
+    EXPECT_EQ(o.code, 0) << o.err << o.out;
+}
+
+TEST_F(ArWindows, CompositeOnTheGpu)
+{
+    run_well("ar synthesize desk --frames 3 --size 160x120 --paths 1 --no-truth --no-denoise", folder.path());
+    Outcome const o = run("ar run desk/session.yaml --fast --window --gpu --poses desk/poses.csv", folder.path());
+    EXPECT_EQ(o.code, 0) << o.err;
+    EXPECT_NE(o.out.find("3 frames, "), std::string::npos) << o.out;
+    EXPECT_NE(o.out.find("present (ms)"), std::string::npos) << o.out;
+}
+
 } // namespace
 } // namespace viewer::test

@@ -1,0 +1,57 @@
+// Measuring through the program, and the check of the chain itself.
+
+#include "tests/viewer/run_program.h"
+
+#include <nlohmann/json.hpp>
+
+namespace viewer::test {
+namespace {
+
+using Json = nlohmann::json;
+
+double value_of(Json const& table, std::string const& column, std::size_t row = 0)
+{
+    auto const& columns = table.at("columns");
+    auto const at = std::find(columns.begin(), columns.end(), column) - columns.begin();
+    Json const& cell = table.at("rows").at(row).at(std::size_t(at));
+    return cell.is_object() ? cell.at("median").get<double>() : cell.is_null() ? -1 : cell.get<double>();
+}
+
+TEST(ArBench, TellsSpeedWithItsError)
+{
+    TemporaryFolder const folder;
+    std::string const call =
+        "ar bench --size 480x360 --frames 3 --paths 1,2 --truth-paths 2 --folder desks --out table";
+    Outcome const o = run_well(call, folder.path());
+    EXPECT_NE(o.out.find("render"), std::string::npos) << o.out;
+    Json const table = Json::parse(file_text(folder / "table/ar.json"));
+    ASSERT_EQ(table.at("rows").size(), 2u);
+    for (std::size_t row : {0u, 1u}) {
+        EXPECT_GT(value_of(table, "fast_frames_per_s", row), 0);
+        EXPECT_GT(value_of(table, "flip_affected", row), 0);
+        EXPECT_GT(value_of(table, "flip_of_adding_nothing", row), value_of(table, "flip_elsewhere", row));
+        EXPECT_EQ(value_of(table, "found_percent", row), 100);
+        EXPECT_LT(value_of(table, "flip_affected", row), value_of(table, "flip_of_adding_nothing", row));
+        EXPECT_GT(value_of(table, "plain_opencv_over_composite", row), 0);
+        EXPECT_LT(value_of(table, "plain_opencv_differs_bytes", row), 1);
+        EXPECT_LT(value_of(table, "position_mm", row), 10);
+        EXPECT_GT(value_of(table, "opencv_share_of_detect", row), 0);
+    }
+    Json const stages = Json::parse(file_text(folder / "table/ar_stages.json"));
+    EXPECT_GT(stages.at("rows").size(), 10u);
+    EXPECT_TRUE(std::filesystem::exists(folder / "desks"));
+}
+
+TEST(ArBench, FindsNumberBallAndTimesInAgreement)
+{
+    TemporaryFolder const folder;
+    Outcome const o = run("ar bench --counter --size 320x240 --frames 12 --json", folder.path());
+    EXPECT_EQ(o.code, 0) << o.err << o.out;
+    Json const table = Json::parse(o.out);
+    EXPECT_EQ(value_of(table, "frames"), 12);
+    EXPECT_EQ(value_of(table, "ball_elsewhere"), 0);
+    EXPECT_LT(value_of(table, "ball_off_most_px"), 1.5);
+}
+
+} // namespace
+} // namespace viewer::test

@@ -1,0 +1,82 @@
+#include "viewer/ar/measured_run.h"
+
+#include "ar/capture/clock.h"
+#include "viewer/ar/loop_source.h"
+
+namespace viewer {
+namespace {
+
+/// Without the first.
+std::vector<ArFrameRecord> settled(std::vector<ArFrameRecord> frames)
+{
+    if (!frames.empty()) frames.erase(frames.begin());
+    return frames;
+}
+
+ar::OpenOptions files_at_once(ArSession const& session)
+{
+    ar::OpenOptions open = session.frames.options;
+    open.pace = ar::Pace::fastest;
+    return open;
+}
+
+} // namespace
+
+MeasuredRun measure_run(ArSession const& session, MeasureSettings const& settings, gi::StopRequest& stop,
+                        gi::Report& report)
+{
+    MeasuredRun m;
+    ArRunOptions o;
+    o.pace = ar::Pace::fastest;
+    o.frames = settings.frames;
+    o.opened = [&](ar::SourceDescription const&, ArPipeline const& p) { m.compositor = p.compositor(); };
+    std::vector<ArResult> results; // judged afterwards: that takes longer than a frame
+    std::vector<double> shown_s;
+    ArSummary fast;
+    run_ar(
+        session, o,
+        [&](ArFrameRecord&, ArResult const& r) {
+            shown_s.push_back(ar::steady_now_s());
+            if (r.pair || !m.last.pair) m.last = r;
+            results.emplace_back();
+            results.back().rgb = r.rgb;
+            results.back().camera = r.camera;
+        },
+        stop, report, fast);
+    if (shown_s.size() > 1) m.frames_per_s = double(shown_s.size() - 1) / (shown_s.back() - shown_s.front());
+    FrameTruth truth(settings.truth, settings.true_poses);
+    for (std::size_t k = 0; k < results.size() && !stop.requested(); ++k) truth.add(fast.frames[k], results[k]);
+    m.errors = truth.errors();
+    m.refused = fast.refused;
+    m.fast = settled(std::move(fast.frames));
+    if (stop.requested()) return m;
+
+    o.pace = ar::Pace::own;
+    std::optional<ArWindow> window;
+    o.idle = [&] {
+        if (window) window->idle();
+        if (window && window->wants_close()) stop.request();
+    };
+    o.frames = settings.frames + 1;
+    std::unique_ptr<ar::FrameSource> camera = ar::open_source(session.frames.source, files_at_once(session));
+    if (!camera->description().is_live) {
+        double const rate_hz = session.frames.options.frames_per_s;
+        std::vector<ar::Frame> frames = read_frames(*camera, settings.frames);
+        if (frames.empty()) return m;
+        camera = std::make_unique<LoopSource>(std::move(frames), rate_hz);
+    }
+    ArSummary own;
+    run_ar(
+        session, *camera, o,
+        [&](ArFrameRecord& f, ArResult const& r) {
+            if (settings.in_window && !window)
+                window.emplace(ArWindowSettings{.size_px = {r.camera.cols, r.camera.rows}}, report);
+            if (window) window->show(f, r);
+        },
+        stop, report, own);
+    m.overtaken = own.overtaken;
+    m.own = settled(std::move(own.frames));
+    return m;
+}
+
+} // namespace viewer
