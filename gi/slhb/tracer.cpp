@@ -59,6 +59,16 @@ struct SlhbTracer::Unshadowed {
     PathSample* sample;
 };
 
+namespace {
+
+/// One function for all, so that it rounds in one way.
+[[gnu::noinline]] SkyAlong look_at_sky(WorldView const& world, vec3 direction)
+{
+    return {environment_radiance(world, direction), environment_direction_pdf(world, direction)};
+}
+
+} // namespace
+
 std::vector<SkyAlong> sky_along(AxisSet const& axes, World const& world)
 {
     std::vector<SkyAlong> sky;
@@ -66,7 +76,7 @@ std::vector<SkyAlong> sky_along(AxisSet const& axes, World const& world)
     WorldView const w = view(world);
     for (std::size_t a = 0; a < axes.pool().size(); ++a)
         for (vec3 const direction : {-axes.axis(a), axes.axis(a)})
-            sky.push_back({environment_radiance(w, direction), environment_direction_pdf(w, direction)});
+            sky.push_back(look_at_sky(w, direction));
     return sky;
 }
 
@@ -77,10 +87,8 @@ void SlhbTracer::add_sky(Pass const& pass, State& s, Vertex const& last) const
         return;
     }
     if (world_.environment_radiance.empty()) return;
-    SkyAlong const sky = s.by_axis && !pass.sky.empty()
-                             ? pass.sky[2 * last.axis + (last.origin.up ? 1 : 0)]
-                             : SkyAlong{environment_radiance(world_, s.direction),
-                                        s.arrival_pdf > 0 ? environment_direction_pdf(world_, s.direction) : 0};
+    SkyAlong const sky = s.by_axis && !pass.sky.empty() ? pass.sky[2 * last.axis + (last.origin.up ? 1 : 0)]
+                                                        : look_at_sky(world_, s.direction);
     vec3 light = sky.radiance;
     if (s.arrival_pdf > 0) light *= power_heuristic(s.arrival_pdf, sky.pdf);
     s.bucket(s.scatterings) += s.throughput * light;
