@@ -37,6 +37,14 @@ bool coverage_differs(Material const& a, Material const& b)
            !(a.base_color_map == b.base_color_map);
 }
 
+bool same(AliasTable const& a, AliasTable const& b)
+{
+    return a.total == b.total &&
+           std::ranges::equal(a.entries, b.entries, [](AliasEntry const& x, AliasEntry const& y) {
+               return x.keep == y.keep && x.alias == y.alias && x.probability == y.probability;
+           });
+}
+
 bool same(Bounds const& a, Bounds const& b) { return a.low == b.low && a.high == b.high; }
 
 } // namespace
@@ -147,8 +155,14 @@ void MovingWorld::renew_emitters(Changes& changes)
 
 void MovingWorld::renew_light_select(Changes& changes)
 {
-    build_light_select(parts_.world, parts_.static_emitters, parts_.moving_emitters);
-    changes.light_select = true;
+    World& world = parts_.world;
+    auto const emitters = world.emitters;
+    auto const emitter_pdf = world.emitter_pdf;
+    AliasTable const select = world.light_select;
+    float const environment_pdf = world.environment_pdf;
+    build_light_select(world, parts_.static_emitters, parts_.moving_emitters);
+    changes.light_select |= !same(select, world.light_select) || environment_pdf != world.environment_pdf ||
+                            emitters != world.emitters || emitter_pdf != world.emitter_pdf;
 }
 
 Changes MovingWorld::set_light(std::size_t k, Light const& light)

@@ -50,6 +50,7 @@ void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool, bool packe
 {
     pool.grids.clear();
     pool.ranges.clear();
+    pool.first_moved = ~0u;
     pool.first_offset.clear();
     pool.first_layer.clear();
     std::size_t offsets = 0, layers = 0;

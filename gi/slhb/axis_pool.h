@@ -18,6 +18,8 @@ struct AxisPool {
     std::vector<HitLayer> layers;      ///< of all axes; then those of moving_layers.h
     /// Where something moves, in place of `offset` and numbered as that: the columns, wherever they lie.
     std::vector<LayerRange> ranges;
+    bool without_moving = false;     ///< `ranges` are not read: columns are as if nothing of what moves was there
+    std::uint32_t first_moved = ~0u; ///< layers from here on are in columns that something moving is in
     /// Instead of `layers` where that was asked for (after Yu 2012, sec. 4.3): 12 bits of depth, 1 of facing, 19
     /// of the triangle, and the range of depths of each axis.
     std::vector<std::uint32_t> packed;
@@ -29,8 +31,9 @@ struct AxisPool {
     /// @param at  index into `offset`, of a texel
     LayerRange column(std::size_t at) const
     {
-        return ranges.empty() ? LayerRange{offset[at], offset[at + 1]} : ranges[at];
+        return by_ranges() ? ranges[at] : LayerRange{offset[at], offset[at + 1]};
     }
+    bool by_ranges() const { return !ranges.empty() && !without_moving; }
     /// @param k  index into `layers` or `packed`, of axis `a`
     HitLayer layer(std::size_t a, std::uint32_t k) const;
     std::size_t bytes() const

@@ -59,13 +59,15 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
         layers_ += buffers_[axis.slot].layers.size();
     }
     built_ += axes.size();
+    if (axes.empty() && pool_.size() > 0) return;
     fill_pool(buffers_, pool_, source_.packed);
     moving_.forget();
+    moved_ = true;
 }
 
 void AxisSet::move()
 {
-    if (source_.first_moving >= source_.soup.count) return;
+    if (source_.first_moving >= source_.soup.count || !std::exchange(moved_, false)) return;
     moving_.append({source_.soup, source_.first_moving, source_.cut_outs, source_.most_layers}, cut_seeds_, pool_);
     lost_ += moving_.lost();
 }

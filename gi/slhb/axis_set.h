@@ -85,9 +85,13 @@ public:
     /// so that a pass has the same axes whether or not the passes before it were made here.
     void refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh, std::uint32_t pass);
 
-    /// Puts what moves into the axes that there are, as it is now; after store() and refresh(), and whenever it
-    /// has moved. Not with packed layers.
+    /// What moves is elsewhere.
+    void moved() { moved_ = true; }
+    /// Puts what moves into the axes that there are, as it is now; after store(), refresh() and moved(). Nothing
+    /// is done where all is as it was. Not with packed layers.
     void move();
+    /// Look-ups find what moves, or go on as if it was not there.
+    void show_moving(bool shown) { pool_.without_moving = !shown; }
 
     /// @param bounce  0 = the first  @param normal unit  @param u uniform in [0, 1)
     AxisSample sample(std::uint32_t bounce, vec3 normal, float u) const
@@ -133,6 +137,7 @@ private:
     std::vector<FewAxes> few_; ///< per sequence
     std::uint32_t few_count_ = 0;
     std::uint32_t drawn_ = 0; ///< of each sequence, the next number
+    bool moved_ = true;       ///< what moves is not in the pool as it is now
     std::uint64_t built_ = 0, lost_ = 0, layers_ = 0;
 };
 

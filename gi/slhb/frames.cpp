@@ -6,9 +6,11 @@
 #include "gi/slhb/settings.h"
 #include "gi/transport/pass_loop.h"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 
 namespace gi {
 namespace {
@@ -92,7 +94,7 @@ public:
         return results;
     }
 
-    PairResult pair(FrameView const& view, std::uint32_t paths, PairWorld const& turn,
+    PairResult pair(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
                     StopRequest const& stop) override
     {
         if (view.camera.orthographic)
@@ -105,21 +107,67 @@ public:
             asked_.slhb.axes = asked_.slhb.fresh_axes = settings_.slhb.axes;
             restart_ = true;
         }
-        see(view);
-        double const earlier = renderer_->rays();
         PairResult both;
         both.coverage.assign(std::size_t(view.width) * std::size_t(view.height), 0.0f);
         both.covered.assign(both.coverage.size(), vec3{0});
+        changed(turn(PairSide::with));
+        see(view);
+        double const earlier = renderer_->rays();
+        PathCounts const lost = settings.difference == PairDifference::vanishing && can_leave_out()
+                                    ? trace_in_place(view, settings, stop, both)
+                                    : trace_in_turns(view, settings, turn, stop, both);
+        for (RenderResult* const r : {&both.with, &both.without})
+            r->end = r->paths < settings.paths ? RenderEnd::interrupted : RenderEnd::paths;
+        tbb::parallel_for(std::size_t(0), both.coverage.size(), [&](std::size_t p) {
+            both.coverage[p] /= float(both.with.paths);
+            both.covered[p] /= float(both.with.paths);
+        });
+        report_.lose("paths cut at 1024 surfaces", lost.cut_paths);
+        report_.lose("path terms that were not finite, dropped", lost.invalid_paths);
+        finish(both.with, earlier);
+        both.with.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        end_frame();
+        return both;
+    }
+
+private:
+    FrameView full_size(Camera const& camera) const { return {camera, settings_.width, settings_.height}; }
+
+    /// Whether the world without what moves can be seen in that with it: lamps are the same.
+    bool can_leave_out() const
+    {
+        World const& world = world_.world();
+        return !settings_.slhb.exact.any() &&
+               std::ranges::none_of(world.emitters, [&](std::uint32_t t) { return t >= world.static_triangles; });
+    }
+
+    PathCounts trace_in_place(FrameView const& view, PairSettings const& settings, StopRequest const& stop,
+                              PairResult& both)
+    {
+        PathCounts lost;
+        pair_sums_.start(view.width, view.height);
+        for (std::uint32_t i = 0; i < settings.paths && !(i > 0 && stop.requested()); ++i) {
+            on_threads(settings_.threads, [&] { renderer_->pair_pass(passes_++, pair_sums_, lost); });
+            renderer_->add_coverage(0, both.coverage, both.covered);
+        }
+        both.with.paths = both.without.paths = pair_sums_.paths();
+        both.with.picture = pair_sums_.first(world_.world(), settings.layers);
+        both.without.picture = both.with.picture;
+        pair_sums_.make_second(world_.world(), both.without.picture);
+        return lost;
+    }
+
+    PathCounts trace_in_turns(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
+                              StopRequest const& stop, PairResult& both)
+    {
         sums_.clear();
         for (int side = 0; side < 2; ++side) sums_.emplace_back(view.width, view.height);
         // Every other pass begins with the side that the one before it ended with: the world changes but once.
         PairSide now = PairSide::with;
-        for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i, ++passes_)
+        for (std::uint32_t i = 0; i < settings.paths && !(i > 0 && stop.requested()); ++i, ++passes_)
             for (int half = 0; half < 2; ++half) {
-                if (half == 1 || i == 0) {
-                    now = i == 0 && half == 0     ? PairSide::with
-                          : now == PairSide::with ? PairSide::without
-                                                  : PairSide::with;
+                if (half == 1) {
+                    now = now == PairSide::with ? PairSide::without : PairSide::with;
                     changed(turn(now));
                     see(view);
                 }
@@ -132,22 +180,11 @@ public:
         for (Accumulator const& s : sums_) {
             RenderResult& r = &s == sums_.data() ? both.with : both.without;
             r.paths = s.paths;
-            r.end = r.paths < paths ? RenderEnd::interrupted : RenderEnd::paths;
-            r.picture = s.picture(world_.world());
+            r.picture = s.picture(world_.world(), settings.layers);
             lost += s.counts;
         }
-        for (float& c : both.coverage) c /= float(both.with.paths);
-        for (vec3& r : both.covered) r /= float(both.with.paths);
-        report_.lose("paths cut at 1024 surfaces", lost.cut_paths);
-        report_.lose("path terms that were not finite, dropped", lost.invalid_paths);
-        finish(both.with, earlier);
-        both.with.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-        end_frame();
-        return both;
+        return lost;
     }
-
-private:
-    FrameView full_size(Camera const& camera) const { return {camera, settings_.width, settings_.height}; }
 
     void see(FrameView const& view) { see_all({&view, 1}); }
 
@@ -187,6 +224,7 @@ private:
     std::optional<tbb::global_control> threads_;
     std::optional<SlhbRenderer> renderer_;
     std::vector<Accumulator> sums_; ///< of the views
+    PairSums pair_sums_;
     std::uint32_t passes_ = 0;
     std::uint64_t lost_ = 0; ///< layers that were reported
     bool restart_ = false;

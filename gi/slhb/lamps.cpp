@@ -30,6 +30,12 @@ ShadowView view_from(World const& world, LightChoice const& choice, vec2 u)
     return v;
 }
 
+LightSample distant_light(World const& world, LightChoice const& choice, vec2 u)
+{
+    LightSample const light = sample_light(view(world), choice, vec3{0}, u);
+    return light.distance == kInf ? light : LightSample{};
+}
+
 void add_up(AliasTable const& table, std::vector<double>& sums)
 {
     sums.clear();
@@ -73,6 +79,7 @@ Lamps::Lamps(World const& world, Bounds const& bounds, TriangleSoup const& soup,
         Lamp& lamp = lamps_.emplace_back();
         lamp.choice = {k, 0, view(world.light_select).probability(k)};
         lamp.view = view_from(world, lamp.choice, {});
+        lamp.light = distant_light(world, lamp.choice, {});
         weights.push_back(lamp.choice.probability);
     }
     chances_ = make_alias_table(weights);
@@ -102,6 +109,7 @@ void Lamps::take_point(Lamp& lamp, std::uint64_t number)
     lamp.choice = choose(double(u.x) + double(stream.sample(4)) * 0x1p-24);
     lamp.u = {u.y, u.z};
     lamp.view = view_from(world_, lamp.choice, lamp.u);
+    lamp.light = distant_light(world_, lamp.choice, lamp.u);
 }
 
 void Lamps::refresh(std::uint32_t pass)
@@ -155,6 +163,12 @@ void Lamps::build(std::span<Lamp* const> fresh, std::uint32_t pass)
                 builder_.move(int(job % 6), first_moving_, seed, lamp.shadow, lamp.taken);
         });
     moved_ = false;
+}
+
+void Lamps::show_moving(bool shown)
+{
+    for (Lamp& lamp : lamps_)
+        for (int face = 0; face < 6; ++face) ShadowMapBuilder::swap_moving(face, shown, lamp.shadow, lamp.taken);
 }
 
 } // namespace gi

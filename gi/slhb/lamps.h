@@ -15,6 +15,7 @@ struct Lamp {
     LightChoice choice;
     vec2 u{0}; ///< where on the light
     ShadowView view;
+    LightSample light; ///< where it shines from infinitely far away, the same everywhere; else pdf = 0
     ShadowMap shadow;
     std::uint64_t number = ~std::uint64_t(0); ///< of the point, among all of the sequence
     TakenTexels taken;
@@ -41,6 +42,8 @@ public:
     void moved() { moved_ = true; }
     /// The points and shadow maps of a pass. Passes count up.
     void refresh(std::uint32_t pass);
+    /// What moves casts shadows, or is taken off the maps until it is shown again, before the next refresh.
+    void show_moving(bool shown);
     std::vector<Lamp> const& lamps() const { return lamps_; }
     bool none() const { return lamps_.empty(); }
     /// Probability of picking lamp k for a path vertex; their sum is 1.

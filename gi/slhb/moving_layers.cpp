@@ -67,6 +67,7 @@ void MovingLayers::append(Source const& source, std::span<std::uint32_t const> c
     };
     if (static_layers_ == kNone) {
         static_layers_ = pool.layers.size();
+        pool.first_moved = std::uint32_t(static_layers_);
         resize_on_huge_pages(pool.ranges, pool.offset.size());
         tbb::parallel_for(std::size_t(0), pool.size(), [&](std::size_t a) {
             std::uint32_t const* const offset = &pool.offset[pool.first_offset[a]];

@@ -24,17 +24,35 @@ PrimaryMap::PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, Render
 {
 }
 
-void PrimaryMap::refresh(CameraRays const& camera, float near_m, std::uint32_t pass)
+PerspectiveGrid PrimaryMap::start(CameraRays const& camera, float near_m, std::uint32_t pass)
 {
     camera_ = camera;
     at_ = place_in_pixel(filter_, seed_, pass);
-    PerspectiveGrid const grid = camera_grid(camera_, width_, height_, at_, near_m);
     clear(map_, std::uint32_t(width_), std::uint32_t(height_));
+    return camera_grid(camera_, width_, height_, at_, near_m);
+}
+
+void PrimaryMap::refresh(CameraRays const& camera, float near_m, std::uint32_t pass)
+{
+    draw(start(camera, near_m, pass), 0, soup_.count, pass);
+}
+
+void PrimaryMap::refresh_pair(CameraRays const& camera, float near_m, std::uint32_t pass, std::size_t first_moving)
+{
+    PerspectiveGrid const grid = start(camera, near_m, pass);
+    std::size_t const first = std::min(first_moving, soup_.count);
+    draw(grid, 0, first, pass);
+    behind_ = map_;
+    draw(grid, first, soup_.count, pass);
+}
+
+void PrimaryMap::draw(PerspectiveGrid const& grid, std::size_t first, std::size_t last, std::uint32_t pass)
+{
     constexpr std::size_t kPart = 32 * TriangleSoup::kChunk;
-    tbb::parallel_for(std::size_t(0), (soup_.count + kPart - 1) / kPart, [&](std::size_t k) {
+    tbb::parallel_for(std::size_t(0), (last - first + kPart - 1) / kPart, [&](std::size_t k) {
         thread_local Fragments fragments;
         fragments.count = 0;
-        rasterize(soup_, k * kPart, std::min(soup_.count, (k + 1) * kPart), grid, fragments);
+        rasterize(soup_, first + k * kPart, std::min(last, first + (k + 1) * kPart), grid, fragments);
         cut_outs_.remove(fragments, grid, std::uint32_t(mix_bits(seed_) + pass));
         resolve(fragments, 1, map_);
     });
@@ -43,10 +61,19 @@ void PrimaryMap::refresh(CameraRays const& camera, float near_m, std::uint32_t p
 void PrimaryMap::hits(std::size_t first, std::size_t last, std::vector<PathStart>& out) const
 {
     out.clear();
-    for (std::size_t p = first; p < last; ++p) {
-        vec2 const place{float(p % std::size_t(width_)), float(p / std::size_t(width_))};
-        out.push_back({std::uint32_t(p), map_.texels[p].primitive, camera_.through(place + at_)});
-    }
+    for (std::size_t p = first; p < last; ++p) out.push_back(hit(map_, p));
+}
+
+void PrimaryMap::hits_behind(std::span<std::uint32_t const> pixels, std::vector<PathStart>& out) const
+{
+    out.clear();
+    for (std::uint32_t const p : pixels) out.push_back(hit(behind_, p));
+}
+
+PathStart PrimaryMap::hit(NearestMap const& map, std::size_t pixel) const
+{
+    vec2 const place{float(pixel % std::size_t(width_)), float(pixel / std::size_t(width_))};
+    return {std::uint32_t(pixel), map.texels[pixel].primitive, camera_.through(place + at_)};
 }
 
 std::optional<std::size_t> PrimaryMap::pixel_near(vec3 point) const

@@ -6,6 +6,7 @@
 #include "gi/slhb/tracer.h"
 
 #include <optional>
+#include <span>
 
 namespace gi {
 
@@ -21,8 +22,12 @@ public:
 
     /// Rasterises the view of a pass. @param camera  without a lens  @param near_m  what is nearer is not seen
     void refresh(CameraRays const& camera, float near_m, std::uint32_t pass);
+    /// The same, and keeps what is seen of the triangles before `first_moving` alone.
+    void refresh_pair(CameraRays const& camera, float near_m, std::uint32_t pass, std::size_t first_moving);
     /// Of pixels first..last - 1, in rows.
     void hits(std::size_t first, std::size_t last, std::vector<PathStart>& out) const;
+    /// Of pixels as they are without what moves; after refresh_pair.
+    void hits_behind(std::span<std::uint32_t const> pixels, std::vector<PathStart>& out) const;
 
     /// The pixel whose ray of this pass goes nearest by a point; none where that is outside.
     std::optional<std::size_t> pixel_near(vec3 point) const;
@@ -31,14 +36,18 @@ public:
     int height() const { return height_; }
 
 private:
+    PerspectiveGrid start(CameraRays const& camera, float near_m, std::uint32_t pass);
+    void draw(PerspectiveGrid const& grid, std::size_t first, std::size_t last, std::uint32_t pass);
+    PathStart hit(NearestMap const& map, std::size_t pixel) const;
+
     TriangleSoup const& soup_;
     CutOuts const& cut_outs_;
     CameraRays camera_;
     int width_, height_;
     PixelFilter filter_;
     std::uint64_t seed_;
-    vec2 at_{0.5f}; ///< position in the pixel
-    NearestMap map_;
+    vec2 at_{0.5f};           ///< position in the pixel
+    NearestMap map_, behind_; ///< the second without what moves
 };
 
 } // namespace gi

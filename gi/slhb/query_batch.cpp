@@ -132,6 +132,7 @@ struct Columns {
     alignas(64) std::int32_t first_layer[kRing]; ///< of the axis
     alignas(64) std::int32_t begin[kRing];       ///< layers of the column, from the axis' first on
     alignas(64) std::int32_t end[kRing];
+    alignas(64) std::uint8_t moved[kRing]; ///< something moving is in the column
 };
 
 void find_columns(GridLanes const& g, int attempt, QueryBatch const& b, std::size_t first, std::size_t at,
@@ -154,7 +155,7 @@ void find_columns(GridLanes const& g, int attempt, QueryBatch const& b, std::siz
 /// The two steps of fetching are worth it where buffers lie in no cache.
 void fetch_offsets(AxisPool const& pool, Columns const& columns, std::size_t column, std::size_t n)
 {
-    if (!pool.ranges.empty()) {
+    if (pool.by_ranges()) {
         for (std::size_t k = column; k < column + n; ++k) __builtin_prefetch(&pool.ranges[columns.texel[k]]);
         return;
     }
@@ -172,6 +173,7 @@ void find_ranges(AxisPool const& pool, Columns& columns, std::size_t column, std
         LayerRange const range = pool.column(std::size_t(columns.texel[k]));
         columns.begin[k] = std::int32_t(range.begin);
         columns.end[k] = std::int32_t(range.end);
+        columns.moved[k] = std::uint32_t(columns.first_layer[k]) + range.begin >= pool.first_moved;
     }
 }
 
@@ -457,6 +459,9 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
             find_ranges(pool, columns, slot(pair) * lanes, two);
         }
         Answer const a = answer(pool, grids_of(pair), b, first, columns, slot(pair) * lanes);
+        if (b.watched)
+            for (std::size_t k = 0; k < queries_of(pair); ++k)
+                b.near_moving[first + k] = columns.moved[slot(pair) * lanes + k];
         std::uint32_t const there =
             queries_of(pair) < 32 ? (1u << queries_of(pair)) - 1 : ~0u; // a pair has up to 32
         for (std::uint32_t bits = a.doubtful & there; bits != 0; bits &= bits - 1) {
@@ -511,12 +516,14 @@ void answer_all(AxisPool const& pool, std::size_t a, View<Surface const> surface
     b.resize(b.size());
     ask(pool, Grids(pool, a, b), surfaces, 0, b, waiting);
     for (int attempt = 1; attempt < 4 && !waiting.empty(); ++attempt) {
+        again.watched = b.watched;
         again.resize(waiting.size());
         for (std::size_t k = 0; k < waiting.size(); ++k) copy_query(b, waiting[k], again, k);
         ask(pool, Grids(pool, a, again), surfaces, attempt, again, unsure);
         std::size_t left = 0, next = 0;
         for (std::uint32_t k = 0; k < waiting.size(); ++k) {
             std::uint32_t const i = waiting[k];
+            if (b.watched) b.near_moving[i] |= again.near_moving[k];
             if (next < unsure.size() && unsure[next] == k) {
                 ++next;
                 waiting[left++] = i;
@@ -547,6 +554,7 @@ void QueryBatch::resize(std::size_t n)
         a->reserve(padded(n));
         a->resize(n);
     }
+    near_moving.resize(watched ? n : 0);
 }
 
 void QueryBatch::set(std::size_t i, WalkOrigin const& o, std::uint32_t along_axis)

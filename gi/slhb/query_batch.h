@@ -15,6 +15,10 @@ struct QueryBatch {
     std::vector<float> hit_x, hit_y, hit_z;
     std::vector<std::uint32_t> hit;       ///< triangle with kAlongAxis, or kNoLayerHit
     std::vector<std::uint32_t> hit_layer; ///< index into the pool's layers where there is a hit
+    /// Where `watched`, else empty: 1 = a column was asked that something moving is in, so that the answer might
+    /// be another one without it.
+    std::vector<std::uint8_t> near_moving;
+    bool watched = false;
 
     void resize(std::size_t n);
     std::size_t size() const { return x.size(); }

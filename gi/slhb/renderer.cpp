@@ -147,6 +147,7 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
         }
         if (contains(grid_bounds_, world_.bounds)) {
             StageTimer const timer(report_, "layers that moved");
+            axes_->moved();
             if (slhb_.schedule == Schedule::stored && walks_) axes_->move(); // for others every pass does
         } else {
             // Some room, so that it does not happen in every frame.
@@ -208,7 +209,7 @@ void SlhbRenderer::see(std::span<FrameView const> views)
     if (!exact_ && orthographic()) build_exact(); // they have no raster
 }
 
-void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings)
+void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
 {
     // Surfaces that a path may leave along an axis.
     auto const sequences =
@@ -224,12 +225,21 @@ void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Ending
         StageTimer const timer(report_, "shadow maps");
         lamps_->refresh(index);
     }
-    {
-        StageTimer const timer(report_, "G-buffer");
-        for (View& v : views_)
-            if (v.primary)
-                v.primary->refresh(eye_of_pass(v.rays, settings_.seed, index), near_plane(world_.bounds), index);
+    StageTimer const timer(report_, "G-buffer");
+    for (View& v : views_) {
+        if (!v.primary) continue;
+        CameraRays const eye = eye_of_pass(v.rays, settings_.seed, index);
+        float const near_m = near_plane(world_.bounds);
+        if (sides == Sides::pair)
+            v.primary->refresh_pair(eye, near_m, index, first_moving_);
+        else
+            v.primary->refresh(eye, near_m, index);
     }
+}
+
+void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings)
+{
+    prepare(index, Sides::one);
     StageTimer const timer(report_, "paths");
     trace(index, sums, endings);
     for (Accumulator& s : sums) ++s.paths;
@@ -297,7 +307,51 @@ void SlhbRenderer::trace_view(View const& view, SlhbTracer::Pass const& pass, bo
             }
         }
         if (sharing) shared_.note(ends, std::uint32_t(view.first + first), pass.axes.pool());
+        if (pass.first_watched == kNoPrimitive) return;
+        std::vector<std::uint32_t>& near = near_moving_[first / kBlock];
+        near.clear();
+        for (std::size_t p = first; p < last; ++p)
+            if (samples_[p].near_moving) near.push_back(std::uint32_t(p));
     });
+}
+
+/// Of the paths of the only view that what moves may count in. The world stays as it is: look-ups pass it by.
+void SlhbRenderer::trace_without(SlhbTracer::Pass pass, Work& work)
+{
+    View const& view = views_[0];
+    without_pixels_.clear();
+    for (auto const& some : near_moving_) without_pixels_.insert(without_pixels_.end(), some.begin(), some.end());
+    without_.resize(without_pixels_.size());
+    axes_->show_moving(false);
+    lamps_->show_moving(false);
+    pass.first_watched = kNoPrimitive;
+    pass.exact_world = RayWorld::what_stays;
+    SlhbTracer const tracer(world_, view.rays, view.width, settings_, slhb_);
+    work.in_blocks(without_.size(), [&](std::size_t first, std::size_t last, Work::Counts& local) {
+        thread_local std::vector<PathStart> starts;
+        view.primary->hits_behind(std::span(without_pixels_).subspan(first, last - first), starts);
+        tracer.trace(pass, starts, std::span(without_).subspan(first, last - first), {}, local.paths, local.slhb);
+    });
+    axes_->show_moving(true);
+    lamps_->show_moving(true);
+}
+
+void SlhbRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& counts)
+{
+    prepare(index, Sides::pair);
+    StageTimer const timer(report_, "paths");
+    View const& view = views_[0];
+    SlhbTracer::Pass now = tracing(index);
+    now.first_watched = std::uint32_t(first_moving_);
+    samples_.resize(view.pixels());
+    near_moving_.resize((view.pixels() + kBlock - 1) / kBlock);
+    Work work;
+    trace_view(view, now, false, work);
+    trace_without(now, work);
+    pair_paths_ += view.pixels();
+    without_paths_ += without_.size();
+    sums.add(samples_, without_pixels_, without_);
+    add_work(work, counts);
 }
 
 /// Whether paths of this pass end on the first matt layer and share what is sent on there.
@@ -315,13 +369,26 @@ bool SlhbRenderer::start_sharing(std::uint32_t index, std::size_t pixels, Ending
     return in_cells || on_layers;
 }
 
-void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums, Endings endings)
+SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index)
 {
     std::uint32_t const gathered = slhb_.gather && walks_
                                        ? index / std::uint32_t(slhb_.interleave * slhb_.interleave) %
                                              std::uint32_t(axes_->first_bounce_axes())
                                        : kNoPrimitive;
-    SlhbTracer::Pass const now{*axes_, *lamps_, exact_.get(), index, gathered, judge_.get()};
+    sky_.clear();
+    if (walks_ && !slhb_.exact.directions) sky_ = sky_along(*axes_, world_);
+    return {.axes = *axes_,
+            .lamps = *lamps_,
+            .exact = exact_.get(),
+            .index = index,
+            .gather_axis = gathered,
+            .judge = judge_.get(),
+            .sky = sky_};
+}
+
+void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums, Endings endings)
+{
+    SlhbTracer::Pass const now = tracing(index);
     std::size_t const pixels = views_.back().first + views_.back().pixels();
     bool const sharing = start_sharing(index, pixels, endings);
     samples_.resize(pixels);
@@ -354,11 +421,16 @@ void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums, Endin
         });
         if (partner) taking_ += v.pixels();
     }
+    add_work(work, sums[0].counts);
+}
+
+void SlhbRenderer::add_work(Work& work, PathCounts& paths)
+{
     double direct_s = 0, indirect_s = 0;
     work.counts.combine_each([&](Work::Counts const& c) {
         direct_s += c.slhb.direct_s;
         indirect_s += c.slhb.indirect_s;
-        sums[0].counts += c.paths;
+        paths += c.paths;
         done_.queries += c.slhb.queries;
         done_.exact_rays += c.slhb.exact_rays;
         done_.shadow_lookups += c.slhb.shadow_lookups;
@@ -372,12 +444,14 @@ void SlhbRenderer::add_coverage(std::size_t view, std::span<float> counts, std::
 {
     View const& v = views_[view];
     if (!v.primary) return;
-    for (std::size_t p = 0; p < counts.size(); ++p) {
-        std::uint32_t const t = v.primary->triangle(p);
-        if (t == kNoPrimitive || t < first_moving_) continue;
-        counts[p] += 1;
-        for (vec3 const part : samples_[v.first + p].radiance) radiance[p] += part;
-    }
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, counts.size(), kBlock), [&](auto const& range) {
+        for (std::size_t p = range.begin(); p != range.end(); ++p) {
+            std::uint32_t const t = v.primary->triangle(p);
+            if (t == kNoPrimitive || t < first_moving_) continue;
+            counts[p] += 1;
+            for (vec3 const part : samples_[v.first + p].radiance) radiance[p] += part;
+        }
+    });
 }
 
 double SlhbRenderer::rays() const { return double(done_.queries + done_.shadow_lookups + done_.exact_rays); }
@@ -389,6 +463,9 @@ void SlhbRenderer::report_work() const
     report_.count("exact rays", double(done_.exact_rays));
     report_.count("endings shaded for several paths", double(shared_.shaded()));
     if (taking_ > 0) report_.count("share of pixels lit by a partner view", double(taken_) / double(taking_));
+    if (pair_paths_ > 0)
+        report_.count("share of a pair's paths traced on both sides",
+                      double(without_paths_) / double(pair_paths_));
     double const axes = double(earlier_sets_.axes + axes_->built()),
                  layers = double(earlier_sets_.layers + axes_->layers());
     report_.count("axes built", axes);

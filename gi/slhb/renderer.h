@@ -9,6 +9,7 @@
 #include "gi/slhb/tracer.h"
 #include "gi/transport/accumulator.h"
 #include "gi/transport/frame_renderer.h"
+#include "gi/transport/pair_sums.h"
 
 #include <deque>
 #include <memory>
@@ -36,6 +37,10 @@ public:
     /// One more path for every pixel. @param index of the pass, which decides its random numbers
     /// @param sums  one per view
     void pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings = Endings::exact);
+
+    /// A pass of one view with what moves and without it, by the same random numbers: of the latter only the paths
+    /// that what moves may count in. Not with orthographic cameras, nor where something is asked exactly.
+    void pair_pass(std::uint32_t index, PairSums& sums, PathCounts& counts);
 
     /// Motion vectors of the last pass, to the frame that ended before it; not with orthographic cameras.
     void add_motion(std::size_t view, Picture& picture) const;
@@ -67,7 +72,12 @@ private:
     void make_lamps();
     bool walks() const;
     bool to_the_end() const;
+    enum class Sides : std::uint8_t { one, pair };
+    void prepare(std::uint32_t index, Sides sides);
+    SlhbTracer::Pass tracing(std::uint32_t index);
     void trace(std::uint32_t index, std::span<Accumulator> sums, Endings endings);
+    void trace_without(SlhbTracer::Pass pass, Work& work);
+    void add_work(Work& work, PathCounts& paths);
     bool start_sharing(std::uint32_t index, std::size_t pixels, Endings endings);
     void trace_view(View const& view, SlhbTracer::Pass const& pass, bool sharing, Work& work);
 
@@ -85,11 +95,17 @@ private:
     std::optional<AxisSet> axes_;
     std::optional<Lamps> lamps_;
     EarlierCorners earlier_;
+    std::vector<SkyAlong> sky_; ///< in a pass
     SharedEndings shared_;
-    std::vector<PathSample> samples_;       ///< of the pixels of all views
-    std::vector<Ending> endings_;           ///< the same
-    std::vector<std::uint32_t> taken_from_; ///< the same: pixel of the partner's view
-    std::uint64_t taken_ = 0, taking_ = 0;  ///< pixels that took light from a partner; of those that could
+    std::vector<PathSample> samples_; ///< of the pixels of all views
+    std::vector<std::vector<std::uint32_t>>
+        near_moving_;                           ///< per block of them: those that what moves may count in
+    std::vector<std::uint32_t> without_pixels_; ///< all of those
+    std::vector<PathSample> without_;           ///< and their paths without it
+    std::vector<Ending> endings_;               ///< the same
+    std::vector<std::uint32_t> taken_from_;     ///< the same: pixel of the partner's view
+    std::uint64_t taken_ = 0, taking_ = 0;      ///< pixels that took light from a partner; of those that could
+    std::uint64_t pair_paths_ = 0, without_paths_ = 0; ///< of pairs with what moves; of these, traced again
     SlhbCounts done_;
     /// Of sets of axes and lamps that are no more.
     struct {

@@ -2,6 +2,8 @@
 
 #include "gi/raster/deep_raster.h"
 
+#include <algorithm>
+
 namespace gi {
 
 ShadowPlace ShadowMap::look(vec3 position, vec3 normal, vec2 u) const
@@ -83,6 +85,18 @@ void ShadowMapBuilder::move(int face, std::size_t first, std::uint32_t seed, Sha
     for (std::size_t k = 0; k < drawn.count; ++k)
         under.emplace_back(drawn.texel[k], nearest.texels[drawn.texel[k]]);
     resolve(drawn, key_sign(map), nearest);
+}
+
+void ShadowMapBuilder::swap_moving(int face, bool back, ShadowMap& map, TakenTexels& taken)
+{
+    NearestMap& nearest = map.maps[std::size_t(face)];
+    auto& under = taken[std::size_t(face)];
+    // A texel may be there several times: only what was first to be taken off is what it was.
+    auto const swap = [&](auto& entry) { std::swap(nearest.texels[entry.first], entry.second); };
+    if (back)
+        std::for_each(under.rbegin(), under.rend(), swap);
+    else
+        std::for_each(under.begin(), under.end(), swap);
 }
 
 } // namespace gi

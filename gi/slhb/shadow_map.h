@@ -62,6 +62,8 @@ public:
     /// The triangles from `first` on are drawn into a face that has those before, where `taken` is what those of
     /// an earlier moment took.
     void move(int face, std::size_t first, std::uint32_t seed, ShadowMap& map, TakenTexels& taken) const;
+    /// Takes them off for a while, or puts them back: texels and what is under them change places.
+    static void swap_moving(int face, bool back, ShadowMap& map, TakenTexels& taken);
 
 private:
     void draw(int face, std::size_t first, std::size_t last, std::uint32_t seed, ShadowMap const& map,

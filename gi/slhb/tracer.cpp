@@ -45,6 +45,7 @@ struct SlhbTracer::Vertex {
     std::uint32_t axis;
     LayerHit hit; ///< answer of a query
     std::uint32_t layer;
+    bool near_moving = false; ///< see QueryBatch
 };
 
 /// Direct light that waits for its shadow map.
@@ -55,17 +56,41 @@ struct SlhbTracer::Unshadowed {
     std::uint32_t triangle;
     vec3 radiance;
     vec3* to;
+    PathSample* sample;
 };
 
-void SlhbTracer::add_sky(State& s) const
+namespace {
+
+/// One function for all, so that it rounds in one way.
+[[gnu::noinline]] SkyAlong look_at_sky(WorldView const& world, vec3 direction)
+{
+    return {environment_radiance(world, direction), environment_direction_pdf(world, direction)};
+}
+
+} // namespace
+
+std::vector<SkyAlong> sky_along(AxisSet const& axes, World const& world)
+{
+    std::vector<SkyAlong> sky;
+    if (world.environment_select.empty() && !world.environment) return sky;
+    WorldView const w = view(world);
+    for (std::size_t a = 0; a < axes.pool().size(); ++a)
+        for (vec3 const direction : {-axes.axis(a), axes.axis(a)})
+            sky.push_back(look_at_sky(w, direction));
+    return sky;
+}
+
+void SlhbTracer::add_sky(Pass const& pass, State& s, Vertex const& last) const
 {
     if (s.vertex == 0) {
         s.sample->radiance[0] = background_radiance(world_, s.direction);
         return;
     }
     if (world_.environment_radiance.empty()) return;
-    vec3 light = environment_radiance(world_, s.direction);
-    if (s.arrival_pdf > 0) light *= power_heuristic(s.arrival_pdf, environment_direction_pdf(world_, s.direction));
+    SkyAlong const sky = s.by_axis && !pass.sky.empty() ? pass.sky[2 * last.axis + (last.origin.up ? 1 : 0)]
+                                                        : look_at_sky(world_, s.direction);
+    vec3 light = sky.radiance;
+    if (s.arrival_pdf > 0) light *= power_heuristic(s.arrival_pdf, sky.pdf);
     s.bucket(s.scatterings) += s.throughput * light;
 }
 
@@ -82,7 +107,7 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, ShadingPoint const
         k = s.random.turn(s.dimension(lamp)) % lamps.size();
     }
     Lamp const& l = lamps[k];
-    LightSample const light = sample_light(world_, l.choice, at.position, l.u);
+    LightSample const light = l.light.pdf > 0 ? l.light : sample_light(world_, l.choice, at.position, l.u);
     if (!(light.pdf > 0)) return;
     vec3 const wi = at.frame.to_local(light.direction);
     float const side = glm::dot(light.direction, at.geometric_normal);
@@ -97,7 +122,8 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, ShadingPoint const
     ShadowMap::Place const place =
         l.shadow.look(at.position, at.geometric_normal, s.random.noise2(s.dimension(shadow)));
     __builtin_prefetch(place.texel);
-    direct.push_back({&l, place, at.position, s.triangle, s.throughput * value, &s.bucket(s.scatterings + 1)});
+    direct.push_back(
+        {&l, place, at.position, s.triangle, s.throughput * value, &s.bucket(s.scatterings + 1), s.sample});
 }
 
 std::uint32_t SlhbTracer::indirect_share(std::uint32_t pixel, std::uint32_t pass) const
@@ -113,9 +139,10 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
                        PathCounts& paths) const
 {
     if (s.triangle == kNoPrimitive) {
-        add_sky(s);
+        add_sky(pass, s, next);
         return false;
     }
+    if (s.triangle >= pass.first_watched) s.sample->near_moving = true;
     Surface const& surface = world_.surfaces[s.triangle];
     if (s.has_position && (surface.is(Surface::kSmooth) || surface.is(Surface::kVaries)))
         s.barycentric = barycentric_at(surface, s.position);
@@ -231,6 +258,7 @@ void SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
     thread_local std::vector<std::uint32_t> first, order;
     thread_local QueryBatch batch;
     AxisPool const& pool = pass.axes.pool();
+    batch.watched = pass.first_watched != kNoPrimitive;
     first.assign(pool.size() + 1, 0);
     std::size_t n = 0;
     for (Vertex const& v : vertices)
@@ -251,6 +279,7 @@ void SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
             std::uint32_t const hit = batch.hit[k - from];
             LayerHit& to_fill = vertices[order[k]].hit;
             to_fill = {};
+            if (batch.watched) vertices[order[k]].near_moving = batch.near_moving[k - from] != 0;
             if (hit == kNoLayerHit) continue;
             to_fill = {hit & kPrimitiveMask,
                        {batch.hit_x[k - from], batch.hit_y[k - from], batch.hit_z[k - from]},
@@ -355,8 +384,11 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
         if (parts_.shadows) {
             add_exactly(pass, direct);
         } else {
-            for (Unshadowed const& d : direct)
+            for (Unshadowed const& d : direct) {
                 if (d.lamp->shadow.lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
+                std::uint32_t const caster = d.place.texel != nullptr ? d.place.texel->primitive : kNoPrimitive;
+                if (caster != kNoPrimitive && caster >= pass.first_watched) d.sample->near_moving = true;
+            }
         }
         direct.clear();
         if (from_camera && turned == begun) turned = Clock::now();
@@ -379,13 +411,14 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
                                         pass.index)});
         if (rays.size() < active) ask_axes(pass, now);
         ray_hits.resize(rays.size());
-        if (!rays.empty()) (parts_.queries ? pass.judge : pass.exact)->nearest(rays, ray_hits);
+        if (!rays.empty()) (parts_.queries ? pass.judge : pass.exact)->nearest(rays, ray_hits, pass.exact_world);
         counts.exact_rays += rays.size();
         counts.queries += active - rays.size();
         std::size_t ray = 0, left = 0;
         for (Vertex const& v : now) {
             State& s = states[v.path];
             s.has_position = !v.exact;
+            if (v.near_moving && !v.exact) s.sample->near_moving = true;
             if (!endings.empty() && !v.exact && s.vertex == 1 && v.hit.triangle != kNoLayerHit &&
                 bsdf_detail::is_matt(world_.bsdfs[world_.surfaces[v.hit.triangle].material])) {
                 endings[v.path] = {v.layer, v.axis, v.hit.triangle, v.origin.up, v.hit.position, s.throughput};

@@ -53,6 +53,14 @@ inline vec2 barycentric_of(Surface const& surface, Ray const& ray)
     return std::isfinite(t) ? barycentric_at(surface, ray.origin + t * ray.direction) : vec2{1.0f / 3};
 }
 
+/// What a path along an axis finds where it meets nothing.
+struct SkyAlong {
+    vec3 radiance;
+    float pdf; ///< of light sampling, 1/sr
+};
+/// Of all axes: against each of them, then along it.
+std::vector<SkyAlong> sky_along(AxisSet const& axes, World const& world);
+
 class SlhbTracer {
 public:
     /// What stays the same over a pass. `exact` may be null where nothing needs exact rays.
@@ -63,6 +71,10 @@ public:
         std::uint32_t index;                    ///< of the path of each pixel
         std::uint32_t gather_axis;              ///< taken by every first bounce; kNoPrimitive = by chance
         ExactVisibility const* judge = nullptr; ///< answers for SlhbSettings::exact; null = nothing is asked there
+        /// Triangle: samples say whether one from here on may count in them. As many as there are: not asked.
+        std::uint32_t first_watched = kNoPrimitive;
+        RayWorld exact_world = RayWorld::all;
+        std::span<SkyAlong const> sky = {}; ///< along the axes; may be empty
     };
 
     /// @param width  of the picture, pixels
@@ -94,7 +106,7 @@ private:
                                 PathCounts& paths) const;
     void add_direct(Pass const& pass, State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
                     std::vector<Unshadowed>& direct) const;
-    void add_sky(State& s) const;
+    void add_sky(Pass const& pass, State& s, Vertex const& last) const;
     /// How many pixels this one takes indirect light for in this pass: 0, or the square of the interleaving.
     std::uint32_t indirect_share(std::uint32_t pixel, std::uint32_t pass) const;
     void ask_axes(Pass const& pass, std::span<Vertex> vertices) const;

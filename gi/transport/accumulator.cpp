@@ -49,41 +49,82 @@ double Accumulator::relative_mse() const
     return sum / (3.0 * double(pixels.size()));
 }
 
-Picture Accumulator::picture(World const& world) const
+namespace {
+
+/// Where the layers of a picture are; null = it has not got that one.
+struct Targets {
+    float *color, *parts[3], *alpha, *variance, *albedo, *normal, *depth, *position;
+
+    explicit Targets(Picture& picture)
+    {
+        auto const of = [&](char const* name) {
+            Layer* const layer = picture.find(name);
+            return layer != nullptr ? layer->data.data() : nullptr;
+        };
+        color = of("color");
+        parts[0] = of("L0");
+        parts[1] = of("L1");
+        parts[2] = of("L2");
+        alpha = of("alpha");
+        variance = of("variance");
+        albedo = of("albedo");
+        normal = of("normal");
+        depth = of("depth");
+        position = of("position");
+    }
+};
+
+/// Of pixel i. Surface layers average over the paths that met a surface; where none did they are 0.
+void put_pixel(Accumulator const& a, World const& world, PixelSums const& p, std::size_t i, Targets const& to)
+{
+    double const n = double(a.paths);
+    auto const put = [i](float* layer, dvec3 v) {
+        for (int c = 0; c < 3; ++c) layer[3 * i + std::size_t(c)] = float(v[c]);
+    };
+    bool const hit = p.hits > 0;
+    put(to.color, (p.radiance[0] + p.radiance[1] + p.radiance[2]) / n);
+    if (to.alpha != nullptr) to.alpha[i] = float(p.hits / n);
+    to.depth[i] = hit ? float(p.depth / p.hits) : 0.0f;
+    if (to.variance == nullptr) return;
+    for (std::size_t k = 0; k < 3; ++k) put(to.parts[k], p.radiance[k] / n);
+    put(to.variance, a.variance_of_mean(p));
+    double const length = glm::length(p.normal);
+    put(to.albedo, hit ? p.albedo / p.hits : dvec3{0});
+    put(to.normal, hit && length > 0 ? p.normal / length : dvec3{0});
+    put(to.position, hit ? p.position / p.hits + world.origin : dvec3{0});
+}
+
+} // namespace
+
+Picture Accumulator::picture(World const& world, PictureLayers layers) const
 {
     Picture out;
     out.width = width;
     out.height = height;
-    auto const layer = [&](char const* name, int channels) { return out.add(name, channels).data.data(); };
-    float* const color = layer("color", 3);
-    float* const parts[] = {layer("L0", 3), layer("L1", 3), layer("L2", 3)};
-    bool const transparent = world.scene->background.kind == BackgroundKind::transparent;
-    float* const alpha = transparent ? layer("alpha", 1) : nullptr;
-    float *const variance = layer("variance", 3), *const albedo = layer("albedo", 3),
-                 *const normal = layer("normal", 3), *const depth = layer("depth", 1),
-                 *const position = layer("position", 3);
+    out.add("color", 3);
+    bool const all = layers == PictureLayers::all;
+    if (all)
+        for (char const* const name : {"L0", "L1", "L2"}) out.add(name, 3);
+    if (world.scene->background.kind == BackgroundKind::transparent) out.add("alpha", 1);
+    if (all)
+        for (char const* const name : {"variance", "albedo", "normal"}) out.add(name, 3);
+    out.add("depth", 1);
+    if (all) out.add("position", 3);
     if (paths == 0) return out;
-    double const n = double(paths);
+    Targets const to(out);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 4096), [&](auto const& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            PixelSums const& p = pixels[i];
-            auto const put = [i](float* to, dvec3 v) {
-                for (int c = 0; c < 3; ++c) to[3 * i + std::size_t(c)] = float(v[c]);
-            };
-            put(color, (p.radiance[0] + p.radiance[1] + p.radiance[2]) / n);
-            for (std::size_t k = 0; k < 3; ++k) put(parts[k], p.radiance[k] / n);
-            if (alpha != nullptr) alpha[i] = float(p.hits / n);
-            put(variance, variance_of_mean(p));
-            // Surface layers average over the paths that met a surface; where none did they are 0.
-            if (!(p.hits > 0)) continue;
-            double const length = glm::length(p.normal);
-            put(albedo, p.albedo / p.hits);
-            put(normal, length > 0 ? p.normal / length : dvec3{0});
-            depth[i] = float(p.depth / p.hits);
-            put(position, p.position / p.hits + world.origin);
-        }
+        for (std::size_t i = range.begin(); i != range.end(); ++i) put_pixel(*this, world, pixels[i], i, to);
     });
     return out;
+}
+
+void Accumulator::put(World const& world, std::span<std::uint32_t const> at, std::span<PixelSums const> sums,
+                      Picture& picture) const
+{
+    Targets const to(picture);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, at.size(), 4096), [&](auto const& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) put_pixel(*this, world, sums[i], at[i], to);
+    });
 }
 
 namespace {

@@ -8,6 +8,7 @@
 #include "gi/transport/path_sample.h"
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 namespace gi {
@@ -64,6 +65,8 @@ struct Uninitialised : std::allocator<T> {
     }
 };
 
+enum class PictureLayers : std::uint8_t { all, color_and_depth };
+
 struct Accumulator {
     int width = 0, height = 0;
     std::uint32_t paths = 0;                                 ///< per pixel
@@ -93,7 +96,10 @@ struct Accumulator {
     double relative_mse() const;
     /// Of the world that was rendered: positions are absolute; where its background is transparent, "alpha" is the
     /// share of paths that met a surface, and the colours are multiplied by it as they are.
-    Picture picture(World const& world) const;
+    Picture picture(World const& world, PictureLayers layers = PictureLayers::all) const;
+    /// Writes pixels of such a picture that have other sums, of as many paths. @param at  pixels, one per sum
+    void put(World const& world, std::span<std::uint32_t const> at, std::span<PixelSums const> sums,
+             Picture& picture) const;
 };
 
 /// @param fingerprint of scene, camera and settings; a checkpoint with another one is refused (InputError)

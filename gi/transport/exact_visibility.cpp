@@ -61,8 +61,9 @@ bool has_extent(World const& world, std::uint32_t first, std::uint32_t last)
 
 } // namespace
 
-void ExactVisibility::nearest(std::span<RayQuery const> queries, std::span<Hit> hits) const
+void ExactVisibility::nearest(std::span<RayQuery const> queries, std::span<Hit> hits, RayWorld met) const
 {
+    RTCScene const scene = met == RayWorld::what_stays && still_ ? still_.get() : scene_.get();
     Context context(*this);
     for (std::size_t first = 0; first < queries.size(); first += kPacket) {
         auto const some = queries.subspan(first, std::min(kPacket, queries.size() - first));
@@ -70,7 +71,7 @@ void ExactVisibility::nearest(std::span<RayQuery const> queries, std::span<Hit> 
         PacketMask const mask = fill(packet.ray, some);
         std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
         std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
-        rtcIntersect16(mask.valid, scene_.get(), &context.rtc, &packet);
+        rtcIntersect16(mask.valid, scene, &context.rtc, &packet);
         for (std::size_t k = 0; k < some.size(); ++k)
             hits[first + k] = packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
                                   ? Hit{}
@@ -188,22 +189,29 @@ ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threa
         scene_ = std::move(parts_[0].scene);
     else
         build_moving(world);
+    if (parts_[0].scene) still_ = scene_of_parts(1);
     check();
+}
+
+ExactVisibility::ScenePointer ExactVisibility::scene_of_parts(unsigned count) const
+{
+    ScenePointer scene(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    for (unsigned k = 0; k < count; ++k) {
+        RTCGeometry const instance = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(instance, parts_[k].scene.get());
+        rtcCommitGeometry(instance);
+        rtcAttachGeometryByID(scene.get(), instance, k);
+        rtcReleaseGeometry(instance);
+    }
+    rtcCommitScene(scene.get());
+    return scene;
 }
 
 void ExactVisibility::build_moving(World const& world)
 {
     build(world, true, parts_[1]);
-    scene_.reset(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-    for (unsigned k = 0; k < 2; ++k) {
-        RTCGeometry const instance = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
-        rtcSetGeometryInstancedScene(instance, parts_[k].scene.get());
-        rtcCommitGeometry(instance);
-        rtcAttachGeometryByID(scene_.get(), instance, k);
-        rtcReleaseGeometry(instance);
-    }
-    rtcCommitScene(scene_.get());
+    scene_ = scene_of_parts(2);
 }
 
 void ExactVisibility::moved(World const& world)

@@ -31,6 +31,12 @@ struct RayQuery {
     std::uint32_t seed = 0; ///< decides partial coverage
 };
 
+/// What of the world rays can meet.
+enum class RayWorld : std::uint8_t {
+    all,
+    what_stays ///< triangles that may move are passed by
+};
+
 class ExactVisibility {
 public:
     /// Copies the vertices; `world` must outlive this where alpha tests are on. threads 0 = all.
@@ -40,7 +46,7 @@ public:
     void moved(World const& world);
 
     /// Nearest triangle beyond each origin. hits.size() == queries.size()
-    void nearest(std::span<RayQuery const> queries, std::span<Hit> hits) const;
+    void nearest(std::span<RayQuery const> queries, std::span<Hit> hits, RayWorld met = RayWorld::all) const;
     /// Is anything between origin and origin + reach * direction? blocked.size() == queries.size(); 1 = yes
     void occluded(std::span<RayQuery const> queries, std::span<std::uint8_t> blocked) const;
 
@@ -83,6 +89,7 @@ private:
     void build(World const& world, bool moves, Part& part);
     void add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id, bool moves, Part& part);
     void build_moving(World const& world);
+    ScenePointer scene_of_parts(unsigned count) const;
     void check() const;
     /// @param instance  Embree's, or none
     Part const& part_of(unsigned instance) const { return parts_[instance == 1 ? 1 : 0]; }
@@ -90,6 +97,7 @@ private:
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice> device_;
     Part parts_[2];      ///< the second one is empty where nothing moves
     ScenePointer scene_; ///< that rays go through: the first part's own, or one with instances of both
+    ScenePointer still_; ///< with an instance of the first part alone; null where nothing moves
     WorldView world_;
     bool alpha_tests_;
 };

@@ -4,7 +4,7 @@
 
 namespace gi {
 
-PairResult FrameRenderer::pair(FrameView const&, std::uint32_t, PairWorld const&, StopRequest const&)
+PairResult FrameRenderer::pair(FrameView const&, PairSettings const&, PairWorld const&, StopRequest const&)
 {
     throw InputError("pictures with and without what moves, by this method",
                      "it does not know how to give both the same random numbers", "use the method slhb");

@@ -3,6 +3,7 @@
 
 #include "gi/image/render_settings.h"
 #include "gi/scene/moving_world.h"
+#include "gi/transport/accumulator.h"
 
 #include <memory>
 #include <span>
@@ -37,6 +38,16 @@ enum class Endings : std::uint8_t {
 enum class PairSide : std::uint8_t { with, without };
 /// Takes the world to one of them.
 using PairWorld = std::function<Changes(PairSide)>;
+/// What they differ in.
+enum class PairDifference : std::uint8_t {
+    anything,  ///< what PairWorld says; both are rendered whole
+    vanishing, ///< without, nothing of what can move is there, and all else is the same
+};
+struct PairSettings {
+    std::uint32_t paths = 1; ///< per pixel of each, >= 1
+    PairDifference difference = PairDifference::anything;
+    PictureLayers layers = PictureLayers::all;
+};
 
 /// Two pictures of one moment, of worlds that differ in what moves alone, by the same axes, points on lamps and
 /// random numbers: paths that meet no difference are equal in every bit.
@@ -65,9 +76,11 @@ public:
     virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings endings,
                                             StopRequest const& stop) = 0;
     /// One view with what moves and without it; `turn` is asked for the one and the other in turns, `with` first,
-    /// and leaves the world at either. @param paths  per pixel of each, >= 1
+    /// and leaves the world at either. Where things only vanish, the world stays at `with` if it can, and of the
+    /// other picture only those paths are traced that what moves could change; bounds of the world, and with them
+    /// the choice of lamps, are those of `with` in both.
     /// @throws InputError where the method does not know how
-    virtual PairResult pair(FrameView const& view, std::uint32_t paths, PairWorld const& turn,
+    virtual PairResult pair(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
                             StopRequest const& stop);
 };
 

@@ -16,6 +16,7 @@ struct PathSample {
     vec3 albedo{0}, normal{0}, position{0};                  ///< at the first surface
     float depth = 0;                                         ///< m along the camera's axis
     bool hit = false;
+    bool near_moving = false; ///< without what moves it might be another; only where the tracer was asked to say
 };
 
 struct PathCounts {

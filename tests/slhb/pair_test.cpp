@@ -42,7 +42,7 @@ protected:
         MovingWorld world(scene_, 0, report_);
         auto const frames = start_slhb_frames(world, camera(), settings_, report_);
         return frames->pair(
-            view(), paths,
+            view(), {paths},
             [&](PairSide side) { return world.advance(pose(side == PairSide::with ? first : second)); }, stop_);
     }
     std::vector<float> alone(PairSide side, std::uint32_t paths)
@@ -122,7 +122,7 @@ TEST(PairsOfOtherMethods, AreRefused)
     MovingWorld world(std::make_shared<Scene const>(box_with_block_and_lamp()), 0, report);
     Camera const eye = look_at({-0.6, 0.1, 0.9}, {0, 0, 0}, 60);
     auto const frames = start_reference_frames(world, eye, small_settings(8, 1, 1), report);
-    EXPECT_THROW(frames->pair({eye, 8, 8}, 1, [](PairSide) { return Changes{}; }, {}), InputError);
+    EXPECT_THROW(frames->pair({eye, 8, 8}, {}, [](PairSide) { return Changes{}; }, {}), InputError);
 }
 
 } // namespace

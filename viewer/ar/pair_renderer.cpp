@@ -42,9 +42,13 @@ PairPictures PairRenderer::render(gi::Camera const& camera, int width, int heigh
         settings_.height = height;
         frames_ = gi::find_method("slhb").frames(world_, camera, settings_, report_);
     }
+    denoise = denoise && paths > 1; // of one path there is no variance to go by
+    gi::PairSettings const pair{
+        paths, virtual_lights_.empty() ? gi::PairDifference::vanishing : gi::PairDifference::anything,
+        denoise ? gi::PictureLayers::all : gi::PictureLayers::color_and_depth};
     gi::PairResult both = frames_->pair(
-        {camera, width, height}, paths, [&](gi::PairSide side) { return turn(side, time_s); }, stop);
-    denoise = denoise && both.with.paths > 1; // of one path there is no variance to go by
+        {camera, width, height}, pair, [&](gi::PairSide side) { return turn(side, time_s); }, stop);
+    denoise = denoise && both.with.paths > 1;
     cv::Mat const raw = denoise ? matrix_of(both.with.picture, "color") : cv::Mat();
     if (denoise)
         for (gi::RenderResult* const r : {&both.with, &both.without})
