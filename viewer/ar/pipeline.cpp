@@ -1,30 +1,30 @@
 #include "viewer/ar/pipeline.h"
 
 #include "ar/base/error.h"
+#include "ar/capture/clock.h"
 #include "gi/base/error.h"
 #include "gi/scene/load.h"
 #include "viewer/ar/bridge.h"
 
-#include <chrono>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace viewer {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-/// Milliseconds since the last call.
+/// Milliseconds since the last call; no time is between two of them.
 class Lap {
 public:
+    explicit Lap(double begun_s) : last_s_(begun_s) {}
     double operator()()
     {
-        auto const now = Clock::now();
-        return std::chrono::duration<double, std::milli>(now - std::exchange(last_, now)).count();
+        double const now_s = ar::steady_now_s();
+        return 1e3 * (now_s - std::exchange(last_s_, now_s));
     }
+    double last_s() const { return last_s_; }
 
 private:
-    Clock::time_point last_ = Clock::now();
+    double last_s_;
 };
 
 gi::dmat4 placement(ArPlaced const& p)
@@ -74,6 +74,7 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
       compositor_(camera.photometry, with_noise(session.composite, camera.noise))
 {
     renderer_.set_environment(light_.begin());
+    light_picture_ = picture_of_light(light_.map());
     if (session.smoothing < 1) {
         ar::TemporalSettings smooth;
         smooth.weight = float(session.smoothing);
@@ -93,7 +94,8 @@ ar::RenderedPair ArPipeline::rendered(ar::Pose const& world_from_camera, double 
     return warp_(pair);
 }
 
-ArResult ArPipeline::seen(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known)
+ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known,
+                          std::optional<double> begun_s)
 {
     if (frame.size_px != camera_.model.size_px)
         throw ar::InputError(
@@ -101,7 +103,7 @@ ArResult ArPipeline::seen(ar::Frame const& frame, double time_s, std::optional<a
             fmt::format("the calibration is of {} x {}", camera_.model.size_px.x, camera_.model.size_px.y),
             "set the camera to that size, or calibrate it at this one");
     ArResult r;
-    Lap lap;
+    Lap lap(begun_s ? *begun_s : ar::steady_now_s());
     r.camera = ar::rgb_of(frame);
     cv::Mat const gray = ar::gray_of(frame);
     r.times.decode_ms = lap();
@@ -117,30 +119,34 @@ ArResult ArPipeline::seen(ar::Frame const& frame, double time_s, std::optional<a
         r.times.pose_ms = lap();
     }
     r.rgb = r.camera;
+    r.done_s = lap.last_s();
     return r;
 }
 
-ArResult ArPipeline::find_pose(ar::Frame const& frame, double time_s) { return seen(frame, time_s, std::nullopt); }
-
-ArResult ArPipeline::process(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known,
-                             gi::StopRequest const& stop)
+void ArPipeline::add(ArResult& r, ar::Frame const& frame, double time_s, gi::StopRequest const& stop,
+                     CompositeBy composite)
 {
-    ArResult r = seen(frame, time_s, known);
-    if (!r.pose.found()) {
-        if (filter_) filter_->forget();
-        return r;
+    Lap lap(r.done_s);
+    r.times.wait_ms = lap();
+    if (r.pose.found()) {
+        if (auto map = light_.follow(r.camera, camera_.photometry, frame.exposure, camera_.model,
+                                     r.pose.world_from_camera.rotation, time_s)) {
+            renderer_.set_environment(std::move(map));
+            light_picture_ = picture_of_light(light_.map());
+        }
+        r.times.light_ms = lap();
+        r.pair = rendered(r.pose.world_from_camera, time_s, stop);
+        r.times.render_ms = lap();
+        if (composite == CompositeBy::pipeline) {
+            r.rgb = cv::Mat(); // the camera's stays as it is
+            r.counts = compositor_(r.camera, *r.pair, frame.exposure, r.rgb, frame.sequence);
+        }
+        r.times.composite_ms = lap();
+    } else if (filter_) {
+        filter_->forget();
     }
-    Lap lap;
-    if (auto map = light_.follow(r.camera, camera_.photometry, frame.exposure, camera_.model,
-                                 r.pose.world_from_camera.rotation, time_s))
-        renderer_.set_environment(std::move(map));
-    r.times.light_ms = lap();
-    r.rgb = cv::Mat(); // the camera's stays as it is
-    r.pair = rendered(r.pose.world_from_camera, time_s, stop);
-    r.times.render_ms = lap();
-    r.counts = compositor_(r.camera, *r.pair, frame.exposure, r.rgb, frame.sequence);
-    r.times.composite_ms = lap();
-    return r;
+    r.light = light_picture_;
+    r.done_s = lap.last_s();
 }
 
 } // namespace viewer

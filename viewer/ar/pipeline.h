@@ -13,8 +13,11 @@
 
 namespace viewer {
 
+/// One after the other, without gaps: their sum is the time from being handed over to `ArResult::done_s`.
 struct ArTimes {
-    double decode_ms = 0, detect_ms = 0, pose_ms = 0, light_ms = 0, render_ms = 0, composite_ms = 0;
+    double decode_ms = 0, detect_ms = 0, pose_ms = 0;
+    double wait_ms = 0; ///< for its turn to be rendered
+    double light_ms = 0, render_ms = 0, composite_ms = 0;
 };
 
 /// What the camera is, as a calibration file says.
@@ -31,25 +34,38 @@ struct ArResult {
     ar::PoseEstimate pose;
     ar::CompositeCounts counts;
     std::optional<ar::RenderedPair> pair; ///< in the camera's lens
+    cv::Mat light;                        ///< CV_8UC3 RGB, the map that it was lit by, small; empty = no map
     ArTimes times;
+    double done_s = 0; ///< steady clock, when the last of these had ended
 };
 
+/// Who puts what was rendered into the frame.
+enum class CompositeBy {
+    pipeline,
+    window ///< viewer/gl/ar_composite_pass.h; `rgb` stays the camera's and there are no counts
+};
+
+/// In two steps, `find` and `add`, which may be made by two threads at once: they share nothing that changes. Each
+/// takes the frames in order.
 class ArPipeline {
 public:
     /// Loads the scenes and the light. @throws gi::InputError, ar::InputError
     ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers, gi::Report& report);
 
-    /// @param time_s  since the first frame: of the virtual things' clips, the camera's motion and the light
-    /// @param known   where the camera is, in place of what the frame says
+    /// Where the camera is.
+    /// @param time_s   since the first frame: of the virtual things' clips, the camera's motion and the light
+    /// @param known    where the camera is, in place of what the frame says
+    /// @param begun_s  steady clock, from when on its time counts; nothing = now
     /// @throws ar::InputError the frame cannot be decoded or has another size than the calibration
-    ArResult process(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known,
-                     gi::StopRequest const& stop);
-
-    /// Without anything being rendered.
-    ArResult find_pose(ar::Frame const& frame, double time_s);
+    ArResult find(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known = {},
+                  std::optional<double> begun_s = {});
+    /// The virtual things, where a camera was found.
+    /// @param r  of `find` for the same frame
+    void add(ArResult& r, ar::Frame const& frame, double time_s, gi::StopRequest const& stop,
+             CompositeBy composite = CompositeBy::pipeline);
+    ar::Compositor const& compositor() const { return compositor_; }
 
 private:
-    ArResult seen(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known);
     ar::RenderedPair rendered(ar::Pose const& world_from_camera, double time_s, gi::StopRequest const& stop);
 
     ArSession session_;
@@ -61,6 +77,7 @@ private:
     std::optional<ar::TemporalFilter> filter_;
     ar::Compositor compositor_;
     ar::PoseTracker tracker_;
+    cv::Mat light_picture_;
 };
 
 } // namespace viewer

@@ -4,6 +4,9 @@
 #include "ar/light/map_file.h"
 #include "viewer/ar/bridge.h"
 
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
 namespace viewer {
 
 PlaceLight::PlaceLight(ArSession const& session) : every_(session.live_light)
@@ -33,6 +36,17 @@ std::shared_ptr<gi::EnvironmentMap const> PlaceLight::follow(cv::Mat const& rgb,
                                                   camera, world_from_camera, time_s);
     if (frames_++ % every_ != 0 && !update.lamp_changed) return nullptr;
     return std::make_shared<gi::EnvironmentMap const>(environment_of(probe_->map()));
+}
+
+cv::Mat picture_of_light(cv::Mat const& map)
+{
+    if (map.empty()) return {};
+    cv::Mat small, log_luminance;
+    cv::resize(map, small, {128, 64}, 0, 0, cv::INTER_AREA);
+    cv::transform(small, log_luminance, cv::Matx13f(0.2126f, 0.7152f, 0.0722f));
+    cv::log(cv::max(log_luminance, 1e-6), log_luminance);
+    double const middle = std::exp(cv::mean(log_luminance)[0]);
+    return ar::bytes_of(small * (0.18 / middle), ar::srgb_photometry());
 }
 
 } // namespace viewer

@@ -1,5 +1,10 @@
 #pragma once
 // A session from its first frame to its last: frames in, composites out, everything timed and counted.
+//
+// Three threads, each a frame ahead of the next: one takes frames and finds the camera, one adds the virtual
+// things, and the caller's shows. Between two of them one frame waits at most. At their own pace a newer frame
+// takes the place of the one that waits, which counts as overtaken; as fast as possible, whoever is ahead waits,
+// and what comes out is what one thread would have made, in every bit.
 
 #include "ar/capture/frame_source.h"
 #include "ar/pose/pose_file.h"
@@ -15,19 +20,28 @@ struct ArRunOptions {
     ar::Pace pace = ar::Pace::own;
     std::vector<ar::TimedPose> poses; ///< where the camera was, in place of what frames say; empty = from markers
     bool find_poses_only = false;     ///< nothing is rendered
-    std::function<void()> idle;       ///< while no frame comes
+    CompositeBy composite = CompositeBy::pipeline;
+    /// Before the first frame, by the caller's thread.
+    std::function<void(ar::SourceDescription const&, ArPipeline const&)> opened;
+    /// Every frame as it came, those that are overtaken or refused later too. By the thread that takes them.
+    std::function<void(ar::Frame const&)> taken;
+    std::function<void()> idle; ///< by the caller's thread, every 10 ms while there is nothing to show
 };
 
-/// What one frame took, and what came of it.
+/// What one frame took, and what came of it. Of a frame that came at its own pace, age, times and show_wait follow
+/// each other without gaps: age + times = latency; latency + show_wait + present = swapped.
 struct ArFrameRecord {
     std::uint64_t sequence = 0;
     double captured_s = 0; ///< since the first frame
-    double age_ms = 0;     ///< when it was handed over, since its capture
-    std::optional<double>
-        captured_steady_s; ///< on this machine's steady clock, where frames come at their own pace
-    double latency_ms = 0; ///< when its composite was ready, since its capture
-    double present_ms = 0; ///< drawing and swap, where there is a window
-    double swapped_ms = 0; ///< when the swap was done, since its capture
+    /// On this machine's steady clock, where frames come at their own pace.
+    std::optional<double> captured_steady_s;
+    std::uint64_t overtaken = 0; ///< frames given up for newer ones, since the record before
+    double read_ms = 0;          ///< of files read as fast as possible: until there was a frame
+    double age_ms = 0;           ///< when it was handed over, since its capture
+    double latency_ms = 0;       ///< when its composite was ready, since its capture
+    double show_wait_ms = 0;     ///< then until it was shown
+    double present_ms = 0;       ///< drawing and swap, where there is a window
+    double swapped_ms = 0;       ///< when the swap was done, since its capture
     ar::Exposure exposure;
     ArTimes times;
     int markers = 0, points_used = 0, points_rejected = 0;
@@ -40,12 +54,16 @@ struct ArSummary {
     std::vector<ArFrameRecord> frames;
     ar::SourceCounts source;
     ar::SourceState end;
-    std::uint64_t refused = 0; ///< frames of another size, or that could not be decoded
+    std::uint64_t refused = 0;    ///< frames of another size, or that could not be decoded
+    std::uint64_t overtaken = 0;  ///< given up, since a newer one was there
+    std::uint64_t unfinished = 0; ///< that were on their way when it was ended
     double seconds = 0;
 };
 
 ArCamera load_ar_camera(std::filesystem::path const& calibration);
 
+/// The source's delivered frames are those of the summary, refused, overtaken and unfinished ones. What is thrown
+/// by any thread comes out here, after the results that were ready.
 /// @param shown  called with every frame's result, if it is not empty; may ask for the end by `stop`
 /// @param summary  kept up to date, so that it holds what there is when `shown` throws
 void run_ar(ArSession const& session, ArRunOptions const& options,

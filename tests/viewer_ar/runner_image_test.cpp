@@ -1,0 +1,179 @@
+// The threads of a run: what comes out, what is counted, how it ends.
+
+#include "viewer/ar/runner.h"
+
+#include "ar/capture/clock.h"
+#include "ar/markers/marker_map_file.h"
+#include "tests/viewer/run_program.h"
+#include "viewer/ar/synthesize.h"
+
+#include <atomic>
+#include <opencv2/core.hpp>
+
+namespace viewer::test {
+namespace {
+
+class ArThreads : public testing::Test {
+protected:
+    static void SetUpTestSuite()
+    {
+        folder = std::make_unique<TemporaryFolder>();
+        SynthesizeOptions o;
+        o.folder = folder->path();
+        o.size_px = {240, 180};
+        o.frames = 5;
+        o.quality.paths = 1;
+        o.quality.denoise = false;
+        o.truth = false;
+        gi::Report report;
+        synthesize(o, {}, report);
+    }
+    static void TearDownTestSuite() { folder.reset(); }
+
+    static ArSession session()
+    {
+        ArSession s = read_ar_session(*folder / "session.yaml");
+        s.render.paths = 2;
+        s.render.resolution = 0.5;
+        return s;
+    }
+    /// Numbered frames without markers, 100 per second.
+    static ArSession counted()
+    {
+        ArSession s = session();
+        s.frames.source = "counter";
+        s.frames.options.size_px = {240, 180};
+        s.frames.options.frames_per_s = 100;
+        return s;
+    }
+    static std::uint64_t all_of(ArSummary const& s)
+    {
+        return s.frames.size() + s.refused + s.overtaken + s.unfinished;
+    }
+
+    static inline std::unique_ptr<TemporaryFolder> folder;
+    gi::Report report;
+    gi::StopRequest stop;
+    ArSummary summary;
+};
+
+TEST_F(ArThreads, GiveWhatOneAloneGives)
+{
+    ArSession s = session(); // what one frame leaves for the next is in it
+    s.live_light = 2;
+    s.smoothing = 0.5;
+    ArRunOptions o;
+    o.pace = ar::Pace::fastest;
+    o.poses = ar::read_poses(*folder / "poses.csv");
+    std::vector<cv::Mat> composites;
+    run_ar(
+        s, o, [&](ArFrameRecord&, ArResult const& r) { composites.push_back(r.rgb); }, stop, report, summary);
+    ASSERT_EQ(composites.size(), 5u);
+    EXPECT_EQ(all_of(summary), 5u);
+
+    ArPipeline pipeline(s, load_ar_camera(s.camera), ar::read_marker_map(s.markers), report);
+    ar::OpenOptions open = s.frames.options;
+    open.pace = ar::Pace::fastest;
+    auto const source = ar::open_source(s.frames.source, open);
+    for (std::size_t k = 0; k < composites.size(); ++k) {
+        auto const frame = source->next(std::chrono::seconds(5));
+        ASSERT_TRUE(frame);
+        double const time_s = double(k) / 30;
+        ArResult r = pipeline.find(*frame, time_s, ar::pose_at(o.poses, std::min(time_s, o.poses.back().time_s)));
+        pipeline.add(r, *frame, time_s, stop);
+        EXPECT_EQ(cv::norm(r.rgb, composites[k], cv::NORM_INF), 0) << "frame " << k;
+        EXPECT_GT(cv::norm(r.rgb, r.camera, cv::NORM_INF), 20) << "something is there";
+        EXPECT_FALSE(r.light.empty());
+    }
+}
+
+TEST_F(ArThreads, GiveUpOldFramesForNewerOnes)
+{
+    std::atomic<int> taken{0};
+    ArRunOptions o;
+    o.frames = 4;
+    o.taken = [&](ar::Frame const&) { ++taken; };
+    int const while_shown = 6; // more than all threads and what waits between them can hold
+    run_ar(
+        counted(), o,
+        [&](ArFrameRecord&, ArResult const&) {
+            for (int const before = taken; taken < before + while_shown;)
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        },
+        stop, report, summary);
+    ASSERT_EQ(summary.frames.size(), 4u);
+    EXPECT_GE(summary.overtaken, 4u);
+    EXPECT_EQ(summary.source.delivered, std::uint64_t(taken));
+    EXPECT_EQ(summary.source.delivered, all_of(summary));
+    std::uint64_t told = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        ArFrameRecord const& f = summary.frames[k];
+        told += f.overtaken;
+        if (k > 0) {
+            EXPECT_GT(f.sequence - summary.frames[k - 1].sequence, f.overtaken);
+        }
+        ArTimes const& t = f.times;
+        EXPECT_NEAR(f.age_ms + t.decode_ms + t.detect_ms + t.pose_ms + t.wait_ms + t.light_ms + t.render_ms +
+                        t.composite_ms,
+                    f.latency_ms, 1e-6);
+        EXPECT_GE(f.show_wait_ms, 0);
+    }
+    EXPECT_LE(told, summary.overtaken);
+    EXPECT_NE(describe(summary).find("overtaken: "), std::string::npos);
+}
+
+TEST_F(ArThreads, WaitWhereNothingMayBeLost)
+{
+    ArRunOptions o;
+    o.pace = ar::Pace::fastest;
+    o.find_poses_only = true;
+    o.frames = 3;
+    std::vector<std::uint64_t> seen;
+    run_ar(
+        session(), o,
+        [&](ArFrameRecord& f, ArResult const&) {
+            seen.push_back(f.sequence);
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        },
+        stop, report, summary);
+    EXPECT_EQ(seen, (std::vector<std::uint64_t>{0, 1, 2}));
+    EXPECT_EQ(summary.overtaken + summary.unfinished, 0u);
+}
+
+TEST_F(ArThreads, HandOnWhatIsThrown)
+{
+    auto const thrown = [&](ArRunOptions const& o, auto const& shown) {
+        ArSummary mine;
+        try {
+            run_ar(counted(), o, shown, stop, report, mine);
+        } catch (std::runtime_error const& e) {
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    auto const nothing = [](ArFrameRecord&, ArResult const&) {};
+    ArRunOptions o;
+    EXPECT_EQ(thrown(o, [](ArFrameRecord&, ArResult const&) { throw std::runtime_error("shown"); }), "shown");
+    o.taken = [](ar::Frame const& f) {
+        if (f.sequence > 1) throw std::runtime_error("taken");
+    };
+    EXPECT_EQ(thrown(o, nothing), "taken");
+    o.taken = {};
+    o.idle = [] { throw std::runtime_error("idle"); };
+    EXPECT_EQ(thrown(o, nothing), "idle");
+}
+
+TEST_F(ArThreads, EndWhenAsked)
+{
+    ArRunOptions o;
+    o.idle = [&] {
+        if (!summary.frames.empty()) stop.request();
+    };
+    double const begun_s = ar::steady_now_s();
+    run_ar(counted(), o, {}, stop, report, summary);
+    EXPECT_LT(ar::steady_now_s() - begun_s, 30) << "the counter never ends";
+    EXPECT_EQ(summary.source.delivered, all_of(summary));
+}
+
+} // namespace
+} // namespace viewer::test

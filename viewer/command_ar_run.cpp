@@ -1,0 +1,138 @@
+#include "gi/base/error.h"
+#include "gi/base/file.h"
+#include "viewer/ar/ar_window.h"
+#include "viewer/ar/frame_table.h"
+#include "viewer/ar/frame_truth.h"
+#include "viewer/ar/picture_folder.h"
+#include "viewer/commands.h"
+#include "viewer/interrupt.h"
+#include "viewer/outputs.h"
+#include "viewer/report_json.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunArguments {
+    std::string session, out, poses, truth, true_poses, frame_table, stats;
+    int frames = 0;
+    bool fast = false, window = false;
+    std::string monitor;
+};
+
+/// Nothing that is read may be written over.
+void check_arguments(RunArguments const& a, ArSession const& s)
+{
+    check_outputs({a.frame_table, a.stats},
+                  {a.session, a.poses, a.true_poses, s.camera.string(), s.markers.string(), s.light.string(),
+                   s.real.scene.string(), s.virtual_things.scene.string()});
+    std::error_code ignored;
+    for (std::string const& read : {s.frames.source, a.truth})
+        if (!a.out.empty() && !read.empty() && fs::equivalent(a.out, read, ignored))
+            throw gi::InputError("--out '" + a.out + "' is a folder that is read",
+                                 "its pictures would be replaced", "name another folder");
+}
+
+int run_session(RunArguments const& a, bool poses_only)
+{
+    ArSession const session = read_ar_session(a.session);
+    check_arguments(a, session);
+    ArRunOptions o;
+    o.frames = a.frames;
+    o.pace = a.fast ? ar::Pace::fastest : ar::Pace::own;
+    o.find_poses_only = poses_only;
+    if (!a.poses.empty()) o.poses = ar::read_poses(a.poses);
+    gi::Report report;
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    std::optional<PictureFolder> folder;
+    FrameTruth truth(a.truth, a.true_poses);
+    std::optional<ArWindow> window;
+    if (!a.out.empty()) folder.emplace(a.out);
+    auto const look = [&] {
+        if (window && window->wants_close()) stop.request();
+    };
+    o.idle = [&] {
+        if (window) window->idle();
+        look();
+    };
+    ArSummary summary;
+    auto const keep = [&] {
+        if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
+        if (!a.frame_table.empty()) gi::write_text(a.frame_table, frame_table(summary));
+        fmt::print("{}{}", describe(summary), describe(truth.errors()));
+        print_losses(report);
+    };
+    auto const shown = [&](ArFrameRecord& f, ArResult const& r) {
+        if (a.window && !window) window.emplace(ArWindowSettings{{r.rgb.cols, r.rgb.rows}, a.monitor}, report);
+        if (window) window->show(f, r);
+        look();
+        if (folder) folder->add(f.sequence, r.rgb);
+        truth.add(f, r);
+    };
+    try {
+        run_ar(session, o, shown, stop, report, summary);
+    } catch (...) {
+        if (!summary.frames.empty()) keep();
+        throw;
+    }
+    keep();
+    if (summary.end.kind == ar::SourceState::Kind::lost) {
+        std::fputs(fmt::format("lightwell: the source was lost: {}\n", summary.end.reason).c_str(), stderr);
+        return 1;
+    }
+    if (summary.frames.empty() && !stop.requested())
+        throw gi::InputError("no frame could be used", describe(summary.source), "check the session's frames");
+    bool const was_closed = window && window->wants_close();
+    return stop.requested() && !was_closed ? kInterrupted : 0;
+}
+
+void add_session_options(CLI::App& c, RunArguments& a)
+{
+    c.add_option("session", a.session, "What is filmed, where the markers are, what is added: see docs/ar.md")
+        ->required();
+    c.add_option("--frames", a.frames, "At most so many; 0 = all")->check(CLI::NonNegativeNumber);
+    c.add_flag("--fast", a.fast, "Files: a frame as soon as the one before is done, not at their own pace");
+    c.add_option("--table", a.frame_table, "CSV with a line for each frame: times, pose, counts");
+    c.add_option("--stats", a.stats, "JSON: seconds of the renderer's stages, counts, losses");
+    c.add_option("--true-poses", a.true_poses, "Where the camera really was (CSV or TUM): the error is told");
+}
+
+} // namespace
+
+void add_ar_run(CLI::App& ar, int& exit_code)
+{
+    auto const run = std::make_shared<RunArguments>();
+    CLI::App* const run_command = ar.add_subcommand("run", "Add virtual things to frames, live or from files");
+    add_session_options(*run_command, *run);
+    run_command->add_option("--out", run->out, "Folder for the composites, as PNG");
+    run_command->add_option("--poses", run->poses, "Where the camera was (CSV or TUM), in place of its markers");
+    run_command->add_flag("--window", run->window, "Show it: S before and after, H panel, Escape ends");
+    run_command->add_option("--monitor", run->monitor, "Full screen on the one of this number or name")
+        ->needs("--window");
+    run_command->add_option("--truth", run->truth,
+                            "Folder of pictures with the things really there: FLIP is told");
+    run_command->footer(R"(Examples:
+  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
+  lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --table frames.csv --stats stages.json)");
+    run_command->callback([run, &exit_code] { exit_code = run_session(*run, false); });
+}
+
+void add_ar_track(CLI::App& ar, int& exit_code)
+{
+    auto const track = std::make_shared<RunArguments>();
+    CLI::App* const track_command =
+        ar.add_subcommand("track", "Find the camera in each frame, and how sure that is");
+    add_session_options(*track_command, *track);
+    track_command->footer(R"(Examples:
+  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth
+  lightwell ar track desk/session.yaml --fast --true-poses desk/poses.csv)");
+    track_command->callback([track, &exit_code] { exit_code = run_session(*track, true); });
+}
+
+} // namespace viewer
