@@ -22,8 +22,8 @@ public:
 
     ArSession read()
     {
-        root_.only_keys(
-            {"schema", "frames", "camera", "markers", "light", "real", "virtual", "render", "composite"});
+        root_.only_keys({"schema", "frames", "camera", "markers", "light", "real", "virtual", "render",
+                         "composite", "pose", "hmd"});
         if (!root_.has("schema") || root_.at("schema").text() != "ar/1")
             throw root_.error("no 'schema: ar/1'", "this may be a file of another kind", "begin the file with it");
         for (char const* needed : {"frames", "camera", "markers"})
@@ -36,6 +36,8 @@ public:
         if (root_.has("real")) session_.real = read_real(root_.at("real"), folder_);
         if (root_.has("virtual")) session_.virtual_things = virtual_things(root_.at("virtual"));
         if (root_.has("render")) read_render(root_.at("render"));
+        if (root_.has("pose")) session_.tracked = read_tracked(root_.at("pose"), folder_);
+        if (root_.has("hmd")) session_.hmd = read_hmd(root_.at("hmd"), folder_);
         if (root_.has("composite")) read_composite(root_.at("composite"));
         return std::move(session_);
     }
@@ -50,9 +52,7 @@ private:
             throw f.error("no 'source'", "there is nothing to see",
                           "name a camera, a video or a folder of pictures");
         std::string const name = f.at("source").text();
-        bool const is_device = name == "camera" || name == "counter" || name.starts_with("camera:") ||
-                               name.starts_with("device:") || name.starts_with("gstreamer:");
-        session_.frames.source = is_device ? name : (folder_ / name).string();
+        session_.frames.source = is_device(name) ? name : (folder_ / name).string();
         ar::OpenOptions& o = session_.frames.options;
         if (f.has("rate_hz")) o.frames_per_s = f.at("rate_hz").number(0.01, 1000);
         if (f.has("size")) {

@@ -6,6 +6,9 @@
 #include "gi/image/render_settings.h"
 #include "viewer/ar/proxies.h"
 
+#include "viewer/ar/hmd_cameras.h"
+#include "viewer/ar/tracked_pose.h"
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -19,7 +22,7 @@ struct ArFrames {
 
 /// What of the place is modelled: a scene file, and proxies.
 struct ArReal : ArPlaced {
-    bool estimate_scene = false; ///< albedos of the scene's materials are those that were estimated
+    bool estimate_scene = false;     ///< albedos of the scene's materials are those that were estimated
     std::filesystem::path estimates; ///< what `lightwell ar albedo` found
     std::vector<ArProxy> proxies;
 };
@@ -42,6 +45,8 @@ struct ArSession {
     int live_light = 0; ///< frames after which the light is renewed from what the camera sees; 0 = it stays
     ArReal real;
     ArPlaced virtual_things;
+    std::optional<ArTracked> tracked; ///< a tracker says where the camera is, in place of markers
+    std::optional<ArHmd> hmd;         ///< the camera is on a headset
     ArRender render;
     double smoothing = 1; ///< weight of a new frame's light among those before, (0, 1]; 1 = each frame for itself
     ar::CompositeSettings composite;

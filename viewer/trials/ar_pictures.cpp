@@ -117,6 +117,7 @@ public:
         if (!stimulus.poses.empty()) poses_ = read_poses(stimulus);
         if (stimulus.show != ArShow::composite) return;
         ArSession const session = session_of(stimulus);
+        if (poses_.empty() && session.tracked) poses_ = recorded_poses(*session.tracked);
         pipeline_.emplace(session, load_ar_camera(session.camera), ar::read_marker_map(session.markers), report);
     }
 
@@ -131,7 +132,8 @@ public:
         if (!known && !poses_.empty()) {
             p.rgb = ar::rgb_of(f.frame).clone(); // as in `ar run`
         } else {
-            ArResult const r = pipeline_->process(f.frame, f.time_s, known, stop_);
+            ArResult r = pipeline_->find(f.frame, f.time_s, known);
+            pipeline_->add(r, f.frame, f.time_s, stop_);
             p.rgb = r.rgb.clone();
             if (r.pose.found()) p.world_from_camera = r.pose.world_from_camera;
         }
@@ -142,6 +144,15 @@ public:
     }
 
 private:
+    std::vector<ar::TimedPose> recorded_poses(ArTracked const& tracked)
+    {
+        TrackedCamera const camera(tracked, report_);
+        if (camera.is_live())
+            throw gi::InputError(stimulus_.session.string() + ": a tracker that is listened to, in a stimulus",
+                                 "it would not say the same twice", "take one of type file, or give ar.poses");
+        return camera.recorded();
+    }
+
     std::optional<ar::Pose> told_pose(double time_s) const
     {
         double const first_s = poses_.front().time_s, last_s = poses_.back().time_s;
