@@ -44,7 +44,7 @@ int run_in_hmd(RunArguments const& a, ArSession const& session, ArRunOptions con
                gi::Report& report)
 {
     ArHmdOptions hmd;
-    hmd.pass_through = {o.frames, o.poses, o.tracked};
+    hmd.pass_through = {o.frames, o.pace, o.poses, o.tracked};
     hmd.headset.space = a.seated ? HmdSpace::local : HmdSpace::stage;
     hmd.eyes = a.eyes;
     ArHmdSummary const summary = run_ar_in_hmd(session, hmd, stop, report);
@@ -152,7 +152,7 @@ void add_ar_run(CLI::App& ar, int& exit_code)
     run_command->add_flag("--seated", run->seated, "Of --hmd: no floor")->needs(hmd);
     run_command->add_option("--eyes", run->eyes, "Of --hmd: folder for the last pictures of both eyes, as PNG")
         ->needs(hmd);
-    for (char const* other : {"--window", "--out", "--fast", "--table", "--true-poses"})
+    for (char const* other : {"--window", "--out", "--table", "--true-poses"})
         hmd->excludes(run_command->get_option(other));
     run_command->add_option("--truth", run->truth,
                             "Folder of pictures with the things really there: FLIP is told");

@@ -53,8 +53,8 @@ protected:
         std::vector<std::string> call{kScript, "client", "--dir", runtime_folder(), "--", LIGHTWELL_PROGRAM};
         for (std::string const& a :
              {std::string("ar"), std::string("run"), (folder / "desk" / session).string(), std::string("--hmd"),
-              std::string("--poses"), (folder / "desk/poses.csv").string(), std::string("--eyes"),
-              (folder / "eyes").string()})
+              std::string("--fast"), std::string("--poses"), (folder / "desk/poses.csv").string(),
+              std::string("--eyes"), (folder / "eyes").string()})
             call.push_back(a);
         return program_.emplace(call, folder.path(), "run", std::vector<std::string>{"DISPLAY="});
     }

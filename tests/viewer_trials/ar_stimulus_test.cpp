@@ -23,13 +23,13 @@ cv::Mat picture(fs::path const& file)
     return rgb;
 }
 
-/// The synthetic desk, four frames at 30 Hz, made once.
+/// The synthetic desk, three frames at 30 Hz, made once.
 class ArStimuli : public testing::Test {
 protected:
     static void SetUpTestSuite()
     {
         folder_ = new TemporaryFolder;
-        run_well("ar synthesize desk --frames 4 --size 96x72 --paths 4", folder_->path());
+        run_well("ar synthesize desk --frames 3 --size 64x48 --paths 2", folder_->path());
     }
     static void TearDownTestSuite() { delete folder_; }
 
@@ -56,7 +56,7 @@ protected:
         gi::Report report;
         gi::StopRequest const stop;
         StimulusView view;
-        view.size_px = {96, 72};
+        view.size_px = {64, 48};
         view.duration_s = duration_s;
         view.warmup_frames = warmup;
         return make_ar_pictures(*stimulus(patch).ar, view, stop, report);
@@ -84,8 +84,8 @@ TEST_F(ArStimuli, CompositesAreThoseOfArRunAndTheSameAgain)
     Outcome const o = run("ar run session.yaml --fast --poses poses.csv --out out", desk());
     ASSERT_EQ(o.code, 0) << o.err;
     auto const first = made({{"ar.poses", "poses.csv"}}), again = made({{"ar.poses", "poses.csv"}});
-    ASSERT_EQ(first.size(), 4u);
-    for (std::size_t f = 0; f < 4; ++f) {
+    ASSERT_EQ(first.size(), 3u);
+    for (std::size_t f = 0; f < 3; ++f) {
         EXPECT_EQ(cv::norm(first[f].rgb, picture(desk() / fmt::format("out/{:06}.png", f)), cv::NORM_INF), 0) << f;
         EXPECT_EQ(cv::norm(first[f].rgb, again[f].rgb, cv::NORM_INF), 0) << f;
         EXPECT_TRUE(first[f].world_from_camera);
@@ -116,8 +116,8 @@ TEST_F(ArStimuli, SettingsGoOverThoseOfTheSession)
 
 TEST_F(ArStimuli, WhatCannotBeIsRefusedByTheSettingToBlame)
 {
-    EXPECT_EQ(problem({{"ar.frame", "3"}}), "");
-    for (auto const& [key, value] : std::vector<std::pair<std::string, std::string>>{{"ar.frame", "4"},
+    EXPECT_EQ(problem({{"ar.frame", "2"}}), "");
+    for (auto const& [key, value] : std::vector<std::pair<std::string, std::string>>{{"ar.frame", "3"},
                                                                                      {"ar.frame", "-1"},
                                                                                      {"ar.frame", "1.5"},
                                                                                      {"ar.from_s", "0.2"},
@@ -146,7 +146,7 @@ TEST_F(ArStimuli, PreparedOnesAreFoundByTheBytesOfWhatTheyAreMadeOf)
     gi::Report report;
     gi::StopRequest const stop;
     StimulusView view;
-    view.size_px = {120, 72};
+    view.size_px = {88, 48};
     StimulusSettings const s = stimulus({{"ar.show", "camera"}, {"ar.frame", "1"}});
     std::string const key = prepared_key({s, view}, "v");
     fs::path const out = folder_->path() / "prepared";
@@ -161,25 +161,25 @@ TEST_F(ArStimuli, PreparedOnesAreFoundByTheBytesOfWhatTheyAreMadeOf)
     // As wide as the place with grey beside it; the screen's sRGB makes the camera's bytes of it again.
     gi::Picture const& shown = frame->result.views.at(0).picture;
     cv::Mat const truth = picture(desk() / "frames/000001.png");
-    ASSERT_EQ(shown.width, 120);
+    ASSERT_EQ(shown.width, 88);
     auto const& color = shown.find("color")->data;
     int wrong = 0;
-    for (int y = 0; y < 72; ++y)
-        for (int x = 0; x < 120; ++x)
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 88; ++x)
             for (int c = 0; c < 3; ++c) {
-                int const is = int(255 * gi::encode_srgb(color[std::size_t(3 * (120 * y + x) + c)]) + 0.5f);
-                wrong += is != (x < 12 || x >= 108 ? 128 : int(truth.at<cv::Vec3b>(y, x - 12)[c]));
+                int const is = int(255 * gi::encode_srgb(color[std::size_t(3 * (88 * y + x) + c)]) + 0.5f);
+                wrong += is != (x < 12 || x >= 76 ? 128 : int(truth.at<cv::Vec3b>(y, x - 12)[c]));
             }
     EXPECT_EQ(wrong, 0);
 
-    cv::Mat changed = cv::imread((desk() / "frames/000003.png").string());
+    cv::Mat changed = cv::imread((desk() / "frames/000002.png").string());
     cv::imwrite((folder_->path() / "kept.png").string(), changed);
     changed.at<cv::Vec3b>(0, 0)[0] ^= 1;
-    cv::imwrite((desk() / "frames/000003.png").string(), changed);
+    cv::imwrite((desk() / "frames/000002.png").string(), changed);
     EXPECT_NE(prepared_key({s, view}, "v"), key) << "a frame has changed";
-    fs::copy_file(folder_->path() / "kept.png", desk() / "frames/000003.png",
+    fs::copy_file(folder_->path() / "kept.png", desk() / "frames/000002.png",
                   fs::copy_options::overwrite_existing);
-    view.size_px.x = 121;
+    view.size_px.x = 89;
     EXPECT_THROW(source.prepare(s, view), gi::InputError);
 }
 
@@ -187,7 +187,7 @@ TEST_F(ArStimuli, LiveOnesPlayAtTheirPaceAndAgain)
 {
     gi::Report report;
     StimulusView view;
-    view.size_px = {96, 72};
+    view.size_px = {64, 48};
     view.duration_s = 0.1;
     ArSource source("", "v", report);
     StimulusSettings const s = stimulus({{"ar.show", "camera"}});
@@ -226,7 +226,7 @@ blocks:
     EXPECT_EQ(at("ar.frame", "2"), "2:39");
     EXPECT_EQ(at("ar.render.paths", "4"), "3:24");
     EXPECT_EQ(at("ar", "s.yaml"), "4:27");
-    EXPECT_EQ(at("ar.light.scale", "0.5"), "6:24");
+    EXPECT_EQ(at("ar.light.scale", "0.5"), "6:23");
     EXPECT_EQ(at("ar", "t.yaml"), "0:0");
 }
 

@@ -226,9 +226,9 @@ ArHmdSummary run_ar_in_hmd(ArSession const& session, ArHmdOptions const& options
 std::string describe(ArHmdSummary const& s)
 {
     PassThroughCounts const& f = s.frames;
-    std::string text =
-        fmt::format("{} composites, camera found in {}\nsource: {}{}\n", f.frames, f.found, describe(f.left),
-                    f.end.kind == ar::SourceState::Kind::lost ? "; lost: " + f.end.reason : "");
+    std::string text = fmt::format("{} composites, camera found in {}, {} frames overtaken\nsource: {}{}\n",
+                                   f.frames, f.found, f.overtaken, describe(f.left),
+                                   f.end.kind == ar::SourceState::Kind::lost ? "; lost: " + f.end.reason : "");
     if (f.right.delivered > 0) text += fmt::format("right source: {}, {} alone\n", describe(f.right), f.alone);
     if (f.refused > 0) text += fmt::format("refused: {} frames\n", f.refused);
     text += fmt::format("headset: {}; {}\n", s.headset, fmt::join(s.phases, ", "));

@@ -78,7 +78,7 @@ struct PassThrough::Side {
 PassThrough::PassThrough(ArSession const& session, PassThroughOptions const& options, gi::Report& report)
     : session_(session), options_(options), report_(report)
 {
-    sides_.push_back(std::make_unique<Side>(session, ar::Pace::own, report));
+    sides_.push_back(std::make_unique<Side>(session, options.pace, report));
     // Of files the left one has the pace, the right one follows.
     if (session.hmd && session.hmd->right)
         sides_.push_back(std::make_unique<Side>(right_session(session), ar::Pace::fastest, report));
@@ -125,9 +125,15 @@ void PassThrough::run()
     Side* const right = sides_.size() > 1 ? sides_[1].get() : nullptr;
     std::optional<double> first_s;
     while (!stop_.requested() && (options_.frames == 0 || counts().frames < std::uint64_t(options_.frames))) {
-        std::optional<ar::Frame> const frame = left.source->next(kWait);
+        std::optional<ar::Frame> frame = left.source->next(kWait);
+        std::uint64_t overtaken = 0;
+        if (frame) left.time_of(*frame); // the first is that of all
+        if (frame && options_.pace == ar::Pace::own)
+            for (; auto newer = left.source->next(std::chrono::milliseconds(0)); ++overtaken)
+                frame = std::move(newer);
         {
             std::lock_guard const lock(mutex_);
+            counts_.overtaken += overtaken;
             counts_.left = left.source->counts();
             counts_.end = left.source->state();
             if (right != nullptr) counts_.right = right->source->counts();
@@ -136,6 +142,7 @@ void PassThrough::run()
         if (!frame) continue;
         double const at_s = left.time_of(*frame);
         if (!first_s) first_s = at_s;
+        if (options_.pace == ar::Pace::fastest && !left.about.is_live) frame->captured_s = ar::steady_now_s();
         bool is_alone = false;
         if (right != nullptr) {
             // Frames that came before the left one's time have nobody any more.

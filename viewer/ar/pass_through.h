@@ -14,7 +14,10 @@
 namespace viewer {
 
 struct PassThroughOptions {
-    int frames = 0;                                                   ///< at most; 0 = all
+    int frames = 0; ///< at most; 0 = all
+    /// Own: a frame that waits is given up for a newer one. Fastest (files): every frame, as if it were taken when
+    /// it is read.
+    ar::Pace pace = ar::Pace::own;
     std::vector<ar::TimedPose> poses;                                 ///< of the left camera, as ArRunOptions
     std::function<std::optional<ar::Pose>(ar::Frame const&)> tracked; ///< likewise; by the thread
 };
@@ -29,8 +32,9 @@ struct PassThroughFrame {
 
 struct PassThroughCounts {
     std::uint64_t frames = 0, found = 0;
-    std::uint64_t refused = 0; ///< could not be used
-    std::uint64_t alone = 0;   ///< of the left camera, without one of the right at the same time
+    std::uint64_t overtaken = 0; ///< given up, since a newer one was there
+    std::uint64_t refused = 0;   ///< could not be used
+    std::uint64_t alone = 0;     ///< of the left camera, without one of the right at the same time
     ar::SourceCounts left, right;
     ar::SourceState end;
 };

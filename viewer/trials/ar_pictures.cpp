@@ -87,7 +87,8 @@ ArSettingError no_such_frame(ArStimulus const& s, std::string const& what_there_
 cv::Mat read_truth(ArStimulus const& s, ar::Frame const& frame)
 {
     std::filesystem::path const file = s.truth / fmt::format("{:06}.png", frame.sequence);
-    cv::Mat truth = cv::imread(file.string(), cv::IMREAD_COLOR);
+    cv::Mat truth;
+    if (std::filesystem::exists(file)) truth = cv::imread(file.string(), cv::IMREAD_COLOR);
     if (truth.empty() || glm::ivec2(truth.cols, truth.rows) != frame.size_px)
         throw ArSettingError("ar.show", "truth",
                              truth.empty() ? "there is no picture '" + file.string() + "'"
