@@ -3,6 +3,7 @@
 #include "viewer/ar/ar_window.h"
 #include "viewer/ar/frame_table.h"
 #include "viewer/ar/frame_truth.h"
+#include "viewer/ar/hmd_run.h"
 #include "viewer/ar_recording.h"
 #include "viewer/commands.h"
 #include "viewer/interrupt.h"
@@ -19,10 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunArguments {
-    std::string session, out, video, record_input, poses, truth, true_poses, frame_table, stats;
+    std::string session, out, video, record_input, poses, truth, true_poses, frame_table, stats, display;
     int frames = 0;
     bool fast = false, window = false, gpu = false;
-    std::string monitor;
+    std::string monitor, eyes;
+    bool hmd = false, seated = false;
 };
 
 /// Nothing that is read may be written over.
@@ -36,6 +38,24 @@ void check_arguments(RunArguments const& a, ArSession const& s)
         if (!a.out.empty() && !read.empty() && fs::equivalent(a.out, read, ignored))
             throw gi::InputError("--out '" + a.out + "' is a folder that is read",
                                  "its pictures would be replaced", "name another folder");
+}
+
+int run_in_hmd(RunArguments const& a, ArSession const& session, ArRunOptions const& o, gi::StopRequest const& stop,
+               gi::Report& report)
+{
+    ArHmdOptions hmd;
+    hmd.pass_through = {o.frames, o.pace, o.poses, o.tracked};
+    hmd.headset.space = a.seated ? HmdSpace::local : HmdSpace::stage;
+    hmd.eyes = a.eyes;
+    ArHmdSummary const summary = run_ar_in_hmd(session, hmd, stop, report);
+    if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
+    fmt::print("{}", describe(summary));
+    print_losses(report);
+    if (summary.frames.end.kind == ar::SourceState::Kind::lost) {
+        std::fputs(fmt::format("lightwell: the source was lost: {}\n", summary.frames.end.reason).c_str(), stderr);
+        return 1;
+    }
+    return stop.requested() ? kInterrupted : 0;
 }
 
 int run_session(RunArguments const& a, bool poses_only)
@@ -53,8 +73,17 @@ int run_session(RunArguments const& a, bool poses_only)
     if (a.gpu) o.composite = CompositeBy::window;
     if (!a.poses.empty()) o.poses = ar::read_poses(a.poses);
     gi::Report report;
+    std::optional<TrackedCamera> tracker;
+    if (a.poses.empty() && (session.tracked || !a.display.empty())) {
+        ArTracked tracked = session.tracked.value_or(ArTracked{});
+        if (!a.display.empty()) tracked.display = a.display;
+        tracker.emplace(tracked, report);
+        o.poses = tracker->recorded();
+        if (tracker->is_live()) o.tracked = [&](ar::Frame const& f) { return tracker->at(f.captured_s); };
+    }
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
+    if (a.hmd) return run_in_hmd(a, session, o, stop, report);
     FrameTruth truth(a.truth, a.true_poses);
     ArRecording recording({a.out, a.video, a.record_input, session.camera.string(),
                            a.fast ? PictureThread::WhenFull::wait : PictureThread::WhenFull::lose});
@@ -75,6 +104,7 @@ int run_session(RunArguments const& a, bool poses_only)
     ArSummary summary;
     auto const keep = [&] {
         if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
+        if (tracker) fmt::print("{}", tracker->describe());
         if (!a.frame_table.empty()) gi::write_text(a.frame_table, frame_table(summary));
         fmt::print("{}{}{}", describe(summary), describe(truth.errors()), recording.text());
         print_losses(report);
@@ -123,6 +153,8 @@ void add_session_options(CLI::App& c, RunArguments& a)
     c.add_flag("--fast", a.fast, "Files: a frame as soon as the one before is done, not at their own pace");
     c.add_option("--table", a.frame_table, "CSV with a line for each frame: times, pose, counts");
     c.add_option("--stats", a.stats, "JSON: seconds of the renderer's stages, counts, losses");
+    c.add_option("--display", a.display,
+                 "A room whose tracker says where the camera is, in place of its markers (docs/displays.md)");
     c.add_option("--true-poses", a.true_poses, "Where the camera really was (CSV or TUM): the error is told");
 }
 
@@ -144,6 +176,13 @@ void add_ar_run(CLI::App& ar, int& exit_code)
         run_command->add_flag("--window", run->window, "Show it: S before and after, H panel, Escape ends");
     run_command->add_option("--monitor", run->monitor, "Full screen on the one of this number or name")
         ->needs("--window");
+    CLI::Option* const hmd = run_command->add_flag(
+        "--hmd", run->hmd, "In the headset of the OpenXR runtime that carries the camera (docs/hmd.md)");
+    run_command->add_flag("--seated", run->seated, "Of --hmd: no floor")->needs(hmd);
+    run_command->add_option("--eyes", run->eyes, "Of --hmd: folder for the last pictures of both eyes, as PNG")
+        ->needs(hmd);
+    for (char const* other : {"--window", "--out", "--table", "--true-poses"})
+        hmd->excludes(run_command->get_option(other));
     run_command->add_option("--truth", run->truth,
                             "Folder of pictures with the things really there: FLIP is told");
     run_command

@@ -32,12 +32,18 @@ void print_doubts(std::vector<std::string> const& doubts)
 int run_check(StudyOptions const& o)
 {
     constexpr int kMostPlans = 2000;
-    study::Script const s = load_script(o.script).script;
+    LoadedScript const loaded = load_script(o.script);
+    study::Script const& s = loaded.script;
     int const plans = std::min(s.participants.count, kMostPlans);
+    ArStimulusCheck ar(loaded);
     study::Plan longest = study::make_plan(s, 1);
-    for (int p = 2; p <= plans; ++p)
-        if (study::Plan plan = study::make_plan(s, p); plan.duration_us > longest.duration_us)
-            longest = std::move(plan);
+    ar.add(longest);
+    for (int p = 2; p <= plans; ++p) {
+        study::Plan plan = study::make_plan(s, p);
+        ar.add(plan);
+        if (plan.duration_us > longest.duration_us) longest = std::move(plan);
+    }
+    ar.check();
     auto doubts = study::find_doubts(s);
     for (std::string& doubt : study::find_doubts(s, longest)) doubts.push_back(std::move(doubt));
     if (o.json) {
@@ -45,12 +51,14 @@ int run_check(StudyOptions const& o)
                                        {"participants", s.participants.count},
                                        {"plans_made", plans},
                                        {"full_cycle", study::full_cycle(s)},
+                                       {"ar_stimuli", ar.count()},
                                        {"longest_s", double(longest.duration_us) * 1e-6},
                                        {"doubts", doubts}};
         std::fputs(to_text(j).c_str(), stdout);
         return 0;
     }
     std::fputs(study::script_text(s, longest).c_str(), stdout);
+    if (ar.count() > 0) fmt::print("{} stimuli from AR sessions\n", ar.count());
     fmt::print("{} plans made, the longest is expected to take {}\n", plans,
                study::clock_text(longest.duration_us));
     print_doubts(doubts);
@@ -150,7 +158,7 @@ void add_study(CLI::App& app, int& exit_code)
 
     CLI::App* const example =
         study->add_subcommand("example", "Write one of the experiments that the program carries.");
-    example->add_option("NAME", o->example, "visibility2026, pairs, staircase or rating")->required();
+    example->add_option("NAME", o->example, "visibility2026, pairs, staircase, rating or ar_paths")->required();
     example->add_option("--out", o->out, "file to write")->required();
     example->callback([o, &exit_code] { exit_code = run_example(*o); });
 

@@ -43,7 +43,7 @@ int run(PrepareOptions const& o)
         gi::ProgressBar bar("prepare " + loaded.script.id, work.leads());
         SceneAccess const scenes = study_scenes();
         for (auto const& [key, wanted] : list) {
-            bar.update(double(number) / double(list.size()), wanted.stimulus.scene);
+            bar.update(double(number) / double(list.size()), name_of(wanted.stimulus));
             if (int(number++ % std::size_t(work.size())) != work.rank()) continue;
             made += prepare_stimulus(wanted, o.out, key, scenes, o.threads, work.stop(), report);
         }

@@ -43,6 +43,7 @@ void check_stimuli(std::vector<StimulusSettings> stimuli, SceneAccess const& sce
                      [](auto const& a, auto const& b) { return a.scene < b.scene; });
     bool is_edited = false;
     for (StimulusSettings const& s : stimuli) {
+        if (s.ar) continue; // ArStimulusCheck has looked at it
         if (s.scene != session.scene_name() || is_edited) session.apply({"scene", s.scene});
         scenes.camera(session.world(), s.camera);
         for (Change const& c : s.edits) session.apply(c);
@@ -55,7 +56,7 @@ void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOption
     for (auto const& [key, wanted] : prepared_list(script, screen_px, float(o.font_px), version_text()))
         if (!std::filesystem::exists(std::filesystem::path(o.prepared) / key / "stimulus.json"))
             throw gi::InputError(
-                fmt::format("a stimulus of {} is not in '{}'", wanted.stimulus.scene, o.prepared),
+                fmt::format("a stimulus of {} is not in '{}'", name_of(wanted.stimulus), o.prepared),
                 fmt::format("nothing was prepared for it in a window of {} x {} px by this version", screen_px.x,
                             screen_px.y),
                 "run lightwell study prepare with this script, --size and --font, and name its "
@@ -68,11 +69,13 @@ void check_one_at_a_time(study::Script const& script, study::Plan const& plan, b
     for (study::PlanStep const& step : plan.steps) {
         if (step.kind != study::PlanStepKind::trial || step.trial.stimuli.empty()) continue;
         study::Block const& block = script.blocks[std::size_t(step.block)];
-        bool headset = in_headset;
+        bool headset = in_headset, is_ar = false;
         std::vector<study::Stimulus> stimuli = step.trial.stimuli;
         if (step.trial.reference) stimuli.push_back(*step.trial.reference);
         for (std::size_t i = 0; i < stimuli.size(); ++i) {
-            auto const view = stimulus_settings(settings_of(script, block, stimuli[i]), block.camera).view;
+            StimulusSettings const settings = stimulus_settings(script, block, stimuli[i]);
+            auto const view = settings.view;
+            is_ar |= settings.ar.has_value();
             bool const is_in_it = view ? *view == StimulusViewer::headset : in_headset;
             if (i > 0 && is_in_it != headset)
                 throw gi::InputError(fmt::format("{}: block {}", script.file, block.name),
@@ -80,6 +83,9 @@ void check_one_at_a_time(study::Script const& script, study::Plan const& plan, b
                                      "let trials differ in it: per: FACTOR, or cross");
             headset = is_in_it;
         }
+        if (is_ar && on_walls)
+            throw gi::InputError(fmt::format("{}: block {} on walls", script.file, block.name),
+                                 "its stimuli are a camera's pictures", "run it in a window, without --display");
         if (!headset && !on_walls) continue;
         bool const is_several =
             !block.is_sequential && step.trial.order.size() + (step.trial.reference ? 1 : 0) > 1;
@@ -117,6 +123,9 @@ int run(RunOptions const& o)
     InterruptGuard const guard(stop);
     if (o.hmd && !o.display.empty())
         throw gi::InputError("--hmd with --display", "a session is seen in one of them", "give one");
+    ArStimulusCheck ar(loaded);
+    ar.add(plan);
+    ar.check();
     std::vector<StimulusSettings> const stimuli = stimuli_of(script, plan); // refuses settings, naming their block
     check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
     check_stimuli(stimuli, trials.scenes);

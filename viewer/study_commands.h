@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,11 +27,30 @@ LoadedScript load_script(std::string const& file);
 /// count.
 std::vector<int> parse_participants(std::string const& text, int count);
 
-/// The tables of a data set made anew from its journals, and the script kept beside them, after a session. Where that
-/// cannot be (records of another script), says so on stderr: the journals are the truth, and study rebuild goes on.
+/// The tables of a data set made anew from its journals, and the script kept beside them, after a session. Where
+/// that cannot be (records of another script), says so on stderr: the journals are the truth, and study rebuild
+/// goes on.
 void keep_tables(std::filesystem::path const& dir, std::string const& script_file);
 /// Scenes as every command reads them.
 SceneAccess study_scenes();
+
+/// Stimuli that are made of AR sessions, over several plans, each once.
+class ArStimulusCheck {
+public:
+    explicit ArStimulusCheck(LoadedScript const& loaded) : loaded_(loaded) {}
+    void add(study::Plan const& plan);
+    /// Reads all that they name; no picture is made. Throws ScriptError at the setting that is to blame; what is
+    /// wrong within a session is said with its own place.
+    void check() const;
+    std::size_t count() const { return patches_.size(); }
+
+private:
+    void add(study::Block const& block, study::Stimulus const& stimulus);
+
+    LoadedScript const& loaded_;
+    std::set<std::pair<study::Patch, std::string>> patches_; ///< settings and camera
+};
+
 /// What a session came to, as JSON and for people.
 nlohmann::ordered_json session_json(std::string const& id, study::SessionOutcome const& outcome);
 void print_session(std::string const& id, study::SessionOutcome const& outcome);

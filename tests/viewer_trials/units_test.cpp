@@ -260,7 +260,11 @@ TEST(Stimuli, WholeSettingsTakeTheNearestLevel)
 /// Whoever answers whatever: the shipped staircases and QUEST+ never ask for a level that was not prepared.
 TEST(Stimuli, OfProceduresAllLevelsThatTheyMayAskForAreKnown)
 {
-    study::Script const s = study::parse_script(std::string(study::study_examples()[2].text), "staircase");
+    auto const examples = study::study_examples();
+    auto const staircase =
+        std::find_if(examples.begin(), examples.end(), [](auto const& e) { return e.name == "staircase"; });
+    ASSERT_NE(staircase, examples.end());
+    study::Script const s = study::parse_script(std::string(staircase->text), "staircase");
     study::Random random(7);
     int asked = 0;
     for (study::Block const& block : s.blocks) {

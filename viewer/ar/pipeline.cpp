@@ -5,9 +5,9 @@
 #include "gi/base/error.h"
 #include "gi/scene/load.h"
 #include "viewer/ar/bridge.h"
+#include "viewer/ar/real_scene.h"
 
 #include <fmt/format.h>
-#include <glm/gtc/matrix_transform.hpp>
 
 namespace viewer {
 namespace {
@@ -27,23 +27,11 @@ private:
     double last_s_;
 };
 
-gi::dmat4 placement(ArPlaced const& p)
-{
-    return glm::translate(gi::dmat4(1), p.at_m) *
-           glm::rotate(gi::dmat4(1), glm::radians(p.turn_deg), gi::dvec3(0, 1, 0)) *
-           glm::scale(gi::dmat4(1), gi::dvec3(p.scale));
-}
-
-gi::Scene loaded(ArPlaced const& p, gi::Report& report)
-{
-    return p.scene.empty() ? gi::Scene{} : gi::load_scene(p.scene.string(), report);
-}
-
 LocalScene local_scene(ArSession const& s, gi::Report& report)
 {
-    gi::Scene real;
-    gi::append(real, loaded(s.real, report), "real", placement(s.real));
-    return join_scenes(std::move(real), loaded(s.virtual_things, report), placement(s.virtual_things));
+    ArPlaced const& v = s.virtual_things;
+    return join_scenes(real_scene(s.real, report),
+                       v.scene.empty() ? gi::Scene{} : gi::load_scene(v.scene.string(), report), placement(v));
 }
 
 gi::RenderSettings render_settings(ArRender const& r)

@@ -131,10 +131,10 @@ void RunThreads::find_all()
 ArResult RunThreads::found_in(OnItsWay const& w)
 {
     std::optional<double> const begun_s = is_timed_ ? std::optional(w.frame.arrived_s) : std::nullopt;
-    if (options_.poses.empty()) return pipeline_.find(w.frame, w.time_s, {}, begun_s);
-    if (auto const known = told_pose(options_.poses, w.time_s))
+    if (options_.poses.empty() && !options_.tracked) return pipeline_.find(w.frame, w.time_s, {}, begun_s);
+    if (auto const known = options_.tracked ? options_.tracked(w.frame) : told_pose(options_.poses, w.time_s))
         return pipeline_.find(w.frame, w.time_s, known, begun_s);
-    ArResult r; // the file does not say
+    ArResult r; // nobody knows
     double const from_s = begun_s ? *begun_s : ar::steady_now_s();
     r.rgb = r.camera = ar::rgb_of(w.frame);
     r.done_s = ar::steady_now_s();

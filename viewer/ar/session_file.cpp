@@ -1,8 +1,9 @@
 #include "viewer/ar/session_file.h"
 
 #include "gi/base/file.h"
-#include "gi/scene/load/yaml_reader.h"
 #include "gi/slhb/directions.h"
+#include "viewer/ar/read_real.h"
+#include "viewer/ar/read_values.h"
 
 #include <fmt/format.h>
 
@@ -11,19 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using gi::YamlReader;
-
-/// One of these words.
-template <class T>
-T choice(YamlReader const& at, std::vector<std::pair<char const*, T>> const& words)
-{
-    std::string const text = at.text();
-    std::string known;
-    for (auto const& [word, value] : words) {
-        if (text == word) return value;
-        known += (known.empty() ? "" : ", ") + std::string(word);
-    }
-    throw at.error("'" + text + "' is not known here", "nothing could be done with it", "choose one of " + known);
-}
 
 class Reader {
 public:
@@ -34,8 +22,8 @@ public:
 
     ArSession read()
     {
-        root_.only_keys(
-            {"schema", "frames", "camera", "markers", "light", "real", "virtual", "render", "composite"});
+        root_.only_keys({"schema", "frames", "camera", "markers", "light", "real", "virtual", "render",
+                         "composite", "pose", "hmd"});
         if (!root_.has("schema") || root_.at("schema").text() != "ar/1")
             throw root_.error("no 'schema: ar/1'", "this may be a file of another kind", "begin the file with it");
         for (char const* needed : {"frames", "camera", "markers"})
@@ -45,9 +33,11 @@ public:
         session_.camera = path(root_.at("camera"));
         session_.markers = path(root_.at("markers"));
         if (root_.has("light")) read_light(root_.at("light"));
-        if (root_.has("real")) session_.real = placed(root_.at("real"));
-        if (root_.has("virtual")) session_.virtual_things = placed(root_.at("virtual"));
+        if (root_.has("real")) session_.real = read_real(root_.at("real"), folder_);
+        if (root_.has("virtual")) session_.virtual_things = virtual_things(root_.at("virtual"));
         if (root_.has("render")) read_render(root_.at("render"));
+        if (root_.has("pose")) session_.tracked = read_tracked(root_.at("pose"), folder_);
+        if (root_.has("hmd")) session_.hmd = read_hmd(root_.at("hmd"), folder_);
         if (root_.has("composite")) read_composite(root_.at("composite"));
         return std::move(session_);
     }
@@ -62,9 +52,7 @@ private:
             throw f.error("no 'source'", "there is nothing to see",
                           "name a camera, a video or a folder of pictures");
         std::string const name = f.at("source").text();
-        bool const is_device = name == "camera" || name == "counter" || name.starts_with("camera:") ||
-                               name.starts_with("device:") || name.starts_with("gstreamer:");
-        session_.frames.source = is_device ? name : (folder_ / name).string();
+        session_.frames.source = is_device(name) ? name : (folder_ / name).string();
         ar::OpenOptions& o = session_.frames.options;
         if (f.has("rate_hz")) o.frames_per_s = f.at("rate_hz").number(0.01, 1000);
         if (f.has("size")) {
@@ -94,18 +82,11 @@ private:
         if (l.has("scale")) session_.light_scale = l.at("scale").number(0, 1e9);
     }
 
-    ArPlaced placed(YamlReader const& p) const
+    ArPlaced virtual_things(YamlReader const& v) const
     {
-        p.only_keys({"scene", "at", "turn_deg", "scale"});
-        if (!p.has("scene")) throw p.error("no 'scene'", "there is nothing to place", "give a file of a scene");
-        ArPlaced placed;
-        std::string const name = p.at("scene").text();
-        // As load_scene: a name without an extension is a scene that is generated.
-        placed.scene = fs::path(name).has_extension() ? folder_ / name : fs::path(name);
-        if (p.has("at")) placed.at_m = p.at("at").vector(-1e6, 1e6);
-        if (p.has("turn_deg")) placed.turn_deg = p.at("turn_deg").number(-360, 360);
-        if (p.has("scale")) placed.scale = p.at("scale").number(1e-6, 1e6);
-        return placed;
+        v.only_keys({"scene", "at", "turn_deg", "scale"});
+        if (!v.has("scene")) throw v.error("no 'scene'", "there is nothing to place", "give a file of a scene");
+        return read_placed(v, "scene", folder_);
     }
 
     void read_render(YamlReader const& r)

@@ -3,8 +3,11 @@
 
 #include "ar/capture/open_source.h"
 #include "ar/composite/composite.h"
-#include "gi/base/math.h"
 #include "gi/image/render_settings.h"
+#include "viewer/ar/proxies.h"
+
+#include "viewer/ar/hmd_cameras.h"
+#include "viewer/ar/tracked_pose.h"
 
 #include <filesystem>
 #include <optional>
@@ -17,11 +20,11 @@ struct ArFrames {
     ar::OpenOptions options;
 };
 
-struct ArPlaced {
-    std::filesystem::path scene; ///< empty = nothing
-    gi::dvec3 at_m{0};
-    double turn_deg = 0; ///< about the vertical, counter-clockwise seen from above
-    double scale = 1;
+/// What of the place is modelled: a scene file, and proxies.
+struct ArReal : ArPlaced {
+    bool estimate_scene = false;     ///< albedos of the scene's materials are those that were estimated
+    std::filesystem::path estimates; ///< what `lightwell ar albedo` found
+    std::vector<ArProxy> proxies;
 };
 
 struct ArRender {
@@ -40,7 +43,10 @@ struct ArSession {
     std::filesystem::path light; ///< lat-long map; empty: only lamps of the real scene
     double light_turn_deg = 0, light_scale = 1;
     int live_light = 0; ///< frames after which the light is renewed from what the camera sees; 0 = it stays
-    ArPlaced real, virtual_things;
+    ArReal real;
+    ArPlaced virtual_things;
+    std::optional<ArTracked> tracked; ///< a tracker says where the camera is, in place of markers
+    std::optional<ArHmd> hmd;         ///< the camera is on a headset
     ArRender render;
     double smoothing = 1; ///< weight of a new frame's light among those before, (0, 1]; 1 = each frame for itself
     ar::CompositeSettings composite;

@@ -4,6 +4,7 @@
 #include "gi/base/file.h"
 #include "gi/base/picture_file.h"
 #include "study/base/sha256.h"
+#include "viewer/trials/ar_source.h"
 #include "viewer/trials/stimulus_place.h"
 
 #include <algorithm>
@@ -47,8 +48,9 @@ gi::Picture shown_part(gi::Picture const& picture)
 std::string prepared_key(PreparedStimulus const& w, std::string const& version)
 {
     return study::sha256(fmt::format("{} {} {}x{} {} {:.6g} {} {}", w.stimulus.sha256,
-                                     scene_hash(w.stimulus.scene), w.view.size_px.x, w.view.size_px.y,
-                                     name_of(w.view.stereo), w.view.duration_s, w.view.warmup_frames, version));
+                                     w.stimulus.ar ? content_hash(*w.stimulus.ar) : scene_hash(w.stimulus.scene),
+                                     w.view.size_px.x, w.view.size_px.y, name_of(w.view.stereo), w.view.duration_s,
+                                     w.view.warmup_frames, version));
 }
 
 bool prepare_stimulus(PreparedStimulus const& wanted, std::filesystem::path const& folder, std::string const& key,
@@ -56,6 +58,7 @@ bool prepare_stimulus(PreparedStimulus const& wanted, std::filesystem::path cons
 {
     if (std::filesystem::exists(folder / key)) return false;
     StimulusSettings const& s = wanted.stimulus;
+    if (s.ar) return prepare_ar_stimulus(s, wanted.view, folder, key, stop, report);
     Session session(scenes.load, threads, report);
     for (SettingKey const& k : setting_keys())
         if (auto const value = get(s.settings, k.key); value != get(session.settings(), k.key))
@@ -101,7 +104,7 @@ void PreparedSource::prepare(StimulusSettings const& stimulus, StimulusView cons
     frames_.clear();
     std::filesystem::path const folder = folder_ / prepared_key({stimulus, view}, version_);
     if (!std::filesystem::exists(folder / "stimulus.json"))
-        throw gi::InputError(fmt::format("a stimulus of {} is not in '{}'", stimulus.scene, folder_.string()),
+        throw gi::InputError(fmt::format("a stimulus of {} is not in '{}'", name_of(stimulus), folder_.string()),
                              fmt::format("nothing was prepared for a place of {} x {} px by this version",
                                          view.size_px.x, view.size_px.y),
                              "run lightwell study prepare with the same script and --size");

@@ -33,7 +33,7 @@ std::map<std::string, PreparedStimulus> prepared_list(study::Script const& scrip
     if (!is_any) return list;
     auto const add = [&](study::Block const& block, study::Trial const& trial, study::Stimulus const& stimulus) {
         PreparedStimulus p;
-        p.stimulus = stimulus_settings(settings_of(script, block, stimulus), block.camera);
+        p.stimulus = stimulus_settings(script, block, stimulus);
         std::size_t const together =
             block.is_sequential ? 1 : trial.order.size() + (trial.reference.has_value() ? 1 : 0);
         p.view = view_of(block, p.stimulus, together, screen_px, font_px);
@@ -48,7 +48,8 @@ std::map<std::string, PreparedStimulus> prepared_list(study::Script const& scrip
                 throw gi::InputError(script.file + ": block " + block.name + ": stimuli: prepared",
                                      "what is adjusted is rendered while it is seen", "write stimuli: live");
             for (study::Stimulus s : step.trial.stimuli) {
-                if (!s.is_varied || s.level) {
+                bool const has_levels = block.compare && !block.compare->vary.empty();
+                if (!s.is_varied || s.level || !has_levels) {
                     add(block, step.trial, s);
                     continue;
                 }

@@ -48,10 +48,35 @@ StimulusPath path_of(std::string const& name)
     throw gi::InputError("camera: path:" + name, "there is no such path", "write path:orbit");
 }
 
+/// Without paths: the same session in another folder is the same.
+Json text_of(ArStimulus const& s)
+{
+    return {{"session", s.text},
+            {"frame", s.frame ? Json(*s.frame) : Json()},
+            {"from_s", s.from_s},
+            {"show", int(s.show)},
+            {"poses", s.poses.filename().string()}};
+}
+
+/// The picture is a camera's, rendered as its session says.
+void check_beside_ar(study::Patch const& patch, std::string const& camera)
+{
+    for (auto const& [key, value] : patch) {
+        if (is_ar_setting(key) || (key == "view" && value == "window")) continue;
+        throw ArSettingError(key, value, fmt::format("{}: {} of a stimulus with an AR session", key, value),
+                             "the session says from where and how it is rendered, and it is seen in a window",
+                             "leave it out, or write a setting of the session: ar.render.paths");
+    }
+    if (!camera.empty())
+        throw gi::InputError("camera: " + camera + " of a stimulus with an AR session",
+                             "it is seen from where the session's camera was", "leave it out");
+}
+
 std::string text_of(StimulusSettings const& s)
 {
     Json all = Json::object();
     for (SettingKey const& k : setting_keys()) all[k.key] = get(s.settings, k.key);
+    if (s.ar) all["ar"] = text_of(*s.ar);
     Json edits = Json::array();
     for (Change const& c : s.edits) edits.push_back({c.key, c.value});
     return Json{{"scene", s.scene},    {"camera", s.camera},
@@ -62,11 +87,28 @@ std::string text_of(StimulusSettings const& s)
 
 } // namespace
 
-StimulusSettings stimulus_settings(study::Patch const& patch, std::string const& camera)
+std::string name_of(StimulusSettings const& s) { return s.ar ? s.ar->session.string() : s.scene; }
+
+StimulusSettings stimulus_settings(study::Script const& script, study::Block const& block,
+                                   study::Stimulus const& stimulus)
+{
+    return stimulus_settings(settings_of(script, block, stimulus), block.camera,
+                             std::filesystem::path(script.file).parent_path());
+}
+
+StimulusSettings stimulus_settings(study::Patch const& patch, std::string const& camera,
+                                   std::filesystem::path const& folder)
 {
     StimulusSettings s;
     s.settings.panel = false;
     s.settings.refine = false;
+    if (std::any_of(patch.begin(), patch.end(), [](auto const& one) { return is_ar_setting(one.first); })) {
+        s.ar = ar_stimulus(patch, folder);
+        check_beside_ar(patch, camera);
+        s.view = StimulusViewer::window;
+        s.sha256 = study::sha256(text_of(s));
+        return s;
+    }
     constexpr std::string_view kPath = "path:", kGi = "gi.";
     auto const see_from = [&](std::string const& name) {
         if (name.starts_with(kPath))
@@ -95,7 +137,7 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
     }
     if (s.scene.empty())
         throw gi::InputError("a stimulus without a scene", "there would be nothing to show",
-                             "give a factor or defaults.settings the setting `scene`");
+                             "give a factor or defaults.settings the setting `scene`, or `ar` for an AR session");
     s.sha256 = study::sha256(text_of(s));
     return s;
 }
@@ -118,7 +160,7 @@ std::vector<StimulusSettings> stimuli_of(study::Script const& script, study::Pla
         study::Block const block = step.block >= 0 ? script.blocks[std::size_t(step.block)] : plain_block(script);
         auto const add = [&](study::Stimulus const& stimulus) {
             try {
-                StimulusSettings s = stimulus_settings(settings_of(script, block, stimulus), block.camera);
+                StimulusSettings s = stimulus_settings(script, block, stimulus);
                 all.emplace(s.sha256, std::move(s));
             } catch (gi::InputError const& e) {
                 throw gi::InputError(fmt::format("{}: block {}, {}", script.file, block.name,

@@ -4,10 +4,11 @@
 // Keys are those of viewer/session/settings.h, with or without "gi." before them, edits of the scene
 // (viewer/session/scene_edits.h), and: scene (a file or a built-in name), camera (of the scene), view (window,
 // openxr), and gi.visibility, which chooses a method that approximates the visibility of indirect light
-// (gi/visibility).
+// (gi/visibility). Or those of an AR session (viewer/trials/ar_stimulus.h), and no others.
 
 #include "study/design/plan.h"
 #include "viewer/session/settings.h"
+#include "viewer/trials/ar_stimulus.h"
 
 namespace viewer {
 
@@ -29,12 +30,20 @@ struct StimulusSettings {
     std::optional<StimulusViewer> view; ///< none = as the command line says
     Settings settings;                  ///< whole: what is not said is as it is by default
     std::vector<Change> edits;          ///< of the scene
+    std::optional<ArStimulus> ar;       ///< in place of all that
     std::string sha256;                 ///< of all this as text: the same digits, the same pictures
 };
 
 /// Throws InputError on a key or value that the renderer does not know, naming it.
-/// @param camera  of the block: "", a name or "path:orbit"
-StimulusSettings stimulus_settings(study::Patch const& patch, std::string const& camera);
+/// @param camera  of the block: "", a name or "path:orbit"   @param folder  that AR sessions are relative to
+StimulusSettings stimulus_settings(study::Patch const& patch, std::string const& camera,
+                                   std::filesystem::path const& folder = {});
+/// Of a script's block. AR sessions are relative to the script.
+StimulusSettings stimulus_settings(study::Script const& script, study::Block const& block,
+                                   study::Stimulus const& stimulus);
+
+/// For messages: the scene, or the file of the AR session.
+std::string name_of(StimulusSettings const& stimulus);
 
 /// What a step of the sequence has that belongs to no block.
 study::Block plain_block(study::Script const& script);

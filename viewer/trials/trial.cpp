@@ -65,11 +65,10 @@ TrialPresenter::Trial::Trial(TrialPresenter& presenter, study::TrialRequest cons
             continue;
         std::size_t const at = letter == 'r' ? request.stimuli.size() : std::size_t(letter - 'a');
         study::Stimulus const& stimulus = letter == 'r' ? *request.reference : request.stimuli.at(at);
-        StimulusSettings settings =
-            stimulus_settings(settings_of(*request.script, block_, stimulus), block_.camera);
+        StimulusSettings settings = stimulus_settings(*request.script, block_, stimulus);
         StereoMode const stereo = *stereo_mode(settings.settings.stereo);
-        known_.push_back(
-            {letter, stimulus, std::move(settings), &p_.source(known_.size(), block_.stimuli), stereo});
+        StimulusSource& source = p_.source(known_.size(), block_.stimuli, settings);
+        known_.push_back({letter, stimulus, std::move(settings), &source, stereo});
     }
 }
 
@@ -171,7 +170,7 @@ void TrialPresenter::Trial::adjust()
     for (Known& k : known_) {
         if (!k.stimulus.is_varied) continue;
         k.stimulus.level = level_;
-        k.settings = stimulus_settings(settings_of(*request_.script, block_, k.stimulus), block_.camera);
+        k.settings = stimulus_settings(*request_.script, block_, k.stimulus);
         k.source->change(k.settings);
     }
 }

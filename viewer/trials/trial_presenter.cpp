@@ -1,6 +1,7 @@
 #include "viewer/trials/trial_presenter.h"
 
 #include "gi/base/error.h"
+#include "viewer/trials/ar_source.h"
 #include "viewer/trials/hmd_screen.h"
 #include "viewer/trials/live_source.h"
 #include "viewer/trials/page.h"
@@ -256,8 +257,16 @@ study::StepDone TrialPresenter::rest(std::string const& prompt, double least_s, 
     return done;
 }
 
-StimulusSource& TrialPresenter::source(std::size_t number, study::Stimuli kind)
+StimulusSource& TrialPresenter::source(std::size_t number, study::Stimuli kind, StimulusSettings const& stimulus)
 {
+    if (stimulus.ar) {
+        bool const is_prepared = kind == study::Stimuli::prepared;
+        auto& all = is_prepared ? ar_prepared_ : ar_;
+        while (all.size() <= number)
+            all.push_back(
+                std::make_unique<ArSource>(is_prepared ? options_.prepared : "", options_.version, report_));
+        return *all[number];
+    }
     if (kind == study::Stimuli::prepared) {
         while (prepared_.size() <= number)
             prepared_.push_back(std::make_unique<PreparedSource>(options_.prepared, options_.version));

@@ -62,7 +62,7 @@ private:
     /// Views of walls for a source; empty in a window.
     std::function<std::vector<ViewOrder>(gi::Camera const&)> on_walls();
     bool should_end() const { return experimenter_.wants_end(); }
-    StimulusSource& source(std::size_t number, study::Stimuli kind);
+    StimulusSource& source(std::size_t number, study::Stimuli kind, StimulusSettings const& stimulus);
     /// Until `done` says so, 30 times a second, or the experimenter ends it (false).
     bool page(std::function<void(glm::vec2)> const& text, std::function<bool(InputEvent const&)> const& done,
               std::function<bool()> const& over = {});
@@ -85,9 +85,10 @@ private:
     Markers markers_;
     Experimenter experimenter_;
     FrameTable table_;
-    std::vector<std::unique_ptr<StimulusSource>> live_, prepared_; ///< by the letter that they show
-    double period_s_ = 1.0 / 60;                                   ///< of refreshes
-    bool paced_ = false; ///< swaps do not wait for the display: they are made to come at expected_hz
+    std::vector<std::unique_ptr<StimulusSource>> live_, prepared_, ar_,
+        ar_prepared_;            ///< by the letter that they show
+    double period_s_ = 1.0 / 60; ///< of refreshes
+    bool paced_ = false;         ///< swaps do not wait for the display: they are made to come at expected_hz
     Clock::time_point next_swap_;
     Clock::time_point escaped_{}; ///< when escape was pressed last
     double last_pose_s_ = -1e9;

@@ -9,10 +9,9 @@ study::StepDone TrialPresenter::walk(study::TrialRequest const& where, std::stri
     experimenter_.status.doing = "free walk";
     if (!prompt.empty()) instruct(prompt, where.step_index);
     study::Block const block = where.block != nullptr ? *where.block : plain_block(*where.script);
-    StimulusSettings const s =
-        stimulus_settings(settings_of(*where.script, block, where.stimuli.front()), block.camera);
+    StimulusSettings const s = stimulus_settings(*where.script, block, where.stimuli.front());
     see_in(s.view.value_or(options_.view));
-    StimulusSource& from = source(0, study::Stimuli::live);
+    StimulusSource& from = source(0, study::Stimuli::live, s);
     StereoMode const stereo = *stereo_mode(s.settings.stereo);
     from.prepare(s, {screen_->size_px(), stereo, length_s, 0, on_walls()});
     while (!from.is_ready() && !should_end()) {

@@ -1,0 +1,21 @@
+// Any text as an AR session or as a file of albedos: what it says, or an InputError.
+
+#include "gi/base/error.h"
+#include "viewer/ar/albedo_file.h"
+#include "viewer/ar/session_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
+{
+    std::string const text(data, data + size);
+    try {
+        viewer::ArSession const s = viewer::parse_ar_session(text, "fuzz");
+        if (s.camera.empty() || s.markers.empty()) __builtin_trap();
+    } catch (gi::InputError const&) {
+    }
+    try {
+        auto const albedos = viewer::parse_albedos(text, "fuzz");
+        if (viewer::parse_albedos(viewer::format_albedos(albedos), "again").size() != albedos.size()) __builtin_trap();
+    } catch (gi::InputError const&) {
+    }
+    return 0;
+}
