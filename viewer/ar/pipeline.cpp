@@ -58,27 +58,67 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
       detector_(markers),
       renderer_(local_scene(session, report), render_settings(session.render), report),
       light_(session),
-      warp_(camera.model, ar::covering_pinhole(camera.model, session.render.resolution)),
-      compositor_(camera.photometry, with_noise(session.composite, camera.noise))
+      finish_(session, camera.model, markers),
+      compositor_(camera.photometry,
+                  with_noise(session.composite, session.match_noise ? camera.noise : ar::SensorNoise{})),
+      tracker_(session.pose.tracker),
+      report_(report)
 {
     renderer_.set_environment(light_.begin());
-    if (session.smoothing < 1) {
-        ar::TemporalSettings smooth;
-        smooth.weight = float(session.smoothing);
-        filter_.emplace(warp_.from(), smooth);
-    }
 }
 
-ar::RenderedPair ArPipeline::rendered(ar::Pose const& world_from_camera, double time_s,
+ar::RenderedPair ArPipeline::rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,
                                       gi::StopRequest const& stop)
 {
-    ar::CameraModel const& pinhole = warp_.from();
+    ar::CameraModel const& pinhole = finish_.pinhole();
+    ar::Pose const& world_from_camera = found.pose.world_from_camera;
     PairPictures const p =
         renderer_.render(gi_camera(pinhole, world_from_camera), pinhole.size_px.x, pinhole.size_px.y,
                          session_.render.paths, time_s, session_.render.denoise, stop);
-    ar::RenderedPair pair{p.with, p.without, p.coverage, p.direct};
-    if (filter_) pair = (*filter_)(pair, p.depth_m, world_from_camera);
-    return warp_(pair);
+    FinishFrame frame{{}, world_from_camera, time_s, exposure.time_s};
+    if (finish_.needs_radiance()) frame.radiance = ar::radiance_of(found.camera, camera_.photometry, exposure);
+    return finish_(p, frame, finish_.needs_world() ? renderer_.world_with(time_s) : renderer_.world());
+}
+
+void ArPipeline::use_pose(ar::PoseEstimate& pose, double time_s)
+{
+    ArPoseUse const& use = session_.pose;
+    if (!(pose.found() ? use.filtered : use.predict_s > 0)) return;
+    ar::TrackedPose const tracked = tracker_.at(time_s);
+    bool const stands = use.tracker.motion == ar::CameraMotion::tripod && pose.found();
+    if (!tracked.world_from_camera || (!stands && tracked.age_s > std::max(use.predict_s, 1e-6))) return;
+    if (!pose.found()) {
+        pose.failure = ar::PoseFailure::none;
+        pose.confidence = tracked.confidence;
+        ++predicted_;
+    }
+    pose.world_from_camera = *tracked.world_from_camera;
+}
+
+void ArPipeline::report_counts()
+{
+    ar::TrackerCounts const& t = tracker_.counts();
+    auto const count = [&](char const* what, std::size_t n) {
+        if (n > 0) report_.count(what, double(n));
+    };
+    count("poses taken", t.taken);
+    count("poses missed", t.missed);
+    count("poses refused as jumps", t.jumps_refused);
+    count("jumps believed", t.jumps_believed);
+    count("moves of the tripod", t.moves);
+    count("poses predicted", predicted_);
+    FinishCounts const& f = finish_.counts();
+    count("enlarged pixels whose surface no rendered one shows", f.upsample.without_guide);
+    count("enlarged pixels among virtual things alone", f.upsample.no_sample);
+    count("points of virtual things without light", f.unlit);
+    count("pixels at borders of real occluders", f.matte.band);
+    count("pixels at borders of real occluders, refined", f.matte.refined);
+    count("frames whose sharpness was measured", f.blur.measured);
+    count("frames without an edge to measure", f.blur.unmeasured);
+    count("frames blurred by motion", f.blur.moved);
+    count("frames of unknown exposure time", session_.finish.match_blur ? f.blur.no_exposure : 0);
+    if (f.camera_sigma_px > 0) report_.count("blur of the camera (px)", f.camera_sigma_px);
+    if (f.added_sigma_px > 0) report_.count("blur that was added (px)", f.added_sigma_px);
 }
 
 ArResult ArPipeline::seen(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known)
@@ -102,6 +142,7 @@ ArResult ArPipeline::seen(ar::Frame const& frame, double time_s, std::optional<a
         r.times.detect_ms = lap();
         r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(time_s));
         tracker_.add(time_s, r.pose);
+        use_pose(r.pose, time_s);
         r.times.pose_ms = lap();
     }
     r.rgb = r.camera;
@@ -115,7 +156,8 @@ ArResult ArPipeline::process(ar::Frame const& frame, double time_s, std::optiona
 {
     ArResult r = seen(frame, time_s, known);
     if (!r.pose.found()) {
-        if (filter_) filter_->forget();
+        finish_.forget();
+        report_counts();
         return r;
     }
     Lap lap;
@@ -124,10 +166,11 @@ ArResult ArPipeline::process(ar::Frame const& frame, double time_s, std::optiona
         renderer_.set_environment(std::move(map));
     r.times.light_ms = lap();
     r.rgb = cv::Mat(); // the camera's stays as it is
-    r.pair = rendered(r.pose.world_from_camera, time_s, stop);
+    r.pair = rendered(r, frame.exposure, time_s, stop);
     r.times.render_ms = lap();
     r.counts = compositor_(r.camera, *r.pair, frame.exposure, r.rgb, frame.sequence);
     r.times.composite_ms = lap();
+    report_counts();
     return r;
 }
 
