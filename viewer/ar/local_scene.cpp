@@ -13,14 +13,6 @@ namespace {
 /// Scale of what is not there. Not 0, so that lamps still point somewhere; triangles have no area left in floats.
 constexpr double kGone = 1e-12;
 
-void leave_out_views(gi::Scene& scene)
-{
-    for (gi::Node& n : scene.nodes) n.camera = -1;
-    scene.cameras.clear();
-    scene.environment.reset();
-    scene.background = {};
-}
-
 /// All towards one point, so that nothing is left of skins whose joints are apart.
 void vanish(std::span<gi::dmat4> world_from_node)
 {
@@ -31,6 +23,14 @@ void vanish(std::span<gi::dmat4> world_from_node)
 }
 
 } // namespace
+
+void leave_out_views(gi::Scene& scene)
+{
+    for (gi::Node& n : scene.nodes) n.camera = -1;
+    scene.cameras.clear();
+    scene.environment.reset();
+    scene.background = {};
+}
 
 LocalScene join_scenes(gi::Scene real, gi::Scene virtual_things, gi::dmat4 const& world_from_virtual)
 {

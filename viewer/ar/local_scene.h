@@ -16,6 +16,9 @@ struct LocalScene {
     std::size_t first_virtual_light = 0; ///< of World::lights
 };
 
+/// Cameras, environment and background.
+void leave_out_views(gi::Scene& scene);
+
 /// Cameras and environments of both are left out: the place is lit by what was captured there, and by lamps of the
 /// real scene. Virtual lamps light real things.
 /// @throws InputError something of the real scene moves: it could not be told from the virtual

@@ -32,6 +32,13 @@ gi::Changes PairRenderer::turn(gi::PairSide side, gi::SceneTime time_s)
     return changes;
 }
 
+gi::World const& PairRenderer::world_with(gi::SceneTime time_s)
+{
+    gi::Changes const changes = turn(gi::PairSide::with, time_s); // with those that the renderer has not been told
+    pending_.add(changes);
+    return world_.world();
+}
+
 PairPictures PairRenderer::render(gi::Camera const& camera, int width, int height, std::uint32_t paths,
                                   gi::SceneTime time_s, bool denoise, gi::StopRequest const& stop)
 {

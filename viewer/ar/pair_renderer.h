@@ -29,6 +29,8 @@ public:
     PairPictures render(gi::Camera const& camera, int width, int height, std::uint32_t paths, gi::SceneTime time_s,
                         bool denoise, gi::StopRequest const& stop);
     gi::World const& world() const { return world_.world(); }
+    /// The same, with everything virtual in its place. It is moved again by the next picture.
+    gi::World const& world_with(gi::SceneTime time_s);
 
 private:
     gi::Changes turn(gi::PairSide side, gi::SceneTime time_s);

@@ -49,6 +49,11 @@ ar::CompositeSettings with_noise(ar::CompositeSettings settings, ar::SensorNoise
     return settings;
 }
 
+void count_some(gi::Report& report, char const* what, std::size_t n)
+{
+    if (n > 0) report.count(what, double(n));
+}
+
 } // namespace
 
 ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers,
@@ -58,28 +63,69 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
       detector_(markers),
       renderer_(local_scene(session, report), render_settings(session.render), report),
       light_(session),
-      warp_(camera.model, ar::covering_pinhole(camera.model, session.render.resolution)),
-      compositor_(camera.photometry, with_noise(session.composite, camera.noise))
+      finish_(session, camera.model, markers),
+      compositor_(camera.photometry,
+                  with_noise(session.composite, session.match_noise ? camera.noise : ar::SensorNoise{})),
+      tracker_(session.pose.tracker),
+      report_(report)
 {
     renderer_.set_environment(light_.begin());
     light_picture_ = picture_of_light(light_.map());
-    if (session.smoothing < 1) {
-        ar::TemporalSettings smooth;
-        smooth.weight = float(session.smoothing);
-        filter_.emplace(warp_.from(), smooth);
-    }
 }
 
-ar::RenderedPair ArPipeline::rendered(ar::Pose const& world_from_camera, double time_s,
+ar::RenderedPair ArPipeline::rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,
                                       gi::StopRequest const& stop)
 {
-    ar::CameraModel const& pinhole = warp_.from();
+    ar::CameraModel const& pinhole = finish_.pinhole();
+    ar::Pose const& world_from_camera = found.pose.world_from_camera;
     PairPictures const p =
         renderer_.render(gi_camera(pinhole, world_from_camera), pinhole.size_px.x, pinhole.size_px.y,
                          session_.render.paths, time_s, session_.render.denoise, stop);
-    ar::RenderedPair pair{p.with, p.without, p.coverage, p.direct};
-    if (filter_) pair = (*filter_)(pair, p.depth_m, world_from_camera);
-    return warp_(pair);
+    FinishFrame frame{{}, world_from_camera, time_s, exposure.time_s};
+    if (finish_.needs_radiance()) frame.radiance = ar::radiance_of(found.camera, camera_.photometry, exposure);
+    return finish_(p, frame, finish_.needs_world() ? renderer_.world_with(time_s) : renderer_.world());
+}
+
+void ArPipeline::use_pose(ar::PoseEstimate& pose, double time_s)
+{
+    ArPoseUse const& use = session_.pose;
+    if (!(pose.found() ? use.filtered : use.predict_s > 0)) return;
+    ar::TrackedPose const tracked = tracker_.at(time_s);
+    bool const stands = use.tracker.motion == ar::CameraMotion::tripod && pose.found();
+    if (!tracked.world_from_camera || (!stands && tracked.age_s > std::max(use.predict_s, 1e-6))) return;
+    if (!pose.found()) {
+        pose.failure = ar::PoseFailure::none;
+        pose.confidence = tracked.confidence;
+        ++predicted_;
+    }
+    pose.world_from_camera = *tracked.world_from_camera;
+}
+
+void ArPipeline::report_poses()
+{
+    ar::TrackerCounts const& t = tracker_.counts();
+    count_some(report_, "poses taken", t.taken);
+    count_some(report_, "poses missed", t.missed);
+    count_some(report_, "poses refused as jumps", t.jumps_refused);
+    count_some(report_, "jumps believed", t.jumps_believed);
+    count_some(report_, "moves of the tripod", t.moves);
+    count_some(report_, "poses predicted", predicted_);
+}
+
+void ArPipeline::report_finish()
+{
+    FinishCounts const& f = finish_.counts();
+    count_some(report_, "enlarged pixels whose surface no rendered one shows", f.upsample.without_guide);
+    count_some(report_, "enlarged pixels among virtual things alone", f.upsample.no_sample);
+    count_some(report_, "points of virtual things without light", f.unlit);
+    count_some(report_, "pixels at borders of real occluders", f.matte.band);
+    count_some(report_, "pixels at borders of real occluders, refined", f.matte.refined);
+    count_some(report_, "frames whose sharpness was measured", f.blur.measured);
+    count_some(report_, "frames without an edge to measure", f.blur.unmeasured);
+    count_some(report_, "frames blurred by motion", f.blur.moved);
+    count_some(report_, "frames of unknown exposure time", session_.finish.match_blur ? f.blur.no_exposure : 0);
+    if (f.camera_sigma_px > 0) report_.count("blur of the camera (px)", f.camera_sigma_px);
+    if (f.added_sigma_px > 0) report_.count("blur that was added (px)", f.added_sigma_px);
 }
 
 ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known,
@@ -104,6 +150,8 @@ ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<a
         r.times.detect_ms = lap();
         r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(time_s));
         tracker_.add(time_s, r.pose);
+        use_pose(r.pose, time_s);
+        report_poses();
         r.times.pose_ms = lap();
     }
     r.rgb = r.camera;
@@ -123,15 +171,16 @@ void ArPipeline::add(ArResult& r, ar::Frame const& frame, double time_s, gi::Sto
             light_picture_ = picture_of_light(light_.map());
         }
         r.times.light_ms = lap();
-        r.pair = rendered(r.pose.world_from_camera, time_s, stop);
+        r.pair = rendered(r, frame.exposure, time_s, stop);
         r.times.render_ms = lap();
         if (composite == CompositeBy::pipeline) {
             r.rgb = cv::Mat(); // the camera's stays as it is
             r.counts = compositor_(r.camera, *r.pair, frame.exposure, r.rgb, frame.sequence);
         }
         r.times.composite_ms = lap();
-    } else if (filter_) {
-        filter_->forget();
+        report_finish();
+    } else {
+        finish_.forget();
     }
     r.light = light_picture_;
     r.done_s = lap.last_s();

@@ -4,10 +4,9 @@
 
 #include "ar/base/frame.h"
 #include "ar/composite/composite.h"
-#include "ar/composite/temporal.h"
-#include "ar/composite/warp.h"
 #include "ar/markers/detect.h"
 #include "ar/pose/tracker.h"
+#include "viewer/ar/pair_finish.h"
 #include "viewer/ar/pair_renderer.h"
 #include "viewer/ar/place_light.h"
 
@@ -66,18 +65,23 @@ public:
     ar::Compositor const& compositor() const { return compositor_; }
 
 private:
-    ar::RenderedPair rendered(ar::Pose const& world_from_camera, double time_s, gi::StopRequest const& stop);
+    ar::RenderedPair rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,
+                              gi::StopRequest const& stop);
+    void use_pose(ar::PoseEstimate& pose, double time_s);
+    void report_poses();
+    void report_finish();
 
     ArSession session_;
     ArCamera camera_;
     ar::MarkerTracker detector_;
     PairRenderer renderer_;
     PlaceLight light_;
-    ar::Warp warp_;
-    std::optional<ar::TemporalFilter> filter_;
+    PairFinish finish_;
     ar::Compositor compositor_;
     ar::PoseTracker tracker_;
+    std::uint64_t predicted_ = 0; ///< frames
     cv::Mat light_picture_;
+    gi::Report& report_;
 };
 
 } // namespace viewer

@@ -36,9 +36,9 @@ public:
         if (root_.has("real")) session_.real = read_real(root_.at("real"), folder_);
         if (root_.has("virtual")) session_.virtual_things = virtual_things(root_.at("virtual"));
         if (root_.has("render")) read_render(root_.at("render"));
-        if (root_.has("pose")) session_.tracked = read_tracked(root_.at("pose"), folder_);
         if (root_.has("hmd")) session_.hmd = read_hmd(root_.at("hmd"), folder_);
         if (root_.has("composite")) read_composite(root_.at("composite"));
+        if (root_.has("pose")) read_pose(root_.at("pose"));
         return std::move(session_);
     }
 
@@ -120,7 +120,12 @@ private:
 
     void read_composite(YamlReader const& c)
     {
-        c.only_keys({"blend", "clipped", "largest_ratio", "smoothing"});
+        c.only_keys(
+            {"blend", "clipped", "largest_ratio", "smoothing", "upsample", "mattes", "match_blur", "noise"});
+        if (c.has("upsample")) session_.finish.upsample = c.at("upsample").boolean();
+        if (c.has("mattes")) session_.finish.mattes = c.at("mattes").boolean();
+        if (c.has("match_blur")) session_.finish.match_blur = c.at("match_blur").boolean();
+        if (c.has("noise")) session_.match_noise = c.at("noise").boolean();
         if (c.has("smoothing")) session_.smoothing = c.at("smoothing").number(0.01, 1);
         if (c.has("blend"))
             session_.composite.blend = choice<ar::Blend>(
@@ -131,6 +136,54 @@ private:
                                                            {"ratio", ar::ClippedBytes::ratio},
                                                            {"model", ar::ClippedBytes::model}});
         if (c.has("largest_ratio")) session_.composite.largest_ratio = float(c.at("largest_ratio").number(1, 1e6));
+    }
+
+    /// Of markers, or of a tracker in their place.
+    void read_pose(YamlReader const& p)
+    {
+        p.only_keys({"tripod", "smoothing", "predict_s", "display", "tracker", "camera_from_sensor",
+                     "world_from_room", "offset_s"});
+        bool is_tracked = false;
+        for (char const* key : {"display", "tracker", "camera_from_sensor", "world_from_room", "offset_s"})
+            is_tracked |= p.has(key);
+        if (!is_tracked) return read_pose_use(p);
+        for (char const* key : {"tripod", "smoothing", "predict_s"})
+            if (p.has(key))
+                throw p.at(key).error(fmt::format("'{}' beside a tracker", key),
+                                      "trackers have their filter and prediction in the display's file",
+                                      "remove one of the two");
+        session_.tracked = read_tracked(p, folder_);
+    }
+
+    void read_pose_use(YamlReader const& p)
+    {
+        ArPoseUse& use = session_.pose;
+        if (p.has("tripod") && p.at("tripod").boolean()) {
+            use.tracker.motion = ar::CameraMotion::tripod;
+            use.filtered = true;
+        }
+        if (p.has("smoothing")) {
+            YamlReader const s = p.at("smoothing");
+            if (use.tracker.motion == ar::CameraMotion::tripod)
+                throw s.error("smoothing of a camera on a tripod", "its poses are averaged",
+                              "remove one of the two");
+            use.filtered = s.is_map() || s.boolean();
+            if (s.is_map()) {
+                s.only_keys({"position", "rotation"});
+                if (s.has("position")) read_one_euro(s.at("position"), use.tracker.position);
+                if (s.has("rotation")) read_one_euro(s.at("rotation"), use.tracker.rotation);
+            }
+        }
+        if (p.has("predict_s")) use.predict_s = p.at("predict_s").number(0, 10);
+        use.tracker.predict_s = std::max(use.tracker.predict_s, use.predict_s);
+        use.tracker.lost_after_s = std::max(use.tracker.lost_after_s, 2 * use.predict_s);
+    }
+
+    static void read_one_euro(YamlReader const& y, ar::OneEuroSettings& s)
+    {
+        y.only_keys({"min_cutoff_hz", "beta"});
+        if (y.has("min_cutoff_hz")) s.min_cutoff_hz = y.at("min_cutoff_hz").number(1e-3, 1e3);
+        if (y.has("beta")) s.beta = y.at("beta").number(0, 1e4);
     }
 
     YamlReader const& root_;

@@ -3,6 +3,7 @@
 
 #include "ar/capture/open_source.h"
 #include "ar/composite/composite.h"
+#include "ar/pose/tracker.h"
 #include "gi/image/render_settings.h"
 #include "viewer/ar/proxies.h"
 
@@ -36,6 +37,20 @@ struct ArRender {
     gi::SlhbSettings slhb; ///< directions, resolution, lamps, fresh_lamps, shadow_resolution
 };
 
+/// What is done to a rendered pair before it is put into a frame; each costs only where it is asked for.
+struct ArFinish {
+    bool upsample = true;    ///< below a resolution of 1: with guides, and borders of virtual things at full size
+    bool mattes = false;     ///< borders where real things hide virtual ones follow the camera's picture
+    bool match_blur = false; ///< what is added is as blurred as the camera's pictures
+};
+
+/// What becomes of the poses that frames tell.
+struct ArPoseUse {
+    ar::TrackerSettings tracker;
+    bool filtered = false; ///< smoothed, or the mean of a tripod: those of `tracker`; else each frame's own
+    double predict_s = 0;  ///< frames without a pose so long after the last: the motion goes on
+};
+
 struct ArSession {
     std::filesystem::path file;
     ArFrames frames;
@@ -50,6 +65,9 @@ struct ArSession {
     ArRender render;
     double smoothing = 1; ///< weight of a new frame's light among those before, (0, 1]; 1 = each frame for itself
     ar::CompositeSettings composite;
+    bool match_noise = true; ///< what is added is as noisy as the calibration says that the camera is
+    ArFinish finish;
+    ArPoseUse pose;
 };
 
 /// Paths within are relative to the file's folder. @throws gi::InputError with file:line:column

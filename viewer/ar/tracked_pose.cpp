@@ -61,7 +61,6 @@ fs::path file_of(DisplayTracker const& tracker, fs::path const& display)
 
 ArTracked read_tracked(gi::YamlReader const& p, fs::path const& folder)
 {
-    p.only_keys({"display", "tracker", "camera_from_sensor", "world_from_room", "offset_s"});
     ArTracked t;
     auto const pose = [&](char const* key, ar::Pose& to) {
         if (!p.has(key)) return;

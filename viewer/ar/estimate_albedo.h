@@ -1,0 +1,42 @@
+#pragma once
+// Albedos of real surfaces from what the camera has seen of them: ar/composite/albedo.h with the reference renderer
+// as the one that knows how much light falls where.
+
+#include "ar/composite/albedo.h"
+#include "gi/base/progress.h"
+#include "viewer/ar/pipeline.h"
+#include "viewer/ar/real_scene.h"
+
+namespace viewer {
+
+/// A frame without virtual things.
+struct AlbedoFrame {
+    cv::Mat rgb; ///< CV_8UC3, of the calibration's size
+    ar::Exposure exposure;
+    ar::Pose world_from_camera;
+    double confidence = 1; ///< of the pose
+};
+
+struct EstimateSettings {
+    double resolution = 0.5;  ///< pixels compared per pixel of the camera, each way
+    std::uint32_t paths = 16; ///< of the reference renderer, per pixel compared, before its noise is filtered
+    int bounces = 6;
+    int most_turns = 8; ///< of rendering and fitting
+    float tolerance = 2e-3f;
+    ar::AlbedoSettings fit;
+};
+
+struct AlbedoEstimate {
+    std::vector<AlbedoEntry> entries; ///< a patch each; `texture` is left empty
+    std::vector<cv::Mat> textures;    ///< the same: CV_32FC3, linear, upper row first; empty = none
+    ar::AlbedoSolution solution;
+    std::size_t filled = 0, texels = 0, outside = 0; ///< of all textures, see ar::AlbedoTexture
+};
+
+/// @param real  as of `model_of`. Light is the session's map and the lamps of the scene.
+/// @throws gi::InputError nothing to estimate, no light, no frame
+AlbedoEstimate estimate_albedos(RealScene real, ArSession const& session, ArCamera const& camera,
+                                std::span<AlbedoFrame const> frames, EstimateSettings const& settings,
+                                gi::StopRequest const& stop, gi::Report& report);
+
+} // namespace viewer

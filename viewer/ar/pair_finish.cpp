@@ -1,0 +1,130 @@
+#include "viewer/ar/pair_finish.h"
+
+#include "ar/composite/blur.h"
+#include "viewer/ar/bridge.h"
+
+#include <opencv2/imgproc.hpp>
+
+namespace viewer {
+namespace {
+
+/// The pinhole of the frame's size: it sees exactly what the rendered one does.
+ar::CameraModel full_pinhole(ar::CameraModel const& rendered, ArSession const& s)
+{
+    if (!s.finish.upsample || s.render.resolution >= 1) return rendered;
+    return ar::scaled(rendered, glm::ivec2(glm::round(glm::dvec2(rendered.size_px) / s.render.resolution)));
+}
+
+/// Of a rendered pixel's mean, and of the bilinear lookup through the lens: 1/12 and on the mean 1/6 square pixels.
+constexpr double kRenderedSigma_px = 0.5;
+
+} // namespace
+
+PairFinish::PairFinish(ArSession const& session, ar::CameraModel const& camera, ar::MarkerMap const& markers)
+    : session_(session),
+      camera_(camera),
+      pinhole_(ar::covering_pinhole(camera, session.render.resolution)),
+      warp_(camera, full_pinhole(pinhole_, session))
+{
+    if (session.render.resolution >= 1) session_.finish.upsample = false;
+    if (session.smoothing < 1) {
+        ar::TemporalSettings smooth;
+        smooth.weight = float(session.smoothing);
+        filter_.emplace(pinhole_, smooth);
+    }
+    if (session.finish.match_blur) blur_.emplace(markers, camera);
+}
+
+void PairFinish::forget()
+{
+    if (filter_) filter_->forget();
+    if (blur_) blur_->forget();
+}
+
+ar::RenderedPair PairFinish::smoothed(PairPictures const& p, ar::Pose const& world_from_camera)
+{
+    ar::RenderedPair pair{p.with, p.without, p.coverage, p.direct};
+    if (filter_) pair = (*filter_)(pair, p.depth_m, world_from_camera);
+    return pair;
+}
+
+ar::RenderedPair PairFinish::upsampled(ar::RenderedPair const& low, SharpSurfaces const& sharp,
+                                       gi::Camera const& camera)
+{
+    // Guides are needed where something has changed, and two pixels further.
+    cv::Mat difference;
+    cv::absdiff(low.with, low.without, difference);
+    cv::Mat const changed = cv::Mat(difference.reshape(1, int(difference.total())) > 0);
+    cv::Mat any;
+    cv::reduce(changed, any, 1, cv::REDUCE_MAX);
+    cv::Size const low_size = low.with.size(), size = sharp.seen.coverage.size();
+    cv::Rect const region = around(any.reshape(1, low_size.height), 3);
+    ar::SurfaceGuides low_guides, guides;
+    if (!region.empty()) {
+        low_guides = guides_of(*real_, camera, low_size, region, 8);
+        guides = guides_of(*real_, camera, size, scaled(region, low_size, size), 2);
+    }
+    ar::UpsampleCounts counts;
+    ar::RenderedPair pair = ar::upsampled(low, low_guides, sharp.seen, guides, {}, {}, &counts);
+    counts_.upsample.without_guide += counts.without_guide;
+    counts_.upsample.no_sample += counts.no_sample;
+    return pair;
+}
+
+ar::RenderedPair PairFinish::blurred(ar::RenderedPair pair, FinishFrame const& frame, cv::Mat const& depth_m)
+{
+    blur_->follow(frame.radiance, frame.world_from_camera, frame.time_s, frame.exposure_s);
+    counts_.blur = blur_->counts();
+    counts_.added_sigma_px = 0;
+    ar::CameraModel const& pinhole = warp_.from();
+    double const pixels = pinhole.fx / camera_.fx; // of the pair per pixel of the camera
+    if (auto const sigma_px = blur_->sigma_px()) {
+        counts_.camera_sigma_px = *sigma_px;
+        double const missing_px = ar::missing_blur_px(*sigma_px, kRenderedSigma_px / pixels);
+        if (missing_px > 0.05) {
+            counts_.added_sigma_px = missing_px;
+            pair = ar::defocused(pair, std::min(missing_px * pixels, 20.0));
+        }
+    }
+    if (auto const opened = blur_->shutter_opened()) {
+        cv::Mat depth = depth_m;
+        if (depth.size() != pair.with.size())
+            cv::resize(depth_m, depth, pair.with.size(), 0, 0, cv::INTER_NEAREST);
+        pair = ar::motion_blurred(pair, ar::image_velocity(pinhole, depth, *opened, frame.world_from_camera));
+    }
+    return pair;
+}
+
+ar::RenderedPair PairFinish::operator()(PairPictures const& rendered, FinishFrame const& frame,
+                                        gi::World const& world)
+{
+    ar::RenderedPair pair = smoothed(rendered, frame.world_from_camera);
+    SharpSurfaces sharp;
+    gi::Camera const camera = gi_camera(pinhole_, frame.world_from_camera);
+    glm::ivec2 const size = warp_.from().size_px;
+    if (needs_world()) {
+        if (!virtual_) {
+            virtual_.emplace(world);
+            real_.emplace(world, Surfaces::still);
+        } else
+            virtual_->moved();
+        PairPictures low = rendered;
+        low.with = pair.with;
+        sharp = virtual_->at_size(low, camera, {size.x, size.y}, session_.finish.mattes);
+        counts_.unlit += sharp.unlit;
+    }
+    if (session_.finish.upsample) pair = upsampled(pair, sharp, camera);
+    if (blur_) pair = blurred(std::move(pair), frame, rendered.depth_m);
+    pair = warp_(pair);
+    if (!session_.finish.mattes) return pair;
+    ar::DirectlySeen const unoccluded{warp_.smooth(sharp.unoccluded.radiance),
+                                      warp_.smooth(sharp.unoccluded.coverage)};
+    ar::MatteCounts counts;
+    cv::Mat const coverage =
+        ar::refined_coverage(pair.coverage, unoccluded.coverage, frame.radiance, {}, &counts);
+    counts_.matte.band += counts.band;
+    counts_.matte.refined += counts.refined;
+    return ar::with_coverage(pair, coverage, {pair.direct, pair.coverage}, unoccluded);
+}
+
+} // namespace viewer

@@ -1,0 +1,198 @@
+#include "ar/base/error.h"
+#include "ar/markers/marker_map_file.h"
+#include "ar/pose/pose_file.h"
+#include "gi/base/error.h"
+#include "gi/base/file.h"
+#include "gi/base/picture_file.h"
+#include "viewer/ar/estimate_albedo.h"
+#include "viewer/ar/frames_apart.h"
+#include "viewer/ar/runner.h"
+#include "viewer/arguments.h"
+#include "viewer/commands.h"
+#include "viewer/interrupt.h"
+#include "viewer/outputs.h"
+#include "viewer/report_json.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct AlbedoArguments {
+    std::string session, out, poses;
+    int views = 8, frames = 0;
+    EstimateSettings settings;
+};
+
+struct SeenFrames {
+    std::vector<AlbedoFrame> kept;
+    int found = 0, without_pose = 0, refused = 0;
+};
+
+/// Where the camera was: from the file, or by what the frame shows.
+class CameraPath {
+public:
+    CameraPath(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera)
+        : camera_(camera), detector_(ar::read_marker_map(session.markers))
+    {
+        if (!a.poses.empty()) poses_ = ar::read_poses(a.poses);
+    }
+    /// Its confidence, too.
+    std::optional<std::pair<ar::Pose, double>> at(ar::Frame const& frame, double time_s)
+    {
+        if (!poses_.empty()) {
+            constexpr double rounding_s = 2e-6; // of clocks in files
+            double const first_s = poses_.front().time_s, last_s = poses_.back().time_s;
+            if (time_s < first_s - rounding_s || time_s > last_s + rounding_s) return std::nullopt;
+            auto const pose = ar::pose_at(poses_, std::clamp(time_s, first_s, last_s));
+            if (!pose) return std::nullopt;
+            return std::pair(*pose, 1.0);
+        }
+        ar::PoseEstimate const p =
+            ar::estimate_pose(detector_.next(ar::gray_of(frame)), camera_.model, tracker_.expected(time_s));
+        tracker_.add(time_s, p);
+        if (!p.found() || p.ambiguous) return std::nullopt;
+        return std::pair(p.world_from_camera, p.confidence);
+    }
+
+private:
+    ArCamera const& camera_;
+    std::vector<ar::TimedPose> poses_;
+    ar::MarkerTracker detector_;
+    ar::PoseTracker tracker_;
+};
+
+SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera,
+                gi::StopRequest const& stop)
+{
+    CameraPath path(a, session, camera);
+    ar::OpenOptions open = session.frames.options;
+    open.pace = ar::Pace::fastest;
+    auto const source = ar::open_source(session.frames.source, open);
+    double const rate = source->description().frames_per_s;
+    bool const is_recording = fs::exists(fs::path(session.frames.source) / "session.json");
+    bool const is_numbered = rate > 0 && !source->description().is_live && !is_recording;
+    SeenFrames seen;
+    KeptApart<AlbedoFrame> kept(std::size_t(a.views));
+    std::optional<ar::Frame> first;
+    for (int n = 0; !stop.requested() && (a.frames == 0 || n < a.frames);) {
+        std::optional<ar::Frame> const frame = source->next(std::chrono::milliseconds(200));
+        if (!frame) {
+            if (source->state().kind != ar::SourceState::Kind::running) break;
+            continue;
+        }
+        ++n;
+        if (!first) first = frame;
+        double const time_s = is_numbered ? double(frame->sequence - first->sequence) / rate
+                                          : frame->captured_s - first->captured_s;
+        try {
+            auto const pose = path.at(*frame, time_s);
+            if (!pose) {
+                ++seen.without_pose;
+                continue;
+            }
+            ++seen.found;
+            if (!kept.wants_next()) {
+                kept.skip();
+                continue;
+            }
+            cv::Mat const rgb = ar::rgb_of(*frame);
+            if (rgb.size() != cv::Size(camera.model.size_px.x, camera.model.size_px.y))
+                throw ar::InputError("a frame of another size", "the calibration is not of it", "calibrate again");
+            kept.add({rgb.clone(), frame->exposure, pose->first, pose->second});
+        } catch (ar::InputError const&) {
+            ++seen.refused;
+        }
+    }
+    seen.kept = kept.take();
+    return seen;
+}
+
+void write_texture(fs::path const& file, cv::Mat const& linear)
+{
+    cv::Mat const srgb = ar::bytes_of(linear, ar::srgb_photometry());
+    gi::write_png(file, srgb.cols, srgb.rows, {srgb.ptr(), srgb.total() * 3});
+}
+
+std::string describe(AlbedoEstimate const& e, SeenFrames const& seen)
+{
+    ar::AlbedoFit const& fit = e.solution.fit;
+    std::string text = fmt::format("camera found in {} frames ({} without it, {} refused); {} compared\n", seen.found,
+                                   seen.without_pose, seen.refused, seen.kept.size());
+    text += fmt::format("{:<28} {:^23} {:^23} {:>8}\n", "", "albedo", "spread of pixels", "pixels");
+    for (AlbedoEntry const& p : e.entries)
+        text += p.samples == 0 ? fmt::format("{:<28} not seen\n", p.name)
+                               : fmt::format("{:<28} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:>8}\n", p.name,
+                                             p.albedo.x, p.albedo.y, p.albedo.z, p.spread.x, p.spread.y, p.spread.z,
+                                             p.samples);
+    text += fmt::format("left out: {} clipped pixels, {} in the dark, {} at borders, {} highlights, {} not finite; {} "
+                        "values clamped\n",
+                        fit.clipped, fit.dark, fit.border, fit.specular, fit.not_finite, fit.clamped);
+    if (e.texels > 0)
+        text += fmt::format("textures: {} texels, {} not seen (the surface's median), {} pixels outside\n", e.texels,
+                            e.filled, e.outside);
+    text += fmt::format("{} turns, last change {:.4f}{}\n", e.solution.iterations, e.solution.last_change,
+                        e.solution.converged ? "" : " (not converged)");
+    return text;
+}
+
+int run_albedo(AlbedoArguments const& a)
+{
+    ArSession const session = read_ar_session(a.session);
+    fs::path const out = a.out.empty() ? session.real.estimates : fs::path(a.out);
+    check_outputs({out.string()}, {a.session, a.poses, session.camera.string(), session.markers.string(),
+                                   session.light.string(), session.real.scene.string()});
+    gi::Report report;
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    ArCamera const camera = load_ar_camera(session.camera);
+    SeenFrames const seen = look(a, session, camera, stop);
+    if (stop.requested()) return kInterrupted;
+    RealScene real = model_of(session.real, report);
+    AlbedoEstimate estimate =
+        estimate_albedos(std::move(real), session, camera, seen.kept, a.settings, stop, report);
+    if (stop.requested()) return kInterrupted; // of few paths: not to be kept
+    for (std::size_t k = 0; k < estimate.entries.size(); ++k) {
+        if (estimate.textures[k].empty()) continue;
+        estimate.entries[k].texture = out.parent_path() / fmt::format("{}-{}.png", out.stem().string(), k + 1);
+        write_texture(estimate.entries[k].texture, estimate.textures[k]);
+    }
+    gi::write_text(out, format_albedos(estimate.entries));
+    fmt::print("{}{}\n", describe(estimate, seen), out.string());
+    print_losses(report);
+    return 0;
+}
+
+} // namespace
+
+void add_ar_albedo(CLI::App& ar, int& exit_code)
+{
+    auto const a = std::make_shared<AlbedoArguments>();
+    CLI::App* const c = ar.add_subcommand(
+        "albedo", "Estimate the colours of the real things of a session from its frames and the captured light");
+    c->add_option("session", a->session, "with 'albedo: estimate' or 'texture: estimate' at what is to be estimated")
+        ->required();
+    c->add_option("--out", a->out, "File of the albedos; left out: the one that the session reads");
+    c->add_option("--poses", a->poses, "Where the camera was (CSV or TUM), in place of its markers");
+    c->add_option("--views", a->views, "Frames to compare, spread over the session")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    c->add_option("--frames", a->frames, "Looks at no more than so many; 0 = all")->check(CLI::NonNegativeNumber);
+    c->add_option("--resolution", a->settings.resolution, "Pixels compared per pixel of the camera")
+        ->check(CLI::Range(0.05, 1.0))
+        ->capture_default_str();
+    c->add_option("--paths", a->settings.paths, "Of the reference renderer, per pixel compared")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    c->footer(R"(Examples:
+  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
+  sed 's/real: {/real: {albedo: estimate, /' desk/session.yaml > desk/unknown.yaml
+  lightwell ar albedo desk/unknown.yaml --poses desk/poses.csv --views 2 --paths 4)");
+    c->callback([a, &exit_code] { exit_code = run_albedo(*a); });
+}
+
+} // namespace viewer
