@@ -71,7 +71,7 @@ std::string ArRecording::text() const
                             to_folder_->lost());
     if (video_)
         text += fmt::format("{}: {} pictures at {:g} Hz, {} of them repeated for frames that did not come; {} "
-                            "composites lost, the encoder was too slow\n",
+                            "composites lost to a slow encoder\n",
                             settings_.video, video_->frames(), video_hz_, repeated_, to_video_->lost());
     if (input_)
         text += fmt::format("{}: {} frames; {} lost by the queue to the disk\n", settings_.input,

@@ -33,7 +33,7 @@ public:
     void add(ArFrameRecord const& record, cv::Mat const& rgb);
     /// Waits until all is kept; the video gets its name. @throws as `add`
     void finish();
-    /// What was kept and what was lost, a line each.
+    /// What was kept and what was lost, a line each; after `finish`.
     std::string text() const;
     /// Why the input is not whole; empty = it is.
     std::string failure() const { return input_ ? input_->failure() : std::string(); }

@@ -15,6 +15,7 @@ void add_ar(CLI::App& app, int& exit_code)
     add_ar_synthesize(*ar, exit_code);
     add_ar_run(*ar, exit_code);
     add_ar_track(*ar, exit_code);
+    add_ar_bench(*ar, exit_code);
     add_ar_cameras(*ar, exit_code);
     add_ar_record(*ar, exit_code);
     add_ar_replay(*ar, exit_code);

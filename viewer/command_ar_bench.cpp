@@ -1,12 +1,10 @@
-#include "ar/calibration/calibration_file.h"
-#include "ar/capture/clock.h"
 #include "ar/markers/aruco.h"
 #include "ar/markers/marker_map_file.h"
 #include "gi/base/error.h"
-#include "viewer/ar/counter_check.h"
 #include "viewer/ar/measured_run.h"
 #include "viewer/ar/plain_composite.h"
 #include "viewer/ar/synthesize.h"
+#include "viewer/ar_chain_check.h"
 #include "viewer/arguments.h"
 #include "viewer/bench/table_file.h"
 #include "viewer/bench_record.h"
@@ -219,83 +217,17 @@ int run_bench(BenchArguments const& a)
     return stop.requested() ? kInterrupted : 0;
 }
 
-/// A folder for the time of the test.
-class Scratch {
-public:
-    Scratch()
-    {
-        std::string name = (fs::temp_directory_path() / "lightwell_counter_XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr)
-            throw gi::InputError("no folder can be made in " + fs::temp_directory_path().string(),
-                                 "the test's session has files", "set TMPDIR");
-        path_ = name;
-    }
-    ~Scratch()
-    {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    Scratch(Scratch const&) = delete;
-    Scratch& operator=(Scratch const&) = delete;
-    fs::path const& path() const { return path_; }
-
-private:
-    fs::path path_;
-};
-
 int run_counter(BenchArguments const& a)
 {
     gi::Report report;
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
-    BenchTable table = start_table("ar_counter", "Numbers and a ball in frames that show their own number",
-                                   {"size", "read_from", "frames", "overtaken", "without_number",
-                                    "of_another_number", "ball_elsewhere", "times_wrong", "ball_off_most_px",
-                                    a.window ? "capture_to_swap_ms" : "capture_to_result_ms"});
-    bool all_good = true;
-    for (std::string const& size : a.sizes) {
-        auto const [width, height] = parse_size(size);
-        Scratch const folder;
-        CounterSession const c = make_counter_session(folder.path(), {width, height}, 30, report);
-        CounterCheck check(c);
-        ArRunOptions o;
-        o.frames = a.frames;
-        o.poses = c.poses;
-        std::optional<ArWindow> window;
-        o.idle = [&] {
-            if (window) window->idle();
-        };
-        ArSummary summary;
-        run_ar(
-            c.session, o,
-            [&](ArFrameRecord& f, ArResult const& r) {
-                if (a.window && !window) {
-                    ArWindowSettings settings{.size_px = {r.rgb.cols, r.rgb.rows}};
-                    settings.has_panel = false;
-                    settings.keeps_shown = true;
-                    window.emplace(settings, report);
-                }
-                double const before_s = ar::steady_now_s();
-                if (window) window->show(f, r);
-                check.add(f, window ? window->shown() : r.rgb, a.window, before_s, ar::steady_now_s());
-                if (window && window->wants_close()) stop.request();
-            },
-            stop, report, summary);
-        CounterVerdict const& v = check.verdict();
-        auto const latency = values_of(
-            summary.frames, a.window ? [](ArFrameRecord const& f) { return f.swapped_ms; }
-                                     : [](ArFrameRecord const& f) { return f.latency_ms; });
-        table.add({size, std::string(a.window ? "window" : "composite"), double(v.frames),
-                   double(summary.overtaken), double(v.unread), double(v.other), double(v.misplaced),
-                   double(v.mistimed), v.most_off_px, cell_of(latency)});
-        all_good = all_good && v.good();
-        if (stop.requested()) break;
-    }
-    keep({&table}, a);
+    ChainChecked checked = check_chain({a.sizes, a.frames, a.window}, stop, report);
+    keep({&checked.table}, a);
     print_losses(report);
     if (stop.requested()) return kInterrupted;
-    if (!all_good) std::fputs("lightwell: what was shown is not what the records say\n", stderr);
-    return all_good ? 0 : 1;
+    if (!checked.good) std::fputs("lightwell: what was shown is not what the records say\n", stderr);
+    return checked.good ? 0 : 1;
 }
 
 int run(BenchArguments const& a)

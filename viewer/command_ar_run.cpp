@@ -91,6 +91,9 @@ int run_session(RunArguments const& a, bool poses_only)
     std::optional<ar::Compositor> compositor;
     o.opened = [&](ar::SourceDescription const& source, ArPipeline const& pipeline) {
         if (a.gpu) compositor = pipeline.compositor();
+        ArWindowSettings settings{.size_px = source.size_px, .monitor = a.monitor};
+        settings.compositor = compositor ? &*compositor : nullptr;
+        if (a.window) window.emplace(settings, report);
         recording.begin(source);
     };
     if (!a.record_input.empty()) o.taken = [&](ar::Frame const& f) { recording.add_input(f); };
@@ -102,19 +105,14 @@ int run_session(RunArguments const& a, bool poses_only)
         look();
     };
     ArSummary summary;
-    auto const keep = [&] {
+    auto const keep = [&](std::string const& recorded) {
         if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
         if (tracker) fmt::print("{}", tracker->describe());
         if (!a.frame_table.empty()) gi::write_text(a.frame_table, frame_table(summary));
-        fmt::print("{}{}{}", describe(summary), describe(truth.errors()), recording.text());
+        fmt::print("{}{}{}", describe(summary), describe(truth.errors()), recorded);
         print_losses(report);
     };
     auto const shown = [&](ArFrameRecord& f, ArResult const& r) {
-        if (a.window && !window) {
-            ArWindowSettings settings{.size_px = {r.rgb.cols, r.rgb.rows}, .monitor = a.monitor};
-            settings.compositor = compositor ? &*compositor : nullptr;
-            window.emplace(settings, report);
-        }
         if (window) window->show(f, r);
         look();
         recording.add(f, r.rgb);
@@ -124,10 +122,16 @@ int run_session(RunArguments const& a, bool poses_only)
         run_ar(session, o, shown, stop, report, summary);
         recording.finish();
     } catch (...) {
-        if (!summary.frames.empty()) keep();
+        std::string recorded;
+        try {
+            recording.finish();
+            recorded = recording.text();
+        } catch (std::exception const&) { // the first problem is the one to tell
+        }
+        if (!summary.frames.empty()) keep(recorded);
         throw;
     }
-    keep();
+    keep(recording.text());
     if (summary.end.kind == ar::SourceState::Kind::lost) {
         std::fputs(fmt::format("lightwell: the source was lost: {}\n", summary.end.reason).c_str(), stderr);
         return 1;

@@ -24,6 +24,7 @@ void add_bench(CLI::App& app, int& exit_code);
 void add_ar_synthesize(CLI::App& ar, int& exit_code);
 void add_ar_run(CLI::App& ar, int& exit_code);
 void add_ar_track(CLI::App& ar, int& exit_code);
+void add_ar_bench(CLI::App& ar, int& exit_code);
 void add_ar_cameras(CLI::App& ar, int& exit_code);
 void add_ar_record(CLI::App& ar, int& exit_code);
 void add_ar_replay(CLI::App& ar, int& exit_code);

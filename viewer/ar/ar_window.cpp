@@ -18,7 +18,7 @@ double now_s()
 WindowSettings window_settings(ArWindowSettings const& s)
 {
     WindowSettings w;
-    w.title = "Lightwell: augmented reality";
+    w.title = "Lightwell: waits for the first frame";
     w.size_px = s.size_px;
     w.monitor = s.monitor;
     w.swap_interval = s.swap_interval;
@@ -169,7 +169,7 @@ void ArWindow::keep_shown(cv::Size picture)
 void ArWindow::show(ArFrameRecord& record, ArResult const& result)
 {
     take_input();
-    ++frames_;
+    if (frames_++ == 0) window_.set_title("Lightwell: augmented reality");
     if (!record.world_from_camera) ++lost_;
     if (result.light.data != light_.data) {
         light_ = result.light;

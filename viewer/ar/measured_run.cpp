@@ -53,6 +53,9 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
 
     o.pace = ar::Pace::own;
     std::optional<ArWindow> window;
+    o.opened = [&](ar::SourceDescription const& source, ArPipeline const&) {
+        if (settings.in_window) window.emplace(ArWindowSettings{.size_px = source.size_px}, report);
+    };
     o.idle = [&] {
         if (window) window->idle();
         if (window && window->wants_close()) stop.request();
@@ -69,8 +72,6 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
     run_ar(
         session, *camera, o,
         [&](ArFrameRecord& f, ArResult const& r) {
-            if (settings.in_window && !window)
-                window.emplace(ArWindowSettings{.size_px = {r.camera.cols, r.camera.rows}}, report);
             if (window) window->show(f, r);
         },
         stop, report, own);
