@@ -68,7 +68,7 @@ protected:
         gi::Camera seen;
         auto const& f = kFov[eye];
         seen.off_axis = gi::ViewTangents{std::tan(f[0]), std::tan(f[1]), std::tan(f[3]), std::tan(f[2])};
-        seen.world_from_camera[3] = gi::dvec4(eye == 0 ? -kEyes_m : kEyes_m, 1.6, 0, 1);
+        seen.world_from_camera[3] = glm::dvec4(eye == 0 ? -kEyes_m : kEyes_m, 1.6, 0, 1);
         ar::Pose const room_from_camera{glm::dquat(0, 1, 0, 0), {0, 1.6, 0}};
         glm::dmat3 const m = pinhole_from_eye(seen, size_px, pinhole, room_from_camera, 1);
         cv::Mat at(size_px.y, size_px.x, CV_32FC2), map, picture;

@@ -80,9 +80,9 @@ protected:
     ArTracked room(std::string const& tracker) const
     {
         write(folder_ / "room.yaml",
-              "windows: [{name: w}]\nwalls: [{name: w, window: w, lower_left_m: [-1, 0, 0], "
+              "windows: [{name: w, size_px: [64, 48]}]\nwalls: [{name: w, window: w, lower_left_m: [-1, 0, 0], "
               "lower_right_m: [1, 0, 0], upper_left_m: [-1, 1, 0]}]\ntrackers: [" +
-                  tracker + "]\nusers: [{name: a, head_tracker: sensor}]\n");
+                  tracker + "]\nusers: [{name: a, head_position_m: [0, 1.7, 0], head_tracker: sensor}]\n");
         ArTracked t;
         t.display = folder_ / "room.yaml";
         return t;

@@ -33,8 +33,8 @@ TEST(PassThrough, PixelsOfAnEyeAreThoseOfTheCameraForPointsOfThePlane)
         eye.off_axis = gi::ViewTangents{-1.1 + 0.1 * u(rng), 0.9, -1, 1.05};
         glm::ivec2 const eye_px(320, 360);
         glm::dmat3 const axes = glm::mat3_cast(eye_pose.rotation) * glm::dmat3(1, 0, 0, 0, -1, 0, 0, 0, -1);
-        eye.world_from_camera = gi::dmat4(axes);
-        eye.world_from_camera[3] = gi::dvec4(eye_pose.position_m, 1);
+        eye.world_from_camera = glm::dmat4(axes);
+        eye.world_from_camera[3] = glm::dvec4(eye_pose.position_m, 1);
         glm::dmat3 const m = pinhole_from_eye(eye, eye_px, camera, room_from_camera, plane_m);
 
         glm::dvec3 const in_camera(0.3 * u(rng), 0.3 * u(rng), plane_m);

@@ -169,6 +169,7 @@ void PassThrough::run()
             auto const made = composited(*frame, right != nullptr ? &*right->waiting : nullptr, at_s - *first_s);
             if (stop_.requested()) return; // the picture may be half of one
             std::lock_guard const lock(mutex_);
+            if (right != nullptr) counts_.right = right->source->counts();
             ++counts_.frames;
             counts_.found += made->is_found;
             newest_ = made;
