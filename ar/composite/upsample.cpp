@@ -77,8 +77,8 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
     check(guides, size, low_guides);
     check(low_guides, low_size, guides);
 
-    // Light that the change brings to the surfaces. Of pixels that objects cover in part, the rest tells, too: shadows
-    // are darkest where things stand.
+    // Light that the change brings to the surfaces. Of pixels that objects cover in part, the rest tells, too:
+    // shadows are darkest where things stand.
     cv::Mat change = low.with - low.without;
     cv::Mat const known = share_known(low);
     if (!low.direct.empty())

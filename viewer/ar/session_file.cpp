@@ -150,7 +150,8 @@ private:
         if (p.has("smoothing")) {
             YamlReader const s = p.at("smoothing");
             if (use.tracker.motion == ar::CameraMotion::tripod)
-                throw s.error("smoothing of a camera on a tripod", "its poses are averaged", "remove one of the two");
+                throw s.error("smoothing of a camera on a tripod", "its poses are averaged",
+                              "remove one of the two");
             use.filtered = s.is_map() || s.boolean();
             if (s.is_map()) {
                 s.only_keys({"position", "rotation"});

@@ -20,7 +20,7 @@ struct ArFrames {
 
 /// What of the place is modelled: a scene file, and proxies.
 struct ArReal : ArPlaced {
-    bool estimate_scene = false; ///< albedos of the scene's materials are those that were estimated
+    bool estimate_scene = false;     ///< albedos of the scene's materials are those that were estimated
     std::filesystem::path estimates; ///< what `lightwell ar albedo` found
     std::vector<ArProxy> proxies;
 };
