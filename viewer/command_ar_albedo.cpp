@@ -87,8 +87,8 @@ SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera con
         }
         ++n;
         if (!first) first = frame;
-        double const time_s = is_numbered ? double(frame->sequence - first->sequence) / rate
-                                          : frame->captured_s - first->captured_s;
+        double const time_s =
+            is_numbered ? double(frame->sequence - first->sequence) / rate : frame->captured_s - first->captured_s;
         try {
             auto const pose = path.at(*frame, time_s);
             if (!pose) {
@@ -121,20 +121,21 @@ void write_texture(fs::path const& file, cv::Mat const& linear)
 std::string describe(AlbedoEstimate const& e, SeenFrames const& seen)
 {
     ar::AlbedoFit const& fit = e.solution.fit;
-    std::string text = fmt::format("camera found in {} frames ({} without it, {} refused); {} compared\n", seen.found,
-                                   seen.without_pose, seen.refused, seen.kept.size());
+    std::string text = fmt::format("camera found in {} frames ({} without it, {} refused); {} compared\n",
+                                   seen.found, seen.without_pose, seen.refused, seen.kept.size());
     text += fmt::format("{:<28} {:^23} {:^23} {:>8}\n", "", "albedo", "spread of pixels", "pixels");
     for (AlbedoEntry const& p : e.entries)
         text += p.samples == 0 ? fmt::format("{:<28} not seen\n", p.name)
-                               : fmt::format("{:<28} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:>8}\n", p.name,
-                                             p.albedo.x, p.albedo.y, p.albedo.z, p.spread.x, p.spread.y, p.spread.z,
-                                             p.samples);
-    text += fmt::format("left out: {} clipped pixels, {} in the dark, {} at borders, {} highlights, {} not finite; {} "
-                        "values clamped\n",
-                        fit.clipped, fit.dark, fit.border, fit.specular, fit.not_finite, fit.clamped);
+                               : fmt::format("{:<28} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:>8}\n",
+                                             p.name, p.albedo.x, p.albedo.y, p.albedo.z, p.spread.x, p.spread.y,
+                                             p.spread.z, p.samples);
+    text +=
+        fmt::format("left out: {} clipped pixels, {} in the dark, {} at borders, {} highlights, {} not finite; {} "
+                    "values clamped\n",
+                    fit.clipped, fit.dark, fit.border, fit.specular, fit.not_finite, fit.clamped);
     if (e.texels > 0)
-        text += fmt::format("textures: {} texels, {} not seen (the surface's median), {} pixels outside\n", e.texels,
-                            e.filled, e.outside);
+        text += fmt::format("textures: {} texels, {} not seen (the surface's median), {} pixels outside\n",
+                            e.texels, e.filled, e.outside);
     text += fmt::format("{} turns, last change {:.4f}{}\n", e.solution.iterations, e.solution.last_change,
                         e.solution.converged ? "" : " (not converged)");
     return text;
@@ -153,8 +154,8 @@ int run_albedo(AlbedoArguments const& a)
     SeenFrames const seen = look(a, session, camera, stop);
     if (stop.requested()) return kInterrupted;
     RealScene real = model_of(session.real, report);
-    AlbedoEstimate estimate =
-        estimate_albedos(std::move(real), session, camera, seen.kept, a.settings, stop, report);
+    AlbedoEstimate estimate = estimate_albedos(std::move(real), PlaceLight(session).begin(), camera, seen.kept,
+                                               a.settings, stop, report);
     if (stop.requested()) return kInterrupted; // of few paths: not to be kept
     for (std::size_t k = 0; k < estimate.entries.size(); ++k) {
         if (estimate.textures[k].empty()) continue;
@@ -174,7 +175,8 @@ void add_ar_albedo(CLI::App& ar, int& exit_code)
     auto const a = std::make_shared<AlbedoArguments>();
     CLI::App* const c = ar.add_subcommand(
         "albedo", "Estimate the colours of the real things of a session from its frames and the captured light");
-    c->add_option("session", a->session, "with 'albedo: estimate' or 'texture: estimate' at what is to be estimated")
+    c->add_option("session", a->session,
+                  "with 'albedo: estimate' or 'texture: estimate' at what is to be estimated")
         ->required();
     c->add_option("--out", a->out, "File of the albedos; left out: the one that the session reads");
     c->add_option("--poses", a->poses, "Where the camera was (CSV or TUM), in place of its markers");

@@ -34,6 +34,18 @@ cv::Vec3f at_least(cv::Vec3f v)
     return v;
 }
 
+/// Of each low pixel: what of it shows the place, where that is known apart from objects; 0 = nothing is known.
+cv::Mat share_known(RenderedPair const& low)
+{
+    constexpr float kMostCovered = 0.75f; // beyond it, what is left is mostly noise
+    cv::Mat share(low.coverage.size(), CV_32FC1);
+    share.forEach<float>([&](float& s, int const* at) {
+        float const a = low.coverage.at<float>(at[0], at[1]);
+        s = !(a > 0) ? 1 : !low.direct.empty() && a <= kMostCovered ? 1 - a : 0;
+    });
+    return share;
+}
+
 /// How well the surface of a low pixel stands for that of a full one.
 float likeness(SurfaceGuides const& guides, cv::Point full, SurfaceGuides const& low_guides, cv::Point low,
                UpsampleSettings const& settings)
@@ -65,8 +77,17 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
     check(guides, size, low_guides);
     check(low_guides, low_size, guides);
 
-    // Light that the change brings to the surfaces.
+    // Light that the change brings to the surfaces. Of pixels that objects cover in part, the rest tells, too:
+    // shadows are darkest where things stand.
     cv::Mat change = low.with - low.without;
+    cv::Mat const known = share_known(low);
+    if (!low.direct.empty())
+        change.forEach<cv::Vec3f>([&](cv::Vec3f& v, int const* at) {
+            float const rest = known.at<float>(at[0], at[1]);
+            if (rest > 0 && rest < 1)
+                v = (low.with.at<cv::Vec3f>(at[0], at[1]) - low.direct.at<cv::Vec3f>(at[0], at[1])) * (1 / rest) -
+                    low.without.at<cv::Vec3f>(at[0], at[1]);
+        });
     if (!low_guides.albedo.empty())
         change.forEach<cv::Vec3f>([&](cv::Vec3f& v, int const* at) {
             cv::Vec3f const albedo = at_least(low_guides.albedo.at<cv::Vec3f>(at[0], at[1]));
@@ -107,7 +128,8 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
                 float guided_weight = 0, plain_weight = 0;
                 auto const add = [&](int i, int j, float near) {
                     if (i < 0 || j < 0 || i >= low_size.width || j >= low_size.height || !(near > 0)) return;
-                    if (low.coverage.at<float>(j, i) > 0) return;
+                    near *= known.at<float>(j, i);
+                    if (!(near > 0)) return;
                     cv::Vec3f const v = change.at<cv::Vec3f>(j, i);
                     float const w = near * likeness(guides, {x, y}, low_guides, {i, j}, settings);
                     guided += w * v;

@@ -14,7 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
     }
     try {
         auto const albedos = viewer::parse_albedos(text, "fuzz");
-        if (viewer::parse_albedos(viewer::format_albedos(albedos), "again").size() != albedos.size()) __builtin_trap();
+        if (viewer::parse_albedos(viewer::format_albedos(albedos), "again").size() != albedos.size())
+            __builtin_trap();
     } catch (gi::InputError const&) {
     }
     return 0;

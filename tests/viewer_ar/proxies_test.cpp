@@ -32,7 +32,8 @@ std::string refusal(std::string const& text)
 gi::World world_of(gi::Scene scene)
 {
     gi::Report report;
-    return gi::build_world(std::make_shared<gi::Scene const>(std::move(scene)), std::nullopt, report, gi::dvec3(0));
+    return gi::build_world(std::make_shared<gi::Scene const>(std::move(scene)), std::nullopt, report,
+                           gi::dvec3(0));
 }
 
 TEST(Proxies, AreReadFromSessions)
@@ -67,7 +68,8 @@ TEST(Proxies, AreReadFromSessions)
 
 TEST(Proxies, ThatAreWrongAreRefusedWithTheirPlace)
 {
-    EXPECT_NE(refusal("real: {planes: [{size_m: [1, 1]}]}\n").find("s.yaml:5:17: no 'centre_m'"), std::string::npos)
+    EXPECT_NE(refusal("real: {planes: [{size_m: [1, 1]}]}\n").find("s.yaml:5:17: no 'centre_m'"),
+              std::string::npos)
         << refusal("real: {planes: [{size_m: [1, 1]}]}\n");
     EXPECT_NE(refusal("real: {at: [0, 0, 0], planes: []}\n").find("no 'scene'"), std::string::npos);
     EXPECT_NE(refusal("real: {planes: []}\n").find("nothing real"), std::string::npos);

@@ -43,6 +43,30 @@ composite: {blend: ratio, clipped: as_measured, largest_ratio: 4, smoothing: 0.3
     EXPECT_TRUE(least.light.empty());
 }
 
+TEST(ArSessions, SayHowPairsAreFinishedAndPosesUsed)
+{
+    ArSession const s =
+        parse_ar_session(kLeast + R"(composite: {upsample: false, mattes: true, match_blur: true, noise: false}
+pose: {smoothing: {position: {min_cutoff_hz: 2, beta: 3}}, predict_s: 0.4}
+)",
+                         "s.yaml");
+    EXPECT_FALSE(s.finish.upsample);
+    EXPECT_TRUE(s.finish.mattes && s.finish.match_blur);
+    EXPECT_FALSE(s.match_noise);
+    EXPECT_TRUE(s.pose.filtered);
+    EXPECT_EQ(s.pose.tracker.position.min_cutoff_hz, 2);
+    EXPECT_EQ(s.pose.tracker.position.beta, 3);
+    EXPECT_EQ(s.pose.predict_s, 0.4);
+    EXPECT_GE(s.pose.tracker.lost_after_s, 0.8);
+    ArSession const still = parse_ar_session(kLeast + "pose: {tripod: true}\n", "s.yaml");
+    EXPECT_EQ(still.pose.tracker.motion, ar::CameraMotion::tripod);
+    ArSession const least = parse_ar_session(kLeast, "s.yaml");
+    EXPECT_FALSE(least.pose.filtered || least.finish.mattes || least.finish.match_blur);
+    EXPECT_TRUE(least.match_noise);
+    EXPECT_NE(refusal(kLeast + "pose: {tripod: true, smoothing: true}\n").find("averaged"), std::string::npos);
+    EXPECT_NE(refusal(kLeast + "composite: {mattes: 3}\n").find("s.yaml:5:"), std::string::npos);
+}
+
 TEST(ArSessions, OfDevicesKeepTheirNames)
 {
     ArSession const s = parse_ar_session("schema: ar/1\nframes: {source: 'camera:/base/cam0', size: [1280, 720], "

@@ -14,10 +14,10 @@
 namespace viewer {
 
 struct AlbedoEntry {
-    std::string name;     ///< of the proxy, or "scene:" and the material's
-    gi::dvec3 albedo{0};  ///< linear, 0 to 1
-    gi::dvec3 spread{0};  ///< robust standard deviation of single pixels
-    std::uint64_t samples = 0; ///< pixels; 0 = never seen
+    std::string name;              ///< of the proxy, or "scene:" and the material's
+    gi::dvec3 albedo{0};           ///< linear, 0 to 1
+    gi::dvec3 spread{0};           ///< robust standard deviation of single pixels
+    std::uint64_t samples = 0;     ///< pixels; 0 = never seen
     std::filesystem::path texture; ///< sRGB, over texture coordinates 0 to 1; empty = none
 };
 

@@ -53,8 +53,7 @@ void CameraBlur::follow(cv::Mat const& radiance, ar::Pose const& world_from_came
         // Constant motion since the frame before; of the picture, by what turning does and a metre away.
         double const share = exposure_s / (time_s - before_->time_s);
         ar::Pose const& b = before_->world_from_camera;
-        double const turned =
-            glm::radians(ar::angle_between_deg(b.rotation, world_from_camera.rotation));
+        double const turned = glm::radians(ar::angle_between_deg(b.rotation, world_from_camera.rotation));
         double const shifted = glm::distance(b.position_m, world_from_camera.position_m);
         moved_px = share * camera_.fx * (turned + shifted);
         if (exposure_s > 0 && moved_px >= 1) {

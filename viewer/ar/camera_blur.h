@@ -12,9 +12,9 @@
 namespace viewer {
 
 struct CameraBlurCounts {
-    std::size_t measured = 0;   ///< frames whose edges told something
-    std::size_t unmeasured = 0; ///< frames without an edge that counts: the blur of those before
-    std::size_t moved = 0;      ///< frames with motion of a pixel or more while the shutter was open
+    std::size_t measured = 0;    ///< frames whose edges told something
+    std::size_t unmeasured = 0;  ///< frames without an edge that counts: the blur of those before
+    std::size_t moved = 0;       ///< frames with motion of a pixel or more while the shutter was open
     std::size_t no_exposure = 0; ///< frames of which the source does not tell how long the shutter was open
 };
 
@@ -27,7 +27,8 @@ public:
     /// Without a pose: there is no motion known to the next frame.
     void forget() { before_.reset(); }
 
-    /// Standard deviation of the lens's blur, in pixels of the camera, smoothed over frames; nothing: never measured.
+    /// Standard deviation of the lens's blur, in pixels of the camera, smoothed over frames; nothing: never
+    /// measured.
     std::optional<double> sigma_px() const { return sigma_px_; }
     /// The camera when this frame's shutter opened; nothing: it is not known, or moved by less than a pixel.
     std::optional<ar::Pose> shutter_opened() const { return opened_; }

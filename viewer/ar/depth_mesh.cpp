@@ -62,8 +62,8 @@ ar::CameraModel camera_of(ProxyDepth const& depth, cv::Size size)
     if (camera.size_px == map_px) return camera;
     if (std::abs(double(camera.size_px.x) * map_px.y - double(camera.size_px.y) * map_px.x) > camera.size_px.x)
         throw gi::InputError(fmt::format("'{}' has {} x {} pixels", depth.file.string(), map_px.x, map_px.y),
-                             fmt::format("the calibration '{}' is of {} x {}, another shape", depth.camera.string(),
-                                         camera.size_px.x, camera.size_px.y),
+                             fmt::format("the calibration '{}' is of {} x {}, another shape",
+                                         depth.camera.string(), camera.size_px.x, camera.size_px.y),
                              "give the calibration of the picture that the depths belong to");
     return ar::scaled(camera, map_px);
 }
@@ -119,7 +119,8 @@ gi::Mesh mesh_of(ProxyDepth const& depth, gi::Report& report)
     report.lose("pixels of depth maps that the lens does not see", beyond_lens, name);
     report.lose("triangles of depth maps left out at jumps", cut, name);
     if (mesh.triangles.empty())
-        throw gi::InputError("'" + name + "' gives no triangle", "no two pixels beside each other have near depths",
+        throw gi::InputError("'" + name + "' gives no triangle",
+                             "no two pixels beside each other have near depths",
                              "look at metres_per_unit, jump and step_px");
     mesh.normals = gi::vertex_normals(mesh.positions, mesh.triangles);
     return mesh;

@@ -21,8 +21,8 @@ struct Prepared {
 
 class Estimator {
 public:
-    Estimator(RealScene real, ArCamera const& camera, EstimateSettings const& settings, gi::StopRequest const& stop,
-              gi::Report& report)
+    Estimator(RealScene real, ArCamera const& camera, EstimateSettings const& settings,
+              gi::StopRequest const& stop, gi::Report& report)
         : real_(std::move(real)),
           camera_(camera),
           settings_(settings),
@@ -95,7 +95,8 @@ public:
         map_ = std::move(map);
         bool const emits = std::any_of(real_.scene.materials.begin(), real_.scene.materials.end(), gi::emits);
         if (!map_ && !emits && real_.scene.lights.empty())
-            throw gi::InputError("there is no light that is known", "albedo is what is seen over the light that falls",
+            throw gi::InputError("there is no light that is known",
+                                 "albedo is what is seen over the light that falls",
                                  "give light: {map: FILE} in the session");
     }
 
@@ -161,9 +162,9 @@ gi::dvec3 vector_of(cv::Vec3f const& v) { return {v[0], v[1], v[2]}; }
 
 } // namespace
 
-AlbedoEstimate estimate_albedos(RealScene real, ArSession const& session, ArCamera const& camera,
-                                std::span<AlbedoFrame const> frames, EstimateSettings const& settings,
-                                gi::StopRequest const& stop, gi::Report& report)
+AlbedoEstimate estimate_albedos(RealScene real, std::shared_ptr<gi::EnvironmentMap const> light,
+                                ArCamera const& camera, std::span<AlbedoFrame const> frames,
+                                EstimateSettings const& settings, gi::StopRequest const& stop, gi::Report& report)
 {
     if (real.patches.empty())
         throw gi::InputError("no albedo is to be estimated", "the session gives all of them",
@@ -172,7 +173,7 @@ AlbedoEstimate estimate_albedos(RealScene real, ArSession const& session, ArCame
         throw gi::InputError("no frame in which the camera was found", "nothing is known of any surface",
                              "look at lightwell ar track, or give --poses");
     Estimator estimator(std::move(real), camera, settings, stop, report);
-    estimator.light(PlaceLight(session).begin());
+    estimator.light(std::move(light));
     estimator.prepare(frames);
     auto const& patches = estimator.patches();
     std::vector<ar::AlbedoView> views;
@@ -186,9 +187,7 @@ AlbedoEstimate estimate_albedos(RealScene real, ArSession const& session, ArCame
             {patches[k].name, vector_of(found.albedo), vector_of(found.spread), found.samples, {}});
         out.textures.emplace_back();
         if (patches[k].texels == 0 || found.samples == 0) continue;
-        // Texels differ from the patch's median by more than its spread: only within each are highlights told.
-        ar::AlbedoTexture const t =
-            ar::fit_texture(views, int(k), texture_size(patches[k]), found, settings.fit);
+        ar::AlbedoTexture const t = ar::fit_texture(views, int(k), texture_size(patches[k]), found, settings.fit);
         out.textures.back() = t.albedo;
         out.texels += t.albedo.total();
         out.filled += t.filled;

@@ -1,6 +1,6 @@
 #pragma once
-// Albedos of real surfaces from what the camera has seen of them: ar/composite/albedo.h with the reference renderer
-// as the one that knows how much light falls where.
+// Albedos of real surfaces from what the camera has seen of them: ar/composite/albedo.h with the reference
+// renderer as the one that knows how much light falls where.
 
 #include "ar/composite/albedo.h"
 #include "gi/base/progress.h"
@@ -33,10 +33,11 @@ struct AlbedoEstimate {
     std::size_t filled = 0, texels = 0, outside = 0; ///< of all textures, see ar::AlbedoTexture
 };
 
-/// @param real  as of `model_of`. Light is the session's map and the lamps of the scene.
+/// @param real   as of `model_of`, with its lamps
+/// @param light  from far away, in the world; null = none
 /// @throws gi::InputError nothing to estimate, no light, no frame
-AlbedoEstimate estimate_albedos(RealScene real, ArSession const& session, ArCamera const& camera,
-                                std::span<AlbedoFrame const> frames, EstimateSettings const& settings,
-                                gi::StopRequest const& stop, gi::Report& report);
+AlbedoEstimate estimate_albedos(RealScene real, std::shared_ptr<gi::EnvironmentMap const> light,
+                                ArCamera const& camera, std::span<AlbedoFrame const> frames,
+                                EstimateSettings const& settings, gi::StopRequest const& stop, gi::Report& report);
 
 } // namespace viewer

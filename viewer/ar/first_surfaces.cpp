@@ -52,10 +52,10 @@ FirstSurfaces SurfaceView::seen(gi::Camera const& camera, int width, int height,
     gi::PrimaryMap map(soup_, cut_outs_, settings, width, height);
     gi::CameraRays const rays = gi::camera_rays(camera, width, height, world_.origin);
     map.refresh(rays, gi::near_plane(world_.bounds), pass);
-    FirstSurfaces s{cv::Mat(height, width, CV_32SC1, cv::Scalar(-1)), cv::Mat(height, width, CV_32FC1, cv::Scalar(0)),
-                    cv::Mat(height, width, CV_32FC3, cv::Scalar::all(0)),
-                    cv::Mat(height, width, CV_32FC3, cv::Scalar::all(0)),
-                    cv::Mat(height, width, CV_32FC2, cv::Scalar::all(0))};
+    FirstSurfaces s{
+        cv::Mat(height, width, CV_32SC1, cv::Scalar(-1)), cv::Mat(height, width, CV_32FC1, cv::Scalar(0)),
+        cv::Mat(height, width, CV_32FC3, cv::Scalar::all(0)), cv::Mat(height, width, CV_32FC3, cv::Scalar::all(0)),
+        cv::Mat(height, width, CV_32FC2, cv::Scalar::all(0))};
     gi::WorldView const world = gi::view(world_);
     tbb::parallel_for(region.y, region.y + region.height, [&](int y) {
         thread_local std::vector<gi::PathStart> starts;
@@ -75,7 +75,8 @@ FirstSurfaces SurfaceView::seen(gi::Camera const& camera, int width, int height,
             gi::vec3 const normal = p.frame.normal, albedo = gi::albedo(p.bsdf);
             gi::shading_detail::SurfacePoint where{surface, at};
             gi::shading_detail::interpolate_uv(world, where);
-            gi::vec2 const place = gi::transform_uv(world.materials[surface.material].base_color_map, where.uv0, where.uv1);
+            gi::vec2 const place =
+                gi::transform_uv(world.materials[surface.material].base_color_map, where.uv0, where.uv1);
             s.triangle.at<int>(y, x) = int(start.triangle);
             s.depth_m.at<float>(y, x) = glm::dot(p.position - rays.origin, rays.forward);
             s.normal.at<cv::Vec3f>(y, x) = {normal.x, normal.y, normal.z};

@@ -1,5 +1,6 @@
 #pragma once
-// What a camera sees first at every pixel, without any light: rasterised, so it costs little beside a pass of paths.
+// What a camera sees first at every pixel, without any light: rasterised, so it costs little beside a pass of
+// paths.
 
 #include "gi/scene/camera.h"
 #include "gi/scene/world.h"

@@ -1,6 +1,6 @@
 #pragma once
-// A few of many, evenly apart, without knowing how many there will be: every n-th is kept, and n doubles when there are
-// twice as many as are wanted.
+// A few of many, evenly apart, without knowing how many there will be: every n-th is kept, and n doubles when
+// there are twice as many as are wanted.
 
 #include <cstdint>
 #include <vector>

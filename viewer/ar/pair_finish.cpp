@@ -15,7 +15,8 @@ ar::CameraModel full_pinhole(ar::CameraModel const& rendered, ArSession const& s
     return ar::scaled(rendered, glm::ivec2(glm::round(glm::dvec2(rendered.size_px) / s.render.resolution)));
 }
 
-/// Of a rendered pixel's mean, and of the bilinear lookup through the lens: 1/12 and on the mean 1/6 square pixels.
+/// Of a rendered pixel's mean, and of the bilinear lookup through the lens: 1/12 and on the mean 1/6 square
+/// pixels.
 constexpr double kRenderedSigma_px = 0.5;
 
 } // namespace
@@ -120,8 +121,7 @@ ar::RenderedPair PairFinish::operator()(PairPictures const& rendered, FinishFram
     ar::DirectlySeen const unoccluded{warp_.smooth(sharp.unoccluded.radiance),
                                       warp_.smooth(sharp.unoccluded.coverage)};
     ar::MatteCounts counts;
-    cv::Mat const coverage =
-        ar::refined_coverage(pair.coverage, unoccluded.coverage, frame.radiance, {}, &counts);
+    cv::Mat const coverage = ar::refined_coverage(pair.coverage, unoccluded.coverage, frame.radiance, {}, &counts);
     counts_.matte.band += counts.band;
     counts_.matte.refined += counts.refined;
     return ar::with_coverage(pair, coverage, {pair.direct, pair.coverage}, unoccluded);

@@ -1,6 +1,6 @@
 #pragma once
-// From what was rendered to what the camera would have seen of it: at the camera's size, in its lens, as sharp as its
-// pictures, and behind what stands before. Steps that a session does not ask for cost nothing.
+// From what was rendered to what the camera would have seen of it: at the camera's size, in its lens, as sharp as
+// its pictures, and behind what stands before. Steps that a session does not ask for cost nothing.
 
 #include "ar/composite/occlusion_matte.h"
 #include "ar/composite/temporal.h"

@@ -33,8 +33,8 @@ enum class AlbedoFrom {
 struct ProxySurface {
     AlbedoFrom from = AlbedoFrom::number;
     gi::dvec3 albedo{0.5};
-    std::filesystem::path texture; ///< sRGB picture, over texture coordinates 0 to 1
-    int texels = 256;              ///< on the longer side, of estimate_texture
+    std::filesystem::path texture;                    ///< sRGB picture, over texture coordinates 0 to 1
+    int texels = 256;                                 ///< on the longer side, of estimate_texture
     double roughness = 1, metallic = 0, specular = 0; ///< as glTF's; metallic 1 and roughness 0 is a mirror
 };
 

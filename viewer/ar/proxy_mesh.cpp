@@ -43,8 +43,7 @@ gi::Mesh mesh_of(ProxyBox const& b)
             if (axis == 1) up = {0, 0, -side};
             gi::dvec3 const u = glm::cross(up, out) * b.size_m, v = up * b.size_m;
             auto const world = [&](gi::dvec3 d) { return b.world_from_box.rotation * d; };
-            gi::dvec3 const corner =
-                b.world_from_box.position_m + world(0.5 * (out * b.size_m - u - v));
+            gi::dvec3 const corner = b.world_from_box.position_m + world(0.5 * (out * b.size_m - u - v));
             vec2 const low{float(face % 3) / 3, float(face / 3) / 2};
             add_quad(mesh, corner, world(u), world(v), low, low + vec2(1.0f / 3, 0.5f));
             ++face;

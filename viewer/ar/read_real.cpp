@@ -19,8 +19,8 @@ public:
 
     ArReal read()
     {
-        real_.only_keys({"scene", "at", "turn_deg", "scale", "albedo", "estimates", "planes", "boxes", "meshes",
-                         "depth"});
+        real_.only_keys(
+            {"scene", "at", "turn_deg", "scale", "albedo", "estimates", "planes", "boxes", "meshes", "depth"});
         out_.estimates = folder_ / (real_.has("estimates") ? real_.at("estimates").text() : "albedo.yaml");
         if (real_.has("scene"))
             static_cast<ArPlaced&>(out_) = read_placed(real_, "scene", folder_);
@@ -66,8 +66,8 @@ private:
             p.name = items[i].has("name") ? items[i].at("name").text() : fmt::format("{}-{}", key, i + 1);
             if (std::any_of(out_.proxies.begin(), out_.proxies.end(),
                             [&](ArProxy const& q) { return q.name == p.name; }))
-                throw items[i].error("there is another '" + p.name + "'", "estimates would not know which is meant",
-                                     "give each a name of its own");
+                throw items[i].error("there is another '" + p.name + "'",
+                                     "estimates would not know which is meant", "give each a name of its own");
             out_.proxies.push_back(std::move(p));
         }
     }
@@ -103,16 +103,16 @@ private:
         if (y.has("specular")) s.specular = y.at("specular").number(0, 1);
         bool const is_estimated = s.from == AlbedoFrom::estimate || s.from == AlbedoFrom::estimate_texture;
         if (is_estimated && s.metallic > 0)
-            throw y.at("metallic").error("a metal's colour cannot be estimated",
-                                         "what a metal shows is a mirror image, and no albedo",
-                                         "give its albedo in numbers");
+            throw y.at("metallic")
+                .error("a metal's colour cannot be estimated",
+                       "what a metal shows is a mirror image, and no albedo", "give its albedo in numbers");
         return s;
     }
 
     ArProxy plane(YamlReader const& y) const
     {
-        y.only_keys(with_surface({"corner_m", "edge_u_m", "edge_v_m", "centre_m", "size_m", "rotation_deg",
-                                  "rotation_xyzw"}));
+        y.only_keys(with_surface(
+            {"corner_m", "edge_u_m", "edge_v_m", "centre_m", "size_m", "rotation_deg", "rotation_xyzw"}));
         ProxyPlane p;
         if (y.has("corner_m")) {
             for (char const* other : {"centre_m", "size_m", "rotation_deg", "rotation_xyzw"})
@@ -184,7 +184,8 @@ private:
     {
         for (char const* key : keys)
             if (!y.has(key))
-                throw y.error(fmt::format("no '{}'", key), "its place and size are not known without it", "add it");
+                throw y.error(fmt::format("no '{}'", key), "its place and size are not known without it",
+                              "add it");
     }
 
     YamlReader const& real_;

@@ -92,8 +92,8 @@ void take_albedos(RealScene& real, std::vector<AlbedoEntry> const& entries, std:
         if (patch.texels > 0 && !found->texture.empty()) {
             auto const bytes = gi::read_bytes(found->texture, std::size_t(1) << 30);
             m.base_color = gi::vec3(1);
-            m.base_color_map.texture = gi::add_texture(real.scene.textures, bytes.data(), bytes.size(), true,
-                                                       found->texture.string());
+            m.base_color_map.texture =
+                gi::add_texture(real.scene.textures, bytes.data(), bytes.size(), true, found->texture.string());
             gi::Texture& t = real.scene.textures.textures.back();
             t.wrap_u = t.wrap_v = gi::Wrap::clamp;
         }

@@ -10,9 +10,9 @@ namespace viewer {
 
 /// A material whose albedo is estimated: numbers of AlbedoView::surface.
 struct AlbedoPatch {
-    std::string name;         ///< of AlbedoEntry
-    std::size_t material = 0; ///< of the scene
-    int texels = 0;           ///< on the longer side of a texture; 0 = one colour
+    std::string name;                 ///< of AlbedoEntry
+    std::size_t material = 0;         ///< of the scene
+    int texels = 0;                   ///< on the longer side of a texture; 0 = one colour
     double width_m = 1, height_m = 1; ///< of what the texture covers, for its shape
 };
 
@@ -23,8 +23,8 @@ struct RealScene {
 
 /// Everything, with grey where albedos are to be estimated.
 RealScene model_of(ArReal const& real, gi::Report& report);
-/// Gives patches what was found. Those never seen (no samples) are counted. @throws gi::InputError a patch of which
-/// nothing is said
+/// Gives patches what was found. Those never seen (no samples) are counted. @throws gi::InputError a patch of
+/// which nothing is said
 void take_albedos(RealScene& real, std::vector<AlbedoEntry> const& entries, std::filesystem::path const& file,
                   gi::Report& report);
 /// Both. @throws gi::InputError albedos are to be estimated, and there is no file of estimates

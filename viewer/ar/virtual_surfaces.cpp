@@ -122,16 +122,14 @@ SharpSurfaces VirtualSurfaces::at_size(PairPictures const& low, gi::Camera const
     std::atomic<std::size_t> unlit = 0;
     auto const add = [&](ar::DirectlySeen& to, SurfaceView const& surfaces) {
         for (std::uint32_t pass = 0; pass < kPoints; ++pass) {
-            FirstSurfaces const s =
-                surfaces.seen(camera, size.width, size.height, pass, region, Surfaces::moving);
+            FirstSurfaces const s = surfaces.seen(camera, size.width, size.height, pass, region, Surfaces::moving);
             cv::parallel_for_({region.y, region.br().y}, [&](cv::Range const& rows) {
                 for (int y = rows.start; y < rows.end; ++y)
                     for (int x = region.x; x < region.br().x; ++x) {
                         if (s.triangle.at<int>(y, x) < 0) continue;
                         to.coverage.at<float>(y, x) += 1.0f / kPoints;
-                        auto const light =
-                            light_at(known, (x + 0.5) * step_x - 0.5, (y + 0.5) * step_y - 0.5,
-                                     s.normal.at<cv::Vec3f>(y, x), s.depth_m.at<float>(y, x));
+                        auto const light = light_at(known, (x + 0.5) * step_x - 0.5, (y + 0.5) * step_y - 0.5,
+                                                    s.normal.at<cv::Vec3f>(y, x), s.depth_m.at<float>(y, x));
                         if (!light) {
                             ++unlit;
                             continue;

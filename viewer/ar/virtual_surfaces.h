@@ -1,8 +1,8 @@
 #pragma once
-// What virtual things show themselves, at the frame's size, from a pair that was rendered at a lower one: which pixels
-// they cover is rasterised anew, and the light that falls on them is that of the rendered pixels around which show a
-// like surface (joint bilateral upsampling, Kopf et al. 2007). Mirrors and highlights on them stay as coarse as
-// they were rendered.
+// What virtual things show themselves, at the frame's size, from a pair that was rendered at a lower one: which
+// pixels they cover is rasterised anew, and the light that falls on them is that of the rendered pixels around
+// which show a like surface (joint bilateral upsampling, Kopf et al. 2007). Mirrors and highlights on them stay as
+// coarse as they were rendered.
 
 #include "ar/composite/upsample.h"
 #include "viewer/ar/first_surfaces.h"
@@ -16,7 +16,7 @@ namespace viewer {
 struct SharpSurfaces {
     ar::DirectlySeen seen;       ///< less what proxies hide
     ar::DirectlySeen unoccluded; ///< as if proxies hid nothing; empty unless asked for
-    std::size_t unlit = 0;       ///< points of pixels without any rendered pixel near by that shows the things: black
+    std::size_t unlit = 0; ///< points of pixels without any rendered pixel near by that shows the things: black
 };
 
 class VirtualSurfaces {

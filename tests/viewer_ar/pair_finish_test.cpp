@@ -1,0 +1,109 @@
+// Pairs rendered at half size: borders of virtual things as sharp as at full size, and hidden ones known.
+
+#include "gi/scene/generate/builder.h"
+#include "viewer/ar/bridge.h"
+#include "viewer/ar/pair_finish.h"
+#include "viewer/ar/proxy_mesh.h"
+#include "viewer/ar/synthetic.h"
+
+#include <opencv2/imgproc.hpp>
+
+namespace viewer::test {
+namespace {
+
+constexpr glm::ivec2 kSize(96, 72);
+
+/// A red ball on a table, behind a block.
+LocalScene scene()
+{
+    gi::Report report;
+    gi::Scene real;
+    for (ArProxy const& p :
+         {ArProxy{"table", {}, ProxyPlane{{-0.6, 0, 0.5}, {1.2, 0, 0}, {0, 0, -1}}},
+          ArProxy{"block", {}, ProxyBox{{0.12, 0.25, 0.05}, {{1, 0, 0, 0}, {0.07, 0.125, 0.15}}}}})
+        gi::append(real, scene_of(p, report), p.name, gi::dmat4(1));
+    gi::SceneBuilder b;
+    gi::Material red;
+    red.base_color = {0.7f, 0.1f, 0.1f};
+    red.specular = 0;
+    b.sphere(b.add_material("ball", red), {0, 0.13f, 0}, 0.12f, 48);
+    return join_scenes(std::move(real), b.finish("ball"), gi::dmat4(1));
+}
+
+struct Finished {
+    ar::RenderedPair pair;
+    FinishCounts counts;
+};
+
+Finished finished(double resolution, ArFinish const& finish, std::uint32_t paths, cv::Mat const& radiance = {})
+{
+    ArSession session;
+    session.render.resolution = resolution;
+    session.finish = finish;
+    gi::RenderSettings settings;
+    settings.bounces = 1;
+    settings.slhb.directions = "icosahedron:80";
+    settings.slhb.resolution = 48;
+    settings.slhb.lamps = 4;
+    settings.slhb.shadow_resolution = 64;
+    gi::Report report;
+    PairRenderer renderer(scene(), settings, report);
+    renderer.set_environment(std::make_shared<gi::EnvironmentMap const>(
+        environment_of(cv::Mat(8, 16, CV_32FC3, cv::Scalar::all(0.5)))));
+    PairFinish finisher(session, synthetic_camera(kSize).model, {});
+    ar::Pose const pose = synthetic_pose(0.5);
+    ar::CameraModel const& pinhole = finisher.pinhole();
+    PairPictures const p =
+        renderer.render(gi_camera(pinhole, pose), pinhole.size_px.x, pinhole.size_px.y, paths, 0, true, {});
+    Finished f;
+    f.pair = finisher(p, {radiance, pose, 0, 0}, renderer.world_with(0));
+    f.counts = finisher.counts();
+    return f;
+}
+
+double mean_difference(cv::Mat const& a, cv::Mat const& b)
+{
+    cv::Mat d;
+    cv::absdiff(a, b, d);
+    return cv::mean(d)[0];
+}
+
+TEST(PairFinishes, KeepBordersSharpAtHalfSize)
+{
+    cv::Mat const full = finished(1, {}, 12).pair.coverage;
+    ArFinish plain;
+    plain.upsample = false;
+    Finished const enlarged = finished(0.5, plain, 12), sharp = finished(0.5, {}, 12);
+    ASSERT_EQ(sharp.pair.coverage.size(), cv::Size(kSize.x, kSize.y));
+    EXPECT_LT(mean_difference(sharp.pair.coverage, full), 0.65 * mean_difference(enlarged.pair.coverage, full));
+    // Where the ball covers all of a pixel, it is as bright as before.
+    cv::Mat const inside = (full == 1) & (sharp.pair.coverage == 1) & (enlarged.pair.coverage == 1);
+    ASSERT_GT(cv::countNonZero(inside), 100);
+    EXPECT_NEAR(cv::mean(sharp.pair.direct, inside)[0] / cv::mean(enlarged.pair.direct, inside)[0], 1, 0.05);
+    EXPECT_EQ(enlarged.counts.unlit, 0u);
+}
+
+TEST(PairFinishes, RefineBordersOfOccludersByTheCamera)
+{
+    // The block is black in the camera's picture, and three pixels wider to the left than its proxy.
+    ArFinish finish;
+    Finished const before = finished(1, finish, 4);
+    finish.mattes = true;
+    ar::CameraModel const camera = synthetic_camera(kSize).model;
+    ar::Pose const from_world = ar::inverse(synthetic_pose(0.5));
+    cv::Mat radiance(kSize.y, kSize.x, CV_32FC3, cv::Scalar::all(0.6));
+    auto const low = ar::project(camera, from_world * glm::dvec3(0.01, 0, 0.175)),
+               high = ar::project(camera, from_world * glm::dvec3(0.13, 0.25, 0.175));
+    ASSERT_TRUE(low && high);
+    cv::Rect const block(cv::Point(int(low->x) - 3, int(high->y)), cv::Point(int(high->x), int(low->y)));
+    cv::rectangle(radiance, block, cv::Scalar::all(0.02), cv::FILLED);
+    Finished const after = finished(1, finish, 4, radiance);
+    EXPECT_GT(after.counts.matte.band, 30u);
+    EXPECT_GT(after.counts.matte.refined, 10u);
+    cv::Rect const strip(block.x, block.y + 3, 2, block.height / 3);
+    EXPECT_GT(cv::mean(before.pair.coverage(strip))[0], 0.8);
+    EXPECT_LT(cv::mean(after.pair.coverage(strip))[0], 0.4);
+}
+
+} // namespace
+} // namespace viewer::test
