@@ -15,6 +15,8 @@ namespace {
 
 /// Pixels whose paths advance together on one thread.
 constexpr std::size_t kBlock = 4096;
+/// Where they are few: something for every thread.
+constexpr std::size_t kSmallBlock = 512;
 
 /// Primary hits through exact rays, for the cameras that have no raster.
 void exact_hits(ExactVisibility const& exact, CameraRays const& camera, int width, RenderSettings const& s,
@@ -255,11 +257,11 @@ struct SlhbRenderer::Work {
     tbb::combinable<Counts> counts;
 
     template <class F>
-    void in_blocks(std::size_t n, F const& work)
+    void in_blocks(std::size_t n, F const& work, std::size_t block = kBlock)
     {
-        tbb::parallel_for(std::size_t(0), (n + kBlock - 1) / kBlock, [&](std::size_t block) {
+        tbb::parallel_for(std::size_t(0), (n + block - 1) / block, [&](std::size_t k) {
             FlushDenormals const guard;
-            work(block * kBlock, std::min(n, (block + 1) * kBlock), counts.local());
+            work(k * block, std::min(n, (k + 1) * block), counts.local());
         });
     }
 };
@@ -327,11 +329,12 @@ void SlhbRenderer::trace_without(SlhbTracer::Pass pass, Work& work)
     pass.first_watched = kNoPrimitive;
     pass.exact_world = RayWorld::what_stays;
     SlhbTracer const tracer(world_, view.rays, view.width, settings_, slhb_);
-    work.in_blocks(without_.size(), [&](std::size_t first, std::size_t last, Work::Counts& local) {
+    auto const trace_some = [&](std::size_t first, std::size_t last, Work::Counts& local) {
         thread_local std::vector<PathStart> starts;
         view.primary->hits_behind(std::span(without_pixels_).subspan(first, last - first), starts);
         tracer.trace(pass, starts, std::span(without_).subspan(first, last - first), {}, local.paths, local.slhb);
-    });
+    };
+    work.in_blocks(without_.size(), trace_some, kSmallBlock);
     axes_->show_moving(true);
     lamps_->show_moving(true);
 }
