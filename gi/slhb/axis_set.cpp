@@ -67,7 +67,8 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
 
 void AxisSet::move()
 {
-    if (source_.first_moving >= source_.soup.count || !std::exchange(moved_, false)) return;
+    if (source_.first_moving >= source_.soup.count) return;
+    moved_ = false;
     moving_.append({source_.soup, source_.first_moving, source_.cut_outs, source_.most_layers}, cut_seeds_, pool_);
     lost_ += moving_.lost();
 }

@@ -85,11 +85,16 @@ public:
     /// so that a pass has the same axes whether or not the passes before it were made here.
     void refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh, std::uint32_t pass);
 
-    /// What moves is elsewhere.
-    void moved() { moved_ = true; }
-    /// Puts what moves into the axes that there are, as it is now; after store(), refresh() and moved(). Nothing
-    /// is done where all is as it was. Not with packed layers.
+    /// Puts what moves into the axes that there are, as it is now; after store() and refresh(), and whenever it
+    /// has moved. Not with packed layers.
     void move();
+    /// What moves is elsewhere: the next follow() moves it.
+    void moved() { moved_ = true; }
+    /// Moves where axes are new or something has moved.
+    void follow()
+    {
+        if (moved_) move();
+    }
     /// Look-ups find what moves, or go on as if it was not there.
     void show_moving(bool shown) { pool_.without_moving = !shown; }
 

@@ -120,7 +120,7 @@ void SlhbRenderer::make_axes()
     if (slhb_.schedule != Schedule::stored || !walks_) return;
     StageTimer const timer(report_, "build (hit buffers)");
     axes_->store(make_directions(slhb_.directions));
-    axes_->move();
+    axes_->follow();
 }
 
 void SlhbRenderer::make_lamps()
@@ -150,7 +150,7 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
         if (contains(grid_bounds_, world_.bounds)) {
             StageTimer const timer(report_, "layers that moved");
             axes_->moved();
-            if (slhb_.schedule == Schedule::stored && walks_) axes_->move(); // for others every pass does
+            if (slhb_.schedule == Schedule::stored && walks_) axes_->follow(); // for others every pass does
         } else {
             // Some room, so that it does not happen in every frame.
             Bounds const b = world_.bounds;
@@ -220,7 +220,7 @@ void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
         StageTimer const timer(report_, "hit buffers of a pass");
         if (walks_ && slhb_.schedule != Schedule::stored) {
             axes_->refresh(sequences, std::uint32_t(slhb_.axes), std::uint32_t(slhb_.fresh_axes), index);
-            axes_->move();
+            axes_->follow();
         }
     }
     {

@@ -75,8 +75,7 @@ std::vector<SkyAlong> sky_along(AxisSet const& axes, World const& world)
     if (world.environment_select.empty() && !world.environment) return sky;
     WorldView const w = view(world);
     for (std::size_t a = 0; a < axes.pool().size(); ++a)
-        for (vec3 const direction : {-axes.axis(a), axes.axis(a)})
-            sky.push_back(look_at_sky(w, direction));
+        for (vec3 const direction : {-axes.axis(a), axes.axis(a)}) sky.push_back(look_at_sky(w, direction));
     return sky;
 }
 
