@@ -1,0 +1,93 @@
+// A lamp that is switched on, carried to the other side and switched off while a session runs.
+
+#include "gi/scene/generate/builder.h"
+#include "gi/scene/write_glb.h"
+#include "tests/viewer/run_program.h"
+#include "viewer/ar/bridge.h"
+#include "viewer/ar/pipeline.h"
+#include "viewer/ar/synthetic.h"
+
+#include <opencv2/imgproc.hpp>
+
+namespace viewer::test {
+namespace {
+
+enum class Lamp { off, left, right };
+
+/// A grey wall, and on it the lamp, at the borders of what the camera sees.
+ar::Frame frame(Lamp lamp, std::uint64_t sequence)
+{
+    cv::Mat rgb(90, 120, CV_8UC3, cv::Scalar::all(90));
+    int const x = lamp == Lamp::left ? 0 : 100;
+    if (lamp != Lamp::off) cv::rectangle(rgb, {x, 20, 20, 50}, cv::Scalar::all(254), cv::FILLED);
+    ar::Frame f;
+    f.sequence = sequence;
+    f.size_px = {120, 90};
+    f.planes[0] = rgb;
+    return f;
+}
+
+/// Mean radiance of the left and the right half of the virtual ball.
+std::pair<double, double> halves(ArResult const& r)
+{
+    cv::Mat const whole = r.pair->coverage > 0.99;
+    cv::Rect const box = cv::boundingRect(whole);
+    auto const mean = [&](cv::Rect const& part) {
+        cv::Scalar const m = cv::mean(r.pair->with(part), whole(part));
+        return (m[0] + m[1] + m[2]) / 3;
+    };
+    int const half = box.width / 2;
+    return {mean({box.x, box.y, half, box.height}), mean({box.x + box.width - half, box.y, half, box.height})};
+}
+
+TEST(MovingLamp, IsFollowedInTheFrameThatShowsIt)
+{
+    TemporaryFolder const folder;
+    gi::Report report;
+    gi::SceneBuilder b;
+    gi::Material white;
+    white.base_color = gi::vec3{0.8f};
+    white.specular = 0;
+    b.sphere(b.add_material("ball", white), {0, 0, 0}, 0.1f, 32);
+    gi::write_glb(folder / "ball.glb", b.finish("ball"), report);
+    ArSession session;
+    session.virtual_things.scene = folder / "ball.glb";
+    session.live_light = 1000; // after the first frame only when a lamp changes
+    session.render.paths = 32;
+    session.render.denoise = false;
+    session.render.resolution = 1;
+    session.render.slhb.directions = "icosahedron:80";
+    session.render.slhb.resolution = 32;
+    session.render.slhb.lamps = 8;
+    session.render.slhb.shadow_resolution = 32;
+    ArCamera camera{synthetic_camera({120, 90}).model, ar::srgb_photometry(), {}};
+    camera.model.lens = ar::LensModel::pinhole;
+    ar::MarkerMap markers;
+    markers.markers = {{"DICT_4X4_50", 0, 0.05, {}}};
+    ArPipeline pipeline(session, camera, markers, report);
+    // Half a metre before the ball, looking along -z: x is to the right.
+    ar::Pose const pose{glm::angleAxis(glm::radians(180.0), glm::dvec3(1, 0, 0)), {0, 0, 0.5}};
+    std::uint64_t sequence = 0;
+    auto const seen = [&](Lamp lamp) {
+        double const time_s = double(sequence) / 10;
+        ar::Frame const f = frame(lamp, sequence++);
+        ArResult r = pipeline.find(f, time_s, pose);
+        pipeline.add(r, f, time_s, {});
+        return halves(r);
+    };
+    auto const before = seen(Lamp::off);
+    EXPECT_NEAR(before.first / before.second, 1, 0.1);
+    auto const same = seen(Lamp::off);
+    EXPECT_NEAR(same.first / before.first, 1, 0.1) << "nothing has changed";
+    auto const left = seen(Lamp::left);
+    EXPECT_GT(left.first, 1.3 * before.first) << "in the frame in which it was switched on";
+    EXPECT_GT(left.first, 1.2 * left.second);
+    auto const right = seen(Lamp::right);
+    EXPECT_GT(right.second, 1.2 * right.first) << "in the frame in which it was moved";
+    auto const after = seen(Lamp::off);
+    EXPECT_NEAR(after.first / before.first, 1, 0.15) << "in the frame in which it was switched off";
+    EXPECT_NEAR(after.second / before.second, 1, 0.15);
+}
+
+} // namespace
+} // namespace viewer::test
