@@ -57,7 +57,7 @@ TEST(MovingLamp, IsFollowedInTheFrameThatShowsIt)
     session.light = folder / "dark.exr"; // what the camera never sees: as bright as the wall
     session.live_light = 1000;           // after the first frame only when a lamp changes
     session.render.paths = 32;
-    session.render.denoise = false;
+    session.render.denoise.denoiser = gi::Denoiser::none;
     session.render.resolution = 1;
     session.render.slhb.directions = "icosahedron:80";
     session.render.slhb.resolution = 32;

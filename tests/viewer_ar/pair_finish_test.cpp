@@ -54,7 +54,7 @@ Finished finished(double resolution, ArFinish const& finish, std::uint32_t paths
     ar::Pose const pose = synthetic_pose(0.5);
     ar::CameraModel const& pinhole = finisher.pinhole();
     PairPictures const p =
-        renderer.render(gi_camera(pinhole, pose), pinhole.size_px.x, pinhole.size_px.y, paths, 0, true, {});
+        renderer.render(gi_camera(pinhole, pose), pinhole.size_px.x, pinhole.size_px.y, paths, 0, gi::DenoiseSettings{}, {});
     Finished f;
     f.pair = finisher(p, {radiance, pose, 0, 0}, renderer.world_with(0));
     f.counts = finisher.counts();

@@ -33,7 +33,8 @@ PairPictures rendered(gi::Scene virtual_things, std::uint32_t paths, gi::Report&
     renderer.set_environment(sky());
     ar::CameraModel camera = synthetic_camera({80, 60}).model;
     camera.lens = ar::LensModel::pinhole;
-    return renderer.render(gi_camera(camera, synthetic_pose(0.5)), 80, 60, paths, time_s, is_denoised, {});
+    return renderer.render(gi_camera(camera, synthetic_pose(0.5)), 80, 60, paths, time_s,
+                           {.denoiser = is_denoised ? gi::Denoiser::atrous : gi::Denoiser::none}, {});
 }
 
 TEST(PairRenderers, WithNothingVirtualChangeNothing)

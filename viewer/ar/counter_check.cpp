@@ -60,7 +60,7 @@ CounterSession make_counter_session(std::filesystem::path const& folder, glm::iv
     s.render.paths = 1;
     s.render.resolution = 1;
     s.render.bounces = 1;
-    s.render.denoise = false;
+    s.render.denoise.denoiser = gi::Denoiser::none;
     for (std::uint64_t k = 0; double(k) < 600 * rate_hz; ++k)
         c.poses.push_back({double(k) / rate_hz, pose_of_frame(k)});
     return c;

@@ -1,10 +1,18 @@
 #include "viewer/ar/pair_renderer.h"
 
-#include "gi/image/denoise.h"
 #include "gi/registry/registry.h"
 #include "viewer/ar/bridge.h"
 
 namespace viewer {
+
+namespace {
+
+bool can_filter(gi::DenoiseSettings const& filter, std::uint32_t paths)
+{
+    return filter.denoiser != gi::Denoiser::none && (filter.denoiser != gi::Denoiser::atrous || paths > 1);
+}
+
+} // namespace
 
 PairRenderer::PairRenderer(LocalScene local, gi::RenderSettings const& settings, gi::Report& report)
     : local_(std::move(local)), settings_(settings), report_(report), world_(local_.scene, 0, report)
@@ -40,7 +48,7 @@ gi::World const& PairRenderer::world_with(gi::SceneTime time_s)
 }
 
 PairPictures PairRenderer::render(gi::Camera const& camera, int width, int height, std::uint32_t paths,
-                                  gi::SceneTime time_s, bool denoise, gi::StopRequest const& stop)
+                                  gi::SceneTime time_s, gi::DenoiseSettings filter, gi::StopRequest const& stop)
 {
     if (!frames_) {
         // Begins with everything there, so that the bounds of the hit buffers have room for it.
@@ -49,18 +57,18 @@ PairPictures PairRenderer::render(gi::Camera const& camera, int width, int heigh
         settings_.height = height;
         frames_ = gi::find_method("slhb").frames(world_, camera, settings_, report_);
     }
-    denoise = denoise && paths > 1; // of one path there is no variance to go by
+    filter.threads = settings_.threads;
+    bool denoise = can_filter(filter, paths);
     gi::PairSettings const pair{
         paths, virtual_lights_.empty() ? gi::PairDifference::vanishing : gi::PairDifference::anything,
         denoise ? gi::PictureLayers::all : gi::PictureLayers::color_and_depth};
     gi::PairResult both = frames_->pair(
         {camera, width, height}, pair, [&](gi::PairSide side) { return turn(side, time_s); }, stop);
-    denoise = denoise && both.with.paths > 1;
+    denoise = denoise && can_filter(filter, both.with.paths);
     cv::Mat const raw = denoise ? matrix_of(both.with.picture, "color") : cv::Mat();
     if (denoise)
         for (gi::RenderResult* const r : {&both.with, &both.without})
-            report_.lose("pixels that the filter could not use",
-                         gi::denoise(r->picture, {.threads = settings_.threads}).not_finite);
+            report_.lose("pixels that the filter could not use", gi::denoise(r->picture, filter).not_finite);
     PairPictures p;
     p.with = matrix_of(both.with.picture, "color");
     p.without = matrix_of(both.without.picture, "color");

@@ -2,6 +2,7 @@
 // Renders a local scene with and without its virtual things, for compositing.
 
 #include "gi/base/report.h"
+#include "gi/image/denoise.h"
 #include "gi/scene/moving_world.h"
 #include "viewer/ar/local_scene.h"
 
@@ -25,9 +26,10 @@ public:
 
     /// The light of the place, from all sides; null: none.
     void set_environment(std::shared_ptr<gi::EnvironmentMap const> map);
-    /// @param denoise  both pictures, by the a-trous filter: what is equal in both stays so but near what is not
+    /// @param filter  of both pictures: what is equal in both stays so but near what is not. The a-trous filter
+    ///                goes by variance, and does nothing with one path
     PairPictures render(gi::Camera const& camera, int width, int height, std::uint32_t paths, gi::SceneTime time_s,
-                        bool denoise, gi::StopRequest const& stop);
+                        gi::DenoiseSettings filter, gi::StopRequest const& stop);
     gi::World const& world() const { return world_.world(); }
     /// The same, with everything virtual in its place. It is moved again by the next picture.
     gi::World const& world_with(gi::SceneTime time_s);

@@ -99,11 +99,22 @@ private:
         if (r.has("lamps")) slhb.lamps = int(r.at("lamps").integer(1, 1024));
         if (r.has("fresh_lamps")) slhb.fresh_lamps = int(r.at("fresh_lamps").integer(1, 1024));
         if (r.has("shadow_map")) slhb.shadow_resolution = int(r.at("shadow_map").integer(8, 4096));
-        if (r.has("denoise")) session_.render.denoise = r.at("denoise").boolean();
+        if (r.has("denoise")) session_.render.denoise = filter(r.at("denoise"));
         if (r.has("paths")) session_.render.paths = std::uint32_t(r.at("paths").integer(1, 65536));
         if (r.has("resolution")) session_.render.resolution = r.at("resolution").number(0.1, 4);
         if (r.has("bounces")) session_.render.bounces = int(r.at("bounces").integer(0, 64));
         if (r.has("seed")) session_.render.seed = std::uint64_t(r.at("seed").integer(0, INT64_MAX));
+    }
+
+    static gi::DenoiseSettings filter(YamlReader const& at)
+    {
+        using gi::Denoiser;
+        return choice<gi::DenoiseSettings>(at, {{"true", {.denoiser = Denoiser::atrous}},
+                                                {"false", {.denoiser = Denoiser::none}},
+                                                {"none", {.denoiser = Denoiser::none}},
+                                                {"discontinuity", {.denoiser = Denoiser::discontinuity}},
+                                                {"wide", {.denoiser = Denoiser::discontinuity, .reach = 2}},
+                                                {"atrous", {.denoiser = Denoiser::atrous}}});
     }
 
     static std::string directions(YamlReader const& at)

@@ -4,6 +4,7 @@
 #include "ar/capture/open_source.h"
 #include "ar/composite/composite.h"
 #include "ar/pose/tracker.h"
+#include "gi/image/denoise.h"
 #include "gi/image/render_settings.h"
 #include "viewer/ar/proxies.h"
 
@@ -32,7 +33,7 @@ struct ArRender {
     std::uint32_t paths = 2; ///< per rendered pixel and frame
     double resolution = 0.5; ///< rendered pixels per pixel of the camera
     int bounces = 3;
-    bool denoise = true; ///< needs two paths
+    gi::DenoiseSettings denoise; ///< nothing without two paths
     std::uint64_t seed = 0;
     gi::SlhbSettings slhb; ///< directions, resolution, lamps, fresh_lamps, shadow_resolution
 };
