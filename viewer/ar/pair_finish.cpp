@@ -45,7 +45,18 @@ void PairFinish::forget()
 ar::RenderedPair PairFinish::smoothed(PairPictures const& p, ar::Pose const& world_from_camera)
 {
     ar::RenderedPair pair{p.with, p.without, p.coverage, p.direct};
-    if (filter_) pair = (*filter_)(pair, p.depth_m, world_from_camera);
+    if (!filter_) return pair;
+    pair = (*filter_)(pair, p.depth_m, world_from_camera);
+    pair.direct = p.direct.clone();
+    pair.direct.forEach<cv::Vec3f>([&](cv::Vec3f& direct, int const* at) {
+        float const a = p.coverage.at<float>(at[0], at[1]);
+        if (!(a > 0)) return;
+        // The same share of the smooth picture as of the noisy one; of black, by area.
+        cv::Vec3f const smooth = pair.with.at<cv::Vec3f>(at[0], at[1]), noisy = p.with.at<cv::Vec3f>(at[0], at[1]);
+        for (int c = 0; c < 3; ++c)
+            if (smooth[c] != noisy[c])
+                direct[c] = std::max(smooth[c], 0.0f) * (noisy[c] > 0 ? direct[c] / noisy[c] : std::min(a, 1.0f));
+    });
     return pair;
 }
 
@@ -110,7 +121,7 @@ ar::RenderedPair PairFinish::operator()(PairPictures const& rendered, FinishFram
         } else
             virtual_->moved();
         PairPictures low = rendered;
-        low.with = pair.with;
+        low.direct = pair.direct;
         sharp = virtual_->at_size(low, camera, {size.x, size.y}, session_.finish.mattes);
         counts_.unlit += sharp.unlit;
     }

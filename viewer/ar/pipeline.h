@@ -51,7 +51,6 @@ private:
     ArResult seen(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known);
     ar::RenderedPair rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,
                               gi::StopRequest const& stop);
-    void use_pose(ar::PoseEstimate& pose, double time_s);
     void report_counts();
 
     ArSession session_;
