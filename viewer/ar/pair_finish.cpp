@@ -4,6 +4,7 @@
 #include "viewer/ar/bridge.h"
 
 #include <opencv2/imgproc.hpp>
+#include <tbb/parallel_for.h>
 
 namespace viewer {
 namespace {
@@ -63,21 +64,22 @@ ar::RenderedPair PairFinish::smoothed(PairPictures const& p, ar::Pose const& wor
 ar::RenderedPair PairFinish::upsampled(ar::RenderedPair const& low, SharpSurfaces const& sharp,
                                        gi::Camera const& camera)
 {
-    // Guides are needed where something has changed, and two pixels further.
-    cv::Mat difference;
-    cv::absdiff(low.with, low.without, difference);
-    cv::Mat const changed = cv::Mat(difference.reshape(1, int(difference.total())) > 0);
-    cv::Mat any;
-    cv::reduce(changed, any, 1, cv::REDUCE_MAX);
-    cv::Size const low_size = low.with.size(), size = sharp.seen.coverage.size();
-    cv::Rect const region = around(any.reshape(1, low_size.height), 3);
-    ar::SurfaceGuides low_guides, guides;
-    if (!region.empty()) {
-        low_guides = guides_of(*real_, camera, low_size, region, 8);
-        guides = guides_of(*real_, camera, size, scaled(region, low_size, size), 2);
-    }
+    // Guides are needed within reach of pixels that take part: where something has changed, and where virtual
+    // things are seen.
+    cv::Size const low_size = low.with.size();
+    cv::resize(sharp.seen.coverage, wanted_coverage_, low_size, 0, 0, cv::INTER_AREA);
+    wanted_.create(low_size, CV_8UC1);
+    tbb::parallel_for(0, low_size.height, [&](int y) {
+        for (int x = 0; x < low_size.width; ++x)
+            wanted_.at<uchar>(y, x) = wanted_coverage_.at<float>(y, x) > 0 || low.coverage.at<float>(y, x) > 0 ||
+                                              low.with.at<cv::Vec3f>(y, x) != low.without.at<cv::Vec3f>(y, x)
+                                          ? 255
+                                          : 0;
+    });
+    cv::dilate(wanted_, wanted_, cv::getStructuringElement(cv::MORPH_RECT, {9, 9}));
+    real_->look(camera, sharp.seen.coverage.size(), wanted_);
     ar::UpsampleCounts counts;
-    ar::RenderedPair pair = ar::upsampled(low, low_guides, sharp.seen, guides, {}, {}, &counts);
+    ar::RenderedPair pair = ar::upsampled(low, real_->low_guides(), sharp.seen, real_->guides(), {}, {}, &counts);
     counts_.upsample.without_guide += counts.without_guide;
     counts_.upsample.no_sample += counts.no_sample;
     return pair;
@@ -117,7 +119,7 @@ ar::RenderedPair PairFinish::operator()(PairPictures const& rendered, FinishFram
     if (needs_world()) {
         if (!virtual_) {
             virtual_.emplace(world);
-            real_.emplace(world, Surfaces::still);
+            real_.emplace(world);
         } else
             virtual_->moved();
         PairPictures low = rendered;
