@@ -55,7 +55,11 @@ ChainChecked check_chain(ChainCheckSettings const& s, gi::StopRequest& stop, gi:
         CounterCheck check(c);
         ArRunOptions o;
         o.frames = s.frames;
-        o.poses = c.poses;
+        // By when it was captured, so that a frame with the time of another is noticed.
+        o.tracked = [&c, start_s = std::optional<double>()](ar::Frame const& f) mutable {
+            if (!start_s) start_s = f.captured_s - double(f.sequence) / c.rate_hz;
+            return std::optional(c.camera_at(f.captured_s - *start_s));
+        };
         std::optional<ArWindow> window;
         o.opened = [&](ar::SourceDescription const& source, ArPipeline const&) {
             if (!s.in_window) return;

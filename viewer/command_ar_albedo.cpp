@@ -7,6 +7,7 @@
 #include "viewer/ar/estimate_albedo.h"
 #include "viewer/ar/frames_apart.h"
 #include "viewer/ar/runner.h"
+#include "viewer/ar/source_losses.h"
 #include "viewer/arguments.h"
 #include "viewer/commands.h"
 #include "viewer/interrupt.h"
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 struct AlbedoArguments {
     std::string session, out, poses;
     int views = 8, frames = 0;
+    bool scene = false;
     EstimateSettings settings;
 };
 
@@ -33,22 +35,22 @@ struct SeenFrames {
     int found = 0, without_pose = 0, refused = 0;
 };
 
-/// Where the camera was: from the file, or by what the frame shows.
+/// Where the camera was: from the file, by what a tracker recorded, or by what the frame shows.
 class CameraPath {
 public:
-    CameraPath(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera)
+    CameraPath(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera, gi::Report& report)
         : camera_(camera), detector_(ar::read_marker_map(session.markers))
     {
-        if (!a.poses.empty()) poses_ = ar::read_poses(a.poses);
+        if (!a.poses.empty())
+            poses_ = ar::read_poses(a.poses);
+        else if (session.tracked)
+            poses_ = recorded_poses(*session.tracked, report);
     }
     /// Its confidence, too.
     std::optional<std::pair<ar::Pose, double>> at(ar::Frame const& frame, double time_s)
     {
         if (!poses_.empty()) {
-            constexpr double rounding_s = 2e-6; // of clocks in files
-            double const first_s = poses_.front().time_s, last_s = poses_.back().time_s;
-            if (time_s < first_s - rounding_s || time_s > last_s + rounding_s) return std::nullopt;
-            auto const pose = ar::pose_at(poses_, std::clamp(time_s, first_s, last_s));
+            auto const pose = told_pose(poses_, time_s);
             if (!pose) return std::nullopt;
             return std::pair(*pose, 1.0);
         }
@@ -67,12 +69,15 @@ private:
 };
 
 SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera,
-                gi::StopRequest const& stop)
+                gi::StopRequest const& stop, gi::Report& report)
 {
-    CameraPath path(a, session, camera);
+    CameraPath path(a, session, camera, report);
     ar::OpenOptions open = session.frames.options;
     open.pace = ar::Pace::fastest;
     auto const source = ar::open_source(session.frames.source, open);
+    if (a.frames == 0 && (source->description().is_live || session.frames.source == "counter"))
+        throw gi::InputError("frames of '" + session.frames.source + "', all of them", "they never end",
+                             "say how many to look at: --frames 300");
     double const rate = source->description().frames_per_s;
     bool const is_recording = fs::exists(fs::path(session.frames.source) / "session.json");
     bool const is_numbered = rate > 0 && !source->description().is_live && !is_recording;
@@ -104,10 +109,13 @@ SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera con
             if (rgb.size() != cv::Size(camera.model.size_px.x, camera.model.size_px.y))
                 throw ar::InputError("a frame of another size", "the calibration is not of it", "calibrate again");
             kept.add({rgb.clone(), frame->exposure, pose->first, pose->second});
-        } catch (ar::InputError const&) {
+        } catch (ar::InputError const& e) {
             ++seen.refused;
+            report.lose("frames that could not be used", 1, e.what());
         }
     }
+    tell_losses(source->counts(), source->state(), report);
+    seen.refused += int(source->counts().refused);
     seen.kept = kept.take();
     return seen;
 }
@@ -143,7 +151,13 @@ std::string describe(AlbedoEstimate const& e, SeenFrames const& seen)
 
 int run_albedo(AlbedoArguments const& a)
 {
-    ArSession const session = read_ar_session(a.session);
+    ArSession session = read_ar_session(a.session);
+    if (a.scene) {
+        if (session.real.scene.empty())
+            throw gi::InputError("--scene with '" + a.session + "'", "the session has no real.scene",
+                                 "write albedo: estimate at its planes, boxes, meshes or depth");
+        session.real.estimate_scene = true;
+    }
     fs::path const out = a.out.empty() ? session.real.estimates : fs::path(a.out);
     check_outputs({out.string()}, {a.session, a.poses, session.camera.string(), session.markers.string(),
                                    session.light.string(), session.real.scene.string()});
@@ -151,7 +165,7 @@ int run_albedo(AlbedoArguments const& a)
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     ArCamera const camera = load_ar_camera(session.camera);
-    SeenFrames const seen = look(a, session, camera, stop);
+    SeenFrames const seen = look(a, session, camera, stop, report);
     if (stop.requested()) return kInterrupted;
     RealScene real = model_of(session.real, report);
     AlbedoEstimate estimate = estimate_albedos(std::move(real), PlaceLight(session).begin(), camera, seen.kept,
@@ -180,10 +194,12 @@ void add_ar_albedo(CLI::App& ar, int& exit_code)
         ->required();
     c->add_option("--out", a->out, "File of the albedos; left out: the one that the session reads");
     c->add_option("--poses", a->poses, "Where the camera was (CSV or TUM), in place of its markers");
+    c->add_flag("--scene", a->scene, "Also of the scene's materials, where the session does not say it");
     c->add_option("--views", a->views, "Frames to compare, spread over the session")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    c->add_option("--frames", a->frames, "Looks at no more than so many; 0 = all")->check(CLI::NonNegativeNumber);
+    c->add_option("--frames", a->frames, "Looks at no more than so many; 0 = all, of files")
+        ->check(CLI::NonNegativeNumber);
     c->add_option("--resolution", a->settings.resolution, "Pixels compared per pixel of the camera")
         ->check(CLI::Range(0.05, 1.0))
         ->capture_default_str();
@@ -192,8 +208,7 @@ void add_ar_albedo(CLI::App& ar, int& exit_code)
         ->capture_default_str();
     c->footer(R"(Examples:
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
-  sed 's/real: {/real: {albedo: estimate, /' desk/session.yaml > desk/unknown.yaml
-  lightwell ar albedo desk/unknown.yaml --poses desk/poses.csv --views 2 --paths 4)");
+  lightwell ar albedo desk/session.yaml --scene --poses desk/poses.csv --views 2 --paths 4)");
     c->callback([a, &exit_code] { exit_code = run_albedo(*a); });
 }
 

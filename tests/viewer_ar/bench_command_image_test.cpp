@@ -35,7 +35,7 @@ TEST(ArBench, TellsSpeedWithItsError)
         EXPECT_GT(value_of(table, "plain_opencv_over_composite", row), 0);
         EXPECT_LT(value_of(table, "plain_opencv_differs_bytes", row), 1);
         EXPECT_LT(value_of(table, "position_mm", row), 10);
-        EXPECT_GT(value_of(table, "opencv_share_of_detect", row), 0);
+        EXPECT_GT(value_of(table, "search_share_of_detect", row), 0);
     }
     Json const stages = Json::parse(file_text(folder / "table/ar_stages.json"));
     EXPECT_GT(stages.at("rows").size(), 10u);

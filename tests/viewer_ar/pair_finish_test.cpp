@@ -35,19 +35,24 @@ struct Finished {
     FinishCounts counts;
 };
 
-Finished finished(double resolution, ArFinish const& finish, std::uint32_t paths, cv::Mat const& radiance = {})
+gi::RenderSettings quick_settings()
 {
-    ArSession session;
-    session.render.resolution = resolution;
-    session.finish = finish;
     gi::RenderSettings settings;
     settings.bounces = 1;
     settings.slhb.directions = "icosahedron:80";
     settings.slhb.resolution = 48;
     settings.slhb.lamps = 4;
     settings.slhb.shadow_resolution = 64;
+    return settings;
+}
+
+Finished finished(double resolution, ArFinish const& finish, std::uint32_t paths, cv::Mat const& radiance = {})
+{
+    ArSession session;
+    session.render.resolution = resolution;
+    session.finish = finish;
     gi::Report report;
-    PairRenderer renderer(scene(), settings, report);
+    PairRenderer renderer(scene(), quick_settings(), report);
     renderer.set_environment(std::make_shared<gi::EnvironmentMap const>(
         environment_of(cv::Mat(8, 16, CV_32FC3, cv::Scalar::all(0.5)))));
     PairFinish finisher(session, synthetic_camera(kSize).model, {});
@@ -82,6 +87,42 @@ TEST(PairFinishes, KeepBordersSharpAtHalfSize)
     EXPECT_NEAR(cv::mean(sharp.pair.direct, inside)[0] / cv::mean(enlarged.pair.direct, inside)[0], 1, 0.05);
     EXPECT_EQ(enlarged.counts.unlit, 0u);
 }
+
+/// Mean over the ball of the standard deviation of what it shows, over frames of one pose.
+double flicker(double smoothing)
+{
+    ArSession session;
+    session.render.resolution = 0.5;
+    session.smoothing = smoothing;
+    gi::Report report;
+    PairRenderer renderer(scene(), quick_settings(), report);
+    renderer.set_environment(std::make_shared<gi::EnvironmentMap const>(
+        environment_of(cv::Mat(8, 16, CV_32FC3, cv::Scalar::all(0.5)))));
+    PairFinish finisher(session, synthetic_camera(kSize).model, {});
+    ar::Pose const pose = synthetic_pose(0.5);
+    ar::CameraModel const& pinhole = finisher.pinhole();
+    cv::Mat sum(kSize.y, kSize.x, CV_32FC1, cv::Scalar(0)), squares = sum.clone(), covered;
+    constexpr int kFirst = 6, kFrames = 14;
+    for (int k = 0; k < kFrames; ++k) {
+        PairPictures const p =
+            renderer.render(gi_camera(pinhole, pose), pinhole.size_px.x, pinhole.size_px.y, 1, 0, false, {});
+        ar::RenderedPair const pair = finisher(p, {{}, pose, k / 30.0, 0}, renderer.world_with(0));
+        if (k < kFirst) continue;
+        cv::Mat red;
+        cv::extractChannel(pair.direct, red, 0);
+        sum += red;
+        squares += red.mul(red);
+        cv::Mat const now = pair.coverage == 1;
+        covered = covered.empty() ? now : cv::Mat(covered & now);
+    }
+    constexpr double n = kFrames - kFirst;
+    cv::Mat variance = squares / n - (sum / n).mul(sum / n), deviation;
+    cv::sqrt(cv::max(variance, 0), deviation);
+    EXPECT_GT(cv::countNonZero(covered), 100);
+    return cv::mean(deviation, covered)[0];
+}
+
+TEST(PairFinishes, SmoothWhatVirtualThingsShow) { EXPECT_LT(flicker(0.2), 0.6 * flicker(1)); }
 
 TEST(PairFinishes, RefineBordersOfOccludersByTheCamera)
 {

@@ -60,6 +60,9 @@ pose: {smoothing: {position: {min_cutoff_hz: 2, beta: 3}}, predict_s: 0.4}
     EXPECT_GE(s.pose.tracker.lost_after_s, 0.8);
     ArSession const still = parse_ar_session(kLeast + "pose: {tripod: true}\n", "s.yaml");
     EXPECT_EQ(still.pose.tracker.motion, ar::CameraMotion::tripod);
+    ArSession const averaged = parse_ar_session(kLeast + "pose: {tripod: true, smoothing: false}\n", "s.yaml");
+    EXPECT_EQ(averaged.pose.tracker.motion, ar::CameraMotion::tripod);
+    EXPECT_TRUE(averaged.pose.filtered);
     ArSession const least = parse_ar_session(kLeast, "s.yaml");
     EXPECT_FALSE(least.pose.filtered || least.finish.mattes || least.finish.match_blur);
     EXPECT_TRUE(least.match_noise);

@@ -26,6 +26,17 @@ ar::Pose pose_of_frame(std::uint64_t number)
 
 } // namespace
 
+ar::Pose CounterSession::camera_at(double since_frame_0_s) const
+{
+    constexpr double kRounding = 1e-4; // of a frame
+    double const frames = std::max(since_frame_0_s * rate_hz + kRounding, 0.0);
+    auto const before = std::uint64_t(frames);
+    ar::Pose pose = pose_of_frame(before);
+    double const part = frames - double(before);
+    if (part > 2 * kRounding) pose.position_m = glm::mix(pose.position_m, pose_of_frame(before + 1).position_m, part);
+    return pose;
+}
+
 CounterSession make_counter_session(std::filesystem::path const& folder, glm::ivec2 size_px, double rate_hz,
                                     gi::Report& report)
 {
@@ -61,8 +72,6 @@ CounterSession make_counter_session(std::filesystem::path const& folder, glm::iv
     s.render.resolution = 1;
     s.render.bounces = 1;
     s.render.denoise.denoiser = gi::Denoiser::none;
-    for (std::uint64_t k = 0; double(k) < 600 * rate_hz; ++k)
-        c.poses.push_back({double(k) / rate_hz, pose_of_frame(k)});
     return c;
 }
 

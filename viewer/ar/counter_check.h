@@ -11,7 +11,7 @@ namespace viewer {
 
 struct CounterSession {
     ArSession session;
-    std::vector<ar::TimedPose> poses; ///< ten minutes
+    ar::Pose camera_at(double since_frame_0_s) const; ///< of any length
     ar::CameraModel camera;
     double rate_hz = 30;
 };

@@ -7,6 +7,7 @@
 #include "gi/scene/vertex_normals.h"
 #include "viewer/ar/proxy_mesh.h"
 
+#include <cctype>
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
@@ -16,15 +17,17 @@ namespace {
 cv::Mat decoded_exr(std::filesystem::path const& file)
 {
     gi::Picture const picture = gi::read_exr(file);
-    for (char const* name : {"depth", "Z", "color"})
-        if (gi::Layer const* const layer = picture.find(name)) {
+    // Channels without a layer, Z or Y, are read as "color"; several of them are colours, and no depths.
+    for (char const* name : {"depth", "Z", "Y", "color"})
+        if (gi::Layer const* const layer = picture.find(name); layer && layer->channels == 1) {
             cv::Mat map(picture.height, picture.width, CV_32FC1);
             for (std::size_t i = 0; i < picture.pixels(); ++i)
                 map.ptr<float>()[i] = layer->data[i * std::size_t(layer->channels)];
             return map;
         }
-    throw gi::InputError("'" + file.string() + "' has no layer 'depth', 'Z' or 'color'",
-                         "it is not known which of its channels are depths", "call the channel depth.V, Z or Y");
+    throw gi::InputError("'" + file.string() + "' has no layer 'depth', 'Z' or 'Y' of one channel",
+                         "it is not known which of its channels are depths",
+                         "write a file whose only channel without a layer is Z or Y, or call it depth.V");
 }
 
 cv::Mat decoded_png(std::filesystem::path const& file)
@@ -49,7 +52,9 @@ cv::Mat decoded_png(std::filesystem::path const& file)
 /// In metres; 0 and what is not finite: nothing.
 cv::Mat depths_of(ProxyDepth const& depth)
 {
-    bool const is_exr = depth.file.extension() == ".exr";
+    std::string ending = depth.file.extension().string();
+    for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+    bool const is_exr = ending == ".exr";
     cv::Mat const map = is_exr ? decoded_exr(depth.file) : decoded_png(depth.file);
     double const metres = depth.metres_per_unit > 0 ? depth.metres_per_unit : is_exr ? 1 : 1e-3;
     return map * metres;

@@ -87,4 +87,37 @@ FirstSurfaces SurfaceView::seen(gi::Camera const& camera, int width, int height,
     return s;
 }
 
+void SurfaceView::rasterise(gi::Camera const& camera, int width, int height, cv::Rect region,
+                            SurfaceRaster& into) const
+{
+    if (camera.orthographic) throw std::invalid_argument("first surfaces of an orthographic camera");
+    into.region = region;
+    into.rays = gi::camera_rays(camera, width, height, world_.origin);
+    gi::CameraRays part = into.rays;
+    part.corner += float(region.x) * part.step_x + float(region.y) * part.step_y;
+    gi::PerspectiveGrid const grid =
+        gi::camera_grid(part, region.width, region.height, gi::vec2(0.5f), gi::near_plane(world_.bounds));
+    gi::clear(into.map, std::uint32_t(region.width), std::uint32_t(region.height));
+    constexpr std::size_t kPart = 8 * gi::TriangleSoup::kChunk;
+    tbb::parallel_for(std::size_t(0), (soup_.count + kPart - 1) / kPart, [&](std::size_t k) {
+        thread_local gi::Fragments fragments;
+        fragments.count = 0;
+        gi::rasterize(soup_, k * kPart, std::min(soup_.count, (k + 1) * kPart), grid, fragments);
+        cut_outs_.remove(fragments, grid, 0);
+        gi::resolve(fragments, 1, into.map);
+    });
+}
+
+FirstSurface SurfaceView::surface_at(SurfaceRaster const& raster, gi::NearestTexel const& texel,
+                                     gi::vec2 position) const
+{
+    gi::WorldView const world = gi::view(world_);
+    gi::CameraRays const& rays = raster.rays;
+    gi::vec3 const along = rays.corner + position.x * rays.step_x + position.y * rays.step_y;
+    float const depth_m = 1 / texel.key;
+    gi::vec2 const at = gi::barycentric_at(world.surfaces[texel.primitive], rays.origin + depth_m * along);
+    gi::ShadingPoint const p = gi::shading_point(world, texel.primitive, at, glm::normalize(along));
+    return {p.frame.normal, gi::albedo(p.bsdf), depth_m};
+}
+
 } // namespace viewer

@@ -26,6 +26,24 @@ struct FirstSurfaces {
     cv::Mat place;    ///< CV_32FC2, the first texture coordinates, as the material's base colour reads them
 };
 
+/// What is nearest at a raster of points, with nothing looked up yet.
+struct SurfaceRaster {
+    cv::Rect region;     ///< of the raster that the camera sees: what was looked at
+    gi::CameraRays rays; ///< of the whole raster, a point (x, y) at x + 0.5, y + 0.5
+    gi::NearestMap map;  ///< of the region
+
+    gi::NearestTexel const& texel(int x, int y) const
+    {
+        return map.texels[std::size_t(y - region.y) * map.width + std::size_t(x - region.x)];
+    }
+};
+
+/// One point of a surface.
+struct FirstSurface {
+    gi::vec3 normal, albedo;
+    float depth_m = 0; ///< along the axis
+};
+
 class SurfaceView {
 public:
     /// Reads the world's triangles as they are now. @param world  outlives this
@@ -39,6 +57,11 @@ public:
     /// @param wanted  of what is seen first: others are left out of the result, but hide what is behind them
     FirstSurfaces seen(gi::Camera const& camera, int width, int height, std::uint32_t pass, cv::Rect region = {},
                        Surfaces wanted = Surfaces::all) const;
+    /// @param into  its memory is used again
+    void rasterise(gi::Camera const& camera, int width, int height, cv::Rect region, SurfaceRaster& into) const;
+    /// Of the triangle of a texel, at a position of the raster: the nearest point of it.
+    FirstSurface surface_at(SurfaceRaster const& raster, gi::NearestTexel const& texel, gi::vec2 position) const;
+    bool is_still(gi::NearestTexel const& texel) const { return texel.primitive < world_.static_triangles; }
 
 private:
     void hide();

@@ -13,6 +13,12 @@ LoopSource::LoopSource(std::vector<ar::Frame> frames, double rate_hz)
     if (frames_.empty() || !(rate_hz > 0)) throw std::invalid_argument("a loop without frames or without a rate");
 }
 
+std::size_t LoopSource::index_of(std::uint64_t sequence) const
+{
+    std::uint64_t const last = frames_.size() - 1, k = last > 0 ? sequence % (2 * last) : 0;
+    return std::size_t(k <= last ? k : 2 * last - k);
+}
+
 std::optional<ar::Frame> LoopSource::next(std::chrono::milliseconds wait)
 {
     double const now_s = ar::steady_now_s();
@@ -23,8 +29,7 @@ std::optional<ar::Frame> LoopSource::next(std::chrono::milliseconds wait)
     ar::sleep_until_s(std::min(captured_s, limit_s));
     if (captured_s > limit_s) return std::nullopt;
 
-    std::uint64_t const last = frames_.size() - 1, k = last > 0 ? number % (2 * last) : 0;
-    ar::Frame f = frames_[std::size_t(k <= last ? k : 2 * last - k)];
+    ar::Frame f = frames_[index_of(number)];
     f.sequence = number;
     f.captured_s = captured_s;
     f.arrived_s = ar::steady_now_s();

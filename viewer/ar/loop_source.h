@@ -12,6 +12,8 @@ public:
     /// @param frames  at least one, of one size. @throws std::invalid_argument
     LoopSource(std::vector<ar::Frame> frames, double rate_hz);
 
+    /// Which of the frames read before is number `sequence`.
+    std::size_t index_of(std::uint64_t sequence) const;
     std::optional<ar::Frame> next(std::chrono::milliseconds wait) override;
     ar::SourceState state() const override { return {}; }
     ar::SourceDescription description() const override;

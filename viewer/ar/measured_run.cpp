@@ -2,6 +2,7 @@
 
 #include "ar/capture/clock.h"
 #include "viewer/ar/loop_source.h"
+#include "viewer/ar/source_losses.h"
 
 namespace viewer {
 namespace {
@@ -20,6 +21,17 @@ ar::OpenOptions files_at_once(ArSession const& session)
     return open;
 }
 
+/// Seconds since the first, as the run that takes them as fast as possible has them.
+std::vector<double> times_of(std::vector<ar::Frame> const& frames, double frames_per_s, bool is_recording)
+{
+    std::vector<double> times_s;
+    for (ar::Frame const& f : frames)
+        times_s.push_back(frames_per_s > 0 && !is_recording
+                              ? double(f.sequence - frames[0].sequence) / frames_per_s
+                              : f.captured_s - frames[0].captured_s);
+    return times_s;
+}
+
 } // namespace
 
 MeasuredRun measure_run(ArSession const& session, MeasureSettings const& settings, gi::StopRequest& stop,
@@ -29,6 +41,7 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
     ArRunOptions o;
     o.pace = ar::Pace::fastest;
     o.frames = settings.frames;
+    if (session.tracked) o.poses = recorded_poses(*session.tracked, report);
     o.opened = [&](ar::SourceDescription const&, ArPipeline const& p) { m.compositor = p.compositor(); };
     std::vector<ArResult> results; // judged afterwards: that takes longer than a frame
     std::vector<double> shown_s;
@@ -43,11 +56,12 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
             results.back().camera = r.camera;
         },
         stop, report, fast);
+    tell_losses(fast.source, fast.end, report);
     if (shown_s.size() > 1) m.frames_per_s = double(shown_s.size() - 1) / (shown_s.back() - shown_s.front());
     FrameTruth truth(settings.truth, settings.true_poses);
     for (std::size_t k = 0; k < results.size() && !stop.requested(); ++k) truth.add(fast.frames[k], results[k]);
     m.errors = truth.errors();
-    m.refused = fast.refused;
+    m.refused = fast.refused + fast.source.refused;
     m.fast = settled(std::move(fast.frames));
     if (stop.requested()) return m;
 
@@ -63,10 +77,20 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
     o.frames = settings.frames + 1;
     std::unique_ptr<ar::FrameSource> camera = ar::open_source(session.frames.source, files_at_once(session));
     if (!camera->description().is_live) {
-        double const rate_hz = session.frames.options.frames_per_s;
+        double const own_hz = camera->description().frames_per_s;
         std::vector<ar::Frame> frames = read_frames(*camera, settings.frames);
+        tell_losses({}, camera->state(), report); // what was refused is counted already
         if (frames.empty()) return m;
-        camera = std::make_unique<LoopSource>(std::move(frames), rate_hz);
+        bool const is_recording =
+            std::filesystem::exists(std::filesystem::path(session.frames.source) / "session.json");
+        std::vector<double> times_s = times_of(frames, own_hz, is_recording);
+        auto loop = std::make_unique<LoopSource>(std::move(frames),
+                                                 own_hz > 0 ? own_hz : session.frames.options.frames_per_s);
+        if (!o.poses.empty()) // they come back with their frames
+            o.tracked = [poses = o.poses, times_s = std::move(times_s), l = loop.get()](ar::Frame const& f) {
+                return told_pose(poses, times_s[l->index_of(f.sequence)]);
+            };
+        camera = std::move(loop);
     }
     ArSummary own;
     run_ar(
@@ -75,6 +99,7 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
             if (window) window->show(f, r);
         },
         stop, report, own);
+    tell_losses(own.source, own.end, report);
     m.overtaken = own.overtaken;
     m.own = settled(std::move(own.frames));
     return m;

@@ -4,6 +4,7 @@
 #include "viewer/ar/bridge.h"
 
 #include <opencv2/imgproc.hpp>
+#include <tbb/parallel_for.h>
 
 namespace viewer {
 namespace {
@@ -45,28 +46,40 @@ void PairFinish::forget()
 ar::RenderedPair PairFinish::smoothed(PairPictures const& p, ar::Pose const& world_from_camera)
 {
     ar::RenderedPair pair{p.with, p.without, p.coverage, p.direct};
-    if (filter_) pair = (*filter_)(pair, p.depth_m, world_from_camera);
+    if (!filter_) return pair;
+    pair = (*filter_)(pair, p.depth_m, world_from_camera);
+    pair.direct = p.direct.clone();
+    pair.direct.forEach<cv::Vec3f>([&](cv::Vec3f& direct, int const* at) {
+        float const a = p.coverage.at<float>(at[0], at[1]);
+        if (!(a > 0)) return;
+        // The same share of the smooth picture as of the noisy one; of black, by area.
+        cv::Vec3f const smooth = pair.with.at<cv::Vec3f>(at[0], at[1]), noisy = p.with.at<cv::Vec3f>(at[0], at[1]);
+        for (int c = 0; c < 3; ++c)
+            if (smooth[c] != noisy[c])
+                direct[c] = std::max(smooth[c], 0.0f) * (noisy[c] > 0 ? direct[c] / noisy[c] : std::min(a, 1.0f));
+    });
     return pair;
 }
 
 ar::RenderedPair PairFinish::upsampled(ar::RenderedPair const& low, SharpSurfaces const& sharp,
                                        gi::Camera const& camera)
 {
-    // Guides are needed where something has changed, and two pixels further.
-    cv::Mat difference;
-    cv::absdiff(low.with, low.without, difference);
-    cv::Mat const changed = cv::Mat(difference.reshape(1, int(difference.total())) > 0);
-    cv::Mat any;
-    cv::reduce(changed, any, 1, cv::REDUCE_MAX);
-    cv::Size const low_size = low.with.size(), size = sharp.seen.coverage.size();
-    cv::Rect const region = around(any.reshape(1, low_size.height), 3);
-    ar::SurfaceGuides low_guides, guides;
-    if (!region.empty()) {
-        low_guides = guides_of(*real_, camera, low_size, region, 8);
-        guides = guides_of(*real_, camera, size, scaled(region, low_size, size), 2);
-    }
+    // Guides are needed within reach of pixels that take part: where something has changed, and where virtual
+    // things are seen.
+    cv::Size const low_size = low.with.size();
+    cv::resize(sharp.seen.coverage, wanted_coverage_, low_size, 0, 0, cv::INTER_AREA);
+    wanted_.create(low_size, CV_8UC1);
+    tbb::parallel_for(0, low_size.height, [&](int y) {
+        for (int x = 0; x < low_size.width; ++x)
+            wanted_.at<uchar>(y, x) = wanted_coverage_.at<float>(y, x) > 0 || low.coverage.at<float>(y, x) > 0 ||
+                                              low.with.at<cv::Vec3f>(y, x) != low.without.at<cv::Vec3f>(y, x)
+                                          ? 255
+                                          : 0;
+    });
+    cv::dilate(wanted_, wanted_, cv::getStructuringElement(cv::MORPH_RECT, {9, 9}));
+    real_->look(camera, sharp.seen.coverage.size(), wanted_);
     ar::UpsampleCounts counts;
-    ar::RenderedPair pair = ar::upsampled(low, low_guides, sharp.seen, guides, {}, {}, &counts);
+    ar::RenderedPair pair = ar::upsampled(low, real_->low_guides(), sharp.seen, real_->guides(), {}, {}, &counts);
     counts_.upsample.without_guide += counts.without_guide;
     counts_.upsample.no_sample += counts.no_sample;
     return pair;
@@ -106,11 +119,11 @@ ar::RenderedPair PairFinish::operator()(PairPictures const& rendered, FinishFram
     if (needs_world()) {
         if (!virtual_) {
             virtual_.emplace(world);
-            real_.emplace(world, Surfaces::still);
+            real_.emplace(world);
         } else
             virtual_->moved();
         PairPictures low = rendered;
-        low.with = pair.with;
+        low.direct = pair.direct;
         sharp = virtual_->at_size(low, camera, {size.x, size.y}, session_.finish.mattes);
         counts_.unlit += sharp.unlit;
     }

@@ -52,7 +52,8 @@ private:
     std::optional<ar::TemporalFilter> filter_;
     std::optional<CameraBlur> blur_;
     std::optional<VirtualSurfaces> virtual_;
-    std::optional<SurfaceView> real_;
+    std::optional<RealSurfaces> real_;
+    cv::Mat wanted_, wanted_coverage_; ///< memory of the last frame
     FinishCounts counts_;
 };
 

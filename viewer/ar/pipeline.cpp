@@ -5,6 +5,7 @@
 #include "gi/base/error.h"
 #include "gi/scene/load.h"
 #include "viewer/ar/bridge.h"
+#include "viewer/ar/pose_use.h"
 #include "viewer/ar/real_scene.h"
 
 #include <fmt/format.h>
@@ -86,21 +87,6 @@ ar::RenderedPair ArPipeline::rendered(ArResult const& found, ar::Exposure const&
     return finish_(p, frame, finish_.needs_world() ? renderer_.world_with(time_s) : renderer_.world());
 }
 
-void ArPipeline::use_pose(ar::PoseEstimate& pose, double time_s)
-{
-    ArPoseUse const& use = session_.pose;
-    if (!(pose.found() ? use.filtered : use.predict_s > 0)) return;
-    ar::TrackedPose const tracked = tracker_.at(time_s);
-    bool const stands = use.tracker.motion == ar::CameraMotion::tripod && pose.found();
-    if (!tracked.world_from_camera || (!stands && tracked.age_s > std::max(use.predict_s, 1e-6))) return;
-    if (!pose.found()) {
-        pose.failure = ar::PoseFailure::none;
-        pose.confidence = tracked.confidence;
-        ++predicted_;
-    }
-    pose.world_from_camera = *tracked.world_from_camera;
-}
-
 void ArPipeline::report_poses()
 {
     ar::TrackerCounts const& t = tracker_.counts();
@@ -150,7 +136,7 @@ ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<a
         r.times.detect_ms = lap();
         r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(time_s));
         tracker_.add(time_s, r.pose);
-        use_pose(r.pose, time_s);
+        if (use_pose(session_.pose, tracker_, time_s, r.pose)) ++predicted_;
         report_poses();
         r.times.pose_ms = lap();
     }

@@ -67,7 +67,6 @@ public:
 private:
     ar::RenderedPair rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,
                               gi::StopRequest const& stop);
-    void use_pose(ar::PoseEstimate& pose, double time_s);
     void report_poses();
     void report_finish();
 

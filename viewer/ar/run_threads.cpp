@@ -7,15 +7,6 @@
 namespace viewer {
 namespace {
 
-/// Clocks round: a frame may be a microsecond before the first pose or after the last.
-std::optional<ar::Pose> told_pose(std::vector<ar::TimedPose> const& poses, double time_s)
-{
-    constexpr double rounding_s = 2e-6;
-    double const first_s = poses.front().time_s, last_s = poses.back().time_s;
-    if (time_s < first_s - rounding_s || time_s > last_s + rounding_s) return std::nullopt;
-    return ar::pose_at(poses, std::clamp(time_s, first_s, last_s));
-}
-
 /// Cameras have few buffers: what is on its way keeps none of them.
 void give_back(OnItsWay& w)
 {

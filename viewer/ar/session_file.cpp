@@ -175,10 +175,12 @@ private:
         }
         if (p.has("smoothing")) {
             YamlReader const s = p.at("smoothing");
-            if (use.tracker.motion == ar::CameraMotion::tripod)
+            bool const is_on = s.is_map() || s.boolean();
+            bool const stands = use.tracker.motion == ar::CameraMotion::tripod;
+            if (is_on && stands)
                 throw s.error("smoothing of a camera on a tripod", "its poses are averaged",
                               "remove one of the two");
-            use.filtered = s.is_map() || s.boolean();
+            use.filtered = is_on || stands;
             if (s.is_map()) {
                 s.only_keys({"position", "rotation"});
                 if (s.has("position")) read_one_euro(s.at("position"), use.tracker.position);

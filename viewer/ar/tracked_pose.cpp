@@ -104,6 +104,23 @@ TrackedCamera::TrackedCamera(ArTracked const& tracked, std::unique_ptr<TrackerHu
 
 TrackedCamera::~TrackedCamera() = default;
 
+std::vector<ar::TimedPose> recorded_poses(ArTracked const& tracked, gi::Report& report)
+{
+    TrackedCamera const camera(tracked, report);
+    if (camera.is_live())
+        throw gi::InputError("a session whose tracker is listened to", "it would not say the same twice",
+                             "take a tracker of type file, or give the poses as a file");
+    return camera.recorded();
+}
+
+std::optional<ar::Pose> told_pose(std::vector<ar::TimedPose> const& poses, double time_s)
+{
+    constexpr double kRounding_s = 2e-6;
+    double const first_s = poses.front().time_s, last_s = poses.back().time_s;
+    if (time_s < first_s - kRounding_s || time_s > last_s + kRounding_s) return std::nullopt;
+    return ar::pose_at(poses, std::clamp(time_s, first_s, last_s));
+}
+
 ar::Pose TrackedCamera::world_from_camera(ar::Pose const& room_from_sensor) const
 {
     return tracked_.world_from_room * room_from_sensor * sensor_from_camera_;

@@ -26,6 +26,13 @@ struct ArTracked {
 /// @throws gi::InputError with file:line:column
 ArTracked read_tracked(gi::YamlReader const& pose, std::filesystem::path const& folder);
 
+/// What its tracker has recorded, by seconds since the first frame.
+/// @throws gi::InputError the tracker is live; as TrackedCamera
+std::vector<ar::TimedPose> recorded_poses(ArTracked const& tracked, gi::Report& report);
+/// @param poses   not empty. @param time_s  since the first frame; clocks of files round
+/// @return nothing before the first and after the last
+std::optional<ar::Pose> told_pose(std::vector<ar::TimedPose> const& poses, double time_s);
+
 class TrackerHub;
 
 class TrackedCamera {

@@ -5,6 +5,7 @@
 #include "ar/markers/marker_map_file.h"
 #include "ar/pose/pose_file.h"
 #include "viewer/ar/runner.h"
+#include "viewer/ar/source_losses.h"
 #include "viewer/trials/screen.h"
 
 #include <algorithm>
@@ -23,12 +24,15 @@ constexpr double kRounding_s = 2e-6;
 /// Numbered frames of files, each with its moment in the session.
 class Frames {
 public:
-    explicit Frames(ArSession const& session) : name_(session.frames.source)
+    Frames(ArSession const& session, gi::Report& report) : name_(session.frames.source), report_(report)
     {
         bool const is_live = name_ == "camera" || name_.starts_with("camera:") || name_.starts_with("device:") ||
                              name_.starts_with("gstreamer:");
         if (is_live)
             throw gi::InputError("frames of '" + name_ + "' as a stimulus", "nobody would see them twice",
+                                 "record them (lightwell ar record) and name the recording");
+        if (name_ == "counter")
+            throw gi::InputError("frames of 'counter' as a stimulus", "they never end",
                                  "record them (lightwell ar record) and name the recording");
         ar::OpenOptions open = session.frames.options;
         open.pace = ar::Pace::fastest;
@@ -38,6 +42,13 @@ public:
         is_recording_ = std::filesystem::exists(std::filesystem::path(name_) / "session.json");
     }
 
+    ~Frames()
+    {
+        if (source_ && !was_told_) tell_losses(source_->counts(), {}, report_);
+    }
+    Frames(Frames const&) = delete;
+    Frames& operator=(Frames const&) = delete;
+
     struct Timed {
         ar::Frame frame;
         double time_s;
@@ -46,7 +57,11 @@ public:
     {
         std::optional<ar::Frame> frame;
         while (!(frame = source_->next(std::chrono::milliseconds(200))))
-            if (source_->state().kind != ar::SourceState::Kind::running) return std::nullopt;
+            if (source_->state().kind != ar::SourceState::Kind::running) {
+                was_told_ = true;
+                tell_losses(source_->counts(), source_->state(), report_);
+                return std::nullopt;
+            }
         if (!first_) first_ = {frame->sequence, frame->captured_s};
         bool const is_numbered = about_.frames_per_s > 0 && !is_recording_;
         double const time_s = is_numbered ? double(frame->sequence - first_->first) / about_.frames_per_s
@@ -62,9 +77,10 @@ public:
 
 private:
     std::string name_;
+    gi::Report& report_;
     std::unique_ptr<ar::FrameSource> source_;
     ar::SourceDescription about_;
-    bool is_recording_ = false;
+    bool is_recording_ = false, was_told_ = false;
     std::optional<std::pair<std::uint64_t, double>> first_;
     std::uint64_t last_ = 0;
 };
@@ -118,7 +134,7 @@ public:
         if (!stimulus.poses.empty()) poses_ = read_poses(stimulus);
         if (stimulus.show != ArShow::composite) return;
         ArSession const session = session_of(stimulus);
-        if (poses_.empty() && session.tracked) poses_ = recorded_poses(*session.tracked);
+        if (poses_.empty() && session.tracked) poses_ = recorded_poses(*session.tracked, report);
         pipeline_.emplace(session, load_ar_camera(session.camera), ar::read_marker_map(session.markers), report);
     }
 
@@ -129,7 +145,7 @@ public:
         if (stimulus_.show == ArShow::truth) p.rgb = read_truth(stimulus_, f.frame);
         if (stimulus_.show != ArShow::composite) return p;
         std::optional<ar::Pose> known;
-        if (!poses_.empty()) known = told_pose(f.time_s);
+        if (!poses_.empty()) known = told_pose(poses_, f.time_s);
         if (!known && !poses_.empty()) {
             p.rgb = ar::rgb_of(f.frame).clone(); // as in `ar run`
         } else {
@@ -145,22 +161,6 @@ public:
     }
 
 private:
-    std::vector<ar::TimedPose> recorded_poses(ArTracked const& tracked)
-    {
-        TrackedCamera const camera(tracked, report_);
-        if (camera.is_live())
-            throw gi::InputError(stimulus_.session.string() + ": a tracker that is listened to, in a stimulus",
-                                 "it would not say the same twice", "take one of type file, or give ar.poses");
-        return camera.recorded();
-    }
-
-    std::optional<ar::Pose> told_pose(double time_s) const
-    {
-        double const first_s = poses_.front().time_s, last_s = poses_.back().time_s;
-        if (time_s < first_s - kRounding_s || time_s > last_s + kRounding_s) return std::nullopt;
-        return ar::pose_at(poses_, std::clamp(time_s, first_s, last_s));
-    }
-
     ArStimulus const& stimulus_;
     gi::StopRequest const& stop_;
     gi::Report& report_;
@@ -191,7 +191,7 @@ std::vector<ArPicture> make_ar_pictures(ArStimulus const& s, StimulusView const&
 {
     if (view.size_px.x <= 0 || view.size_px.y <= 0)
         throw gi::InputError("a place without pixels", "no frame fits into it", "enlarge the window");
-    Frames frames(session_of(s));
+    Frames frames(session_of(s), report);
     Maker make(s, stop, report);
     std::deque<Frames::Timed> before; // so that filters and light have settled
     std::vector<ArPicture> pictures;
@@ -227,8 +227,8 @@ std::vector<ArPicture> make_ar_pictures(ArStimulus const& s, StimulusView const&
 void check_ar_pictures(ArStimulus const& s)
 {
     ArSession const session = session_of(s);
-    Frames frames(session);
     gi::Report report;
+    Frames frames(session, report);
     gi::StopRequest const stop;
     Maker make(s, stop, report);
     ArCamera const camera = load_ar_camera(session.camera);

@@ -172,7 +172,7 @@ void ArSource::take()
     if (!making_.valid() || making_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
     try {
         pictures_ = making_.get();
-    } catch (std::runtime_error const& e) {
+    } catch (std::exception const& e) {
         made_of_.clear();
         throw gi::InputError("a stimulus cannot be composited", e.what(), "mend the script, or its AR session");
     }

@@ -59,21 +59,34 @@ std::string without_place(std::string text, fs::path const& file)
     return text.substr(std::min(text.find_first_not_of(":0123456789 "), text.size()));
 }
 
-/// Each of the overrides alone, so that the one to blame is found.
+/// All of the overrides together: one may need another. The one to blame is that without which the others can be,
+/// else the first that cannot be alone.
 void check_overrides(std::string const& text, ArStimulus const& s)
 {
-    auto const try_out = [&](study::Patch const& overrides, std::pair<std::string, std::string> const& blamed) {
+    auto const problem_of = [&](study::Patch const& overrides) -> std::optional<std::string> {
         try {
             parse_ar_session(with(text, overrides), s.session);
         } catch (gi::InputError const& e) {
-            std::string const key = std::string(kPrefix) + blamed.first;
-            throw ArSettingError(key, blamed.second, fmt::format("{}: {}", key, blamed.second),
-                                 without_place(e.what(), s.session),
-                                 "write what the session's file could have there (docs/ar.md)");
+            return e.what();
         }
+        return std::nullopt;
     };
-    for (auto const& one : s.overrides) try_out({one}, one);
-    if (!s.overrides.empty()) try_out(s.overrides, s.overrides.back());
+    auto const blame = [&](std::pair<std::string, std::string> const& one, std::string const& problem) {
+        std::string const key = std::string(kPrefix) + one.first;
+        throw ArSettingError(key, one.second, fmt::format("{}: {}", key, one.second),
+                             without_place(problem, s.session),
+                             "write what the session's file could have there (docs/ar.md)");
+    };
+    std::optional<std::string> const together = problem_of(s.overrides);
+    if (!together) return;
+    for (std::size_t k = 0; k < s.overrides.size(); ++k) {
+        study::Patch others = s.overrides;
+        others.erase(others.begin() + std::ptrdiff_t(k));
+        if (!problem_of(others)) blame(s.overrides[k], *together);
+    }
+    for (auto const& one : s.overrides)
+        if (auto const alone = problem_of({one})) blame(one, *alone);
+    blame(s.overrides.back(), *together);
 }
 
 template <class Number>
