@@ -4,6 +4,7 @@
 #include "viewer/ar/frame_table.h"
 #include "viewer/ar/frame_truth.h"
 #include "viewer/ar/hmd_run.h"
+#include "viewer/ar/session_inputs.h"
 #include "viewer/ar_recording.h"
 #include "viewer/commands.h"
 #include "viewer/interrupt.h"
@@ -28,16 +29,36 @@ struct RunArguments {
 };
 
 /// Nothing that is read may be written over.
-void check_arguments(RunArguments const& a, ArSession const& s)
+void check_arguments(RunArguments const& a, ArSession const& session)
 {
-    check_outputs({a.frame_table, a.stats, a.video},
-                  {a.session, a.poses, a.true_poses, s.camera.string(), s.markers.string(), s.light.string(),
-                   s.real.scene.string(), s.virtual_things.scene.string()});
+    std::vector<std::string> read{a.poses, a.true_poses};
+    for (fs::path const& file : files_read_by(session)) read.push_back(file.string());
+    check_outputs({a.frame_table, a.stats, a.video}, read);
+    std::vector<fs::path> folders{folder_of_source(session.frames.source), a.truth};
+    if (session.hmd && session.hmd->right) folders.push_back(folder_of_source(session.hmd->right->source));
     std::error_code ignored;
-    for (std::string const& read : {s.frames.source, a.truth})
-        if (!a.out.empty() && !read.empty() && fs::equivalent(a.out, read, ignored))
+    for (fs::path const& folder : folders)
+        if (!a.out.empty() && !folder.empty() && fs::equivalent(a.out, folder, ignored))
             throw gi::InputError("--out '" + a.out + "' is a folder that is read",
                                  "its pictures would be replaced", "name another folder");
+    if (a.eyes.empty()) return;
+    if (!fs::create_directories(a.eyes, ignored) && ignored)
+        throw gi::InputError("'" + a.eyes + "' cannot be made", ignored.message(), "choose another folder");
+    fs::path const eyes = a.eyes;
+    check_outputs({(eyes / "left.png").string(), (eyes / "right.png").string(), a.stats}, read);
+}
+
+/// With what the command line says of the tracker.
+ArSession session_of(RunArguments const& a)
+{
+    ArSession session = read_ar_session(a.session);
+    if (!a.poses.empty())
+        session.tracked.reset();
+    else if (!a.display.empty()) {
+        if (!session.tracked) session.tracked.emplace();
+        session.tracked->display = a.display;
+    }
+    return session;
 }
 
 int run_in_hmd(RunArguments const& a, ArSession const& session, ArRunOptions const& o, gi::StopRequest const& stop,
@@ -60,7 +81,7 @@ int run_in_hmd(RunArguments const& a, ArSession const& session, ArRunOptions con
 
 int run_session(RunArguments const& a, bool poses_only)
 {
-    ArSession const session = read_ar_session(a.session);
+    ArSession const session = session_of(a);
     check_arguments(a, session);
     if (!a.video.empty()) {
         glm::ivec2 const size_px = load_ar_camera(session.camera).model.size_px;
@@ -74,10 +95,8 @@ int run_session(RunArguments const& a, bool poses_only)
     if (!a.poses.empty()) o.poses = ar::read_poses(a.poses);
     gi::Report report;
     std::optional<TrackedCamera> tracker;
-    if (a.poses.empty() && (session.tracked || !a.display.empty())) {
-        ArTracked tracked = session.tracked.value_or(ArTracked{});
-        if (!a.display.empty()) tracked.display = a.display;
-        tracker.emplace(tracked, report);
+    if (session.tracked) {
+        tracker.emplace(*session.tracked, report);
         o.poses = tracker->recorded();
         if (tracker->is_live()) o.tracked = [&](ar::Frame const& f) { return tracker->at(f.captured_s); };
     }

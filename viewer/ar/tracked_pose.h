@@ -26,6 +26,9 @@ struct ArTracked {
 /// @throws gi::InputError with file:line:column
 ArTracked read_tracked(gi::YamlReader const& pose, std::filesystem::path const& folder);
 
+/// Its display and the meshes and the recording that this names. @throws gi::InputError as TrackedCamera
+std::vector<std::filesystem::path> files_read_by(ArTracked const& tracked);
+
 class TrackerHub;
 
 class TrackedCamera {
