@@ -62,20 +62,33 @@ ArSession session_of(RunArguments const& a)
 }
 
 int run_in_hmd(RunArguments const& a, ArSession const& session, ArRunOptions const& o, gi::StopRequest const& stop,
-               gi::Report& report)
+               std::optional<TrackedCamera> const& tracker, gi::Report& report)
 {
     ArHmdOptions hmd;
     hmd.pass_through = {o.frames, o.pace, o.poses, o.tracked};
     hmd.headset.space = a.seated ? HmdSpace::local : HmdSpace::stage;
     hmd.eyes = a.eyes;
-    ArHmdSummary const summary = run_ar_in_hmd(session, hmd, stop, report);
-    if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
-    fmt::print("{}", describe(summary));
-    print_losses(report);
+    ArHmdSummary summary;
+    auto const keep = [&] {
+        if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
+        if (tracker) fmt::print("{}", tracker->describe());
+        fmt::print("{}", describe(summary));
+        print_losses(report);
+    };
+    try {
+        run_ar_in_hmd(session, hmd, stop, report, summary);
+    } catch (...) {
+        if (summary.frames.frames > 0) keep();
+        throw;
+    }
+    keep();
     if (summary.frames.end.kind == ar::SourceState::Kind::lost) {
         std::fputs(fmt::format("lightwell: the source was lost: {}\n", summary.frames.end.reason).c_str(), stderr);
         return 1;
     }
+    if (summary.frames.frames == 0 && !stop.requested())
+        throw gi::InputError("no frame could be used", describe(summary.frames.left),
+                             "check the session's frames");
     return stop.requested() ? kInterrupted : 0;
 }
 
@@ -102,7 +115,7 @@ int run_session(RunArguments const& a, bool poses_only)
     }
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
-    if (a.hmd) return run_in_hmd(a, session, o, stop, report);
+    if (a.hmd) return run_in_hmd(a, session, o, stop, tracker, report);
     FrameTruth truth(a.truth, a.true_poses);
     ArRecording recording({a.out, a.video, a.record_input, session.camera.string(),
                            a.fast ? PictureThread::WhenFull::wait : PictureThread::WhenFull::lose});
@@ -141,13 +154,11 @@ int run_session(RunArguments const& a, bool poses_only)
         run_ar(session, o, shown, stop, report, summary);
         recording.finish();
     } catch (...) {
-        std::string recorded;
         try {
             recording.finish();
-            recorded = recording.text();
         } catch (std::exception const&) { // the first problem is the one to tell
         }
-        if (!summary.frames.empty()) keep(recorded);
+        if (!summary.frames.empty()) keep(recording.text());
         throw;
     }
     keep(recording.text());
@@ -204,10 +215,11 @@ void add_ar_run(CLI::App& ar, int& exit_code)
     run_command->add_flag("--seated", run->seated, "Of --hmd: no floor")->needs(hmd);
     run_command->add_option("--eyes", run->eyes, "Of --hmd: folder for the last pictures of both eyes, as PNG")
         ->needs(hmd);
-    for (char const* other : {"--window", "--out", "--table", "--true-poses"})
-        hmd->excludes(run_command->get_option(other));
     run_command->add_option("--truth", run->truth,
                             "Folder of pictures with the things really there: FLIP is told");
+    for (char const* other :
+         {"--window", "--out", "--video", "--record-input", "--table", "--truth", "--true-poses"})
+        hmd->excludes(run_command->get_option(other));
     run_command
         ->add_flag("--gpu", run->gpu, "Composites are made by the window's GPU: the same within a byte, no counts")
         ->needs(window)

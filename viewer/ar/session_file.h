@@ -5,9 +5,8 @@
 #include "ar/composite/composite.h"
 #include "ar/pose/tracker.h"
 #include "gi/image/render_settings.h"
-#include "viewer/ar/proxies.h"
-
 #include "viewer/ar/hmd_cameras.h"
+#include "viewer/ar/proxies.h"
 #include "viewer/ar/tracked_pose.h"
 
 #include <filesystem>
