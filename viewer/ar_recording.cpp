@@ -1,6 +1,7 @@
 #include "viewer/ar_recording.h"
 
 #include <cmath>
+#include <exception>
 #include <fmt/format.h>
 
 namespace viewer {
@@ -43,7 +44,13 @@ void ArRecording::add_to_video(NumberedPicture const& p)
 {
     constexpr double longest_s = 10; // of one picture, whatever clocks say
     cv::Mat const rgb = p.rgb.isContinuous() ? p.rgb : p.rgb.clone();
-    auto const due = int(std::lround(std::min(p.time_s, video_->frames() / video_hz_ + longest_s) * video_hz_));
+    double const early_s = video_->frames() / video_hz_ - (p.time_s - cut_s_);
+    if (early_s > 1.25 / video_hz_) { // clocks jitter: one picture early is none too many
+        ++left_out_;
+        return;
+    }
+    if (-early_s > longest_s) cut_s_ += -early_s - longest_s;
+    auto const due = int(std::lround((p.time_s - cut_s_) * video_hz_));
     for (; !held_.empty() && video_->frames() < due; ++repeated_) video_->add(bytes_of(held_));
     video_->add(bytes_of(rgb));
     held_ = rgb;
@@ -57,10 +64,25 @@ void ArRecording::add(ArFrameRecord const& record, cv::Mat const& rgb)
 
 void ArRecording::finish()
 {
-    if (to_folder_) to_folder_->finish();
-    if (to_video_) to_video_->finish();
-    if (video_ && video_->frames() > 0) video_->finish();
-    if (input_) input_->finish();
+    std::exception_ptr first;
+    auto const attempt = [&](auto const& what) {
+        try {
+            what();
+        } catch (...) {
+            if (!first) first = std::current_exception();
+        }
+    };
+    if (to_folder_) attempt([&] { to_folder_->finish(); });
+    if (to_video_) attempt([&] { to_video_->finish(); });
+    if (video_ && video_->frames() > 0 && !is_video_done_) {
+        is_video_done_ = is_video_lost_ = true;
+        attempt([&] {
+            video_->finish();
+            is_video_lost_ = false;
+        });
+    }
+    if (input_) attempt([&] { input_->finish(); });
+    if (first) std::rethrow_exception(first);
 }
 
 std::string ArRecording::text() const
@@ -73,6 +95,11 @@ std::string ArRecording::text() const
         text += fmt::format("{}: {} pictures at {:g} Hz, {} of them repeated for frames that did not come; {} "
                             "composites lost to a slow encoder\n",
                             settings_.video, video_->frames(), video_hz_, repeated_, to_video_->lost());
+    if (is_video_lost_) text += fmt::format("{}: none of it could be kept\n", settings_.video);
+    if (left_out_ > 0)
+        text +=
+            fmt::format("{}: {} composites left out, they came faster than that\n", settings_.video, left_out_);
+    if (cut_s_ > 0) text += fmt::format("{}: {:.1f} s without frames are not in it\n", settings_.video, cut_s_);
     if (input_)
         text += fmt::format("{}: {} frames; {} lost by the queue to the disk\n", settings_.input,
                             input_->written(), input_->lost());

@@ -31,7 +31,8 @@ public:
     void add_input(ar::Frame const& frame);
     /// @throws what went wrong with an earlier one
     void add(ArFrameRecord const& record, cv::Mat const& rgb);
-    /// Waits until all is kept; the video gets its name. @throws as `add`
+    /// Waits until all is kept, whatever goes wrong with one of them; the video gets its name. @throws the first
+    /// that went wrong
     void finish();
     /// What was kept and what was lost, a line each; after `finish`.
     std::string text() const;
@@ -47,6 +48,9 @@ private:
     std::unique_ptr<ar::SessionWriter> input_;
     double video_hz_ = 30;
     cv::Mat held_;     ///< the video's last picture
+    double cut_s_ = 0; ///< of time that passed while nothing came, not in the video
+    int left_out_ = 0; ///< pictures that came before they were due
+    bool is_video_done_ = false, is_video_lost_ = false;
     int repeated_ = 0; ///< pictures of the video that stand for frames that did not come
     std::unique_ptr<PictureThread> to_folder_, to_video_; // end before what they fill
 };

@@ -7,6 +7,7 @@
 #include "viewer/ar/estimate_albedo.h"
 #include "viewer/ar/frames_apart.h"
 #include "viewer/ar/runner.h"
+#include "viewer/ar/session_inputs.h"
 #include "viewer/ar/source_losses.h"
 #include "viewer/arguments.h"
 #include "viewer/commands.h"
@@ -149,6 +150,23 @@ std::string describe(AlbedoEstimate const& e, SeenFrames const& seen)
     return text;
 }
 
+fs::path texture_beside(fs::path const& out, std::size_t patch)
+{
+    return out.parent_path() / fmt::format("{}-{}.png", out.stem().string(), patch + 1);
+}
+
+/// Nothing that is read may be written over, but estimates of before.
+void check_albedo_outputs(AlbedoArguments const& a, ArSession session, fs::path const& out, RealScene const& real)
+{
+    session.real.estimates.clear();
+    if (!a.poses.empty()) session.tracked.reset();
+    std::vector<std::string> read{a.poses}, written{out.string()};
+    for (fs::path const& file : files_read_by(session)) read.push_back(file.string());
+    for (std::size_t k = 0; k < real.patches.size(); ++k)
+        if (real.patches[k].texels > 0) written.push_back(texture_beside(out, k).string());
+    check_outputs(written, read);
+}
+
 int run_albedo(AlbedoArguments const& a)
 {
     ArSession session = read_ar_session(a.session);
@@ -159,21 +177,20 @@ int run_albedo(AlbedoArguments const& a)
         session.real.estimate_scene = true;
     }
     fs::path const out = a.out.empty() ? session.real.estimates : fs::path(a.out);
-    check_outputs({out.string()}, {a.session, a.poses, session.camera.string(), session.markers.string(),
-                                   session.light.string(), session.real.scene.string()});
     gi::Report report;
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     ArCamera const camera = load_ar_camera(session.camera);
+    RealScene real = model_of(session.real, report);
+    check_albedo_outputs(a, session, out, real);
     SeenFrames const seen = look(a, session, camera, stop, report);
     if (stop.requested()) return kInterrupted;
-    RealScene real = model_of(session.real, report);
     AlbedoEstimate estimate = estimate_albedos(std::move(real), PlaceLight(session).begin(), camera, seen.kept,
                                                a.settings, stop, report);
     if (stop.requested()) return kInterrupted; // of few paths: not to be kept
     for (std::size_t k = 0; k < estimate.entries.size(); ++k) {
         if (estimate.textures[k].empty()) continue;
-        estimate.entries[k].texture = out.parent_path() / fmt::format("{}-{}.png", out.stem().string(), k + 1);
+        estimate.entries[k].texture = texture_beside(out, k);
         write_texture(estimate.entries[k].texture, estimate.textures[k]);
     }
     gi::write_text(out, format_albedos(estimate.entries));

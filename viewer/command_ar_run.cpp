@@ -4,6 +4,7 @@
 #include "viewer/ar/frame_table.h"
 #include "viewer/ar/frame_truth.h"
 #include "viewer/ar/hmd_run.h"
+#include "viewer/ar/session_inputs.h"
 #include "viewer/ar_recording.h"
 #include "viewer/commands.h"
 #include "viewer/interrupt.h"
@@ -28,39 +29,72 @@ struct RunArguments {
 };
 
 /// Nothing that is read may be written over.
-void check_arguments(RunArguments const& a, ArSession const& s)
+void check_arguments(RunArguments const& a, ArSession const& session)
 {
-    check_outputs({a.frame_table, a.stats, a.video},
-                  {a.session, a.poses, a.true_poses, s.camera.string(), s.markers.string(), s.light.string(),
-                   s.real.scene.string(), s.virtual_things.scene.string()});
+    std::vector<std::string> read{a.poses, a.true_poses};
+    for (fs::path const& file : files_read_by(session)) read.push_back(file.string());
+    check_outputs({a.frame_table, a.stats, a.video}, read);
+    std::vector<fs::path> folders{folder_of_source(session.frames.source), a.truth};
+    if (session.hmd && session.hmd->right) folders.push_back(folder_of_source(session.hmd->right->source));
     std::error_code ignored;
-    for (std::string const& read : {s.frames.source, a.truth})
-        if (!a.out.empty() && !read.empty() && fs::equivalent(a.out, read, ignored))
+    for (fs::path const& folder : folders)
+        if (!a.out.empty() && !folder.empty() && fs::equivalent(a.out, folder, ignored))
             throw gi::InputError("--out '" + a.out + "' is a folder that is read",
                                  "its pictures would be replaced", "name another folder");
+    if (a.eyes.empty()) return;
+    if (!fs::create_directories(a.eyes, ignored) && ignored)
+        throw gi::InputError("'" + a.eyes + "' cannot be made", ignored.message(), "choose another folder");
+    fs::path const eyes = a.eyes;
+    check_outputs({(eyes / "left.png").string(), (eyes / "right.png").string(), a.stats}, read);
+}
+
+/// With what the command line says of the tracker.
+ArSession session_of(RunArguments const& a)
+{
+    ArSession session = read_ar_session(a.session);
+    if (!a.poses.empty())
+        session.tracked.reset();
+    else if (!a.display.empty()) {
+        if (!session.tracked) session.tracked.emplace();
+        session.tracked->display = a.display;
+    }
+    return session;
 }
 
 int run_in_hmd(RunArguments const& a, ArSession const& session, ArRunOptions const& o, gi::StopRequest const& stop,
-               gi::Report& report)
+               std::optional<TrackedCamera> const& tracker, gi::Report& report)
 {
     ArHmdOptions hmd;
     hmd.pass_through = {o.frames, o.pace, o.poses, o.tracked};
     hmd.headset.space = a.seated ? HmdSpace::local : HmdSpace::stage;
     hmd.eyes = a.eyes;
-    ArHmdSummary const summary = run_ar_in_hmd(session, hmd, stop, report);
-    if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
-    fmt::print("{}", describe(summary));
-    print_losses(report);
+    ArHmdSummary summary;
+    auto const keep = [&] {
+        if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
+        if (tracker) fmt::print("{}", tracker->describe());
+        fmt::print("{}", describe(summary));
+        print_losses(report);
+    };
+    try {
+        run_ar_in_hmd(session, hmd, stop, report, summary);
+    } catch (...) {
+        if (summary.frames.frames > 0) keep();
+        throw;
+    }
+    keep();
     if (summary.frames.end.kind == ar::SourceState::Kind::lost) {
         std::fputs(fmt::format("lightwell: the source was lost: {}\n", summary.frames.end.reason).c_str(), stderr);
         return 1;
     }
+    if (summary.frames.frames == 0 && !stop.requested())
+        throw gi::InputError("no frame could be used", describe(summary.frames.left),
+                             "check the session's frames");
     return stop.requested() ? kInterrupted : 0;
 }
 
 int run_session(RunArguments const& a, bool poses_only)
 {
-    ArSession const session = read_ar_session(a.session);
+    ArSession const session = session_of(a);
     check_arguments(a, session);
     if (!a.video.empty()) {
         glm::ivec2 const size_px = load_ar_camera(session.camera).model.size_px;
@@ -74,16 +108,14 @@ int run_session(RunArguments const& a, bool poses_only)
     if (!a.poses.empty()) o.poses = ar::read_poses(a.poses);
     gi::Report report;
     std::optional<TrackedCamera> tracker;
-    if (a.poses.empty() && (session.tracked || !a.display.empty())) {
-        ArTracked tracked = session.tracked.value_or(ArTracked{});
-        if (!a.display.empty()) tracked.display = a.display;
-        tracker.emplace(tracked, report);
+    if (session.tracked) {
+        tracker.emplace(*session.tracked, report);
         o.poses = tracker->recorded();
         if (tracker->is_live()) o.tracked = [&](ar::Frame const& f) { return tracker->at(f.captured_s); };
     }
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
-    if (a.hmd) return run_in_hmd(a, session, o, stop, report);
+    if (a.hmd) return run_in_hmd(a, session, o, stop, tracker, report);
     FrameTruth truth(a.truth, a.true_poses);
     ArRecording recording({a.out, a.video, a.record_input, session.camera.string(),
                            a.fast ? PictureThread::WhenFull::wait : PictureThread::WhenFull::lose});
@@ -122,13 +154,11 @@ int run_session(RunArguments const& a, bool poses_only)
         run_ar(session, o, shown, stop, report, summary);
         recording.finish();
     } catch (...) {
-        std::string recorded;
         try {
             recording.finish();
-            recorded = recording.text();
         } catch (std::exception const&) { // the first problem is the one to tell
         }
-        if (!summary.frames.empty()) keep(recorded);
+        if (!summary.frames.empty()) keep(recording.text());
         throw;
     }
     keep(recording.text());
@@ -185,10 +215,11 @@ void add_ar_run(CLI::App& ar, int& exit_code)
     run_command->add_flag("--seated", run->seated, "Of --hmd: no floor")->needs(hmd);
     run_command->add_option("--eyes", run->eyes, "Of --hmd: folder for the last pictures of both eyes, as PNG")
         ->needs(hmd);
-    for (char const* other : {"--window", "--out", "--table", "--true-poses"})
-        hmd->excludes(run_command->get_option(other));
     run_command->add_option("--truth", run->truth,
                             "Folder of pictures with the things really there: FLIP is told");
+    for (char const* other :
+         {"--window", "--out", "--video", "--record-input", "--table", "--truth", "--true-poses"})
+        hmd->excludes(run_command->get_option(other));
     run_command
         ->add_flag("--gpu", run->gpu, "Composites are made by the window's GPU: the same within a byte, no counts")
         ->needs(window)

@@ -2,7 +2,9 @@
 // A few of many, evenly apart, without knowing how many there will be: every n-th is kept, and n doubles when
 // there are twice as many as are wanted.
 
+#include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace viewer {

@@ -42,33 +42,44 @@ ar::Pose pose_in_ar(RoomPose const& p) { return {p.rotation, p.position}; }
 
 class Loop {
 public:
-    Loop(ArSession const& session, ArHmdOptions const& options, gi::Report& report)
+    Loop(ArSession const& session, ArHmdOptions const& options, gi::Report& report, ArHmdSummary& summary)
         : hmd_(session.hmd.value_or(ArHmd{})),
           options_(options),
-          report_(report),
           context_(report),
           keeper_(&context_.gl(), options.headset),
-          pass_through_(session, options.pass_through, report)
+          pass_through_(session, options.pass_through, report),
+          summary_(summary)
     {
         context_.gl().make_current();
         for (ar::CameraModel const& camera : pass_through_.cameras()) passes_.emplace_back(camera);
     }
 
-    ArHmdSummary run(gi::StopRequest const& stop)
+    void run(gi::StopRequest const& stop)
     {
-        while (!stop.requested() && !keeper_.ended() && !is_over()) step();
-        pass_through_.end();
-        keep_eyes();
-        leave();
+        try {
+            while (!stop.requested() && !keeper_.ended() && !is_over()) step();
+            pass_through_.end();
+            tell();
+            keep_eyes();
+            leave();
+        } catch (...) {
+            pass_through_.end();
+            tell();
+            throw;
+        }
+        tell();
+        pass_through_.rethrow();
+    }
+
+private:
+    void tell()
+    {
         summary_.frames = pass_through_.counts();
         summary_.first_seen_ms = spread_of(first_seen_ms_);
         summary_.age_ms = spread_of(age_ms_);
         summary_.losses = keeper_.losses();
-        pass_through_.rethrow();
-        return summary_;
     }
 
-private:
     /// The last composite was seen, or nobody looks.
     bool is_over() const
     {
@@ -179,7 +190,6 @@ private:
 
     ArHmd hmd_;
     ArHmdOptions const& options_;
-    gi::Report& report_;
     Context context_;
     HmdKeeper keeper_; ///< before the scenes are loaded: without a headset there is nothing to do
     PassThrough pass_through_;
@@ -191,7 +201,7 @@ private:
     std::optional<ar::Pose> room_from_head_;        ///< when it was taken
     std::vector<double> first_seen_ms_, age_ms_;
     int unseen_ = 0; ///< rounds without a frame that somebody sees
-    ArHmdSummary summary_;
+    ArHmdSummary& summary_;
 };
 
 } // namespace
@@ -217,10 +227,10 @@ std::optional<ar::Pose> HeadPath::at(double steady_s) const
                     glm::mix(a.world_from_camera.position_m, b.world_from_camera.position_m, t)};
 }
 
-ArHmdSummary run_ar_in_hmd(ArSession const& session, ArHmdOptions const& options, gi::StopRequest const& stop,
-                           gi::Report& report)
+void run_ar_in_hmd(ArSession const& session, ArHmdOptions const& options, gi::StopRequest const& stop,
+                   gi::Report& report, ArHmdSummary& summary)
 {
-    return Loop(session, options, report).run(stop);
+    Loop(session, options, report, summary).run(stop);
 }
 
 std::string describe(ArHmdSummary const& s)

@@ -43,8 +43,9 @@ struct ArHmdSummary {
 };
 
 /// Until the frames end, or `stop`. @throws gi::InputError there is no runtime, no headset; the session cannot be
-ArHmdSummary run_ar_in_hmd(ArSession const& session, ArHmdOptions const& options, gi::StopRequest const& stop,
-                           gi::Report& report);
+/// @param summary  holds what there was when it throws, too
+void run_ar_in_hmd(ArSession const& session, ArHmdOptions const& options, gi::StopRequest const& stop,
+                   gi::Report& report, ArHmdSummary& summary);
 
 std::string describe(ArHmdSummary const& summary);
 

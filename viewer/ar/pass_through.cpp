@@ -40,10 +40,11 @@ std::optional<ar::Pose> told_pose(std::vector<ar::TimedPose> const& poses, doubl
 
 /// One camera with what adds virtual things to its frames.
 struct PassThrough::Side {
-    Side(ArSession const& session_, ar::Pace pace, gi::Report& report)
+    /// @param prefix  of what the pipeline counts in the report
+    Side(ArSession const& session_, ar::Pace pace, gi::Report& report, std::string const& prefix)
         : session(session_),
           camera(load_ar_camera(session.camera)),
-          pipeline(session, camera, ar::read_marker_map(session.markers), report)
+          pipeline(session, camera, ar::read_marker_map(session.markers), report, prefix)
     {
         ar::OpenOptions open = session.frames.options;
         open.pace = pace;
@@ -78,10 +79,11 @@ struct PassThrough::Side {
 PassThrough::PassThrough(ArSession const& session, PassThroughOptions const& options, gi::Report& report)
     : session_(session), options_(options), report_(report)
 {
-    sides_.push_back(std::make_unique<Side>(session, options.pace, report));
+    sides_.push_back(std::make_unique<Side>(session, options.pace, report, ""));
     // Of files the left one has the pace, the right one follows.
     if (session.hmd && session.hmd->right)
-        sides_.push_back(std::make_unique<Side>(right_session(session), ar::Pace::fastest, report));
+        sides_.push_back(
+            std::make_unique<Side>(right_session(session), ar::Pace::fastest, report, "right camera: "));
     for (auto const& side : sides_) models_.push_back(side->camera.model);
     thread_ = std::thread([this] {
         try {
@@ -149,8 +151,11 @@ void PassThrough::run()
             while (!stop_.requested()) {
                 if (!right->waiting) right->waiting = right->source->next(kWait);
                 if (!right->waiting) {
-                    if (right->source->state().kind != ar::SourceState::Kind::running) return;
-                    continue;
+                    if (right->source->state().kind == ar::SourceState::Kind::running) continue;
+                    std::lock_guard const lock(mutex_);
+                    counts_.right = right->source->counts();
+                    counts_.end = right->source->state();
+                    return;
                 }
                 double const other_s = right->time_of(*right->waiting);
                 is_alone = other_s > at_s + right->half_period_s();

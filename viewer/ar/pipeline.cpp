@@ -50,15 +50,10 @@ ar::CompositeSettings with_noise(ar::CompositeSettings settings, ar::SensorNoise
     return settings;
 }
 
-void count_some(gi::Report& report, char const* what, std::size_t n)
-{
-    if (n > 0) report.count(what, double(n));
-}
-
 } // namespace
 
 ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers,
-                       gi::Report& report)
+                       gi::Report& report, std::string prefix)
     : session_(session),
       camera_(camera),
       detector_(markers),
@@ -68,7 +63,8 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
       compositor_(camera.photometry,
                   with_noise(session.composite, session.match_noise ? camera.noise : ar::SensorNoise{})),
       tracker_(session.pose.tracker),
-      report_(report)
+      report_(report),
+      prefix_(std::move(prefix))
 {
     renderer_.set_environment(light_.begin());
     light_picture_ = picture_of_light(light_.map());
@@ -87,29 +83,34 @@ ar::RenderedPair ArPipeline::rendered(ArResult const& found, ar::Exposure const&
     return finish_(p, frame, finish_.needs_world() ? renderer_.world_with(time_s) : renderer_.world());
 }
 
+void ArPipeline::count_some(char const* what, std::size_t n)
+{
+    if (n > 0) report_.count(prefix_ + what, double(n));
+}
+
 void ArPipeline::report_poses()
 {
     ar::TrackerCounts const& t = tracker_.counts();
-    count_some(report_, "poses taken", t.taken);
-    count_some(report_, "poses missed", t.missed);
-    count_some(report_, "poses refused as jumps", t.jumps_refused);
-    count_some(report_, "jumps believed", t.jumps_believed);
-    count_some(report_, "moves of the tripod", t.moves);
-    count_some(report_, "poses predicted", predicted_);
+    count_some("poses taken", t.taken);
+    count_some("poses missed", t.missed);
+    count_some("poses refused as jumps", t.jumps_refused);
+    count_some("jumps believed", t.jumps_believed);
+    count_some("moves of the tripod", t.moves);
+    count_some("poses predicted", predicted_);
 }
 
 void ArPipeline::report_finish()
 {
     FinishCounts const& f = finish_.counts();
-    count_some(report_, "enlarged pixels whose surface no rendered one shows", f.upsample.without_guide);
-    count_some(report_, "enlarged pixels among virtual things alone", f.upsample.no_sample);
-    count_some(report_, "points of virtual things without light", f.unlit);
-    count_some(report_, "pixels at borders of real occluders", f.matte.band);
-    count_some(report_, "pixels at borders of real occluders, refined", f.matte.refined);
-    count_some(report_, "frames whose sharpness was measured", f.blur.measured);
-    count_some(report_, "frames without an edge to measure", f.blur.unmeasured);
-    count_some(report_, "frames blurred by motion", f.blur.moved);
-    count_some(report_, "frames of unknown exposure time", session_.finish.match_blur ? f.blur.no_exposure : 0);
+    count_some("enlarged pixels whose surface no rendered one shows", f.upsample.without_guide);
+    count_some("enlarged pixels among virtual things alone", f.upsample.no_sample);
+    count_some("points of virtual things without light", f.unlit);
+    count_some("pixels at borders of real occluders", f.matte.band);
+    count_some("pixels at borders of real occluders, refined", f.matte.refined);
+    count_some("frames whose sharpness was measured", f.blur.measured);
+    count_some("frames without an edge to measure", f.blur.unmeasured);
+    count_some("frames blurred by motion", f.blur.moved);
+    count_some("frames of unknown exposure time", session_.finish.match_blur ? f.blur.no_exposure : 0);
     if (f.camera_sigma_px > 0) report_.count("blur of the camera (px)", f.camera_sigma_px);
     if (f.added_sigma_px > 0) report_.count("blur that was added (px)", f.added_sigma_px);
 }

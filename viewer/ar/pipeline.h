@@ -49,7 +49,9 @@ enum class CompositeBy {
 class ArPipeline {
 public:
     /// Loads the scenes and the light. @throws gi::InputError, ar::InputError
-    ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers, gi::Report& report);
+    /// @param prefix  of its counts in the report, where there are several
+    ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers, gi::Report& report,
+               std::string prefix = {});
 
     /// Where the camera is.
     /// @param time_s   since the first frame: of the virtual things' clips, the camera's motion and the light
@@ -69,6 +71,7 @@ private:
                               gi::StopRequest const& stop);
     void report_poses();
     void report_finish();
+    void count_some(char const* what, std::size_t n);
 
     ArSession session_;
     ArCamera camera_;
@@ -81,6 +84,7 @@ private:
     std::uint64_t predicted_ = 0; ///< frames
     cv::Mat light_picture_;
     gi::Report& report_;
+    std::string prefix_;
 };
 
 } // namespace viewer

@@ -98,7 +98,6 @@ void RunThreads::find_all()
             if (!frame && state_.kind != ar::SourceState::Kind::running) break;
         }
         if (!frame) continue;
-        if (options_.taken) options_.taken(*frame);
         if (!first_s) {
             first_s = frame->captured_s;
             first = frame->sequence;
@@ -108,6 +107,7 @@ void RunThreads::find_all()
         w.read_ms = 1e3 * (ar::steady_now_s() - asked_s);
         w.frame = std::move(*frame);
         try {
+            if (options_.taken) options_.taken(w.frame);
             w.result = found_in(w);
         } catch (ar::InputError const& e) {
             refuse(e);

@@ -6,9 +6,8 @@
 #include "ar/pose/tracker.h"
 #include "gi/image/denoise.h"
 #include "gi/image/render_settings.h"
-#include "viewer/ar/proxies.h"
-
 #include "viewer/ar/hmd_cameras.h"
+#include "viewer/ar/proxies.h"
 #include "viewer/ar/tracked_pose.h"
 
 #include <filesystem>

@@ -77,6 +77,19 @@ ArTracked read_tracked(gi::YamlReader const& p, fs::path const& folder)
     return t;
 }
 
+std::vector<fs::path> files_read_by(ArTracked const& tracked)
+{
+    if (tracked.display.empty()) return {};
+    gi::Report ignored;
+    Display const display = load_display(tracked.display, ignored);
+    std::vector<fs::path> files{tracked.display};
+    for (Wall const& wall : display.walls)
+        if (!wall.warp_file.empty()) files.push_back(tracked.display.parent_path() / wall.warp_file);
+    DisplayTracker const& tracker = find_tracker(display, tracked);
+    if (tracker.type == DisplayTrackerType::file) files.push_back(file_of(tracker, tracked.display));
+    return files;
+}
+
 TrackedCamera::TrackedCamera(ArTracked const& tracked, gi::Report& report)
     : tracked_(tracked), sensor_from_camera_(ar::inverse(tracked.camera_from_sensor))
 {
