@@ -2,6 +2,7 @@
 
 #include "gi/base/file.h"
 #include "study/base/sha256.h"
+#include "viewer/ar/session_inputs.h"
 
 #include <algorithm>
 #include <charconv>
@@ -137,13 +138,6 @@ void add_hash(fs::path const& what, std::string& all)
     for (fs::path const& file : files) all += file.filename().string() + " " + hash_of_file(file) + "\n";
 }
 
-void add_named(YAML::Node const& node, fs::path const& folder, std::string& all)
-{
-    if (node.IsScalar() && !node.Scalar().empty() && node.Scalar() != ".") add_hash(folder / node.Scalar(), all);
-    if (node.IsSequence() || node.IsMap())
-        for (auto const& child : node) add_named(node.IsMap() ? child.second : child, folder, all);
-}
-
 } // namespace
 
 bool is_ar_setting(std::string const& key) { return key == "ar" || key.starts_with(kPrefix); }
@@ -192,7 +186,7 @@ ArSession session_of(ArStimulus const& s) { return parse_ar_session(s.text, s.se
 std::string content_hash(ArStimulus const& s)
 {
     std::string all = s.text + "\n";
-    add_named(YAML::Load(s.text), s.session.parent_path(), all);
+    for (fs::path const& file : files_read_by(session_of(s))) add_hash(file, all);
     if (!s.poses.empty()) add_hash(s.poses, all);
     if (s.show == ArShow::truth) add_hash(s.truth, all);
     return study::sha256(all);
