@@ -40,7 +40,8 @@ PairPictures rendered(ProxySurface const& floor, gi::Material const& material, f
     renderer.set_environment(sky(lamp));
     ar::CameraModel camera = synthetic_camera({40, 30}).model;
     camera.lens = ar::LensModel::pinhole;
-    return renderer.render(gi_camera(camera, synthetic_pose(0.5)), 40, 30, paths, 0, {.denoiser = gi::Denoiser::none}, {});
+    return renderer.render(gi_camera(camera, synthetic_pose(0.5)), 40, 30, paths, 0,
+                           {.denoiser = gi::Denoiser::none}, {});
 }
 
 gi::Material red()

@@ -58,8 +58,8 @@ Finished finished(double resolution, ArFinish const& finish, std::uint32_t paths
     PairFinish finisher(session, synthetic_camera(kSize).model, {});
     ar::Pose const pose = synthetic_pose(0.5);
     ar::CameraModel const& pinhole = finisher.pinhole();
-    PairPictures const p =
-        renderer.render(gi_camera(pinhole, pose), pinhole.size_px.x, pinhole.size_px.y, paths, 0, gi::DenoiseSettings{}, {});
+    PairPictures const p = renderer.render(gi_camera(pinhole, pose), pinhole.size_px.x, pinhole.size_px.y, paths,
+                                           0, gi::DenoiseSettings{}, {});
     Finished f;
     f.pair = finisher(p, {radiance, pose, 0, 0}, renderer.world_with(0));
     f.counts = finisher.counts();
@@ -104,8 +104,8 @@ double flicker(double smoothing)
     cv::Mat sum(kSize.y, kSize.x, CV_32FC1, cv::Scalar(0)), squares = sum.clone(), covered;
     constexpr int kFirst = 6, kFrames = 14;
     for (int k = 0; k < kFrames; ++k) {
-        PairPictures const p =
-            renderer.render(gi_camera(pinhole, pose), pinhole.size_px.x, pinhole.size_px.y, 1, 0, false, {});
+        PairPictures const p = renderer.render(gi_camera(pinhole, pose), pinhole.size_px.x, pinhole.size_px.y, 1,
+                                               0, {.denoiser = gi::Denoiser::none}, {});
         ar::RenderedPair const pair = finisher(p, {{}, pose, k / 30.0, 0}, renderer.world_with(0));
         if (k < kFirst) continue;
         cv::Mat red;

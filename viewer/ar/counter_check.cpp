@@ -33,7 +33,8 @@ ar::Pose CounterSession::camera_at(double since_frame_0_s) const
     auto const before = std::uint64_t(frames);
     ar::Pose pose = pose_of_frame(before);
     double const part = frames - double(before);
-    if (part > 2 * kRounding) pose.position_m = glm::mix(pose.position_m, pose_of_frame(before + 1).position_m, part);
+    if (part > 2 * kRounding)
+        pose.position_m = glm::mix(pose.position_m, pose_of_frame(before + 1).position_m, part);
     return pose;
 }
 

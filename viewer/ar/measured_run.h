@@ -12,8 +12,8 @@ struct MeasuredRun {
     std::vector<ArFrameRecord> fast, own;
     double frames_per_s = 0;     ///< as fast as possible, between the first frame's end and the last's
     std::uint64_t overtaken = 0; ///< at own pace
-    std::uint64_t refused = 0; ///< by the source or by the pipeline, as fast as possible
-    FrameErrors errors; ///< of what came out as fast as possible
+    std::uint64_t refused = 0;   ///< by the source or by the pipeline, as fast as possible
+    FrameErrors errors;          ///< of what came out as fast as possible
     /// The last composite's parts (without a pair if there is no composite), and what puts them together.
     ArResult last;
     std::optional<ar::Compositor> compositor;

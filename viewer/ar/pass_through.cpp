@@ -1,4 +1,5 @@
 #include "viewer/ar/pass_through.h"
+#include "viewer/ar/tracked_pose.h"
 
 #include "ar/base/error.h"
 #include "ar/capture/clock.h"
@@ -26,14 +27,6 @@ ArSession right_session(ArSession s)
 bool is_recording(std::string const& source)
 {
     return std::filesystem::exists(std::filesystem::path(source) / "session.json");
-}
-
-std::optional<ar::Pose> told_pose(std::vector<ar::TimedPose> const& poses, double time_s)
-{
-    constexpr double rounding_s = 2e-6;
-    double const first_s = poses.front().time_s, last_s = poses.back().time_s;
-    if (time_s < first_s - rounding_s || time_s > last_s + rounding_s) return std::nullopt;
-    return ar::pose_at(poses, std::clamp(time_s, first_s, last_s));
 }
 
 } // namespace

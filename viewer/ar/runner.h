@@ -21,7 +21,7 @@ struct ArRunOptions {
     std::vector<ar::TimedPose> poses; ///< where the camera was, in place of what frames say; empty = from markers
     /// A tracker, asked for each frame in place of all that; called by the thread that finds the camera.
     std::function<std::optional<ar::Pose>(ar::Frame const&)> tracked;
-    bool find_poses_only = false;     ///< nothing is rendered
+    bool find_poses_only = false; ///< nothing is rendered
     CompositeBy composite = CompositeBy::pipeline;
     /// Before the first frame, by the caller's thread.
     std::function<void(ar::SourceDescription const&, ArPipeline const&)> opened;
