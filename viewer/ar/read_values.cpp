@@ -14,8 +14,11 @@ ArPlaced read_placed(gi::YamlReader const& p, std::string const& file_key, std::
 {
     ArPlaced placed;
     std::string const name = p.at(file_key).text();
-    // As load_scene: a name without an extension is a scene that is generated.
-    placed.scene = std::filesystem::path(name).has_extension() ? folder / name : std::filesystem::path(name);
+    // As load_scene: a name without an extension is a scene that is generated, unless there is a folder of meshes.
+    std::error_code none;
+    bool const is_file = std::filesystem::path(name).has_extension() ||
+                         (!name.empty() && std::filesystem::is_directory(folder / name, none));
+    placed.scene = is_file ? folder / name : std::filesystem::path(name);
     if (p.has("at")) placed.at_m = p.at("at").vector(-1e6, 1e6);
     if (p.has("turn_deg")) placed.turn_deg = p.at("turn_deg").number(-360, 360);
     if (p.has("scale")) placed.scale = p.at("scale").number(1e-6, 1e6);
