@@ -5,6 +5,7 @@
 #include "gi/base/file.h"
 #include "gi/base/picture_file.h"
 #include "viewer/ar/estimate_albedo.h"
+#include "viewer/ar/frame_clock.h"
 #include "viewer/ar/frames_apart.h"
 #include "viewer/ar/runner.h"
 #include "viewer/ar/session_inputs.h"
@@ -79,12 +80,9 @@ SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera con
     if (a.frames == 0 && (source->description().is_live || session.frames.source == "counter"))
         throw gi::InputError("frames of '" + session.frames.source + "', all of them", "they never end",
                              "say how many to look at: --frames 300");
-    double const rate = source->description().frames_per_s;
-    bool const is_recording = fs::exists(fs::path(session.frames.source) / "session.json");
-    bool const is_numbered = rate > 0 && !source->description().is_live && !is_recording;
+    FrameClock clock(session.frames.source, source->description(), false);
     SeenFrames seen;
     KeptApart<AlbedoFrame> kept(std::size_t(a.views));
-    std::optional<ar::Frame> first;
     for (int n = 0; !stop.requested() && (a.frames == 0 || n < a.frames);) {
         std::optional<ar::Frame> const frame = source->next(std::chrono::milliseconds(200));
         if (!frame) {
@@ -92,9 +90,7 @@ SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera con
             continue;
         }
         ++n;
-        if (!first) first = frame;
-        double const time_s =
-            is_numbered ? double(frame->sequence - first->sequence) / rate : frame->captured_s - first->captured_s;
+        double const time_s = clock(*frame);
         try {
             auto const pose = path.at(*frame, time_s);
             if (!pose) {

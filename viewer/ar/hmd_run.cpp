@@ -1,7 +1,7 @@
 #include "viewer/ar/hmd_run.h"
 
 #include "gi/base/error.h"
-#include "gi/base/file.h"
+#include "gi/base/picture_file.h"
 #include "viewer/gl/pass_through_pass.h"
 #include "viewer/gl/window.h"
 #include "viewer/xr/keeper.h"
@@ -10,8 +10,6 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 namespace viewer {
 namespace {
@@ -166,14 +164,9 @@ private:
         context_.gl().make_current();
         for (std::size_t eye = 0; eye < 2; ++eye) {
             if (!targets_[eye]) continue;
-            std::vector<unsigned char> bytes = read_bytes(targets_[eye]->target());
-            cv::Mat const rgb(sizes_[eye].y, sizes_[eye].x, CV_8UC3, bytes.data());
-            cv::Mat bgr;
-            cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-            std::vector<unsigned char> png;
-            cv::imencode(".png", bgr, png);
-            gi::write_text(options_.eyes / (eye == 0 ? "left.png" : "right.png"),
-                           {reinterpret_cast<char const*>(png.data()), png.size()});
+            std::vector<unsigned char> const bytes = read_bytes(targets_[eye]->target());
+            gi::write_png(options_.eyes / (eye == 0 ? "left.png" : "right.png"), sizes_[eye].x, sizes_[eye].y,
+                          bytes);
         }
     }
 

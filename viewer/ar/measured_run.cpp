@@ -1,6 +1,7 @@
 #include "viewer/ar/measured_run.h"
 
 #include "ar/capture/clock.h"
+#include "viewer/ar/frame_clock.h"
 #include "viewer/ar/loop_source.h"
 #include "viewer/ar/source_losses.h"
 
@@ -22,13 +23,10 @@ ar::OpenOptions files_at_once(ArSession const& session)
 }
 
 /// Seconds since the first, as the run that takes them as fast as possible has them.
-std::vector<double> times_of(std::vector<ar::Frame> const& frames, double frames_per_s, bool is_recording)
+std::vector<double> times_of(std::vector<ar::Frame> const& frames, FrameClock clock)
 {
     std::vector<double> times_s;
-    for (ar::Frame const& f : frames)
-        times_s.push_back(frames_per_s > 0 && !is_recording
-                              ? double(f.sequence - frames[0].sequence) / frames_per_s
-                              : f.captured_s - frames[0].captured_s);
+    for (ar::Frame const& f : frames) times_s.push_back(clock(f));
     return times_s;
 }
 
@@ -81,9 +79,7 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
         std::vector<ar::Frame> frames = read_frames(*camera, settings.frames);
         tell_losses({}, camera->state(), report); // what was refused is counted already
         if (frames.empty()) return m;
-        bool const is_recording =
-            std::filesystem::exists(std::filesystem::path(session.frames.source) / "session.json");
-        std::vector<double> times_s = times_of(frames, own_hz, is_recording);
+        std::vector<double> times_s = times_of(frames, {session.frames.source, camera->description(), false});
         auto loop = std::make_unique<LoopSource>(std::move(frames),
                                                  own_hz > 0 ? own_hz : session.frames.options.frames_per_s);
         if (!o.poses.empty()) // they come back with their frames

@@ -1,15 +1,14 @@
 #include "viewer/ar/pass_through.h"
-#include "viewer/ar/tracked_pose.h"
 
 #include "ar/base/error.h"
 #include "ar/capture/clock.h"
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map_file.h"
-#include "gi/base/error.h"
+#include "viewer/ar/frame_clock.h"
+#include "viewer/ar/tracked_pose.h"
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 namespace viewer {
 namespace {
@@ -22,11 +21,6 @@ ArSession right_session(ArSession s)
     s.camera = s.hmd->right->calibration;
     s.frames.source = s.hmd->right->source;
     return s;
-}
-
-bool is_recording(std::string const& source)
-{
-    return std::filesystem::exists(std::filesystem::path(source) / "session.json");
 }
 
 } // namespace
@@ -43,20 +37,11 @@ struct PassThrough::Side {
         open.pace = pace;
         source = ar::open_source(session.frames.source, open);
         about = source->description();
-        if (about.size_px != camera.model.size_px)
-            throw gi::InputError(fmt::format("frames of {} x {} pixels", about.size_px.x, about.size_px.y),
-                                 fmt::format("the calibration '{}' is of {} x {}", session.camera.string(),
-                                             camera.model.size_px.x, camera.model.size_px.y),
-                                 "set the camera to that size, or calibrate it at this one");
-        is_numbered = !about.is_live && about.frames_per_s > 0 && !is_recording(session.frames.source);
+        check_size(about.size_px, camera);
+        clock.emplace(session.frames.source, about, false);
     }
     /// Since its first frame; of cameras on the steady clock, which two of them share.
-    double time_of(ar::Frame const& f)
-    {
-        if (!first) first = {f.sequence, f.captured_s};
-        if (about.is_live) return f.captured_s;
-        return is_numbered ? double(f.sequence - first->first) / about.frames_per_s : f.captured_s - first->second;
-    }
+    double time_of(ar::Frame const& f) { return about.is_live ? f.captured_s : (*clock)(f); }
     double half_period_s() const { return 0.5 / (about.frames_per_s > 0 ? about.frames_per_s : kUsualRate_hz); }
 
     ArSession session;
@@ -64,8 +49,7 @@ struct PassThrough::Side {
     ArPipeline pipeline;
     std::unique_ptr<ar::FrameSource> source;
     ar::SourceDescription about;
-    bool is_numbered = false;
-    std::optional<std::pair<std::uint64_t, double>> first;
+    std::optional<FrameClock> clock;
     std::optional<ar::Frame> waiting; ///< taken, and not yet used
 };
 

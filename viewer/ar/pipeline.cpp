@@ -52,6 +52,15 @@ ar::CompositeSettings with_noise(ar::CompositeSettings settings, ar::SensorNoise
 
 } // namespace
 
+void check_size(glm::ivec2 frames_px, ArCamera const& camera)
+{
+    glm::ivec2 const calibrated_px = camera.model.size_px;
+    if (frames_px == calibrated_px) return;
+    throw gi::InputError(fmt::format("frames of {} x {} pixels", frames_px.x, frames_px.y),
+                         fmt::format("the calibration is of {} x {}", calibrated_px.x, calibrated_px.y),
+                         "set the camera to that size, or calibrate it at this one");
+}
+
 ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers,
                        gi::Report& report, std::string prefix)
     : session_(session),

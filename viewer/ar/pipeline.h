@@ -26,6 +26,9 @@ struct ArCamera {
     ar::SensorNoise noise;
 };
 
+/// @throws gi::InputError frames of another size than the calibration's
+void check_size(glm::ivec2 frames_px, ArCamera const& camera);
+
 struct ArResult {
     cv::Mat rgb;    ///< CV_8UC3; without a pose: the camera's frame as it came
     cv::Mat camera; ///< the camera's frame

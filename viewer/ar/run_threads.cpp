@@ -20,13 +20,8 @@ void give_back(OnItsWay& w)
 } // namespace
 
 RunThreads::RunThreads(ar::FrameSource& source, ArPipeline& pipeline, ArRunOptions const& options, bool is_timed,
-                       std::optional<double> numbered_hz, gi::Report& report)
-    : source_(source),
-      pipeline_(pipeline),
-      options_(options),
-      is_timed_(is_timed),
-      numbered_hz_(numbered_hz),
-      report_(report)
+                       FrameClock const& clock, gi::Report& report)
+    : source_(source), pipeline_(pipeline), options_(options), is_timed_(is_timed), clock_(clock), report_(report)
 {
     finder_ = std::thread([this] { guarded([this] { find_all(); }, found_); });
     adder_ = std::thread([this] { guarded([this] { add_all(); }, done_); });
@@ -83,8 +78,6 @@ void RunThreads::hand_over(OnItsWay w, HandOver<OnItsWay>& to)
 void RunThreads::find_all()
 {
     constexpr std::chrono::milliseconds kWait{20}; // then it looks whether it is to end
-    std::optional<double> first_s;
-    std::uint64_t first = 0;
     int found = 0;
     while (!ending_.requested()) {
         // At their own pace the caller counts what is shown.
@@ -98,12 +91,8 @@ void RunThreads::find_all()
             if (!frame && state_.kind != ar::SourceState::Kind::running) break;
         }
         if (!frame) continue;
-        if (!first_s) {
-            first_s = frame->captured_s;
-            first = frame->sequence;
-        }
         OnItsWay w;
-        w.time_s = numbered_hz_ ? double(frame->sequence - first) / *numbered_hz_ : frame->captured_s - *first_s;
+        w.time_s = clock_(*frame);
         w.read_ms = 1e3 * (ar::steady_now_s() - asked_s);
         w.frame = std::move(*frame);
         try {

@@ -3,6 +3,7 @@
 // is virtual.
 
 #include "ar/base/error.h"
+#include "viewer/ar/frame_clock.h"
 #include "viewer/ar/hand_over.h"
 #include "viewer/ar/runner.h"
 
@@ -24,9 +25,8 @@ class RunThreads {
 public:
     /// All that is referred to outlives it; the source and the pipeline are its own meanwhile.
     /// @param is_timed     frames come at their own pace: newer ones overtake
-    /// @param numbered_hz  frames' times are their numbers over this; nothing = when they were captured
     RunThreads(ar::FrameSource& source, ArPipeline& pipeline, ArRunOptions const& options, bool is_timed,
-               std::optional<double> numbered_hz, gi::Report& report);
+               FrameClock const& clock, gi::Report& report);
     ~RunThreads() { end(); }
     RunThreads(RunThreads const&) = delete;
     RunThreads& operator=(RunThreads const&) = delete;
@@ -52,7 +52,7 @@ private:
     ArPipeline& pipeline_;
     ArRunOptions const& options_;
     bool is_timed_;
-    std::optional<double> numbered_hz_;
+    FrameClock clock_;
     gi::Report& report_;
     gi::StopRequest ending_;
     HandOver<OnItsWay> found_, done_;

@@ -40,19 +40,6 @@ ArFrameRecord record_of(OnItsWay const& w, bool is_timed)
     return f;
 }
 
-bool is_recording(std::string const& source)
-{
-    return std::filesystem::exists(std::filesystem::path(source) / "session.json");
-}
-
-void check_size(glm::ivec2 frames_px, glm::ivec2 calibrated_px)
-{
-    if (frames_px == calibrated_px) return;
-    throw gi::InputError(fmt::format("frames of {} x {} pixels", frames_px.x, frames_px.y),
-                         fmt::format("the calibration is of {} x {}", calibrated_px.x, calibrated_px.y),
-                         "set the camera to that size, or calibrate it at this one");
-}
-
 } // namespace
 
 ArCamera load_ar_camera(std::filesystem::path const& file)
@@ -83,15 +70,12 @@ void run_ar(ArSession const& session, ar::FrameSource& source, ArRunOptions cons
     ArCamera const camera = load_ar_camera(session.camera);
     ar::MarkerMap const markers = ar::read_marker_map(session.markers);
     ar::SourceDescription const about = source.description();
-    check_size(about.size_px, camera.model.size_px);
+    check_size(about.size_px, camera);
     ArPipeline pipeline(session, camera, markers, report);
     if (options.opened) options.opened(about, pipeline);
     bool const is_timed = options.pace == ar::Pace::own || about.is_live;
     double const begun_s = ar::steady_now_s();
-    // As fast as possible, clocks say nothing of the time that passes in pictures; recordings keep theirs.
-    bool const is_numbered = !is_timed && about.frames_per_s > 0 && !is_recording(session.frames.source);
-    RunThreads ahead(source, pipeline, options, is_timed,
-                     is_numbered ? std::optional(about.frames_per_s) : std::nullopt, report);
+    RunThreads ahead(source, pipeline, options, is_timed, {session.frames.source, about, is_timed}, report);
     while (!stop.requested() && !ahead.has_ended() &&
            (options.frames == 0 || int(summary.frames.size()) < options.frames)) {
         std::optional<OnItsWay> const w = ahead.next(std::chrono::milliseconds(10));

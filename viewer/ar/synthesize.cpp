@@ -49,11 +49,7 @@ PaperOnTable paper_of(ar::MarkerMap const& map)
 
 void write_png(fs::path const& file, cv::Mat const& rgb)
 {
-    cv::Mat bgr;
-    cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-    std::vector<unsigned char> bytes;
-    cv::imencode(".png", bgr, bytes);
-    gi::write_text(file, {reinterpret_cast<char const*>(bytes.data()), bytes.size()});
+    gi::write_png(file, rgb.cols, rgb.rows, {rgb.ptr(), rgb.total() * 3});
 }
 
 void write_probe(fs::path const& file, cv::Mat const& probe, gi::Report& report)

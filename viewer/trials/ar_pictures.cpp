@@ -4,6 +4,8 @@
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map_file.h"
 #include "ar/pose/pose_file.h"
+#include "viewer/ar/frame_clock.h"
+#include "viewer/ar/read_values.h"
 #include "viewer/ar/runner.h"
 #include "viewer/ar/source_losses.h"
 #include "viewer/trials/screen.h"
@@ -26,20 +28,15 @@ class Frames {
 public:
     Frames(ArSession const& session, gi::Report& report) : name_(session.frames.source), report_(report)
     {
-        bool const is_live = name_ == "camera" || name_.starts_with("camera:") || name_.starts_with("device:") ||
-                             name_.starts_with("gstreamer:");
-        if (is_live)
-            throw gi::InputError("frames of '" + name_ + "' as a stimulus", "nobody would see them twice",
-                                 "record them (lightwell ar record) and name the recording");
-        if (name_ == "counter")
-            throw gi::InputError("frames of 'counter' as a stimulus", "they never end",
+        if (is_device(name_))
+            throw gi::InputError("frames of '" + name_ + "' as a stimulus",
+                                 name_ == "counter" ? "they never end" : "nobody would see them twice",
                                  "record them (lightwell ar record) and name the recording");
         ar::OpenOptions open = session.frames.options;
         open.pace = ar::Pace::fastest;
         open.delivery = ar::Delivery::every;
         source_ = ar::open_source(name_, open);
-        about_ = source_->description();
-        is_recording_ = std::filesystem::exists(std::filesystem::path(name_) / "session.json");
+        clock_.emplace(name_, source_->description(), false);
     }
 
     ~Frames()
@@ -62,16 +59,14 @@ public:
                 tell_losses(source_->counts(), source_->state(), report_);
                 return std::nullopt;
             }
-        if (!first_) first_ = {frame->sequence, frame->captured_s};
-        bool const is_numbered = about_.frames_per_s > 0 && !is_recording_;
-        double const time_s = is_numbered ? double(frame->sequence - first_->first) / about_.frames_per_s
-                                          : frame->captured_s - first_->second;
+        if (!first_) first_ = frame->sequence;
+        double const time_s = (*clock_)(*frame);
         last_ = frame->sequence;
         return Timed{std::move(*frame), time_s};
     }
     std::string describe() const
     {
-        return first_ ? fmt::format("'{}' has frames {} to {}", name_, first_->first, last_)
+        return first_ ? fmt::format("'{}' has frames {} to {}", name_, *first_, last_)
                       : fmt::format("'{}' has none", name_);
     }
 
@@ -79,9 +74,9 @@ private:
     std::string name_;
     gi::Report& report_;
     std::unique_ptr<ar::FrameSource> source_;
-    ar::SourceDescription about_;
-    bool is_recording_ = false, was_told_ = false;
-    std::optional<std::pair<std::uint64_t, double>> first_;
+    std::optional<FrameClock> clock_;
+    bool was_told_ = false;
+    std::optional<std::uint64_t> first_;
     std::uint64_t last_ = 0;
 };
 
@@ -233,12 +228,7 @@ void check_ar_pictures(ArStimulus const& s)
     Maker make(s, stop, report);
     ArCamera const camera = load_ar_camera(session.camera);
     while (auto f = frames.next()) {
-        if (f->frame.size_px != camera.model.size_px)
-            throw gi::InputError(
-                fmt::format("{}: frames of {} x {} pixels", s.session.string(), f->frame.size_px.x,
-                            f->frame.size_px.y),
-                fmt::format("the calibration is of {} x {}", camera.model.size_px.x, camera.model.size_px.y),
-                "calibrate the camera at this size");
+        check_size(f->frame.size_px, camera);
         if (!is_first_shown(s, *f)) continue;
         if (s.show == ArShow::truth) read_truth(s, f->frame);
         return;
