@@ -25,10 +25,10 @@ struct Iteration {
 /// Adds the taps of row y + dy * step to the sums of row y. The middle row starts the sums with its central tap,
 /// whose weight is the spline's even where nothing is like it.
 template <bool kMiddle>
-void add_row(Iteration const& it, int y, int dy)
+void add_row(Iteration const& it, Span span, int y, int dy)
 {
     Planes const& g = it.guides;
-    int const there = y + dy * it.step, width = g.width(), step = it.step;
+    int const there = y + dy * it.step, step = it.step;
     auto const normal = g.row3(guide::normal, y), q_normal = g.row3(guide::normal, there);
     auto const position = g.row3(guide::position, y), q_position = g.row3(guide::position, there);
     auto const q_direct = it.in.row3(light::direct, there), q_indirect = it.in.row3(light::indirect, there);
@@ -45,7 +45,7 @@ void add_row(Iteration const& it, int y, int dy)
     float const plane_scale = it.plane_scale;
 
 #pragma GCC ivdep
-    for (int x = 0; x < width; ++x) {
+    for (int x = span.first; x < span.end; ++x) {
         vec3 const n = normal[x];
         float const plane = glm::dot(n, position[x]), by_plane = footprint[x] * plane_scale;
         float const by_l1 = 1 / (kLuminance * kLuminance * v1[x] + kTinyVariance);
@@ -85,13 +85,13 @@ void add_row(Iteration const& it, int y, int dy)
 }
 
 /// Turns sums into means.
-void divide_row(Planes& out, int y)
+void divide(Planes& out, Span span, int y)
 {
     for (int k = 0; k < 2; ++k) {
         auto const color = out.row3(light::direct + 3 * k, y);
         float *const weight = out.row(light::luminance + k, y), *const variance = out.row(light::variance + k, y);
 #pragma GCC ivdep
-        for (int x = 0; x < out.width(); ++x) {
+        for (int x = span.first; x < span.end; ++x) {
             float const scale = 1 / weight[x];
             vec3 const mean = scale * color[x];
             color.set(x, mean);
@@ -101,27 +101,54 @@ void divide_row(Planes& out, int y)
     }
 }
 
-void filter_row(Iteration const& it, int y)
+void filter_span(Iteration const& it, Span span, int y)
 {
-    add_row<true>(it, y, 0);
+    add_row<true>(it, span, y, 0);
     for (int const dy : {-2, -1, 1, 2})
-        if (int const there = y + dy * it.step; there >= 0 && there < it.in.height()) add_row<false>(it, y, dy);
-    divide_row(it.out, y);
+        if (int const there = y + dy * it.step; there >= 0 && there < it.in.height())
+            add_row<false>(it, span, y, dy);
+    divide(it.out, span, y);
+}
+
+/// Light that is known has no noise any more.
+void lay(KnownLight const& known, Planes const& from, int y, Planes& out)
+{
+    known.for_known(y, [&](Span span) {
+        for (int p = light::direct; p < light::luminance; ++p)
+            std::copy(from.row(p, y) + span.first, from.row(p, y) + span.end, out.row(p, y) + span.first);
+        for (int k = 0; k < 2; ++k) {
+            auto const color = out.row3(light::direct + 3 * k, y);
+            float *const bright = out.row(light::luminance + k, y), *const variance =
+                                                                        out.row(light::variance + k, y);
+            for (int x = span.first; x < span.end; ++x) {
+                bright[x] = luminance(color[x]);
+                variance[x] = 0;
+            }
+        }
+    });
 }
 
 } // namespace
 
-Planes filter_atrous(FilterInput& input, int iterations)
+Planes filter_atrous(FilterInput& input, int iterations, KnownLight const& known)
 {
     split_variance(input);
     int const height = input.light.height();
     Planes other(light::count, input.light.width(), height);
+    Planes const& where_known = known.light ? *known.light : input.light;
+    auto const lay_in = [&](Planes& out) {
+        tbb::parallel_for(0, height, [&](int y) { lay(known, where_known, y, out); });
+    };
+    lay_in(other);
     for (int i = 0; i < iterations; ++i) {
         int const step = 1 << i;
         // Pixels of distance from the plane from which on weights are 0: what is far away may curve more.
         float const reach = 1 + 0.2f * float(step);
         Iteration const it{input.guides, input.light, other, step, 1 / square(reach)};
-        tbb::parallel_for(0, height, [&](int y) { filter_row(it, y); });
+        tbb::parallel_for(0, height, [&](int y) {
+            for (Span const& span : known.wanted[std::size_t(y)]) filter_span(it, span, y);
+        });
+        if (i == 0) lay_in(input.light); // what it saw first was as it came
         std::swap(input.light, other);
     }
     return std::move(input.light);

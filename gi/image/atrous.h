@@ -8,12 +8,13 @@
 // max(0, 1 - d^2)^2: no exponential, and exactly 0 across edges. Direct and indirect light share all but the
 // luminance.
 
-#include "gi/image/filter_input.h"
+#include "gi/image/known_light.h"
 
 namespace gi {
 
 /// @param iterations 1 to kMaxIterations
+/// @param known  is kept, and from the second iteration on seen by what is wanted
 /// @return the light, filtered; input.light is used up
-Planes filter_atrous(FilterInput& input, int iterations);
+Planes filter_atrous(FilterInput& input, int iterations, KnownLight const& known);
 
 } // namespace gi

@@ -51,7 +51,7 @@ void store(Picture& picture, Planes const& guides, Planes const& filtered)
 
 } // namespace
 
-DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings)
+DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, TakenLight const& taken)
 {
     if (settings.denoiser == Denoiser::none) return {};
     check(picture, settings);
@@ -59,9 +59,10 @@ DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings)
     on_threads(settings.threads, [&] {
         bool const atrous = settings.denoiser == Denoiser::atrous;
         FilterInput input = make_filter_input(picture, atrous);
+        KnownLight const known = taken.partner ? known_from(picture, input, taken) : nothing_known(input);
         store(picture, input.guides,
-              atrous ? filter_atrous(input, settings.iterations)
-                     : filter_discontinuity(input, settings.window, settings.reach));
+              atrous ? filter_atrous(input, settings.iterations, known)
+                     : filter_discontinuity(input, settings.window, settings.reach, known));
         report = input.report;
     });
     return report;

@@ -3,7 +3,7 @@
 // divided by the albedo, over neighbours that lie on the same surface; so textures and outlines stay as sharp as
 // they were.
 
-#include "gi/base/picture.h"
+#include "gi/image/taken_light.h"
 
 namespace gi {
 
@@ -33,6 +33,9 @@ struct DenoiseReport {
 /// Replaces L1, L2 and color = L0 + L1 + L2. Needs the layers color, L0, L1, L2, albedo, normal and position, and
 /// a-trous variance too; throws InputError where one is missing. `variance` stays that of the unfiltered picture.
 /// The result does not depend on the number of threads.
-DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings);
+/// @param taken  of a partner that has been filtered: its light over its albedo is taken as it is where the
+/// picture
+///               takes it, so that only the rest costs a filter
+DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, TakenLight const& taken = {});
 
 } // namespace gi

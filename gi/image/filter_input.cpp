@@ -27,12 +27,6 @@ Layer const& needed(Picture const& picture, char const* name)
 /// False for NaN too.
 bool in_range(vec3 v) { return std::abs(v.x) < kLargest && std::abs(v.y) < kLargest && std::abs(v.z) < kLargest; }
 
-vec3 over_albedo(vec3 value, vec3 albedo)
-{
-    return {albedo.x < kDarkest ? 0 : value.x / albedo.x, albedo.y < kDarkest ? 0 : value.y / albedo.y,
-            albedo.z < kDarkest ? 0 : value.z / albedo.z};
-}
-
 /// Apart by more than 1 where other channels are dark.
 float albedo_guide(vec3 a)
 {

@@ -42,4 +42,11 @@ FilterInput make_filter_input(Picture const& picture, bool with_variance);
 /// other.
 inline constexpr float kDarkest = 0.01f;
 
+/// 0 in channels that are too dark.
+inline vec3 over_albedo(vec3 value, vec3 albedo)
+{
+    return {albedo.x < kDarkest ? 0 : value.x / albedo.x, albedo.y < kDarkest ? 0 : value.y / albedo.y,
+            albedo.z < kDarkest ? 0 : value.z / albedo.z};
+}
+
 } // namespace gi

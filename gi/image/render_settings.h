@@ -120,6 +120,9 @@ struct RenderResult {
     std::string options;    ///< what the method chose for itself, as options of the command line
     bool resumable = false; ///< settings.checkpoint holds what is needed to go on
     double rays = 0;        ///< closest-hit and shadow rays, or look-ups
+    /// Of a view with a partner: per pixel the partner's whose light all its paths took, to half a pixel, else
+    /// kOwnLight (gi/image/taken_light.h). Empty without one.
+    std::vector<std::uint32_t> light_from;
 };
 
 } // namespace gi

@@ -44,32 +44,66 @@ vec3 times(vec3 light, vec3 albedo)
 
 bool finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// Of windows around each pixel.
-struct Window {
-    cv::Mat mean, squares; ///< 3 channels
-
-    Window(std::vector<vec3> const& values, int width, int height)
+/// Of direct light over the albedo, in windows around pixels: of all pixels at once, or of one after the other
+/// where few are asked for.
+class Neighbourhoods {
+public:
+    Neighbourhoods(Layer const& l1, Layer const& albedo, int width, int height, bool few)
+        : l1_(l1), albedo_(albedo), width_(width), height_(height), few_(few)
     {
-        cv::Mat const all(height, width, CV_32FC3, const_cast<vec3*>(values.data()));
+        if (few) return;
+        cv::Mat direct(height, width, CV_32FC3);
+        tbb::parallel_for(0, height, [&](int y) {
+            for (int x = 0; x < width; ++x) direct.ptr<vec3>(y)[x] = direct_at(x, y);
+        });
         cv::Size const size(kWindow, kWindow);
-        cv::boxFilter(all, mean, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
-        cv::sqrBoxFilter(all, squares, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
+        cv::boxFilter(direct, mean_, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
+        cv::sqrBoxFilter(direct, squares_, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
     }
     vec3 clamped(vec3 v, int x, int y) const
     {
-        auto const m = mean.at<cv::Vec3f>(y, x), s = squares.at<cv::Vec3f>(y, x);
-        for (int c = 0; c < 3; ++c) {
-            float const spread = kSpread * std::sqrt(std::max(0.0f, s[c] - m[c] * m[c]));
-            v[c] = glm::clamp(v[c], m[c] - spread, m[c] + spread);
-        }
+        if (few_) return clamped_here(v, x, y);
+        auto const m = mean_.at<cv::Vec3f>(y, x), s = squares_.at<cv::Vec3f>(y, x);
+        for (int c = 0; c < 3; ++c) v[c] = clamped(v[c], m[c], s[c]);
         return v;
     }
+
+private:
+    static float clamped(float v, float mean, float squares)
+    {
+        float const spread = kSpread * std::sqrt(std::max(0.0f, squares - mean * mean));
+        return glm::clamp(v, mean - spread, mean + spread);
+    }
+    vec3 clamped_here(vec3 v, int x, int y) const
+    {
+        vec3 mean{0}, squares{0};
+        for (int j = -kWindow / 2; j <= kWindow / 2; ++j)
+            for (int i = -kWindow / 2; i <= kWindow / 2; ++i) {
+                vec3 const d = direct_at(std::clamp(x + i, 0, width_ - 1), std::clamp(y + j, 0, height_ - 1));
+                mean += d;
+                squares += d * d;
+            }
+        constexpr float kPixels = kWindow * kWindow;
+        for (int c = 0; c < 3; ++c) v[c] = clamped(v[c], mean[c] / kPixels, squares[c] / kPixels);
+        return v;
+    }
+    vec3 direct_at(int x, int y) const
+    {
+        std::size_t const i = std::size_t(y) * std::size_t(width_) + std::size_t(x);
+        return over(rgb(l1_, i), rgb(albedo_, i));
+    }
+
+    Layer const &l1_, &albedo_;
+    int width_, height_;
+    bool few_;
+    cv::Mat mean_, squares_; ///< 3 channels
 };
 
 } // namespace
 
 /// Light of this frame, averaged with that of the surface before.
-void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
+void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, std::span<std::uint32_t const> from,
+                           TemporalCounts& total)
 {
     Layer const &l0 = layer_of(frame, "L0"), &l1 = layer_of(frame, "L1"), &l2 = layer_of(frame, "L2"),
                 &albedo = layer_of(frame, "albedo"), &normal = layer_of(frame, "normal"),
@@ -80,13 +114,26 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
     std::swap(lights_, last_lights_);
     surfaces_.resize(pixels);
     lights_.resize(pixels);
-    std::vector<vec3> direct(pixels);
+    auto const takes = [&](std::size_t i) { return partner != nullptr && from[i] != kOwnLight; };
     tbb::parallel_for(std::size_t(0), std::size_t(height), [&](std::size_t y) {
         for (std::size_t i = y * std::size_t(width); i < (y + 1) * std::size_t(width); ++i) {
             vec3 const a = rgb(albedo, i);
             surfaces_[i] = {rgb(normal, i), depth.data[i]};
-            direct[i] = over(rgb(l1, i), a);
-            lights_[i] = {direct[i], over(rgb(l2, i), a), 1, rgb(l0, i), a, 1, false};
+            Light& light = lights_[i];
+            if (takes(i)) {
+                Light const& there = partner->lights_[from[i]];
+                light.direct = there.direct;
+                light.indirect = there.indirect;
+                light.frames = there.frames;
+            } else {
+                light.direct = over(rgb(l1, i), a);
+                light.indirect = over(rgb(l2, i), a);
+                light.frames = 1;
+            }
+            light.l0 = rgb(l0, i);
+            light.albedo = a;
+            light.still_frames = 1;
+            light.still = false;
         }
     });
     if (frames_ == 0) {
@@ -94,7 +141,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
             std::size_t(std::ranges::count_if(surfaces_, [](Surface const& s) { return s.depth > 0; }));
         return;
     }
-    Window const window(direct, width, height);
+    Neighbourhoods const neighbourhoods(l1, albedo, width, height, partner != nullptr);
     // Whether a surface is still there now, in a pixel next to this one.
     auto const is_beside = [&](Surface const& s, int x, int y) {
         for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)
@@ -113,7 +160,11 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
             Surface const& here = surfaces_[i];
             if (!(here.depth > 0)) continue;
             ++local.surfaces;
-            vec3 const from = rgb(motion, i);
+            vec3 const was = rgb(motion, i);
+            // Neither what is seen here now nor what was seen moves: an edge, perhaps, seen through another point.
+            bool const still = glm::length(vec2(was)) < kStill, resting = still && last_lights_[i].still;
+            lights_[i].still = still;
+            if (takes(i) && !still) continue;
             // What the depth changes by over a pixel; frames look through different points of it.
             auto const change = [&](bool there, std::ptrdiff_t step) {
                 return there ? std::abs(surfaces_[std::size_t(std::ptrdiff_t(i) + step)].depth - here.depth)
@@ -122,20 +173,16 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
             float const slope = std::min(change(x > 0, -1), change(x + 1 < width, 1)) +
                                 std::min(change(y > 0, -width), change(y + 1 < height, width));
             Light before{};
-            // Neither what is seen here now nor what was seen moves: an edge, perhaps, seen through another point.
-            bool const still = glm::length(vec2(from)) < kStill, resting = still && last_lights_[i].still;
-            lights_[i].still = still;
             float weight = 0;
-            if (finite(from) && std::abs(from.x) < 1e6f && std::abs(from.y) < 1e6f) {
-                float const u = float(x) + from.x, v = float(y) + from.y, left = std::floor(u),
-                            top = std::floor(v);
+            if (finite(was) && std::abs(was.x) < 1e6f && std::abs(was.y) < 1e6f) {
+                float const u = float(x) + was.x, v = float(y) + was.y, left = std::floor(u), top = std::floor(v);
                 for (int k = 0; k < 4; ++k) {
                     int const tx = int(left) + (k & 1), ty = int(top) + (k >> 1);
                     float const w = (1 - std::abs(u - float(tx))) * (1 - std::abs(v - float(ty)));
                     if (tx < 0 || ty < 0 || tx >= width || ty >= height || !(w > 0)) continue;
                     std::size_t const t = std::size_t(ty) * std::size_t(width) + std::size_t(tx);
                     Surface const& there = last_surfaces_[t];
-                    bool const same = std::abs(there.depth - from.z) < kDepth * from.z + slope &&
+                    bool const same = std::abs(there.depth - was.z) < kDepth * was.z + slope &&
                                       glm::dot(there.normal, here.normal) >= kCosine;
                     if (!same && !(resting && is_beside(there, x, y))) continue;
                     Light const& l = last_lights_[t];
@@ -148,7 +195,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
             // Less than that is as good as nothing, and noisy.
             constexpr float kLeast = 0.05f;
             if (!(weight > kLeast)) {
-                ++local.started;
+                local.started += !takes(i);
                 continue;
             }
             Light& now = lights_[i];
@@ -157,7 +204,8 @@ void TemporalReuse::follow(Picture const& frame, TemporalCounts& total)
                 now.l0 = glm::mix(last.l0, now.l0, 1 / now.still_frames);
                 now.albedo = glm::mix(last.albedo, now.albedo, 1 / now.still_frames);
             }
-            vec3 const held = window.clamped(before.direct / weight, x, y);
+            if (takes(i)) continue;
+            vec3 const held = neighbourhoods.clamped(before.direct / weight, x, y);
             local.held += held != before.direct / weight;
             now.frames = std::min(before.frames / weight + 1, float(settings_.most_frames));
             now.direct = glm::mix(held, now.direct, 1 / now.frames);
@@ -215,7 +263,8 @@ void TemporalReuse::store(Picture& frame, TemporalCounts& counts) const
     counts.frames = frames.combine(std::plus<>()) / double(frame.pixels());
 }
 
-TemporalCounts TemporalReuse::add(Picture& frame, SceneChange change)
+TemporalCounts TemporalReuse::add(Picture& frame, SceneChange change, TemporalReuse const* partner,
+                                  std::span<std::uint32_t const> from)
 {
     if (frames_ > 0 && surfaces_.size() != frame.pixels())
         throw InputError("frames of different sizes", "temporal reuse goes pixel by pixel", "start afresh");
@@ -223,7 +272,7 @@ TemporalCounts TemporalReuse::add(Picture& frame, SceneChange change)
     if (change == SceneChange::light) frames_ = 0;
     if (change != SceneChange::nothing || frames_ == 0) still_ = 0;
     TemporalCounts counts;
-    follow(frame, counts);
+    follow(frame, partner, from, counts);
     rest(frame);
     store(frame, counts);
     ++frames_;

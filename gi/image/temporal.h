@@ -9,8 +9,10 @@
 // edges and textures are smooth. While nothing moves anywhere, the mean of the pictures themselves is taken, over
 // all frames since: so a still picture converges to what the method converges to. After a change of lights,
 // materials or environment nothing of before is used: the lag is zero frames.
+//
+// A second eye need not ask the frame before where it takes the first one's light: that has its past with it.
 
-#include "gi/base/picture.h"
+#include "gi/image/taken_light.h"
 
 namespace gi {
 
@@ -40,7 +42,10 @@ public:
     /// Replaces L0, L1, L2, color and albedo by means over frames. Needs color, L0, L1, L2, albedo, normal, depth
     /// and motion (throws InputError where one is missing): x, y: pixels from here to where the surface was; z:
     /// its depth then, m; NaN where it was not. All frames have one size.
-    TemporalCounts add(Picture& frame, SceneChange change);
+    /// @param partner, from  the reuse of a partner, to which this frame has been added already, and which of its
+    ///   pixels' light to take (TakenLight::from): their means while anything moves are those of the partner
+    TemporalCounts add(Picture& frame, SceneChange change, TemporalReuse const* partner = nullptr,
+                       std::span<std::uint32_t const> from = {});
 
 private:
     struct Surface {
@@ -54,7 +59,8 @@ private:
         float still_frames; ///< that these are means of
         bool still;         ///< its surface stood still in the picture
     };
-    void follow(Picture const& frame, TemporalCounts& counts);
+    void follow(Picture const& frame, TemporalReuse const* partner, std::span<std::uint32_t const> from,
+                TemporalCounts& counts);
     void rest(Picture const& frame);
     void store(Picture& frame, TemporalCounts& counts) const;
 

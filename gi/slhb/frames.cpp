@@ -84,6 +84,8 @@ public:
             r.end = r.paths < paths ? RenderEnd::interrupted : RenderEnd::paths;
             r.picture = sums_[k].picture(world_.world());
             renderer_->add_motion(k, r.picture);
+            auto const from = renderer_->light_from(k);
+            r.light_from.assign(from.begin(), from.end());
             lost += sums_[k].counts;
         }
         report_.lose("paths cut at 1024 surfaces", lost.cut_paths);

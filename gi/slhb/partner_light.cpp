@@ -49,11 +49,11 @@ bool PartnerLight::same_light(ShadingPoint const& at, std::uint32_t triangle, st
 
 std::uint32_t PartnerLight::find(PathStart const& start, PathSample& sample) const
 {
-    if (start.triangle == kNoPrimitive) return kNoPartner;
+    if (start.triangle == kNoPrimitive) return kOwnLight;
     ShadingPoint const at = shading_point(
         world_, start.triangle, barycentric_of(world_.surfaces[start.triangle], start.ray), start.ray.direction);
     auto const pixel = partner_.pixel_near(at.position);
-    if (!pixel || !same_light(at, start.triangle, *pixel, start.ray.direction)) return kNoPartner;
+    if (!pixel || !same_light(at, start.triangle, *pixel, start.ray.direction)) return kOwnLight;
     sample = {};
     sample.hit = true;
     sample.radiance[0] = at.emission;
@@ -62,6 +62,14 @@ std::uint32_t PartnerLight::find(PathStart const& start, PathSample& sample) con
     sample.position = at.position;
     sample.depth = glm::dot(at.position - camera_.origin, camera_.forward);
     return std::uint32_t(*pixel);
+}
+
+bool same_surface(PixelSums const& a, PixelSums const& b, double pixel_m)
+{
+    // Means of normals that differ are shorter than one.
+    if (!(glm::dot(a.normal, b.normal) > double(kSameNormal) * a.hits * b.hits)) return false;
+    dvec3 const apart = a.position / a.hits - b.position / b.hits;
+    return std::abs(glm::dot(apart, a.normal / a.hits)) < 2 * double(kOff_px) * pixel_m;
 }
 
 void take_light(PathSample const& partner, PathSample& sample)

@@ -5,13 +5,11 @@
 // glass and narrow lobes, and what only one of the two sees, are traced. The noise of the two pictures is then
 // the same on the same surfaces, as binocular fusion likes it. Error: light is sampled up to half a pixel aside.
 
+#include "gi/image/taken_light.h"
 #include "gi/slhb/primary_map.h"
-#include "gi/transport/path_sample.h"
+#include "gi/transport/accumulator.h"
 
 namespace gi {
-
-/// Where a pixel may take its light from: the partner's pixel, else kNoPartner.
-inline constexpr std::uint32_t kNoPartner = 0xffffffff;
 
 class PartnerLight {
 public:
@@ -27,6 +25,7 @@ public:
 
     /// Looks for the surface a path starts at; the partner's first surfaces must be there already.
     /// @param sample  gets what is its own (L0, albedo, normal, position, depth) where a partner is found
+    /// @return the partner's pixel, else kOwnLight
     std::uint32_t find(PathStart const& start, PathSample& sample) const;
 
 private:
@@ -37,6 +36,10 @@ private:
     std::span<PathSample const> samples_;
     CameraRays partner_camera_, camera_;
 };
+
+/// Whether the paths of two pixels, each summed, met the same surface: neither lies on an edge of it.
+/// @param pixel_m  size of a pixel there
+bool same_surface(PixelSums const& a, PixelSums const& b, double pixel_m);
 
 /// L1 and L2 of the partner's path, when that has ended, over its albedo and times the sample's own.
 void take_light(PathSample const& partner, PathSample& sample);

@@ -294,7 +294,7 @@ void SlhbRenderer::trace_view(View const& view, SlhbTracer::Pass const& pass, bo
             for (std::size_t k = 0; k < starts.size(); ++k) {
                 std::uint32_t& from = taken_from_[view.first + first + k];
                 from = partner->find(starts[k], samples[k]);
-                if (from == kNoPartner) starts[left++] = starts[k];
+                if (from == kOwnLight) starts[left++] = starts[k];
             }
             local.taken += starts.size() - left;
             starts.resize(left);
@@ -396,7 +396,8 @@ void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums, Endin
     bool const sharing = start_sharing(index, pixels, endings);
     samples_.resize(pixels);
     endings_.resize(sharing ? pixels : 0);
-    taken_from_.assign(views_.size() > 1 ? pixels : 0, kNoPartner);
+    taken_from_.assign(views_.size() > 1 ? pixels : 0, kOwnLight);
+    light_from_.resize(taken_from_.size());
     Work work;
     for (View const& v : views_) trace_view(v, now, sharing, work);
     shared_.collect(endings_, axes_->pool());
@@ -413,13 +414,23 @@ void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums, Endin
         PathSample* const samples = samples_.data() + v.first;
         PathSample const* const partner =
             v.partner >= 0 ? samples_.data() + views_[std::size_t(v.partner)].first : nullptr;
+        auto const shows_same = [&](std::size_t pixel, std::uint32_t from) {
+            PixelSums const& here = sums[k].pixels[pixel];
+            double const pixel_m = here.depth / here.hits * double(glm::length(v.rays.step_x));
+            return same_surface(here, sums[std::size_t(v.partner)].pixels[from], pixel_m);
+        };
         work.in_blocks(v.pixels(), [&](std::size_t first, std::size_t last, Work::Counts&) {
             for (std::size_t p = first; p < last; ++p) {
                 if (sharing && endings_[v.first + p].layer != kNoLayerHit)
                     samples[p].radiance[2] += endings_[v.first + p].throughput * shared_.radiance(v.first + p);
-                if (partner && taken_from_[v.first + p] != kNoPartner)
-                    take_light(partner[taken_from_[v.first + p]], samples[p]);
+                std::uint32_t const from = partner ? taken_from_[v.first + p] : kOwnLight;
+                if (from != kOwnLight) take_light(partner[from], samples[p]);
                 sums[k].add(p, samples[p], sums[k].paths);
+                if (!partner) continue;
+                std::uint32_t& all = light_from_[v.first + p]; // the paths of this frame
+                bool const taken =
+                    from != kOwnLight && (sums[k].paths == 0 || (all != kOwnLight && shows_same(p, from)));
+                all = taken ? from : kOwnLight;
             }
         });
         if (partner) taking_ += v.pixels();
@@ -455,6 +466,13 @@ void SlhbRenderer::add_coverage(std::size_t view, std::span<float> counts, std::
             for (vec3 const part : samples_[v.first + p].radiance) radiance[p] += part;
         }
     });
+}
+
+std::span<std::uint32_t const> SlhbRenderer::light_from(std::size_t view) const
+{
+    View const& v = views_[view];
+    if (v.partner < 0) return {};
+    return std::span(light_from_).subspan(v.first, v.pixels());
 }
 
 double SlhbRenderer::rays() const { return double(done_.queries + done_.shadow_lookups + done_.exact_rays); }

@@ -48,6 +48,8 @@ public:
     /// brought.
     /// @param counts, radiance  one per pixel. Not with orthographic cameras, where nothing is added.
     void add_coverage(std::size_t view, std::span<float> counts, std::span<vec3> radiance) const;
+    /// RenderResult::light_from of the passes since the sums were empty.
+    std::span<std::uint32_t const> light_from(std::size_t view) const;
     double rays() const; ///< look-ups and exact rays, so far
     /// Beyond the limit of a texel, so far.
     std::uint64_t lost_layers() const { return earlier_sets_.lost + axes_->lost(); }
@@ -104,6 +106,7 @@ private:
     std::vector<PathSample> without_;           ///< and their paths without it
     std::vector<Ending> endings_;               ///< the same
     std::vector<std::uint32_t> taken_from_;     ///< the same: pixel of the partner's view
+    std::vector<std::uint32_t> light_from_;     ///< the same, of all passes of a frame
     std::uint64_t taken_ = 0, taking_ = 0;      ///< pixels that took light from a partner; of those that could
     std::uint64_t pair_paths_ = 0, without_paths_ = 0; ///< of pairs with what moves; of these, traced again
     SlhbCounts done_;

@@ -169,6 +169,67 @@ TEST_P(AllFilters, DoNotSpreadWhatIsNotFinite)
         }
 }
 
+/// A picture as wall() with noise in its light.
+Picture noisy_wall(int width, int height, std::uint64_t seed)
+{
+    Picture p = wall(width, height);
+    Pcg32 rng(seed, 7);
+    for (std::size_t i = 0; i < p.pixels(); ++i) {
+        set(p, "L1", i, vec3{rng.uniform(), rng.uniform(), rng.uniform()});
+        set(p, "L2", i, vec3{rng.uniform()});
+    }
+    add_up(p);
+    return p;
+}
+
+/// Another albedo, half of the columns of the partner 5 pixels aside: its light is taken, what is not is filtered.
+TEST_P(AllFilters, TakeThePartnersLightWhereTheyMay)
+{
+    constexpr int kWidth = 40, kHeight = 24, kAside = 5, kPartnerWidth = kWidth + kAside;
+    Picture partner = noisy_wall(kPartnerWidth, kHeight, 3);
+    Picture p = wall(kWidth, kHeight);
+    std::vector<std::uint32_t> from(p.pixels());
+    for (std::size_t i = 0; i < p.pixels(); ++i) {
+        std::size_t const x = i % kWidth, there = i / kWidth * kPartnerWidth + x + kAside;
+        from[i] = x >= 12 && x < 17 ? kOwnLight : std::uint32_t(there);
+        set(p, "albedo", i, vec3{0.25f});
+        for (char const* const layer : {"L1", "L2"}) set(p, layer, i, 0.5f * get(partner, layer, there));
+        for (char const* const layer : {"normal", "position", "variance"})
+            set(p, layer, i, get(partner, layer, there));
+    }
+    add_up(p);
+    Picture const alone = filtered(p, GetParam());
+    denoise(partner, GetParam());
+    Picture q = p;
+    denoise(q, GetParam(), {&partner, from});
+    for (std::size_t i = 0; i < p.pixels(); ++i) {
+        if (from[i] != kOwnLight) {
+            for (char const* const layer : {"L1", "L2"})
+                ASSERT_NEAR(get(q, layer, i).y, 0.5f * get(partner, layer, from[i]).y, 1e-6f) << layer << " " << i;
+        } else if (GetParam().denoiser == Denoiser::discontinuity) { // its first means are those of a filter alone
+            ASSERT_NEAR(get(q, "L1", i).y, get(alone, "L1", i).y, 1e-6f) << i;
+        }
+        ASSERT_NEAR(get(q, "color", i).y, get(q, "L1", i).y + get(q, "L2", i).y, 1e-6f);
+        ASSERT_NEAR(get(q, "color", i).y, 0.5f, 0.2f) << i;
+    }
+}
+
+/// Where the partner is too dark to tell, or nothing is seen, nothing is taken.
+TEST_P(AllFilters, TakeNothingThatThePartnerCannotTell)
+{
+    Picture partner = wall(20, 20), p = noisy_wall(20, 20, 4);
+    std::vector<std::uint32_t> from(p.pixels());
+    for (std::size_t i = 0; i < p.pixels(); ++i) {
+        from[i] = std::uint32_t(i);
+        set(partner, "albedo", i, {0.5f, 0.5f, 1e-4f});
+    }
+    set(p, "normal", 7, vec3{0});
+    Picture const alone = filtered(p, GetParam());
+    Picture q = p;
+    denoise(q, GetParam(), {&partner, from});
+    EXPECT_LT(largest_difference(q, alone), 1e-5);
+}
+
 TEST_P(AllFilters, SmallAndEmptyPictures)
 {
     for (auto const& [width, height] : {std::pair{1, 1}, {1, 9}, {9, 1}, {3, 2}}) {
@@ -284,8 +345,8 @@ TEST_P(AllFilters, TheErrorOfACornellBoxFalls)
     auto const relmse = [&](Picture const& p) { return measure_errors(lit(p), lit(reference), 3).relmse; };
     double const before = relmse(noisy), after = relmse(filtered(noisy, GetParam()));
     RecordProperty("factor", std::to_string(before / after));
-    // 7.6, 7.1 and (20 pixels are a large part of this picture) 5.2 when this was written; more at higher resolutions,
-    // where outlines are a smaller share.
+    // 7.6, 7.1 and (20 pixels are a large part of this picture) 5.2 when this was written; more at higher
+    // resolutions, where outlines are a smaller share.
     double const least = GetParam().denoiser == Denoiser::atrous ? 6 : GetParam().reach == 0 ? 5.5 : 4.5;
     EXPECT_GT(before / after, least) << before << " " << after;
 }

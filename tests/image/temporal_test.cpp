@@ -207,5 +207,49 @@ TEST(Temporal, MissingLayersAreNamed)
     EXPECT_THROW(reuse.add(p, SceneChange::motion), InputError);
 }
 
+/// Two eyes pass a wall; the second takes all but some columns, and there it has a mean of its own.
+TEST(Temporal, ASecondEyeHasThePastOfTheFirst)
+{
+    TemporalReuse left({.most_frames = 8}), right({.most_frames = 8}), alone({.most_frames = 8});
+    Pcg32 rng(2, 6);
+    std::vector<std::uint32_t> from(std::size_t(kWidth * kHeight));
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        std::size_t const x = i % kWidth;
+        from[i] = x < 10 || x == kWidth - 1 ? kOwnLight : std::uint32_t(i + 1);
+    }
+    Picture a, b, c;
+    for (int frame = 0; frame < 10; ++frame) {
+        auto const at = [&](int, int) {
+            Values v;
+            v.l1 = v.l2 = vec3{rng.uniform()};
+            v.motion = {-1, 0, 2};
+            return v;
+        };
+        a = picture(at);
+        b = picture([&](int x, int y) {
+            Values v = at(x, y);
+            v.albedo = vec3{0.25f};
+            std::uint32_t const q = from[std::size_t(y * kWidth + x)];
+            if (q != kOwnLight) v.l1 = v.l2 = vec3{0.5f * value(a, "L1", int(q) % kWidth, y)};
+            return v;
+        });
+        c = b;
+        SceneChange const change = frame == 0 ? SceneChange::light : SceneChange::motion;
+        left.add(a, change);
+        right.add(b, change, &left, from);
+        alone.add(c, change);
+    }
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            for (char const* const layer : {"L1", "L2"}) {
+                std::uint32_t const q = from[std::size_t(y * kWidth + x)];
+                if (q != kOwnLight) {
+                    ASSERT_NEAR(value(b, layer, x, y), 0.5f * value(a, layer, x + 1, y), 1e-6f) << x << " " << y;
+                } else if (x < 8) { // what it asks of before is its own too
+                    ASSERT_NEAR(value(b, layer, x, y), value(c, layer, x, y), 1e-5f) << x << " " << y;
+                }
+            }
+}
+
 } // namespace
 } // namespace gi::test

@@ -2,6 +2,7 @@
 // has the same error for less work.
 
 #include "gi/image/metrics.h"
+#include "gi/image/taken_light.h"
 #include "gi/scene/generate.h"
 #include "gi/slhb/frames.h"
 #include "gi/transport/accumulator.h"
@@ -95,6 +96,47 @@ TEST(Views, MirrorsAreTracedForEachEye)
     auto const b = start_slhb_frames(world, front, s, report)->views(taking, 4, Endings::exact, {});
     EXPECT_EQ(b[1].picture.find("L0")->data, a[1].picture.find("L0")->data);
     EXPECT_GT(relmse_of(*a[1].picture.find("color"), *a[0].picture.find("color")), 1e-3); // they do differ
+}
+
+/// Which pixels took their light is told, for all paths of a frame; where they did, albedos and light agree.
+TEST(Views, TellWhoseLightTheyTook)
+{
+    Report report;
+    MovingWorld const world(room(), 0, report);
+    RenderSettings const s = settings_of_views(1);
+    std::vector<FrameView> const views{{eye(), 48, 40}, {eye(0.05), 64, 56, 0}};
+    auto const frames = start_slhb_frames(world, eye(), s, report);
+    std::size_t told_of_one = 0;
+    for (std::uint32_t const paths : {1u, 6u}) {
+        auto const results = frames->views(views, paths, Endings::exact, {});
+        EXPECT_TRUE(results[0].light_from.empty());
+        ASSERT_EQ(results[1].light_from.size(), results[1].picture.pixels());
+        std::size_t told = 0;
+        double off_plane_m = 0;
+        for (std::size_t i = 0; i < results[1].light_from.size(); ++i) {
+            std::uint32_t const from = results[1].light_from[i];
+            if (from == kOwnLight) continue;
+            ASSERT_LT(from, results[0].picture.pixels());
+            ++told;
+            vec3 const here = rgb(*results[1].picture.find("position"), i),
+                       there = rgb(*results[0].picture.find("position"), from);
+            vec3 const normal = rgb(*results[1].picture.find("normal"), i);
+            off_plane_m = std::max(off_plane_m, double(std::abs(glm::dot(here - there, normal))));
+            if (paths > 1) continue;
+            for (int c = 0; c < 3; ++c) {
+                auto const light = [&](RenderResult const& r, std::size_t pixel) {
+                    return rgb(*r.picture.find("L1"), pixel)[c] / rgb(*r.picture.find("albedo"), pixel)[c];
+                };
+                ASSERT_NEAR(light(results[1], i), light(results[0], from), 1e-4f * (1 + light(results[0], from)));
+            }
+        }
+        EXPECT_GT(told, results[1].picture.pixels() / 2);
+        EXPECT_LT(off_plane_m, paths == 1 ? 0.015 : 0.1); // a pixel of the partner's is 5 cm wide at most
+        if (paths == 1)
+            told_of_one = told;
+        else
+            EXPECT_LT(told, told_of_one); // at edges paths see different surfaces
+    }
 }
 
 /// A view that changes its size, goes and comes back starts without motion vectors.

@@ -254,5 +254,34 @@ TEST(Picking, FindsTheNearestObject)
     EXPECT_FALSE(pick(gi::World{}, camera, 1, {0.5, 0.5}).has_value());
 }
 
+/// A second eye whose light, past and filter are the first one's has no more error than one that has all of its
+/// own.
+TEST(Session, ASecondEyeIsAsRightAsTheFirst)
+{
+    gi::Report report;
+    std::array<double, 2> error{};
+    std::vector<float> truth;
+    for (bool const shared : {false, true}) {
+        Session session = started(report), still = started(report);
+        session.apply({"share_eyes", shared});
+        FrameOrder o;
+        SessionFrame last;
+        for (std::uint64_t k = 0; k < 12; ++k) {
+            o = order(k, 0.005 * double(k), true);
+            last = session.render(o, {});
+        }
+        if (truth.empty()) {
+            still.apply({"denoise", "none"});
+            still.apply({"share_eyes", false});
+            o.paths = 512;
+            truth = color(still.render(o, {}), 1);
+        }
+        error[shared] = relmse(color(last, 1), truth);
+    }
+    EXPECT_GT(error[0], 1e-5);
+    EXPECT_LT(error[0], 0.05);
+    EXPECT_LT(error[1], 1.15 * error[0]);
+}
+
 } // namespace
 } // namespace viewer::test

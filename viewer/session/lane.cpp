@@ -69,22 +69,30 @@ std::vector<gi::RenderResult> Lane::render(FrameOrder const& order, gi::Changes 
     auto const endings = settings.share_endings && anything_moved ? gi::Endings::in_cells : gi::Endings::exact;
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(order.paths), endings, stop);
     for (std::size_t k = 0; k < results.size(); ++k)
-        finish(k, results[k], scene_change(changes, moved[k]), settings);
+        finish(k, results, views[k].partner, scene_change(changes, moved[k]), settings);
     return results;
 }
 
-void Lane::finish(std::size_t view, gi::RenderResult& result, gi::SceneChange change, Settings const& settings)
+void Lane::finish(std::size_t view, std::vector<gi::RenderResult>& results, int partner, gi::SceneChange change,
+                  Settings const& settings)
 {
+    gi::RenderResult& result = results[view];
+    gi::TakenLight taken;
+    gi::TemporalReuse const* past = nullptr;
+    if (!result.light_from.empty()) {
+        taken = {&results[std::size_t(partner)].picture, result.light_from};
+        past = seen_[std::size_t(partner)].reuse.get();
+    }
     if (settings.reuse > 1) {
         gi::StageTimer const timer(report_, "temporal reuse");
         without_motion(result.picture);
-        seen_[view].reuse->add(result.picture, change);
+        seen_[view].reuse->add(result.picture, change, past, taken.from);
     }
     gi::DenoiseSettings const filter = denoise_settings(settings, threads_);
     bool const has_variance = filter.denoiser != gi::Denoiser::atrous || result.paths >= 2;
     if (filter.denoiser == gi::Denoiser::none || !has_variance || still_ > kFilteredFrames) return;
     gi::StageTimer const timer(report_, "denoise");
-    gi::DenoiseReport const done = gi::denoise(result.picture, filter);
+    gi::DenoiseReport const done = gi::denoise(result.picture, filter, taken);
     if (done.not_finite > 0) report_.lose("pixels not filtered, as a value is not finite", done.not_finite);
 }
 

@@ -31,7 +31,9 @@ private:
         std::unique_ptr<gi::TemporalReuse> reuse;
         int most_frames = 0;
     };
-    void finish(std::size_t view, gi::RenderResult& result, gi::SceneChange change, Settings const& settings);
+    /// Reuse and filter of a view. @param partner  whose light it may have taken; finished before
+    void finish(std::size_t view, std::vector<gi::RenderResult>& results, int partner, gi::SceneChange change,
+                Settings const& settings);
 
     gi::Report& report_;
     int threads_;
