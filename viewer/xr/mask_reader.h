@@ -3,7 +3,7 @@
 
 #include "viewer/xr/frame.h"
 #include "viewer/xr/runtime.h"
-#include "viewer/xr/visibility.h"
+#include "viewer/order/hidden_mask.h"
 
 namespace viewer {
 
