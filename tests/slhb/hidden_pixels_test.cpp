@@ -55,8 +55,9 @@ protected:
         for (Layer const& layer : picture.layers) {
             if (layer.name == "motion") continue;
             for (std::size_t i = 0; i < layer.data.size(); ++i)
-                if (hidden[i / std::size_t(layer.channels)] != 0)
+                if (hidden[i / std::size_t(layer.channels)] != 0) {
                     ASSERT_EQ(layer.data[i], 0) << layer.name << ' ' << i / std::size_t(layer.channels);
+                }
         }
     }
 
@@ -78,8 +79,9 @@ TEST_F(HiddenPixels, AreBlackAndAllOthersAreTheSame)
         for (Layer const& layer : some[k].picture.layers) {
             Layer const& whole = *all[k].picture.find(layer.name);
             for (std::size_t i = 0; i < layer.data.size(); ++i)
-                if (hidden[i / std::size_t(layer.channels)] == 0)
+                if (hidden[i / std::size_t(layer.channels)] == 0) {
                     ASSERT_EQ(layer.data[i], whole.data[i]) << layer.name << ' ' << i;
+                }
         }
     }
     EXPECT_NEAR(share(), 0.215, 0.01);
@@ -93,7 +95,7 @@ TEST_F(HiddenPixels, AreBlackAndAllOthersAreTheSame)
 /// With a partner and shared endings light comes from fewer pixels: the same picture, other noise.
 TEST_F(HiddenPixels, GiveNoLightToOthers)
 {
-    constexpr std::uint32_t kPaths = 256;
+    constexpr std::uint32_t kPaths = 128;
     auto const all = render(false, 0, Endings::in_cells, kPaths);
     double const before = lookups(), taken = counts.at("share of pixels lit by a partner view");
     auto const some = render(true, 0, Endings::in_cells, kPaths);
@@ -108,10 +110,10 @@ TEST_F(HiddenPixels, GiveNoLightToOthers)
                     right.push_back(all[k].picture.find("color")->data[3 * i + c]);
                 }
         double const relmse = measure_errors(seen, right, 3).relmse;
-        EXPECT_LT(relmse, 2e-3) << k;
+        EXPECT_LT(relmse, 4e-3) << k;
         double const mean = std::accumulate(seen.begin(), seen.end(), 0.0),
                      other = std::accumulate(right.begin(), right.end(), 0.0);
-        EXPECT_NEAR(mean / other, 1, 0.003) << k;
+        EXPECT_NEAR(mean / other, 1, 0.005) << k;
     }
     std::printf("look-ups: %.1f %% less\n", 100 * (1 - lookups() / before));
     EXPECT_GT(1 - lookups() / before, 0.5 * share());

@@ -24,8 +24,8 @@ HiddenMask around_a_lens()
     constexpr std::uint32_t kSides = 64;
     for (std::uint32_t k = 0; k < kSides; ++k) {
         double const angle = 2 * gi::kPi * k / kSides;
-        gi::dvec2 const way{std::cos(angle), std::sin(angle)};
-        gi::dvec2 const middle{0.5 * (kView.left + kView.right), 0.5 * (kView.bottom + kView.top)},
+        glm::dvec2 const way{std::cos(angle), std::sin(angle)};
+        glm::dvec2 const middle{0.5 * (kView.left + kView.right), 0.5 * (kView.bottom + kView.top)},
             radius{0.5 * (kView.right - kView.left), 0.5 * (kView.top - kView.bottom)};
         mask.points.push_back(gi::vec2(middle + radius * way));
         mask.points.push_back(gi::vec2(middle + 3.0 * radius * way));
