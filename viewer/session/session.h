@@ -21,7 +21,7 @@ using DriveBodies = std::function<void(gi::Scene const&, FrameOrder const&, gi::
 struct ViewPicture {
     gi::Picture picture;
     std::optional<gi::Picture> compared; ///< of the second method, where there is one
-    HiddenPixels hidden;                 ///< that were left out
+    HiddenPixels hidden{};               ///< that were left out
 };
 
 struct SessionFrame {
