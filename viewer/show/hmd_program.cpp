@@ -23,6 +23,13 @@ WindowSettings hidden()
     return settings;
 }
 
+/// Bit by bit: what is no number is equal to itself.
+bool same(HiddenMask const& a, HiddenMask const& b)
+{
+    return a.triangles == b.triangles &&
+           std::ranges::equal(std::as_bytes(std::span(a.points)), std::as_bytes(std::span(b.points)));
+}
+
 class HmdLoop {
 public:
     HmdLoop(ViewOptions const& options, HmdOptions const& headset, gi::Report& report)
@@ -59,7 +66,7 @@ public:
                                  {"phases", phases_},
                                  {"shown", shown_},
                                  {"reprojected", reprojected_},
-                                 {"not_rendered", not_rendered_}};
+                                 {"left_out", left_out_}};
         return core_.summary;
     }
 
@@ -93,7 +100,7 @@ private:
     {
         for (std::size_t eye = 0; eye < 2; ++eye) {
             HiddenMask const& mask = session.hidden(HmdEye(eye));
-            if (mask == told_[eye]) continue;
+            if (same(mask, told_[eye])) continue;
             told_[eye] = mask;
             core_.renderer->post(hidden_change(kEyes[eye], mask), [this](std::string const& wrong) {
                 if (!wrong.empty()) core_.report.lose("masks of eyes not used: all is rendered", 1, wrong);
@@ -105,7 +112,7 @@ private:
     {
         for (std::size_t eye = 0; eye < 2; ++eye) {
             HiddenPixels const& hidden = frame.result.views[eye].hidden;
-            not_rendered_[eye] = hidden ? double(std::ranges::count(*hidden, 1)) / double(hidden->size()) : 0.0;
+            left_out_[eye] = hidden ? double(std::ranges::count(*hidden, 1)) / double(hidden->size()) : 0.0;
         }
     }
 
@@ -190,7 +197,7 @@ private:
     std::vector<std::string> phases_;
     std::uint64_t shown_ = 0, reprojected_ = 0;
     std::array<HiddenMask, 2> told_;
-    std::array<double, 2> not_rendered_{}; ///< share of the pixels of each eye
+    std::array<double, 2> left_out_{}; ///< share of the pixels of each eye
 };
 
 } // namespace

@@ -16,9 +16,9 @@
 // names the call and its result. HmdKeeper (keeper.h) does the building again. One session at a time; all calls
 // come from the thread of the GL context.
 
+#include "viewer/order/hidden_mask.h"
 #include "viewer/xr/frame.h"
 #include "viewer/xr/info.h"
-#include "viewer/order/hidden_mask.h"
 
 #include <memory>
 #include <optional>
