@@ -29,7 +29,7 @@ std::string filled(std::vector<std::string> const& rows)
 
 TEST(FillHidden, TakesTheNearestOfTheRow)
 {
-    EXPECT_EQ(filled({"..ab.", "c...d", ".e..."}), "aaabb|cccdd|eeeee");
+    EXPECT_EQ(filled({"..ab.", "c...d", ".e..."}), "aaabb|ccddd|eeeee");
     EXPECT_EQ(filled({"c..d"}), "ccdd");
     EXPECT_EQ(filled({"abc"}), "abc");
 }
