@@ -118,8 +118,8 @@ void lay(KnownLight const& known, Planes const& from, int y, Planes& out)
             std::copy(from.row(p, y) + span.first, from.row(p, y) + span.end, out.row(p, y) + span.first);
         for (int k = 0; k < 2; ++k) {
             auto const color = out.row3(light::direct + 3 * k, y);
-            float *const bright = out.row(light::luminance + k, y), *const variance =
-                                                                        out.row(light::variance + k, y);
+            float* const bright = out.row(light::luminance + k, y);
+            float* const variance = out.row(light::variance + k, y);
             for (int x = span.first; x < span.end; ++x) {
                 bright[x] = luminance(color[x]);
                 variance[x] = 0;

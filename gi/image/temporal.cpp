@@ -42,6 +42,13 @@ vec3 times(vec3 light, vec3 albedo)
     return light;
 }
 
+/// Light over these albedos is meant alike, channel by channel.
+bool same_dark(vec3 a, vec3 b)
+{
+    return (a.x < kDarkest) == (b.x < kDarkest) && (a.y < kDarkest) == (b.y < kDarkest) &&
+           (a.z < kDarkest) == (b.z < kDarkest);
+}
+
 bool finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 /// Of direct light over the albedo, in windows around pixels: of all pixels at once, or of one after the other
@@ -114,13 +121,14 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
     std::swap(lights_, last_lights_);
     surfaces_.resize(pixels);
     lights_.resize(pixels);
-    auto const takes = [&](std::size_t i) { return partner != nullptr && from[i] != kOwnLight; };
+    std::vector<std::uint8_t> takes(partner ? pixels : 0);
     tbb::parallel_for(std::size_t(0), std::size_t(height), [&](std::size_t y) {
         for (std::size_t i = y * std::size_t(width); i < (y + 1) * std::size_t(width); ++i) {
             vec3 const a = rgb(albedo, i);
             surfaces_[i] = {rgb(normal, i), depth.data[i]};
             Light& light = lights_[i];
-            if (takes(i)) {
+            if (partner && from[i] != kOwnLight) takes[i] = same_dark(a, partner->lights_[from[i]].albedo);
+            if (partner && takes[i]) {
                 Light const& there = partner->lights_[from[i]];
                 light.direct = there.direct;
                 light.indirect = there.indirect;
@@ -164,7 +172,8 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             // Neither what is seen here now nor what was seen moves: an edge, perhaps, seen through another point.
             bool const still = glm::length(vec2(was)) < kStill, resting = still && last_lights_[i].still;
             lights_[i].still = still;
-            if (takes(i) && !still) continue;
+            bool const taken = partner && takes[i];
+            if (taken && !still) continue;
             // What the depth changes by over a pixel; frames look through different points of it.
             auto const change = [&](bool there, std::ptrdiff_t step) {
                 return there ? std::abs(surfaces_[std::size_t(std::ptrdiff_t(i) + step)].depth - here.depth)
@@ -195,7 +204,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             // Less than that is as good as nothing, and noisy.
             constexpr float kLeast = 0.05f;
             if (!(weight > kLeast)) {
-                local.started += !takes(i);
+                local.started += !taken;
                 continue;
             }
             Light& now = lights_[i];
@@ -204,7 +213,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                 now.l0 = glm::mix(last.l0, now.l0, 1 / now.still_frames);
                 now.albedo = glm::mix(last.albedo, now.albedo, 1 / now.still_frames);
             }
-            if (takes(i)) continue;
+            if (taken) continue;
             vec3 const held = neighbourhoods.clamped(before.direct / weight, x, y);
             local.held += held != before.direct / weight;
             now.frames = std::min(before.frames / weight + 1, float(settings_.most_frames));

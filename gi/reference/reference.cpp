@@ -117,6 +117,7 @@ public:
             results.push_back(trace_all(
                 loop, 0, [&](Accumulator& sums, std::uint32_t n) { trace_pass(through, sums, paths_, n); },
                 world_.world(), report_));
+            hide_pixels(results.back().picture, v.hidden);
         }
         paths_ += paths;
         return results;

@@ -188,7 +188,12 @@ private:
         return lost;
     }
 
-    void see(FrameView const& view) { see_all({&view, 1}); }
+    void see(FrameView const& view)
+    {
+        FrameView whole = view;
+        whole.hidden = {};
+        see_all({&whole, 1});
+    }
 
     void see_all(std::span<FrameView const> views)
     {

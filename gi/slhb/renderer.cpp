@@ -199,6 +199,8 @@ void SlhbRenderer::see(std::span<FrameView const> views)
         v.width = now.width;
         v.height = now.height;
         v.partner = now.partner;
+        v.hidden = now.hidden;
+        v.hidden_pixels = now.hidden.size() - std::size_t(std::ranges::count(now.hidden, 0));
         v.rays = camera_rays(now.camera, now.width, now.height, world_.origin);
         v.first = first;
         first += v.pixels();
@@ -266,7 +268,8 @@ struct SlhbRenderer::Work {
     }
 };
 
-/// Traces the paths that start at what a view sees, but for those that take their light from its partner.
+/// Traces the paths that start at what a view sees, but for hidden pixels and those that take their light from its
+/// partner.
 void SlhbRenderer::trace_view(View const& view, SlhbTracer::Pass const& pass, bool sharing, Work& work)
 {
     SlhbTracer const tracer(world_, view.rays, view.width, settings_, slhb_);
@@ -285,18 +288,24 @@ void SlhbRenderer::trace_view(View const& view, SlhbTracer::Pass const& pass, bo
         std::span const samples(&samples_[view.first + first], last - first);
         std::span const ends =
             sharing ? std::span(&endings_[view.first + first], last - first) : std::span<Ending>();
-        if (!partner) {
+        if (!partner && view.hidden.empty()) {
             tracer.trace(pass, starts, samples, ends, local.paths, local.slhb);
         } else {
             thread_local std::vector<PathSample> traced;
             thread_local std::vector<Ending> traced_ends;
             std::size_t left = 0;
             for (std::size_t k = 0; k < starts.size(); ++k) {
-                std::uint32_t& from = taken_from_[view.first + first + k];
-                from = partner->find(starts[k], samples[k]);
-                if (from == kOwnLight) starts[left++] = starts[k];
+                if (!view.hidden.empty() && view.hidden[first + k] != 0) {
+                    samples[k] = {};
+                    continue;
+                }
+                std::uint32_t const from = partner ? partner->find(starts[k], samples[k]) : kOwnLight;
+                if (from == kOwnLight)
+                    starts[left++] = starts[k];
+                else
+                    taken_from_[view.first + first + k] = from;
+                local.taken += from != kOwnLight;
             }
-            local.taken += starts.size() - left;
             starts.resize(left);
             traced.resize(left);
             traced_ends.resize(sharing ? left : 0);
@@ -433,7 +442,9 @@ void SlhbRenderer::trace(std::uint32_t index, std::span<Accumulator> sums, Endin
                 all = taken ? from : kOwnLight;
             }
         });
-        if (partner) taking_ += v.pixels();
+        if (partner) taking_ += v.pixels() - v.hidden_pixels;
+        hidden_ += v.hidden_pixels;
+        pixels_ += v.pixels();
     }
     add_work(work, sums[0].counts);
 }
@@ -484,6 +495,10 @@ void SlhbRenderer::report_work() const
     report_.count("exact rays", double(done_.exact_rays));
     report_.count("endings shaded for several paths", double(shared_.shaded()));
     if (taking_ > 0) report_.count("share of pixels lit by a partner view", double(taken_) / double(taking_));
+    if (hidden_ > 0) {
+        report_.count("pixels not rendered, as nobody sees them", double(hidden_));
+        report_.count("share of pixels not rendered", double(hidden_) / double(pixels_));
+    }
     if (pair_paths_ > 0)
         report_.count("share of a pair's paths traced on both sides",
                       double(without_paths_) / double(pair_paths_));

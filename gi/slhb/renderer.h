@@ -62,6 +62,8 @@ private:
         CameraRays rays; ///< through the middle of the lens, where motion vectors are measured
         CameraRays earlier;
         int width = 0, height = 0, partner = -1;
+        std::span<std::uint8_t const> hidden; ///< as FrameView has it
+        std::size_t hidden_pixels = 0;
         std::optional<PrimaryMap> primary; ///< not of orthographic cameras
         std::size_t first = 0;             ///< of its pixels among those of all views
         std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
@@ -108,6 +110,7 @@ private:
     std::vector<std::uint32_t> taken_from_;     ///< the same: pixel of the partner's view
     std::vector<std::uint32_t> light_from_;     ///< the same, of all passes of a frame
     std::uint64_t taken_ = 0, taking_ = 0;      ///< pixels that took light from a partner; of those that could
+    std::uint64_t hidden_ = 0, pixels_ = 0;     ///< not traced, as nobody sees them; all, in all passes
     std::uint64_t pair_paths_ = 0, without_paths_ = 0; ///< of pairs with what moves; of these, traced again
     SlhbCounts done_;
     /// Of sets of axes and lamps that are no more.

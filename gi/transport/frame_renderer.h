@@ -24,6 +24,10 @@ struct FrameView {
     int width = 0, height = 0; ///< pixels
     int partner = -1; ///< index of an earlier view that sees nearly the same: where it is valid, light that was
                       ///< found there may be taken over; -1 = none
+    /// 1 per pixel that nobody sees, rows from the top; empty = none. Outlives the call. Their pictures are black
+    /// there and have no surface. The method slhb traces nothing for them; others render them like all, and hide
+    /// them in the end.
+    std::span<std::uint8_t const> hidden{};
 };
 
 /// What is found of the light that surfaces send on to others.
@@ -57,6 +61,10 @@ struct PairResult {
     std::vector<vec3> covered;   ///< radiance that those paths bring to the pixel: no more than all of it
 };
 
+/// Makes all layers 0 in hidden pixels; "motion" is left as it is, since it is not read where nothing is seen.
+/// @param hidden  as FrameView has it
+void hide_pixels(Picture& picture, std::span<std::uint8_t const> hidden);
+
 class FrameRenderer {
 public:
     virtual ~FrameRenderer() = default;
@@ -71,7 +79,8 @@ public:
     virtual RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                                Moments const& moments = {}) = 0;
     /// Renders all views of one moment; what does not depend on the point of view is done once for all of them.
-    /// Budget, paths and size of the settings do not count here. @param paths  per pixel, >= 1
+    /// Budget, paths and size of the settings do not count here; hidden pixels do here alone.
+    /// @param paths  per pixel, >= 1
     /// @return a result per view, in their order; `interrupted` where `stop` came first, with fewer paths
     virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings endings,
                                             StopRequest const& stop) = 0;

@@ -86,6 +86,7 @@ public:
             results[k].paths = sums[k].paths;
             results[k].end = sums[k].paths < paths ? RenderEnd::interrupted : RenderEnd::paths;
             results[k].picture = sums[k].picture(world_.world());
+            hide_pixels(results[k].picture, views[k].hidden);
             lost += sums[k].counts;
         }
         report_.lose("paths cut at 1024 surfaces", lost.cut_paths);

@@ -251,5 +251,25 @@ TEST(Temporal, ASecondEyeHasThePastOfTheFirst)
             }
 }
 
+/// Light over an albedo that is too dark to tell is no light over another one.
+TEST(Temporal, ASecondEyeTakesNothingBetweenBlackAndWhite)
+{
+    TemporalReuse left({}), right({});
+    std::vector<std::uint32_t> const from(std::size_t(kWidth * kHeight), 0);
+    auto const of = [](float albedo) {
+        return picture([&](int, int) {
+            Values v;
+            v.albedo = vec3{albedo};
+            v.l1 = v.l2 = vec3{albedo};
+            return v;
+        });
+    };
+    Picture white = of(0.9f), black = of(0.001f);
+    left.add(white, SceneChange::light);
+    right.add(black, SceneChange::light, &left, from);
+    EXPECT_FLOAT_EQ(value(black, "L1", 20, 20), 0.001f);
+    EXPECT_FLOAT_EQ(value(black, "color", 20, 20), 0.002f);
+}
+
 } // namespace
 } // namespace gi::test

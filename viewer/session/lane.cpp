@@ -42,8 +42,9 @@ Lane::Lane(std::string const& method, gi::MovingWorld const& world, Settings con
     renderer_ = gi::find_method(method).frames(world, first.front().camera, s, report);
 }
 
-std::vector<gi::RenderResult> Lane::render(FrameOrder const& order, gi::Changes const& changes,
-                                           Settings const& settings, gi::StopRequest const& stop)
+std::vector<gi::RenderResult> Lane::render(FrameOrder const& order, std::span<HiddenPixels const> hidden,
+                                           gi::Changes const& changes, Settings const& settings,
+                                           gi::StopRequest const& stop)
 {
     if (!first_) renderer_->changed(changes);
     bool anything_moved = first_ || seen_.size() != order.views.size() || changes.any();
@@ -55,16 +56,19 @@ std::vector<gi::RenderResult> Lane::render(FrameOrder const& order, gi::Changes 
         bool const same = s.reuse && s.name == now.name && s.width == now.width && s.height == now.height &&
                           s.most_frames == settings.reuse;
         if (!same) s.reuse = std::make_unique<gi::TemporalReuse>(gi::TemporalSettings{settings.reuse});
-        moved[k] = !same || !(s.camera == now.camera);
+        moved[k] = !same || !(s.camera == now.camera) || s.hidden != hidden[k];
         anything_moved |= moved[k];
-        s = {now.name, now.camera, now.width, now.height, std::move(s.reuse), settings.reuse};
+        s = {now.name, now.camera, now.width, now.height, std::move(s.reuse), settings.reuse, hidden[k]};
     }
     first_ = false;
     still_ = anything_moved ? 1 : still_ + 1;
     std::vector<gi::FrameView> views;
-    for (ViewOrder const& v : order.views)
+    for (std::size_t k = 0; k < order.views.size(); ++k) {
+        ViewOrder const& v = order.views[k];
         views.push_back(
             {v.camera, v.width, v.height, settings.share_eyes && still_ <= kSharedFrames ? v.partner : -1});
+        if (hidden[k]) views.back().hidden = *hidden[k];
+    }
     // Their blur would stay in the mean of a picture at rest.
     auto const endings = settings.share_endings && anything_moved ? gi::Endings::in_cells : gi::Endings::exact;
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(order.paths), endings, stop);

@@ -3,6 +3,7 @@
 
 #include "gi/image/temporal.h"
 #include "gi/registry/registry.h"
+#include "viewer/session/hidden_views.h"
 #include "viewer/session/settings.h"
 
 #include <memory>
@@ -18,9 +19,10 @@ public:
     Lane(std::string const& method, gi::MovingWorld const& world, Settings const& settings, int threads,
          std::vector<ViewOrder> const& first, gi::Report& report);
 
-    /// A picture per view. @param changes  of the world since the last frame
-    std::vector<gi::RenderResult> render(FrameOrder const& order, gi::Changes const& changes,
-                                         Settings const& settings, gi::StopRequest const& stop);
+    /// A picture per view. @param hidden  per view  @param changes  of the world since the last frame
+    std::vector<gi::RenderResult> render(FrameOrder const& order, std::span<HiddenPixels const> hidden,
+                                         gi::Changes const& changes, Settings const& settings,
+                                         gi::StopRequest const& stop);
     int still_frames() const { return still_; }
 
 private:
@@ -30,6 +32,7 @@ private:
         int width = 0, height = 0;
         std::unique_ptr<gi::TemporalReuse> reuse;
         int most_frames = 0;
+        HiddenPixels hidden;
     };
     /// Reuse and filter of a view. @param partner  whose light it may have taken; finished before
     void finish(std::size_t view, std::vector<gi::RenderResult>& results, int partner, gi::SceneChange change,

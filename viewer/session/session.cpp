@@ -43,6 +43,7 @@ void Session::apply(Change const& change)
         edits_.push_back(change);
         return;
     }
+    if (is_hidden_mask(change.key)) return hidden_.apply(change);
     Settings changed = settings_;
     set(changed, change);
     settings_ = std::move(changed);
@@ -126,19 +127,21 @@ SessionFrame Session::render(FrameOrder const& order, gi::StopRequest const& sto
     if (order.views.empty()) return frame;
     if (!main_)
         main_ = std::make_unique<Lane>(settings_.method, *world_, settings_, threads_, order.views, report_);
-    std::vector<gi::RenderResult> results = main_->render(order, changes, settings_, stop);
+    std::vector<HiddenPixels> hidden;
+    for (ViewOrder const& v : order.views) hidden.push_back(hidden_.pixels(v));
+    std::vector<gi::RenderResult> results = main_->render(order, hidden, changes, settings_, stop);
     frame.still_frames = main_->still_frames();
     frame.options = results[0].options;
     frame.paths = int(results[0].paths);
-    for (gi::RenderResult& r : results) {
-        frame.rays += r.rays;
-        frame.views.push_back({std::move(r.picture), {}});
+    for (std::size_t k = 0; k < results.size(); ++k) {
+        frame.rays += results[k].rays;
+        frame.views.push_back({std::move(results[k].picture), {}, hidden[k]});
     }
     if (!settings_.compare.empty() && settings_.compare != settings_.method) {
         if (!compared_)
             compared_ =
                 std::make_unique<Lane>(settings_.compare, *world_, settings_, threads_, order.views, report_);
-        std::vector<gi::RenderResult> others = compared_->render(order, changes, settings_, stop);
+        std::vector<gi::RenderResult> others = compared_->render(order, hidden, changes, settings_, stop);
         for (std::size_t k = 0; k < others.size(); ++k) {
             frame.rays += others[k].rays;
             frame.views[k].compared = std::move(others[k].picture);

@@ -4,6 +4,7 @@
 // bit for bit, on any number of threads. The live viewer, the ranks of a cluster and the replay of a recording are
 // three ways to feed it.
 
+#include "viewer/session/hidden_views.h"
 #include "viewer/session/lane.h"
 #include "viewer/session/scene_edits.h"
 #include "viewer/session/settings.h"
@@ -20,6 +21,7 @@ using DriveBodies = std::function<void(gi::Scene const&, FrameOrder const&, gi::
 struct ViewPicture {
     gi::Picture picture;
     std::optional<gi::Picture> compared; ///< of the second method, where there is one
+    HiddenPixels hidden{};               ///< that were left out
 };
 
 struct SessionFrame {
@@ -36,8 +38,8 @@ public:
     /// @param report  gets losses and counts; outlives the session  @param threads  0 = all
     Session(LoadScene load, int threads, gi::Report& report);
 
-    /// Keys are those of Settings, of scene_edits.h, and "scene". Throws InputError and changes nothing where the
-    /// value cannot be.
+    /// Keys are those of Settings, of scene_edits.h, of hidden_mask.h, and "scene". Throws InputError and changes
+    /// nothing where the value cannot be.
     void apply(Change const& change);
     /// Renders an order; its changes have been applied already. Throws InputError without a scene.
     SessionFrame render(FrameOrder const& order, gi::StopRequest const& stop);
@@ -70,6 +72,7 @@ private:
     std::unique_ptr<gi::MovingWorld> world_;
     std::vector<PlacedObject> placed_;
     std::vector<Change> edits_; ///< of lights, materials, environment: one per key, made again in a new world
+    HiddenViews hidden_;
     DriveBodies drive_;
     gi::Changes pending_; ///< edits since the last frame
     double time_s_ = 0;   ///< of the last frame

@@ -1,5 +1,7 @@
 #include "viewer/show/hmd_eyes.h"
 
+#include "viewer/show/fill_hidden.h"
+
 #include <cstdlib>
 
 namespace viewer {
@@ -25,10 +27,20 @@ void HmdEyes::make_targets(std::array<glm::ivec2, 2> const& sizes_px)
 void HmdEyes::take(LiveFrame const& frame)
 {
     for (std::size_t eye = 0; eye < 2; ++eye) {
-        gi::Picture const& p = frame.result.views[eye].picture;
+        ViewPicture const& view = frame.result.views[eye];
+        gi::Picture const& p = view.picture;
         gi::Layer const* const depth = p.find("depth");
-        pictures_[eye].upload({p.width, p.height}, p.find("color")->data,
-                              depth == nullptr ? std::span<float const>() : depth->data);
+        std::span<float const> color = p.find("color")->data,
+                               depths = depth == nullptr ? std::span<float const>() : depth->data;
+        if (view.hidden) {
+            color_.assign(color.begin(), color.end());
+            depth_.assign(depths.begin(), depths.end());
+            fill_hidden(*view.hidden, p.width, color_, 3);
+            if (depth != nullptr) fill_hidden(*view.hidden, p.width, depth_, 1);
+            color = color_;
+            depths = depth_;
+        }
+        pictures_[eye].upload({p.width, p.height}, color, depths);
     }
 }
 

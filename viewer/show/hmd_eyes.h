@@ -22,7 +22,7 @@ struct HmdContext {
 /// The context is current in all calls.
 class HmdEyes {
 public:
-    /// Uploads the pictures of both eyes.
+    /// Uploads the pictures of both eyes; hidden pixels as fill_hidden has it.
     void take(LiveFrame const& frame);
     /// Of the frame taken last, seen from `now`, into the targets.
     void draw(LiveFrame const& frame, std::array<gi::Camera, 2> const& now,
@@ -43,6 +43,7 @@ private:
     std::array<Reprojection, 2> reprojections_;
     std::array<std::optional<TextureTarget>, 2> targets_;
     std::array<glm::ivec2, 2> sizes_{};
+    std::vector<float> color_, depth_; ///< that hidden pixels were filled in
 };
 
 } // namespace viewer

@@ -4,6 +4,7 @@
 #include "viewer/show/view_core.h"
 #include "viewer/xr/keeper.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -12,12 +13,21 @@
 namespace viewer {
 namespace {
 
+constexpr char const* kEyes[] = {"left eye", "right eye"}; ///< names of their views
+
 WindowSettings hidden()
 {
     WindowSettings settings;
     settings.size_px = {64, 64};
     settings.visibility = Visibility::hidden;
     return settings;
+}
+
+/// Bit by bit: what is no number is equal to itself.
+bool same(HiddenMask const& a, HiddenMask const& b)
+{
+    return a.triangles == b.triangles &&
+           std::ranges::equal(std::as_bytes(std::span(a.points)), std::as_bytes(std::span(b.points)));
 }
 
 class HmdLoop {
@@ -52,8 +62,11 @@ public:
         }
         core_.finish();
         core_.summary.gl = context_.gl().description();
-        core_.summary.headset = {
-            {"losses", losses_}, {"phases", phases_}, {"shown", shown_}, {"reprojected", reprojected_}};
+        core_.summary.headset = {{"losses", losses_},
+                                 {"phases", phases_},
+                                 {"shown", shown_},
+                                 {"reprojected", reprojected_},
+                                 {"left_out", left_out_}};
         return core_.summary;
     }
 
@@ -82,8 +95,30 @@ private:
         return state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -start_);
     }
 
+    /// What the lenses hide is not rendered.
+    void tell_hidden(HmdSession const& session)
+    {
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            HiddenMask const& mask = session.hidden(HmdEye(eye));
+            if (same(mask, told_[eye])) continue;
+            told_[eye] = mask;
+            core_.renderer->post(hidden_change(kEyes[eye], mask), [this](std::string const& wrong) {
+                if (!wrong.empty()) core_.report.lose("masks of eyes not used: all is rendered", 1, wrong);
+            });
+        }
+    }
+
+    void note_hidden(LiveFrame const& frame)
+    {
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            HiddenPixels const& hidden = frame.result.views[eye].hidden;
+            left_out_[eye] = hidden ? double(std::ranges::count(*hidden, 1)) / double(hidden->size()) : 0.0;
+        }
+    }
+
     void show(HmdSession& session, HmdFrame const& frame)
     {
+        tell_hidden(session);
         if (!started_ && frame.tracked.head) {
             start_ = frame.tracked.head->position;
             if (start_.y > 0.3) state_.navigation.set_eye_height(start_.y);
@@ -99,8 +134,8 @@ private:
         for (std::size_t eye = 0; eye < 2; ++eye) {
             now[eye] = frame.views[eye].camera;
             now[eye].world_from_camera = at.world_from_room * now[eye].world_from_camera;
-            at.views.push_back({eye == 0 ? "left eye" : "right eye", now[eye], frame.views[eye].width,
-                                frame.views[eye].height, eye == 0 ? -1 : 0});
+            at.views.push_back(
+                {kEyes[eye], now[eye], frame.views[eye].width, frame.views[eye].height, eye == 0 ? -1 : 0});
         }
         core_.renderer->look(std::move(at));
         auto const newest = core_.renderer->newest();
@@ -110,6 +145,7 @@ private:
         if (fresh) {
             state_.frame = newest;
             eyes_.take(*newest);
+            note_hidden(*newest);
         }
         double const uploaded = state_.clock.now_s();
         HmdPicture picture;
@@ -160,6 +196,8 @@ private:
     int losses_ = 0;
     std::vector<std::string> phases_;
     std::uint64_t shown_ = 0, reprojected_ = 0;
+    std::array<HiddenMask, 2> told_;
+    std::array<double, 2> left_out_{}; ///< share of the pixels of each eye
 };
 
 } // namespace

@@ -94,6 +94,8 @@ void ViewCore::make_files()
     RecordingHeader header = options.header;
     header.scene = options.scene;
     header.settings = {{"settings", all_settings(state.settings)}, {"load", options.load_options}};
+    for (Change const& c : options.settings)
+        if (is_hidden_mask(c.key)) header.settings["settings"][c.key] = c.value;
     recorder_ = std::make_unique<Recorder>(options.record, header, report);
 }
 

@@ -33,7 +33,6 @@ void MaskReader::read()
         to.points.clear();
         for (XrVector2f const p : points) to.points.push_back({p.x, p.y});
         to.triangles = triangles;
-        ++to.version;
     }
 }
 

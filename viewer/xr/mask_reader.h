@@ -1,9 +1,9 @@
 #pragma once
 // Asks the runtime for the hidden triangles of both eyes.
 
+#include "viewer/order/hidden_mask.h"
 #include "viewer/xr/frame.h"
 #include "viewer/xr/runtime.h"
-#include "viewer/xr/visibility.h"
 
 namespace viewer {
 

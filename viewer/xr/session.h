@@ -16,9 +16,9 @@
 // names the call and its result. HmdKeeper (keeper.h) does the building again. One session at a time; all calls
 // come from the thread of the GL context.
 
+#include "viewer/order/hidden_mask.h"
 #include "viewer/xr/frame.h"
 #include "viewer/xr/info.h"
-#include "viewer/xr/visibility.h"
 
 #include <memory>
 #include <optional>
@@ -99,8 +99,7 @@ public:
     /// Room from the space of the runtime; identity until recentred, but for the eye height.
     RoomPose room_from_space() const;
 
-    /// Pixels of an eye that nobody sees; none where the runtime does not tell. Grows a new version when it
-    /// changes.
+    /// Pixels of an eye that nobody sees; none where the runtime does not tell. Changes where the runtime says so.
     HiddenMask const& hidden(HmdEye eye) const;
     HmdInfo const& info() const;
     HmdCounts const& counts() const;
