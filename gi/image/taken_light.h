@@ -15,7 +15,6 @@ struct TakenLight {
     /// As far on its way as the picture that takes is to be brought; null = none.
     Picture const* partner = nullptr;
     std::span<std::uint32_t const> from{}; ///< per pixel: a pixel of the partner, row by row, or kOwnLight
-};                                         ///< per pixel: a pixel of the partner, row by row, or kOwnLight
 };
 
 } // namespace gi
