@@ -4,6 +4,8 @@
 
 namespace gi {
 
+void FrameRenderer::follow(int) {}
+
 PairResult FrameRenderer::pair(FrameView const&, PairSettings const&, PairWorld const&, StopRequest const&)
 {
     throw InputError("pictures with and without what moves, by this method",

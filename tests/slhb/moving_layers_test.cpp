@@ -103,7 +103,8 @@ TEST_P(Appended, IsWhatIsBuiltFromEverything)
     split.store(directions);
     for (float const t : {0.0f, 0.3f, 1.1f, 0.6f}) {
         moving.go_to(t, holes);
-        split.move();
+        split.moved();
+        split.follow();
         AxisSet whole(moving.source(false, most_layers));
         whole.store(directions);
         ASSERT_EQ(columns(split.pool()), columns(whole.pool())) << t;
@@ -127,7 +128,8 @@ TEST(Moving, FreshAxesHaveWhatMovesToo)
     for (std::uint32_t pass = 0; pass < 6; ++pass) {
         moving.go_to(0.2f * float(pass), false);
         split.refresh(2, 6, 2, pass);
-        split.move();
+        split.moved();
+        split.follow();
         AxisSet whole(moving.source(false, 0));
         whole.refresh(2, 6, 2, pass);
         ASSERT_EQ(columns(split.pool()), columns(whole.pool())) << pass;
@@ -140,10 +142,12 @@ TEST(Moving, WhatLeavesTheBuffersLeavesNothingBehind)
     AxisSet split(moving.source(true, 0));
     split.store(make_directions("octahedron:8"));
     auto const still = columns(split.pool());
-    split.move();
+    split.moved();
+    split.follow();
     EXPECT_NE(columns(split.pool()), still);
     moving.go_to(1e6f, false); // far outside every grid
-    split.move();
+    split.moved();
+    split.follow();
     EXPECT_EQ(columns(split.pool()), still);
 }
 

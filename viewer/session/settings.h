@@ -15,6 +15,8 @@ struct Settings {
     std::string method = "slhb", compare;      ///< compare: a second method to look at beside it; empty = none
     std::string schedule = "auto", directions; ///< as --schedule and --directions
     int resolution = 0, axes = 0, lamps = 0;   ///< of slhb, 0 = what the plan chooses
+    int followed = 0; ///< stored axes of each bounce that follow what moves in a frame, 0 = all; with the schedule
+                      ///< auto the live viewer sets it (governor.h)
     int light_paths = 256;                     ///< of the methods vpl_*, as are the next
     std::string points = "1024";               ///< of an imperfect shadow map, or "30%" of its texels
     double ao_radius_m = 0.5;
