@@ -8,8 +8,9 @@
 namespace viewer {
 namespace {
 
-constexpr int kLevels[] = {0, 32, 16, 8}; // axes of a bounce, 0 = all
-constexpr double kShare = 0.2, kToGrow = 0.6 * kShare, kAtOnce = 0.5;
+constexpr int kLevels[] = {0, 32, 16, 8};         // axes of a bounce, 0 = all
+constexpr double kMost[] = {0.2, 0.2, 0.35, 1e9}; // of the time between frames, for each level
+constexpr double kToGrow = 0.6, kAtOnce = 0.5;
 constexpr int kFramesToGrow = 8, kFramesKept = 3, kQuiet = 8;
 
 /// Different axes of three bounces, which choose theirs by themselves.
@@ -39,8 +40,8 @@ void FollowGovernor::measured(Frame const& f)
     if (f.seconds > kAtOnce * frame_s_) axis_s_.clear();
     axis_s_.push_back(axis_s);
     if (axis_s_.size() > kFramesKept) axis_s_.pop_front();
-    while (level_ + 1 < std::size(kLevels) && share(level_) > kShare) ++level_;
-    calm_ = level_ > 0 && share(level_ - 1) < kToGrow ? calm_ + 1 : 0;
+    while (level_ + 1 < std::size(kLevels) && share(level_) > kMost[level_]) ++level_;
+    calm_ = level_ > 0 && share(level_ - 1) < kToGrow * kMost[level_ - 1] ? calm_ + 1 : 0;
     if (calm_ < kFramesToGrow) return;
     --level_;
     calm_ = 0;
@@ -60,6 +61,7 @@ std::string schedule_sentence(std::string const& schedule, int followed, int sto
 {
     if (schedule != "auto") return schedule + ", as it was set";
     std::string const share = fmt::format("{:.0f} % of the time between frames", 100 * share_of_all);
+    if (!(share_of_all > 0)) return fmt::format("stored: all {} directions; nothing has moved so far", stored);
     if (followed == 0)
         return fmt::format("stored: all {} directions follow what moves, which takes {} where something does",
                            stored, share);

@@ -7,12 +7,13 @@
 // nothing is built anew, and nothing that was reused is lost. The rule is measured:
 // docs/results/2026-11-22-schedules.md.
 //
-// - As many as take no more than kShare of the time between frames: all, or 32, 16 or 8 of each bounce.
-// - Fewer when the least of the last three frames says so, or at once where a frame's time is half used up by it.
-// - More, one step at a time, when eight frames in succession say that it would take less than 0.6 of that.
+// - All, or 32 of each bounce, where they take no more than a fifth of the time between frames; else 16 where they
+//   take no more than 0.35 of it; else 8.
+// - Fewer when the least of the last three frames says so, or at once where half of a frame's time is used up by
+// it.
+// - More, one step at a time, when eight frames in succession say that it would take less than 0.6 of that limit.
 // - Where nothing moves, one step more in every frame, up to all: what has followed costs nothing then, and the
-// picture
-//   converges as with all. When something moves again, as many as before.
+//   picture converges as with all. When something moves again, as many as before.
 
 #include <deque>
 #include <string>
