@@ -90,7 +90,7 @@ void AxisSet::follow_some(std::uint32_t sequences, std::uint32_t count, std::uin
     few_.assign(sequences, {});
     std::vector<std::uint8_t> followed(n, 0);
     for (std::uint32_t s = 0; s < sequences; ++s) {
-        // Every n-th axis: sets of directions are ordered by place, so that each part is spread over all.
+        // Every n-th axis: those of a subdivided solid are ordered by place, so each part is spread over all.
         std::vector<std::uint32_t> order(parts);
         std::iota(order.begin(), order.end(), 0u);
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0xf0110, s, turn / parts);

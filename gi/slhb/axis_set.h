@@ -12,8 +12,8 @@
 namespace gi {
 
 /// Plain arrays for choosing among few axes: the cosines of all of them are computed, so that the chance is exact.
-/// Weighted sums of what the axes bring estimate the mean over the half sphere where the mean of `share` over all
-/// sets that might have been chosen is that of their solid angles.
+/// The integral over the half sphere is estimated by the sum over the axes, each weighted by 2 pi / count times
+/// its `share`.
 struct FewAxes {
     static constexpr std::size_t kMost = 64;
 
@@ -149,7 +149,7 @@ private:
     CosineTables tables_;
     std::vector<FewAxes> few_; ///< per sequence
     std::uint32_t few_count_ = 0;
-    bool some_ = false;    ///< of stored axes paths take `few_`
+    bool some_ = false;       ///< of stored axes paths take `few_`
     std::uint32_t drawn_ = 0; ///< of each sequence, the next number
     bool moved_ = true;       ///< what moves is not where it was when axes last followed it
     std::uint64_t built_ = 0, lost_ = 0, layers_ = 0;

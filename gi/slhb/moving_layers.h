@@ -20,8 +20,8 @@ public:
         std::uint32_t most_layers; ///< per texel, as in fill_hit_buffer
     };
 
-    /// Puts the layers of now into the axes that follow, where they are not there yet; takes those of before out of
-    /// all others. After fill_pool, call forget() first.
+    /// Puts the layers of now into the axes that follow, where they are not there yet; takes those of before out
+    /// of all others. After fill_pool, call forget() first.
     /// @param cut_seeds  per axis, those that its static buffer was built with  @param followed  per axis: 0 = not
     /// @return layers that were lost: beyond most_layers, in columns that something moving is in
     /// Throws InputError where 32-bit indices do not suffice.
