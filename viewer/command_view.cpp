@@ -153,6 +153,7 @@ int finish(ViewArguments const& a, ViewSummary const& done, ClusterLink const* l
     stats["version"] = version_text();
     stats["gl"] = done.gl;
     stats["frames_rendered"] = done.rendered;
+    stats["schedule"] = done.schedule;
     stats["presented"] = done.presented;
     stats["recorded"] = done.recorded;
     stats["longest_block_ms"] = done.longest_block_ms;

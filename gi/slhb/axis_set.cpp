@@ -3,6 +3,7 @@
 #include "gi/base/rqmc.h"
 
 #include <algorithm>
+#include <numeric>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -65,12 +66,43 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
     moved_ = true;
 }
 
-void AxisSet::move()
+void AxisSet::move(std::span<std::uint8_t const> followed)
 {
     if (source_.first_moving >= source_.soup.count) return;
-    moved_ = false;
-    moving_.append({source_.soup, source_.first_moving, source_.cut_outs, source_.most_layers}, cut_seeds_, pool_);
-    lost_ += moving_.lost();
+    if (std::exchange(moved_, false)) moving_.moved();
+    lost_ += moving_.append({source_.soup, source_.first_moving, source_.cut_outs, source_.most_layers},
+                            cut_seeds_, followed, pool_);
+}
+
+void AxisSet::follow()
+{
+    some_ = false;
+    move(std::vector<std::uint8_t>(pool_.size(), 1));
+}
+
+void AxisSet::follow_some(std::uint32_t sequences, std::uint32_t count, std::uint32_t turn)
+{
+    std::size_t const n = tables_.axes.size();
+    auto const parts = std::uint32_t(
+        count == 0 ? 1 : std::max(n / std::min<std::size_t>(count, n), (n + FewAxes::kMost - 1) / FewAxes::kMost));
+    if (parts == 1) return follow();
+    some_ = true;
+    few_.assign(sequences, {});
+    std::vector<std::uint8_t> followed(n, 0);
+    for (std::uint32_t s = 0; s < sequences; ++s) {
+        // Every n-th axis: those of a subdivided solid are ordered by place, so each part is spread over all.
+        std::vector<std::uint32_t> order(parts);
+        std::iota(order.begin(), order.end(), 0u);
+        Pcg32 rng = Pcg32::for_path(source_.seed ^ 0xf0110, s, turn / parts);
+        for (std::uint32_t k = parts; k > 1; --k) std::swap(order[k - 1], order[rng.next() % k]);
+        FewAxes& few = few_[s];
+        for (std::size_t a = order[turn % parts]; a < n; a += parts) ++few.count;
+        for (std::size_t k = 0, a = order[turn % parts]; a < n; a += parts, ++k) {
+            few.set(k, tables_.axes[a], tables_.solid_angles[a] * float(parts * few.count) / (2 * kPi), a);
+            followed[a] = 1;
+        }
+    }
+    move(followed);
 }
 
 void AxisSet::store(DirectionSet const& directions)
@@ -105,9 +137,7 @@ void AxisSet::refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_
             vec3 const axis = half_sphere(vec2(stream.sample_together(0)));
             std::uint32_t const a = number % count;
             axes.push_back({std::size_t(s) * count + a, axis, number});
-            few.x[a] = axis.x;
-            few.y[a] = axis.y;
-            few.z[a] = axis.z;
+            few.set(a, axis, 1, std::size_t(s) * count + a);
         }
     }
     drawn_ = last;

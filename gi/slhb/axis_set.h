@@ -12,18 +12,31 @@
 namespace gi {
 
 /// Plain arrays for choosing among few axes: the cosines of all of them are computed, so that the chance is exact.
+/// The integral over the half sphere is estimated by the sum over the axes, each weighted by 2 pi / count times
+/// its `share`.
 struct FewAxes {
     static constexpr std::size_t kMost = 64;
 
-    std::uint32_t count = 0;                            ///< all of one solid angle
-    alignas(64) std::array<float, kMost> x{}, y{}, z{}; ///< zero beyond count
+    std::uint32_t count = 0;
+    alignas(64) std::array<float, kMost> x{}, y{}, z{}; ///< unit axes; zero beyond count
+    alignas(64) std::array<float, kMost> share{};       ///< solid angle over 2 pi / count; zero beyond count
+    std::array<std::uint32_t, kMost> slot{};            ///< in the pool
+
+    void set(std::size_t k, vec3 axis, float share_of_all, std::size_t in_pool)
+    {
+        x[k] = axis.x;
+        y[k] = axis.y;
+        z[k] = axis.z;
+        share[k] = share_of_all;
+        slot[k] = std::uint32_t(in_pool);
+    }
 
     GI_FN AxisSample sample(vec3 normal, float u) const
     {
         alignas(64) std::array<float, kMost> weight;
         float total = 0;
         for (std::size_t k = 0; k < count; ++k)
-            weight[k] = std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
+            weight[k] = share[k] * std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
         for (std::size_t k = 0; k < count; ++k) total += weight[k];
         // The first axis up to which the weights sum to more than u of all: no branch on what is random.
         float const wanted = u * total;
@@ -34,23 +47,19 @@ struct FewAxes {
             k += sum <= wanted ? 1 : 0;
         }
         vec3 const axis{x[k], y[k], z[k]};
-        return {k, glm::dot(axis, normal) < 0 ? -axis : axis, 2 * total / float(count)};
+        return {slot[k], glm::dot(axis, normal) < 0 ? -axis : axis, 2 * total / float(count)};
     }
 };
 
 /// What AxisSet::sample does, for kernels.
 struct AxisChoice {
     View<FewAxes const> few; ///< per sequence
-    std::uint32_t few_count = 0;
     CosineTablesView tables; ///< where there are any, in place of the few
 
     GI_FN AxisSample sample(std::uint32_t bounce, vec3 normal, float u) const
     {
         if (!tables.axes.empty()) return tables.sample(normal, double(u));
-        std::uint32_t const sequence = bounce % std::uint32_t(few.size());
-        AxisSample s = few[sequence].sample(normal, u);
-        s.axis += sequence * few_count;
-        return s;
+        return few[bounce % std::uint32_t(few.size())].sample(normal, u);
     }
 };
 
@@ -85,23 +94,21 @@ public:
     /// so that a pass has the same axes whether or not the passes before it were made here.
     void refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh, std::uint32_t pass);
 
-    /// Puts what moves into the axes that there are, as it is now; after store() and refresh(), and whenever it
-    /// has moved. Not with packed layers.
-    void move();
-    /// What moves is elsewhere: the next follow() moves it.
+    /// What moves is elsewhere: follow() puts it into the axes as it is now. Not with packed layers.
     void moved() { moved_ = true; }
-    /// Moves where axes are new or something has moved.
-    void follow()
-    {
-        if (moved_) move();
-    }
+    /// Puts what moves into all axes that there are, where they are new or something has moved.
+    void follow();
+    /// Of stored axes only some, and paths take no others: for each of `sequences` bounces one part of the set of
+    /// about `count` axes (up to FewAxes::kMost), in random order all parts in successive turns. The mean over
+    /// the parts is what all axes would bring. @param count  0 = all
+    void follow_some(std::uint32_t sequences, std::uint32_t count, std::uint32_t turn);
     /// Look-ups find what moves, or go on as if it was not there.
     void show_moving(bool shown) { pool_.without_moving = !shown; }
 
     /// @param bounce  0 = the first  @param normal unit  @param u uniform in [0, 1)
     AxisSample sample(std::uint32_t bounce, vec3 normal, float u) const
     {
-        return AxisChoice{few_, few_count_, view(tables_)}.sample(bounce, normal, u);
+        return AxisChoice{few_, some_ ? CosineTablesView{} : view(tables_)}.sample(bounce, normal, u);
     }
     /// Axes that the first bounce chooses from: the first ones of the pool.
     std::size_t first_bounce_axes() const { return tables_.axes.empty() ? few_count_ : tables_.axes.size(); }
@@ -132,6 +139,7 @@ private:
         std::uint32_t number; ///< decides where its grid lies
     };
     void build(std::vector<NewAxis> const& axes);
+    void move(std::span<std::uint8_t const> followed);
 
     Source source_;
     std::vector<HitBuffer> buffers_;
@@ -141,8 +149,9 @@ private:
     CosineTables tables_;
     std::vector<FewAxes> few_; ///< per sequence
     std::uint32_t few_count_ = 0;
+    bool some_ = false;       ///< of stored axes paths take `few_`
     std::uint32_t drawn_ = 0; ///< of each sequence, the next number
-    bool moved_ = true;       ///< what moves is not in the pool as it is now
+    bool moved_ = true;       ///< what moves is not where it was when axes last followed it
     std::uint64_t built_ = 0, lost_ = 0, layers_ = 0;
 };
 

@@ -43,6 +43,12 @@ public:
         if (changes.geometry || lights) renderer_->world_moved(changes.geometry, lights);
     }
 
+    void follow(int axes) override
+    {
+        followed_ = std::uint32_t(axes);
+        renderer_->follow(followed_);
+    }
+
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                        Moments const& moments) override
     {
@@ -221,6 +227,7 @@ private:
         TriangleSoup soup = make_soup(world);
         settings_.slhb = choose_frame_settings(asked_, world, soup);
         renderer_.emplace(world, views, settings_, std::move(soup), world.static_triangles, report_);
+        renderer_->follow(followed_);
         restart_ = false;
         lost_ = 0;
     }
@@ -232,7 +239,7 @@ private:
     std::optional<SlhbRenderer> renderer_;
     std::vector<Accumulator> sums_; ///< of the views
     PairSums pair_sums_;
-    std::uint32_t passes_ = 0;
+    std::uint32_t passes_ = 0, followed_ = 0;
     std::uint64_t lost_ = 0; ///< layers that were reported
     bool restart_ = false;
     double start_s_ = 0; ///< that the first start took

@@ -82,7 +82,6 @@ public:
         paths.primary = std::as_const(primary_).view();
         paths.axes = there.view();
         paths.choice = {few.view(),
-                        axes.tables().axes.empty() ? std::uint32_t(axes.first_bounce_axes()) : 0,
                         {std::as_const(tables_).view(), std::as_const(directions_).view(),
                          std::as_const(solid_angles_).view(), axes.tables().bins_across}};
         paths.lamps = std::as_const(lamps_).view();

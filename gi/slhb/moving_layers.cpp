@@ -59,9 +59,15 @@ void MovingLayers::merge(Source const& source, std::uint32_t cut_seed, AxisPool 
     out.layers.resize(kept);
 }
 
-void MovingLayers::append(Source const& source, std::span<std::uint32_t const> cut_seeds, AxisPool& pool)
+std::uint64_t MovingLayers::append(Source const& source, std::span<std::uint32_t const> cut_seeds,
+                                   std::span<std::uint8_t const> followed, AxisPool& pool)
 {
     axes_.resize(pool.size());
+    if (static_layers_ != kNone && std::ranges::none_of(axes_, [&](Axis const& axis) {
+            bool const wanted = followed[std::size_t(&axis - axes_.data())] != 0;
+            return !axis.current && (wanted || !axis.texels.empty());
+        }))
+        return 0;
     auto const set = [&](std::size_t a, std::size_t k, LayerRange r) {
         pool.ranges[pool.first_offset[a] + axes_[a].texels[k]] = r;
     };
@@ -83,14 +89,26 @@ void MovingLayers::append(Source const& source, std::span<std::uint32_t const> c
             }
         });
     }
-    tbb::parallel_for(std::size_t(0), pool.size(),
-                      [&](std::size_t a) { merge(source, cut_seeds[a], pool, a, axes_[a]); });
+    tbb::parallel_for(std::size_t(0), pool.size(), [&](std::size_t a) {
+        Axis& axis = axes_[a];
+        axis.lost = 0;
+        if (axis.current) return;
+        axis.current = followed[a] != 0;
+        if (axis.current) {
+            merge(source, cut_seeds[a], pool, a, axis);
+        } else {
+            axis.texels.clear();
+            axis.layers.clear();
+            axis.moving = 0;
+        }
+    });
     std::vector<std::size_t> first(pool.size() + 1, static_layers_);
-    layers_ = lost_ = 0;
+    std::uint64_t lost = 0;
+    layers_ = 0;
     for (std::size_t a = 0; a < pool.size(); ++a) {
         first[a + 1] = first[a] + axes_[a].layers.size();
         layers_ += axes_[a].moving;
-        lost_ += axes_[a].lost;
+        lost += axes_[a].lost;
     }
     constexpr std::size_t kMost = 0x7fffffff;
     if (first.back() > kMost)
@@ -104,6 +122,7 @@ void MovingLayers::append(Source const& source, std::span<std::uint32_t const> c
         for (std::size_t k = 0; k < axis.texels.size(); ++k)
             set(a, k, {at + (k > 0 ? axis.ends[k - 1] : 0), at + axis.ends[k]});
     });
+    return lost;
 }
 
 } // namespace gi

@@ -120,7 +120,6 @@ void SlhbRenderer::make_axes()
     if (slhb_.schedule != Schedule::stored || !walks_) return;
     StageTimer const timer(report_, "build (hit buffers)");
     axes_->store(make_directions(slhb_.directions));
-    axes_->follow();
 }
 
 void SlhbRenderer::make_lamps()
@@ -148,9 +147,7 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
             if (judge_) judge_->moved(world_);
         }
         if (contains(grid_bounds_, world_.bounds)) {
-            StageTimer const timer(report_, "layers that moved");
             axes_->moved();
-            if (slhb_.schedule == Schedule::stored && walks_) axes_->follow(); // for others every pass does
         } else {
             // Some room, so that it does not happen in every frame.
             Bounds const b = world_.bounds;
@@ -177,6 +174,7 @@ void SlhbRenderer::materials_changed()
 
 void SlhbRenderer::end_frame()
 {
+    ++frames_;
     earlier_ = {first_moving_, {}};
     for (View& v : views_) v.earlier = v.rays;
 }
@@ -218,7 +216,10 @@ void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
     // Surfaces that a path may leave along an axis.
     auto const sequences =
         std::uint32_t(std::clamp(settings_.bounces + (to_the_end() ? 1 : 0), 1, int(AxisSet::kSequences)));
-    {
+    if (walks_ && slhb_.schedule == Schedule::stored && first_moving_ < soup_.count) {
+        StageTimer const timer(report_, "layers that moved");
+        axes_->follow_some(sequences, slhb_.gather ? 0 : followed_, frames_);
+    } else {
         StageTimer const timer(report_, "hit buffers of a pass");
         if (walks_ && slhb_.schedule != Schedule::stored) {
             axes_->refresh(sequences, std::uint32_t(slhb_.axes), std::uint32_t(slhb_.fresh_axes), index);

@@ -32,6 +32,9 @@ public:
     /// Colours, roughnesses or the sky have changed, but nothing of what lets rays through; lights are
     /// world_moved's.
     void materials_changed();
+    /// From the next frame on: of the stored axes of each bounce about `axes` follow what moves, others from frame
+    /// to frame, and paths take no others; 0 = all.
+    void follow(std::uint32_t axes) { followed_ = axes; }
     /// From the next pass on. A view is what the view of the same index was in the frame before.
     void see(std::span<FrameView const> views);
     /// One more path for every pixel. @param index of the pass, which decides its random numbers
@@ -97,6 +100,7 @@ private:
     std::unique_ptr<ExactVisibility> exact_, judge_;
     Bounds grid_bounds_; ///< of the hit buffers
     std::optional<AxisSet> axes_;
+    std::uint32_t followed_ = 0, frames_ = 0; ///< axes of a bounce, 0 = all; so far
     std::optional<Lamps> lamps_;
     EarlierCorners earlier_;
     std::vector<SkyAlong> sky_; ///< in a pass

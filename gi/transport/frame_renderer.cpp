@@ -15,6 +15,8 @@ void hide_pixels(Picture& picture, std::span<std::uint8_t const> hidden)
     }
 }
 
+void FrameRenderer::follow(int) {}
+
 PairResult FrameRenderer::pair(FrameView const&, PairSettings const&, PairWorld const&, StopRequest const&)
 {
     throw InputError("pictures with and without what moves, by this method",

@@ -71,6 +71,10 @@ public:
 
     /// The world has changed; before the next frame.
     virtual void changed(Changes const& changes) = 0;
+    /// From the next frame on: of the directions kept for each bounce (method slhb, schedule stored) about so many
+    /// follow what moves, others from frame to frame, and paths take no others; 0 = all. Methods that keep none
+    /// have nothing to do.
+    virtual void follow(int axes);
     /// Renders what the camera sees now, with the budget and paths of the settings for every frame. Layers as
     /// those of RenderResult and, where the method knows it, "motion" (see gi/slhb/motion.h).
     /// @param moments  where given, every path of a pixel is of a moment of its own, so that their mean is blurred

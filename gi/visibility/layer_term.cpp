@@ -71,7 +71,7 @@ void LayerTerm::build(Bounds const& bounds)
                                                       .first_moving = first_moving_});
     DirectionSet set = make_directions(slhb_.directions);
     axes_->store(set);
-    axes_->move();
+    axes_->follow();
     for (std::size_t a = 0; a < set.axes.size(); ++a) set.axes[a] = dvec3(axes_->axis(a)); // turned by the seed
     nearest_ = make_direction_map(set, SphereMapping::octahedral, map_size(set.size()));
     directions_.clear();
@@ -82,7 +82,10 @@ void LayerTerm::build(Bounds const& bounds)
 void LayerTerm::world_changed()
 {
     update_soup(world_, first_moving_, soup_);
-    if (contains(bounds_, world_.bounds)) return axes_->move();
+    if (contains(bounds_, world_.bounds)) {
+        axes_->moved();
+        return axes_->follow();
+    }
     Bounds const b = world_.bounds;
     vec3 const room = 0.1f * (b.high - b.low); // so that it does not happen in every frame
     build(joined(bounds_, {b.low - room, b.high + room}));

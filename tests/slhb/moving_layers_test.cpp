@@ -103,7 +103,8 @@ TEST_P(Appended, IsWhatIsBuiltFromEverything)
     split.store(directions);
     for (float const t : {0.0f, 0.3f, 1.1f, 0.6f}) {
         moving.go_to(t, holes);
-        split.move();
+        split.moved();
+        split.follow();
         AxisSet whole(moving.source(false, most_layers));
         whole.store(directions);
         ASSERT_EQ(columns(split.pool()), columns(whole.pool())) << t;
@@ -127,7 +128,8 @@ TEST(Moving, FreshAxesHaveWhatMovesToo)
     for (std::uint32_t pass = 0; pass < 6; ++pass) {
         moving.go_to(0.2f * float(pass), false);
         split.refresh(2, 6, 2, pass);
-        split.move();
+        split.moved();
+        split.follow();
         AxisSet whole(moving.source(false, 0));
         whole.refresh(2, 6, 2, pass);
         ASSERT_EQ(columns(split.pool()), columns(whole.pool())) << pass;
@@ -140,11 +142,77 @@ TEST(Moving, WhatLeavesTheBuffersLeavesNothingBehind)
     AxisSet split(moving.source(true, 0));
     split.store(make_directions("octahedron:8"));
     auto const still = columns(split.pool());
-    split.move();
+    split.moved();
+    split.follow();
     EXPECT_NE(columns(split.pool()), still);
     moving.go_to(1e6f, false); // far outside every grid
-    split.move();
+    split.moved();
+    split.follow();
     EXPECT_EQ(columns(split.pool()), still);
+}
+
+/// Of stored axes those that follow are as if built from everything, and paths take no others; in as many turns as
+/// there are parts, each axis has its turn once for each bounce.
+TEST(Moving, SomeAxesFollowInTurns)
+{
+    constexpr std::uint32_t kBounces = 3, kCount = 8, kParts = 5;
+    Moving moving(0, true);
+    DirectionSet const directions = make_directions("icosahedron:80");
+    AxisSet some(moving.source(true, 0));
+    some.store(directions);
+    for (std::uint32_t cycle = 0; cycle < 3; ++cycle) {
+        std::vector<std::array<int, kBounces>> times(directions.axes.size());
+        for (std::uint32_t turn = 0; turn < kParts; ++turn) {
+            moving.go_to(0.1f * float(kParts * cycle + turn), true);
+            some.moved();
+            some.follow_some(kBounces, kCount, kParts * cycle + turn);
+            AxisSet whole(moving.source(false, 0));
+            whole.store(directions);
+            auto const one = columns(some.pool()), other = columns(whole.pool());
+            std::size_t const texels = some.pool().grids[0].texels();
+            for (std::uint32_t b = 0; b < kBounces; ++b)
+                for (std::size_t k = 0; k < some.few()[b].count; ++k) {
+                    std::size_t const a = some.few()[b].slot[k];
+                    ++times[a][b];
+                    for (std::size_t t = a * texels; t < (a + 1) * texels; ++t) ASSERT_EQ(one[t], other[t]);
+                }
+        }
+        for (auto const& each : times)
+            for (int const n : each) EXPECT_EQ(n, 1);
+    }
+    some.follow();
+    AxisSet whole(moving.source(false, 0));
+    whole.store(directions);
+    EXPECT_EQ(columns(some.pool()), columns(whole.pool()));
+}
+
+/// The mean over all turns of what some axes bring is what all of them bring.
+TEST(Moving, SomeAxesBringWhatAllDo)
+{
+    constexpr std::uint32_t kParts = 10, kTurns = 4 * kParts;
+    constexpr int kSamples = 2000;
+    Moving moving(0, false);
+    AxisSet set(moving.source(true, 0));
+    set.store(make_directions("icosahedron:320"));
+    for (vec3 const normal : {vec3{0, 0, 1}, glm::normalize(vec3{1, -2, 0.3f})})
+        for (std::uint32_t bounce : {0u, 2u}) {
+            auto const mean = [&] {
+                vec3 sum{0};
+                for (int k = 0; k < kSamples; ++k) {
+                    AxisSample const s = set.sample(bounce, normal, (float(k) + 0.5f) / kSamples);
+                    sum += s.weight * vec3{1, s.direction.x * s.direction.x, std::max(0.0f, s.direction.y)};
+                }
+                return sum / float(kSamples);
+            };
+            set.follow();
+            vec3 const all = mean();
+            vec3 some{0};
+            for (std::uint32_t turn = 0; turn < kTurns; ++turn) {
+                set.follow_some(3, 16, turn);
+                some += mean() / float(kTurns);
+            }
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(some[c], all[c], 4e-3f) << c;
+        }
 }
 
 } // namespace

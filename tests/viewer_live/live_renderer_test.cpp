@@ -4,6 +4,7 @@
 
 #include "gi/base/error.h"
 #include "gi/scene/generate.h"
+#include "gi/scene/generate/figure.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
@@ -152,6 +153,55 @@ TEST(LiveRenderer, ItsOrdersCanBeRenderedAgain)
     for (Seen const& s : seen) {
         for (Change const& c : s.order.changes) again.apply(c);
         ASSERT_EQ(again.render(s.order, {}).views[0].picture.find("color")->data, s.color) << s.order.frame;
+    }
+}
+
+/// A figure walks, and the rate cannot be held with all directions following it (160 times 1,000 triangles and
+/// more in a fifth of a millisecond): fewer do, the orders say so, and a session that is given them renders the
+/// same bits. Where the user has named the schedule, nothing is changed.
+TEST(LiveRenderer, FewerDirectionsFollowWhatTakesTooLong)
+{
+    LoadScene const walk = [](std::string const&, gi::Report&) {
+        gi::Scene scene = gi::generate_cornell();
+        gi::add_figure(scene, glm::scale(gi::dmat4(1), gi::dvec3(0.2)), 0.3);
+        return std::make_shared<gi::Scene const>(std::move(scene));
+    };
+    for (std::string const schedule : {"auto", "stored"}) {
+        std::vector<Change> const settings{
+            {"scene", "walk"}, {"resolution", 64}, {"rate", 1000}, {"schedule", schedule}};
+        gi::Report report;
+        SessionClock clock;
+        Session session(walk, 0, report), again(walk, 0, report);
+        for (Change const& c : settings) session.apply(c), again.apply(c);
+        struct Seen {
+            FrameOrder order;
+            std::vector<float> color;
+            std::string schedule;
+        };
+        std::vector<Seen> seen;
+        LiveRenderer::Hooks hooks;
+        hooks.finished = [&](LiveFrame const& f) {
+            seen.push_back({f.order, f.result.views[0].picture.find("color")->data, f.schedule});
+        };
+        gi::Camera const eye = session.world().cameras.at(0);
+        LiveRenderer renderer(session, clock, nullptr, hooks);
+        Viewpoint at;
+        at.views = {{"window", eye, 48, 48, -1}};
+        renderer.look(at);
+        for (int i = 0; i < 6; ++i) ASSERT_NE(renderer.next_frame(20), nullptr);
+        renderer.stop();
+        int changed = 0;
+        for (Seen const& s : seen) {
+            for (Change const& c : s.order.changes) {
+                changed += c.key == "followed";
+                again.apply(c);
+            }
+            ASSERT_EQ(again.render(s.order, {}).views[0].picture.find("color")->data, s.color) << s.order.frame;
+        }
+        EXPECT_EQ(changed > 0, schedule == "auto");
+        EXPECT_EQ(session.settings().followed > 0, schedule == "auto");
+        EXPECT_NE(seen.back().schedule.find(schedule == "auto" ? "of 160 directions" : "as it was set"),
+                  std::string::npos);
     }
 }
 

@@ -182,6 +182,61 @@ TEST(Session, EveryKeyCanBeSetToWhatItIs)
     }
 }
 
+/// While a block goes on moving, the viewer takes to following 8 of 40 directions for each bounce, and back: what
+/// was reused stays, pictures stay right, and the same orders give the same pixels.
+TEST(Session, FewerDirectionsMayFollowWhatMoves)
+{
+    constexpr std::uint64_t kFrames = 60, kFewer = 20, kAll = 40;
+    gi::Report report;
+    Session s = started(report), again = started(report), judge = started(report);
+    judge.apply({"method", "reference"});
+    judge.apply({"reuse", 1});
+    judge.apply({"denoise", "none"});
+    std::vector<double> error(kFrames);
+    for (std::uint64_t f = 0; f < kFrames; ++f) {
+        FrameOrder o = order(f, 0.002 * double(f));
+        o.paths = 2;
+        o.changes.push_back({"object.block.position", {0.004 * double(f), 0, 0}});
+        if (f == kFewer) o.changes.push_back({"followed", 8});
+        if (f == kAll) o.changes.push_back({"followed", 0});
+        FrameOrder const kept = order_from_bytes(to_bytes(o)); // as a recording or another rank has it
+        for (Change const& c : o.changes) s.apply(c);
+        for (Change const& c : kept.changes) again.apply(c);
+        std::vector<float> const now = color(s.render(o, {}));
+        ASSERT_EQ(color(again.render(kept, {})), now) << f;
+        judge.apply(o.changes[0]);
+        if (f % 5 != 4 && f != kFewer && f != kAll) continue;
+        o.paths = 128;
+        error[f] = relmse(now, color(judge.render(o, {})));
+    }
+    auto const mean = [&](std::uint64_t first, std::uint64_t last) {
+        double sum = 0, n = 0;
+        for (std::uint64_t f = first; f < last; ++f)
+            if (error[f] > 0) sum += error[f], ++n;
+        return sum / n;
+    };
+    double const before = mean(10, kFewer), fewer = mean(kFewer + 1, kAll), after = mean(kAll + 1, kFrames);
+    EXPECT_LT(error[kFewer], 1.3 * error[kFewer - 1]);
+    EXPECT_LT(error[kAll], 1.3 * error[kAll - 1]);
+    EXPECT_LT(fewer, 1.5 * before);
+    EXPECT_LT(after, 1.3 * before);
+}
+
+/// Who names a schedule has it: then nothing else decides how many follow.
+TEST(Session, AScheduleThatIsNamedStays)
+{
+    gi::Report report;
+    std::vector<float> pictures[2];
+    for (int followed : {0, 8}) {
+        Session s = started(report);
+        s.apply({"schedule", "stored"});
+        s.apply({"followed", followed});
+        s.apply({"object.block.position", {0.1, 0, 0}});
+        pictures[followed / 8] = color(s.render(order(0), {}));
+    }
+    EXPECT_EQ(pictures[0], pictures[1]);
+}
+
 TEST(Session, PointsAreANumberOrAShareOfTheTexels)
 {
     Settings s;

@@ -150,8 +150,8 @@ protected:
               "checkerboard", "quad-buffer", "two-windows"}},
             {"view", {"picture", "split", "flicker", "difference"}}};
         static std::map<std::string, std::pair<int, int>> const counts{
-            {"resolution", {0, 256}}, {"axes", {0, 64}},  {"lamps", {0, 64}}, {"bounces", {0, 4}},
-            {"seed", {0, 1 << 30}},   {"reuse", {1, 32}}, {"paths", {0, 3}}};
+            {"resolution", {0, 256}}, {"axes", {0, 64}},      {"followed", {0, 64}}, {"lamps", {0, 64}},
+            {"bounces", {0, 4}},      {"seed", {0, 1 << 30}}, {"reuse", {1, 32}},    {"paths", {0, 3}}};
         static std::map<std::string, std::pair<double, double>> const numbers{
             {"exposure", {-4, 4}}, {"rate", {5, 60}},        {"scale", {0, 1}},
             {"speed", {-3, 3}},    {"eye_distance", {0, 1}}, {"split", {0, 1}}};
@@ -164,10 +164,11 @@ protected:
     Json set_request()
     {
         static std::vector<std::string> const keys{
-            "method",       "compare",   "schedule", "directions", "resolution", "axes",          "lamps",
-            "bounces",      "seed",      "reuse",    "denoise",    "share_eyes", "share_endings", "exposure",
-            "tone",         "rate",      "paths",    "scale",      "play",       "speed",         "stereo",
-            "eye_distance", "swap_eyes", "view",     "split",      "reproject",  "refine",        "panel"};
+            "method",     "compare",       "schedule",  "directions", "resolution",   "axes",
+            "followed",   "lamps",         "bounces",   "seed",       "reuse",        "denoise",
+            "share_eyes", "share_endings", "exposure",  "tone",       "rate",         "paths",
+            "scale",      "play",          "speed",     "stereo",     "eye_distance", "swap_eyes",
+            "view",       "split",         "reproject", "refine",     "panel"};
         static std::vector<std::string> const vectors{"object.short block.position",
                                                       "object.tall block.position",
                                                       "object.3.position",

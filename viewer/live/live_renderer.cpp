@@ -162,11 +162,28 @@ void LiveRenderer::run_linked()
     link_->end();
 }
 
-bool LiveRenderer::anything_moves(Viewpoint const& now) const
+bool LiveRenderer::scene_may_move(Viewpoint const& now) const
 {
     Settings const& s = session_.settings();
     return !has_last_ || !changes_.empty() || (s.play && s.speed != 0 && session_.moves()) ||
-           !same_views(now.views, last_views_) || !(now.tracked == last_.tracked) || scene_s_ != last_.scene_s;
+           !(now.tracked == last_.tracked) || scene_s_ != last_.scene_s;
+}
+
+bool LiveRenderer::anything_moves(Viewpoint const& now) const
+{
+    return scene_may_move(now) || !same_views(now.views, last_views_);
+}
+
+/// A change like one of the user, so that a replay and the other ranks make it too.
+void LiveRenderer::choose_followed(bool may_move)
+{
+    Settings const& s = session_.settings();
+    if (s.method != "slhb" || s.schedule != "auto") return;
+    int const followed = follow_governor_.next(may_move);
+    if (followed == s.followed) return;
+    Change const change{"followed", followed};
+    session_.apply(change);
+    changes_.push_back(change);
 }
 
 FrameOrder LiveRenderer::make_order(Viewpoint const& now, bool still, FrameBudget& budget)
@@ -218,6 +235,7 @@ void LiveRenderer::run_leading()
             wait_until(begun + 0.01);
             continue;
         }
+        choose_followed(scene_may_move(now));
         FrameBudget budget;
         FrameOrder order = make_order(now, still, budget);
         if (link_ != nullptr) link_->send(order);
@@ -241,6 +259,21 @@ void LiveRenderer::run_following()
         for (Change const& c : order->changes) session_.apply(c);
         render(std::move(*order), {});
     }
+}
+
+void LiveRenderer::measure_following(LiveFrame& frame)
+{
+    Settings const& s = session_.settings();
+    if (s.method != "slhb") return;
+    int const stored = stored_axes(s);
+    auto const took = frame.result.stages_s.find("layers that moved");
+    if (s.schedule == "auto")
+        follow_governor_.measured({.followed = s.followed,
+                                   .stored = stored,
+                                   .moved = frame.result.moved,
+                                   .seconds = took == frame.result.stages_s.end() ? 0 : took->second,
+                                   .rate_hz = s.rate_hz});
+    frame.schedule = schedule_sentence(s.schedule, s.followed, stored, follow_governor_.share_of_all());
 }
 
 bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
@@ -273,6 +306,7 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
         if (budget.scale > 0)
             governor_.measured({order.paths, budget.scale}, pixels_of(order.views) / (budget.scale * budget.scale),
                                frame->done_s - frame->begun_s, session_.settings().rate_hz);
+        measure_following(*frame);
     }
     frame->still_paths = still_paths_;
     frame->settings = session_.settings();

@@ -6,6 +6,7 @@
 // has kConvergedPaths per pixel, and rests. A change of the point of view while it refines ends the frame at hand
 // after its next path.
 
+#include "viewer/session/follow_governor.h"
 #include "viewer/session/governor.h"
 #include "viewer/session/session.h"
 
@@ -47,6 +48,7 @@ struct LiveFrame {
     double begun_s = 0, done_s = 0; ///< session clock
     std::uint32_t still_paths = 0;  ///< per pixel since nothing moves
     Settings settings;              ///< that it was rendered with
+    std::string schedule;           ///< of slhb: the one in use and why, a sentence; empty of other methods
 };
 
 inline constexpr std::uint32_t kConvergedPaths = 4096;
@@ -108,7 +110,10 @@ private:
     void run_leading();
     void run_following();
     void do_jobs();
+    bool scene_may_move(Viewpoint const& now) const;
     bool anything_moves(Viewpoint const& now) const;
+    void choose_followed(bool may_move);
+    void measure_following(LiveFrame& frame);
     FrameOrder make_order(Viewpoint const& now, bool still, FrameBudget& budget);
     bool render(FrameOrder order, FrameBudget const& budget);
     void wait_until(double time_s);
@@ -129,6 +134,7 @@ private:
 
     // Of the rendering thread
     Governor governor_;
+    FollowGovernor follow_governor_;
     std::vector<Change> changes_;
     FrameOrder last_;
     std::vector<ViewOrder> last_views_; ///< all that were ordered

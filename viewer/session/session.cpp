@@ -124,6 +124,7 @@ SessionFrame Session::render(FrameOrder const& order, gi::StopRequest const& sto
         changes = move_to(order);
     }
     SessionFrame frame;
+    frame.moved = changes.geometry;
     if (order.views.empty()) return frame;
     if (!main_)
         main_ = std::make_unique<Lane>(settings_.method, *world_, settings_, threads_, order.views, report_);

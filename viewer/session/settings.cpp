@@ -2,6 +2,8 @@
 
 #include "gi/base/error.h"
 #include "gi/registry/registry.h"
+#include "gi/slhb/directions.h"
+#include "gi/slhb/settings.h"
 #include "viewer/display/stereo_mode.h"
 
 #include <cstdlib>
@@ -121,6 +123,9 @@ std::vector<Entry> const& entries()
         count("resolution", "texels along a side of a hit buffer, 0 = chosen by the plan", &Settings::resolution,
               0, 4096),
         count("axes", "of a pass, streamed and temporal, 0 = chosen by the plan", &Settings::axes, 0, 4096),
+        count("followed",
+              "of the schedule auto, which sets it: stored axes of each bounce that follow what moves, 0 = all",
+              &Settings::followed, 0, 64),
         count("lamps", "points on lamps with a shadow map, 0 = chosen by the plan", &Settings::lamps, 0, 1024),
         count("light_paths",
               "from the lamps in a pass, of the methods vpl_*: surfaces they meet are virtual lights",
@@ -228,6 +233,11 @@ int parse_points(std::string const& name, std::string const& text, int point_map
                                          gi::kMostPoints, point_map * point_map),
                              "write 1024, or 30%");
     return int(points);
+}
+
+int stored_axes(Settings const& s)
+{
+    return int(gi::make_directions(s.directions.empty() ? gi::kStoredDirections : s.directions).axes.size());
 }
 
 gi::RenderSettings render_settings(Settings const& s, int threads)

@@ -15,8 +15,10 @@ struct Settings {
     std::string method = "slhb", compare;      ///< compare: a second method to look at beside it; empty = none
     std::string schedule = "auto", directions; ///< as --schedule and --directions
     int resolution = 0, axes = 0, lamps = 0;   ///< of slhb, 0 = what the plan chooses
-    int light_paths = 256;                     ///< of the methods vpl_*, as are the next
-    std::string points = "1024";               ///< of an imperfect shadow map, or "30%" of its texels
+    int followed = 0; ///< with the schedule auto: stored axes of each bounce that follow what moves in a frame, 0
+                      ///< = all. The live viewer sets it in every frame (follow_governor.h)
+    int light_paths = 256;       ///< of the methods vpl_*, as are the next
+    std::string points = "1024"; ///< of an imperfect shadow map, or "30%" of its texels
     double ao_radius_m = 0.5;
     int bounces = 3;
     int seed = 0;
@@ -64,6 +66,9 @@ nlohmann::json get(Settings const& settings, std::string const& key);
 /// "1024", or "30%" of the texels of a map, rounded: points of an imperfect shadow map. Throws InputError.
 /// @param name  of the setting, for the message  @param point_map  texels on a side
 int parse_points(std::string const& name, std::string const& text, int point_map);
+
+/// Axes of the set of the stored schedule.
+int stored_axes(Settings const& settings);
 
 /// What they say to a method. Throws InputError on values that do not go together.
 gi::RenderSettings render_settings(Settings const& settings, int threads);

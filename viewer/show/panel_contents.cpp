@@ -61,6 +61,7 @@ void show_numbers(ViewState& s, double frames_per_s)
         ImGui::Text("%s - %s: relMSE %.2e, FLIP %.4f", s.settings.method.c_str(), s.settings.compare.c_str(),
                     s.live_error->relmse, s.live_error->flip);
     if (!f.result.options.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", f.result.options.c_str());
+    if (!f.schedule.empty()) ImGui::TextWrapped("%s", f.schedule.c_str());
     if (ImGui::TreeNode("stages")) {
         for (auto const& [stage, seconds] : f.result.stages_s)
             ImGui::Text("%7.2f ms  %s", 1e3 * seconds, stage.c_str());

@@ -260,6 +260,7 @@ Json Requests::stats() const
         j["stages_ms"] = Json::object();
         for (auto const& [stage, seconds] : f.result.stages_s) j["stages_ms"][stage] = 1e3 * seconds;
         j["options"] = f.result.options;
+        j["schedule"] = f.schedule;
     }
     if (state_.live_error)
         j["compare"] = {{"relmse", state_.live_error->relmse}, {"flip", state_.live_error->flip}};

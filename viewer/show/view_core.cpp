@@ -106,6 +106,7 @@ void ViewCore::start(FrameLink* link, std::function<void()> published,
     LiveRenderer::Hooks hooks;
     hooks.finished = [this](LiveFrame const& f) {
         ++summary.rendered;
+        summary.schedule = f.schedule;
         if (!recorder_) return;
         FrameOrder order = f.order;
         if (!f.ordered.empty()) order.views = f.ordered;

@@ -256,6 +256,7 @@ private:
         p->reprojected = !(shown_cameras_ == rendered);
         if (fresh) {
             state_.frame = newest;
+            state_.settings.followed = newest->settings.followed; // which the renderer sets
             if (link_ != nullptr && core_.display) set_panes(display_panes(*core_.display, newest->order.views));
             meter_.see(newest);
         }

@@ -39,6 +39,7 @@ struct ViewSummary {
     std::uint64_t rendered = 0, recorded = 0, presented = 0;
     double longest_block_ms = 0; ///< of the main thread: between two looks at the input
     std::string gl;
+    std::string schedule; ///< of slhb: the one in use in the last frame and why; empty of other methods
     nlohmann::json trackers, headset;
 };
 
