@@ -87,7 +87,7 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
                      : s.fresh_axes > 0            ? Schedule::temporal
                      : sky && asked.slhb.axes == 0 ? Schedule::stored
                                                    : Schedule::streamed;
-    if (s.directions.empty()) s.directions = kStoredDirections;
+    if (s.directions.empty()) s.directions = "icosahedron:320";
     double const layers = layers_per_texel(world, soup), pixels = double(asked.width) * asked.height;
     Costs const costs(world, layers);
     // What a pass builds should cost a share of what its paths cost, or be shared by too few of them; and of the

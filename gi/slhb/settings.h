@@ -7,9 +7,6 @@
 
 namespace gi {
 
-/// Where none were asked for.
-inline constexpr char const* kStoredDirections = "icosahedron:320";
-
 /// Every number of SlhbSettings chosen. Throws InputError on values that cannot work together.
 SlhbSettings choose_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup);
 

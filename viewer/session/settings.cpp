@@ -2,8 +2,6 @@
 
 #include "gi/base/error.h"
 #include "gi/registry/registry.h"
-#include "gi/slhb/directions.h"
-#include "gi/slhb/settings.h"
 #include "viewer/display/stereo_mode.h"
 
 #include <cstdlib>
@@ -237,7 +235,8 @@ int parse_points(std::string const& name, std::string const& text, int point_map
 
 int stored_axes(Settings const& s)
 {
-    return int(gi::make_directions(s.directions.empty() ? gi::kStoredDirections : s.directions).axes.size());
+    std::string const set = s.directions.empty() ? "icosahedron:320" : s.directions; // as the plan chooses
+    return std::stoi(set.substr(set.find(':') + 1)) / 2; // it is named by its directions, two of each axis
 }
 
 gi::RenderSettings render_settings(Settings const& s, int threads)
