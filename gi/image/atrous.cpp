@@ -25,7 +25,7 @@ struct Iteration {
 /// Adds the taps of row y + dy * step to the sums of row y. The middle row starts the sums with its central tap,
 /// whose weight is the spline's even where nothing is like it.
 template <bool kMiddle>
-void add_row(Iteration const& it, Span span, int y, int dy)
+void add_row(Iteration const& it, Spans spans, int y, int dy)
 {
     Planes const& g = it.guides;
     int const there = y + dy * it.step, step = it.step;
@@ -44,70 +44,72 @@ void add_row(Iteration const& it, Span span, int y, int dy)
     float const share = kSpline[std::size_t(std::abs(dy))], centre = share * kSpline[0];
     float const plane_scale = it.plane_scale;
 
+    for (Span const& span : spans)
 #pragma GCC ivdep
-    for (int x = span.first; x < span.end; ++x) {
-        vec3 const n = normal[x];
-        float const plane = glm::dot(n, position[x]), by_plane = footprint[x] * plane_scale;
-        float const by_l1 = 1 / (kLuminance * kLuminance * v1[x] + kTinyVariance);
-        float const by_l2 = 1 / (kLuminance * kLuminance * v2[x] + kTinyVariance);
-        vec3 sum1 = kMiddle ? centre * q_direct[x] : direct[x],
-             sum2 = kMiddle ? centre * q_indirect[x] : indirect[x];
-        float w1 = kMiddle ? centre : weight1[x], w2 = kMiddle ? centre : weight2[x];
-        float s1 = kMiddle ? centre * centre * v1[x] : variance1[x];
-        float s2 = kMiddle ? centre * centre * v2[x] : variance2[x];
-        auto const tap = [&](int i, float spline) {
-            float const off_plane = glm::dot(n, q_position[i]) - plane, da = q_albedo[i] - albedo[x];
-            float const d1 = q_l1[i] - l1[x], d2 = q_l2[i] - l2[x];
-            float const like = 1 - kNormal * (1 - glm::dot(n, q_normal[i])) - by_plane * off_plane * off_plane -
-                               kAlbedo * kAlbedo * da * da;
-            float const like1 = like - by_l1 * d1 * d1, like2 = like - by_l2 * d2 * d2;
-            float const some1 = like1 > 0 ? like1 : 0, some2 = like2 > 0 ? like2 : 0;
-            float const a = share * spline * some1 * some1, b = share * spline * some2 * some2;
-            sum1 += a * q_direct[i];
-            sum2 += b * q_indirect[i];
-            s1 += a * a * q_v1[i];
-            s2 += b * b * q_v2[i];
-            w1 += a;
-            w2 += b;
-        };
-        tap(x - 2 * step, kSpline[2]);
-        tap(x - step, kSpline[1]);
-        if constexpr (!kMiddle) tap(x, kSpline[0]);
-        tap(x + step, kSpline[1]);
-        tap(x + 2 * step, kSpline[2]);
-        direct.set(x, sum1);
-        indirect.set(x, sum2);
-        weight1[x] = w1;
-        weight2[x] = w2;
-        variance1[x] = s1;
-        variance2[x] = s2;
-    }
+        for (int x = span.first; x < span.end; ++x) {
+            vec3 const n = normal[x];
+            float const plane = glm::dot(n, position[x]), by_plane = footprint[x] * plane_scale;
+            float const by_l1 = 1 / (kLuminance * kLuminance * v1[x] + kTinyVariance);
+            float const by_l2 = 1 / (kLuminance * kLuminance * v2[x] + kTinyVariance);
+            vec3 sum1 = kMiddle ? centre * q_direct[x] : direct[x],
+                 sum2 = kMiddle ? centre * q_indirect[x] : indirect[x];
+            float w1 = kMiddle ? centre : weight1[x], w2 = kMiddle ? centre : weight2[x];
+            float s1 = kMiddle ? centre * centre * v1[x] : variance1[x];
+            float s2 = kMiddle ? centre * centre * v2[x] : variance2[x];
+            auto const tap = [&](int i, float spline) {
+                float const off_plane = glm::dot(n, q_position[i]) - plane, da = q_albedo[i] - albedo[x];
+                float const d1 = q_l1[i] - l1[x], d2 = q_l2[i] - l2[x];
+                float const like = 1 - kNormal * (1 - glm::dot(n, q_normal[i])) -
+                                   by_plane * off_plane * off_plane - kAlbedo * kAlbedo * da * da;
+                float const like1 = like - by_l1 * d1 * d1, like2 = like - by_l2 * d2 * d2;
+                float const some1 = like1 > 0 ? like1 : 0, some2 = like2 > 0 ? like2 : 0;
+                float const a = share * spline * some1 * some1, b = share * spline * some2 * some2;
+                sum1 += a * q_direct[i];
+                sum2 += b * q_indirect[i];
+                s1 += a * a * q_v1[i];
+                s2 += b * b * q_v2[i];
+                w1 += a;
+                w2 += b;
+            };
+            tap(x - 2 * step, kSpline[2]);
+            tap(x - step, kSpline[1]);
+            if constexpr (!kMiddle) tap(x, kSpline[0]);
+            tap(x + step, kSpline[1]);
+            tap(x + 2 * step, kSpline[2]);
+            direct.set(x, sum1);
+            indirect.set(x, sum2);
+            weight1[x] = w1;
+            weight2[x] = w2;
+            variance1[x] = s1;
+            variance2[x] = s2;
+        }
 }
 
 /// Turns sums into means.
-void divide(Planes& out, Span span, int y)
+void divide(Planes& out, Spans spans, int y)
 {
     for (int k = 0; k < 2; ++k) {
         auto const color = out.row3(light::direct + 3 * k, y);
         float *const weight = out.row(light::luminance + k, y), *const variance = out.row(light::variance + k, y);
+        for (Span const& span : spans)
 #pragma GCC ivdep
-        for (int x = span.first; x < span.end; ++x) {
-            float const scale = 1 / weight[x];
-            vec3 const mean = scale * color[x];
-            color.set(x, mean);
-            variance[x] *= scale * scale;
-            weight[x] = luminance(mean);
-        }
+            for (int x = span.first; x < span.end; ++x) {
+                float const scale = 1 / weight[x];
+                vec3 const mean = scale * color[x];
+                color.set(x, mean);
+                variance[x] *= scale * scale;
+                weight[x] = luminance(mean);
+            }
     }
 }
 
-void filter_span(Iteration const& it, Span span, int y)
+void filter_row(Iteration const& it, Spans spans, int y)
 {
-    add_row<true>(it, span, y, 0);
+    add_row<true>(it, spans, y, 0);
     for (int const dy : {-2, -1, 1, 2})
         if (int const there = y + dy * it.step; there >= 0 && there < it.in.height())
-            add_row<false>(it, span, y, dy);
-    divide(it.out, span, y);
+            add_row<false>(it, spans, y, dy);
+    divide(it.out, spans, y);
 }
 
 /// Light that is known has no noise any more.
@@ -145,9 +147,7 @@ Planes filter_atrous(FilterInput& input, int iterations, KnownLight const& known
         // Pixels of distance from the plane from which on weights are 0: what is far away may curve more.
         float const reach = 1 + 0.2f * float(step);
         Iteration const it{input.guides, input.light, other, step, 1 / square(reach)};
-        tbb::parallel_for(0, height, [&](int y) {
-            for (Span const& span : known.wanted[std::size_t(y)]) filter_span(it, span, y);
-        });
+        tbb::parallel_for(0, height, [&](int y) { filter_row(it, known.wanted[std::size_t(y)], y); });
         if (i == 0) lay_in(input.light); // what it saw first was as it came
         std::swap(input.light, other);
     }

@@ -13,6 +13,8 @@ namespace gi {
 struct Span {
     int first, end;
 };
+/// Of one row, from left to right.
+using Spans = std::span<Span const>;
 
 struct KnownLight {
     std::vector<std::vector<Span>> wanted; ///< per row: what a filter has to find
