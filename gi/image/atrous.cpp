@@ -116,7 +116,7 @@ void filter_row(Iteration const& it, Spans spans, int y)
 void lay(KnownLight const& known, Planes const& from, int y, Planes& out)
 {
     known.for_known(y, [&](Span span) {
-        for (int p = light::direct; p < light::luminance; ++p)
+        for (int p = light::direct; p < light::luminance && &from != &out; ++p)
             std::copy(from.row(p, y) + span.first, from.row(p, y) + span.end, out.row(p, y) + span.first);
         for (int k = 0; k < 2; ++k) {
             auto const color = out.row3(light::direct + 3 * k, y);

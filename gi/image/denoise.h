@@ -33,9 +33,8 @@ struct DenoiseReport {
 /// Replaces L1, L2 and color = L0 + L1 + L2. Needs the layers color, L0, L1, L2, albedo, normal and position, and
 /// a-trous variance too; throws InputError where one is missing. `variance` stays that of the unfiltered picture.
 /// The result does not depend on the number of threads.
-/// @param taken  of a partner that has been filtered: where the picture takes it, its light over its albedo is
-/// taken
-///               as it is, and only the rest costs a filter
+/// @param taken  of a partner that has been filtered: its light over its albedo is taken as it is, and only where
+///               the picture takes none is filtered
 DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, TakenLight const& taken = {});
 
 } // namespace gi

@@ -149,7 +149,8 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             std::size_t(std::ranges::count_if(surfaces_, [](Surface const& s) { return s.depth > 0; }));
         return;
     }
-    Neighbourhoods const neighbourhoods(l1, albedo, width, height, partner != nullptr);
+    bool const few = std::size_t(std::ranges::count(takes, 1)) > 3 * pixels / 4;
+    Neighbourhoods const neighbourhoods(l1, albedo, width, height, few);
     // Whether a surface is still there now, in a pixel next to this one.
     auto const is_beside = [&](Surface const& s, int x, int y) {
         for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)

@@ -80,12 +80,15 @@ void AxisSet::follow()
     move(std::vector<std::uint8_t>(pool_.size(), 1));
 }
 
-void AxisSet::follow_some(std::uint32_t sequences, std::uint32_t count, std::uint32_t turn)
+std::size_t AxisSet::follow_some(std::uint32_t sequences, std::uint32_t count, std::uint32_t turn)
 {
     std::size_t const n = tables_.axes.size();
     auto const parts = std::uint32_t(
         count == 0 ? 1 : std::max(n / std::min<std::size_t>(count, n), (n + FewAxes::kMost - 1) / FewAxes::kMost));
-    if (parts == 1) return follow();
+    if (parts == 1) {
+        follow();
+        return pool_.size();
+    }
     some_ = true;
     few_.assign(sequences, {});
     std::vector<std::uint8_t> followed(n, 0);
@@ -103,6 +106,7 @@ void AxisSet::follow_some(std::uint32_t sequences, std::uint32_t count, std::uin
         }
     }
     move(followed);
+    return std::size_t(std::ranges::count(followed, 1));
 }
 
 void AxisSet::store(DirectionSet const& directions)

@@ -77,7 +77,7 @@ public:
         /// Where it is not empty, buffers are not built here but there: index of the axis, its grid, a seed for
         /// the cut-outs. Axes come one after the other.
         std::function<void(std::size_t, RasterGrid const&, std::uint32_t)> elsewhere = {};
-        /// Triangles from here on move: they are left to move(). As many as there are: none does.
+        /// Triangles from here on move: they are left to follow(). As many as there are: none does.
         std::size_t first_moving = ~std::size_t(0);
     };
 
@@ -101,7 +101,8 @@ public:
     /// Of stored axes only some, and paths take no others: for each of `sequences` bounces one part of the set of
     /// about `count` axes (up to FewAxes::kMost), in random order all parts in successive turns. The mean over
     /// the parts is what all axes would bring. @param count  0 = all
-    void follow_some(std::uint32_t sequences, std::uint32_t count, std::uint32_t turn);
+    /// @return different axes that follow now
+    std::size_t follow_some(std::uint32_t sequences, std::uint32_t count, std::uint32_t turn);
     /// Look-ups find what moves, or go on as if it was not there.
     void show_moving(bool shown) { pool_.without_moving = !shown; }
 
@@ -110,7 +111,7 @@ public:
     {
         return AxisChoice{few_, some_ ? CosineTablesView{} : view(tables_)}.sample(bounce, normal, u);
     }
-    /// Axes that the first bounce chooses from: the first ones of the pool.
+    /// Axes that the first bounce chooses from where all follow: the first ones of the pool.
     std::size_t first_bounce_axes() const { return tables_.axes.empty() ? few_count_ : tables_.axes.size(); }
     AxisPool const& pool() const { return pool_; }
     /// The layers of these axes have smaller numbers in the pool.

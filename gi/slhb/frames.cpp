@@ -49,6 +49,8 @@ public:
         renderer_->follow(followed_);
     }
 
+    Following following() const override { return renderer_->following(); }
+
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                        Moments const& moments) override
     {

@@ -63,11 +63,10 @@ std::uint64_t MovingLayers::append(Source const& source, std::span<std::uint32_t
                                    std::span<std::uint8_t const> followed, AxisPool& pool)
 {
     axes_.resize(pool.size());
-    if (static_layers_ != kNone && std::ranges::none_of(axes_, [&](Axis const& axis) {
-            bool const wanted = followed[std::size_t(&axis - axes_.data())] != 0;
-            return !axis.current && (wanted || !axis.texels.empty());
-        }))
-        return 0;
+    bool changes = static_layers_ == kNone;
+    for (std::size_t a = 0; a < axes_.size(); ++a)
+        changes |= !axes_[a].current && (followed[a] != 0 || !axes_[a].texels.empty());
+    if (!changes) return 0;
     auto const set = [&](std::size_t a, std::size_t k, LayerRange r) {
         pool.ranges[pool.first_offset[a] + axes_[a].texels[k]] = r;
     };
@@ -111,9 +110,11 @@ std::uint64_t MovingLayers::append(Source const& source, std::span<std::uint32_t
         lost += axes_[a].lost;
     }
     constexpr std::size_t kMost = 0x7fffffff;
-    if (first.back() > kMost)
+    if (first.back() > kMost) {
+        moved(); // none of it is in the pool
         throw InputError("the hit buffers have more than 2^31 layers", "they are indexed with 32 bits",
                          "lower the resolution or the number of directions");
+    }
     resize_on_huge_pages(pool.layers, first.back());
     tbb::parallel_for(std::size_t(0), pool.size(), [&](std::size_t a) {
         Axis const& axis = axes_[a];

@@ -7,6 +7,7 @@
 #include "gi/transport/sampling.h"
 
 #include <algorithm>
+#include <chrono>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
@@ -174,6 +175,7 @@ void SlhbRenderer::materials_changed()
 
 void SlhbRenderer::end_frame()
 {
+    follows_ = false;
     ++frames_;
     earlier_ = {first_moving_, {}};
     for (View& v : views_) v.earlier = v.rays;
@@ -218,7 +220,11 @@ void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
         std::uint32_t(std::clamp(settings_.bounces + (to_the_end() ? 1 : 0), 1, int(AxisSet::kSequences)));
     if (walks_ && slhb_.schedule == Schedule::stored && first_moving_ < soup_.count) {
         StageTimer const timer(report_, "layers that moved");
-        axes_->follow_some(sequences, slhb_.gather ? 0 : followed_, frames_);
+        auto const begun = std::chrono::steady_clock::now();
+        std::size_t const axes = axes_->follow_some(sequences, slhb_.gather ? 0 : followed_, frames_);
+        double const s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        if (!std::exchange(follows_, true)) following_ = {int(axes_->pool().size()), int(axes), int(sequences), 0};
+        following_.seconds += s;
     } else {
         StageTimer const timer(report_, "hit buffers of a pass");
         if (walks_ && slhb_.schedule != Schedule::stored) {

@@ -35,6 +35,7 @@ public:
     /// From the next frame on: of the stored axes of each bounce about `axes` follow what moves, others from frame
     /// to frame, and paths take no others; 0 = all.
     void follow(std::uint32_t axes) { followed_ = axes; }
+    Following following() const { return following_; }
     /// From the next pass on. A view is what the view of the same index was in the frame before.
     void see(std::span<FrameView const> views);
     /// One more path for every pixel. @param index of the pass, which decides its random numbers
@@ -101,6 +102,8 @@ private:
     Bounds grid_bounds_; ///< of the hit buffers
     std::optional<AxisSet> axes_;
     std::uint32_t followed_ = 0, frames_ = 0; ///< axes of a bounce, 0 = all; so far
+    Following following_;                     ///< in this frame
+    bool follows_ = false;                    ///< and it has in this frame
     std::optional<Lamps> lamps_;
     EarlierCorners earlier_;
     std::vector<SkyAlong> sky_; ///< in a pass

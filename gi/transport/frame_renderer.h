@@ -65,6 +65,14 @@ struct PairResult {
 /// @param hidden  as FrameView has it
 void hide_pixels(Picture& picture, std::span<std::uint8_t const> hidden);
 
+/// Directions kept for each bounce, and those that followed what moves in a frame.
+struct Following {
+    int stored = 0;     ///< all of them; 0 = none are kept
+    int axes = 0;       ///< different ones that followed, of all bounces
+    int bounces = 1;    ///< that choose theirs by themselves
+    double seconds = 0; ///< that it took
+};
+
 class FrameRenderer {
 public:
     virtual ~FrameRenderer() = default;
@@ -75,6 +83,8 @@ public:
     /// follow what moves, others from frame to frame, and paths take no others; 0 = all. Methods that keep none
     /// have nothing to do.
     virtual void follow(int axes);
+    /// What that came to in the last frame.
+    virtual Following following() const { return {}; }
     /// Renders what the camera sees now, with the budget and paths of the settings for every frame. Layers as
     /// those of RenderResult and, where the method knows it, "motion" (see gi/slhb/motion.h).
     /// @param moments  where given, every path of a pixel is of a moment of its own, so that their mean is blurred

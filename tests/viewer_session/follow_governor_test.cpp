@@ -11,20 +11,26 @@ namespace {
 
 constexpr double kRate = 20; // Hz
 
-/// Following one axis takes so long, s; three bounces choose theirs by themselves.
+/// Following one axis takes so long, s; bounces choose theirs by themselves.
 struct Machine {
     FollowGovernor governor;
     double axis_s;
     bool moves = true;
+    int bounces = 3, stored = 160;
 
+    int axes(int n) const
+    {
+        if (n == 0) return stored;
+        double const part = 1.0 / std::max(1, stored / n);
+        return int(std::lround(stored * (1 - std::pow(1 - part, bounces))));
+    }
     int frame(double slower = 1)
     {
         int const n = governor.next(moves);
-        double const axes = n == 0 ? 160 : 160 * (1 - std::pow(1 - n / 160.0, 3));
-        governor.measured({n, 160, moves, moves ? slower * axis_s * axes : 0, kRate});
+        governor.measured({{stored, axes(n), bounces, moves ? slower * axis_s * axes(n) : 0}, moves, kRate});
         return n;
     }
-    double share(int n) const { return axis_s * (n == 0 ? 160 : 160 * (1 - std::pow(1 - n / 160.0, 3))) * kRate; }
+    double share(int n) const { return axis_s * axes(n) * kRate; }
     int settle()
     {
         int n = 0;
@@ -79,19 +85,22 @@ TEST(FollowGovernor, OneSlowFrameChangesNothing)
 /// Times that scatter by a quarter up and down, about every threshold.
 TEST(FollowGovernor, DoesNotFlap)
 {
-    for (double share = 0.02; share < 3; share *= 1.1) {
-        Machine m{{}, share * 0.05 / 160};
-        m.settle();
-        std::uint32_t random = 12345;
-        int changes = 0, last = m.governor.next(true);
-        for (int i = 0; i < 500; ++i) {
-            random = random * 1664525u + 1013904223u;
-            int const n = m.frame(0.75 + 0.5 * double(random >> 8) / double(1 << 24));
-            changes += n != last;
-            last = n;
-        }
-        EXPECT_LE(changes, 2) << share;
-    }
+    for (int const stored : {160, 40})
+        for (int const bounces : {1, 2, 3})
+            for (double share = 0.02; share < 3; share *= 1.1) {
+                Machine m{{}, share * 0.05 / stored, true, bounces, stored};
+                m.settle();
+                std::uint32_t random = 12345;
+                int changes = 0, last = m.governor.next(true);
+                for (int i = 0; i < 500; ++i) {
+                    random = random * 1664525u + 1013904223u;
+                    int const n = m.frame(0.75 + 0.5 * double(random >> 8) / double(1 << 24));
+                    changes += n != last;
+                    last = n;
+                }
+                EXPECT_LE(changes, 2) << share << " of " << stored << ", " << bounces << " bounces";
+                EXPECT_NEAR(m.governor.share_of_all(), share, 0.35 * share);
+            }
 }
 
 TEST(FollowGovernor, AllFollowWhereNothingMovesAndAsManyAsBeforeAfterwards)
@@ -112,9 +121,15 @@ TEST(FollowGovernor, AllFollowWhereNothingMovesAndAsManyAsBeforeAfterwards)
 TEST(FollowGovernor, WhatOnlyMayMoveIsNotFollowedForLong)
 {
     FollowGovernor g;
-    for (int i = 0; i < 20; ++i) g.measured({g.next(true), 160, true, 0.04, kRate});
+    for (int i = 0; i < 20; ++i) {
+        g.next(true);
+        g.measured({{160, 160, 3, 0.04}, true, kRate});
+    }
     EXPECT_GT(g.next(true), 0);
-    for (int i = 0; i < 20; ++i) g.measured({g.next(true), 160, false, 0, kRate});
+    for (int i = 0; i < 20; ++i) {
+        g.next(true);
+        g.measured({{160, 160, 3, 0}, false, kRate});
+    }
     EXPECT_EQ(g.next(true), 0);
 }
 
@@ -126,6 +141,8 @@ TEST(FollowGovernor, SaysWhatItDoesAndWhy)
     std::string const some = schedule_sentence("auto", 16, 160, 0.6);
     EXPECT_NE(some.find("16 of 160"), std::string::npos);
     EXPECT_NE(some.find("60 %"), std::string::npos);
+    EXPECT_NE(schedule_sentence("auto", 32, 40, 0.6).find("all 40"), std::string::npos);
+    EXPECT_NE(schedule_sentence("auto", 16, 40, 0.6).find("20 of 40"), std::string::npos);
 }
 
 } // namespace

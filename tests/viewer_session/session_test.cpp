@@ -335,6 +335,7 @@ TEST(Session, ASecondEyeIsAsRightAsTheFirst)
     }
     EXPECT_GT(error[0], 1e-5);
     EXPECT_LT(error[0], 0.05);
+    EXPECT_GT(report.counts().at("share of pixels lit by a partner view"), 0.5);
     EXPECT_LT(error[1], 1.15 * error[0]);
 }
 

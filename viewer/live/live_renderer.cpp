@@ -178,8 +178,8 @@ bool LiveRenderer::anything_moves(Viewpoint const& now) const
 void LiveRenderer::choose_followed(bool may_move)
 {
     Settings const& s = session_.settings();
-    if (s.method != "slhb" || s.schedule != "auto") return;
-    int const followed = follow_governor_.next(may_move);
+    bool const is_governed = s.method == "slhb" && s.schedule == "auto";
+    int const followed = is_governed ? follow_governor_.next(may_move) : 0;
     if (followed == s.followed) return;
     Change const change{"followed", followed};
     session_.apply(change);
@@ -265,15 +265,9 @@ void LiveRenderer::measure_following(LiveFrame& frame)
 {
     Settings const& s = session_.settings();
     if (s.method != "slhb") return;
-    int const stored = stored_axes(s);
-    auto const took = frame.result.stages_s.find("layers that moved");
-    if (s.schedule == "auto")
-        follow_governor_.measured({.followed = s.followed,
-                                   .stored = stored,
-                                   .moved = frame.result.moved,
-                                   .seconds = took == frame.result.stages_s.end() ? 0 : took->second,
-                                   .rate_hz = s.rate_hz});
-    frame.schedule = schedule_sentence(s.schedule, s.followed, stored, follow_governor_.share_of_all());
+    gi::Following const& following = frame.result.following;
+    if (s.schedule == "auto") follow_governor_.measured({following, frame.result.moved, s.rate_hz});
+    frame.schedule = schedule_sentence(s.schedule, s.followed, following.stored, follow_governor_.share_of_all());
 }
 
 bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)

@@ -13,11 +13,13 @@ constexpr double kMost[] = {0.2, 0.2, 0.35, 1e9}; // of the time between frames,
 constexpr double kToGrow = 0.6, kAtOnce = 0.5;
 constexpr int kFramesToGrow = 8, kFramesKept = 3, kQuiet = 8;
 
-/// Different axes of three bounces, which choose theirs by themselves.
-double axes_of(int followed, int stored)
+/// The set is parted into so many; each bounce has one in a frame.
+int parts_of(int followed, int stored) { return followed == 0 ? 1 : std::max(1, stored / followed); }
+
+/// Different axes of all bounces, which choose theirs by themselves.
+double axes_of(int followed, gi::Following const& f)
 {
-    double const all = stored;
-    return followed == 0 || followed >= stored ? all : all * (1 - std::pow(1 - followed / all, 3));
+    return f.stored * (1 - std::pow(1 - 1.0 / parts_of(followed, f.stored), f.bounces));
 }
 
 } // namespace
@@ -25,7 +27,7 @@ double axes_of(int followed, int stored)
 double FollowGovernor::share(std::size_t level) const
 {
     if (axis_s_.empty()) return 0;
-    return std::ranges::min(axis_s_) * axes_of(kLevels[level], stored_) / frame_s_;
+    return std::ranges::min(axis_s_) * axes_of(kLevels[level], following_) / frame_s_;
 }
 
 double FollowGovernor::share_of_all() const { return share(0); }
@@ -33,13 +35,14 @@ double FollowGovernor::share_of_all() const { return share(0); }
 void FollowGovernor::measured(Frame const& f)
 {
     quiet_ = f.moved || !may_move_ ? 0 : quiet_ + 1;
-    if (!f.moved || !(f.seconds >= 0) || !(f.rate_hz > 0) || f.stored < 1) return;
-    stored_ = f.stored;
+    if (!f.moved || !(f.following.seconds >= 0) || !(f.rate_hz > 0) || f.following.axes < 1) return;
+    following_ = f.following;
     frame_s_ = 1 / f.rate_hz;
-    double const axis_s = f.seconds / axes_of(f.followed, f.stored);
-    if (f.seconds > kAtOnce * frame_s_) axis_s_.clear();
-    axis_s_.push_back(axis_s);
+    bool const at_once = following_.seconds > kAtOnce * frame_s_;
+    if (at_once) axis_s_.clear();
+    axis_s_.push_back(following_.seconds / following_.axes);
     if (axis_s_.size() > kFramesKept) axis_s_.pop_front();
+    if (!at_once && axis_s_.size() < kFramesKept) return;
     while (level_ + 1 < std::size(kLevels) && share(level_) > kMost[level_]) ++level_;
     calm_ = level_ > 0 && share(level_ - 1) < kToGrow * kMost[level_ - 1] ? calm_ + 1 : 0;
     if (calm_ < kFramesToGrow) return;
@@ -62,13 +65,14 @@ std::string schedule_sentence(std::string const& schedule, int followed, int sto
     if (schedule != "auto") return schedule + ", as it was set";
     std::string const share = fmt::format("{:.0f} % of the time between frames", 100 * share_of_all);
     if (!(share_of_all > 0)) return fmt::format("stored: all {} directions; nothing has moved so far", stored);
-    if (followed == 0)
+    int const parts = parts_of(followed, stored);
+    if (parts == 1)
         return fmt::format("stored: all {} directions follow what moves, which takes {} where something does",
                            stored, share);
     return fmt::format(
         "stored: {} of {} directions for each bounce follow what moves, others in every frame, as all "
         "would take {}",
-        followed, stored, share);
+        stored / parts, stored, share);
 }
 
 } // namespace viewer

@@ -15,6 +15,8 @@
 // - Where nothing moves, one step more in every frame, up to all: what has followed costs nothing then, and the
 //   picture converges as with all. When something moves again, as many as before.
 
+#include "gi/transport/frame_renderer.h"
+
 #include <deque>
 #include <string>
 
@@ -24,10 +26,8 @@ class FollowGovernor {
 public:
     /// What a frame tells.
     struct Frame {
-        int followed = 0;    ///< axes of a bounce that did, 0 = all
-        int stored = 160;    ///< axes of the whole set
+        gi::Following following;
         bool moved = false;  ///< something in the scene
-        double seconds = 0;  ///< that following took
         double rate_hz = 20; ///< frames that are aimed at
     };
     void measured(Frame const& frame);
@@ -40,15 +40,15 @@ public:
 private:
     double share(std::size_t level) const;
 
-    std::deque<double> axis_s_; ///< of the last frames in which something moved: for one axis
-    double frame_s_ = 0;        ///< between frames
-    int stored_ = 160;
+    std::deque<double> axis_s_;         ///< of the last frames in which something moved: for one axis
+    double frame_s_ = 0;                ///< between frames
+    gi::Following following_;           ///< of the last of them
     std::size_t level_ = 0, shown_ = 0; ///< where something moves; of the next frame
     int calm_ = 0, quiet_ = 0; ///< frames in succession: that had time for more; in which nothing moved that might
     bool may_move_ = true;     ///< in the frame at hand
 };
 
-/// The schedule in use and why, in a sentence. @param followed  of the frame
+/// The schedule in use and why, in a sentence. @param followed  as the setting of the frame has it
 std::string schedule_sentence(std::string const& schedule, int followed, int stored, double share_of_all);
 
 } // namespace viewer

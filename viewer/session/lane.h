@@ -24,6 +24,7 @@ public:
                                          gi::Changes const& changes, Settings const& settings,
                                          gi::StopRequest const& stop);
     int still_frames() const { return still_; }
+    gi::Following following() const { return renderer_->following(); } ///< of the last frame
 
 private:
     struct Seen { ///< of a view

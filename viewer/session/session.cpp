@@ -132,6 +132,7 @@ SessionFrame Session::render(FrameOrder const& order, gi::StopRequest const& sto
     for (ViewOrder const& v : order.views) hidden.push_back(hidden_.pixels(v));
     std::vector<gi::RenderResult> results = main_->render(order, hidden, changes, settings_, stop);
     frame.still_frames = main_->still_frames();
+    frame.following = main_->following();
     frame.options = results[0].options;
     frame.paths = int(results[0].paths);
     for (std::size_t k = 0; k < results.size(); ++k) {

@@ -27,6 +27,7 @@ struct ViewPicture {
 struct SessionFrame {
     std::vector<ViewPicture> views; ///< as ordered
     bool moved = false;             ///< something in the scene has, since the frame before
+    gi::Following following;        ///< of the method, not of the one it is compared with
     int still_frames = 0;           ///< since anything moved or changed, this one counted
     int paths = 0;                  ///< per pixel; fewer than ordered where it was stopped
     double rays = 0;                ///< and look-ups

@@ -233,12 +233,6 @@ int parse_points(std::string const& name, std::string const& text, int point_map
     return int(points);
 }
 
-int stored_axes(Settings const& s)
-{
-    std::string const set = s.directions.empty() ? "icosahedron:320" : s.directions; // as the plan chooses
-    return std::stoi(set.substr(set.find(':') + 1)) / 2; // it is named by its directions, two of each axis
-}
-
 gi::RenderSettings render_settings(Settings const& s, int threads)
 {
     gi::RenderSettings r;

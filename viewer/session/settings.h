@@ -67,9 +67,6 @@ nlohmann::json get(Settings const& settings, std::string const& key);
 /// @param name  of the setting, for the message  @param point_map  texels on a side
 int parse_points(std::string const& name, std::string const& text, int point_map);
 
-/// Axes of the set of the stored schedule.
-int stored_axes(Settings const& settings);
-
 /// What they say to a method. Throws InputError on values that do not go together.
 gi::RenderSettings render_settings(Settings const& settings, int threads);
 gi::DenoiseSettings denoise_settings(Settings const& settings, int threads);
