@@ -223,7 +223,7 @@ void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
         auto const begun = std::chrono::steady_clock::now();
         std::size_t const axes = axes_->follow_some(sequences, slhb_.gather ? 0 : followed_, frames_);
         double const s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-        if (!std::exchange(follows_, true)) following_ = {int(axes_->pool().size()), int(axes), int(sequences), 0};
+        if (!std::exchange(follows_, true)) following_ = {0, int(axes), int(sequences), 0};
         following_.seconds += s;
     } else {
         StageTimer const timer(report_, "hit buffers of a pass");
@@ -491,6 +491,13 @@ std::span<std::uint32_t const> SlhbRenderer::light_from(std::size_t view) const
     View const& v = views_[view];
     if (v.partner < 0) return {};
     return std::span(light_from_).subspan(v.first, v.pixels());
+}
+
+Following SlhbRenderer::following() const
+{
+    Following f = following_;
+    if (walks_ && slhb_.schedule == Schedule::stored) f.stored = int(axes_->pool().size());
+    return f;
 }
 
 double SlhbRenderer::rays() const { return double(done_.queries + done_.shadow_lookups + done_.exact_rays); }

@@ -35,7 +35,8 @@ public:
     /// From the next frame on: of the stored axes of each bounce about `axes` follow what moves, others from frame
     /// to frame, and paths take no others; 0 = all.
     void follow(std::uint32_t axes) { followed_ = axes; }
-    Following following() const { return following_; }
+    /// In the frame that ended last.
+    Following following() const;
     /// From the next pass on. A view is what the view of the same index was in the frame before.
     void see(std::span<FrameView const> views);
     /// One more path for every pixel. @param index of the pass, which decides its random numbers
