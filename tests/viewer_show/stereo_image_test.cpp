@@ -71,7 +71,18 @@ Eye composed(StereoMode mode, Eye const& left, Eye const& right, glm::ivec2 at =
 {
     auto const of = [&](Bytes Eye::*form) { return compose_stereo(mode, left.*form, right.*form, kSize, at); };
     // Dubois' matrices have negative elements, so that low ones do not give low ones.
-    if (mode == StereoMode::anaglyph_dubois) return {of(&Eye::nearest), of(&Eye::nearest), of(&Eye::nearest)};
+    if (mode == StereoMode::anaglyph_dubois) {
+        Eye all{of(&Eye::nearest), of(&Eye::nearest), of(&Eye::nearest)};
+        for (auto const l : {&Eye::low, &Eye::high})
+            for (auto const r : {&Eye::low, &Eye::high}) {
+                Bytes const one = compose_stereo(mode, left.*l, right.*r, kSize, at);
+                for (std::size_t i = 0; i < one.size(); ++i) {
+                    all.low[i] = std::min(all.low[i], one[i]);
+                    all.high[i] = std::max(all.high[i], one[i]);
+                }
+            }
+        return all;
+    }
     return {of(&Eye::low), of(&Eye::nearest), of(&Eye::high)};
 }
 
