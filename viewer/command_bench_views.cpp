@@ -7,6 +7,7 @@
 #include "viewer/bench_record.h"
 #include "viewer/commands.h"
 #include "viewer/load_world.h"
+#include "viewer/report_json.h"
 #include "viewer/session/session.h"
 
 #include <CLI/CLI.hpp>
@@ -79,7 +80,7 @@ void write_picture(gi::Layer const& color, ViewOrder const& view, std::filesyste
 }
 
 /// relMSE of the last view of a frame against the reference from the same place; both are written as pictures.
-double error_of(gi::World const& world, FrameOrder const& order, SessionFrame const& frame, int paths,
+double error_of(Session const& session, FrameOrder const& order, SessionFrame const& frame, int paths,
                 std::filesystem::path const& pictures, gi::Report& report)
 {
     gi::RenderSettings s;
@@ -88,8 +89,9 @@ double error_of(gi::World const& world, FrameOrder const& order, SessionFrame co
     s.height = view.height;
     s.paths = std::uint32_t(paths);
     s.seed = 99;
-    s.bounces = Settings{}.bounces;
-    gi::RenderResult const truth = gi::find_method("reference").render(world, view.camera, s, {}, {}, report);
+    s.bounces = session.settings().bounces;
+    gi::RenderResult const truth =
+        gi::find_method("reference").render(session.world(), view.camera, s, {}, {}, report);
     gi::Layer const &seen = *frame.views.back().picture.find("color"), &right = *truth.picture.find("color");
     write_picture(seen, view, pictures.string() + ".png");
     write_picture(right, view, pictures.string() + " reference.png");
@@ -163,10 +165,11 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
         table.add({scene, v.name, double(order.views.size()),
                    fmt::format("{}x{}", order.views[0].width, order.views[0].height), summarise(v.ms),
                    more > 0 ? Cell(ratio(extra, first)) : Cell(),
-                   error_of(v.session->world(), order, v.last, o.reference_paths,
+                   error_of(*v.session, order, v.last, o.reference_paths,
                             std::filesystem::path(o.out) /
                                 fmt::format("{} {}", std::filesystem::path(scene).stem().string(), v.name),
                             *v.report)});
+        print_losses(*v.report);
         table.facts.emplace_back(fmt::format("stages, ms: {}, {}", scene, v.name), stages_of(v));
     }
 }

@@ -22,7 +22,7 @@ namespace {
 
 struct TrackOptions {
     std::string type = "osc", file, address = "127.0.0.1", out, head = "head", left_hand = "left_hand",
-                right_hand = "right_hand";
+                right_hand = "right_hand", left_foot = "left_foot", right_foot = "right_foot";
     int port = -1, seed = 0;
     double seconds = 10, rate_hz = 60, loss = 0, jitter_ms = 0, frame_rate_hz = 0;
     bool json = false, quiet = false;
@@ -57,10 +57,14 @@ struct Outgoing {
     std::vector<unsigned char> bytes;
 };
 
-/// DTrack has no names: the head is body 0, the hands are flysticks 0 (left) and 1.
+/// DTrack has no names: the head is body 0, the hands are flysticks 0 (left) and 1, the feet bodies 1 (left)
+/// and 2.
 std::string dtrack_name(std::string const& body)
 {
-    return body == "head" ? "0" : body == "left_hand" ? "flystick0" : body == "right_hand" ? "flystick1" : body;
+    constexpr std::array<char const*, kBodies> kIds{"0", "flystick0", "flystick1", "1", "2"};
+    for (std::size_t b = 0; b < kBodies; ++b)
+        if (body == kBodyNames[b]) return kIds[b];
+    return body;
 }
 
 /// Packets of all samples of one time, as a network delivers them.
@@ -142,18 +146,17 @@ nlohmann::ordered_json to_json(TrackerReport const& r)
         {"ignored", c.ignored},     {"lost", c.lost},         {"out_of_order", c.out_of_order},
         {"duplicate", c.duplicate}, {"restarts", c.restarts}, {"dropped_by_kernel", c.dropped_by_kernel}};
     for (auto const& [name, value] : numbers(r.latency)) j["latency"][name] = value;
-    constexpr char const* kNames[] = {"head", "left_hand", "right_hand"};
     for (std::size_t b = 0; b < kBodies; ++b) {
         BodyReport const& body = r.bodies[b];
         if (!body.configured) continue;
-        j["bodies"][kNames[b]] = {{"state", name_of(body.state)},
-                                  {"samples", body.counts.samples},
-                                  {"late", body.counts.late},
-                                  {"too_late", body.counts.too_late},
-                                  {"dropouts", body.counts.dropouts},
-                                  {"not_visible", body.not_visible},
-                                  {"clock_restarts", body.clock_restarts},
-                                  {"doubtful_times", body.doubtful_times}};
+        j["bodies"][kBodyNames[b]] = {{"state", name_of(body.state)},
+                                      {"samples", body.counts.samples},
+                                      {"late", body.counts.late},
+                                      {"too_late", body.counts.too_late},
+                                      {"dropouts", body.counts.dropouts},
+                                      {"not_visible", body.not_visible},
+                                      {"clock_restarts", body.clock_restarts},
+                                      {"doubtful_times", body.doubtful_times}};
     }
     j["other_bodies"] = r.other_bodies;
     return j;
@@ -183,6 +186,8 @@ int run_listen(TrackOptions const& o)
     settings.head.id = id(o.head);
     settings.left_hand.id = id(o.left_hand);
     settings.right_hand.id = id(o.right_hand);
+    settings.left_foot.id = id(o.left_foot);
+    settings.right_foot.id = id(o.right_foot);
     if (settings.type == TrackerType::file && o.file.empty())
         throw gi::InputError("--type file needs --file", "there is nothing to play", "name one: --file walk.csv");
     TrackerHub hub({settings}, Polling::by_caller);
@@ -231,6 +236,8 @@ void add_listen(CLI::App& track, int& exit_code)
     c->add_option("--head", o->head, "the sender's name of the head")->capture_default_str();
     c->add_option("--left-hand", o->left_hand, "of the left hand")->capture_default_str();
     c->add_option("--right-hand", o->right_hand, "of the right hand")->capture_default_str();
+    c->add_option("--left-foot", o->left_foot, "of the left foot")->capture_default_str();
+    c->add_option("--right-foot", o->right_foot, "of the right foot")->capture_default_str();
     c->add_flag("--quiet", o->quiet, "no samples, only the counts at the end");
     c->add_flag("--json", o->json, "the counts as JSON");
     c->footer(R"(Examples:
@@ -238,8 +245,8 @@ void add_listen(CLI::App& track, int& exit_code)
   lightwell track listen --type file --file walk.csv --seconds 0.2
   lightwell track listen --type osc --port 9123 --seconds 0.2 --json
 
-Of dtrack, head, left_hand and right_hand are body 0 and flysticks 0 and 1 unless others are named. Poses are printed as sent,
-in m, in the tracker's own axes: x y z, then the quaternion x y z w, then buttons. Delays are above that of the fastest packet.)");
+Of dtrack, head, left_hand and right_hand are body 0 and flysticks 0 and 1, left_foot and right_foot bodies 1 and 2, unless
+others are named. Poses are printed as sent, in m, in the tracker's own axes: x y z, then the quaternion x y z w, then buttons. Delays are above that of the fastest packet.)");
     c->callback([o, &exit_code] { exit_code = run_listen(*o); });
 }
 

@@ -1,10 +1,8 @@
 #include "gi/base/error.h"
 #include "gi/base/file.h"
-#include "gi/scene/load.h"
 #include "viewer/arguments.h"
 #include "viewer/commands.h"
 #include "viewer/display/display_file.h"
-#include "viewer/display/views.h"
 #include "viewer/interrupt.h"
 #include "viewer/load_world.h"
 #include "viewer/rank_options.h"
@@ -15,7 +13,7 @@
 #include "viewer/show/cluster_link.h"
 #include "viewer/show/hmd_program.h"
 #include "viewer/show/view_program.h"
-#include "viewer/tracking/own_avatar.h"
+#include "viewer/user_avatars.h"
 #include "viewer/validators.h"
 #include "viewer/version.h"
 
@@ -60,32 +58,10 @@ NavigationMode parse_navigation(std::string const& name)
     throw gi::InputError("--navigate " + name, "it is not known here", "choose fly, walk or orbit");
 }
 
-/// Scenes as the options say, each with the avatar of that file ("" = none).
-RecordedScenes scenes_of(RenderOptions const& options, std::string const& avatar, double eye_height_m,
-                         gi::Report& report)
+/// Of options and display. Those of a display's file are in its folder.
+std::vector<AvatarChoice> choices_of(ViewArguments const& a, std::optional<Display> const& display)
 {
-    std::shared_ptr<OwnAvatar const> own;
-    if (!avatar.empty()) own = std::make_shared<OwnAvatar const>(gi::load_scene(avatar, report), eye_height_m);
-    RecordedScenes s;
-    s.load = [options, own](std::string const& name, gi::Report& r) {
-        RenderOptions named = options;
-        named.scene = name;
-        std::shared_ptr<gi::Scene const> const scene = load_lit_scene(named, r);
-        return own ? std::make_shared<gi::Scene const>(own->joined(*scene)) : scene;
-    };
-    if (own)
-        s.drive = [own](gi::Scene const& scene, FrameOrder const& order, gi::Pose& pose) {
-            own->drive(scene, order, pose);
-        };
-    return s;
-}
-
-/// Of the first user; rooms whose origin is not on the floor do not tell.
-double eye_height_m(ViewArguments const& a, std::optional<Display> const& display)
-{
-    if (!display || display->users.empty()) return a.eye_height_m;
-    double const rests = resting_head(display->users[0]).position.y;
-    return rests >= 0.3 && rests <= 3 ? rests : a.eye_height_m;
+    return avatar_choices(a.avatar, a.eye_height_m, display, std::filesystem::path(a.display).parent_path());
 }
 
 ViewOptions view_options(ViewArguments const& a, std::string const& command_line, gi::Report& report)
@@ -93,11 +69,12 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
     ViewOptions o;
     RenderOptions const& scene = a.scene;
     if (!a.display.empty()) o.display = load_display(a.display, report);
-    double const eyes = eye_height_m(a, o.display);
-    RecordedScenes scenes = scenes_of(scene, a.avatar, eyes, report);
+    std::vector<AvatarChoice> const avatars = choices_of(a, o.display);
+    RecordedScenes scenes = scenes_with(scene, avatars, report);
     o.load = std::move(scenes.load);
     o.drive = std::move(scenes.drive);
-    o.eye_height_m = eyes;
+    o.avatars = scenes.avatars;
+    o.eye_height_m = resting_eye_height_m(o.display, a.eye_height_m);
     o.scene = scene.scene;
     CameraChoice const choice = camera_choice(scene);
     o.first_camera = [choice](gi::World const& world) {
@@ -121,10 +98,7 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
                       {"environment_rotate_deg", scene.environment_rotate_deg},
                       {"environment_scale", scene.environment_scale},
                       {"background", scene.background}};
-    if (!a.avatar.empty()) {
-        o.load_options["avatar"] = a.avatar;
-        o.load_options["eye_height_m"] = eyes;
-    }
+    put_avatars(o.load_options, avatars);
     o.remote.socket = a.remote;
     o.remote.port = a.remote_port;
     o.time_limit_s = a.time_limit_s;
@@ -188,10 +162,13 @@ int run(ViewArguments const& a, std::string const& command_line)
     if (!o.display)
         throw gi::InputError("view by several ranks without --display", "it is not known which walls each shows",
                              "add --display FILE.yaml whose walls have ranks");
-    std::string const what = o.scene + " on " + a.display + (a.avatar.empty() ? "" : " with " + a.avatar);
-    std::uint64_t const avatar_hash = a.avatar.empty() ? 0 : file_hash(a.avatar);
-    ClusterLink link({version_text(), what, file_hash(o.scene) ^ file_hash(a.display) ^ avatar_hash},
-                     cluster_settings(a.ranks));
+    std::string what = o.scene + " on " + a.display;
+    std::uint64_t hash = file_hash(o.scene) ^ file_hash(a.display);
+    for (AvatarChoice const& avatar : choices_of(a, o.display)) {
+        what += " with " + avatar.file;
+        hash ^= file_hash(avatar.file) * (2 * avatar.user + 1); // the same for two users does not cancel out
+    }
+    ClusterLink link({version_text(), what, hash}, cluster_settings(a.ranks));
     ViewSummary const done = run_view(o, &link, stop, report);
     if (o.rank == 0) return finish(a, done, &link, report);
     if (!link.failure().empty()) std::fputs(("lightwell: " + link.failure() + "\n").c_str(), stderr);
@@ -216,11 +193,16 @@ int run_replay(ViewArguments const& a)
         o,
         [&report](nlohmann::json const& load) {
             RenderOptions options;
-            options.environment = load.value("environment", "");
-            options.environment_rotate_deg = load.value("environment_rotate_deg", 0.0);
-            options.environment_scale = load.value("environment_scale", 1.0);
-            options.background = load.value("background", "");
-            return scenes_of(options, load.value("avatar", ""), load.value("eye_height_m", 1.6), report);
+            try {
+                options.environment = load.value("environment", "");
+                options.environment_rotate_deg = load.value("environment_rotate_deg", 0.0);
+                options.environment_scale = load.value("environment_scale", 1.0);
+                options.background = load.value("background", "");
+            } catch (nlohmann::json::exception const& e) {
+                throw gi::InputError("what the recording's scenes are read with cannot be read", e.what(),
+                                     "record the walk again");
+            }
+            return scenes_with(options, avatars_of(load), report);
         },
         stop, report);
     fmt::print("{} frames replayed", done.frames);
@@ -267,7 +249,7 @@ void add_view(CLI::App& app, int& exit_code)
     c->add_option("scene", a->scene.scene, "a file or a generated scene, as of render");
     declare_view_options(*c, a->scene);
     c->add_option("--set", a->settings,
-                  "KEY=VALUE before the first frame, e.g. stereo=anaglyph-dubois; repeatable")
+                  "KEY=VALUE before the first frame, e.g. stereo=anaglyph-dubois, or device=cuda; repeatable")
         ->take_all();
     c->add_option("--size", a->size, "of the window, pixels (default: 1280x720); of a replay: of each view");
     c->add_option("--fullscreen", a->fullscreen, "on the monitor of this number or name");

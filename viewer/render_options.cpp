@@ -1,9 +1,9 @@
 #include "viewer/render_options.h"
 
+#include "gi/base/device.h"
 #include "gi/base/error.h"
 #include "gi/registry/registry.h"
 #include "gi/scene/camera.h"
-#include "gi/slhb/kernel_render.h"
 #include "viewer/arguments.h"
 #include "viewer/frame_options.h"
 #include "viewer/session/settings.h"
@@ -40,7 +40,7 @@ void check_device(RenderOptions const& o, gi::SlhbSettings const& s)
     if (s.space == gi::Space::device && o.method != "slhb")
         throw gi::InputError("--device cuda with --method " + o.method, "it runs on the CPU only",
                              "add --method slhb, or leave --device out");
-    gi::check_device(s);
+    gi::check_device(s.space);
 }
 
 void check_shutter(RenderOptions const& o, gi::RenderSettings const& s)
@@ -51,9 +51,6 @@ void check_shutter(RenderOptions const& o, gi::RenderSettings const& s)
     if (o.reuse > 1)
         throw gi::InputError("--shutter with --reuse", "motion vectors lead from moment to moment",
                              "keep one of them");
-    if (s.slhb.space == gi::Space::device)
-        throw gi::InputError("--shutter with --device cuda", "its kernels render one moment",
-                             "leave it out, or render with --device cpu");
     if (s.resume)
         throw gi::InputError("--shutter with --resume", "a picture blurred by motion is rendered in one go",
                              "leave --resume out");
@@ -257,7 +254,8 @@ void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods
 void declare_slhb(CLI::App& c, RenderOptions& o)
 {
     c.add_option("--device", o.device,
-                 "cpu; or cuda: all by kernels, paths end at mirrors, glass and narrow lobes, which is counted")
+                 "cpu; or cuda: all by kernels, also of frames with --reuse or --shutter; paths end at mirrors,\n"
+                 "glass and narrow lobes, which is counted")
         ->check(CLI::IsMember({"cpu", "cuda"}))
         ->capture_default_str()
         ->group(kSlhbGroup);

@@ -85,11 +85,10 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     session.drive_bodies(scenes.drive);
     std::set<std::string> overridden;
     nlohmann::json const settings = header.settings.value("settings", nlohmann::json::object());
-    for (auto const& [key, value] : settings.items()) session.apply({key, value});
-    for (Change const& c : o.settings) {
-        session.apply(c);
-        overridden.insert(c.key);
-    }
+    for (Change const& c : o.settings) overridden.insert(c.key);
+    for (auto const& [key, value] : settings.items())
+        if (!overridden.contains(key)) session.apply({key, value}); // a device may not be here
+    for (Change const& c : o.settings) session.apply(c);
     session.apply({"scene", header.scene});
     ReplaySummary summary;
     gi::ProgressBar bar("replay " + o.file);

@@ -4,6 +4,7 @@
 #include "gi/base/progress.h"
 #include "viewer/recording/recording.h"
 #include "viewer/session/session.h"
+#include "viewer/tracking/footsteps.h"
 
 namespace viewer {
 
@@ -29,6 +30,7 @@ struct ReplaySummary {
 struct RecordedScenes {
     LoadScene load;
     DriveBodies drive; ///< empty = nothing but their clips moves them
+    std::vector<AvatarOfUser> avatars;
 };
 /// From RecordingHeader::settings["load"].
 using LoadRecorded = std::function<RecordedScenes(nlohmann::json const& load)>;

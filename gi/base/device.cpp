@@ -1,6 +1,7 @@
 #include "gi/base/device.h"
 
 #include "gi/base/device_memory.h"
+#include "gi/base/error.h"
 
 #include <cstring>
 #include <new>
@@ -16,6 +17,17 @@ void fill(void*, unsigned char, std::size_t) { throw_no_cuda("device memory"); }
 void copy(void*, void const*, std::size_t) { throw_no_cuda("device memory"); }
 } // namespace device
 #endif
+
+void check_device(Space space)
+{
+    if (space == Space::host) return;
+    if (!kCudaBuild)
+        throw InputError("--device cuda cannot be used", "this program was built without CUDA",
+                         "build the cuda preset, or choose the device cpu");
+    if (!device_present())
+        throw InputError("--device cuda cannot be used", "no CUDA device is present",
+                         "run on a machine with one and its driver, or choose the device cpu");
+}
 
 void* allocate_bytes(Space space, std::size_t bytes)
 {

@@ -10,6 +10,8 @@ namespace gi {
 
 /// Whether this build and this machine can run kernels on a device.
 bool device_present();
+/// Throws InputError where that is not so and `space` is the device.
+void check_device(Space space);
 
 /// Uninitialised bytes; throws std::bad_alloc (host) or std::runtime_error naming the CUDA error (device).
 void* allocate_bytes(Space space, std::size_t bytes);

@@ -115,7 +115,7 @@ void filter_row(Iteration const& it, Spans spans, int y)
 /// Light that is known has no noise any more.
 void lay(KnownLight const& known, Planes const& from, int y, Planes& out)
 {
-    known.for_known(y, [&](Span span) {
+    known.area.for_known(y, [&](Span span) {
         for (int p = light::direct; p < light::luminance && &from != &out; ++p)
             std::copy(from.row(p, y) + span.first, from.row(p, y) + span.end, out.row(p, y) + span.first);
         for (int k = 0; k < 2; ++k) {
@@ -147,7 +147,7 @@ Planes filter_atrous(FilterInput& input, int iterations, KnownLight const& known
         // Pixels of distance from the plane from which on weights are 0: what is far away may curve more.
         float const reach = 1 + 0.2f * float(step);
         Iteration const it{input.guides, input.light, other, step, 1 / square(reach)};
-        tbb::parallel_for(0, height, [&](int y) { filter_row(it, known.wanted[std::size_t(y)], y); });
+        tbb::parallel_for(0, height, [&](int y) { filter_row(it, known.area.wanted[std::size_t(y)], y); });
         if (i == 0) lay_in(input.light); // what it saw first was as it came
         std::swap(input.light, other);
     }

@@ -4,7 +4,10 @@
 #include "gi/base/threads.h"
 #include "gi/image/atrous.h"
 #include "gi/image/discontinuity.h"
+#include "gi/image/filtered_layers.h"
 
+#include <algorithm>
+#include <limits>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -27,25 +30,26 @@ void check(Picture const& picture, DenoiseSettings const& s)
                              "the filtered picture is L0 + L1 + L2", "keep all layers until it is filtered");
 }
 
-/// Multiplies the albedo back, where there was a surface to go by.
-void store(Picture& picture, Planes const& guides, Planes const& filtered)
+/// How far from a pixel the filters look.
+int reach_of(DenoiseSettings const& s)
 {
-    Layer const &l0 = *picture.find("L0"), &albedo = *picture.find("albedo");
-    Layer &color = *picture.find("color"), &l1 = *picture.find("L1"), &l2 = *picture.find("L2");
+    // The variance of a-trous is split by all of the picture.
+    return s.denoiser == Denoiser::atrous ? std::numeric_limits<int>::max()
+                                          : std::max(s.window / 2, s.reach * s.window);
+}
+
+/// Multiplies the albedo back, where there was a surface to go by.
+void store(Planes const& guides, Planes const& filtered, RowSpans const& wanted, Picture& picture)
+{
+    FilteredLayers const layers(picture);
     tbb::parallel_for(0, picture.height, [&](int y) {
         auto const direct = filtered.row3(light::direct, y), indirect = filtered.row3(light::indirect, y);
-        for (int x = 0; x < picture.width; ++x) {
-            if (guides.row(guide::surface, y)[x] == 0) continue;
-            std::size_t const i = std::size_t(y) * std::size_t(picture.width) + std::size_t(x);
-            vec3 const a = rgb(albedo, i), e1 = direct[x] * a, e2 = indirect[x] * a;
-            for (int c = 0; c < 3; ++c) {
-                std::size_t const k = 3 * i + std::size_t(c);
-                if (a[c] < kDarkest) continue;
-                l1.data[k] = e1[c];
-                l2.data[k] = e2[c];
-                color.data[k] = l0.data[k] + e1[c] + e2[c];
-            }
-        }
+        float const* const surface = guides.row(guide::surface, y);
+        for (Span const& s : wanted[std::size_t(y)])
+            for (int x = s.first; x < s.end; ++x)
+                if (surface[x] != 0)
+                    layers.put(std::size_t(y) * std::size_t(picture.width) + std::size_t(x), direct[x],
+                               indirect[x]);
     });
 }
 
@@ -58,11 +62,13 @@ DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, TakenLi
     DenoiseReport report;
     on_threads(settings.threads, [&] {
         bool const atrous = settings.denoiser == Denoiser::atrous;
-        FilterInput input = make_filter_input(picture, atrous);
-        KnownLight const known = taken.partner ? known_from(picture, input, taken) : nothing_known(input);
-        store(picture, input.guides,
+        KnownLight known{taken.partner ? own_area(picture, taken, reach_of(settings)) : whole_area(picture), {}};
+        FilterInput input = make_filter_input(picture, atrous, known.area);
+        if (taken.partner) known.light = take_filtered(picture, taken, known.area, input.report);
+        store(input.guides,
               atrous ? filter_atrous(input, settings.iterations, known)
-                     : filter_discontinuity(input, settings.window, settings.reach, known));
+                     : filter_discontinuity(input, settings.window, settings.reach, known),
+              known.area.wanted, picture);
         report = input.report;
     });
     return report;

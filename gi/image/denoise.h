@@ -23,7 +23,8 @@ struct DenoiseSettings {
     int threads = 0; ///< 0 = all
 };
 
-/// Pixels that keep their values for want of something to go by.
+/// Pixels that keep their values for want of something to go by; of a picture that takes light from a partner,
+/// those that it finds for itself, and those that would take what is not finite.
 struct DenoiseReport {
     std::size_t without_surface = 0; ///< nothing was hit, or something black
     std::size_t not_finite = 0;      ///< NaN, infinite or beyond 1e18 in a layer that is needed

@@ -84,11 +84,11 @@ Planes filter_discontinuity(FilterInput const& input, int window, int reach, Kno
 {
     Planes out(kWeight + 1, input.light.width(), input.light.height());
     auto const in_rows = [&](auto const& work) {
-        tbb::parallel_for(0, out.height(), [&](int y) { work(Spans(known.wanted[std::size_t(y)]), y); });
+        tbb::parallel_for(0, out.height(), [&](int y) { work(Spans(known.area.wanted[std::size_t(y)]), y); });
     };
     Planes const& where_known = known.light ? *known.light : input.light;
     tbb::parallel_for(0, out.height(), [&](int y) {
-        known.for_known(y, [&](Span span) { start_sums(where_known, light::direct, span, y, out); });
+        known.area.for_known(y, [&](Span span) { start_sums(where_known, light::direct, span, y, out); });
     });
     in_rows([&](Spans spans, int y) { filter_row(input, window, spans, y, out); });
     if (reach == 0) return out;

@@ -4,28 +4,14 @@
 
 #include <atomic>
 #include <tbb/parallel_for.h>
+#include <utility>
 
 namespace gi {
 namespace {
 
-constexpr float kLargest = 1e18f; // its square is still finite
-
 struct Layers {
     Layer const *l1, *l2, *albedo, *normal, *position, *variance;
 };
-
-Layer const& needed(Picture const& picture, char const* name)
-{
-    Layer const* const layer = picture.find(name);
-    if (layer == nullptr || layer->channels != 3)
-        throw InputError(std::string("the picture has no layer '") + name + "'",
-                         "the filters divide by the albedo and stop at edges of the surface",
-                         "keep all layers until it is filtered");
-    return *layer;
-}
-
-/// False for NaN too.
-bool in_range(vec3 v) { return std::abs(v.x) < kLargest && std::abs(v.y) < kLargest && std::abs(v.z) < kLargest; }
 
 /// Apart by more than 1 where other channels are dark.
 float albedo_guide(vec3 a)
@@ -48,14 +34,14 @@ vec3 first_position(Layers const& layers, std::size_t pixels)
     return vec3{0};
 }
 
-void fill_row(Layers const& layers, vec3 origin, int y, FilterInput& in, DenoiseReport& report)
+void fill(Layers const& layers, vec3 origin, Span span, int y, FilterInput& in, DenoiseReport& report)
 {
     auto const normal = in.guides.row3(guide::normal, y), position = in.guides.row3(guide::position, y),
                direct = in.light.row3(light::direct, y), indirect = in.light.row3(light::indirect, y);
     float *const surface = in.guides.row(guide::surface, y), *const variance = in.guides.row(guide::variance, y);
     float* const albedo = in.guides.row(guide::albedo, y);
     float *const l1 = in.light.row(light::luminance, y), *const l2 = in.light.row(light::luminance + 1, y);
-    for (int x = 0; x < in.light.width(); ++x) {
+    for (int x = span.first; x < span.end; ++x) {
         std::size_t const i = std::size_t(y) * std::size_t(in.light.width()) + std::size_t(x);
         vec3 const n = rgb(*layers.normal, i), p = rgb(*layers.position, i), a = rgb(*layers.albedo, i);
         vec3 const direct_light = rgb(*layers.l1, i), indirect_light = rgb(*layers.l2, i);
@@ -83,18 +69,18 @@ void fill_row(Layers const& layers, vec3 origin, int y, FilterInput& in, Denoise
 
 /// Distance to the nearest of the four neighbours: on a surface seen at a glancing angle that is the distance
 /// across the line of sight. Not below the rounding of the coordinates.
-void measure_footprints(Layer const& positions, int y, Planes& guides)
+void measure_footprints(Layer const& positions, Span span, int y, Planes& guides)
 {
     auto const here = guides.row3(guide::position, y);
     float* const out = guides.row(guide::inverse_footprint2, y);
     int const width = guides.width();
-    std::fill(out, out + width, kLargest);
+    std::fill(out + span.first, out + span.end, kLargest);
     auto const look = [&](int dx, int dy) {
         if (y + dy < 0 || y + dy >= guides.height()) return;
         auto const there = guides.row3(guide::position, y + dy);
         float const* const surface = guides.row(guide::surface, y + dy);
 #pragma GCC ivdep
-        for (int x = 0; x < width; ++x) {
+        for (int x = span.first; x < span.end; ++x) {
             vec3 const d = there[x + dx] - here[x];
             float const distance2 = surface[x + dx] > 0 ? glm::dot(d, d) : kLargest;
             out[x] = distance2 < out[x] ? distance2 : out[x];
@@ -104,7 +90,7 @@ void measure_footprints(Layer const& positions, int y, Planes& guides)
     look(1, 0);
     look(0, -1);
     look(0, 1);
-    for (int x = 0; x < width; ++x) {
+    for (int x = span.first; x < span.end; ++x) {
         vec3 const p = glm::abs(rgb(positions, std::size_t(y) * std::size_t(width) + std::size_t(x)));
         float const rounding = 2.4e-7f * max_component(p);
         bool const known = guides.row(guide::surface, y)[x] > 0;
@@ -114,24 +100,43 @@ void measure_footprints(Layer const& positions, int y, Planes& guides)
 
 } // namespace
 
-FilterInput make_filter_input(Picture const& picture, bool with_variance)
+Layer const& needed_layer(Picture const& picture, char const* name)
 {
-    Layers const layers{&needed(picture, "L1"),       &needed(picture, "L2"),
-                        &needed(picture, "albedo"),   &needed(picture, "normal"),
-                        &needed(picture, "position"), with_variance ? &needed(picture, "variance") : nullptr};
+    Layer const* const layer = picture.find(name);
+    if (layer == nullptr || layer->channels != 3)
+        throw InputError(std::string("the picture has no layer '") + name + "'",
+                         "the filters divide by the albedo and stop at edges of the surface",
+                         "keep all layers until it is filtered");
+    return *layer;
+}
+
+Layer& needed_layer(Picture& picture, char const* name)
+{
+    return const_cast<Layer&>(needed_layer(std::as_const(picture), name));
+}
+
+FilterInput make_filter_input(Picture const& picture, bool with_variance, FilterArea const& area)
+{
+    Layers const layers{
+        &needed_layer(picture, "L1"),       &needed_layer(picture, "L2"),
+        &needed_layer(picture, "albedo"),   &needed_layer(picture, "normal"),
+        &needed_layer(picture, "position"), with_variance ? &needed_layer(picture, "variance") : nullptr};
     FilterInput in{
         {guide::count, picture.width, picture.height}, {light::count, picture.width, picture.height}, {}};
     vec3 const origin = first_position(layers, picture.pixels());
     std::atomic<std::size_t> without_surface = 0, not_finite = 0;
     std::atomic<bool> no_variance = true;
     tbb::parallel_for(0, picture.height, [&](int y) {
-        DenoiseReport row{0, 0, true};
-        fill_row(layers, origin, y, in, row);
+        DenoiseReport row{0, 0, true}, known{0, 0, true};
+        for (Span const& s : area.wanted[std::size_t(y)]) fill(layers, origin, s, y, in, row);
+        area.for_known(y, [&](Span s) { fill(layers, origin, s, y, in, area.takes ? known : row); });
         without_surface += row.without_surface;
         not_finite += row.not_finite;
         if (!row.no_variance) no_variance = false;
     });
-    tbb::parallel_for(0, picture.height, [&](int y) { measure_footprints(*layers.position, y, in.guides); });
+    tbb::parallel_for(0, picture.height, [&](int y) {
+        for (Span const& s : area.wanted[std::size_t(y)]) measure_footprints(*layers.position, s, y, in.guides);
+    });
     in.report = {without_surface, not_finite, with_variance && no_variance};
     return in;
 }

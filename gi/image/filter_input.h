@@ -2,6 +2,7 @@
 // What the filters see of a picture: the surface at each pixel and the light that falls on it.
 
 #include "gi/image/denoise.h"
+#include "gi/image/filter_area.h"
 #include "gi/image/planes.h"
 
 namespace gi {
@@ -35,8 +36,20 @@ struct FilterInput {
     DenoiseReport report;
 };
 
-/// Throws InputError where a layer is missing.
-FilterInput make_filter_input(Picture const& picture, bool with_variance);
+/// Of three channels. Throws InputError where it is missing.
+Layer const& needed_layer(Picture const& picture, char const* name);
+Layer& needed_layer(Picture& picture, char const* name);
+
+/// Fills in what is near and reports what the filter has to find; footprints where they are wanted. Throws
+/// InputError where a layer is missing.
+FilterInput make_filter_input(Picture const& picture, bool with_variance, FilterArea const& area);
+
+inline constexpr float kLargest = 1e18f; ///< its square is still finite
+/// False where a value is NaN or too large.
+inline bool in_range(vec3 v)
+{
+    return std::abs(v.x) < kLargest && std::abs(v.y) < kLargest && std::abs(v.z) < kLargest;
+}
 
 /// Channels with less albedo tell nothing of the light: they keep their values, and so do pixels without any
 /// other.

@@ -5,7 +5,9 @@
 #include "gi/base/huge_pages.h"
 #include "gi/base/math.h"
 
+#include <algorithm>
 #include <memory>
+#include <tbb/parallel_for.h>
 
 namespace gi {
 
@@ -38,11 +40,18 @@ public:
         std::size_t const values = std::size_t(count) * std::size_t(height) * stride_;
         values_.reset(new float[values]);
         advise_huge_pages(values_.get(), values * sizeof(float));
-        for (int y = 0; y < height; ++y)
-            for (int p = 0; p < count; ++p) {
-                std::fill(row(p, y) - kMargin, row(p, y), 0.0f);
-                std::fill(row(p, y) + width, row(p, y) - kMargin + stride_, 0.0f);
-            }
+        constexpr int kRows = 16;
+        auto const clear_margins = [&](int k) {
+            for (int y = k * kRows; y < std::min(height, (k + 1) * kRows); ++y)
+                for (int p = 0; p < count; ++p) {
+                    std::fill(row(p, y) - kMargin, row(p, y), 0.0f);
+                    std::fill(row(p, y) + width, row(p, y) - kMargin + stride_, 0.0f);
+                }
+        };
+        if (height <= kRows)
+            clear_margins(0);
+        else // touches much memory for the first time
+            tbb::parallel_for(0, (height + kRows - 1) / kRows, clear_margins);
     }
     int width() const { return width_; }
     int height() const { return height_; }

@@ -171,10 +171,10 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             ++local.surfaces;
             vec3 const was = rgb(motion, i);
             // Neither what is seen here now nor what was seen moves: an edge, perhaps, seen through another point.
-            bool const still = glm::length(vec2(was)) < kStill, resting = still && last_lights_[i].still;
+            bool const still = glm::length(vec2(was)) < kStill, taken = partner && takes[i];
             lights_[i].still = still;
-            bool const taken = partner && takes[i];
             if (taken && !still) continue;
+            bool const resting = still && last_lights_[i].still;
             // What the depth changes by over a pixel; frames look through different points of it.
             auto const change = [&](bool there, std::ptrdiff_t step) {
                 return there ? std::abs(surfaces_[std::size_t(std::ptrdiff_t(i) + step)].depth - here.depth)
@@ -229,36 +229,27 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
     });
 }
 
-/// One more picture of a scene in which nothing moves.
-void TemporalReuse::rest(Picture const& frame)
-{
-    Layer const* const parts[] = {&layer_of(frame, "L0"), &layer_of(frame, "L1"), &layer_of(frame, "L2")};
-    float const share = 1 / float(still_ + 1);
-    mean_.resize(frame.pixels());
-    tbb::parallel_for(std::size_t(0), std::size_t(frame.height), [&](std::size_t y) {
-        for (std::size_t i = y * std::size_t(frame.width); i < (y + 1) * std::size_t(frame.width); ++i)
-            for (std::size_t k = 0; k < 3; ++k)
-                mean_[i][k] = still_ == 0 ? rgb(*parts[k], i) : glm::mix(mean_[i][k], rgb(*parts[k], i), share);
-    });
-    ++still_;
-}
-
-void TemporalReuse::store(Picture& frame, TemporalCounts& counts) const
+/// Adds one more picture of a scene in which nothing moves, and replaces it by both means.
+void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
 {
     Layer &albedo = *frame.find("albedo"), &l0 = *frame.find("L0"), &l1 = *frame.find("L1"),
           &l2 = *frame.find("L2"), &color = *frame.find("color");
+    bool const first = still_++ == 0;
     float const n = float(still_);
+    mean_.resize(frame.pixels());
     tbb::combinable<double> frames;
     tbb::parallel_for(std::size_t(0), std::size_t(frame.height), [&](std::size_t y) {
         double& sum = frames.local();
         for (std::size_t i = y * std::size_t(frame.width); i < (y + 1) * std::size_t(frame.width); ++i) {
+            std::array<vec3, 3> const now{rgb(l0, i), rgb(l1, i), rgb(l2, i)};
+            std::array<vec3, 3>& mean = mean_[i];
+            for (std::size_t k = 0; k < 3; ++k) mean[k] = first ? now[k] : glm::mix(mean[k], now[k], 1 / n);
             Light const& light = lights_[i];
             // The frames since are in both means; those before count as long as they are many beside them.
-            float const earlier = std::max(0.0f, light.frames - n),
-                        share = still_ == 1 ? 1 : earlier / (earlier + n);
-            vec3 const e0 = glm::mix(mean_[i][0], light.l0, share),
-                       e1 = glm::mix(mean_[i][1], times(light.direct, light.albedo), share),
-                       e2 = glm::mix(mean_[i][2], times(light.indirect, light.albedo), share);
+            float const earlier = std::max(0.0f, light.frames - n), share = first ? 1 : earlier / (earlier + n);
+            vec3 const e0 = glm::mix(mean[0], light.l0, share),
+                       e1 = glm::mix(mean[1], times(light.direct, light.albedo), share),
+                       e2 = glm::mix(mean[2], times(light.indirect, light.albedo), share);
             for (int c = 0; c < 3; ++c) {
                 std::size_t const k = 3 * i + std::size_t(c);
                 l0.data[k] = e0[c];
@@ -283,8 +274,7 @@ TemporalCounts TemporalReuse::add(Picture& frame, SceneChange change, TemporalRe
     if (change != SceneChange::nothing || frames_ == 0) still_ = 0;
     TemporalCounts counts;
     follow(frame, partner, from, counts);
-    rest(frame);
-    store(frame, counts);
+    rest(frame, counts);
     ++frames_;
     counts.still_frames = still_;
     return counts;

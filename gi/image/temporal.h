@@ -61,8 +61,7 @@ private:
     };
     void follow(Picture const& frame, TemporalReuse const* partner, std::span<std::uint32_t const> from,
                 TemporalCounts& counts);
-    void rest(Picture const& frame);
-    void store(Picture& frame, TemporalCounts& counts) const;
+    void rest(Picture& frame, TemporalCounts& counts);
 
     TemporalSettings settings_;
     int frames_ = 0, still_ = 0;

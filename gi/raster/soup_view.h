@@ -33,6 +33,13 @@ public:
         for (std::size_t k = 0; k < 9; ++k) corner_[k] = upload<S>(soup.corner[k]);
         count_ = soup.count;
     }
+    /// Triangles from `first` on have moved.
+    void update(TriangleSoup const& soup, std::size_t first)
+    {
+        for (std::size_t k = 0; k < 9; ++k)
+            copy_bytes(S, corner_[k].view().data + first, Space::host, soup.corner[k].data() + first,
+                       (soup.corner[k].size() - first) * sizeof(float));
+    }
     SoupView view() const
     {
         SoupView v;

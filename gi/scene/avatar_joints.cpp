@@ -64,6 +64,9 @@ std::vector<std::string> const kHead{"head"};
 std::vector<std::string> const kUpper{"upperarm", "arm", "uparm", "armupper", "shldrbend", "shldr", "shoulder"};
 std::vector<std::string> const kLower{"forearm", "lowerarm", "armlower", "forearmbend", "elbow"};
 std::vector<std::string> const kHand{"hand", "wrist", "palm", "palm2", "palm1"};
+std::vector<std::string> const kThigh{"upperleg", "upleg", "thigh", "legupper", "thighbend", "hip", "leg"};
+std::vector<std::string> const kShin{"lowerleg", "shin", "calf", "leglower", "shinbend", "knee", "leg"};
+std::vector<std::string> const kFoot{"foot", "ankle"};
 
 class Finder {
 public:
@@ -81,6 +84,12 @@ public:
         if (out.head < 0) missing_.emplace_back("head");
         out.left = find_arm(Side::left, names.left, "left");
         out.right = find_arm(Side::right, names.right, "right");
+        LegJoints const left = find_leg(Side::left, names.left_leg),
+                        right = find_leg(Side::right, names.right_leg);
+        if (left.foot >= 0 && right.foot >= 0) {
+            out.left_leg = left;
+            out.right_leg = right;
+        }
         return out;
     }
     std::vector<std::string> const& missing() const { return missing_; }
@@ -93,6 +102,14 @@ private:
         for (std::string const& part : parts)
             for (std::size_t i = 0; i < joints_.size(); ++i)
                 if (names_[i].side == side && names_[i].part == part) return joints_[i];
+        return -1;
+    }
+    std::int32_t find_below(std::int32_t ancestor, Side side, std::vector<std::string> const& parts) const
+    {
+        for (std::string const& part : parts)
+            for (std::size_t i = 0; i < joints_.size() && ancestor >= 0; ++i)
+                if (names_[i].side == side && names_[i].part == part && below(joints_[i], ancestor))
+                    return joints_[i];
         return -1;
     }
     std::int32_t deepest(std::string const& part) const
@@ -146,6 +163,21 @@ private:
         return arm;
     }
 
+    /// All -1 where one of them is not found.
+    LegJoints find_leg(Side side, LegNames const& names) const
+    {
+        LegJoints leg;
+        leg.upper = names.upper.empty() ? find_named(side, kThigh) : exact(names.upper);
+        leg.lower = names.lower.empty() ? find_below(leg.upper, side, kShin) : exact(names.lower);
+        if (leg.lower < 0) leg.lower = only_joint_below(leg.upper);
+        leg.foot = names.foot.empty() ? find_below(leg.lower, side, kFoot) : exact(names.foot);
+        if (leg.foot < 0) leg.foot = find_named(side, kFoot);
+        if (leg.foot < 0) leg.foot = only_joint_below(leg.lower);
+        bool const is_chain = leg.upper >= 0 && leg.lower >= 0 && below(leg.lower, leg.upper) && leg.foot >= 0 &&
+                              leg.foot != leg.lower && !below(leg.upper, leg.foot) && !below(leg.lower, leg.foot);
+        return is_chain ? leg : LegJoints{};
+    }
+
     Scene const& scene_;
     std::vector<std::int32_t> joints_;
     std::vector<JointName> names_;
@@ -181,8 +213,12 @@ std::string describe(Scene const& scene, AvatarJoints const& joints)
     auto const arm = [&](ArmJoints const& a) {
         return fmt::format("{} > {} > {}", name(a.upper), name(a.lower), name(a.hand));
     };
-    return fmt::format("head: {}, left arm: {}, right arm: {}", name(joints.head), arm(joints.left),
-                       arm(joints.right));
+    std::string text = fmt::format("head: {}, left arm: {}, right arm: {}", name(joints.head), arm(joints.left),
+                                   arm(joints.right));
+    for (auto const& [leg, which] : {std::pair{joints.left_leg, "left"}, {joints.right_leg, "right"}})
+        if (leg.foot >= 0)
+            text += fmt::format(", {} leg: {} > {} > {}", which, name(leg.upper), name(leg.lower), name(leg.foot));
+    return text;
 }
 
 } // namespace gi

@@ -47,16 +47,6 @@ void check_lens(Camera const& camera)
                          "give the distance along the view in metres");
 }
 
-vec3 project(CameraRays const& camera, vec3 point)
-{
-    dvec3 const to = dvec3(point) - dvec3(camera.origin), forward(camera.forward);
-    dvec3 const step_x(camera.step_x), step_y(camera.step_y);
-    double const depth = glm::dot(to, forward);
-    dvec3 const on_plane = (camera.orthographic ? to : to / depth) - dvec3(camera.corner);
-    return {float(glm::dot(on_plane, step_x) / glm::dot(step_x, step_x)),
-            float(glm::dot(on_plane, step_y) / glm::dot(step_y, step_y)), float(depth)};
-}
-
 Camera look_at(dvec3 from, dvec3 at, double yfov_deg)
 {
     dvec3 const back = from - at;

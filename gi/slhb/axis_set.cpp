@@ -30,6 +30,12 @@ dquat random_rotation(std::uint64_t seed)
 
 } // namespace
 
+void AxisSet::build_elsewhere(std::size_t axis)
+{
+    source_.elsewhere(axis, grids_[axis], cut_seeds_[axis]);
+    stale_[axis] = 0;
+}
+
 void AxisSet::build(std::vector<NewAxis> const& axes)
 {
     auto const build_one = [&](std::size_t k) {
@@ -41,7 +47,8 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
             make_grid(source_.bounds, axis.direction, source_.resolution, jitter, 2 * kPi * rng.uniform());
         cut_seeds_[axis.slot] = rng.next();
         if (source_.elsewhere) {
-            source_.elsewhere(axis.slot, grid, cut_seeds_[axis.slot]);
+            grids_[axis.slot] = grid;
+            build_elsewhere(axis.slot);
             return;
         }
         fragments.count = 0;
@@ -51,10 +58,15 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
         fill_hit_buffer(fragments, grid, source_.most_layers, buffers_[axis.slot]);
     };
     cut_seeds_.resize(buffers_.size());
-    if (source_.elsewhere)
+    if (source_.elsewhere) {
+        if (std::exchange(moved_, false)) std::ranges::fill(stale_, 1);
+        stale_.resize(buffers_.size());
+        grids_.resize(buffers_.size());
         for (std::size_t k = 0; k < axes.size(); ++k) build_one(k);
-    else
-        tbb::parallel_for(std::size_t(0), axes.size(), build_one);
+        built_ += axes.size();
+        return;
+    }
+    tbb::parallel_for(std::size_t(0), axes.size(), build_one);
     for (NewAxis const& axis : axes) {
         lost_ += buffers_[axis.slot].lost;
         layers_ += buffers_[axis.slot].layers.size();
@@ -69,7 +81,14 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
 void AxisSet::move(std::span<std::uint8_t const> followed)
 {
     if (source_.first_moving >= source_.soup.count) return;
-    if (std::exchange(moved_, false)) moving_.moved();
+    bool const moved = std::exchange(moved_, false);
+    if (source_.elsewhere) {
+        if (moved) std::ranges::fill(stale_, 1);
+        for (std::size_t a = 0; a < stale_.size(); ++a)
+            if (followed[a] != 0 && stale_[a] != 0) build_elsewhere(a);
+        return;
+    }
+    if (moved) moving_.moved();
     lost_ += moving_.append({source_.soup, source_.first_moving, source_.cut_outs, source_.most_layers},
                             cut_seeds_, followed, pool_);
 }
@@ -77,7 +96,7 @@ void AxisSet::move(std::span<std::uint8_t const> followed)
 void AxisSet::follow()
 {
     some_ = false;
-    move(std::vector<std::uint8_t>(pool_.size(), 1));
+    move(std::vector<std::uint8_t>(cut_seeds_.size(), 1));
 }
 
 std::size_t AxisSet::follow_some(std::uint32_t sequences, std::uint32_t count, std::uint32_t turn)
@@ -87,7 +106,7 @@ std::size_t AxisSet::follow_some(std::uint32_t sequences, std::uint32_t count, s
         count == 0 ? 1 : std::max(n / std::min<std::size_t>(count, n), (n + FewAxes::kMost - 1) / FewAxes::kMost));
     if (parts == 1) {
         follow();
-        return pool_.size();
+        return cut_seeds_.size();
     }
     some_ = true;
     few_.assign(sequences, {});
@@ -126,7 +145,7 @@ void AxisSet::store(DirectionSet const& directions)
 void AxisSet::refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh, std::uint32_t pass)
 {
     std::uint32_t const first = pass * fresh, last = first + count;
-    if (buffers_.empty() || drawn_ < first || drawn_ > last) {
+    if (buffers_.size() != std::size_t(sequences) * count || drawn_ < first || drawn_ > last) {
         buffers_.resize(std::size_t(sequences) * count);
         few_.assign(sequences, {});
         few_count_ = count;

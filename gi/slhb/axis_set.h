@@ -74,8 +74,9 @@ public:
         std::uint32_t most_layers;
         bool packed;
         std::uint64_t seed;
-        /// Where it is not empty, buffers are not built here but there: index of the axis, its grid, a seed for
-        /// the cut-outs. Axes come one after the other.
+        /// Where it is not empty, buffers are not built here but there, of all that there is, and anew where what
+        /// moves is elsewhere: index of the axis, its grid, a seed for the cut-outs. Axes come one after the
+        /// other.
         std::function<void(std::size_t, RasterGrid const&, std::uint32_t)> elsewhere = {};
         /// Triangles from here on move: they are left to follow(). As many as there are: none does.
         std::size_t first_moving = ~std::size_t(0);
@@ -109,8 +110,10 @@ public:
     /// @param bounce  0 = the first  @param normal unit  @param u uniform in [0, 1)
     AxisSample sample(std::uint32_t bounce, vec3 normal, float u) const
     {
-        return AxisChoice{few_, some_ ? CosineTablesView{} : view(tables_)}.sample(bounce, normal, u);
+        return AxisChoice{few_, takes_few() ? CosineTablesView{} : view(tables_)}.sample(bounce, normal, u);
     }
+    /// Whether paths take the axes of few(), not those of tables().
+    bool takes_few() const { return some_ || tables_.axes.empty(); }
     /// Axes that the first bounce chooses from where all follow: the first ones of the pool.
     std::size_t first_bounce_axes() const { return tables_.axes.empty() ? few_count_ : tables_.axes.size(); }
     AxisPool const& pool() const { return pool_; }
@@ -140,11 +143,14 @@ private:
         std::uint32_t number; ///< decides where its grid lies
     };
     void build(std::vector<NewAxis> const& axes);
+    void build_elsewhere(std::size_t axis);
     void move(std::span<std::uint8_t const> followed);
 
     Source source_;
     std::vector<HitBuffer> buffers_;
     std::vector<std::uint32_t> cut_seeds_; ///< per axis, of CutOuts
+    std::vector<RasterGrid> grids_;        ///< per axis that is built elsewhere
+    std::vector<std::uint8_t> stale_;      ///< the same: 1 = what moves is not in it as it is now
     MovingLayers moving_;
     AxisPool pool_;
     CosineTables tables_;

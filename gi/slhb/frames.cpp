@@ -1,7 +1,9 @@
 #include "gi/slhb/frames.h"
 
+#include "gi/base/device.h"
 #include "gi/base/error.h"
 #include "gi/base/threads.h"
+#include "gi/slhb/kernel_renderer.h"
 #include "gi/slhb/renderer.h"
 #include "gi/slhb/settings.h"
 #include "gi/transport/pass_loop.h"
@@ -15,14 +17,16 @@
 namespace gi {
 namespace {
 
+/// @tparam Renderer  SlhbRenderer, or KernelRenderer of a space
+template <class Renderer>
 class SlhbFrames : public FrameRenderer {
+    static constexpr bool kByKernels = !std::is_same_v<Renderer, SlhbRenderer>;
+
 public:
     SlhbFrames(MovingWorld const& world, Camera const& camera, RenderSettings const& settings, Report& report)
         : world_(world), asked_(settings), settings_(settings), report_(report)
     {
-        if (settings.slhb.space == Space::device)
-            throw InputError("--device cuda with frames that follow each other", "its kernels render one picture",
-                             "leave it out, or render with --device cpu");
+        if constexpr (kByKernels) check_kernels_can(camera, settings.slhb);
         if (settings.threads > 0)
             threads_.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(settings.threads));
         if (settings.slhb.packed && world.world().static_triangles < world.world().triangles.size())
@@ -37,16 +41,13 @@ public:
     void changed(Changes const& changes) override
     {
         if (changes.coverage) restart_ = true; // hit buffers leave out what lets rays through
-        if (restart_) return;
-        if (changes.materials || changes.environment) renderer_->materials_changed();
-        bool const lights = changes.lights || changes.light_select || changes.emitters || changes.environment;
-        if (changes.geometry || lights) renderer_->world_moved(changes.geometry, lights);
+        if (!restart_) renderer_->changed(changes);
     }
 
     void follow(int axes) override
     {
         followed_ = std::uint32_t(axes);
-        renderer_->follow(followed_);
+        if (renderer_) renderer_->follow(followed_); // else one that starts will
     }
 
     Following following() const override { return renderer_->following(); }
@@ -80,8 +81,8 @@ public:
         auto const begun = std::chrono::steady_clock::now();
         see_all(views);
         double const earlier = renderer_->rays();
-        sums_.clear();
-        for (FrameView const& v : views) sums_.emplace_back(v.width, v.height);
+        sums_.resize(views.size());
+        for (std::size_t k = 0; k < views.size(); ++k) sums_[k].start(views[k].width, views[k].height);
         for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
             on_threads(settings_.threads, [&] { renderer_->pass(passes_++, sums_, endings); });
         std::vector<RenderResult> results(views.size());
@@ -106,6 +107,19 @@ public:
 
     PairResult pair(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
                     StopRequest const& stop) override
+    {
+        if constexpr (kByKernels)
+            throw InputError("--device cuda with pictures with and without what moves",
+                             "its kernels trace no such pairs", "render with --device cpu");
+        else
+            return traced_pair(view, settings, turn, stop);
+    }
+
+private:
+    FrameView full_size(Camera const& camera) const { return {camera, settings_.width, settings_.height}; }
+
+    PairResult traced_pair(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
+                           StopRequest const& stop)
     {
         if (view.camera.orthographic)
             throw InputError("pictures with and without what moves, of an orthographic camera",
@@ -140,9 +154,6 @@ public:
         return both;
     }
 
-private:
-    FrameView full_size(Camera const& camera) const { return {camera, settings_.width, settings_.height}; }
-
     /// Whether the world without what moves can be seen in that with it: lamps are the same.
     bool can_leave_out() const
     {
@@ -170,8 +181,8 @@ private:
     PathCounts trace_in_turns(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
                               StopRequest const& stop, PairResult& both)
     {
-        sums_.clear();
-        for (int side = 0; side < 2; ++side) sums_.emplace_back(view.width, view.height);
+        sums_.resize(2);
+        for (Accumulator& s : sums_) s.start(view.width, view.height);
         // Every other pass begins with the side that the one before it ended with: the world changes but once.
         PairSide now = PairSide::with;
         for (std::uint32_t i = 0; i < settings.paths && !(i > 0 && stop.requested()); ++i, ++passes_)
@@ -228,6 +239,7 @@ private:
         World const& world = world_.world();
         TriangleSoup soup = make_soup(world);
         settings_.slhb = choose_frame_settings(asked_, world, soup);
+        if (kByKernels) settings_.slhb.interleave = 1; // whatever the budget
         renderer_.emplace(world, views, settings_, std::move(soup), world.static_triangles, report_);
         renderer_->follow(followed_);
         restart_ = false;
@@ -238,7 +250,7 @@ private:
     RenderSettings asked_, settings_; ///< the second with those of slhb chosen
     Report& report_;
     std::optional<tbb::global_control> threads_;
-    std::optional<SlhbRenderer> renderer_;
+    std::optional<Renderer> renderer_;
     std::vector<Accumulator> sums_; ///< of the views
     PairSums pair_sums_;
     std::uint32_t passes_ = 0, followed_ = 0;
@@ -252,7 +264,18 @@ private:
 std::unique_ptr<FrameRenderer> start_slhb_frames(MovingWorld const& world, Camera const& camera,
                                                  RenderSettings const& settings, Report& report)
 {
-    return std::make_unique<SlhbFrames>(world, camera, settings, report);
+    if (settings.slhb.space == Space::host)
+        return std::make_unique<SlhbFrames<SlhbRenderer>>(world, camera, settings, report);
+    check_device(Space::device);
+    return start_kernel_frames(Space::device, world, camera, settings, report);
+}
+
+std::unique_ptr<FrameRenderer> start_kernel_frames(Space space, MovingWorld const& world, Camera const& camera,
+                                                   RenderSettings const& settings, Report& report)
+{
+    if (space == Space::host)
+        return std::make_unique<SlhbFrames<KernelRenderer<Space::host>>>(world, camera, settings, report);
+    return std::make_unique<SlhbFrames<KernelRenderer<Space::device>>>(world, camera, settings, report);
 }
 
 } // namespace gi

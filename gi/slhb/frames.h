@@ -10,4 +10,10 @@ namespace gi {
 std::unique_ptr<FrameRenderer> start_slhb_frames(MovingWorld const& world, Camera const& camera,
                                                  RenderSettings const& settings, Report& report);
 
+/// The same by kernels in a space, see kernel_renderer.h: on the device this is `--device cuda`; on the host it is
+/// there so that tests can hold it to the CPU's own form. Throws InputError on what kernels cannot do, too. It
+/// makes no pairs.
+std::unique_ptr<FrameRenderer> start_kernel_frames(Space space, MovingWorld const& world, Camera const& camera,
+                                                   RenderSettings const& settings, Report& report);
+
 } // namespace gi

@@ -8,12 +8,9 @@
 
 namespace gi {
 
-/// Throws InputError where no device can be used, or where it lacks what is asked for.
-void check_device(SlhbSettings const& settings);
-
 /// See RenderFunction in gi/registry. What is missing from the picture is in path_kernel.h, and counted in the
 /// report. Throws InputError on what kernels cannot do: an orthographic camera, --cone,
-/// --gather, --packed, --interleave, --fresh-lamps.
+/// --gather, --packed, --interleave.
 RenderResult render_by_kernels(Space space, World const& world, Camera const& camera,
                                RenderSettings const& settings, StopRequest const& stop,
                                RenderProgress const& progress, Report& report);

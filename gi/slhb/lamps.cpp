@@ -146,9 +146,15 @@ void Lamps::build(std::span<Lamp* const> fresh, std::uint32_t pass)
         for (auto& face : lamp->taken) face.clear();
     }
     std::uint32_t const seed = rng.next();
-    built_ += fresh.size();
+    if (!elsewhere_) built_ += fresh.size();
     if (elsewhere_) {
-        elsewhere_(lamps_, seed);
+        std::vector<std::size_t> drawn;
+        for (Lamp& lamp : lamps_)
+            if (moved_ || std::ranges::find(fresh, &lamp) != fresh.end())
+                drawn.push_back(std::size_t(&lamp - lamps_.data()));
+        built_ += drawn.size();
+        elsewhere_({lamps_, drawn, seed});
+        moved_ = false;
         return;
     }
     tbb::parallel_for(std::size_t(0), 6 * fresh.size(), [&](std::size_t job) {

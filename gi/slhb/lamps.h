@@ -32,9 +32,14 @@ struct LampSettings {
 class Lamps {
 public:
     /// @param bounds  of all that casts shadows
-    /// @param elsewhere where it is not empty, shadow maps only get their grids here and are drawn there, all in
-    /// every pass; with a seed for the cut-outs
-    using DrawElsewhere = std::function<void(std::vector<Lamp> const&, std::uint32_t)>;
+    /// @param elsewhere where it is not empty, shadow maps only get their grids here and are drawn there, of all
+    /// that there is: of lamps that are new, and of all where something has moved
+    struct Elsewhere {
+        std::vector<Lamp> const& lamps;
+        std::vector<std::size_t> const& drawn; ///< of these
+        std::uint32_t seed;                    ///< for the cut-outs
+    };
+    using DrawElsewhere = std::function<void(Elsewhere const&)>;
     Lamps(World const& world, Bounds const& bounds, TriangleSoup const& soup, CutOuts const& cut_outs,
           LampSettings const& settings, DrawElsewhere elsewhere = {});
 

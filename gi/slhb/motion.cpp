@@ -1,5 +1,7 @@
 #include "gi/slhb/motion.h"
 
+#include "gi/scene/projection.h"
+
 #include <limits>
 #include <tbb/parallel_for.h>
 
@@ -33,6 +35,7 @@ void add_motion(PrimaryMap const& primary, TriangleSoup const& soup, CameraRays 
 {
     std::vector<float>& out = picture.add("motion", 3).data;
     std::size_t const width = std::size_t(picture.width), height = std::size_t(picture.height);
+    Projection const project_now(now), project_before(camera_before);
     tbb::parallel_for(std::size_t(0), height, [&](std::size_t y) {
         thread_local std::vector<PathStart> starts;
         primary.hits(y * width, (y + 1) * width, starts);
@@ -50,7 +53,7 @@ void add_motion(PrimaryMap const& primary, TriangleSoup const& soup, CameraRays 
                 auto const& c = before.corners[t - before.first_moving];
                 there = c[0] + w.x * (c[1] - c[0]) + w.y * (c[2] - c[0]);
             }
-            vec3 const from = project(now, here), at = project(camera_before, there);
+            vec3 const from = project_now(here), at = project_before(there);
             if (!(at.z > 0)) continue;
             to[0] = at.x - from.x;
             to[1] = at.y - from.y;

@@ -38,6 +38,7 @@ struct TracePaths {
     WorldView world;
     CameraRays camera;
     View<NearestTexel const> primary; ///< per pixel, in rows of `width`
+    View<std::uint8_t const> hidden;  ///< per pixel: 1 = nobody sees it, and nothing is traced; empty = none
     vec2 place;                       ///< in the pixel, that all look through
     std::uint32_t width;
     View<AxisView const> axes;

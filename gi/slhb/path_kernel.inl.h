@@ -116,6 +116,10 @@ GI_FN inline void TracePaths::add_counts(PathKernelCounts const& local) const
 GI_FN inline void TracePaths::operator()(std::size_t i) const
 {
     PathSample out;
+    if (!hidden.empty() && hidden[i] != 0) {
+        samples[i] = out;
+        return;
+    }
     PathKernelCounts local;
     State s = start(i);
     for (;;) {

@@ -20,14 +20,27 @@ PrimaryMap::PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, Render
       width_(width),
       height_(height),
       filter_(settings.filter),
-      seed_(settings.seed)
+      seed_(settings.seed),
+      projection_(camera_)
 {
+}
+
+void PrimaryMap::look_through(CameraRays const& camera, std::uint32_t pass)
+{
+    camera_ = camera;
+    projection_ = Projection(camera);
+    at_ = place_in_pixel(filter_, seed_, pass);
+}
+
+void PrimaryMap::take(CameraRays const& camera, std::uint32_t pass, std::vector<NearestTexel> texels)
+{
+    look_through(camera, pass);
+    map_ = {std::uint32_t(width_), std::uint32_t(height_), std::move(texels)};
 }
 
 PerspectiveGrid PrimaryMap::start(CameraRays const& camera, float near_m, std::uint32_t pass)
 {
-    camera_ = camera;
-    at_ = place_in_pixel(filter_, seed_, pass);
+    look_through(camera, pass);
     clear(map_, std::uint32_t(width_), std::uint32_t(height_));
     return camera_grid(camera_, width_, height_, at_, near_m);
 }
@@ -60,25 +73,31 @@ void PrimaryMap::draw(PerspectiveGrid const& grid, std::size_t first, std::size_
 
 void PrimaryMap::hits(std::size_t first, std::size_t last, std::vector<PathStart>& out) const
 {
-    out.clear();
-    for (std::size_t p = first; p < last; ++p) out.push_back(hit(map_, p));
+    out.resize(last - first);
+    if (out.empty()) return;
+    std::size_t x = first % std::size_t(width_), y = first / std::size_t(width_);
+    for (std::size_t p = first; p < last; ++p) {
+        out[p - first] = hit(map_, x, y);
+        if (++x == std::size_t(width_)) x = 0, ++y;
+    }
 }
 
 void PrimaryMap::hits_behind(std::span<std::uint32_t const> pixels, std::vector<PathStart>& out) const
 {
     out.clear();
-    for (std::uint32_t const p : pixels) out.push_back(hit(behind_, p));
+    for (std::uint32_t const p : pixels)
+        out.push_back(hit(behind_, p % std::size_t(width_), p / std::size_t(width_)));
 }
 
-PathStart PrimaryMap::hit(NearestMap const& map, std::size_t pixel) const
+PathStart PrimaryMap::hit(NearestMap const& map, std::size_t x, std::size_t y) const
 {
-    vec2 const place{float(pixel % std::size_t(width_)), float(pixel / std::size_t(width_))};
-    return {std::uint32_t(pixel), map.texels[pixel].primitive, camera_.through(place + at_)};
+    std::size_t const pixel = y * std::size_t(width_) + x;
+    return {std::uint32_t(pixel), map.texels[pixel].primitive, camera_.through(vec2{float(x), float(y)} + at_)};
 }
 
 std::optional<std::size_t> PrimaryMap::pixel_near(vec3 point) const
 {
-    vec3 const at = project(camera_, point);
+    vec3 const at = projection_(point);
     float const x = std::floor(at.x - at_.x + 0.5f), y = std::floor(at.y - at_.y + 0.5f);
     if (!(at.z > 0 && x >= 0 && y >= 0 && x < float(width_) && y < float(height_))) return std::nullopt;
     return std::size_t(y) * std::size_t(width_) + std::size_t(x);

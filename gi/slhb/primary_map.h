@@ -2,6 +2,7 @@
 // The first surfaces of a pass: one G-buffer of the whole picture, every pixel seen through the same point of it;
 // passes differ in that point, so that their mean has the pixel filter.
 
+#include "gi/scene/projection.h"
 #include "gi/slhb/cut_outs.h"
 #include "gi/slhb/tracer.h"
 
@@ -24,6 +25,8 @@ public:
     void refresh(CameraRays const& camera, float near_m, std::uint32_t pass);
     /// The same, and keeps what is seen of the triangles before `first_moving` alone.
     void refresh_pair(CameraRays const& camera, float near_m, std::uint32_t pass, std::size_t first_moving);
+    /// The view of a pass that was rasterised elsewhere. @param texels  in rows
+    void take(CameraRays const& camera, std::uint32_t pass, std::vector<NearestTexel> texels);
     /// Of pixels first..last - 1, in rows.
     void hits(std::size_t first, std::size_t last, std::vector<PathStart>& out) const;
     /// Of pixels as they are without what moves; after refresh_pair.
@@ -36,16 +39,18 @@ public:
     int height() const { return height_; }
 
 private:
+    void look_through(CameraRays const& camera, std::uint32_t pass);
     PerspectiveGrid start(CameraRays const& camera, float near_m, std::uint32_t pass);
     void draw(PerspectiveGrid const& grid, std::size_t first, std::size_t last, std::uint32_t pass);
-    PathStart hit(NearestMap const& map, std::size_t pixel) const;
+    PathStart hit(NearestMap const& map, std::size_t x, std::size_t y) const;
 
     TriangleSoup const& soup_;
     CutOuts const& cut_outs_;
-    CameraRays camera_;
+    CameraRays camera_{};
     int width_, height_;
     PixelFilter filter_;
     std::uint64_t seed_;
+    Projection projection_;   ///< of the camera
     vec2 at_{0.5f};           ///< position in the pixel
     NearestMap map_, behind_; ///< the second without what moves
 };

@@ -1,17 +1,10 @@
 #pragma once
 // Everything that the method slhb keeps from pass to pass and, where things move, from frame to frame: the
-// structures built from the world, and how a pass goes through them.
+// structures built from the world, and what of them a pass needs anew.
 
 #include "gi/slhb/motion.h"
-#include "gi/slhb/partner_light.h"
-#include "gi/slhb/primary_map.h"
-#include "gi/slhb/shared_endings.h"
-#include "gi/slhb/tracer.h"
-#include "gi/transport/accumulator.h"
-#include "gi/transport/frame_renderer.h"
-#include "gi/transport/pair_sums.h"
+#include "gi/slhb/view_paths.h"
 
-#include <deque>
 #include <memory>
 #include <optional>
 
@@ -26,12 +19,8 @@ public:
 
     /// A frame ends here: motion vectors lead to what is seen now.
     void end_frame();
-    /// The world has changed: its triangles from the first that moves on, or its lights. What does not depend on
-    /// that stays.
-    void world_moved(bool geometry, bool lights);
-    /// Colours, roughnesses or the sky have changed, but nothing of what lets rays through; lights are
-    /// world_moved's.
-    void materials_changed();
+    /// The world has changed, but nothing of what lets rays through. What does not depend on that stays.
+    void changed(Changes const& changes);
     /// From the next frame on: of the stored axes of each bounce about `axes` follow what moves, others from frame
     /// to frame, and paths take no others; 0 = all.
     void follow(std::uint32_t axes) { followed_ = axes; }
@@ -55,26 +44,17 @@ public:
     void add_coverage(std::size_t view, std::span<float> counts, std::span<vec3> radiance) const;
     /// RenderResult::light_from of the passes since the sums were empty.
     std::span<std::uint32_t const> light_from(std::size_t view) const;
-    double rays() const; ///< look-ups and exact rays, so far
+    double rays() const { return paths_.rays(); } ///< look-ups and exact rays, so far
     /// Beyond the limit of a texel, so far.
     std::uint64_t lost_layers() const { return earlier_sets_.lost + axes_->lost(); }
     /// What has been done so far.
     void report_work() const;
 
 private:
-    /// What is kept of a view from frame to frame.
-    struct View {
-        CameraRays rays; ///< through the middle of the lens, where motion vectors are measured
-        CameraRays earlier;
-        int width = 0, height = 0, partner = -1;
-        std::span<std::uint8_t const> hidden; ///< as FrameView has it
-        std::size_t hidden_pixels = 0;
-        std::optional<PrimaryMap> primary; ///< not of orthographic cameras
-        std::size_t first = 0;             ///< of its pixels among those of all views
-        std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
-    };
-    struct Work;
-
+    /// Its triangles from the first that moves on, or its lights.
+    void world_moved(bool geometry, bool lights);
+    /// Colours, roughnesses or the sky.
+    void materials_changed();
     bool orthographic() const;
     void build_exact();
     void make_axes();
@@ -84,18 +64,13 @@ private:
     enum class Sides : std::uint8_t { one, pair };
     void prepare(std::uint32_t index, Sides sides);
     SlhbTracer::Pass tracing(std::uint32_t index);
-    void trace(std::uint32_t index, std::span<Accumulator> sums, Endings endings);
-    void trace_without(SlhbTracer::Pass pass, Work& work);
-    void add_work(Work& work, PathCounts& paths);
-    bool start_sharing(std::uint32_t index, std::size_t pixels, Endings endings);
-    void trace_view(View const& view, SlhbTracer::Pass const& pass, bool sharing, Work& work);
 
     World const& world_;
     RenderSettings settings_;
     SlhbSettings const& slhb_ = settings_.slhb;
     std::size_t first_moving_; ///< triangle
     Report& report_;
-    std::deque<View> views_;
+    SeenViews views_;
     bool walks_; ///< paths may leave a surface along an axis
     TriangleSoup soup_;
     CutOuts cut_outs_;
@@ -108,19 +83,7 @@ private:
     std::optional<Lamps> lamps_;
     EarlierCorners earlier_;
     std::vector<SkyAlong> sky_; ///< in a pass
-    SharedEndings shared_;
-    std::vector<PathSample> samples_; ///< of the pixels of all views
-    std::vector<std::vector<std::uint32_t>>
-        near_moving_;                           ///< per block of them: those that what moves may count in
-    std::vector<std::uint32_t> without_pixels_; ///< all of those
-    std::vector<PathSample> without_;           ///< and their paths without it
-    std::vector<Ending> endings_;               ///< the same
-    std::vector<std::uint32_t> taken_from_;     ///< the same: pixel of the partner's view
-    std::vector<std::uint32_t> light_from_;     ///< the same, of all passes of a frame
-    std::uint64_t taken_ = 0, taking_ = 0;      ///< pixels that took light from a partner; of those that could
-    std::uint64_t hidden_ = 0, pixels_ = 0;     ///< not traced, as nobody sees them; all, in all passes
-    std::uint64_t pair_paths_ = 0, without_paths_ = 0; ///< of pairs with what moves; of these, traced again
-    SlhbCounts done_;
+    ViewPaths paths_;
     /// Of sets of axes and lamps that are no more.
     struct {
         std::uint64_t axes = 0, layers = 0, lost = 0, maps = 0;

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <tbb/parallel_for.h>
 
 namespace gi {
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffff;
 /// Far more than there are cells, so that few have the same.
 constexpr std::size_t kCellSlots = std::size_t(1) << 17;
 
@@ -52,23 +52,19 @@ void SharedEndings::start_cells(std::size_t paths, EndingCells const& cells, std
     start(paths, kCellSlots, pass);
 }
 
-void SharedEndings::note(std::span<Ending const> endings, std::uint32_t first, AxisPool const& pool)
+void SharedEndings::note(std::uint32_t path, Ending const& e, AxisPool const& pool)
 {
-    for (std::size_t k = 0; k < endings.size(); ++k) {
-        Ending const& e = endings[k];
-        if (e.layer == kNoLayerHit) continue;
-        std::uint32_t const path = first + std::uint32_t(k);
-        std::size_t at = 2 * std::size_t(e.layer) + (e.up ? 1 : 0);
-        if (cells_) {
-            keys_[path] = cells_->key(e, arrival(e, pool));
-            at = keys_[path] % kCellSlots;
-        }
-        start_of_[path] = std::uint32_t(at);
-        std::atomic_ref<std::uint32_t> const slot(slots_[at]);
-        std::uint32_t const rank = rank_of(path, order_key_);
-        for (std::uint32_t seen = slot.load(std::memory_order_relaxed);
-             rank < seen && !slot.compare_exchange_weak(seen, rank, std::memory_order_relaxed);) {
-        }
+    if (e.layer == kNoLayerHit) return note_none(path);
+    std::size_t at = 2 * std::size_t(e.layer) + (e.up ? 1 : 0);
+    if (cells_) {
+        keys_[path] = cells_->key(e, arrival(e, pool));
+        at = keys_[path] % kCellSlots;
+    }
+    start_of_[path] = std::uint32_t(at);
+    std::atomic_ref<std::uint32_t> const slot(slots_[at]);
+    std::uint32_t const rank = rank_of(path, order_key_);
+    for (std::uint32_t seen = slot.load(std::memory_order_relaxed);
+         rank < seen && !slot.compare_exchange_weak(seen, rank, std::memory_order_relaxed);) {
     }
 }
 
@@ -82,12 +78,21 @@ void SharedEndings::collect(std::vector<Ending> const& endings, AxisPool const& 
     };
     for (std::uint32_t& slot : slots_)
         if (slot != kNone) slot = add(path_of(slot, order_key_));
-    for (std::uint32_t path = 0; path < endings.size(); ++path) {
-        if (endings[path].layer == kNoLayerHit) continue;
-        std::uint32_t const first = slots_[start_of_[path]];
-        bool const same = !cells_ || keys_[starts_[first].stream & 0x7fffffffu] == keys_[path];
-        start_of_[path] = same ? first : add(path);
-    }
+    constexpr std::size_t kBlock = 4096;
+    std::vector<std::vector<std::uint32_t>> alone((start_of_.size() + kBlock - 1) / kBlock);
+    tbb::parallel_for(std::size_t(0), alone.size(), [&](std::size_t block) {
+        std::size_t const end = std::min(start_of_.size(), (block + 1) * kBlock);
+        for (std::size_t path = block * kBlock; path < end; ++path) {
+            if (!has(path)) continue;
+            std::uint32_t const first = slots_[start_of_[path]];
+            if (!cells_ || keys_[starts_[first].stream & 0x7fffffffu] == keys_[path])
+                start_of_[path] = first;
+            else
+                alone[block].push_back(std::uint32_t(path));
+        }
+    });
+    for (auto const& paths : alone)
+        for (std::uint32_t const path : paths) start_of_[path] = add(path);
     radiance_.resize(starts_.size());
     shaded_ += starts_.size();
 }

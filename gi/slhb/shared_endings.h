@@ -15,19 +15,24 @@ public:
     /// @param paths  of the pass  @param layers  that they may end on; 0 = nothing is shared in this pass
     void start_layers(std::size_t paths, std::size_t layers, std::uint32_t pass);
     void start_cells(std::size_t paths, EndingCells const& cells, std::uint32_t pass);
-    /// From several threads. @param first  path of the endings
-    void note(std::span<Ending const> endings, std::uint32_t first, AxisPool const& pool);
+    /// From several threads, once for every path.
+    void note(std::uint32_t path, Ending const& ending, AxisPool const& pool);
+    /// For paths that have no ending to share.
+    void note_none(std::uint32_t path) { start_of_[path] = kNone; }
     /// After all are noted: makes the starts, in an order that does not depend on threads.
+    /// @param endings  of all paths; those of paths without one are not looked at
     void collect(std::vector<Ending> const& endings, AxisPool const& pool);
 
     std::vector<PathStart> const& starts() const { return starts_; }
     /// What starts first.. have brought.
     void keep(std::size_t first, std::span<PathSample const> samples);
-    /// What arrives from where a path ended.
+    bool has(std::size_t path) const { return start_of_[path] != kNone; }
+    /// What arrives from where a path that has an ending ended.
     vec3 radiance(std::size_t path) const { return radiance_[start_of_[path]]; }
     std::uint64_t shaded() const { return shaded_; }
 
 private:
+    static constexpr std::uint32_t kNone = 0xffffffff;
     static vec3 arrival(Ending const& e, AxisPool const& pool);
     void start(std::size_t paths, std::size_t slots, std::uint32_t pass);
 

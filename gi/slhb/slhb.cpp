@@ -1,5 +1,6 @@
 #include "gi/slhb/slhb.h"
 
+#include "gi/base/device.h"
 #include "gi/slhb/kernel_render.h"
 #include "gi/slhb/renderer.h"
 #include "gi/slhb/settings.h"
@@ -15,7 +16,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
                          StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
     if (settings.slhb.space == Space::device) {
-        check_device(settings.slhb);
+        check_device(Space::device);
         return render_by_kernels(Space::device, world, camera, settings, stop, progress, report);
     }
     std::optional<tbb::global_control> limit; // also of what is built before the passes

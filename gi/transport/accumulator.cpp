@@ -101,15 +101,20 @@ Picture Accumulator::picture(World const& world, PictureLayers layers) const
     Picture out;
     out.width = width;
     out.height = height;
-    out.add("color", 3);
+    auto const add = [&](char const* name, int channels) { out.layers.push_back({name, channels, {}}); };
+    add("color", 3);
     bool const all = layers == PictureLayers::all;
     if (all)
-        for (char const* const name : {"L0", "L1", "L2"}) out.add(name, 3);
-    if (world.scene->background.kind == BackgroundKind::transparent) out.add("alpha", 1);
+        for (char const* const name : {"L0", "L1", "L2"}) add(name, 3);
+    if (world.scene->background.kind == BackgroundKind::transparent) add("alpha", 1);
     if (all)
-        for (char const* const name : {"variance", "albedo", "normal"}) out.add(name, 3);
-    out.add("depth", 1);
-    if (all) out.add("position", 3);
+        for (char const* const name : {"variance", "albedo", "normal"}) add(name, 3);
+    add("depth", 1);
+    if (all) add("position", 3);
+    tbb::parallel_for(std::size_t(0), out.layers.size(), [&](std::size_t k) { // much memory, new
+        Layer& layer = out.layers[k];
+        layer.data.resize(out.pixels() * std::size_t(layer.channels));
+    });
     if (paths == 0) return out;
     Targets const to(out);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 4096), [&](auto const& range) {

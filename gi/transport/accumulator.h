@@ -74,9 +74,18 @@ struct Accumulator {
     PathCounts counts;                                       ///< of all paths so far
     double seconds = 0;                                      ///< that they took
 
-    Accumulator(int w, int h) : width(w), height(h)
+    Accumulator() = default;
+    Accumulator(int w, int h) { start(w, h); }
+    /// Anew, in the same memory where that is large enough.
+    void start(int w, int h)
     {
+        width = w;
+        height = h;
+        pixels.clear(); // nothing of them is kept
         resize_on_huge_pages(pixels, std::size_t(w) * std::size_t(h));
+        paths = 0;
+        counts = {};
+        seconds = 0;
     }
     /// One more path of a pixel. @param before  paths of it that were added already
     void add(std::size_t pixel, PathSample const& s, std::uint32_t before)

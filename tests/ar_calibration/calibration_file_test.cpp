@@ -6,9 +6,17 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <opencv2/core/persistence.hpp>
+#include <unistd.h>
 
 namespace ar::test {
 namespace {
+
+/// Of this process: others run the same test with other lenses at the same time.
+std::filesystem::path own_file(std::string const& name)
+{
+    return std::filesystem::path(testing::TempDir()) /
+           ("lightwell_" + name + "_" + std::to_string(getpid()) + ".yaml");
+}
 
 Calibration full(LensModel lens)
 {
@@ -37,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(All, FileOfLens,
 TEST_P(FileOfLens, ComesBackAsItWasAndIsReadByOpenCv)
 {
     Calibration const c = full(GetParam());
-    auto const file = std::filesystem::path(testing::TempDir()) / "lightwell_calibration.yaml";
+    auto const file = own_file("calibration");
     write_calibration(file, c);
     Calibration const back = read_calibration(file);
     EXPECT_EQ(back.camera, c.camera);
@@ -126,7 +134,7 @@ TEST(CalibrationFile, SaysWhatIsWrongAndWhere)
     EXPECT_THROW(read_calibration("/no/such/file.yaml"), InputError);
     Calibration wrong = full(LensModel::pinhole);
     wrong.photometry->unit_of_byte[1][7] = 2;
-    auto const file = std::filesystem::path(testing::TempDir()) / "lightwell_wrong.yaml";
+    auto const file = own_file("wrong");
     EXPECT_THROW(write_calibration(file, wrong), InputError);
     EXPECT_FALSE(std::filesystem::exists(file));
 }

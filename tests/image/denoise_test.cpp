@@ -230,6 +230,36 @@ TEST_P(AllFilters, TakeNothingThatThePartnerCannotTell)
     EXPECT_LT(largest_difference(q, alone), 1e-5);
 }
 
+bool near_or_both_nan(float a, float b) { return std::isnan(a) ? std::isnan(b) : std::abs(a - b) < 1e-6f; }
+
+/// Most light is taken: what the filter finds is as where all of the picture lies before it.
+TEST_P(AllFilters, FindTheFewPixelsThatTakeNothing)
+{
+    constexpr int kSize = 90;
+    Picture partner = noisy_wall(kSize, kSize, 5), p = noisy_wall(kSize, kSize, 6);
+    std::vector<std::uint32_t> from(p.pixels());
+    for (std::size_t i = 0; i < p.pixels(); ++i) from[i] = i % 1009 == 500 ? kOwnLight : std::uint32_t(i);
+    set(p, "normal", 40 * kSize + 40, vec3{0}); // nothing is seen there
+    partner.find("L1")->data[3 * (20 * kSize + 20)] = std::nanf("");
+    p.find("L1")->data[3 * (20 * kSize + 20)] = std::nanf("");    // as what takes light takes it
+    p.find("L1")->data[3 * (5 * kSize + 51) + 1] = std::nanf(""); // near 500, and mended by the partner
+    p.find("albedo")->data[3 * (60 * kSize + 60)] = std::nanf("");
+    Picture const alone = filtered(p, GetParam());
+    Picture q = p;
+    DenoiseReport const report = denoise(q, GetParam(), {&partner, from});
+    EXPECT_EQ(report.not_finite, 2u);
+    for (std::size_t i = 0; i < p.pixels(); ++i) {
+        bool const keeps = i == 40 * kSize + 40 || i == 20 * kSize + 20 || i == 60 * kSize + 60,
+                   taken = from[i] != kOwnLight;
+        if (keeps || taken) {
+            ASSERT_TRUE(near_or_both_nan(get(q, "L1", i).x, get(keeps ? p : partner, "L1", i).x)) << i;
+        } else if (GetParam().denoiser == Denoiser::discontinuity) {
+            ASSERT_NEAR(get(q, "L1", i).y, get(alone, "L1", i).y, 1e-5f) << i;
+        }
+        ASSERT_TRUE(std::isfinite(get(q, "color", i).x)) << i;
+    }
+}
+
 TEST_P(AllFilters, SmallAndEmptyPictures)
 {
     for (auto const& [width, height] : {std::pair{1, 1}, {1, 9}, {9, 1}, {3, 2}}) {

@@ -49,6 +49,39 @@ std::vector<std::string> const kMixamo{"mixamorig:Hips",         "mixamorig:Head
                                        "mixamorig:LeftForeArm",  "mixamorig:LeftHand", "mixamorig:RightArm",
                                        "mixamorig:RightForeArm", "mixamorig:RightHand"};
 
+/// The same with legs of 0.5 + 0.45 m that hang straight, feet at 0.05 m; the right foot below its shin or, as in
+/// rigs with controls, below the root.
+struct Walker : Figure {
+    static constexpr int kLeftFoot = 11, kRightFoot = 14;
+
+    explicit Walker(std::vector<std::string> const& names, bool has_controls = false) : Figure(kMixamo)
+    {
+        dquat const twist = glm::angleAxis(0.4, glm::normalize(dvec3{2, -1, 1}));
+        auto const add = [&](std::int32_t parent, dvec3 translation, dquat rotation = {1, 0, 0, 0}) {
+            Node n;
+            n.parent = parent;
+            n.translation = translation;
+            n.rotation = rotation;
+            n.name = names[scene.nodes.size() - 9];
+            scene.skins[0].joints.push_back(std::int32_t(scene.nodes.size()));
+            scene.skins[0].inverse_bind.emplace_back(1);
+            scene.nodes.push_back(n);
+        };
+        add(1, {0.1, 0, 0}); // 9 left thigh
+        add(9, {0, -0.5, 0});
+        add(10, {0, -0.45, 0}, twist); // 11
+        add(1, {-0.1, 0, 0});          // 12 right thigh
+        add(12, {0, -0.5, 0}, twist);
+        if (has_controls)
+            add(0, {-0.1, 0.05, 0}, twist); // 14
+        else
+            add(13, glm::inverse(twist) * dvec3{0, -0.45, 0});
+    }
+};
+
+std::vector<std::string> const kMixamoLegs{"mixamorig:LeftUpLeg",  "mixamorig:LeftLeg",  "mixamorig:LeftFoot",
+                                           "mixamorig:RightUpLeg", "mixamorig:RightLeg", "mixamorig:RightFoot"};
+
 dmat4 rigid(dvec3 position, dquat const& rotation)
 {
     dmat4 m = glm::mat4_cast(rotation);
@@ -121,6 +154,45 @@ TEST(AvatarJoints, WhatIsMissingIsToldAndNamesHelp)
     EXPECT_NE(message({"b", {"c", "e", "d"}, {"f", "g", "h"}}).find("not below"), std::string::npos);
     Scene bare;
     EXPECT_THROW(find_avatar_joints(bare), InputError);
+}
+
+TEST(AvatarJoints, CommonNamesOfLegsAreFound)
+{
+    std::vector<std::vector<std::string>> const skeletons{
+        kMixamoLegs,
+        {"LeftUpLeg", "LeftLeg", "LeftFoot", "RightUpLeg", "RightLeg", "RightFoot"},
+        {"UpperLeg.L", "LowerLeg.L", "Foot.L", "UpperLeg.R", "LowerLeg.R", "Foot.R"},
+        {"DEF-thigh.L", "DEF-shin.L", "DEF-foot.L", "DEF-thigh.R", "DEF-shin.R", "DEF-foot.R"},
+        {"thigh_l", "calf_l", "foot_l", "thigh_r", "calf_r", "foot_r"},
+        {"J_Bip_L_UpperLeg", "J_Bip_L_LowerLeg", "J_Bip_L_Foot", "J_Bip_R_UpperLeg", "J_Bip_R_LowerLeg",
+         "J_Bip_R_Foot"},
+        {"Bip01 L Thigh", "Bip01 L Calf", "Bip01 L Foot", "Bip01 R Thigh", "Bip01 R Calf", "Bip01 R Foot"},
+        {"lThighBend", "lShin", "lFoot", "rThighBend", "rShin", "rFoot"},
+        {"leg_joint_L_1", "leg_joint_L_2", "leg_joint_L_3", "leg_joint_R_1", "leg_joint_R_2", "leg_joint_R_3"},
+        {"left_hip", "left_knee", "left_ankle", "right_hip", "right_knee", "right_ankle"}};
+    for (auto const& names : skeletons) {
+        AvatarJoints const j = find_avatar_joints(Walker(names).scene);
+        EXPECT_EQ(j.left_leg.upper, 9) << names[0];
+        EXPECT_EQ(j.left_leg.lower, 10) << names[1];
+        EXPECT_EQ(j.left_leg.foot, 11) << names[2];
+        EXPECT_EQ(j.right_leg.upper, 12) << names[3];
+        EXPECT_EQ(j.right_leg.lower, 13) << names[4];
+        EXPECT_EQ(j.right_leg.foot, 14) << names[5];
+    }
+    EXPECT_EQ(find_avatar_joints(Walker(kMixamoLegs, true).scene).right_leg.foot, 14) << "below a control";
+}
+
+TEST(AvatarJoints, WithoutLegsAnAvatarIsAnAvatar)
+{
+    EXPECT_EQ(find_avatar_joints(Figure(kMixamo).scene).left_leg.foot, -1);
+    AvatarJoints const j =
+        find_avatar_joints(Walker({"a", "b", "c", "RightUpLeg", "RightLeg", "RightFoot"}).scene);
+    EXPECT_EQ(j.right_leg.foot, -1) << "both or none";
+    AvatarNames names;
+    names.left_leg = {"a", "b", "c"};
+    Scene const scene = Walker({"a", "b", "c", "RightUpLeg", "RightLeg", "RightFoot"}).scene;
+    EXPECT_EQ(find_avatar_joints(scene, names).left_leg.lower, 10);
+    EXPECT_EQ(find_avatar_joints(scene, names).right_leg.lower, 13);
 }
 
 struct Driven {
@@ -284,6 +356,138 @@ TEST(AvatarDrive, SmoothTrackersMoveSmoothly)
     }
 }
 
+dquat const kFacing = glm::angleAxis(glm::pi<double>(), dvec3{0, 1, 0}); // -Z to +Z, as at rest
+
+double leg_length(Driven const& d, Avatar::Leg const& leg)
+{
+    return d.bone(d.pose, leg.joints.upper, leg.joints.lower) + d.bone(d.pose, leg.joints.lower, leg.joints.foot);
+}
+
+TEST(AvatarLegs, FeetAtRestLeaveThemAtRest)
+{
+    for (bool const has_controls : {false, true}) {
+        Driven d{Walker(kMixamoLegs, has_controls).scene};
+        ASSERT_TRUE(d.avatar.has_legs());
+        AvatarTargets t;
+        t.left_foot = rigid(place(d.rest, Walker::kLeftFoot), kFacing);
+        t.right_foot = rigid(place(d.rest, Walker::kRightFoot), kFacing);
+        d.to(t);
+        for (std::size_t n = 0; n < d.scene.nodes.size(); ++n)
+            for (int c = 0; c < 4; ++c)
+                EXPECT_LT(glm::distance(d.pose.world_from_node[n][c], d.rest.world_from_node[n][c]), 1e-6) << n;
+    }
+}
+
+/// Heads sink, feet stay, knees come forward, further the deeper.
+TEST(AvatarLegs, WhoCrouchesKeepsHisFeetOnTheFloor)
+{
+    for (bool const has_controls : {false, true}) {
+        Driven d{Walker(kMixamoLegs, has_controls).scene};
+        double knee_before = 0;
+        for (double const down : {0.02, 0.1, 0.3, 0.6}) {
+            AvatarTargets t;
+            t.head = rigid(place(d.rest, Figure::kHead) - dvec3{0, down, 0}, kFacing);
+            t.left_foot = rigid(place(d.rest, Walker::kLeftFoot), kFacing);
+            t.right_foot = rigid(place(d.rest, Walker::kRightFoot), kFacing);
+            d.to(t);
+            for (Avatar::Leg const* leg : {&d.avatar.left_leg, &d.avatar.right_leg}) {
+                LegJoints const& j = leg->joints;
+                EXPECT_LT(glm::distance(place(d.pose, j.foot), place(d.rest, j.foot)), 1e-9);
+                EXPECT_NEAR(d.bone(d.pose, j.upper, j.lower), 0.5, 1e-9);
+                EXPECT_NEAR(d.bone(d.pose, j.lower, j.foot), 0.45, 1e-9);
+                EXPECT_GT(place(d.pose, j.lower).z, knee_before + 0.05) << down;
+                EXPECT_NEAR(place(d.pose, j.lower).x, place(d.pose, j.upper).x, 1e-9) << "straight ahead";
+            }
+            knee_before = std::min(place(d.pose, 10).z, place(d.pose, 13).z);
+        }
+    }
+}
+
+TEST(AvatarLegs, HeelsRiseBeforeFeetLeaveTheFloor)
+{
+    Driven d{Walker(kMixamoLegs).scene};
+    dvec3 const foot = place(d.rest, Walker::kLeftFoot);
+    auto const raised = [&](double up) {
+        AvatarTargets t;
+        t.head = rigid(place(d.rest, Figure::kHead) + dvec3{0, up, 0}, kFacing);
+        t.left_foot = rigid(foot, kFacing);
+        d.to(t);
+        return d.pose.world_from_node[Walker::kLeftFoot];
+    };
+    dmat4 const flat = raised(0), tiptoe = raised(0.05), jump = raised(0.6);
+    // The ball of the foot in the foot's own frame stays where it is.
+    glm::dvec4 const ball = glm::inverse(flat) * glm::dvec4(foot + dvec3{0, -0.05, 0.15 * 0.95}, 1);
+    EXPECT_LT(glm::distance(tiptoe * ball, flat * ball), 1e-9);
+    EXPECT_GT(tiptoe[3].y, flat[3].y + 0.04) << "the heel rises";
+    EXPECT_GT((jump * ball).y, (flat * ball).y + 0.3) << "then he jumps";
+    EXPECT_NEAR(leg_length(d, d.avatar.left_leg), 0.95, 1e-9) << "and no leg stretches";
+    EXPECT_NEAR(d.bone(d.pose, 9, 11), 0.95, 1e-6) << "straight";
+}
+
+TEST(AvatarLegs, LostOrImpossibleFeetDoNoHarm)
+{
+    Driven d{Walker(kMixamoLegs).scene};
+    dmat4 lost(1);
+    lost[3].y = std::nan("");
+    AvatarTargets t;
+    t.left_foot = t.right_foot = lost;
+    d.to(t);
+    EXPECT_EQ(d.pose.world_from_node, d.rest.world_from_node);
+    for (dvec3 const at : {dvec3{0.1, 1, 0}, dvec3{1e9, 0, 0}, dvec3{0.1, 3, 0}, dvec3{0.1, 1, 1e-13}}) {
+        t.left_foot = t.right_foot = rigid(at, kFacing);
+        d.to(t);
+        for (dmat4 const& m : d.pose.world_from_node)
+            for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::isfinite(glm::length(m[c]))) << at.y << " " << at.z;
+        EXPECT_NEAR(leg_length(d, d.avatar.left_leg), 0.95, 1e-6);
+    }
+}
+
+/// Anywhere around the hips: what can be reached is, whatever else is finite, bones keep their lengths.
+void expect_feet_follow(Driven& d, int count, double scale, std::optional<double> time)
+{
+    std::mt19937_64 engine(7);
+    std::normal_distribution<double> normal;
+    auto const random_point = [&] { return dvec3{normal(engine), normal(engine), normal(engine)}; };
+    auto const random_turn = [&] {
+        return glm::normalize(dquat(normal(engine), normal(engine), normal(engine), normal(engine)));
+    };
+    Pose const before = evaluate_pose(d.scene, time);
+    int reached = 0;
+    for (int i = 0; i < count; ++i) {
+        AvatarTargets t;
+        if (i % 3 > 0) t.head = rigid(place(d.rest, d.avatar.head) + scale * random_point(), random_turn());
+        d.to(t, time);
+        dvec3 const middle =
+            0.5 * (place(d.pose, d.avatar.left_leg.joints.upper) + place(d.pose, d.avatar.right_leg.joints.upper));
+        t.left_foot = rigid(middle + 0.6 * scale * random_point(), random_turn());
+        t.right_foot = rigid(middle + 0.6 * scale * random_point(), random_turn());
+        d.to(t, time);
+        for (Avatar::Leg const* leg : {&d.avatar.left_leg, &d.avatar.right_leg}) {
+            LegJoints const& j = leg->joints;
+            double const upper = d.bone(before, j.upper, j.lower), lower = d.bone(before, j.lower, j.foot);
+            dvec3 const goal((leg == &d.avatar.left_leg ? t.left_foot : t.right_foot)->operator[](3));
+            double const far = glm::distance(goal, place(d.pose, j.upper));
+            if (far < upper + lower && far > std::abs(upper - lower)) {
+                EXPECT_LT(glm::distance(place(d.pose, j.foot), goal), 1e-3 * scale) << i;
+                ++reached;
+            }
+            EXPECT_NEAR(d.bone(d.pose, j.upper, j.lower), upper, 1e-6 * upper) << i;
+            EXPECT_NEAR(d.bone(d.pose, j.lower, j.foot), lower, 1e-6 * lower) << i;
+        }
+        for (dmat4 const& m : d.pose.world_from_node)
+            for (int c = 0; c < 4; ++c) ASSERT_TRUE(std::isfinite(glm::length(m[c]))) << i;
+    }
+    EXPECT_GT(reached, count / 4);
+}
+
+TEST(AvatarLegs, FeetReachThousandsOfTargets)
+{
+    Driven d{Walker(kMixamoLegs).scene};
+    expect_feet_follow(d, 10000, 1, {});
+    Driven controls{Walker(kMixamoLegs, true).scene};
+    expect_feet_follow(controls, 1000, 1, {});
+}
+
 void expect_real(std::string const& name, AvatarNames const& names)
 {
     Report report;
@@ -292,6 +496,16 @@ void expect_real(std::string const& name, AvatarNames const& names)
     SCOPED_TRACE(describe(d.scene, find_avatar_joints(d.scene, names)));
     expect_hands_follow(d, 300, d.bone(d.rest, d.avatar.left.joints.upper, d.avatar.left.joints.hand),
                         {0.0, 0.4, 0.9});
+    ASSERT_TRUE(d.avatar.has_legs());
+    expect_feet_follow(d, 300, leg_length(d, d.avatar.left_leg), {});
+}
+
+TEST(AvatarJoints, AFoxHasNoLegsThatCanBeTold)
+{
+    LIGHTWELL_NEED_DATA("avatars/fox.glb");
+    Report report;
+    Scene const fox = load_scene((shared_data() / "avatars/fox.glb").string(), report);
+    EXPECT_FALSE(make_avatar(fox, find_avatar_joints(fox)).has_legs());
 }
 
 TEST(AvatarDrive, QuaterniusHuman)
@@ -309,8 +523,11 @@ TEST(AvatarDrive, RobotExpressive)
 TEST(AvatarDrive, CesiumManByExplicitNames)
 {
     LIGHTWELL_NEED_DATA("avatars/cesium_man.glb");
-    expect_real("cesium_man.glb",
-                {"node 20", {"node 16", "node 17", "node 18"}, {"node 13", "node 14", "node 15"}});
+    expect_real("cesium_man.glb", {"node 20",
+                                   {"node 16", "node 17", "node 18"},
+                                   {"node 13", "node 14", "node 15"},
+                                   {"node 7", "node 8", "node 9"},
+                                   {"node 3", "node 4", "node 5"}});
 }
 
 } // namespace

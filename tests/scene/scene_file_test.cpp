@@ -416,6 +416,15 @@ TEST(SceneFile, SchemaAndReaderKnowTheSameKeys)
     EXPECT_EQ(in_schema, scene_file_keys());
 }
 
+TEST(SceneFile, TheCrowdLoadsAndMoves)
+{
+    Report report;
+    World const w = world_of(load_scene_file(fs::path(LIGHTWELL_SOURCE_DIR) / "data/crowd.yaml", report));
+    EXPECT_TRUE(report.losses().empty());
+    EXPECT_GT(double(w.triangles.size() - w.static_triangles), 0.9 * double(w.triangles.size()));
+    EXPECT_EQ(w.cameras.size(), 1u);
+}
+
 TEST(SceneFile, TheExampleLoads)
 {
     Report report;

@@ -116,7 +116,9 @@ TEST_F(Ranks, GoInLockStep)
     }
     bool has_skew = false;
     int clocks = 0;
+    std::vector<std::string> notes;
     for (std::string const& line : log(0).rest) {
+        if (line.starts_with("note")) notes.push_back(line);
         std::printf("%s\n", line.c_str());
         has_skew |= line.starts_with("skew swap skew of 200 frames");
         if (!line.starts_with("clock")) continue;
@@ -128,6 +130,7 @@ TEST_F(Ranks, GoInLockStep)
     }
     EXPECT_TRUE(has_skew);
     EXPECT_EQ(clocks, kRanks - 1);
+    EXPECT_EQ(notes, (std::vector<std::string>{"note 10 of rank 1", "note 10 of rank 2", "note 10 of rank 3"}));
 }
 
 TEST_F(Ranks, SameOverTcp)

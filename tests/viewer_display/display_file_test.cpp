@@ -58,6 +58,12 @@ TEST(DisplayFile, SaysWhatItSays)
     EXPECT_EQ(c.trackers[0].room_from_tracker, (Placement{{-1.5, 0, 1.5}, {-90, 0, 0}}));
     EXPECT_EQ(c.trackers[1].body, "1");
     EXPECT_EQ(c.users[0].tracker, 0);
+    EXPECT_EQ(d.users[0].avatar, "");
+    EXPECT_FALSE(d.users[0].eye_height_m);
+    User const tall = parsed(with("name: u,", "name: u, avatar: avatar, eye_height_m: 1.85,")).users[0];
+    EXPECT_EQ(tall.avatar, "avatar");
+    EXPECT_EQ(tall.eye_height_m, 1.85);
+    EXPECT_EQ(parsed(with("body: /head", "body: /head, left_foot_body: /l")).trackers[0].left_foot_body, "/l");
 }
 
 struct Refusal {
@@ -110,6 +116,12 @@ TEST(DisplayFile, EveryRefusalHasItsPlaceAndItsWords)
         {"    window: w", "    window: w\n    warp: {file: a.yaml, rows: 2}", "warp has both a file and a mesh"},
         {"    window: w", "    window: w\n    warp: {file: not-there.yaml}", "not-there.yaml"},
         {"    window: w", "    window: w\n    user: me", "d.yaml:7:11: 'me' is not in users"},
+        {"name: u,", "name: u, avatar: [1],", "d.yaml:10:23: "},
+        {"name: u,", "name: u, avatar: nobody.glb,", "d.yaml:10:23: there is no file 'nobody.glb'"},
+        {"name: u,", "name: u, eye_height_m: tall,", "d.yaml:10:29: "},
+        {"name: u,", "name: u, eye_height_m: 165,", "d.yaml:10:29: eyes 165 m above the floor"},
+        {"body: /head", "body: /head, left_foot_body: /head", "d.yaml:12:67: body '/head' twice"},
+        {"type: osc, port: 9000, body: /head", "type: fake, right_hand_body: 1", "a body for type: fake"},
         {"    window: w", "    window: w\n    rank: -1", "d.yaml:7:11: display.walls[0].rank is -1"},
         {"    window: w", "    window: w\n    swap_eyes: yes", "neither true nor false"},
         {"size_px: [800, 600]", "size_px: [0, 600]", "d.yaml:8:24: a window of 0 x 600"},
@@ -261,6 +273,7 @@ Display random_display(std::mt19937& random)
         t.body = t.type == DisplayTrackerType::osc ? "/b" : t.type == DisplayTrackerType::dtrack ? "3" : "head";
         if (t.type == DisplayTrackerType::file) t.file = "poses.csv";
         t.filter = {FilterType(below(2)), real(0.1, 9), real(0, 9)};
+        if (t.type == DisplayTrackerType::osc && below(2)) t.left_foot_body = "/left", t.right_hand_body = "7";
         d.trackers.push_back(t);
     }
     for (int i = 0, n = 1 + below(3); i < n; ++i)
@@ -268,7 +281,9 @@ Display random_display(std::mt19937& random)
                            real(0.05, 0.075),
                            {vector(3), vector(180)},
                            vector(0.1),
-                           below(int(d.trackers.size()) + 1) - 1});
+                           below(int(d.trackers.size()) + 1) - 1,
+                           below(2) ? "avatar" : "",
+                           below(2) ? std::optional(real(0.3, 3)) : std::nullopt});
     for (int i = 0, n = 1 + below(4); i < n; ++i) {
         Wall w;
         w.name = name(i);

@@ -50,6 +50,56 @@ struct Live {
     }
 };
 
+/// The leader of ranks of which another one takes as long as told.
+class SlowestRank : public FrameLink {
+public:
+    explicit SlowestRank(double seconds) : seconds_(seconds) {}
+    void begin() override {}
+    void end() override {}
+    bool leads() const override { return true; }
+    void send(FrameOrder const&) override {}
+    std::optional<FrameOrder> receive() override { return {}; }
+    void check() override {}
+    FrameWork wait_for_all(FrameOrder const&, FrameWork const& own) override
+    {
+        return {seconds_, own.following, own.moved};
+    }
+    void drawn(std::uint64_t) override {}
+    void swapped(std::uint64_t, double) override {}
+
+private:
+    double seconds_;
+};
+
+/// Of all ranks the slowest decides what there is time for, whatever this one took for its share of the pixels.
+TEST(LiveRenderer, GoesByTheSlowestRank)
+{
+    for (bool const slow : {true, false}) {
+        Live live;
+        live.renderer.reset();
+        SlowestRank link(slow ? 10 : 1e-4);
+        LiveRenderer::Hooks hooks;
+        hooks.finished = [&](LiveFrame const& f) { live.orders.push_back(f.order); };
+        hooks.own_views = [](FrameOrder const& order) { return std::vector{order.views.at(0)}; };
+        live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, &link, hooks);
+        std::shared_ptr<LiveFrame const> frame;
+        for (int i = 0; i < 12; ++i) {
+            Viewpoint at;
+            gi::Camera camera = live.eye;
+            camera.world_from_camera = glm::translate(live.eye.world_from_camera, gi::dvec3{0.01 * i, 0, 0});
+            for (char const* const wall : {"left", "front", "right", "floor"})
+                at.views.push_back({wall, camera, 64, 64, -1});
+            live.renderer->look(at);
+            frame = live.renderer->next_frame(20);
+            ASSERT_NE(frame, nullptr);
+            EXPECT_EQ(frame->result.views.size(), 1u);
+        }
+        EXPECT_EQ(frame->budget.scale, slow ? 0.25 : 1);
+        EXPECT_EQ(frame->budget.paths == 1, slow) << frame->budget.paths;
+        live.renderer->stop();
+    }
+}
+
 TEST(LiveRenderer, RendersWhatIsLookedAtAndConverges)
 {
     Live live;

@@ -35,6 +35,9 @@ FrameOrder cave_order()
     o.world_from_room[3] = {0.1, -0.0, 1e-300, 1};
     o.tracked.head = {{0.1, 1.8, 0.2}, glm::normalize(gi::dquat(0.9, 0.1, -0.2, 0.05))};
     o.tracked.right_hand = {{0.4, 1.1, -0.2}, glm::normalize(gi::dquat(0.3, 0.1, 0.2, 0.5))};
+    o.tracked.left_foot = {{0.1, 0, 0.3}, {1, 0, 0, 0}};
+    o.others = {{}, o.tracked, {}};
+    o.others[1].head.reset();
     o.changes = {{"exposure", 1.5},
                  {"method", "slhb"},
                  {"object.door.position", {0.1, 2, -3e-9}},
@@ -73,6 +76,20 @@ TEST(FrameOrder, ComesBackInAllItsBits)
         EXPECT_EQ(to_bytes(back), to_bytes(o)); // also tells -0 from 0
     }
     EXPECT_TRUE(std::signbit(order_from_bytes(to_bytes(cave_order())).world_from_room[3].y));
+}
+
+/// Of before there were feet and further users.
+TEST(FrameOrder, OldOnesAreRead)
+{
+    FrameOrder o;
+    o.tracked.head = {{1, 2, 3}, {1, 0, 0, 0}};
+    o.tracked.right_hand = {{4, 5, 6}, {1, 0, 0, 0}};
+    std::vector<std::uint8_t> const old{1,  0, 0, 0, 0,  0, 0, 0,  0,  0, 0, 0, 0,  0, 0, 0,  0,   0,  0, 0, 0,
+                                        0,  0, 0, 0, 0,  1, 0, 0,  5,  7, 0, 0, 0,  0, 0, 0,  240, 63, 0, 0, 0,
+                                        0,  0, 0, 0, 64, 0, 0, 0,  0,  0, 0, 8, 64, 7, 0, 0,  0,   0,  0, 0, 16,
+                                        64, 0, 0, 0, 0,  0, 0, 20, 64, 0, 0, 0, 0,  0, 0, 24, 64,  0,  0};
+    EXPECT_EQ(order_from_bytes(old), o);
+    EXPECT_EQ(to_bytes(o), old);
 }
 
 TEST(FrameOrder, RandomNumbersComeBackExactly)
@@ -146,6 +163,12 @@ TEST(FrameOrder, WhatCannotBeRenderedIsRefused)
         {[](FrameOrder& o) { o.world_from_room[0] = o.world_from_room[1]; }, "flattens"},
         {[](FrameOrder& o) { o.tracked.head->rotation.w = 3; }, "unit"},
         {[](FrameOrder& o) { o.tracked.head->position.x = kNaN; }, "head"},
+        {[](FrameOrder& o) {
+             o.others = {{}};
+             o.others[0].right_foot = {{0, kNaN, 0}, {1, 0, 0, 0}};
+         },
+         "right_foot"},
+        {[](FrameOrder& o) { o.others.resize(OrderLimits::users + 1); }, "users"},
         {[](FrameOrder& o) { o.views[0].width = 0; }, "pixels"},
         {[](FrameOrder& o) { o.views[0].height = 16385; }, "pixels"},
         {[](FrameOrder& o) { o.views[0].partner = 0; }, "partner"},

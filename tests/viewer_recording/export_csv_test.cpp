@@ -65,6 +65,9 @@ TEST(ExportCsv, HoldsEveryFrameExactly)
         EXPECT_EQ(std::stod(row["head_qy"]), o.tracked.head->rotation.y);
         EXPECT_EQ(row["left_hand_qw"], n % 3 == 0 ? "1" : "");
         EXPECT_EQ(row["right_hand_x_m"], "");
+        EXPECT_EQ(row["left_foot_x_m"], "");
+        EXPECT_EQ(row["user2_head_x_m"], "");
+        EXPECT_EQ(row["user3_head_x_m"], n % 5 == 4 ? row["head_x_m"] : "");
         EXPECT_EQ(std::stoull(row["pixel_hash"], nullptr, 16), *f.pixel_hash);
         EXPECT_EQ(row["render_ms"], n % 2 == 0 ? "11.25" : "");
         EXPECT_EQ(row["view0_name"], "wall, 0");

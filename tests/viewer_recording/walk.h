@@ -23,6 +23,7 @@ inline RecordedFrame walk_frame(std::uint64_t n)
     o.world_from_room[3] = {std::sin(t), 0, -t, 1};
     o.tracked.head = {{0.1 * std::cos(3 * t), 1.7, 0.1}, glm::normalize(gi::dquat(1, 0, 0.1 * std::sin(t), 0))};
     if (n % 3 == 0) o.tracked.left_hand = RoomPose{{0, 1, -0.3}, {1, 0, 0, 0}};
+    if (n % 5 == 4) o.others = {{}, o.tracked};
     if (n % 10 == 0) o.changes = {{"exposure", 1 + t}, {"label", "a \"b\", #c\n"}};
     for (int i = 0; i < 1 + int(n % 2); ++i) {
         ViewOrder v;

@@ -5,6 +5,7 @@
 #include "gi/scene/load.h"
 #include "tests/support/data.h"
 #include "viewer/session/session.h"
+#include "viewer/tracking/footsteps.h"
 #include "viewer/tracking/key_hands.h"
 #include "viewer/tracking/own_avatar.h"
 
@@ -136,6 +137,31 @@ TEST(AvatarInMirror, ItsHeadIsNotInItsUsersWay)
             if (d > 0) nearest = std::min(nearest, d);
         EXPECT_GT(nearest, 0.12f) << "pitch " << pitch;
     }
+}
+
+/// The first user walks: the feet that footsteps add are in the orders, and who has these needs no memory.
+TEST(AvatarInMirror, StepsAreInTheOrders)
+{
+    OwnAvatar const model(gi::generate_avatar(), kEyes_m);
+    ASSERT_TRUE(model.stance());
+    Footsteps feet(*model.stance());
+    std::vector<std::vector<std::uint8_t>> orders;
+    std::vector<std::vector<float>> runs[2];
+    Room live(gi::generate_avatar());
+    double highest_m = 0;
+    for (std::uint64_t f = 0; f < 8; ++f) {
+        FrameOrder order = standing(f, 0, 0.06 * double(f));
+        order.paths = 1;
+        feet.step(order.tracked, order.world_from_room, 0.05);
+        for (auto const& foot : {order.tracked.left_foot, order.tracked.right_foot})
+            highest_m = std::max(highest_m, foot->position.y);
+        runs[0].push_back(color(live.render(order)));
+        orders.push_back(to_bytes(order));
+    }
+    EXPECT_GT(highest_m, 0.02) << "in the middle of a step";
+    Room replayed(gi::generate_avatar());
+    for (auto const& bytes : orders) runs[1].push_back(color(replayed.render(order_from_bytes(bytes))));
+    EXPECT_EQ(runs[0], runs[1]);
 }
 
 /// As recorded, sent and replayed: through the bytes of the orders.

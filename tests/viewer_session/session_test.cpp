@@ -2,6 +2,7 @@
 
 #include "viewer/session/session.h"
 
+#include "gi/base/device.h"
 #include "gi/base/error.h"
 #include "gi/image/metrics.h"
 #include "gi/scene/generate.h"
@@ -170,6 +171,30 @@ TEST(Session, RefusesWhatCannotBeAndKeepsAll)
     EXPECT_EQ(color(fresh.render(order(0), {})), before);
     EXPECT_EQ(color(fresh.render(order(1), {})), color(s.render(order(1), {})));
     EXPECT_THROW(Session(scene_of, 0, report).render(order(0), {}), gi::InputError);
+}
+
+/// Where there is no device it is refused, and the session goes on as it was.
+TEST(Session, RendersByKernelsWhereThereIsADevice)
+{
+    gi::Report report;
+    Session s = started(report), fresh = started(report);
+    EXPECT_EQ(color(s.render(order(0), {})), color(fresh.render(order(0), {})));
+    s.apply({"device", "cpu"}); // begins anew
+    fresh.apply({"device", "cpu"});
+    if (gi::device_present()) {
+        s.apply({"device", "cuda"});
+        EXPECT_NEAR(mean(color(s.render(order(1), {}))) / mean(color(fresh.render(order(1), {}))), 1, 0.05);
+        return;
+    }
+    try {
+        s.apply({"device", "cuda"});
+        ADD_FAILURE() << "there is no device";
+    } catch (gi::InputError const& e) {
+        EXPECT_NE(std::string(e.what()).find("--device cuda cannot be used"), std::string::npos) << e.what();
+    }
+    EXPECT_EQ(s.settings().device, "cpu");
+    EXPECT_EQ(color(s.render(order(1), {})), color(fresh.render(order(1), {})));
+    EXPECT_THROW(s.apply({"device", "abacus"}), gi::InputError);
 }
 
 TEST(Session, EveryKeyCanBeSetToWhatItIs)

@@ -19,7 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kAnswer(30); // also where a frame of the reference is being rendered
-// Of the last third's peak over that of the middle third. In a short walk a third may miss what needs most (the
+// Of the last third's memory over that of the middle third. In a short walk a third may miss what needs most (the
 // larger scene with stored hit buffers needs several times what the smaller one does), so that only a rough limit
 // holds; the true one is for walks of 10 minutes and more.
 constexpr double kGrowth = 1.05, kGrowthOfShortWalks = 1.5, kShortWalk_s = 600;
@@ -65,10 +65,13 @@ private:
     std::thread thread_;
 };
 
-double peak(std::vector<double> const& samples, double from, double to)
+/// Of the samples of a part of the time, the one below which `share` of them are.
+double quantile(std::vector<double> const& samples, double from, double to, double share)
 {
-    auto const at = [&](double share) { return samples.begin() + std::ptrdiff_t(share * double(samples.size())); };
-    return *std::max_element(at(from), at(to));
+    auto const at = [&](double part) { return samples.begin() + std::ptrdiff_t(part * double(samples.size())); };
+    std::vector<double> some(at(from), at(to));
+    std::ranges::sort(some);
+    return some[std::size_t(share * double(some.size() - 1))];
 }
 
 template <class T>
@@ -406,10 +409,14 @@ TEST_F(RandomInput, NeitherCrashesNorGrows)
     view->quit();
     ASSERT_GE(mib.size(), 9u);
     double const growth = limit_s < kShortWalk_s ? kGrowthOfShortWalks : kGrowth;
-    double const middle = peak(mib, 1.0 / 3, 2.0 / 3), last = peak(mib, 2.0 / 3, 1);
-    fmt::print("peaks: {:.0f} MiB in the middle third, {:.0f} MiB in the last, which may be {} times that\n",
-               middle, last, growth);
-    EXPECT_LE(last, growth * middle);
+    // Memory follows what is loaded, and peaks what came together by chance: a leak lifts floor and middle alike.
+    for (auto const& [name, share] : {std::pair{"least tenth", 0.1}, {"median", 0.5}, {"peak", 1.0}}) {
+        double const middle = quantile(mib, 1.0 / 3, 2.0 / 3, share), last = quantile(mib, 2.0 / 3, 1, share);
+        fmt::print("{}: {:.0f} MiB in the middle third, {:.0f} MiB in the last\n", name, middle, last);
+        if (share < 1) {
+            EXPECT_LE(last, growth * middle) << name;
+        }
+    }
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 #include "gi/scene/load.h"
 #include "gi/scene/skinning.h"
 #include "tests/support/data.h"
+#include "viewer/tracking/footsteps.h"
 #include "viewer/tracking/key_hands.h"
 #include "viewer/tracking/known_walk.h"
 #include "viewer/tracking/pose_math.h"
@@ -182,8 +183,73 @@ void expect_hanging_arms(std::string const& name)
               glm::distance(d.at(d.joints.left.upper), d.at(d.joints.right.upper)));
 }
 
+/// Walking, crouching and both: ankles where the feet are, as near as legs come, and nothing below the floor.
+void expect_walks(std::string const& name)
+{
+    SCOPED_TRACE(name);
+    Driven d(name);
+    ASSERT_TRUE(d.avatar.stance());
+    Footsteps feet(*d.avatar.stance());
+    int reached = 0, lifted = 0;
+    double lowest = 0;
+    for (int i = 0; i < 300; ++i) {
+        double const t = 0.03 * i;
+        Tracked user;
+        user.head =
+            RoomPose{{0.3, 1.65 - 0.25 * (1 - std::cos(0.7 * t)), -0.8 * t}, exp_rotation({0, 0.3 * t, 0})};
+        feet.step(user, elsewhere(), 0.03);
+        d.to(user, elsewhere());
+        gi::AvatarTargets const targets = puppet_targets(user, elsewhere(), d.avatar.measures());
+        for (auto const& [leg, target] :
+             {std::pair{d.joints.left_leg, targets.left_foot}, {d.joints.right_leg, targets.right_foot}}) {
+            double const upper = glm::distance(d.at(leg.upper), d.at(leg.lower)),
+                         lower = glm::distance(d.at(leg.lower), d.at(leg.foot));
+            dvec3 const goal((*target)[3]);
+            if (glm::distance(d.at(leg.upper), goal) < upper + lower) {
+                EXPECT_LT(glm::distance(d.at(leg.foot), goal), 1e-3) << i;
+                ++reached;
+            } else {
+                ++lifted;
+            }
+        }
+        if (i % 20 == 0)
+            for (Driven::Vertex const& v : d.vertices()) lowest = std::min(lowest, v.place.y - elsewhere()[3].y);
+    }
+    EXPECT_GT(reached, 2 * lifted) << "heels rise at the end of a step";
+    if (name != "robot_expressive.glb") { // whose hands hang to the floor
+        EXPECT_GT(lowest, -0.08) << "toes of a foot that swings point down";
+    }
+}
+
+void expect_crouches(std::string const& name)
+{
+    SCOPED_TRACE(name);
+    Driven d(name);
+    Footsteps feet(*d.avatar.stance());
+    Tracked user;
+    user.head = RoomPose{{0, 1.65, 0}, {1, 0, 0, 0}};
+    feet.step(user, gi::dmat4(1), 0.01);
+    d.to(user);
+    double const knee = d.at(d.joints.left_leg.lower).z, hip = d.at(d.joints.left_leg.upper).y;
+    user.head->position.y = 1.2;
+    feet.step(user, gi::dmat4(1), 0.5);
+    d.to(user);
+    for (gi::LegJoints const& leg : {d.joints.left_leg, d.joints.right_leg}) {
+        EXPECT_NEAR(d.at(leg.upper).y, hip - 0.45, 0.02);
+        EXPECT_LT(d.at(leg.lower).z, knee - 0.1) << "knees forward, which is -Z";
+        EXPECT_LT(std::abs(d.at(leg.lower).x), 0.35) << "and not apart";
+    }
+    double lowest = 1;
+    for (Driven::Vertex const& v : d.vertices()) lowest = std::min(lowest, v.place.y);
+    if (name != "robot_expressive.glb") { // whose hands hang to the floor
+        EXPECT_NEAR(lowest, 0, 0.04) << "soles on the floor";
+    }
+}
+
 void expect_all(std::string const& name)
 {
+    expect_walks(name);
+    expect_crouches(name);
     expect_follows(name);
     expect_stands(name);
     expect_clear_view(name);
@@ -269,6 +335,34 @@ TEST(OwnAvatar, BringsNoLightsCamerasAndMarches)
     EXPECT_FALSE(joined.environment.has_value());
     EXPECT_TRUE(joined.playbacks.empty());
     EXPECT_GT(joined.meshes.size(), room.meshes.size());
+}
+
+/// Two users, each with his own: nobody moves another's.
+TEST(OwnAvatar, EveryUserMovesHisOwn)
+{
+    OwnAvatar const first(gi::generate_avatar(), 1.6), third(gi::generate_avatar(), 1.8, 2);
+    gi::Scene const scene = third.joined(first.joined(gi::generate_cornell()));
+    std::int32_t const heads[2] = {first.joints_in(scene).head, third.joints_in(scene).head};
+    EXPECT_NE(heads[0], heads[1]);
+    FrameOrder order;
+    order.tracked.head = RoomPose{{0.5, 1.6, 0}, {1, 0, 0, 0}};
+    order.others.resize(2);
+    order.others[1].head = RoomPose{{-0.5, 1.5, 0.3}, exp_rotation({0, 1, 0})};
+    order.others[1].left_foot = RoomPose{{-0.6, 0, 0.3}, {1, 0, 0, 0}};
+    gi::Pose pose = gi::evaluate_pose(scene, 0);
+    first.drive(scene, order, pose);
+    third.drive(scene, order, pose);
+    for (auto const& [avatar, user, head] :
+         {std::tuple{&first, &order.tracked, heads[0]}, {&third, &order.others[1], heads[1]}}) {
+        dvec3 const joint = compose(*user->head, {avatar->measures().head_joint_in_head, {1, 0, 0, 0}}).position;
+        EXPECT_LT(glm::distance(dvec3(pose.world_from_node[std::size_t(head)][3]), joint), 1e-9);
+    }
+    std::int32_t const foot = third.joints_in(scene).left_leg.foot;
+    EXPECT_NEAR(pose.world_from_node[std::size_t(foot)][3].x, -0.6, 1e-6);
+    order.others.clear();
+    pose = gi::evaluate_pose(scene, 0);
+    third.drive(scene, order, pose);
+    EXPECT_NEAR(pose.world_from_node[std::size_t(heads[1])][3].x, 0, 1e-9) << "in the middle";
 }
 
 TEST(OwnAvatar, ModelsWithoutABodyAreRefused)

@@ -211,7 +211,10 @@ TEST(TrackerHub, RefusesSettingsThatCannotBe)
     EXPECT_NO_THROW(check(TrackerSettings{}));
     refused([](TrackerSettings& s) { s.port = 70000; });
     refused([](TrackerSettings& s) { s.head.id = s.left_hand.id; });
-    refused([](TrackerSettings& s) { s.head.id = s.left_hand.id = s.right_hand.id = ""; });
+    refused([](TrackerSettings& s) {
+        s.head.id = s.left_hand.id = s.right_hand.id = s.left_foot.id = s.right_foot.id = "";
+    });
+    refused([](TrackerSettings& s) { s.left_foot.id = s.right_foot.id; });
     refused([](TrackerSettings& s) { s.to_room.metres_per_unit = 0; });
     refused([](TrackerSettings& s) { s.to_room.room_from_tracker.rotation = {2, 0, 0, 0}; });
     refused([](TrackerSettings& s) { s.filter.position.min_cutoff_hz = 0; });

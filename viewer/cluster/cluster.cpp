@@ -84,22 +84,23 @@ std::optional<FrameOrder> Cluster::receive()
     return order_from_bytes(bytes);
 }
 
-void Cluster::wait(std::uint64_t frame, std::uint64_t check)
+std::vector<std::string> Cluster::wait(std::uint64_t frame, std::uint64_t check, std::string const& note)
 {
-    if (alone()) return;
+    if (alone()) return {};
     State& s = *state_;
     std::uint64_t const mine = gi::mix_bits(s.orders_check ^ gi::mix_bits(check));
     std::string const what_for = fmt::format("before the swap of frame {}", frame);
     if (!leads()) {
         Writer out(Say::arrived);
         s.last_go.answered_s = now_s();
-        out.put(State::Arrival{frame, mine}).put(s.last_go);
+        out.put(State::Arrival{frame, mine}).put(s.last_go).put(note);
         s.tell_swap(out);
         s.send(0, std::move(out));
         s.await([&] { return s.gone && *s.gone == frame; }, [](int who) { return who == 0; }, s.settings.silence_s,
                 what_for);
-        return;
+        return {};
     }
+    std::vector<std::string> notes;
     auto const is_missing = [&s](int r) { return s.living(r) && !s.peers[std::size_t(r)].arrival; };
     auto const others = s.other_ranks();
     s.await([&] { return std::none_of(others.begin(), others.end(), is_missing); }, is_missing,
@@ -113,8 +114,11 @@ void Cluster::wait(std::uint64_t frame, std::uint64_t check)
             s.lose(r, fmt::format("has another scene or other orders than {} at frame {} (check {:016x}, not "
                                   "{:016x})",
                                   name(0), frame, arrival->check, mine));
+        else
+            notes.push_back(std::move(s.peers[std::size_t(r)].note));
     }
     s.send_to_others(Writer(Say::go).put(frame).put(now_s()));
+    return notes;
 }
 
 void Cluster::report_swap(std::uint64_t frame, double time_s)

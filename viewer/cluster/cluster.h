@@ -81,7 +81,8 @@ public:
     std::optional<FrameOrder> receive();
     /// Before the swap: until all ranks are there. All orders so far are compared by a hash; a rank that got
     /// others is lost. @param check of what was made of them, where there is such a thing; compared likewise
-    void wait(std::uint64_t frame, std::uint64_t check = 0);
+    /// @param note  for the leader: bytes, as short as possible  @return of the leader: the notes of others
+    std::vector<std::string> wait(std::uint64_t frame, std::uint64_t check = 0, std::string const& note = {});
     /// @param time_s on this process's steady clock
     void report_swap(std::uint64_t frame, double time_s);
     /// Leader: of all frames that were reported.

@@ -218,6 +218,7 @@ void Cluster::State::handle(Message const& message)
         from.arrival = in.get<Arrival>();
         Echo const echo = in.get<Echo>();
         if (echo.sent_s > 0) from.clock.add(echo, now_s());
+        from.note = in.text();
         return swap_of(message.from, in);
     }
     case Say::go:

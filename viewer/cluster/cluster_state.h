@@ -30,6 +30,7 @@ struct Cluster::State {
         double heard_s = 0; ///< on the clock listened_s
         ClockOffset clock;
         std::optional<Arrival> arrival;
+        std::string note; ///< that came with it
         std::deque<std::vector<std::uint8_t>> data;
     };
 

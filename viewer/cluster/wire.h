@@ -19,7 +19,7 @@ enum class Say : std::uint8_t {
     ping,    ///< leader: Stamp
     pong,    ///< follower: Echo
     order,   ///< leader: to_bytes of a FrameOrder
-    arrived, ///< follower: is ready to swap
+    arrived, ///< follower: is ready to swap; and a note
     go,      ///< leader: all are ready to swap
     alive,   ///< somebody who waits or works
     want,    ///< leader: give me the next

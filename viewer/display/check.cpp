@@ -228,6 +228,20 @@ Fault user_fault(Display const& d, std::size_t i)
                             "there is no such tracker",
                             "nothing would move the head",
                             "name one of trackers, or leave it out"};
+    if (user.eye_height_m && !is_within(*user.eye_height_m, 0.3, 3))
+        return DisplayFault{"users",
+                            i,
+                            "eye_height_m",
+                            fmt::format("eyes {} m above the floor", *user.eye_height_m),
+                            "those of people who stand are 0.3 to 3 m above it",
+                            "metres? 1.65 is usual"};
+    if (!user.avatar.empty() && i > OrderLimits::users)
+        return DisplayFault{"users",
+                            i,
+                            "avatar",
+                            "too many users with avatars",
+                            fmt::format("orders hold {} besides the first", OrderLimits::users),
+                            "give avatars to the first of them"};
     return {};
 }
 
@@ -252,6 +266,19 @@ Fault tracker_fault(DisplayTracker const& t, std::size_t i)
         t.body != "right_hand")
         return fault("body", "'" + t.body + "' is nothing that OpenXR tracks", "it has a head and two hands",
                      "head, left_hand or right_hand");
+    bool const has_limbs = is_network || t.type == DisplayTrackerType::file;
+    auto const name = [](std::string const& id) { return id.starts_with('/') ? id.substr(1) : id; };
+    std::set<std::string> bodies{name(t.body)};
+    for (LimbBody const& b : kLimbBodies) {
+        std::string const& id = t.*b.body;
+        if (id.empty()) continue;
+        if (!has_limbs)
+            return fault(b.key, "a body for type: " + std::string(name_of(t.type)), "it has its own names",
+                         "remove it");
+        if (!bodies.insert(name(id)).second)
+            return fault(b.key, "body '" + id.substr(0, 64) + "' twice", "it cannot be two parts of a body",
+                         "give each its own");
+    }
     if ((t.type == DisplayTrackerType::file) == t.file.empty())
         return fault("file", t.file.empty() ? "no file" : "a file with type: " + std::string(name_of(t.type)),
                      "poses are read from one with type: file, and only then", "give it, or remove it");

@@ -79,6 +79,8 @@ struct User {
     Placement head;            ///< where nothing tracks it
     gi::dvec3 eye_offset_m{0}; ///< from the tracked point to the middle between the eyes; in the head's frame
     int tracker = -1;          ///< that follows the head; -1 = none
+    std::string avatar{};      ///< file of a skinned model that he has, as stated; empty = none
+    std::optional<double> eye_height_m{}; ///< standing, above the floor y = 0; none = where the head rests
 
     bool operator==(User const&) const = default;
 };
@@ -105,10 +107,22 @@ struct DisplayTracker {
     std::string file; ///< recorded poses
     Placement room_from_tracker;
     double latency_ms = 0; ///< from motion to packet, measured
-    TrackerFilter filter;
+    TrackerFilter filter{};
+    std::string left_hand_body{}, right_hand_body{}; ///< of the same sender, as it names them; empty = the usual
+    std::string left_foot_body{}, right_foot_body{};
 
     bool operator==(DisplayTracker const&) const = default;
 };
+
+/// Bodies of a tracker besides the one that it is of.
+struct LimbBody {
+    char const* key; ///< in files
+    std::string DisplayTracker::*body;
+};
+inline constexpr LimbBody kLimbBodies[]{{"left_hand_body", &DisplayTracker::left_hand_body},
+                                        {"right_hand_body", &DisplayTracker::right_hand_body},
+                                        {"left_foot_body", &DisplayTracker::left_foot_body},
+                                        {"right_foot_body", &DisplayTracker::right_foot_body}};
 
 struct Display {
     std::string name;

@@ -152,7 +152,7 @@ DisplayWindow read_window(YamlReader const& y)
     return window;
 }
 
-User read_user(YamlReader const& y, Display const& d)
+User read_user(YamlReader const& y, Display const& d, std::filesystem::path const& folder)
 {
     check_display_keys(y, "user");
     User user;
@@ -162,6 +162,14 @@ User read_user(YamlReader const& y, Display const& d)
     if (y.has("head_rotation_deg")) user.head.rotation_deg = y.at("head_rotation_deg").vector(-kAny, kAny);
     if (y.has("eye_offset_m")) user.eye_offset_m = y.at("eye_offset_m").vector(-kAny, kAny);
     if (y.has("head_tracker")) user.tracker = index_of(d.trackers, y.at("head_tracker"), "trackers");
+    if (y.has("avatar")) {
+        user.avatar = y.at("avatar").text();
+        std::error_code error;
+        if (user.avatar != "avatar" && !std::filesystem::is_regular_file(folder / user.avatar, error))
+            throw y.at("avatar").error("there is no file '" + user.avatar.substr(0, 256) + "'",
+                                       "it would be the user's body", "name a skinned model, or avatar");
+    }
+    if (y.has("eye_height_m")) user.eye_height_m = y.at("eye_height_m").number(-kAny, kAny);
     return user;
 }
 
@@ -193,6 +201,8 @@ DisplayTracker read_tracker(YamlReader const& y)
     if (y.has("address")) tracker.address = y.at("address").text();
     if (y.has("port")) tracker.port = int(y.at("port").integer(-1000000, 1000000));
     if (y.has("body")) tracker.body = y.at("body").text();
+    for (LimbBody const& b : kLimbBodies)
+        if (y.has(b.key)) tracker.*b.body = y.at(b.key).text();
     if (y.has("file")) tracker.file = y.at("file").text();
     if (y.has("room_from_tracker")) {
         YamlReader const r = y.at("room_from_tracker");
@@ -230,8 +240,8 @@ Display parse_display(std::string const& text, std::string const& name, gi::Repo
     if (root.has("trackers"))
         each("trackers", [&](YamlReader const& y) { d.trackers.push_back(read_tracker(y)); });
     each("windows", [&](YamlReader const& y) { d.windows.push_back(read_window(y)); });
-    each("users", [&](YamlReader const& y) { d.users.push_back(read_user(y, d)); });
     auto const folder = std::filesystem::path(name).parent_path();
+    each("users", [&](YamlReader const& y) { d.users.push_back(read_user(y, d, folder)); });
     each("walls", [&](YamlReader const& y) { d.walls.push_back(read_wall(y, d, folder)); });
     if (auto const fault = find_fault(d)) throw error_of(*fault, root);
     report_doubts(d, report);

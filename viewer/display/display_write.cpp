@@ -80,6 +80,8 @@ void write_user(Writer& w, User const& user, Display const& d)
     if (user.head.rotation_deg != gi::dvec3{0}) w.key("head_rotation_deg", vec(user.head.rotation_deg));
     if (user.eye_offset_m != gi::dvec3{0}) w.key("eye_offset_m", vec(user.eye_offset_m));
     if (user.tracker >= 0) w.key("head_tracker", quoted(d.trackers[std::size_t(user.tracker)].name));
+    if (!user.avatar.empty()) w.key("avatar", quoted(user.avatar));
+    if (user.eye_height_m) w.key("eye_height_m", fmt::format("{}", *user.eye_height_m));
 }
 
 void write_tracker(Writer& w, DisplayTracker const& t)
@@ -89,6 +91,8 @@ void write_tracker(Writer& w, DisplayTracker const& t)
     if (t.address != DisplayTracker{}.address) w.key("address", quoted(t.address));
     if (t.port != 0) w.key("port", std::to_string(t.port));
     if (!t.body.empty()) w.key("body", quoted(t.body));
+    for (LimbBody const& b : kLimbBodies)
+        if (!(t.*b.body).empty()) w.key(b.key, quoted(t.*b.body));
     if (!t.file.empty()) w.key("file", quoted(t.file));
     if (t.room_from_tracker != Placement{})
         w.key("room_from_tracker", "{translation_m: " + vec(t.room_from_tracker.translation_m) +

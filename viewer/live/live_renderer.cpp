@@ -81,7 +81,7 @@ void LiveRenderer::look(Viewpoint viewpoint)
     {
         std::lock_guard const lock(mutex_);
         moved = !same_views(viewpoint.views, viewpoint_.views) || !(viewpoint.tracked == viewpoint_.tracked) ||
-                pixels_of(viewpoint.views) != pixels_of(viewpoint_.views);
+                viewpoint.others != viewpoint_.others || pixels_of(viewpoint.views) != pixels_of(viewpoint_.views);
         viewpoint_ = std::move(viewpoint);
         if (moved) looked_ = true;
         if (moved && refining_) refining_->request();
@@ -166,7 +166,7 @@ bool LiveRenderer::scene_may_move(Viewpoint const& now) const
 {
     Settings const& s = session_.settings();
     return !has_last_ || !changes_.empty() || (s.play && s.speed != 0 && session_.moves()) ||
-           !(now.tracked == last_.tracked) || scene_s_ != last_.scene_s;
+           !(now.tracked == last_.tracked) || now.others != last_.others || scene_s_ != last_.scene_s;
 }
 
 bool LiveRenderer::anything_moves(Viewpoint const& now) const
@@ -197,6 +197,7 @@ FrameOrder LiveRenderer::make_order(Viewpoint const& now, bool still, FrameBudge
     order.scene_s = scene_s_;
     order.world_from_room = now.world_from_room;
     order.tracked = now.tracked;
+    order.others = now.others;
     order.changes = std::exchange(changes_, {});
     order.views = now.views;
     for (ViewOrder& v : order.views) {
@@ -261,13 +262,15 @@ void LiveRenderer::run_following()
     }
 }
 
-void LiveRenderer::measure_following(LiveFrame& frame)
+/// Of the frame whose order is the last one, on whatever ranks.
+void LiveRenderer::measure(FrameWork const& work, FrameBudget const& budget)
 {
     Settings const& s = session_.settings();
-    if (s.method != "slhb") return;
-    gi::Following const& following = frame.result.following;
-    if (s.schedule == "auto") follow_governor_.measured({following, frame.result.moved, s.rate_hz});
-    frame.schedule = schedule_sentence(s.schedule, s.followed, following.stored, follow_governor_.share_of_all());
+    governor_.measured({last_.paths, budget.scale}, pixels_of(last_views_) / (budget.scale * budget.scale),
+                       work.seconds, s.rate_hz);
+    stored_ = work.following.stored;
+    if (s.method == "slhb" && s.schedule == "auto")
+        follow_governor_.measured({work.following, work.moved, s.rate_hz});
 }
 
 bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
@@ -297,10 +300,6 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
         order.paths = frame->result.paths;
         still_paths_ = frame->result.still_frames > 1 ? still_paths_ + std::uint32_t(order.paths)
                                                       : std::uint32_t(order.paths);
-        if (budget.scale > 0)
-            governor_.measured({order.paths, budget.scale}, pixels_of(order.views) / (budget.scale * budget.scale),
-                               frame->done_s - frame->begun_s, session_.settings().rate_hz);
-        measure_following(*frame);
     }
     frame->still_paths = still_paths_;
     frame->settings = session_.settings();
@@ -308,6 +307,10 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
     last_ = order;
     has_last_ = true;
     frame->order = std::move(order);
+    FrameWork const own{frame->done_s - frame->begun_s, frame->result.following, frame->result.moved};
+    if (done && link_ == nullptr) measure(own, budget);
+    if (Settings const& s = frame->settings; s.method == "slhb")
+        frame->schedule = schedule_sentence(s.schedule, s.followed, stored_, follow_governor_.share_of_all());
     if (done && hooks_.finished) hooks_.finished(*frame);
     if (!done) return false;
     FrameOrder const shown = frame->order;
@@ -317,7 +320,9 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
     }
     published_.notify_all();
     if (hooks_.published) hooks_.published();
-    if (link_ != nullptr) link_->wait_for_all(shown);
+    if (link_ == nullptr) return true;
+    FrameWork const slowest = link_->wait_for_all(shown, own);
+    if (link_->leads()) measure(slowest, budget);
     return true;
 }
 

@@ -37,6 +37,7 @@ struct Viewpoint {
     double pose_s = 0, display_s = 0; ///< session clock
     gi::dmat4 world_from_room{1};
     Tracked tracked;
+    std::vector<Tracked> others;  ///< as in FrameOrder
     std::vector<ViewOrder> views; ///< at full size
 };
 
@@ -53,6 +54,13 @@ struct LiveFrame {
 
 inline constexpr std::uint32_t kConvergedPaths = 4096;
 
+/// What a frame was to those who rendered it.
+struct FrameWork {
+    double seconds = 0;
+    gi::Following following{};
+    bool moved = false; ///< something in the scene
+};
+
 /// Others who render the same orders: the ranks of a cluster. All but `swapped` is called on the rendering thread.
 class FrameLink {
 public:
@@ -66,8 +74,9 @@ public:
     virtual std::optional<FrameOrder> receive() = 0;
     /// While there is nothing to render, now and then: throws where a rank was lost that cannot be done without.
     virtual void check() = 0;
-    /// Returns when all have drawn the frame and may swap.
-    virtual void wait_for_all(FrameOrder const& order) = 0;
+    /// Returns when all have drawn the frame and may swap. @param own  of this rank
+    /// @return of the leader: of the ranks that took longest, for the whole and for what follows; else `own`
+    virtual FrameWork wait_for_all(FrameOrder const& order, FrameWork const& own) = 0;
     /// From the thread that shows frames: it is drawn; returns when all may swap.
     virtual void drawn(std::uint64_t frame) = 0;
     virtual void swapped(std::uint64_t frame, double steady_s) = 0;
@@ -113,7 +122,7 @@ private:
     bool scene_may_move(Viewpoint const& now) const;
     bool anything_moves(Viewpoint const& now) const;
     void choose_followed(bool may_move);
-    void measure_following(LiveFrame& frame);
+    void measure(FrameWork const& work, FrameBudget const& budget);
     FrameOrder make_order(Viewpoint const& now, bool still, FrameBudget& budget);
     bool render(FrameOrder order, FrameBudget const& budget);
     void wait_until(double time_s);
@@ -135,6 +144,7 @@ private:
     // Of the rendering thread
     Governor governor_;
     FollowGovernor follow_governor_;
+    int stored_ = 0; ///< directions, where a frame was measured last
     std::vector<Change> changes_;
     FrameOrder last_;
     std::vector<ViewOrder> last_views_; ///< all that were ordered

@@ -45,6 +45,11 @@ void check_pose(std::optional<RoomPose> const& pose, char const* name)
         refuse(fmt::format("a rotation for {} of length {}", name, length), "rotations are unit quaternions");
 }
 
+void check_tracked(Tracked const& t)
+{
+    for (std::size_t b = 0; b < kBodyMembers.size(); ++b) check_pose(t.*kBodyMembers[b], kBodyNames[b]);
+}
+
 int depth_of(nlohmann::json const& value, int most)
 {
     if (!value.is_structured()) return 0;
@@ -98,9 +103,10 @@ void check_order(FrameOrder const& o)
 {
     for (double const t : {o.pose_s, o.display_s, o.scene_s}) check_number(t, "a time");
     check_matrix(o.world_from_room, "world from room");
-    check_pose(o.tracked.head, "the head");
-    check_pose(o.tracked.left_hand, "the left hand");
-    check_pose(o.tracked.right_hand, "the right hand");
+    check_tracked(o.tracked);
+    if (o.others.size() > OrderLimits::users)
+        refuse(fmt::format("{} users", o.others.size()), fmt::format("{} are the most", OrderLimits::users));
+    for (Tracked const& t : o.others) check_tracked(t);
     if (o.paths < 1 || o.paths > OrderLimits::paths)
         refuse(fmt::format("{} paths per pixel", o.paths), fmt::format("1 to {} can be", OrderLimits::paths));
     if (o.changes.size() > OrderLimits::changes)

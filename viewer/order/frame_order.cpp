@@ -99,6 +99,30 @@ Change get_change(ByteReader& from)
     return c;
 }
 
+// A byte that says which bodies are tracked, and whether another user follows; then their poses. Before there were
+// feet and further users, these bits were not set.
+constexpr std::size_t kBodies = kBodyMembers.size();
+
+void put(ByteWriter& to, Tracked const& t, bool another)
+{
+    unsigned which = another ? 1u << kBodies : 0;
+    for (std::size_t b = 0; b < kBodies; ++b)
+        if (t.*kBodyMembers[b]) which |= 1u << b;
+    to.put_byte(std::uint8_t(which));
+    for (auto const body : kBodyMembers) put(to, t.*body);
+}
+
+Tracked get_tracked(ByteReader& from, bool& another)
+{
+    unsigned const which = from.byte();
+    if (which >> (kBodies + 1) != 0) throw BadBytes("an unknown body is tracked");
+    another = which >> kBodies != 0;
+    Tracked t;
+    for (std::size_t b = 0; b < kBodies; ++b)
+        if ((which >> b & 1) != 0) t.*kBodyMembers[b] = get_pose(from);
+    return t;
+}
+
 FrameOrder get_order(ByteReader& from)
 {
     if (int const version = from.byte(); version != kVersion)
@@ -108,11 +132,12 @@ FrameOrder get_order(ByteReader& from)
     for (double* const t : {&o.pose_s, &o.display_s, &o.scene_s}) *t = from.number();
     o.paths = int(from.count(OrderLimits::paths));
     o.world_from_room = get_matrix(from);
-    std::uint8_t const tracked = from.byte();
-    if (tracked > 7) throw BadBytes("an unknown body is tracked");
-    if ((tracked & 1) != 0) o.tracked.head = get_pose(from);
-    if ((tracked & 2) != 0) o.tracked.left_hand = get_pose(from);
-    if ((tracked & 4) != 0) o.tracked.right_hand = get_pose(from);
+    bool others = false;
+    o.tracked = get_tracked(from, others);
+    while (others) {
+        if (o.others.size() == OrderLimits::users) throw BadBytes("too many users are tracked");
+        o.others.push_back(get_tracked(from, others));
+    }
     auto const changes = from.count(OrderLimits::changes);
     for (std::uint64_t i = 0; i < changes; ++i) o.changes.push_back(get_change(from));
     auto const views = from.count(OrderLimits::views);
@@ -140,9 +165,8 @@ std::vector<std::uint8_t> to_bytes(FrameOrder const& o)
     for (double const t : {o.pose_s, o.display_s, o.scene_s}) to.put_number(t);
     to.put_count(std::uint64_t(o.paths));
     to.put_numbers(numbers_of(o.world_from_room), numbers_of(kIdentity));
-    Tracked const& t = o.tracked;
-    to.put_byte(std::uint8_t((t.head ? 1 : 0) + (t.left_hand ? 2 : 0) + (t.right_hand ? 4 : 0)));
-    for (auto const* pose : {&t.head, &t.left_hand, &t.right_hand}) put(to, *pose);
+    put(to, o.tracked, !o.others.empty());
+    for (Tracked const& t : o.others) put(to, t, &t != &o.others.back());
     to.put_count(o.changes.size());
     for (Change const& c : o.changes) {
         to.put_text(c.key);

@@ -5,6 +5,7 @@
 
 #include "gi/scene/camera.h"
 
+#include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -23,7 +24,7 @@ struct Change {
     bool operator==(Change const&) const = default;
 };
 
-/// A rigid place in the room: right-handed, m, +Y up; heads and hands look along -Z.
+/// A rigid place in the room: right-handed, m, +Y up; heads, hands and feet look along -Z.
 struct RoomPose {
     gi::dvec3 position{0};          ///< m
     gi::dquat rotation{1, 0, 0, 0}; ///< unit, room from body
@@ -34,9 +35,15 @@ struct RoomPose {
 /// Bodies that are tracked; those that are not (yet, or any more) have no pose.
 struct Tracked {
     std::optional<RoomPose> head, left_hand, right_hand;
+    std::optional<RoomPose> left_foot{}, right_foot{}; ///< at the sole below the ankle, -Z along the toes
 
     bool operator==(Tracked const&) const = default;
 };
+/// Names of the bodies, in the order in which messages, files and tables have them.
+inline constexpr std::array<char const*, 5> kBodyNames{"head", "left_hand", "right_hand", "left_foot",
+                                                       "right_foot"};
+inline constexpr std::array kBodyMembers{&Tracked::head, &Tracked::left_hand, &Tracked::right_hand,
+                                         &Tracked::left_foot, &Tracked::right_foot};
 
 /// One picture of a frame: an eye before a wall, a window, a lens of a head-mounted display.
 struct ViewOrder {
@@ -55,8 +62,9 @@ struct FrameOrder {
     double display_s = 0;         ///< when it was expected to be seen, on the same clock
     double scene_s = 0;           ///< time of the scene's animations
     gi::dmat4 world_from_room{1}; ///< navigation: rigid, and a scale where the user is larger or smaller
-    Tracked tracked;
-    std::vector<Change> changes; ///< since the frame before, in order
+    Tracked tracked;              ///< of the first user
+    std::vector<Tracked> others;  ///< of the users after him; nothing of those who have no avatar
+    std::vector<Change> changes;  ///< since the frame before, in order
     std::vector<ViewOrder> views;
     int paths = 1; ///< per pixel
 
@@ -65,8 +73,8 @@ struct FrameOrder {
 
 /// What an order may hold at most; whatever is read is held to it before memory is taken.
 struct OrderLimits {
-    static constexpr std::size_t views = 256, changes = 65536, name_bytes = 4096, value_bytes = 1 << 20,
-                                 bytes = 1 << 26;
+    static constexpr std::size_t views = 256, users = 64, changes = 65536, name_bytes = 4096,
+                                 value_bytes = 1 << 20, bytes = 1 << 26;
     static constexpr int size_px = 16384, paths = 1 << 24, value_depth = 32;
 };
 

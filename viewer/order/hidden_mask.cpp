@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 namespace viewer {
 namespace {
@@ -94,20 +95,20 @@ std::vector<std::uint8_t> pixels_to_leave_out(HiddenMask const& mask, gi::ViewTa
     if (std::ranges::find(hidden, 1) == hidden.end()) return hidden;
     auto const row = [&](int y) { return std::size_t(y) * std::size_t(width); };
     std::vector<int> distance(hidden.size());
-    for (int y = 0; y < height; ++y) measure_row(&hidden[row(y)], width, &distance[row(y)]);
+    tbb::parallel_for(0, height, [&](int y) { measure_row(&hidden[row(y)], width, &distance[row(y)]); });
     double const across = std::max(double(kHiddenGuard_px), kHiddenGuard * width / (view.right - view.left)),
                  along = std::max(double(kHiddenGuard_px), kHiddenGuard * height / (view.top - view.bottom));
-    // An ellipse around each pixel, row by row.
     int const rows = int(std::min(double(height), along));
-    for (int dy = -rows; dy <= rows; ++dy) {
-        int const reach =
-            int(std::min(double(width), across * std::sqrt(std::max(0.0, 1 - dy * dy / (along * along)))));
-        for (int y = std::max(0, -dy); y < std::min(height, height - dy); ++y) {
-            std::uint8_t* const to = &hidden[row(y)];
-            int const* const from = &distance[row(y + dy)];
+    tbb::parallel_for(0, height, [&](int y) { // an ellipse around each pixel, row by row
+        std::uint8_t* const to = &hidden[row(y)];
+        for (int there = std::max(0, y - rows); there <= std::min(height - 1, y + rows); ++there) {
+            double const dy = there - y;
+            int const reach =
+                int(std::min(double(width), across * std::sqrt(std::max(0.0, 1 - dy * dy / (along * along)))));
+            int const* const from = &distance[row(there)];
             for (int x = 0; x < width; ++x) to[x] &= std::uint8_t(from[x] > reach);
         }
-    }
+    });
     return hidden;
 }
 

@@ -37,7 +37,12 @@ void add_place(std::vector<Column>& to, std::string const& prefix, std::string c
         to.push_back({prefix + part, meaning + ": rotation, unit quaternion"});
 }
 
-std::vector<Column> columns(std::size_t views)
+/// Of the frames of a recording, which differ in these.
+struct Most {
+    std::size_t others = 0, views = 0;
+};
+
+std::vector<Column> columns(Most const& most)
 {
     std::vector<Column> c{{"frame", "number of the frame"},
                           {"pose_s", "s, when the poses were taken; the clock of the session starts at 0"},
@@ -50,9 +55,13 @@ std::vector<Column> columns(std::size_t views)
                           {"changes", "what was set since the frame before, JSON: [[key, value], ...]"}};
     add_place(c, "room_", "the room in the world");
     c.push_back({"room_scale", "m of the world per m of the room"});
-    for (char const* body : {"head", "left_hand", "right_hand"})
+    for (char const* body : kBodyNames)
         add_place(c, std::string(body) + "_", std::string(body) + " in the room (empty = not tracked)");
-    for (std::size_t i = 0; i < views; ++i) {
+    for (std::size_t u = 2; u < most.others + 2; ++u)
+        for (char const* body : kBodyNames)
+            add_place(c, fmt::format("user{}_{}_", u, body),
+                      fmt::format("user {}: {} in the room (empty = not tracked)", u, body));
+    for (std::size_t i = 0; i < most.views; ++i) {
         std::string const view = fmt::format("view{}_", i), of = fmt::format("view {}", i);
         c.push_back({view + "name", of + ": name"});
         c.push_back({view + "width_px", of + ": pixels"});
@@ -102,7 +111,16 @@ void add_view(Row& row, ViewOrder const& v)
     for (double const e : {edges.left, edges.right, edges.bottom, edges.top}) row.add(e);
 }
 
-std::string row_of(RecordedFrame const& f, std::size_t most_views)
+void add_tracked(Row& row, Tracked const& tracked)
+{
+    for (auto const body : kBodyMembers)
+        if (auto const& pose = tracked.*body)
+            row.add(pose->position, pose->rotation);
+        else
+            row.add_empty(7);
+}
+
+std::string row_of(RecordedFrame const& f, Most const& most)
 {
     FrameOrder const& o = f.order;
     Row row;
@@ -118,13 +136,10 @@ std::string row_of(RecordedFrame const& f, std::size_t most_views)
     Place const room = place_of(o.world_from_room);
     row.add(room.position, room.rotation);
     row.add(room.scale);
-    for (auto const* body : {&o.tracked.head, &o.tracked.left_hand, &o.tracked.right_hand})
-        if (*body)
-            row.add((*body)->position, (*body)->rotation);
-        else
-            row.add_empty(7);
+    add_tracked(row, o.tracked);
+    for (std::size_t i = 0; i < most.others; ++i) add_tracked(row, i < o.others.size() ? o.others[i] : Tracked{});
     for (ViewOrder const& v : o.views) add_view(row, v);
-    row.add_empty(int(most_views - o.views.size()) * 15);
+    row.add_empty(int(most.views - o.views.size()) * 15);
     return row.text();
 }
 
@@ -132,9 +147,11 @@ std::string row_of(RecordedFrame const& f, std::size_t most_views)
 
 RecordingEnd export_csv(RecordingReader& recording, std::filesystem::path const& file)
 {
-    std::size_t most_views = 0;
+    Most most;
     recording.rewind();
-    while (auto const frame = recording.next()) most_views = std::max(most_views, frame->order.views.size());
+    while (auto const frame = recording.next())
+        most = {std::max(most.others, frame->order.others.size()),
+                std::max(most.views, frame->order.views.size())};
     recording.rewind();
 
     gi::write_by_rename(file, [&](std::filesystem::path const& temporary) {
@@ -146,12 +163,12 @@ RecordingEnd export_csv(RecordingReader& recording, std::filesystem::path const&
             {"command_line", h.command_line}, {"created", h.created}, {"settings", h.settings}};
         for (auto const& [key, value] : about.items()) out << "# " << key << ": " << json_line(value) << "\n";
         std::string names;
-        for (Column const& c : columns(most_views)) {
+        for (Column const& c : columns(most)) {
             out << "# " << c.name << " - " << c.meaning << "\n";
             names += (names.empty() ? "" : ",") + c.name;
         }
         out << names << "\n";
-        while (auto const frame = recording.next()) out << row_of(*frame, most_views) << "\n";
+        while (auto const frame = recording.next()) out << row_of(*frame, most) << "\n";
         out.flush();
     });
     return recording.end();

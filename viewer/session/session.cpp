@@ -1,5 +1,6 @@
 #include "viewer/session/session.h"
 
+#include "gi/base/device.h"
 #include "gi/base/error.h"
 #include "gi/scene/animation.h"
 
@@ -12,8 +13,8 @@ namespace {
 /// Settings that the structures of a method are built by.
 bool decides_method(std::string const& key)
 {
-    for (char const* const k : {"method", "schedule", "directions", "resolution", "axes", "lamps", "light_paths",
-                                "points", "ao_radius", "bounces", "seed"})
+    for (char const* const k : {"method", "device", "schedule", "directions", "resolution", "axes", "lamps",
+                                "light_paths", "points", "ao_radius", "bounces", "seed"})
         if (key == k) return true;
     return false;
 }
@@ -46,6 +47,7 @@ void Session::apply(Change const& change)
     if (is_hidden_mask(change.key)) return hidden_.apply(change);
     Settings changed = settings_;
     set(changed, change);
+    if (change.key == "device") gi::check_device(changed.device == "cuda" ? gi::Space::device : gi::Space::host);
     settings_ = std::move(changed);
     if (decides_method(change.key)) restart();
     if (change.key == "compare") compared_.reset();

@@ -125,6 +125,8 @@ std::vector<Entry> const& entries()
               "of the schedule auto, which sets it: stored axes of each bounce that follow what moves, 0 = all",
               &Settings::followed, 0, 64),
         count("lamps", "points on lamps with a shadow map, 0 = chosen by the plan", &Settings::lamps, 0, 1024),
+        word("device", "that slhb runs on; by cuda paths end at mirrors, glass and narrow lobes, which is counted",
+             &Settings::device, {"cpu", "cuda"}),
         count("light_paths",
               "from the lamps in a pass, of the methods vpl_*: surfaces they meet are virtual lights",
               &Settings::light_paths, 1, 65536),
@@ -244,6 +246,7 @@ gi::RenderSettings render_settings(Settings const& s, int threads)
                       : s.schedule == "streamed" ? gi::Schedule::streamed
                       : s.schedule == "temporal" ? gi::Schedule::temporal
                                                  : gi::Schedule::automatic;
+    r.slhb.space = s.device == "cuda" ? gi::Space::device : gi::Space::host;
     r.slhb.directions = s.directions;
     r.slhb.resolution = s.resolution;
     r.slhb.axes = s.axes;

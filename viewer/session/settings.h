@@ -17,6 +17,7 @@ struct Settings {
     int resolution = 0, axes = 0, lamps = 0;   ///< of slhb, 0 = what the plan chooses
     int followed = 0; ///< with the schedule auto: stored axes of each bounce that follow what moves in a frame, 0
                       ///< = all. The live viewer sets it in every frame (follow_governor.h)
+    std::string device = "cpu";  ///< of slhb: cuda = by kernels
     int light_paths = 256;       ///< of the methods vpl_*, as are the next
     std::string points = "1024"; ///< of an imperfect shadow map, or "30%" of its texels
     double ao_radius_m = 0.5;

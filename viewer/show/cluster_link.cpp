@@ -1,6 +1,8 @@
 #include "viewer/show/cluster_link.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <type_traits>
 
 namespace viewer {
@@ -8,6 +10,17 @@ namespace viewer {
 namespace {
 
 constexpr std::chrono::seconds kLongestDrawing{1};
+
+static_assert(std::is_trivially_copyable_v<FrameWork>);
+std::string to_bytes(FrameWork const& work) { return {reinterpret_cast<char const*>(&work), sizeof work}; }
+
+FrameWork work_from(std::string const& bytes)
+{
+    FrameWork work;
+    if (bytes.size() != sizeof work) throw std::runtime_error("a rank's note on its frame is cut short");
+    std::memcpy(&work, bytes.data(), sizeof work);
+    return work;
+}
 
 } // namespace
 
@@ -77,17 +90,27 @@ void ClusterLink::check()
     guarded([] {});
 }
 
-void ClusterLink::wait_for_all(FrameOrder const& order)
+FrameWork ClusterLink::wait_for_all(FrameOrder const& order, FrameWork const& own)
 {
     {
         // A window may be hidden, or its loop about to end: nobody waits for that for ever.
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, kLongestDrawing, [&] { return drawn_ > order.frame; });
     }
-    guarded([&] { cluster_->wait(order.frame); });
-    std::lock_guard const lock(mutex_);
-    released_ = order.frame + 1;
+    std::vector<std::string> const others = guarded([&] { return cluster_->wait(order.frame, 0, to_bytes(own)); });
+    {
+        std::lock_guard const lock(mutex_);
+        released_ = order.frame + 1;
+    }
     changed_.notify_all();
+    FrameWork slowest = own;
+    for (std::string const& bytes : others) {
+        FrameWork const other = work_from(bytes);
+        slowest.seconds = std::max(slowest.seconds, other.seconds);
+        slowest.moved |= other.moved;
+        if (other.following.seconds > slowest.following.seconds) slowest.following = other.following;
+    }
+    return slowest;
 }
 
 void ClusterLink::drawn(std::uint64_t frame)

@@ -20,7 +20,7 @@ public:
     void send(FrameOrder const& order) override;
     std::optional<FrameOrder> receive() override;
     void check() override;
-    void wait_for_all(FrameOrder const& order) override;
+    FrameWork wait_for_all(FrameOrder const& order, FrameWork const& own) override;
     void drawn(std::uint64_t frame) override;
     void swapped(std::uint64_t frame, double steady_s) override;
 

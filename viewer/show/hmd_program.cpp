@@ -1,6 +1,7 @@
 #include "viewer/show/hmd_program.h"
 
 #include "viewer/show/hmd_eyes.h"
+#include "viewer/show/user_body.h"
 #include "viewer/show/view_core.h"
 #include "viewer/xr/keeper.h"
 
@@ -33,7 +34,11 @@ bool same(HiddenMask const& a, HiddenMask const& b)
 class HmdLoop {
 public:
     HmdLoop(ViewOptions const& options, HmdOptions const& headset, gi::Report& report)
-        : core_(options, report), state_(core_.state), context_(report, hidden()), keeper_(&context_.gl(), headset)
+        : core_(options, report),
+          state_(core_.state),
+          context_(report, hidden()),
+          keeper_(&context_.gl(), headset),
+          bodies_(options.avatars)
     {
         core_.start(nullptr, {});
     }
@@ -56,9 +61,9 @@ public:
             std::optional<HmdFrame> const frame = session->begin_frame();
             if (!frame) continue;
             double const now = state_.clock.now_s();
-            act(*frame, now - last);
-            last = now;
-            show(*session, *frame);
+            double const seconds = now - std::exchange(last, now);
+            act(*frame, seconds);
+            show(*session, *frame, seconds);
         }
         core_.finish();
         core_.summary.gl = context_.gl().description();
@@ -116,7 +121,8 @@ private:
         }
     }
 
-    void show(HmdSession& session, HmdFrame const& frame)
+    /// @param seconds  since the frame before
+    void show(HmdSession& session, HmdFrame const& frame, double seconds)
     {
         tell_hidden(session);
         if (!started_ && frame.tracked.head) {
@@ -130,6 +136,7 @@ private:
         at.display_s = frame.display_s + to_session;
         at.world_from_room = world_from_room();
         at.tracked = frame.tracked;
+        if (UserBody* const body = bodies_.first()) body->stand(at.tracked, at.world_from_room, seconds);
         std::array<gi::Camera, 2> now;
         for (std::size_t eye = 0; eye < 2; ++eye) {
             now[eye] = frame.views[eye].camera;
@@ -192,6 +199,7 @@ private:
     HmdContext context_;
     HmdEyes eyes_;
     HmdKeeper keeper_; ///< its sessions end before the context
+    UserBodies bodies_;
     gi::dvec3 start_{0};
     bool started_ = false;
     int losses_ = 0;

@@ -32,10 +32,10 @@ std::vector<std::optional<RoomPose>> UserTracking::heads(double steady_s)
     return heads;
 }
 
-Tracked UserTracking::bodies(double steady_s)
+Tracked UserTracking::bodies(std::size_t user, double steady_s)
 {
-    if (display_.users.empty() || display_.users[0].tracker < 0) return {};
-    return of(sources_[std::size_t(display_.users[0].tracker)], steady_s);
+    if (user >= display_.users.size() || display_.users[user].tracker < 0) return {};
+    return of(sources_[std::size_t(display_.users[user].tracker)], steady_s);
 }
 
 void UserTracking::set_fake(FakeInput const& input)

@@ -15,8 +15,8 @@ public:
     /// @param steady_s  std::chrono::steady_clock: when the frame will be seen
     /// @return per user; empty = not tracked
     std::vector<std::optional<RoomPose>> heads(double steady_s);
-    /// Head and hands of the first user, for avatars and recordings.
-    Tracked bodies(double steady_s);
+    /// Head, hands and feet of a user, for avatars and recordings.
+    Tracked bodies(std::size_t user, double steady_s);
     /// Keyboard and mouse, where a tracker is fake.
     void set_fake(FakeInput const& input);
     bool has_fake() const;

@@ -103,6 +103,7 @@ void ViewCore::start(FrameLink* link, std::function<void()> published,
                      std::function<std::vector<ViewOrder>(FrameOrder const&)> own_views)
 {
     make_files();
+    state.is_one_of_ranks = link != nullptr;
     LiveRenderer::Hooks hooks;
     hooks.finished = [this](LiveFrame const& f) {
         ++summary.rendered;

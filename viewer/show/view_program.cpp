@@ -33,7 +33,7 @@ double steady_s()
 class WindowLoop {
 public:
     WindowLoop(ViewOptions const& options, FrameLink* link, gi::Report& report)
-        : core_(options, report), state_(core_.state), link_(link)
+        : core_(options, report), state_(core_.state), link_(link), bodies_(options.avatars)
     {
         if (options.display) {
             if (!follows()) tracking_.emplace(*core_.display);
@@ -170,7 +170,7 @@ private:
     {
         NavigationInput const in = core_.controls.motion(seconds);
         state_.navigation.step(in, seconds);
-        body_.step(core_.controls, seconds);
+        bodies_.step(core_.controls, seconds);
         Viewpoint at;
         at.pose_s = state_.clock.now_s();
         at.display_s = at.pose_s + expected_s_;
@@ -181,16 +181,18 @@ private:
             double const seen_s = steady_s() + expected_s_;
             // The head that rests stands where the navigation is.
             at.world_from_room = state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -rest());
-            at.tracked = tracking_->bodies(seen_s);
-            if (core_.options.drive) at.tracked = body_.in_room(display, at.tracked);
+            at.tracked = tracking_->bodies(0, seen_s);
+            bodies_.put(
+                display, [&](std::size_t user) { return tracking_->bodies(user, seen_s); }, seconds, at);
             layout = display_layout(display, tracking_->heads(seen_s), at.world_from_room);
         } else {
             at.world_from_room = state_.navigation.world_from_camera();
-            if (core_.options.drive) {
+            if (UserBody* const body = bodies_.first()) {
                 gi::dmat4 const world_from_head = at.world_from_room;
                 at.world_from_room = state_.navigation.world_from_room() *
                                      glm::translate(gi::dmat4(1), gi::dvec3{0, -core_.options.eye_height_m, 0});
-                at.tracked = body_.before_desktop(glm::inverse(at.world_from_room) * world_from_head);
+                at.tracked = body->before_desktop(glm::inverse(at.world_from_room) * world_from_head);
+                body->stand(at.tracked, at.world_from_room, seconds);
             }
             layout = desktop_layout(state_, possible_mode(), window_sizes());
         }
@@ -373,13 +375,13 @@ private:
     ViewCore core_;
     ViewState& state_;
     FrameLink* link_;
+    UserBodies bodies_;
     std::optional<UserTracking> tracking_;
     Gamepads gamepads_;
     DisplayWindows shown_;
     std::unique_ptr<Panel> panel_; ///< not on the walls of a display
     std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;
-    UserBody body_;                                   ///< of an avatar
     std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: now, and as shown
     bool dirty_ = true, fallback_told_ = false;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;

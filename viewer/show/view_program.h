@@ -9,12 +9,14 @@
 #include "viewer/recording/frame_summary.h"
 #include "viewer/recording/recording.h"
 #include "viewer/remote/remote_server.h"
+#include "viewer/tracking/footsteps.h"
 
 namespace viewer {
 
 struct ViewOptions {
     LoadScene load;
-    DriveBodies drive; ///< moves the avatar that `load` has added to the scene; empty = there is none
+    DriveBodies drive; ///< moves the avatars that `load` has added to the scene; empty = there are none
+    std::vector<AvatarOfUser> avatars; ///< that `drive` moves
     std::string scene;
     std::function<gi::Camera(gi::World const&)> first_camera; ///< where a scene is looked at from at first
     std::vector<Change> settings;                             ///< set before the first frame

@@ -1,5 +1,6 @@
 #include "viewer/show/view_state.h"
 
+#include "gi/base/device.h"
 #include "gi/base/error.h"
 
 namespace viewer {
@@ -7,7 +8,15 @@ namespace viewer {
 void ViewState::change(Change const& c, std::function<void(std::string const&)> done)
 {
     if (is_setting(c.key)) {
-        set(settings, c);
+        Settings changed = settings;
+        set(changed, c);
+        if (c.key == "device") {
+            if (is_one_of_ranks)
+                throw gi::InputError("'device' while several ranks run", "each has to have such a device",
+                                     "start them with --set device=" + changed.device);
+            gi::check_device(changed.device == "cuda" ? gi::Space::device : gi::Space::host);
+        }
+        settings = std::move(changed);
         renderer->post(c);
         if (done) done({});
         return;

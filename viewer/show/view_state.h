@@ -54,6 +54,7 @@ struct ViewState {
     std::string message; ///< the last that went wrong, for the panel
     Inbox inbox;
     LiveRenderer* renderer = nullptr;
+    bool is_one_of_ranks = false;                          ///< others render the same orders
     std::function<void()> loaded;                          ///< called after another scene was loaded
     bool wants_screenshot = false, own_screenshot = false; ///< the second: by key
 

@@ -25,13 +25,6 @@ RoomPose hand_at(double side, double risen)
     return p;
 }
 
-/// The turn about the vertical of who looks so, also straight up or down.
-gi::dquat heading_of(gi::dquat const& head)
-{
-    gi::dvec3 const forward = head * gi::dvec3{0, 0, -1}, top = head * gi::dvec3{0, 1, 0};
-    return exp_rotation({0, std::atan2(-(forward.x - forward.y * top.x), -(forward.z - forward.y * top.z)), 0});
-}
-
 } // namespace
 
 void KeyHands::step(bool left_rises, bool right_rises, double seconds)

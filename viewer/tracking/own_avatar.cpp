@@ -4,12 +4,12 @@
 #include "gi/scene/skinning.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace viewer {
 namespace {
 
-char const* const kRoot = "user's avatar";
 constexpr double kBeforeFace_m = 0.02; // from the face to the eyes
 constexpr float kOfHead = 0.25f;       // share of a vertex that makes it the head's
 constexpr double kHangingReach = 0.97; // of the arm; elbows are not quite straight
@@ -32,6 +32,11 @@ void shift(gi::ArmJoints& arm, std::int32_t by)
 {
     for (std::int32_t* j : {&arm.upper, &arm.lower, &arm.hand}) *j += by;
 }
+void shift(gi::LegJoints& leg, std::int32_t by)
+{
+    if (leg.foot < 0) return; // there is none
+    for (std::int32_t* j : {&leg.upper, &leg.lower, &leg.foot}) *j += by;
+}
 void shift(gi::Avatar& avatar, std::int32_t by)
 {
     avatar.head += by;
@@ -40,13 +45,15 @@ void shift(gi::Avatar& avatar, std::int32_t by)
         shift(arm->joints, by);
         for (std::int32_t& w : arm->wrist) w += by;
     }
+    shift(avatar.left_leg.joints, by);
+    shift(avatar.right_leg.joints, by);
 }
 
 /// -1 where it is not there.
-std::int32_t find_root(gi::Scene const& scene)
+std::int32_t find_root(gi::Scene const& scene, std::string const& name)
 {
     for (std::size_t n = scene.nodes.size(); n > 0; --n)
-        if (scene.nodes[n - 1].parent < 0 && scene.nodes[n - 1].name == kRoot) return std::int32_t(n - 1);
+        if (scene.nodes[n - 1].parent < 0 && scene.nodes[n - 1].name == name) return std::int32_t(n - 1);
     return -1;
 }
 
@@ -102,8 +109,11 @@ double reach_before_head_m(gi::Scene const& scene, gi::Avatar const& avatar)
     return reach;
 }
 
-OwnAvatar::OwnAvatar(gi::Scene avatar, double eye_height_m)
-    : scene_(std::move(avatar)), eye_height_m_(eye_height_m)
+OwnAvatar::OwnAvatar(gi::Scene avatar, double eye_height_m, std::size_t user)
+    : scene_(std::move(avatar)),
+      eye_height_m_(eye_height_m),
+      user_(user),
+      root_(user == 0 ? "user's avatar" : fmt::format("user {}'s avatar", user + 1))
 {
     joints_ = gi::find_avatar_joints(scene_);
     avatar_ = gi::make_avatar(scene_, joints_);
@@ -115,19 +125,37 @@ OwnAvatar::OwnAvatar(gi::Scene avatar, double eye_height_m)
     // It is scaled, not its user's motion: so it is seen from where its own eyes would be.
     scale_ = 1 / height_scale(scene_, avatar_, eye_height_m, measures_);
     measures_.head_joint_in_head.z = scale_ * reach_before_head_m(scene_, avatar_) + kBeforeFace_m;
+    if (avatar_.has_legs()) measure_legs();
+}
+
+/// Side by side below the hips, as far apart as at rest: there, models may be in the middle of a step.
+void OwnAvatar::measure_legs()
+{
+    gi::Pose const rest = gi::evaluate_pose(scene_, std::nullopt);
+    gi::LegJoints const &left = avatar_.left_leg.joints, &right = avatar_.right_leg.joints;
+    auto const in_body = [&](std::int32_t joint) {
+        return scale_ * (glm::inverse(avatar_.world_from_body) * (place(rest, joint) - place(rest, avatar_.head)));
+    };
+    gi::dvec3 const hips = 0.5 * (in_body(left.upper) + in_body(right.upper));
+    double const apart = std::max(0.0, in_body(left.upper).x - in_body(right.upper).x);
+    double const aside = 0.5 * std::clamp(in_body(left.foot).x - in_body(right.foot).x, apart, 2 * apart);
+    double const ankle = std::min(place(rest, left.foot).y, place(rest, right.foot).y) - avatar_.floor_y;
+    measures_.left_ankle_in_foot = measures_.right_ankle_in_foot = {0, scale_ * std::max(0.0, ankle), 0};
+    // A room's bodies look along -Z, avatars' bodies along +Z.
+    stance_ = {measures_.head_joint_in_head, {-hips.x - aside, 0, -hips.z}, {-hips.x + aside, 0, -hips.z}};
 }
 
 gi::Scene OwnAvatar::joined(gi::Scene scene) const
 {
     std::size_t const root = scene.nodes.size();
-    gi::append(scene, scene_, kRoot, glm::scale(gi::dmat4(1), gi::dvec3(scale_)));
+    gi::append(scene, scene_, root_, glm::scale(gi::dmat4(1), gi::dvec3(scale_)));
     scene.nodes[root].driven = true;
     return scene;
 }
 
 gi::AvatarJoints OwnAvatar::joints_in(gi::Scene const& scene) const
 {
-    std::int32_t const root = find_root(scene);
+    std::int32_t const root = find_root(scene, root_);
     if (root < 0)
         throw gi::InputError("there is no avatar in '" + scene.name + "'", "it was not joined with one",
                              "join it");
@@ -135,16 +163,19 @@ gi::AvatarJoints OwnAvatar::joints_in(gi::Scene const& scene) const
     joints.head += root + 1;
     shift(joints.left, root + 1);
     shift(joints.right, root + 1);
+    shift(joints.left_leg, root + 1);
+    shift(joints.right_leg, root + 1);
     return joints;
 }
 
 void OwnAvatar::drive(gi::Scene const& scene, FrameOrder const& order, gi::Pose& pose) const
 {
-    std::int32_t const root = find_root(scene);
+    std::int32_t const root = find_root(scene, root_);
     if (root < 0) return;
     gi::Avatar avatar = avatar_;
     shift(avatar, root + 1);
-    Tracked tracked = order.tracked;
+    Tracked tracked;
+    if (user_ <= order.others.size()) tracked = user_ == 0 ? order.tracked : order.others[user_ - 1];
     if (!tracked.head) tracked.head = RoomPose{{0, eye_height_m_, 0}, {1, 0, 0, 0}};
     gi::AvatarTargets targets = puppet_targets(tracked, order.world_from_room, measures_);
     if (!targets.left_hand || !targets.right_hand) {

@@ -7,6 +7,7 @@
 // and other users' walls have all of it.
 
 #include "gi/scene/avatar.h"
+#include "viewer/tracking/footsteps.h"
 #include "viewer/tracking/puppet.h"
 
 #include <memory>
@@ -23,25 +24,34 @@ public:
     /// out;
     ///   its clips do not play, but it stands as at the start of one that has "idle" in its name
     /// @param eye_height_m  of its standing user, 0.3 to 3
+    /// @param user  whose it is: 0 = the first of the display
     /// Throws InputError where it has no head or arms that can be told by their names (avatar_joints.h).
-    OwnAvatar(gi::Scene avatar, double eye_height_m);
+    OwnAvatar(gi::Scene avatar, double eye_height_m, std::size_t user = 0);
 
     /// The scene with the avatar in it.
     gi::Scene joined(gi::Scene scene) const;
     /// Puts the avatar where the order has its user. A head that is not tracked stands in the middle of the room;
-    /// hands that are not hang down. Scenes without the avatar are left as they are.
+    /// hands that are not hang down; feet that are not keep their places below the head. Scenes without the avatar
+    /// are left as they are.
     void drive(gi::Scene const& scene, FrameOrder const& order, gi::Pose& pose) const;
 
     PuppetMeasures const& measures() const { return measures_; }
+    /// Where its feet are while it stands; none of an avatar without legs.
+    std::optional<Stance> const& stance() const { return stance_; }
     /// Its joints, as nodes of a scene that has it. Throws InputError where it is not there.
     gi::AvatarJoints joints_in(gi::Scene const& scene) const;
 
 private:
+    void measure_legs();
+
     gi::Scene scene_;
     gi::AvatarJoints joints_; ///< of scene_
     gi::Avatar avatar_;
     double eye_height_m_, scale_ = 1;
+    std::size_t user_;
+    std::string root_; ///< name of the node that it hangs on
     PuppetMeasures measures_;
+    std::optional<Stance> stance_;
 };
 
 } // namespace viewer

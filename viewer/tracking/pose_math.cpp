@@ -58,4 +58,10 @@ double angle_between(gi::dquat const& a, gi::dquat const& b)
     return glm::length(log_rotation(glm::inverse(a) * b));
 }
 
+gi::dquat heading_of(gi::dquat const& body)
+{
+    gi::dvec3 const forward = body * gi::dvec3{0, 0, -1}, top = body * gi::dvec3{0, 1, 0};
+    return exp_rotation({0, std::atan2(-(forward.x - forward.y * top.x), -(forward.z - forward.y * top.z)), 0});
+}
+
 } // namespace viewer

@@ -18,5 +18,7 @@ gi::dmat4 to_matrix(RoomPose const& pose);
 bool is_finite(RoomPose const& pose);
 /// Angle between two orientations, rad, 0..pi.
 double angle_between(gi::dquat const& a, gi::dquat const& b);
+/// The turn about the vertical of a body that looks so, also straight up or down.
+gi::dquat heading_of(gi::dquat const& body);
 
 } // namespace viewer

@@ -3,9 +3,7 @@
 #include "gi/base/error.h"
 #include "viewer/tracking/pose_math.h"
 
-#include <algorithm>
 #include <fmt/format.h>
-#include <limits>
 
 namespace viewer {
 namespace {
@@ -29,13 +27,8 @@ double height_scale(gi::Scene const& scene, gi::Avatar const& avatar, double use
         throw gi::InputError(fmt::format("an eye height of {} m is not understood", user_eye_height_m),
                              "people's are 0.3 to 3 m above the floor", "write it in metres, 1.65");
     gi::Pose const rest = gi::evaluate_pose(scene, std::nullopt);
-    double lowest = std::numeric_limits<double>::infinity();
-    for (gi::Skin const& skin : scene.skins)
-        for (std::int32_t const j : skin.joints)
-            lowest = std::min(lowest, rest.world_from_node[std::size_t(j)][3].y);
     double const head = rest.world_from_node[std::size_t(avatar.head)][3].y;
-    // An avatar stands on y = 0 unless its joints reach below; ankles are a little above the soles.
-    double const floor = std::min(0.0, lowest);
+    double const floor = avatar.floor_y;
     double const user_joint_m = user_eye_height_m + measures.head_joint_in_head.y;
     if (!(head > floor) || !(user_joint_m > 0))
         throw gi::InputError("the avatar's head is not above its floor", "it has no height to compare",
@@ -54,17 +47,20 @@ gi::AvatarTargets puppet_targets(Tracked const& tracked, gi::dmat4 const& world_
         joint = {user_joint.x, s * user_joint.y, user_joint.z};
         targets.head = in_world(world_from_room, {joint, tracked.head->rotation});
     }
-    auto const hand = [&](std::optional<RoomPose> const& pose, RoomPose const& wrist) -> std::optional<gi::dmat4> {
+    auto const limb = [&](std::optional<RoomPose> const& pose,
+                          RoomPose const& joint_in_body) -> std::optional<gi::dmat4> {
         if (!pose) return std::nullopt;
-        RoomPose p = compose(*pose, wrist);
+        RoomPose p = compose(*pose, joint_in_body);
         if (tracked.head)
             p.position = joint + s * (p.position - user_joint);
         else
             p.position.y *= s;
         return in_world(world_from_room, p);
     };
-    targets.left_hand = hand(tracked.left_hand, measures.left_wrist_in_hand);
-    targets.right_hand = hand(tracked.right_hand, measures.right_wrist_in_hand);
+    targets.left_hand = limb(tracked.left_hand, measures.left_wrist_in_hand);
+    targets.right_hand = limb(tracked.right_hand, measures.right_wrist_in_hand);
+    targets.left_foot = limb(tracked.left_foot, {measures.left_ankle_in_foot, {1, 0, 0, 0}});
+    targets.right_foot = limb(tracked.right_foot, {measures.right_ankle_in_foot, {1, 0, 0, 0}});
     return targets;
 }
 

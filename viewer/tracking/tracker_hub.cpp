@@ -95,6 +95,11 @@ struct BodyTrack {
     }
 };
 
+std::array<BodySettings, kBodies> bodies_of(TrackerSettings const& s)
+{
+    return {s.head, s.left_hand, s.right_hand, s.left_foot, s.right_foot};
+}
+
 [[noreturn]] void refuse(TrackerSettings const& s, std::string const& problem, std::string const& why,
                          std::string const& suggestion)
 {
@@ -128,16 +133,16 @@ void check(TrackerSettings const& s)
                "choose another");
     if (!(s.frame_rate_hz >= 0 && s.frame_rate_hz <= 1e5))
         refuse(s, "its frame rate cannot be", "0 (not known) to 100000 Hz are possible", "write 60");
-    for (BodySettings const* b : {&s.head, &s.left_hand, &s.right_hand})
-        check_rigid(s, b->sensor_from_body, "sensor_from_body");
+    for (BodySettings const& b : bodies_of(s)) check_rigid(s, b.sensor_from_body, "sensor_from_body");
     check_rigid(s, s.to_room.room_from_tracker, "room_from_tracker");
     if (!(s.to_room.metres_per_unit > 0 && s.to_room.metres_per_unit <= 1e6))
         refuse(s, "its unit cannot be", "it is above 0 and up to 1e6 m", "write 0.01 for cm");
     std::vector<std::string> ids;
-    for (BodySettings const* b : {&s.head, &s.left_hand, &s.right_hand})
-        if (!b->id.empty()) ids.push_back(b->id);
+    for (BodySettings const& b : bodies_of(s))
+        if (!b.id.empty()) ids.push_back(b.id);
     std::sort(ids.begin(), ids.end());
-    if (ids.empty()) refuse(s, "it has no body", "nothing would move", "name the id of head, left or right hand");
+    if (ids.empty())
+        refuse(s, "it has no body", "nothing would move", "name the id of head, left or right hand or foot");
     if (auto const twice = std::adjacent_find(ids.begin(), ids.end()); twice != ids.end())
         refuse(s, "body '" + *twice + "' is asked for twice", "it cannot be head and hand at once",
                "give each its own");
@@ -164,7 +169,7 @@ struct TrackerHub::Source {
 
     Source(TrackerSettings const& s, std::unique_ptr<Tracker> t) : settings(s), tracker(std::move(t))
     {
-        std::array<BodySettings, kBodies> const of{s.head, s.left_hand, s.right_hand};
+        std::array<BodySettings, kBodies> const of = bodies_of(s);
         for (std::size_t b = 0; b < kBodies; ++b) {
             bodies[b].settings = of[b];
             bodies[b].track = PoseTrack(s.filter, s.prediction);
@@ -228,14 +233,13 @@ BodiesAt TrackerHub::at(double time_s) const
 {
     std::lock_guard const lock(mutex_);
     BodiesAt result;
-    std::array<std::optional<RoomPose>*, kBodies> const poses{&result.tracked.head, &result.tracked.left_hand,
-                                                              &result.tracked.right_hand};
     for (auto const& source : sources_)
         for (std::size_t b = 0; b < kBodies; ++b) {
             BodyTrack const& body = source->bodies[b];
-            if (body.settings.id.empty() || *poses[b]) continue;
+            std::optional<RoomPose>& pose = result.tracked.*kBodyMembers[b];
+            if (body.settings.id.empty() || pose) continue;
             TrackedPose const p = body.at(time_s);
-            *poses[b] = p.pose;
+            pose = p.pose;
             if (p.state != TrackState::never) result.states[b] = p.state;
             result.buttons[b] = body.buttons;
         }

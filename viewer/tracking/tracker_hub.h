@@ -14,13 +14,13 @@
 namespace viewer {
 
 enum class TrackerType { osc, dtrack, file, fake };
-enum class Body { head, left_hand, right_hand };
-inline constexpr std::size_t kBodies = 3;
+enum class Body { head, left_hand, right_hand, left_foot, right_foot };
+inline constexpr std::size_t kBodies = kBodyMembers.size();
 
 /// Which body of a tracker is which. Empty: the tracker has none.
 struct BodySettings {
     std::string id;            ///< as its sender names it
-    RoomPose sensor_from_body; ///< the middle between the eyes, or the grip, seen from the marker; m
+    RoomPose sensor_from_body; ///< the middle between the eyes, the grip, or the sole, seen from the marker; m
 };
 
 struct TrackerSettings {
@@ -34,6 +34,7 @@ struct TrackerSettings {
     AtEnd at_end = AtEnd::stop;
     double speed = 1;
     BodySettings head{"head", {}}, left_hand{"left_hand", {}}, right_hand{"right_hand", {}};
+    BodySettings left_foot{"left_foot", {}}, right_foot{"right_foot", {}};
     TrackerToRoom to_room;
     FilterSettings filter;
     PredictionSettings prediction;

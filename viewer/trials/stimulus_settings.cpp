@@ -75,7 +75,8 @@ void check_beside_ar(study::Patch const& patch, std::string const& camera)
 std::string text_of(StimulusSettings const& s)
 {
     Json all = Json::object();
-    for (SettingKey const& k : setting_keys()) all[k.key] = get(s.settings, k.key);
+    for (SettingKey const& k : setting_keys())
+        if (std::string_view(k.key) != "device") all[k.key] = get(s.settings, k.key); // it is always cpu
     if (s.ar) all["ar"] = text_of(*s.ar);
     Json edits = Json::array();
     for (Change const& c : s.edits) edits.push_back({c.key, c.value});
@@ -129,6 +130,10 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
             if (text != "window" && text != "openxr")
                 throw gi::InputError("view: " + text, "there is no such display", "choose window or openxr");
             s.view = text == "openxr" ? StimulusViewer::headset : StimulusViewer::window;
+        } else if (key == "device") {
+            throw gi::InputError("device: " + text,
+                                 "stimuli are rendered on the CPU, so that all sites have the same",
+                                 "leave it out");
         } else if (is_scene_edit(key)) {
             s.edits.push_back({key, value_of(text)});
         } else {

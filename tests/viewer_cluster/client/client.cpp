@@ -87,7 +87,10 @@ void show(Cluster& cluster, Call const& call, std::ofstream& log)
         }
         bool const astray =
             call.is("--astray", cluster.rank()) && double(frame) >= call.special.at("--astray").second;
-        cluster.wait(order.frame, astray ? 1 : 0);
+        std::vector<std::string> const notes =
+            cluster.wait(order.frame, astray ? 1 : 0, fmt::format("{} of rank {}", order.frame, cluster.rank()));
+        for (std::string const& note : notes)
+            if (frame == 10) log << "note " << note << std::endl;
         cluster.report_swap(order.frame, Cluster::now_s());
         for (std::string const& text : cluster.take_news()) log << "said " << text << std::endl;
     }

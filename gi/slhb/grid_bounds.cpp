@@ -1,0 +1,29 @@
+#include "gi/slhb/grid_bounds.h"
+
+namespace gi {
+
+Bounds grid_bounds(World const& world, TriangleSoup const& soup, std::size_t first_moving)
+{
+    constexpr float kRoom = 0.25f; // of the size of what moves
+    Bounds moving;
+    for (std::size_t t = first_moving; t < soup.count; ++t)
+        for (std::size_t c = 0; c < 3; ++c)
+            if (vec3 const p = soup.vertex(t, c); all_finite(p)) moving = joined(moving, {p, p});
+    if (moving.empty()) return world.bounds;
+    vec3 const room{kRoom * max_component(moving.high - moving.low)};
+    return joined(world.bounds, {moving.low - room, moving.high + room});
+}
+
+bool contains(Bounds const& outer, Bounds const& inner)
+{
+    return inner.empty() || (glm::all(glm::lessThanEqual(outer.low, inner.low)) &&
+                             glm::all(glm::greaterThanEqual(outer.high, inner.high)));
+}
+
+Bounds grown(Bounds const& bounds, Bounds const& world)
+{
+    vec3 const room = 0.1f * (world.high - world.low);
+    return joined(bounds, {world.low - room, world.high + room});
+}
+
+} // namespace gi

@@ -1,0 +1,287 @@
+#include "gi/slhb/view_paths.h"
+
+#include "gi/transport/flush_denormals.h"
+#include "gi/transport/pass_samples.h"
+#include "gi/transport/sampling.h"
+
+#include <algorithm>
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+/// Pixels whose paths advance together on one thread.
+constexpr std::size_t kBlock = 4096;
+/// Where they are few: something for every thread.
+constexpr std::size_t kSmallBlock = 512;
+
+/// Primary hits through exact rays, for the cameras that have no raster.
+void exact_hits(SlhbTracer::Pass const& pass, SeenView const& view, RenderSettings const& s, std::size_t first,
+                std::size_t last, std::vector<PathStart>& out)
+{
+    std::size_t const width = std::size_t(view.width);
+    std::vector<RayQuery> rays;
+    out.clear();
+    for (std::size_t p = first; p < last; ++p) {
+        RqmcStream const stream{std::uint32_t(mix_bits(s.seed + p)), pass.index};
+        vec2 const place{float(p % width) + 0.5f, float(p / width) + 0.5f};
+        Ray const ray = view.rays.through(place + filter_offset(s.filter, stream.sample2(0)));
+        out.push_back({std::uint32_t(p), kNoPrimitive, ray});
+        rays.push_back({.ray = ray, .seed = stream.seed + pass.index});
+    }
+    std::vector<Hit> hits(rays.size());
+    pass.exact->nearest(rays, hits);
+    for (std::size_t k = 0; k < hits.size(); ++k) out[k].triangle = hits[k].triangle;
+}
+
+} // namespace
+
+/// Of one of the threads that share the work of a pass.
+struct ViewPaths::Counts {
+    PathCounts paths;
+    SlhbCounts slhb;
+    std::uint64_t taken = 0;
+};
+
+struct ViewPaths::Work {
+    tbb::combinable<Counts> counts;
+
+    template <class F>
+    void in_blocks(std::size_t n, F const& work, std::size_t block = kBlock)
+    {
+        tbb::parallel_for(std::size_t(0), (n + block - 1) / block, [&](std::size_t k) {
+            FlushDenormals const guard;
+            work(k * block, std::min(n, (k + 1) * block), counts.local());
+        });
+    }
+};
+
+ViewPaths::ViewPaths(World const& world, RenderSettings const& settings, Report& report)
+    : world_(world), settings_(settings), report_(report)
+{
+}
+
+SlhbTracer ViewPaths::tracer_of(SeenView const& view) const
+{
+    return {world_, view.rays, view.width, settings_, settings_.slhb};
+}
+
+/// The paths of a block of pixels.
+void ViewPaths::trace_all(SlhbTracer::Pass const& pass, SlhbTracer const& tracer, std::size_t first, bool sharing,
+                          std::span<PathStart const> starts, Counts& counts)
+{
+    std::span const samples(&samples_[first], starts.size());
+    std::span const ends = sharing ? std::span(&endings_[first], starts.size()) : std::span<Ending>();
+    tracer.trace(pass, starts, samples, ends, counts.paths, counts.slhb);
+    for (std::size_t k = 0; k < ends.size(); ++k)
+        shared_.note(std::uint32_t(first + k), ends[k], pass.axes.pool());
+}
+
+/// The same, but for pixels that are hidden and those that take their light from a partner.
+void ViewPaths::trace_some(SlhbTracer::Pass const& pass, SlhbTracer const& tracer, SeenView const& view,
+                           PartnerLight const* partner, bool sharing, std::vector<PathStart>& starts,
+                           Counts& counts)
+{
+    std::size_t left = 0;
+    for (PathStart const& start : starts) {
+        std::size_t const at = view.first + start.stream;
+        if (!view.hidden.empty() && view.hidden[start.stream] != 0) {
+            samples_[at] = {};
+            if (sharing) shared_.note_none(std::uint32_t(at));
+            continue;
+        }
+        std::uint32_t const from = partner != nullptr ? partner->find(start, samples_[at]) : kOwnLight;
+        if (from == kOwnLight) {
+            starts[left++] = start;
+        } else {
+            taken_from_[at] = from;
+            if (sharing) shared_.note_none(std::uint32_t(at));
+            ++counts.taken;
+        }
+    }
+    starts.resize(left);
+    thread_local std::vector<PathSample> samples;
+    thread_local std::vector<Ending> ends;
+    samples.resize(left);
+    ends.resize(sharing ? left : 0);
+    tracer.trace(pass, starts, samples, ends, counts.paths, counts.slhb);
+    for (std::size_t k = 0; k < left; ++k) {
+        std::size_t const at = view.first + starts[k].stream;
+        samples_[at] = samples[k];
+        if (!sharing) continue;
+        endings_[at] = ends[k];
+        shared_.note(std::uint32_t(at), ends[k], pass.axes.pool());
+    }
+}
+
+void ViewPaths::trace_view(SlhbTracer::Pass const& pass, SeenViews const& views, SeenView const& view,
+                           bool sharing, Work& work)
+{
+    SlhbTracer const tracer = tracer_of(view);
+    std::optional<PartnerLight> partner;
+    if (view.partner >= 0 && view.primary && views[std::size_t(view.partner)].primary) {
+        SeenView const& other = views[std::size_t(view.partner)];
+        partner.emplace(world_, *other.primary, samples(other), other.rays, view.rays);
+    }
+    work.in_blocks(view.pixels(), [&](std::size_t first, std::size_t last, Counts& local) {
+        thread_local std::vector<PathStart> starts;
+        if (view.primary)
+            view.primary->hits(first, last, starts);
+        else
+            exact_hits(pass, view, settings_, first, last, starts);
+        if (partner || !view.hidden.empty())
+            trace_some(pass, tracer, view, partner ? &*partner : nullptr, sharing, starts, local);
+        else
+            trace_all(pass, tracer, view.first + first, sharing, starts, local);
+        if (pass.first_watched == kNoPrimitive) return;
+        std::vector<std::uint32_t>& near = near_moving_[first / kBlock];
+        near.clear();
+        for (std::size_t p = first; p < last; ++p)
+            if (samples_[p].near_moving) near.push_back(std::uint32_t(p));
+    });
+}
+
+/// Whether paths of this pass end on the first matt layer and share what is sent on there.
+bool ViewPaths::start_sharing(SlhbTracer::Pass const& pass, SeenViews const& views, Endings endings)
+{
+    SlhbSettings const& slhb = settings_.slhb;
+    std::size_t const pixels = samples_.size(), layers = pass.axes.first_bounce_layers();
+    bool const possible =
+        endings != Endings::own && settings_.bounces > 0 && slhb.cone == 0 && !slhb.exact.queries;
+    bool const orthographic = std::ranges::any_of(views, [](SeenView const& v) { return v.rays.orthographic; });
+    bool const in_cells = possible && endings == Endings::in_cells && !orthographic,
+               on_layers = possible && layers > 0 && layers < pixels;
+    if (in_cells)
+        shared_.start_cells(pixels, EndingCells(world_, views[0].rays.origin, pass.index), pass.index);
+    else
+        shared_.start_layers(pixels, on_layers ? layers : 0, pass.index);
+    endings_.resize(in_cells || on_layers ? pixels : 0);
+    return in_cells || on_layers;
+}
+
+/// From where paths ended that share their endings.
+void ViewPaths::send_on(SlhbTracer::Pass const& pass, SeenView const& view, Work& work)
+{
+    shared_.collect(endings_, pass.axes.pool());
+    SlhbTracer const tracer = tracer_of(view);
+    work.in_blocks(shared_.starts().size(), [&](std::size_t first, std::size_t last, Counts& local) {
+        thread_local std::vector<PathSample> sent;
+        sent.resize(last - first);
+        tracer.trace(pass, std::span(shared_.starts()).subspan(first, last - first), sent, {}, local.paths,
+                     local.slhb);
+        shared_.keep(first, sent);
+    });
+}
+
+void ViewPaths::add(SeenViews const& views, std::size_t index, bool sharing, std::span<Accumulator> all,
+                    Work& work)
+{
+    SeenView const& v = views[index];
+    SeenView const* const partner = v.partner >= 0 ? &views[std::size_t(v.partner)] : nullptr;
+    Accumulator& sums = all[index];
+    auto const shows_same = [&](std::size_t pixel, std::uint32_t from) {
+        PixelSums const& here = sums.pixels[pixel];
+        double const pixel_m = here.depth / here.hits * double(glm::length(v.rays.step_x));
+        return same_surface(here, all[std::size_t(v.partner)].pixels[from], pixel_m);
+    };
+    work.in_blocks(v.pixels(), [&](std::size_t first, std::size_t last, Counts&) {
+        for (std::size_t p = first; p < last; ++p) {
+            PathSample& sample = samples_[v.first + p];
+            if (sharing && shared_.has(v.first + p))
+                sample.radiance[2] += endings_[v.first + p].throughput * shared_.radiance(v.first + p);
+            std::uint32_t const from = partner != nullptr ? taken_from_[v.first + p] : kOwnLight;
+            if (from != kOwnLight) take_light(samples_[partner->first + from], sample);
+            sums.add(p, sample, sums.paths);
+            if (partner == nullptr) continue;
+            std::uint32_t& of_all = light_from_[v.first + p]; // the paths of this frame
+            bool const taken =
+                from != kOwnLight && (sums.paths == 0 || (of_all != kOwnLight && shows_same(p, from)));
+            of_all = taken ? from : kOwnLight;
+        }
+    });
+    if (partner != nullptr) taking_ += v.pixels() - v.hidden_pixels;
+    hidden_ += v.hidden_pixels;
+    pixels_ += v.pixels();
+}
+
+void ViewPaths::trace(SlhbTracer::Pass const& pass, SeenViews const& views, Endings endings,
+                      std::span<Accumulator> sums)
+{
+    std::size_t const pixels = views.back().first + views.back().pixels();
+    samples_.resize(pixels);
+    taken_from_.assign(views.size() > 1 ? pixels : 0, kOwnLight);
+    light_from_.resize(taken_from_.size());
+    bool const sharing = start_sharing(pass, views, endings);
+    Work work;
+    for (SeenView const& v : views) trace_view(pass, views, v, sharing, work);
+    send_on(pass, views[0], work);
+    for (std::size_t k = 0; k < views.size(); ++k) add(views, k, sharing, sums, work);
+    add_work(work, sums[0].counts);
+}
+
+void ViewPaths::trace_pair(SlhbTracer::Pass const& pass, SeenViews const& views, ShowMoving const& show_moving,
+                           PairSums& sums, PathCounts& counts)
+{
+    SeenView const& view = views[0];
+    samples_.resize(view.pixels());
+    near_moving_.resize((view.pixels() + kBlock - 1) / kBlock);
+    Work work;
+    trace_view(pass, views, view, false, work);
+    without_pixels_.clear();
+    for (auto const& some : near_moving_) without_pixels_.insert(without_pixels_.end(), some.begin(), some.end());
+    without_.resize(without_pixels_.size());
+    show_moving(false);
+    SlhbTracer::Pass without = pass;
+    without.first_watched = kNoPrimitive;
+    without.exact_world = RayWorld::what_stays;
+    SlhbTracer const tracer = tracer_of(view);
+    auto const trace_some = [&](std::size_t first, std::size_t last, Counts& local) {
+        thread_local std::vector<PathStart> starts;
+        view.primary->hits_behind(std::span(without_pixels_).subspan(first, last - first), starts);
+        tracer.trace(without, starts, std::span(without_).subspan(first, last - first), {}, local.paths,
+                     local.slhb);
+    };
+    work.in_blocks(without_.size(), trace_some, kSmallBlock);
+    show_moving(true);
+    pair_paths_ += view.pixels();
+    without_paths_ += without_.size();
+    sums.add(samples_, without_pixels_, without_);
+    add_work(work, counts);
+}
+
+void ViewPaths::add_work(Work& work, PathCounts& paths)
+{
+    double direct_s = 0, indirect_s = 0;
+    work.counts.combine_each([&](Counts const& c) {
+        direct_s += c.slhb.direct_s;
+        indirect_s += c.slhb.indirect_s;
+        paths += c.paths;
+        done_.queries += c.slhb.queries;
+        done_.exact_rays += c.slhb.exact_rays;
+        done_.shadow_lookups += c.slhb.shadow_lookups;
+        taken_ += c.taken;
+    });
+    report_.add_time("direct light, thread seconds", direct_s);
+    report_.add_time("indirect light, thread seconds", indirect_s);
+}
+
+double ViewPaths::rays() const { return double(done_.queries + done_.shadow_lookups + done_.exact_rays); }
+
+void ViewPaths::report_work() const
+{
+    report_.count("hit-buffer queries", double(done_.queries));
+    report_.count("shadow-map look-ups", double(done_.shadow_lookups));
+    report_.count("exact rays", double(done_.exact_rays));
+    report_.count("endings shaded for several paths", double(shared_.shaded()));
+    if (taking_ > 0) report_.count("share of pixels lit by a partner view", double(taken_) / double(taking_));
+    if (hidden_ > 0) {
+        report_.count("pixels not rendered, as nobody sees them", double(hidden_));
+        report_.count("share of pixels not rendered", double(hidden_) / double(pixels_));
+    }
+    if (pair_paths_ > 0)
+        report_.count("share of a pair's paths traced on both sides",
+                      double(without_paths_) / double(pair_paths_));
+}
+
+} // namespace gi

@@ -1,0 +1,74 @@
+// Who has which avatar: by options, by display files, by recordings of now and of before further users had any.
+
+#include "viewer/user_avatars.h"
+
+#include "gi/base/error.h"
+
+#include <gtest/gtest.h>
+
+namespace viewer::test {
+namespace {
+
+Display two_users()
+{
+    Display d;
+    d.users.resize(2);
+    d.users[0].head.translation_m = {0, 1.7, 0};
+    d.users[1].head.translation_m = {1, 0.1, 0};
+    d.users[0].avatar = d.users[1].avatar = "avatar";
+    d.users[1].eye_height_m = 1.85;
+    return d;
+}
+
+TEST(UserAvatars, ThoseOfADisplayAndOfTheOption)
+{
+    std::vector<AvatarChoice> const none;
+    EXPECT_EQ(avatar_choices("", 1.6, std::nullopt, ""), none);
+    EXPECT_EQ(avatar_choices("a.glb", 1.6, std::nullopt, ""), (std::vector<AvatarChoice>{{0, "a.glb", 1.6}}));
+    EXPECT_EQ(avatar_choices("", 1.6, two_users(), ""),
+              (std::vector<AvatarChoice>{{0, "avatar", 1.7}, {1, "avatar", 1.85, false}}));
+    EXPECT_EQ(avatar_choices("a.glb", 1.6, two_users(), ""),
+              (std::vector<AvatarChoice>{{0, "a.glb", 1.7}, {1, "avatar", 1.85, false}}))
+        << "the option is the first user's";
+    Display floating = two_users();
+    floating.users[1].eye_height_m.reset();
+    EXPECT_EQ(avatar_choices("", 1.6, floating, "").at(1).eye_height_m, 1.6) << "a head that rests at the floor";
+}
+
+TEST(UserAvatars, RecordingsKeepThem)
+{
+    std::vector<AvatarChoice> const all{{0, "a.glb", 1.7}, {2, "avatar", 1.85}};
+    nlohmann::json load{{"background", "black"}};
+    put_avatars(load, all);
+    EXPECT_EQ(avatars_of(load), all);
+    EXPECT_EQ(avatars_of({{"avatar", "a.glb"}, {"eye_height_m", 1.7}}),
+              (std::vector<AvatarChoice>{{0, "a.glb", 1.7}}))
+        << "of before";
+    nlohmann::json others = nlohmann::json::object();
+    put_avatars(others, {{1, "avatar", 1.6}});
+    EXPECT_EQ(avatars_of(others), (std::vector<AvatarChoice>{{1, "avatar", 1.6}}));
+    EXPECT_TRUE(avatars_of(nlohmann::json::object()).empty());
+}
+
+TEST(UserAvatars, FeetAreAskedForWhereTheRoomHasItsFloorAtZero)
+{
+    gi::Report report;
+    RenderOptions const options;
+    RecordedScenes const scenes = scenes_with(options, avatar_choices("", 1.6, two_users(), ""), report);
+    ASSERT_EQ(scenes.avatars.size(), 2u);
+    EXPECT_TRUE(scenes.avatars[0].stance.has_value());
+    EXPECT_FALSE(scenes.avatars[1].stance.has_value());
+    EXPECT_EQ(resting_eye_height_m(two_users(), 1.6), 1.7);
+}
+
+TEST(UserAvatars, DamagedRecordingsAreRefused)
+{
+    using Json = nlohmann::json;
+    for (Json const& load :
+         {Json{{"avatar", 5}}, Json{{"avatar", "a.glb"}, {"eye_height_m", "x"}}, Json{{"avatars", 5}},
+          Json{{"avatars", {"x"}}}, Json{{"avatars", {{{"avatar", "a.glb"}, {"user", 100}}}}}})
+        EXPECT_THROW(avatars_of(load), gi::InputError) << load.dump();
+}
+
+} // namespace
+} // namespace viewer::test
