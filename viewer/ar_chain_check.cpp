@@ -2,8 +2,8 @@
 
 #include "ar/capture/clock.h"
 #include "gi/base/error.h"
-#include "viewer/ar/ar_window.h"
-#include "viewer/ar/counter_check.h"
+#include "viewer/ar/run/ar_window.h"
+#include "viewer/ar/run/counter_check.h"
 #include "viewer/arguments.h"
 #include "viewer/bench_record.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 // Runs the generated counter through the whole chain of augmented reality, size by size
-// (viewer/ar/counter_check.h).
+// (viewer/ar/run/counter_check.h).
 
 #include "gi/base/progress.h"
 #include "gi/base/report.h"

@@ -4,9 +4,9 @@
 // possible.
 
 #include "ar/capture/session_writer.h"
-#include "viewer/ar/picture_folder.h"
-#include "viewer/ar/picture_thread.h"
-#include "viewer/ar/runner.h"
+#include "viewer/ar/run/picture_folder.h"
+#include "viewer/ar/run/picture_thread.h"
+#include "viewer/ar/run/runner.h"
 #include "viewer/video_writer.h"
 
 #include <memory>

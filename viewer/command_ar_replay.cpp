@@ -1,6 +1,6 @@
 #include "ar/capture/clock.h"
 #include "ar/capture/session_reader.h"
-#include "viewer/ar/runner.h"
+#include "viewer/ar/run/runner.h"
 #include "viewer/ar_arguments.h"
 #include "viewer/commands.h"
 #include "viewer/interrupt.h"

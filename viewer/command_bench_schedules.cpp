@@ -3,11 +3,10 @@
 #include "viewer/arguments.h"
 #include "viewer/bench/table_file.h"
 #include "viewer/bench_record.h"
+#include "viewer/bench_session.h"
 #include "viewer/choose_camera.h"
 #include "viewer/commands.h"
-#include "viewer/load_world.h"
 #include "viewer/report_json.h"
-#include "viewer/session/session.h"
 
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -58,18 +57,14 @@ class Measurement {
 public:
     Measurement(SchedulesOptions const& o, std::string const& scene) : o_(o), scene_(scene)
     {
-        auto const load = [](std::string const& name, gi::Report& r) {
-            RenderOptions options;
-            options.scene = name;
-            return load_lit_scene(options, r);
-        };
+        std::vector<Change> settings;
+        for (std::string const& text : o.settings) settings.push_back(parse_change(text));
         for (std::string const& schedule : o.schedules)
             for (int const paths : o.paths) {
                 Variant& v = variants_.emplace_back(schedule, paths);
-                v.session = std::make_unique<Session>(load, 0, *v.report);
-                for (std::string const& text : o.settings) v.session->apply(parse_change(text));
-                for (Change const& change : changes_of(schedule)) v.session->apply(change);
-                v.session->apply({"scene", scene});
+                std::vector<Change> all = settings;
+                for (Change const& change : changes_of(schedule)) all.push_back(change);
+                v.session = bench_session(scene, all, *v.report);
             }
         start_ = choose_camera(variants_[0].session->world(), {}).camera;
     }
@@ -80,7 +75,8 @@ public:
             std::vector<gi::Layer> pictures;
             for (Variant& v : variants_) pictures.push_back(frame(f, v)); // they take turns
             if (f < o_.frames - o_.judged) continue;
-            gi::Layer const truth = reference(f);
+            Variant const& v = variants_[0];
+            gi::Layer const truth = reference_of(*v.session, order(f, 1).views[0], o_.reference_paths, *v.report);
             for (std::size_t k = 0; k < variants_.size(); ++k) {
                 auto const errors = gi::measure_errors(pictures[k].data, truth.data, 3);
                 variants_[k].relmse += errors.relmse / o_.judged;
@@ -127,22 +123,6 @@ private:
             v.following_ms.push_back(1e3 * done.following.seconds);
         }
         return *done.views[0].picture.find("color");
-    }
-
-    /// Of the world as the last frame left it.
-    gi::Layer reference(int f)
-    {
-        ViewOrder const view = order(f, 1).views[0];
-        gi::RenderSettings s;
-        s.width = view.width;
-        s.height = view.height;
-        s.paths = std::uint32_t(o_.reference_paths);
-        s.seed = 99;
-        Variant const& v = variants_[0];
-        s.bounces = v.session->settings().bounces;
-        return *gi::find_method("reference")
-                    .render(v.session->world(), view.camera, s, {}, {}, *v.report)
-                    .picture.find("color");
     }
 
     SchedulesOptions const& o_;

@@ -5,10 +5,10 @@
 #include "viewer/arguments.h"
 #include "viewer/bench/table_file.h"
 #include "viewer/bench_record.h"
+#include "viewer/bench_session.h"
+#include "viewer/choose_camera.h"
 #include "viewer/commands.h"
-#include "viewer/load_world.h"
 #include "viewer/report_json.h"
-#include "viewer/session/session.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -83,16 +83,9 @@ void write_picture(gi::Layer const& color, ViewOrder const& view, std::filesyste
 double error_of(Session const& session, FrameOrder const& order, SessionFrame const& frame, int paths,
                 std::filesystem::path const& pictures, gi::Report& report)
 {
-    gi::RenderSettings s;
     ViewOrder const& view = order.views.back();
-    s.width = view.width;
-    s.height = view.height;
-    s.paths = std::uint32_t(paths);
-    s.seed = 99;
-    s.bounces = session.settings().bounces;
-    gi::RenderResult const truth =
-        gi::find_method("reference").render(session.world(), view.camera, s, {}, {}, report);
-    gi::Layer const &seen = *frame.views.back().picture.find("color"), &right = *truth.picture.find("color");
+    gi::Layer const right = reference_of(session, view, paths, report);
+    gi::Layer const& seen = *frame.views.back().picture.find("color");
     write_picture(seen, view, pictures.string() + ".png");
     write_picture(right, view, pictures.string() + " reference.png");
     return gi::measure_errors(seen.data, right.data, 3).relmse;
@@ -112,11 +105,6 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
 {
     auto const [width, height] = parse_size(o.size);
     int const w = width, h = height;
-    auto const load = [](std::string const& name, gi::Report& r) {
-        RenderOptions options;
-        options.scene = name;
-        return load_lit_scene(options, r);
-    };
     double const apart = o.eye_distance_m;
     std::vector<Variant> variants;
     variants.push_back({"one view", [=](gi::Camera const& c) {
@@ -133,11 +121,11 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
     variants.push_back(
         {"one wall", [=](gi::Camera const& c) { return std::vector<ViewOrder>{walls(c, h).back()}; }, true});
     variants.push_back({"four walls", [=](gi::Camera const& c) { return walls(c, h); }, true});
+    std::vector<Change> settings;
+    for (std::string const& text : o.settings) settings.push_back(parse_change(text));
     for (Variant& v : variants) {
         v.report = std::make_unique<gi::Report>();
-        v.session = std::make_unique<Session>(load, 0, *v.report);
-        for (std::string const& text : o.settings) v.session->apply(parse_change(text));
-        v.session->apply({"scene", scene});
+        v.session = bench_session(scene, settings, *v.report);
     }
     gi::Camera const start = choose_camera(variants[0].session->world(), {}).camera;
     gi::Camera const in_cave = inside(start, variants[0].session->world());

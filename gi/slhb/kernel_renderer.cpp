@@ -4,7 +4,6 @@
 #include "gi/transport/pass_samples.h"
 
 #include <algorithm>
-#include <chrono>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -36,7 +35,8 @@ KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const>
       soup_(std::move(soup)),
       cut_outs_(world),
       scene_(world, soup_, cut_outs_, std::uint32_t(slhb_.most_layers)),
-      grid_bounds_(grid_bounds(world, soup_, first_moving))
+      grid_bounds_(grid_bounds(world, soup_, first_moving)),
+      axes_(slhb_, report)
 {
     see(views);
     end_frame();
@@ -54,21 +54,16 @@ bool KernelRenderer<S>::sky() const
 template <Space S>
 void KernelRenderer<S>::make_axes()
 {
-    walks_ = walks();
-    bool const apart = slhb_.schedule != Schedule::streamed; // else all is built in every pass anyway
-    axes_.emplace(AxisSet::Source{.bounds = grid_bounds_,
-                                  .soup = soup_,
-                                  .cut_outs = cut_outs_,
-                                  .resolution = std::uint32_t(slhb_.resolution),
-                                  .most_layers = std::uint32_t(slhb_.most_layers),
-                                  .packed = false,
-                                  .seed = settings_.seed,
-                                  .elsewhere = [this](std::size_t a, RasterGrid const& grid,
-                                                      std::uint32_t seed) { scene_.build_axis(a, grid, seed); },
-                                  .first_moving = apart ? first_moving_ : soup_.count});
-    if (slhb_.schedule != Schedule::stored || !walks_) return;
-    StageTimer const timer(report_, "build (hit buffers)");
-    axes_->store(make_directions(slhb_.directions));
+    axes_.make({.bounds = grid_bounds_,
+                .soup = soup_,
+                .cut_outs = cut_outs_,
+                .resolution = std::uint32_t(slhb_.resolution),
+                .most_layers = std::uint32_t(slhb_.most_layers),
+                .packed = false,
+                .seed = settings_.seed,
+                .elsewhere = [this](std::size_t a, RasterGrid const& grid,
+                                    std::uint32_t seed) { scene_.build_axis(a, grid, seed); }},
+               first_moving_, walks());
 }
 
 template <Space S>
@@ -96,7 +91,7 @@ void KernelRenderer<S>::changed(Changes const& c)
         }
         scene_.update(world_, soup_, c);
     }
-    bool axes = walks_ != walks(), lamps = changes_lamps(c);
+    bool axes = axes_.walks() != walks(), lamps = changes_lamps(c);
     if (c.geometry) {
         if (!contains(grid_bounds_, world_.bounds)) {
             grid_bounds_ = grown(grid_bounds_, world_.bounds);
@@ -104,7 +99,7 @@ void KernelRenderer<S>::changed(Changes const& c)
                 report_.lose("frames that left the bounds of the hit buffers, which were built anew");
             axes = lamps = true; // the maps of parallel light hold the same bounds
         }
-        axes_->moved();
+        axes_.set().moved();
         lamps_->moved();
     }
     if (axes) make_axes();
@@ -114,8 +109,7 @@ void KernelRenderer<S>::changed(Changes const& c)
 template <Space S>
 void KernelRenderer<S>::end_frame()
 {
-    follows_ = false;
-    ++frames_;
+    axes_.end_frame();
     earlier_ = {first_moving_, {}};
     for (View& v : views_) v.earlier = v.rays;
 }
@@ -144,21 +138,7 @@ void KernelRenderer<S>::see(std::span<FrameView const> views)
 template <Space S>
 void KernelRenderer<S>::prepare(std::uint32_t index)
 {
-    // Surfaces that a path may leave along an axis.
-    auto const sequences =
-        std::uint32_t(std::clamp(settings_.bounces + (sky() ? 1 : 0), 1, int(AxisSet::kSequences)));
-    if (walks_ && slhb_.schedule == Schedule::stored && first_moving_ < soup_.count) {
-        StageTimer const timer(report_, "layers that moved");
-        auto const begun = std::chrono::steady_clock::now();
-        std::size_t const axes = axes_->follow_some(sequences, followed_, frames_);
-        double const s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-        if (!std::exchange(follows_, true)) following_ = {0, int(axes), int(sequences), 0};
-        following_.seconds += s;
-    } else if (walks_ && slhb_.schedule != Schedule::stored) {
-        StageTimer const timer(report_, "hit buffers of a pass");
-        axes_->refresh(sequences, std::uint32_t(slhb_.axes), std::uint32_t(slhb_.fresh_axes), index);
-        axes_->follow();
-    }
+    axes_.prepare(settings_.bounces + (sky() ? 1 : 0), index);
     {
         StageTimer const timer(report_, "shadow maps");
         lamps_->refresh(index);
@@ -179,7 +159,7 @@ void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, E
 {
     prepare(index);
     StageTimer const timer(report_, "paths");
-    scene_.start_pass(*axes_, lamps_->fixed() ? lamps_->chances() : AliasTableView{});
+    scene_.start_pass(axes_.set(), lamps_->fixed() ? lamps_->chances() : AliasTableView{});
     for (std::size_t k = 0; k < views_.size(); ++k) {
         View const& v = views_[k];
         Accumulator& to = sums[k];
@@ -214,14 +194,6 @@ void KernelRenderer<S>::add_motion(std::size_t view, Picture& picture) const
     PrimaryMap map(soup_, cut_outs_, settings_, v.width, v.height);
     map.take(v.eye, v.index, download(v.primary));
     gi::add_motion(map, soup_, v.rays, v.earlier, earlier_, picture);
-}
-
-template <Space S>
-Following KernelRenderer<S>::following() const
-{
-    Following f = following_;
-    if (walks_ && slhb_.schedule == Schedule::stored) f.stored = int(axes_->tables().axes.size());
-    return f;
 }
 
 template <Space S>

@@ -7,6 +7,7 @@
 // (what moves is not appended to what stays, as on the CPU), and so are all shadow maps. Views take no light from
 // each other, and paths share no endings. What paths lack is in path_kernel.h.
 
+#include "gi/slhb/frame_axes.h"
 #include "gi/slhb/kernel_scene.h"
 #include "gi/slhb/motion.h"
 #include "gi/transport/accumulator.h"
@@ -28,8 +29,8 @@ public:
 
     void end_frame();
     void changed(Changes const& changes);
-    void follow(std::uint32_t axes) { followed_ = axes; }
-    Following following() const;
+    void follow(std::uint32_t axes) { axes_.follow(axes); }
+    Following following() const { return axes_.following(); }
     /// Throws InputError on orthographic cameras.
     void see(std::span<FrameView const> views);
     /// @param endings  of no account: each path finds its own
@@ -66,17 +67,13 @@ private:
     std::size_t first_moving_; ///< triangle
     Report& report_;
     std::vector<View> views_;
-    bool walks_ = false; ///< paths may leave a surface along an axis
     TriangleSoup soup_;
     CutOuts cut_outs_;
     KernelScene<S> scene_;
     Bounds grid_bounds_; ///< of the hit buffers
-    std::optional<AxisSet> axes_;
+    FrameAxes axes_;
     std::optional<Lamps> lamps_;
     EarlierCorners earlier_;
-    std::uint32_t followed_ = 0, frames_ = 0; ///< axes of a bounce, 0 = all; so far
-    Following following_;                     ///< in this frame
-    bool follows_ = false;                    ///< and it has in this frame
     std::uint64_t queries_ = 0, shadow_lookups_ = 0;
     std::uint64_t hidden_ = 0, pixels_ = 0; ///< not traced, as nobody sees them; all, in all passes
     std::uint64_t earlier_maps_ = 0;        ///< of lamps that are no more

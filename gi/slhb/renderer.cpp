@@ -6,7 +6,6 @@
 #include "gi/transport/pass_samples.h"
 
 #include <algorithm>
-#include <chrono>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -26,6 +25,7 @@ SlhbRenderer::SlhbRenderer(World const& world, std::span<FrameView const> views,
       soup_(std::move(soup)),
       cut_outs_(world),
       grid_bounds_(grid_bounds(world, soup_, first_moving)),
+      axes_(slhb_, report),
       paths_(world, settings_, report)
 {
     see(views);
@@ -60,29 +60,19 @@ bool SlhbRenderer::walks() const { return settings_.bounces > 0 || to_the_end();
 
 void SlhbRenderer::make_axes()
 {
-    if (axes_) {
-        earlier_sets_.axes += axes_->built();
-        earlier_sets_.layers += axes_->layers();
-        earlier_sets_.lost += axes_->lost();
-    }
-    walks_ = walks();
-    bool const apart = slhb_.schedule != Schedule::streamed; // else all is built in every pass anyway
-    axes_.emplace(AxisSet::Source{.bounds = grid_bounds_,
-                                  .soup = soup_,
-                                  .cut_outs = cut_outs_,
-                                  .resolution = texels(slhb_.exact.queries, slhb_.resolution),
-                                  .most_layers = std::uint32_t(slhb_.most_layers),
-                                  .packed = slhb_.packed,
-                                  .seed = settings_.seed,
-                                  .first_moving = apart ? first_moving_ : soup_.count});
-    if (slhb_.schedule != Schedule::stored || !walks_) return;
-    StageTimer const timer(report_, "build (hit buffers)");
-    axes_->store(make_directions(slhb_.directions));
+    axes_.make({.bounds = grid_bounds_,
+                .soup = soup_,
+                .cut_outs = cut_outs_,
+                .resolution = texels(slhb_.exact.queries, slhb_.resolution),
+                .most_layers = std::uint32_t(slhb_.most_layers),
+                .packed = slhb_.packed,
+                .seed = settings_.seed},
+               first_moving_, walks());
 }
 
 void SlhbRenderer::make_lamps()
 {
-    if (lamps_) earlier_sets_.maps += lamps_->maps_built();
+    if (lamps_) earlier_maps_ += lamps_->maps_built();
     lamps_.emplace(world_, grid_bounds_, soup_, cut_outs_,
                    LampSettings{.count = std::uint32_t(slhb_.lamps),
                                 .fresh = std::uint32_t(slhb_.fresh_lamps),
@@ -112,7 +102,7 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
             if (judge_) judge_->moved(world_);
         }
         if (contains(grid_bounds_, world_.bounds)) {
-            axes_->moved();
+            axes_.set().moved();
         } else {
             grid_bounds_ = grown(grid_bounds_, world_.bounds);
             if (slhb_.schedule != Schedule::streamed) // which is built anew in every pass
@@ -131,13 +121,12 @@ void SlhbRenderer::materials_changed()
         exact_.reset();
         build_exact();
     }
-    if (walks_ != walks()) make_axes();
+    if (axes_.walks() != walks()) make_axes();
 }
 
 void SlhbRenderer::end_frame()
 {
-    follows_ = false;
-    ++frames_;
+    axes_.end_frame();
     earlier_ = {first_moving_, {}};
     for (SeenView& v : views_) v.earlier = v.rays;
 }
@@ -176,23 +165,7 @@ void SlhbRenderer::see(std::span<FrameView const> views)
 
 void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
 {
-    // Surfaces that a path may leave along an axis.
-    auto const sequences =
-        std::uint32_t(std::clamp(settings_.bounces + (to_the_end() ? 1 : 0), 1, int(AxisSet::kSequences)));
-    if (walks_ && slhb_.schedule == Schedule::stored && first_moving_ < soup_.count) {
-        StageTimer const timer(report_, "layers that moved");
-        auto const begun = std::chrono::steady_clock::now();
-        std::size_t const axes = axes_->follow_some(sequences, slhb_.gather ? 0 : followed_, frames_);
-        double const s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-        if (!std::exchange(follows_, true)) following_ = {0, int(axes), int(sequences), 0};
-        following_.seconds += s;
-    } else {
-        StageTimer const timer(report_, "hit buffers of a pass");
-        if (walks_ && slhb_.schedule != Schedule::stored) {
-            axes_->refresh(sequences, std::uint32_t(slhb_.axes), std::uint32_t(slhb_.fresh_axes), index);
-            axes_->follow();
-        }
-    }
+    axes_.prepare(settings_.bounces + (to_the_end() ? 1 : 0), index);
     {
         StageTimer const timer(report_, "shadow maps");
         lamps_->refresh(index);
@@ -211,13 +184,14 @@ void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
 
 SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index)
 {
-    std::uint32_t const gathered = slhb_.gather && walks_
+    bool const walks = axes_.walks();
+    std::uint32_t const gathered = slhb_.gather && walks
                                        ? index / std::uint32_t(slhb_.interleave * slhb_.interleave) %
-                                             std::uint32_t(axes_->first_bounce_axes())
+                                             std::uint32_t(axes_.set().first_bounce_axes())
                                        : kNoPrimitive;
     sky_.clear();
-    if (walks_ && !slhb_.exact.directions) sky_ = sky_along(*axes_, world_);
-    return {.axes = *axes_,
+    if (walks && !slhb_.exact.directions) sky_ = sky_along(axes_.set(), world_);
+    return {.axes = axes_.set(),
             .lamps = *lamps_,
             .exact = exact_.get(),
             .index = index,
@@ -242,7 +216,7 @@ void SlhbRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& co
     now.first_watched = std::uint32_t(first_moving_);
     // The world stays as it is: look-ups pass by what moves.
     auto const show_moving = [&](bool shown) {
-        axes_->show_moving(shown);
+        axes_.set().show_moving(shown);
         lamps_->show_moving(shown);
     };
     paths_.trace_pair(now, views_, show_moving, sums, counts);
@@ -270,22 +244,14 @@ std::span<std::uint32_t const> SlhbRenderer::light_from(std::size_t view) const
     return v.partner < 0 ? std::span<std::uint32_t const>() : paths_.light_from(v);
 }
 
-Following SlhbRenderer::following() const
-{
-    Following f = following_;
-    if (walks_ && slhb_.schedule == Schedule::stored) f.stored = int(axes_->pool().size());
-    return f;
-}
-
 void SlhbRenderer::report_work() const
 {
     paths_.report_work();
-    double const axes = double(earlier_sets_.axes + axes_->built()),
-                 layers = double(earlier_sets_.layers + axes_->layers());
+    double const axes = double(axes_.built()), layers = double(axes_.layers());
     report_.count("axes built", axes);
     report_.count("layers per texel, mean",
                   axes > 0 ? layers / axes / (double(slhb_.resolution) * slhb_.resolution) : 0);
-    report_.count("shadow maps built", double(earlier_sets_.maps + lamps_->maps_built()));
+    report_.count("shadow maps built", double(earlier_maps_ + lamps_->maps_built()));
 }
 
 } // namespace gi

@@ -2,6 +2,7 @@
 // Everything that the method slhb keeps from pass to pass and, where things move, from frame to frame: the
 // structures built from the world, and what of them a pass needs anew.
 
+#include "gi/slhb/frame_axes.h"
 #include "gi/slhb/motion.h"
 #include "gi/slhb/view_paths.h"
 
@@ -23,9 +24,9 @@ public:
     void changed(Changes const& changes);
     /// From the next frame on: of the stored axes of each bounce about `axes` follow what moves, others from frame
     /// to frame, and paths take no others; 0 = all.
-    void follow(std::uint32_t axes) { followed_ = axes; }
+    void follow(std::uint32_t axes) { axes_.follow(axes); }
     /// In the frame that ended last.
-    Following following() const;
+    Following following() const { return axes_.following(); }
     /// From the next pass on. A view is what the view of the same index was in the frame before.
     void see(std::span<FrameView const> views);
     /// One more path for every pixel. @param index of the pass, which decides its random numbers
@@ -46,7 +47,7 @@ public:
     std::span<std::uint32_t const> light_from(std::size_t view) const;
     double rays() const { return paths_.rays(); } ///< look-ups and exact rays, so far
     /// Beyond the limit of a texel, so far.
-    std::uint64_t lost_layers() const { return earlier_sets_.lost + axes_->lost(); }
+    std::uint64_t lost_layers() const { return axes_.lost(); }
     /// What has been done so far.
     void report_work() const;
 
@@ -71,23 +72,16 @@ private:
     std::size_t first_moving_; ///< triangle
     Report& report_;
     SeenViews views_;
-    bool walks_; ///< paths may leave a surface along an axis
     TriangleSoup soup_;
     CutOuts cut_outs_;
     std::unique_ptr<ExactVisibility> exact_, judge_;
     Bounds grid_bounds_; ///< of the hit buffers
-    std::optional<AxisSet> axes_;
-    std::uint32_t followed_ = 0, frames_ = 0; ///< axes of a bounce, 0 = all; so far
-    Following following_;                     ///< in this frame
-    bool follows_ = false;                    ///< and it has in this frame
+    FrameAxes axes_;
     std::optional<Lamps> lamps_;
     EarlierCorners earlier_;
     std::vector<SkyAlong> sky_; ///< in a pass
     ViewPaths paths_;
-    /// Of sets of axes and lamps that are no more.
-    struct {
-        std::uint64_t axes = 0, layers = 0, lost = 0, maps = 0;
-    } earlier_sets_;
+    std::uint64_t earlier_maps_ = 0; ///< of lamps that are no more
 };
 
 } // namespace gi

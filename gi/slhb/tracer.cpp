@@ -125,12 +125,88 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, ShadingPoint const
         {&l, place, at.position, s.triangle, s.throughput * value, &s.bucket(s.scatterings + 1), s.sample});
 }
 
+void SlhbTracer::add_emission(State const& s, Vertex const& last, ShadingPoint const& at) const
+{
+    vec3 light = at.emission;
+    if (s.exact_pdf > 0) {
+        float const cos_light = std::abs(glm::dot(s.direction, at.geometric_normal));
+        float const distance = glm::length(at.position - last.ray.origin);
+        light *= power_heuristic(s.exact_pdf, emitter_direction_pdf(world_, s.triangle, distance, cos_light));
+    }
+    s.bucket(s.scatterings) += s.throughput * light;
+}
+
 std::uint32_t SlhbTracer::indirect_share(std::uint32_t pixel, std::uint32_t pass) const
 {
     std::uint32_t const all = interleave_ * interleave_, width = std::uint32_t(width_);
     std::uint32_t const own = pixel % width % interleave_ + pixel / width % interleave_ * interleave_;
     constexpr std::uint32_t kStride = 17; // a prime above every interleaving: all turns come
     return (own + pass * kStride) % all == 0 ? all : 0;
+}
+
+/// By a mirror, glass or a narrow lobe. False where the path ends.
+bool SlhbTracer::scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe, bool last,
+                                bool& delta) const
+{
+    BsdfSample const sampled = gi::sample(at.bsdf, wo, at.front, u_lobe, s.random.sample2(s.dimension(lobe_u)));
+    if (last && !sampled.delta) return false;
+    s.throughput *= sampled.weight;
+    delta = sampled.delta;
+    s.direction = at.frame.to_world(sampled.wi);
+    if ((glm::dot(s.direction, at.geometric_normal) > 0) != (sampled.wi.z > 0)) return false;
+    s.arrival_pdf = delta ? 0 : sampled.pdf;
+    s.exact_pdf = delta ? 0 : narrow_pdf(at.bsdf, wo, sampled.wi, sampled.pdf);
+    return true;
+}
+
+AxisSample SlhbTracer::choose_axis(Pass const& pass, State const& s, ShadingPoint const& at) const
+{
+    if (s.vertex == 0 && pass.gather_axis != kNoPrimitive) {
+        vec3 const along = pass.axes.axis(pass.gather_axis);
+        float const cosine = glm::dot(along, at.frame.normal);
+        return {pass.gather_axis, cosine < 0 ? -along : along,
+                std::abs(cosine) * pass.axes.solid_angle(pass.gather_axis) * float(pass.axes.first_bounce_axes()) *
+                    kInvPi};
+    }
+    if (parts_.directions)
+        return {0, at.frame.to_world(square_to_cosine_hemisphere(s.random.sample2(s.dimension(lobe_u)))), 1};
+    return pass.axes.sample(std::uint32_t(s.scatterings), at.frame.normal, s.random.sample(s.dimension(axis)));
+}
+
+/// False where the path ends.
+bool SlhbTracer::scatter_along_axis(Pass const& pass, State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                    Vertex& next) const
+{
+    if (s.vertex == 0 && interleave_ > 1) {
+        std::uint32_t const share = indirect_share(s.pixel, pass.index);
+        if (share == 0) return false;
+        s.throughput *= float(share);
+        s.random.index = pass.index / share;
+    }
+    AxisSample const a = choose_axis(pass, s, at);
+    s.direction = a.direction;
+    vec3 const wi = at.frame.to_local(s.direction);
+    float const side = glm::dot(s.direction, at.geometric_normal);
+    if (!(wi.z > 0) || !(side > 0)) return false;
+    BsdfValue const value = evaluate(at.bsdf, wo, wi);
+    float const pdf = narrow ? value.pdf : wi.z * kInvPi;
+    if (!(pdf > 0)) return false;
+    s.throughput *= value.f * (wi.z * a.weight / pdf);
+    s.arrival_pdf = pdf;
+    next.axis = a.axis;
+    Surface const& surface = world_.surfaces[s.triangle];
+    vec3 const normal = glm::cross(surface.edge1, surface.edge2);
+    vec3 const along_axis = pass.axes.axis(a.axis);
+    next.origin = {at.position, s.triangle, glm::dot(normal, along_axis) > 0,
+                   glm::dot(s.direction, along_axis) > 0, std::sqrt(std::max(0.0f, 1 - side * side)) / side};
+    if (cone_ > 0) {
+        RasterGrid const& grid = pass.axes.pool().grids[a.axis];
+        vec2 const off = cone_ * grid.texel * square_to_disk(s.random.noise2(s.dimension(cone)));
+        vec3 const shift = off.x * grid.right + off.y * grid.up;
+        // Along the axis as the surface goes.
+        next.origin.position += shift - (glm::dot(at.geometric_normal, shift) / side) * s.direction;
+    }
+    return true;
 }
 
 /// False where the path ends.
@@ -154,15 +230,7 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
         s.sample->position = at.position;
         s.sample->depth = glm::dot(at.position - camera_.origin, camera_.forward);
     }
-    if (!s.by_axis && max_component(at.emission) > 0) {
-        vec3 light = at.emission;
-        if (s.exact_pdf > 0) {
-            float const cos_light = std::abs(glm::dot(s.direction, at.geometric_normal));
-            float const distance = glm::length(at.position - next.ray.origin);
-            light *= power_heuristic(s.exact_pdf, emitter_direction_pdf(world_, s.triangle, distance, cos_light));
-        }
-        s.bucket(s.scatterings) += s.throughput * light;
-    }
+    if (!s.by_axis && max_component(at.emission) > 0) add_emission(s, next, at);
     if (s.vertex == kLongestPath) {
         ++paths.cut_paths;
         return false;
@@ -173,66 +241,17 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
     bool const narrow = pass.exact != nullptr && has_narrow_lobe(at.bsdf);
     if (!last && !pass.lamps.none() && !only_delta(at.bsdf)) add_direct(pass, s, at, wo, narrow, direct);
 
-    vec3 direction;
-    bool delta = false;
-    next.exact = false;
     float const u_lobe = narrow ? s.random.sample(s.dimension(lobe)) : 1;
-    if (narrow && takes_narrow_lobe(at.bsdf, wo, u_lobe)) {
-        BsdfSample const sampled =
-            gi::sample(at.bsdf, wo, at.front, u_lobe, s.random.sample2(s.dimension(lobe_u)));
-        if (last && !sampled.delta) return false;
-        s.throughput *= sampled.weight;
-        delta = sampled.delta;
-        direction = at.frame.to_world(sampled.wi);
-        if ((glm::dot(direction, at.geometric_normal) > 0) != (sampled.wi.z > 0)) return false;
-        s.arrival_pdf = delta ? 0 : sampled.pdf;
-        s.exact_pdf = delta ? 0 : narrow_pdf(at.bsdf, wo, sampled.wi, sampled.pdf);
-        next.exact = true;
+    bool delta = false;
+    next.exact = narrow && takes_narrow_lobe(at.bsdf, wo, u_lobe);
+    if (next.exact) {
+        if (!scatter_by_ray(s, at, wo, u_lobe, last, delta)) return false;
     } else {
         if (last || !(wo.z > 0)) return false;
         // The last surface would only bring light that exact rays or the sky can bring.
         if (s.scatterings == bounces_ && pass.exact == nullptr && world_.environment_radiance.empty())
             return false;
-        if (s.vertex == 0 && interleave_ > 1) {
-            std::uint32_t const share = indirect_share(s.pixel, pass.index);
-            if (share == 0) return false;
-            s.throughput *= float(share);
-            s.random.index = pass.index / share;
-        }
-        AxisSample a;
-        if (s.vertex == 0 && pass.gather_axis != kNoPrimitive) {
-            vec3 const along = pass.axes.axis(pass.gather_axis);
-            float const cosine = glm::dot(along, at.frame.normal);
-            a = {pass.gather_axis, cosine < 0 ? -along : along,
-                 std::abs(cosine) * pass.axes.solid_angle(pass.gather_axis) *
-                     float(pass.axes.first_bounce_axes()) * kInvPi};
-        } else if (parts_.directions) {
-            a = {0, at.frame.to_world(square_to_cosine_hemisphere(s.random.sample2(s.dimension(lobe_u)))), 1};
-        } else {
-            a = pass.axes.sample(std::uint32_t(s.scatterings), at.frame.normal,
-                                 s.random.sample(s.dimension(axis)));
-        }
-        direction = a.direction;
-        vec3 const wi = at.frame.to_local(direction);
-        float const side = glm::dot(direction, at.geometric_normal);
-        if (!(wi.z > 0) || !(side > 0)) return false;
-        BsdfValue const value = evaluate(at.bsdf, wo, wi);
-        float const pdf = narrow ? value.pdf : wi.z * kInvPi;
-        if (!(pdf > 0)) return false;
-        s.throughput *= value.f * (wi.z * a.weight / pdf);
-        s.arrival_pdf = pdf;
-        next.axis = a.axis;
-        vec3 const normal = glm::cross(surface.edge1, surface.edge2);
-        vec3 const along_axis = pass.axes.axis(a.axis);
-        next.origin = {at.position, s.triangle, glm::dot(normal, along_axis) > 0,
-                       glm::dot(direction, along_axis) > 0, std::sqrt(std::max(0.0f, 1 - side * side)) / side};
-        if (cone_ > 0) {
-            RasterGrid const& grid = pass.axes.pool().grids[a.axis];
-            vec2 const off = cone_ * grid.texel * square_to_disk(s.random.noise2(s.dimension(cone)));
-            vec3 const shift = off.x * grid.right + off.y * grid.up;
-            // Along the axis as the surface goes.
-            next.origin.position += shift - (glm::dot(at.geometric_normal, shift) / side) * direction;
-        }
+        if (!scatter_along_axis(pass, s, at, wo, narrow, next)) return false;
     }
     float const survival = max_component(s.throughput);
     if (!(survival > 0)) return false;
@@ -241,11 +260,10 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
         s.throughput /= survival;
     }
     if (next.exact) {
-        float const offset = glm::dot(direction, at.geometric_normal) > 0 ? at.clearance : -at.clearance;
-        next.ray = {at.position + offset * at.geometric_normal, direction};
+        float const offset = glm::dot(s.direction, at.geometric_normal) > 0 ? at.clearance : -at.clearance;
+        next.ray = {at.position + offset * at.geometric_normal, s.direction};
     }
     s.by_axis = !next.exact;
-    s.direction = direction;
     if (!delta) ++s.scatterings;
     ++s.vertex;
     return true;

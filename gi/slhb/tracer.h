@@ -107,6 +107,11 @@ private:
     void add_direct(Pass const& pass, State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
                     std::vector<Unshadowed>& direct) const;
     void add_sky(Pass const& pass, State& s, Vertex const& last) const;
+    void add_emission(State const& s, Vertex const& last, ShadingPoint const& at) const;
+    bool scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe, bool last, bool& delta) const;
+    bool scatter_along_axis(Pass const& pass, State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                            Vertex& next) const;
+    AxisSample choose_axis(Pass const& pass, State const& s, ShadingPoint const& at) const;
     /// How many pixels this one takes indirect light for in this pass: 0, or the square of the interleaving.
     std::uint32_t indirect_share(std::uint32_t pixel, std::uint32_t pass) const;
     void ask_axes(Pass const& pass, std::span<Vertex> vertices) const;

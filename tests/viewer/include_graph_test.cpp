@@ -49,8 +49,9 @@ Table allowed_includes()
         for (std::string const& name : split(may, ',')) {
             std::size_t const before = targets.size();
             for (auto const& [target, unused] : rows) {
-                // Folders of study and ar are named in full: `base` alone is gi/base.
-                bool const in_full = target.starts_with("study/") || target.starts_with("ar/");
+                // Folders of study, ar and viewer/ar are named in full: `base` alone is gi/base.
+                bool const in_full =
+                    target.starts_with("study/") || target.starts_with("ar/") || target.starts_with("viewer/ar/");
                 bool const is_named = target == name || (!in_full && target.ends_with("/" + name));
                 bool const in_all = name == "all" && target != "tests" && target != "python";
                 bool const in_gi = name == "all of `gi" && target.starts_with("gi/");

@@ -3,7 +3,7 @@
 #include "gi/base/error.h"
 #include "viewer/ar/bridge.h"
 #include "viewer/ar/estimate_albedo.h"
-#include "viewer/ar/frames_apart.h"
+#include "viewer/ar/run/frames_apart.h"
 #include "viewer/ar/synthetic.h"
 
 #include <opencv2/imgproc.hpp>

@@ -3,7 +3,7 @@
 #include "gi/scene/generate/builder.h"
 #include "viewer/ar/bridge.h"
 #include "viewer/ar/pair_renderer.h"
-#include "viewer/ar/proxy_mesh.h"
+#include "viewer/ar/session/proxy_mesh.h"
 #include "viewer/ar/synthetic.h"
 
 #include <opencv2/imgproc.hpp>

@@ -1,6 +1,6 @@
 // The check of the chain has to notice what it is there for.
 
-#include "viewer/ar/counter_check.h"
+#include "viewer/ar/run/counter_check.h"
 
 #include "ar/capture/counter_source.h"
 #include "gi/scene/scene.h"

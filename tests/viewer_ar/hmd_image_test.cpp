@@ -3,7 +3,7 @@
 #include "ar/pose/pose_file.h"
 #include "tests/viewer_xr/monado.h"
 #include "tests/viewer_xr/remote_driver.h"
-#include "viewer/ar/runner.h"
+#include "viewer/ar/run/runner.h"
 #include "viewer/gl/pass_through_pass.h"
 
 #include "ar/composite/warp.h"

@@ -1,6 +1,6 @@
 // Composites for two eyes: of each camera from where it is, at the same moment.
 
-#include "viewer/ar/hmd_run.h"
+#include "viewer/ar/run/hmd_run.h"
 
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map_file.h"

@@ -6,8 +6,8 @@
 #include "gi/base/picture_file.h"
 #include "gi/scene/world.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/ar/proxy_mesh.h"
-#include "viewer/ar/real_scene.h"
+#include "viewer/ar/session/proxy_mesh.h"
+#include "viewer/ar/session/real_scene.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>

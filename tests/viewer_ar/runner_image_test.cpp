@@ -1,11 +1,11 @@
 // The threads of a run: what comes out, what is counted, how it ends.
 
-#include "viewer/ar/runner.h"
+#include "viewer/ar/run/runner.h"
 
 #include "ar/capture/clock.h"
 #include "ar/markers/marker_map_file.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/ar/loop_source.h"
+#include "viewer/ar/run/loop_source.h"
 #include "viewer/ar/synthesize.h"
 
 #include <atomic>

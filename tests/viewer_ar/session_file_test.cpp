@@ -1,4 +1,4 @@
-#include "viewer/ar/session_file.h"
+#include "viewer/ar/session/session_file.h"
 
 #include "gi/base/error.h"
 

@@ -1,11 +1,11 @@
 // Cameras by trackers: what recorded and live ones say of a motion that is known.
 
-#include "viewer/ar/tracked_pose.h"
+#include "viewer/ar/session/tracked_pose.h"
 
 #include "gi/base/error.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/ar/hmd_cameras.h"
-#include "viewer/ar/session_file.h"
+#include "viewer/ar/session/hmd_cameras.h"
+#include "viewer/ar/session/session_file.h"
 #include "viewer/tracking/tracker_hub.h"
 
 #include <fmt/format.h>

@@ -5,7 +5,7 @@
 #include "ar/composite/albedo.h"
 #include "gi/base/progress.h"
 #include "viewer/ar/pipeline.h"
-#include "viewer/ar/real_scene.h"
+#include "viewer/ar/session/real_scene.h"
 
 namespace viewer {
 

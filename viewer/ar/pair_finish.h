@@ -7,7 +7,7 @@
 #include "ar/composite/upsample.h"
 #include "ar/composite/warp.h"
 #include "viewer/ar/camera_blur.h"
-#include "viewer/ar/session_file.h"
+#include "viewer/ar/session/session_file.h"
 #include "viewer/ar/virtual_surfaces.h"
 
 namespace viewer {

@@ -6,7 +6,7 @@
 #include "gi/scene/load.h"
 #include "viewer/ar/bridge.h"
 #include "viewer/ar/pose_use.h"
-#include "viewer/ar/real_scene.h"
+#include "viewer/ar/session/real_scene.h"
 
 #include <fmt/format.h>
 

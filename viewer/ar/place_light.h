@@ -5,7 +5,7 @@
 #include "ar/base/frame.h"
 #include "ar/light/live_probe.h"
 #include "gi/scene/scene.h"
-#include "viewer/ar/session_file.h"
+#include "viewer/ar/session/session_file.h"
 
 #include <memory>
 

@@ -2,7 +2,7 @@
 // Which pose a frame is shown with: its estimate, or what the track makes of it.
 
 #include "ar/pose/tracker.h"
-#include "viewer/ar/session_file.h"
+#include "viewer/ar/session/session_file.h"
 
 namespace viewer {
 

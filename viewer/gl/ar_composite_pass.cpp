@@ -9,15 +9,6 @@
 namespace viewer {
 namespace {
 
-GlObject storage(GLenum format, glm::ivec2 size)
-{
-    GlObject texture(GlObject::Kind::texture, GL_TEXTURE_2D);
-    glTextureStorage2D(texture.id(), 1, format, size.x, size.y);
-    for (GLenum const filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-        glTextureParameteri(texture.id(), filter, GL_NEAREST);
-    return texture;
-}
-
 /// Rows may have gaps between them.
 void fill(GlObject const& texture, cv::Mat const& picture, GLenum format, GLenum type)
 {
@@ -49,8 +40,8 @@ glm::vec3 vector_of(std::array<float, 3> const& v) { return {v[0], v[1], v[2]}; 
 ArCompositePass::ArCompositePass(ar::Compositor const& compositor)
     : compositor_(compositor),
       program_({"full_screen.vert"}, {"ar_composite.frag"}, defines(compositor.settings())),
-      response_(storage(GL_RGBA32F, {256, 3})),
-      cells_(storage(GL_R8UI, {int(ar::ResponseTable::kCells) + 1, 3}))
+      response_(texture_2d(GL_RGBA32F, {256, 3}, GL_NEAREST)),
+      cells_(texture_2d(GL_R8UI, {int(ar::ResponseTable::kCells) + 1, 3}, GL_NEAREST))
 {
     cv::Mat table(3, 256, CV_32FC4), cells(3, int(ar::ResponseTable::kCells) + 1, CV_8UC1);
     glm::vec3 cells_per_unit;
@@ -68,7 +59,7 @@ ArCompositePass::ArCompositePass(ar::Compositor const& compositor)
     program_.set("cells_per_unit", cells_per_unit);
     ar::SensorNoise const& noise = compositor_.settings().noise;
     if (noise.any()) {
-        noise_ = storage(GL_RGB32F, {ar::NoiseField::kSize, ar::NoiseField::kSize});
+        noise_ = texture_2d(GL_RGB32F, {ar::NoiseField::kSize, ar::NoiseField::kSize}, GL_NEAREST);
         fill(noise_, compositor_.noise().tile(), GL_RGB, GL_FLOAT);
     }
     auto const& v = compositor_.photometry().vignetting;
@@ -86,10 +77,10 @@ void ArCompositePass::upload(cv::Mat const& rgb, ar::RenderedPair const& pair)
     ar::check(pair, rgb.size());
     if (glm::ivec2 const size(rgb.cols, rgb.rows); size != size_px_) {
         size_px_ = size;
-        camera_ = storage(GL_RGB8, size);
-        with_ = storage(GL_RGB32F, size);
-        without_ = storage(GL_RGB32F, size);
-        coverage_ = storage(GL_R32F, size);
+        camera_ = texture_2d(GL_RGB8, size, GL_NEAREST);
+        with_ = texture_2d(GL_RGB32F, size, GL_NEAREST);
+        without_ = texture_2d(GL_RGB32F, size, GL_NEAREST);
+        coverage_ = texture_2d(GL_R32F, size, GL_NEAREST);
         direct_ = {};
     }
     fill(camera_, rgb, GL_RGB, GL_UNSIGNED_BYTE);
@@ -98,7 +89,7 @@ void ArCompositePass::upload(cv::Mat const& rgb, ar::RenderedPair const& pair)
     fill(coverage_, pair.coverage, GL_RED, GL_FLOAT);
     has_direct_ = !pair.direct.empty();
     if (!has_direct_) return;
-    if (direct_.id() == 0) direct_ = storage(GL_RGB32F, size_px_);
+    if (direct_.id() == 0) direct_ = texture_2d(GL_RGB32F, size_px_, GL_NEAREST);
     fill(direct_, pair.direct, GL_RGB, GL_FLOAT);
 }
 

@@ -47,4 +47,15 @@ GlObject::~GlObject()
     }
 }
 
+GlObject texture_2d(unsigned format, glm::ivec2 size_px, unsigned filter)
+{
+    GlObject texture(GlObject::Kind::texture, GL_TEXTURE_2D);
+    glTextureStorage2D(texture.id(), 1, format, size_px.x, size_px.y);
+    for (GLenum const which : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTextureParameteri(texture.id(), which, GLint(filter));
+    for (GLenum const axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+        glTextureParameteri(texture.id(), axis, GL_CLAMP_TO_EDGE);
+    return texture;
+}
+
 } // namespace viewer

@@ -2,6 +2,7 @@
 // Owns one name of OpenGL. Made, used and destroyed where its context is current.
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <utility>
 
 namespace viewer {
@@ -28,5 +29,9 @@ private:
     Kind kind_ = Kind::texture;
     unsigned id_ = 0;
 };
+
+/// A texture without mipmaps, clamped to its borders. @param format  GL_RGBA8, ...  @param filter  GL_NEAREST or
+/// GL_LINEAR
+GlObject texture_2d(unsigned format, glm::ivec2 size_px, unsigned filter);
 
 } // namespace viewer

@@ -7,17 +7,6 @@
 namespace viewer {
 namespace {
 
-GlObject storage(GLenum format, glm::ivec2 size)
-{
-    GlObject texture(GlObject::Kind::texture, GL_TEXTURE_2D);
-    glTextureStorage2D(texture.id(), 1, format, size.x, size.y);
-    glTextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glTextureParameteri(texture.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTextureParameteri(texture.id(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    return texture;
-}
-
 void fill(GlObject const& texture, cv::Mat const& picture, GLenum format, GLenum type)
 {
     cv::Mat const whole = picture.isContinuous() ? picture : picture.clone();
@@ -51,8 +40,8 @@ PassThroughPass::PassThroughPass(ar::CameraModel const& camera)
     : pinhole_(ar::covering_pinhole(camera)),
       size_px_(camera.size_px),
       program_({"full_screen.vert"}, {"pass_through.frag"}),
-      picture_(storage(GL_RGBA8, camera.size_px)),
-      lens_(storage(GL_RG32F, pinhole_.size_px))
+      picture_(texture_2d(GL_RGBA8, camera.size_px, GL_LINEAR)),
+      lens_(texture_2d(GL_RG32F, pinhole_.size_px, GL_LINEAR))
 {
     fill(lens_, ar::remap_table(pinhole_, camera), GL_RG, GL_FLOAT);
     fill(picture_, cv::Mat::zeros(size_px_.y, size_px_.x, CV_8UC3), GL_RGB, GL_UNSIGNED_BYTE);

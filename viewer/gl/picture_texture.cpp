@@ -7,21 +7,6 @@
 #include <limits>
 
 namespace viewer {
-namespace {
-
-GlObject storage(GLenum format, glm::ivec2 size)
-{
-    GlObject texture(GlObject::Kind::texture, GL_TEXTURE_2D);
-    glTextureStorage2D(texture.id(), 1, format, size.x, size.y);
-    glTextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTextureParameteri(texture.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTextureParameteri(texture.id(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    return texture;
-}
-
-} // namespace
-
 void PictureTexture::upload(glm::ivec2 size_px, std::span<float const> rgb, std::span<float const> depth_m)
 {
     std::size_t const pixels = std::size_t(std::max(size_px.x, 0)) * std::size_t(std::max(size_px.y, 0));
@@ -32,7 +17,7 @@ void PictureTexture::upload(glm::ivec2 size_px, std::span<float const> rgb, std:
                              "give the layers of one picture");
     bool const resized = size_px != size_px_;
     size_px_ = size_px;
-    if (resized || color_.id() == 0) color_ = storage(GL_RGB32F, size_px);
+    if (resized || color_.id() == 0) color_ = texture_2d(GL_RGB32F, size_px, GL_NEAREST);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glTextureSubImage2D(color_.id(), 0, 0, 0, size_px.x, size_px.y, GL_RGB, GL_FLOAT, rgb.data());
 
@@ -42,7 +27,7 @@ void PictureTexture::upload(glm::ivec2 size_px, std::span<float const> rgb, std:
         if (resized) depth_ = {};
         return;
     }
-    if (resized || depth_.id() == 0) depth_ = storage(GL_R32F, size_px);
+    if (resized || depth_.id() == 0) depth_ = texture_2d(GL_R32F, size_px, GL_NEAREST);
     glTextureSubImage2D(depth_.id(), 0, 0, 0, size_px.x, size_px.y, GL_RED, GL_FLOAT, depth_m.data());
     for (float const d : depth_m)
         if (d > 0 && d < nearest_m_) nearest_m_ = d;

@@ -4,10 +4,10 @@
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map_file.h"
 #include "ar/pose/pose_file.h"
-#include "viewer/ar/frame_clock.h"
-#include "viewer/ar/read_values.h"
-#include "viewer/ar/runner.h"
-#include "viewer/ar/source_losses.h"
+#include "viewer/ar/run/frame_clock.h"
+#include "viewer/ar/run/runner.h"
+#include "viewer/ar/run/source_losses.h"
+#include "viewer/ar/session/read_values.h"
 #include "viewer/trials/screen.h"
 
 #include <algorithm>

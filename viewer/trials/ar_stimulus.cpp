@@ -2,7 +2,7 @@
 
 #include "gi/base/file.h"
 #include "study/base/sha256.h"
-#include "viewer/ar/session_inputs.h"
+#include "viewer/ar/session/session_inputs.h"
 
 #include <algorithm>
 #include <charconv>

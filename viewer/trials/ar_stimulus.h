@@ -3,7 +3,7 @@
 
 #include "gi/base/error.h"
 #include "study/design/script.h"
-#include "viewer/ar/session_file.h"
+#include "viewer/ar/session/session_file.h"
 
 namespace viewer {
 
