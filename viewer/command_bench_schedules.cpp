@@ -61,7 +61,7 @@ public:
         for (std::string const& text : o.settings) settings.push_back(parse_change(text));
         for (std::string const& schedule : o.schedules)
             for (int const paths : o.paths) {
-                Variant& v = variants_.emplace_back(schedule, paths);
+                Variant& v = variants_.emplace_back(Variant{schedule, paths});
                 std::vector<Change> all = settings;
                 for (Change const& change : changes_of(schedule)) all.push_back(change);
                 v.session = bench_session(scene, all, *v.report);
@@ -75,8 +75,8 @@ public:
             std::vector<gi::Layer> pictures;
             for (Variant& v : variants_) pictures.push_back(frame(f, v)); // they take turns
             if (f < o_.frames - o_.judged) continue;
-            Variant const& v = variants_[0];
-            gi::Layer const truth = reference_of(*v.session, order(f, 1).views[0], o_.reference_paths, *v.report);
+            gi::Layer const truth =
+                reference_of(*variants_[0].session, order(f, 1).views[0], o_.reference_paths, reference_report_);
             for (std::size_t k = 0; k < variants_.size(); ++k) {
                 auto const errors = gi::measure_errors(pictures[k].data, truth.data, 3);
                 variants_[k].relmse += errors.relmse / o_.judged;
@@ -93,8 +93,9 @@ public:
         table.facts.emplace_back(
             scene_ + ", triangles that can move",
             fmt::format("{} of {}", world.triangles.size() - world.static_triangles, world.triangles.size()));
+        print_losses(reference_report_);
         for (Variant const& v : variants_) {
-            print_losses(*v.report);
+            print_losses(*v.report, fmt::format("{}, {} paths: ", v.schedule, v.paths));
             table.add({scene_, v.schedule, double(v.paths), summarise(v.ms), summarise(v.following_ms), v.relmse});
         }
     }
@@ -129,6 +130,7 @@ private:
     std::string scene_;
     gi::Camera start_;
     std::vector<Variant> variants_;
+    gi::Report reference_report_;
 };
 
 int run(SchedulesOptions const& o)
@@ -146,6 +148,8 @@ int run(SchedulesOptions const& o)
                                    {"scene", "schedule", "paths_per_pixel", "frame_ms", "following_ms", "relmse"});
     table.facts = {{"size", o.size},
                    {"frames", std::to_string(o.frames)},
+                   {"frames timed", std::to_string(o.frames - kFirstMeasured)},
+                   {"rate, Hz", fmt::format("{}", o.rate_hz)},
                    {"frames judged", std::to_string(o.judged)},
                    {"paths of the reference", std::to_string(o.reference_paths)}};
     if (!o.settings.empty()) table.facts.emplace_back("set", fmt::format("{}", fmt::join(o.settings, " ")));

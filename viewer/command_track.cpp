@@ -28,6 +28,18 @@ struct TrackOptions {
     bool json = false, quiet = false;
 };
 
+/// Of UDP, from `least` on.
+CLI::Validator port_from(int least)
+{
+    return CLI::Validator(
+        [least](std::string& text) {
+            int port = 0;
+            bool const is_port = CLI::detail::lexical_cast(text, port) && port >= least && port <= 65535;
+            return is_port ? std::string() : fmt::format("'{}' is no whole number from {} to 65535", text, least);
+        },
+        fmt::format("in [{} - 65535]", least));
+}
+
 TrackerType type_of(std::string const& name)
 {
     return name == "osc" ? TrackerType::osc : name == "dtrack" ? TrackerType::dtrack : TrackerType::file;
@@ -227,8 +239,7 @@ void add_listen(CLI::App& track, int& exit_code)
     c->add_option("--address", o->address,
                   "where to receive: an address or interface of this machine; 0.0.0.0 = all")
         ->capture_default_str();
-    c->add_option("--port", o->port, "UDP port; usual: osc 9000, dtrack 5000; 0 = any")
-        ->check(in_range(-1, 65535));
+    c->add_option("--port", o->port, "UDP port; usual: osc 9000, dtrack 5000; 0 = any")->check(port_from(0));
     c->add_option("--file", o->file, "of --type file: recorded poses (docs/trackers.md)");
     c->add_option("--seconds", o->seconds, "how long")->check(in_range(0, 1e9))->capture_default_str();
     c->add_option("--frame-rate", o->frame_rate_hz, "of a sender that counts frames and sends no time, Hz")
@@ -259,7 +270,7 @@ void add_send(CLI::App& track, int& exit_code)
         ->capture_default_str();
     c->add_option("--file", o->file, "recorded poses (docs/trackers.md); without it a walk");
     c->add_option("--address", o->address, "to whom, numeric")->capture_default_str();
-    c->add_option("--port", o->port, "UDP port; usual: osc 9000, dtrack 5000")->check(in_range(1, 65535));
+    c->add_option("--port", o->port, "UDP port; usual: osc 9000, dtrack 5000")->check(port_from(1));
     c->add_option("--seconds", o->seconds, "at most")->check(in_range(0, 86400))->capture_default_str();
     c->add_option("--rate", o->rate_hz, "of the walk, Hz")->check(in_range(1, 1000))->capture_default_str();
     c->add_option("--loss", o->loss, "share of packets left out")->check(in_range(0, 1))->capture_default_str();

@@ -5,6 +5,7 @@
 #include "viewer/display/display_file.h"
 #include "viewer/interrupt.h"
 #include "viewer/load_world.h"
+#include "viewer/outputs.h"
 #include "viewer/rank_options.h"
 #include "viewer/render_options.h"
 #include "viewer/render_picture.h"
@@ -12,6 +13,7 @@
 #include "viewer/report_json.h"
 #include "viewer/show/cluster_link.h"
 #include "viewer/show/hmd_program.h"
+#include "viewer/show/layout.h"
 #include "viewer/show/view_program.h"
 #include "viewer/user_avatars.h"
 #include "viewer/validators.h"
@@ -21,8 +23,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 #include <memory>
+#include <set>
 
 namespace viewer {
 namespace {
@@ -112,6 +116,32 @@ int rank_of_environment()
     return rank == nullptr ? -1 : std::atoi(rank);
 }
 
+int ranks_of_environment()
+{
+    char const* const ranks = std::getenv("OMPI_COMM_WORLD_SIZE");
+    return ranks == nullptr ? 1 : std::atoi(ranks);
+}
+
+/// Throws InputError where windows of the display belong to ranks that were not started.
+void check_ranks(Display const& display, int ranks)
+{
+    std::vector<std::string> windows;
+    std::set<int> missing;
+    for (Wall const& wall : display.walls) {
+        if (wall.rank < ranks || !missing.insert(wall.rank).second) continue;
+        for (int const w : windows_of(display, wall.rank))
+            windows.push_back("'" + display.windows[std::size_t(w)].name + "'");
+    }
+    if (missing.empty()) return;
+    bool const one = missing.size() == 1;
+    throw gi::InputError(fmt::format("window{} {} belong{} to rank{} {}, but there are {} ranks",
+                                     windows.size() == 1 ? "" : "s", fmt::join(windows, ", "),
+                                     windows.size() == 1 ? "s" : "", one ? "" : "s", fmt::join(missing, ", "),
+                                     ranks),
+                         "ranks count from 0, and nobody would show them",
+                         fmt::format("start with mpirun -n {}", *missing.rbegin() + 1));
+}
+
 /// Followers have no sockets, files and people of their own.
 void follow(ViewOptions& o)
 {
@@ -138,13 +168,23 @@ int finish(ViewArguments const& a, ViewSummary const& done, ClusterLink const* l
     stats["report"] = to_json(report);
     if (!a.stats.empty()) gi::write_text(a.stats, to_text(stats));
     fmt::print("{} frames rendered, {} shown{}\n", done.rendered, done.presented,
-               done.recorded > 0 ? fmt::format(", {} recorded to {}", done.recorded, a.record) : "");
+               !a.record.empty() ? fmt::format(", {} recorded to {}", done.recorded, a.record) : "");
     if (link != nullptr && link->skew().frames > 0) fmt::print("{}\n", to_text(link->skew()));
     std::fflush(stdout);
     print_losses(report);
-    if (link == nullptr || link->failure().empty()) return 0;
-    std::fputs(("lightwell: " + link->failure() + "\n").c_str(), stderr);
-    return 1;
+    if (link != nullptr && !link->failure().empty()) {
+        std::fputs(("lightwell: " + link->failure() + "\n").c_str(), stderr);
+        return 1;
+    }
+    return done.files_whole ? 0 : 1;
+}
+
+/// Before the session: afterwards it would be lost.
+void check_results(ViewArguments const& a)
+{
+    std::string const screenshot = a.screenshots.empty() ? "" : a.screenshots + "lightwell_000000.png";
+    check_outputs({a.stats, a.record, a.frame_log, screenshot},
+                  {a.scene.scene, a.scene.environment, a.display, a.avatar});
 }
 
 int run(ViewArguments const& a, std::string const& command_line)
@@ -155,6 +195,15 @@ int run(ViewArguments const& a, std::string const& command_line)
     ViewOptions o = view_options(a, command_line, report);
     o.rank = Cluster::started_by_mpirun() ? rank_of_environment() : -1;
     follow(o);
+    if (o.rank >= 0 && o.display) {
+        try {
+            check_ranks(*o.display, ranks_of_environment());
+        } catch (gi::InputError const&) {
+            if (o.rank == 0) throw;
+            return 0; // else mpirun may end the leader before it has said why
+        }
+    }
+    if (o.rank < 0) check_results(a);
     if (a.hmd)
         return finish(a, run_hmd(o, {a.seated ? HmdSpace::local : HmdSpace::stage, a.eye_height_m}, stop, report),
                       nullptr, report);
@@ -169,10 +218,12 @@ int run(ViewArguments const& a, std::string const& command_line)
         hash ^= file_hash(avatar.file) * (2 * avatar.user + 1); // the same for two users does not cancel out
     }
     ClusterLink link({version_text(), what, hash}, cluster_settings(a.ranks));
+    if (o.rank == 0) check_results(a); // by now the others learn of a leader that leaves
     ViewSummary const done = run_view(o, &link, stop, report);
     if (o.rank == 0) return finish(a, done, &link, report);
+    print_losses(report, fmt::format("rank {}: ", o.rank));
     if (!link.failure().empty()) std::fputs(("lightwell: " + link.failure() + "\n").c_str(), stderr);
-    return link.failure().empty() ? 0 : 1;
+    return link.failure().empty() && done.files_whole ? 0 : 1;
 }
 
 int run_replay(ViewArguments const& a)
@@ -233,6 +284,14 @@ void check_mode(CLI::App const& command, ViewArguments const& a)
                "with --replay");
     else
         refuse({"--out", "--video", "--paths", "--fps"}, "without --replay");
+    if (!a.hmd) refuse({"--seated"}, "without --hmd");
+    if (!a.display.empty()) {
+        refuse({"--size"}, "with --display");
+        for (std::string const& s : a.settings)
+            if (parse_change(s).key == "stereo")
+                throw gi::InputError("--set " + s + " with --display", "it would not be read",
+                                     "set the stereo of each wall in the display's file");
+    }
     if (!replays && a.scene.scene.empty())
         throw gi::InputError("nothing to view", "neither a scene nor --replay is given", "lightwell view atrium");
     if (a.hmd && !a.display.empty())
@@ -285,7 +344,8 @@ void add_view(CLI::App& app, int& exit_code)
         R"(Keys: W A S D Q E move, drag looks, wheel nears, click selects, control + drag moves what is selected,
 1..9 0 stereo, V split/flicker/difference, C compare with the reference, M method, + - exposure, space plays,
 Tab fly/walk/orbit, Z X raise the avatar's hands, R first camera, P reprojection, F1 panel, F2 screenshot, F11 swaps eyes, Esc ends.
-All settings: docs/viewer.md.
+All settings: docs/viewer.md. Exit code 1: the recording or the frame log was not written to its end, or a rank was lost.
+Esc, Ctrl-C and the end of --time-limit close all files and exit with 0; a replay that Ctrl-C cuts short exits with 130.
 
 Examples (they need a display):
   lightwell view atrium

@@ -86,7 +86,7 @@ DynamicSequence::Frame DynamicSequence::next(gi::DenoiseSettings const& filter, 
     std::map<std::string, double> spent = stages_.times();
     double const direct = spent["direct light, thread seconds"],
                  indirect = spent["indirect light, thread seconds"], light = direct + indirect;
-    s.structures = build_s + spent["hit buffers of a pass"];
+    s.structures = build_s + spent["hit buffers of a pass"] + spent["layers that moved"];
     s.shadow_maps = spent["shadow maps"];
     s.g_buffer = spent["G-buffer"];
     s.direct = light > 0 ? spent["paths"] * direct / light : 0;

@@ -28,8 +28,9 @@ bool is_lit(gi::Scene const& scene)
 void set_environment(gi::Scene& scene, RenderOptions const& o, gi::Report& report)
 {
     if (!o.environment.empty()) {
-        if (scene.environment) say("--envmap replaces the scene's environment map");
+        bool const replaces = scene.environment.has_value();
         scene.environment = gi::load_environment(o.environment, report);
+        if (replaces) say("--envmap replaces the scene's environment map");
     }
     if (!is_lit(scene)) {
         say("the scene has no light: lit by a white sky of radiance 1");

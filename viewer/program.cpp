@@ -13,6 +13,18 @@
 #include <stdexcept>
 
 namespace viewer {
+namespace {
+
+/// Of the innermost subcommand that was given, e.g. "track listen ".
+std::string path_of_given(CLI::App const& app)
+{
+    std::string path;
+    for (auto given = app.get_subcommands(); !given.empty(); given = given.back()->get_subcommands())
+        path += given.back()->get_name() + " ";
+    return path;
+}
+
+} // namespace
 
 int run_program(int argc, char const* const* argv)
 {
@@ -25,7 +37,8 @@ int run_program(int argc, char const* const* argv)
   lightwell info atrium
   lightwell generate boxes --triangles 20000 --out boxes.glb
 
-Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130 interrupted.)");
+Exit codes: 0 done, 1 a comparison failed or not all could be written, 2 the input or the call is wrong, 130 interrupted.
+Who ends view by Ctrl-C leaves it in order: 0.)");
     int exit_code = 0;
     add_render(app, exit_code);
     add_view(app, exit_code);
@@ -48,9 +61,8 @@ Exit codes: 0 done, 1 a comparison failed, 2 the input or the call is wrong, 130
     } catch (CLI::Success const& e) { // --help and --version
         return app.exit(e);
     } catch (CLI::ParseError const& e) {
-        auto const commands = app.get_subcommands(); // those that were given
         std::fputs(fmt::format("lightwell: {} (the call does not fit) see lightwell {}--help\n", e.what(),
-                               commands.empty() ? "" : commands.front()->get_name() + " ")
+                               path_of_given(app))
                        .c_str(),
                    stderr);
         return 2;

@@ -6,6 +6,8 @@
 #include "viewer/load_world.h"
 #include "viewer/tracking/own_avatar.h"
 
+#include <algorithm>
+
 namespace viewer {
 
 namespace {
@@ -80,13 +82,17 @@ std::vector<AvatarChoice> avatars_of(nlohmann::json const& load)
     };
     std::vector<AvatarChoice> avatars;
     auto const read = [&](nlohmann::json const& j, std::size_t user) {
-        if (std::string const file = j.value("avatar", ""); !file.empty())
-            avatars.push_back({user, file, j.value("eye_height_m", 1.6)});
+        std::string const file = j.value("avatar", "");
+        if (file.empty()) return;
+        if (std::ranges::find(avatars, user, &AvatarChoice::user) != avatars.end())
+            refuse("user " + std::to_string(user) + " has two");
+        avatars.push_back({user, file, j.value("eye_height_m", 1.6)});
     };
     try {
         read(load, 0);
         nlohmann::json const others = load.value("avatars", nlohmann::json::array());
-        if (!others.is_array() || others.size() > kMost) refuse("they are no list of at most 65");
+        if (!others.is_array() || others.size() > kMost)
+            refuse("they are no list of at most " + std::to_string(kMost));
         for (nlohmann::json const& j : others) {
             auto const user = j.value("user", std::size_t(0));
             if (user >= kMost) refuse("one is of user " + std::to_string(user));
@@ -104,6 +110,9 @@ RecordedScenes scenes_with(RenderOptions const& options, std::vector<AvatarChoic
     std::vector<std::shared_ptr<OwnAvatar const>> all;
     RecordedScenes s;
     for (AvatarChoice const& a : avatars) {
+        if (a.file != "avatar" && !std::filesystem::exists(a.file))
+            throw gi::InputError("there is no avatar '" + a.file + "'", "no such file",
+                                 "give a skinned model, or avatar: the one that is built in");
         all.push_back(std::make_shared<OwnAvatar const>(gi::load_scene(a.file, report), a.eye_height_m, a.user));
         s.avatars.push_back({a.user, a.on_floor ? all.back()->stance() : std::nullopt});
     }

@@ -22,10 +22,10 @@ void check_device(Space space)
 {
     if (space == Space::host) return;
     if (!kCudaBuild)
-        throw InputError("--device cuda cannot be used", "this program was built without CUDA",
+        throw InputError("the device cuda cannot be used", "this program was built without CUDA",
                          "build the cuda preset, or choose the device cpu");
     if (!device_present())
-        throw InputError("--device cuda cannot be used", "no CUDA device is present",
+        throw InputError("the device cuda cannot be used", "no CUDA device is present",
                          "run on a machine with one and its driver, or choose the device cpu");
 }
 

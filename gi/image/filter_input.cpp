@@ -132,7 +132,7 @@ FilterInput make_filter_input(Picture const& picture, bool with_variance, Filter
         area.for_known(y, [&](Span s) { fill(layers, origin, s, y, in, area.takes ? known : row); });
         without_surface += row.without_surface;
         not_finite += row.not_finite;
-        if (!row.no_variance) no_variance = false;
+        if (!row.no_variance || !known.no_variance) no_variance = false;
     });
     tbb::parallel_for(0, picture.height, [&](int y) {
         for (Span const& s : area.wanted[std::size_t(y)]) measure_footprints(*layers.position, s, y, in.guides);

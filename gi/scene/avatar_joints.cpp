@@ -84,8 +84,8 @@ public:
         if (out.head < 0) missing_.emplace_back("head");
         out.left = find_arm(Side::left, names.left, "left");
         out.right = find_arm(Side::right, names.right, "right");
-        LegJoints const left = find_leg(Side::left, names.left_leg),
-                        right = find_leg(Side::right, names.right_leg);
+        LegJoints const left = find_leg(Side::left, names.left_leg, "left"),
+                        right = find_leg(Side::right, names.right_leg, "right");
         if (left.foot >= 0 && right.foot >= 0) {
             out.left_leg = left;
             out.right_leg = right;
@@ -164,7 +164,7 @@ private:
     }
 
     /// All -1 where one of them is not found.
-    LegJoints find_leg(Side side, LegNames const& names) const
+    LegJoints find_leg(Side side, LegNames const& names, std::string const& which) const
     {
         LegJoints leg;
         leg.upper = names.upper.empty() ? find_named(side, kThigh) : exact(names.upper);
@@ -175,7 +175,12 @@ private:
         if (leg.foot < 0) leg.foot = only_joint_below(leg.lower);
         bool const is_chain = leg.upper >= 0 && leg.lower >= 0 && below(leg.lower, leg.upper) && leg.foot >= 0 &&
                               leg.foot != leg.lower && !below(leg.upper, leg.foot) && !below(leg.lower, leg.foot);
-        return is_chain ? leg : LegJoints{};
+        if (is_chain) return leg;
+        if (!names.upper.empty() || !names.lower.empty() || !names.foot.empty())
+            throw InputError(
+                fmt::format("'{}', '{}' and '{}' are no {} leg", names.upper, names.lower, names.foot, which),
+                "the shin is below the thigh, and neither below the foot", "name thigh, shin and foot");
+        return {};
     }
 
     Scene const& scene_;

@@ -41,7 +41,7 @@ Foot on_ball(Foot const& flat, dvec3 ball_in_foot, dvec3 hip, double reach_m)
     double const least = 0.5 * (glm::dot(d, d) + glm::dot(a, a) - reach_m * reach_m);
     double const nearest = std::atan2(B, A);
     if (!(nearest < 0)) return flat; // only the heel rises
-    double const within = least < most ? std::acos(least / most) : 0;
+    double const within = least < most ? std::acos(std::max(-1.0, least / most)) : 0;
     dquat const rise = glm::angleAxis(std::max(-kMostRise_rad, nearest + within), dvec3{1, 0, 0});
     return {ball + flat.rotation * (rise * a), flat.rotation * rise};
 }

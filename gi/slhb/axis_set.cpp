@@ -32,7 +32,10 @@ dquat random_rotation(std::uint64_t seed)
 
 void AxisSet::build_elsewhere(std::size_t axis)
 {
-    source_.elsewhere(axis, grids_[axis], cut_seeds_[axis]);
+    BuiltAxis const built = source_.elsewhere(axis, grids_[axis], cut_seeds_[axis]);
+    ++built_;
+    layers_ += built.layers;
+    lost_ += built.lost;
     stale_[axis] = 0;
 }
 
@@ -63,7 +66,6 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
         stale_.resize(buffers_.size());
         grids_.resize(buffers_.size());
         for (std::size_t k = 0; k < axes.size(); ++k) build_one(k);
-        built_ += axes.size();
         return;
     }
     tbb::parallel_for(std::size_t(0), axes.size(), build_one);

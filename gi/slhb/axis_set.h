@@ -65,6 +65,9 @@ struct AxisChoice {
 
 class AxisSet {
 public:
+    struct BuiltAxis {
+        std::uint64_t layers = 0, lost = 0; ///< of all texels; those beyond most_layers
+    };
     /// What all axes are built from.
     struct Source {
         Bounds bounds;
@@ -77,7 +80,7 @@ public:
         /// Where it is not empty, buffers are not built here but there, of all that there is, and anew where what
         /// moves is elsewhere: index of the axis, its grid, a seed for the cut-outs. Axes come one after the
         /// other.
-        std::function<void(std::size_t, RasterGrid const&, std::uint32_t)> elsewhere = {};
+        std::function<BuiltAxis(std::size_t, RasterGrid const&, std::uint32_t)> elsewhere = {};
         /// Triangles from here on move: they are left to follow(). As many as there are: none does.
         std::size_t first_moving = ~std::size_t(0);
     };

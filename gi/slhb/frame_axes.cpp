@@ -4,16 +4,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace gi {
 
-void FrameAxes::make(AxisSet::Source source, std::size_t first_moving, bool walks)
+void FrameAxes::make(AxisSet::Source source, bool walks)
 {
-    if (set_) earlier_ = {built(), layers(), lost()};
+    if (set_) earlier_ = {earlier_.built + set_->built(), earlier_.layers + set_->layers(), lost()};
     walks_ = walks;
-    moves_ = first_moving < source.soup.count;
+    following_ = {};
+    moves_ = source.first_moving < source.soup.count;
     // Streamed axes are built in every pass anyway, of all that there is.
-    source.first_moving = slhb_.schedule == Schedule::streamed ? source.soup.count : first_moving;
+    if (slhb_.schedule == Schedule::streamed) source.first_moving = source.soup.count;
     set_.emplace(source);
     if (!stored() || !walks_) return;
     StageTimer const timer(report_, "build (hit buffers)");
@@ -41,6 +43,14 @@ void FrameAxes::end_frame()
 {
     follows_ = false;
     ++frames_;
+}
+
+void FrameAxes::report_work() const
+{
+    double const axes = double(earlier_.built + set_->built()), layers = double(earlier_.layers + set_->layers());
+    double const texels = double(slhb_.resolution) * slhb_.resolution;
+    report_.count("axes built", axes);
+    report_.count("layers per texel, mean", axes > 0 ? layers / axes / texels : 0);
 }
 
 Following FrameAxes::following() const

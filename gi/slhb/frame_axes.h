@@ -15,9 +15,9 @@ public:
     /// @param settings, report  outlive this
     FrameAxes(SlhbSettings const& settings, Report& report) : slhb_(settings), report_(report) {}
 
-    /// Anew; stored ones are built here. @param first_moving  triangle; see AxisSet::Source, where it need not be
-    /// stated  @param walks  paths may leave a surface along an axis: else none is built
-    void make(AxisSet::Source source, std::size_t first_moving, bool walks);
+    /// Anew, before all else; stored ones are built here.
+    /// @param walks  paths may leave a surface along an axis: else none is built
+    void make(AxisSet::Source source, bool walks);
     /// Those of a pass. @param surfaces  of a path that it may leave along an axis
     void prepare(int surfaces, std::uint32_t index);
     void end_frame();
@@ -29,10 +29,10 @@ public:
     bool walks() const { return walks_; }
     AxisSet& set() { return *set_; }
     AxisSet const& set() const { return *set_; }
-    /// So far, of sets that are no more as well: axes, their layers, layers beyond the limit of a texel.
-    std::uint64_t built() const { return earlier_.built + set_->built(); }
-    std::uint64_t layers() const { return earlier_.layers + set_->layers(); }
+    /// Layers beyond the limit of a texel, so far, of sets that are no more as well.
     std::uint64_t lost() const { return earlier_.lost + set_->lost(); }
+    /// What has been built so far, likewise.
+    void report_work() const;
 
 private:
     bool stored() const { return slhb_.schedule == Schedule::stored; }

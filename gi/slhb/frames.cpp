@@ -50,7 +50,7 @@ public:
         if (renderer_) renderer_->follow(followed_); // else one that starts will
     }
 
-    Following following() const override { return renderer_->following(); }
+    Following following() const override { return renderer_ ? renderer_->following() : Following{}; }
 
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                        Moments const& moments) override
@@ -239,7 +239,10 @@ private:
         World const& world = world_.world();
         TriangleSoup soup = make_soup(world);
         settings_.slhb = choose_frame_settings(asked_, world, soup);
-        if (kByKernels) settings_.slhb.interleave = 1; // whatever the budget
+        if (kByKernels) {
+            settings_.slhb.interleave = 1; // whatever the budget
+            for (FrameView const& v : views) check_kernels_can(v.camera, settings_.slhb);
+        }
         renderer_.emplace(world, views, settings_, std::move(soup), world.static_triangles, report_);
         renderer_->follow(followed_);
         restart_ = false;

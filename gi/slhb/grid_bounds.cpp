@@ -14,16 +14,14 @@ Bounds grid_bounds(World const& world, TriangleSoup const& soup, std::size_t fir
     return joined(world.bounds, {moving.low - room, moving.high + room});
 }
 
-bool contains(Bounds const& outer, Bounds const& inner)
+bool grow(Bounds& bounds, Bounds const& world)
 {
-    return inner.empty() || (glm::all(glm::lessThanEqual(outer.low, inner.low)) &&
-                             glm::all(glm::greaterThanEqual(outer.high, inner.high)));
-}
-
-Bounds grown(Bounds const& bounds, Bounds const& world)
-{
+    bool const holds = world.empty() || (glm::all(glm::lessThanEqual(bounds.low, world.low)) &&
+                                         glm::all(glm::greaterThanEqual(bounds.high, world.high)));
+    if (holds) return false;
     vec3 const room = 0.1f * (world.high - world.low);
-    return joined(bounds, {world.low - room, world.high + room});
+    bounds = joined(bounds, {world.low - room, world.high + room});
+    return true;
 }
 
 } // namespace gi

@@ -8,9 +8,9 @@ namespace gi {
 
 /// Everything, and room around what moves, so that an arm that swings is no reason to build all anew.
 Bounds grid_bounds(World const& world, TriangleSoup const& soup, std::size_t first_moving);
-bool contains(Bounds const& outer, Bounds const& inner);
-/// Where the world has left them: with some room, so that it does not happen in every frame.
-Bounds grown(Bounds const& bounds, Bounds const& world);
+/// Where the world has left them, they grow, with some room, so that it does not happen in every frame.
+/// @return whether they did, and all that covers them has to be made anew
+bool grow(Bounds& bounds, Bounds const& world);
 
 /// Whether lamps have to be chosen anew.
 inline bool changes_lamps(Changes const& c) { return c.lights || c.light_select || c.emitters || c.environment; }

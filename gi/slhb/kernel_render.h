@@ -9,8 +9,7 @@
 namespace gi {
 
 /// See RenderFunction in gi/registry. What is missing from the picture is in path_kernel.h, and counted in the
-/// report. Throws InputError on what kernels cannot do: an orthographic camera, --cone,
-/// --gather, --packed, --interleave.
+/// report. Throws InputError on what kernels cannot do, see check_kernels_can.
 RenderResult render_by_kernels(Space space, World const& world, Camera const& camera,
                                RenderSettings const& settings, StopRequest const& stop,
                                RenderProgress const& progress, Report& report);

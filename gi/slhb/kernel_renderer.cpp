@@ -54,6 +54,9 @@ bool KernelRenderer<S>::sky() const
 template <Space S>
 void KernelRenderer<S>::make_axes()
 {
+    auto const build = [this](std::size_t a, RasterGrid const& grid, std::uint32_t seed) {
+        return scene_.build_axis(a, grid, seed);
+    };
     axes_.make({.bounds = grid_bounds_,
                 .soup = soup_,
                 .cut_outs = cut_outs_,
@@ -61,9 +64,9 @@ void KernelRenderer<S>::make_axes()
                 .most_layers = std::uint32_t(slhb_.most_layers),
                 .packed = false,
                 .seed = settings_.seed,
-                .elsewhere = [this](std::size_t a, RasterGrid const& grid,
-                                    std::uint32_t seed) { scene_.build_axis(a, grid, seed); }},
-               first_moving_, walks());
+                .elsewhere = build,
+                .first_moving = first_moving_},
+               walks());
 }
 
 template <Space S>
@@ -93,8 +96,7 @@ void KernelRenderer<S>::changed(Changes const& c)
     }
     bool axes = axes_.walks() != walks(), lamps = changes_lamps(c);
     if (c.geometry) {
-        if (!contains(grid_bounds_, world_.bounds)) {
-            grid_bounds_ = grown(grid_bounds_, world_.bounds);
+        if (grow(grid_bounds_, world_.bounds)) {
             if (slhb_.schedule != Schedule::streamed) // which is built anew in every pass
                 report_.lose("frames that left the bounds of the hit buffers, which were built anew");
             axes = lamps = true; // the maps of parallel light hold the same bounds
@@ -205,10 +207,7 @@ void KernelRenderer<S>::report_work() const
         report_.count("pixels not rendered, as nobody sees them", double(hidden_));
         report_.count("share of pixels not rendered", double(hidden_) / double(pixels_));
     }
-    double const axes = double(scene_.built());
-    report_.count("axes built", axes);
-    report_.count("layers per texel, mean",
-                  axes > 0 ? double(scene_.layers()) / axes / (double(slhb_.resolution) * slhb_.resolution) : 0);
+    axes_.report_work();
     report_.count("shadow maps built", double(earlier_maps_ + lamps_->maps_built()));
 }
 

@@ -39,7 +39,7 @@ public:
     /// None is taken from a partner.
     std::span<std::uint32_t const> light_from(std::size_t) const { return {}; }
     double rays() const { return double(queries_ + shadow_lookups_); }
-    std::uint64_t lost_layers() const { return scene_.lost(); }
+    std::uint64_t lost_layers() const { return axes_.lost(); }
     void report_work() const;
 
 private:

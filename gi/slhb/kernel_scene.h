@@ -4,9 +4,13 @@
 
 #include "gi/raster/draw_nearest.h"
 #include "gi/scene/world_on.h"
+#include "gi/slhb/axis_set.h"
 #include "gi/slhb/build_hit_buffer.h"
 #include "gi/slhb/lamps.h"
 #include "gi/slhb/path_kernel.h"
+
+#include <array>
+#include <utility>
 
 namespace gi {
 
@@ -26,15 +30,13 @@ public:
         if (changes.geometry) soup_.update(soup, world.static_triangles);
     }
 
-    void build_axis(std::size_t a, RasterGrid const& grid, std::uint32_t seed)
+    AxisSet::BuiltAxis build_axis(std::size_t a, RasterGrid const& grid, std::uint32_t seed)
     {
         if (axes_.size() <= a) axes_.resize(a + 1);
         with_cut_outs(seed, [&](auto const& keep) {
             axes_[a] = build_hit_buffer<S>(soup_.view(), grid, most_layers_, keep);
         });
-        ++built_;
-        lost_ += axes_[a].lost;
-        layers_ += axes_[a].layers.size();
+        return {axes_[a].layers.size(), axes_[a].lost};
     }
 
     void draw_lamps(Lamps::Elsewhere const& now)
@@ -116,9 +118,6 @@ public:
     }
 
     PathKernelCounts const& counts() const { return counts_; } ///< of the last trace
-    std::uint64_t built() const { return built_; }             ///< axes, so far
-    std::uint64_t lost() const { return lost_; }               ///< layers beyond the limit of a texel, so far
-    std::uint64_t layers() const { return layers_; }           ///< of all axes built so far
 
 private:
     template <class Work>
@@ -145,7 +144,6 @@ private:
     Buffer<LampView, S> lamps_;
     Buffer<PathSample, S> samples_;
     PathKernelCounts counts_;
-    std::uint64_t built_ = 0, lost_ = 0, layers_ = 0;
 };
 
 } // namespace gi

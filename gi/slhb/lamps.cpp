@@ -146,7 +146,6 @@ void Lamps::build(std::span<Lamp* const> fresh, std::uint32_t pass)
         for (auto& face : lamp->taken) face.clear();
     }
     std::uint32_t const seed = rng.next();
-    if (!elsewhere_) built_ += fresh.size();
     if (elsewhere_) {
         std::vector<std::size_t> drawn;
         for (Lamp& lamp : lamps_)
@@ -157,6 +156,7 @@ void Lamps::build(std::span<Lamp* const> fresh, std::uint32_t pass)
         moved_ = false;
         return;
     }
+    built_ += fresh.size();
     tbb::parallel_for(std::size_t(0), 6 * fresh.size(), [&](std::size_t job) {
         Lamp& lamp = *fresh[job / 6];
         builder_.build(lamp.view, int(job % 6), first_moving_, seed, lamp.shadow);

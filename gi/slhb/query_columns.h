@@ -1,6 +1,7 @@
 #pragma once
 // Which columns of texels the queries of a batch look into, vectors of them at a time, and how their memory is
-// brought near before they are walked along. For .cpp files only.
+// brought near before they are walked along. For query_batch.cpp alone: its arrays
+// are as wide as the vectors that it is compiled for.
 
 #include "gi/raster/lanes.h"
 #include "gi/slhb/query_batch.h"

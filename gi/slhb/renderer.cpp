@@ -66,8 +66,9 @@ void SlhbRenderer::make_axes()
                 .resolution = texels(slhb_.exact.queries, slhb_.resolution),
                 .most_layers = std::uint32_t(slhb_.most_layers),
                 .packed = slhb_.packed,
-                .seed = settings_.seed},
-               first_moving_, walks());
+                .seed = settings_.seed,
+                .first_moving = first_moving_},
+               walks());
 }
 
 void SlhbRenderer::make_lamps()
@@ -101,10 +102,9 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
             if (exact_) exact_->moved(world_);
             if (judge_) judge_->moved(world_);
         }
-        if (contains(grid_bounds_, world_.bounds)) {
+        if (!grow(grid_bounds_, world_.bounds)) {
             axes_.set().moved();
         } else {
-            grid_bounds_ = grown(grid_bounds_, world_.bounds);
             if (slhb_.schedule != Schedule::streamed) // which is built anew in every pass
                 report_.lose("frames that left the bounds of the hit buffers, which were built anew");
             make_axes();
@@ -247,10 +247,7 @@ std::span<std::uint32_t const> SlhbRenderer::light_from(std::size_t view) const
 void SlhbRenderer::report_work() const
 {
     paths_.report_work();
-    double const axes = double(axes_.built()), layers = double(axes_.layers());
-    report_.count("axes built", axes);
-    report_.count("layers per texel, mean",
-                  axes > 0 ? layers / axes / (double(slhb_.resolution) * slhb_.resolution) : 0);
+    axes_.report_work();
     report_.count("shadow maps built", double(earlier_maps_ + lamps_->maps_built()));
 }
 

@@ -144,19 +144,18 @@ std::uint32_t SlhbTracer::indirect_share(std::uint32_t pixel, std::uint32_t pass
     return (own + pass * kStride) % all == 0 ? all : 0;
 }
 
-/// By a mirror, glass or a narrow lobe. False where the path ends.
-bool SlhbTracer::scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe, bool last,
-                                bool& delta) const
+/// By a mirror, glass or a narrow lobe.
+SlhbTracer::Scattered SlhbTracer::scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe,
+                                                 bool last) const
 {
     BsdfSample const sampled = gi::sample(at.bsdf, wo, at.front, u_lobe, s.random.sample2(s.dimension(lobe_u)));
-    if (last && !sampled.delta) return false;
+    if (last && !sampled.delta) return Scattered::not_at_all;
     s.throughput *= sampled.weight;
-    delta = sampled.delta;
     s.direction = at.frame.to_world(sampled.wi);
-    if ((glm::dot(s.direction, at.geometric_normal) > 0) != (sampled.wi.z > 0)) return false;
-    s.arrival_pdf = delta ? 0 : sampled.pdf;
-    s.exact_pdf = delta ? 0 : narrow_pdf(at.bsdf, wo, sampled.wi, sampled.pdf);
-    return true;
+    if ((glm::dot(s.direction, at.geometric_normal) > 0) != (sampled.wi.z > 0)) return Scattered::not_at_all;
+    s.arrival_pdf = sampled.delta ? 0 : sampled.pdf;
+    s.exact_pdf = sampled.delta ? 0 : narrow_pdf(at.bsdf, wo, sampled.wi, sampled.pdf);
+    return sampled.delta ? Scattered::by_delta_lobe : Scattered::widely;
 }
 
 AxisSample SlhbTracer::choose_axis(Pass const& pass, State const& s, ShadingPoint const& at) const
@@ -242,10 +241,11 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
     if (!last && !pass.lamps.none() && !only_delta(at.bsdf)) add_direct(pass, s, at, wo, narrow, direct);
 
     float const u_lobe = narrow ? s.random.sample(s.dimension(lobe)) : 1;
-    bool delta = false;
+    Scattered scattered = Scattered::widely;
     next.exact = narrow && takes_narrow_lobe(at.bsdf, wo, u_lobe);
     if (next.exact) {
-        if (!scatter_by_ray(s, at, wo, u_lobe, last, delta)) return false;
+        scattered = scatter_by_ray(s, at, wo, u_lobe, last);
+        if (scattered == Scattered::not_at_all) return false;
     } else {
         if (last || !(wo.z > 0)) return false;
         // The last surface would only bring light that exact rays or the sky can bring.
@@ -264,7 +264,7 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
         next.ray = {at.position + offset * at.geometric_normal, s.direction};
     }
     s.by_axis = !next.exact;
-    if (!delta) ++s.scatterings;
+    if (scattered == Scattered::widely) ++s.scatterings;
     ++s.vertex;
     return true;
 }

@@ -108,7 +108,8 @@ private:
                     std::vector<Unshadowed>& direct) const;
     void add_sky(Pass const& pass, State& s, Vertex const& last) const;
     void add_emission(State const& s, Vertex const& last, ShadingPoint const& at) const;
-    bool scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe, bool last, bool& delta) const;
+    enum class Scattered : std::uint8_t { not_at_all, widely, by_delta_lobe };
+    Scattered scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe, bool last) const;
     bool scatter_along_axis(Pass const& pass, State& s, ShadingPoint const& at, vec3 wo, bool narrow,
                             Vertex& next) const;
     AxisSample choose_axis(Pass const& pass, State const& s, ShadingPoint const& at) const;

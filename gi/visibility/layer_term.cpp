@@ -1,5 +1,6 @@
 #include "gi/visibility/layer_term.h"
 
+#include "gi/slhb/grid_bounds.h"
 #include "gi/slhb/query_batch.h"
 
 #include <cmath>
@@ -11,12 +12,6 @@ namespace {
 std::uint32_t map_size(std::size_t directions)
 {
     return std::uint32_t(std::ceil(4 * std::sqrt(double(directions))));
-}
-
-bool contains(Bounds const& outer, Bounds const& inner)
-{
-    return inner.empty() || (glm::all(glm::lessThanEqual(outer.low, inner.low)) &&
-                             glm::all(glm::greaterThanEqual(outer.high, inner.high)));
 }
 
 } // namespace
@@ -82,13 +77,9 @@ void LayerTerm::build(Bounds const& bounds)
 void LayerTerm::world_changed()
 {
     update_soup(world_, first_moving_, soup_);
-    if (contains(bounds_, world_.bounds)) {
-        axes_->moved();
-        return axes_->follow();
-    }
-    Bounds const b = world_.bounds;
-    vec3 const room = 0.1f * (b.high - b.low); // so that it does not happen in every frame
-    build(joined(bounds_, {b.low - room, b.high + room}));
+    if (grow(bounds_, world_.bounds)) return build(bounds_);
+    axes_->moved();
+    axes_->follow();
 }
 
 /// Adds the walk; false where its axis does not leave `from`.

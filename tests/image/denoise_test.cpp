@@ -248,6 +248,7 @@ TEST_P(AllFilters, FindTheFewPixelsThatTakeNothing)
     Picture q = p;
     DenoiseReport const report = denoise(q, GetParam(), {&partner, from});
     EXPECT_EQ(report.not_finite, 2u);
+    EXPECT_FALSE(report.no_variance);
     for (std::size_t i = 0; i < p.pixels(); ++i) {
         bool const keeps = i == 40 * kSize + 40 || i == 20 * kSize + 20 || i == 60 * kSize + 60,
                    taken = from[i] != kOwnLight;

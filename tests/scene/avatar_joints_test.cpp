@@ -110,6 +110,8 @@ TEST(AvatarJoints, WithoutLegsAnAvatarIsAnAvatar)
     Scene const scene = Walker({"a", "b", "c", "RightUpLeg", "RightLeg", "RightFoot"}).scene;
     EXPECT_EQ(find_avatar_joints(scene, names).left_leg.lower, 10);
     EXPECT_EQ(find_avatar_joints(scene, names).right_leg.lower, 13);
+    names.left_leg = {"b", "a", "c"};
+    EXPECT_THROW(find_avatar_joints(scene, names), InputError) << "what is named is not dropped";
 }
 
 TEST(AvatarJoints, AFoxHasNoLegsThatCanBeTold)

@@ -55,8 +55,14 @@ TEST(DisplayCommand, RefusesInOneLine)
     TemporaryFolder const folder;
     run_well("display example cave.pvx --out cave.pvx", folder.path());
     run_well("display example cave4.yaml --out cave4.yaml", folder.path());
+    std::ofstream(folder / "cut.yaml") << "name: cut\n";
+    std::ofstream(folder / "cut.json") << "{\n  \"nodes\": [1,";
+    std::ofstream(folder / "comma.json") << "{\"version\": 1 \"nodes\": []}";
     for (auto const& [arguments, mentions] :
          {std::pair{"display", "subcommand"},
+          {"display check cut.yaml", "windows: [{name: front"},
+          {"display import cut.json --out x.yaml", "cut.json:2:15: this is not JSON (the text ends too early)"},
+          {"display import comma.json --out x.yaml", "comma.json:1:21: this is not JSON"},
           {"display check nowhere.yaml", "nowhere.yaml"},
           {"display check cave.pvx", "cave.pvx:1:1"},
           {"display example cave9.yaml --out x", "there are: "},
@@ -68,7 +74,8 @@ TEST(DisplayCommand, RefusesInOneLine)
         EXPECT_NE(o.err.find(mentions), std::string::npos) << arguments << "\n" << o.err;
         EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
     }
-    EXPECT_EQ(folder.files(), (std::vector<std::string>{"cave.pvx", "cave4.yaml"}));
+    EXPECT_EQ(folder.files(),
+              (std::vector<std::string>{"cave.pvx", "cave4.yaml", "comma.json", "cut.json", "cut.yaml"}));
 }
 
 } // namespace

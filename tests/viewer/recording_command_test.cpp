@@ -48,6 +48,24 @@ TEST(RecordingCommand, ExportsWhatIsLeftOfADamagedOne)
     EXPECT_EQ(folder.files(), (std::vector<std::string>{"walk.csv", "walk.lwr"}));
 }
 
+/// On a walk that the test makes: view, which makes theirs, needs a display.
+TEST(RecordingCommand, RunsTheExamplesOfItsHelp)
+{
+    for (char const* command : {"recording", "recording info", "recording export"}) {
+        TemporaryFolder const folder;
+        record_walk(folder / "walk.lwr");
+        std::istringstream help(run_well(std::string(command) + " --help", folder.path()).out);
+        std::string const start = std::string("  lightwell ") + command;
+        int count = 0;
+        for (std::string line; std::getline(help, line);) {
+            if (!line.starts_with(start)) continue;
+            run_well(line.substr(std::string("  lightwell ").size()), folder.path());
+            ++count;
+        }
+        EXPECT_GT(count, 0) << help.str();
+    }
+}
+
 TEST(RecordingCommand, RefusesWhatItCannotRead)
 {
     TemporaryFolder const folder;

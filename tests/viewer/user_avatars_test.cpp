@@ -66,7 +66,9 @@ TEST(UserAvatars, DamagedRecordingsAreRefused)
     using Json = nlohmann::json;
     for (Json const& load :
          {Json{{"avatar", 5}}, Json{{"avatar", "a.glb"}, {"eye_height_m", "x"}}, Json{{"avatars", 5}},
-          Json{{"avatars", {"x"}}}, Json{{"avatars", {{{"avatar", "a.glb"}, {"user", 100}}}}}})
+          Json{{"avatars", {"x"}}}, Json{{"avatars", {{{"avatar", "a.glb"}, {"user", 100}}}}},
+          Json{{"avatar", "a.glb"}, {"avatars", {{{"avatar", "b.glb"}, {"user", 0}}}}},
+          Json{{"avatars", {{{"avatar", "a.glb"}, {"user", 2}}, {{"avatar", "b.glb"}, {"user", 2}}}}}})
         EXPECT_THROW(avatars_of(load), gi::InputError) << load.dump();
 }
 

@@ -184,6 +184,46 @@ TEST(WrongCalls, OutputsAreCheckedBeforeTheWork)
     EXPECT_EQ(file_text(folder / "file"), "kept");
 }
 
+TEST(WrongCalls, OutputsOfAViewAreCheckedBeforeTheSession)
+{
+    TemporaryFolder const folder;
+    for (WrongCall const call : {
+             WrongCall{"--stats nowhere/a.json", "no folder 'nowhere'"},
+             {"--screenshots nowhere/a", "no folder 'nowhere'"},
+             {"--record nowhere/a.lwr", "no folder 'nowhere'"},
+             {"--frame-log nowhere/a.csv", "no folder 'nowhere'"},
+             {"--stats .", "folder"},
+             {"--stats a.lwr --record ./a.lwr", "two outputs"},
+         })
+        expect_refused(std::string("view cornell ") + call.arguments, call.mentions, folder.path());
+    EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
+}
+
+TEST(WrongCalls, PointToTheHelpOfWhatWasCalled)
+{
+    TemporaryFolder const folder;
+    for (WrongCall const call : {
+             WrongCall{"paint", "see lightwell --help"},
+             {"render", "see lightwell render --help"},
+             {"recording", "see lightwell recording --help"},
+             {"recording export w.lwr", "see lightwell recording export --help"},
+             {"track listen --seconds x", "see lightwell track listen --help"},
+         })
+        expect_refused(call.arguments, call.mentions, folder.path());
+}
+
+TEST(WrongCalls, PortsAreWholeNumbers)
+{
+    TemporaryFolder const folder;
+    for (WrongCall const call : {
+             WrongCall{"track listen --port 70000", "'70000' is no whole number from 0 to 65535"},
+             {"track listen --port -1", "from 0 to 65535"},
+             {"track listen --port 9000.5", "from 0 to 65535"},
+             {"track send --port 0", "from 1 to 65535"},
+         })
+        expect_refused(call.arguments, call.mentions, folder.path());
+}
+
 TEST(WrongCalls, ADeviceThatIsNotThere)
 {
     if (gi::device_present()) GTEST_SKIP() << "SKIPPED: there is a CUDA device";

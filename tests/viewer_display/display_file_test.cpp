@@ -144,6 +144,8 @@ TEST(DisplayFile, EveryRefusalHasItsPlaceAndItsWords)
          "d.yaml:2:5: user is missing (there are several)"},
         {"type: osc", "type: vrpn", "d.yaml:12:21: 'vrpn' is no type of tracker"},
         {"port: 9000", "port: 0", "d.yaml:12:32: port 0"},
+        {"body: /head}", "body: /head}\n  - {name: wand, type: dtrack, port: 9000, body: 1}",
+         "trackers 't' and 'wand' share 127.0.0.1 port 9000 (one speaks OSC, the other DTrack)"},
         {"body: /head", "body: head", "'head' is no OSC path"},
         {"type: osc, port: 9000, body: /head", "type: dtrack, port: 5000, body: head",
          "'head' is no body of DTrack"},

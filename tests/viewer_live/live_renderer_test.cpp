@@ -53,7 +53,10 @@ struct Live {
 /// The leader of ranks of which another one takes as long as told.
 class SlowestRank : public FrameLink {
 public:
-    explicit SlowestRank(double seconds) : seconds_(seconds) {}
+    explicit SlowestRank(double seconds, std::optional<gi::Following> following = {})
+        : seconds_(seconds), following_(following)
+    {
+    }
     void begin() override {}
     void end() override {}
     bool leads() const override { return true; }
@@ -62,13 +65,14 @@ public:
     void check() override {}
     FrameWork wait_for_all(FrameOrder const&, FrameWork const& own) override
     {
-        return {seconds_, own.following, own.moved};
+        return {seconds_, following_.value_or(own.following), own.moved};
     }
     void drawn(std::uint64_t) override {}
     void swapped(std::uint64_t, double) override {}
 
 private:
     double seconds_;
+    std::optional<gi::Following> following_;
 };
 
 /// Of all ranks the slowest decides what there is time for, whatever this one took for its share of the pixels.
@@ -79,7 +83,10 @@ TEST(LiveRenderer, GoesByTheSlowestRank)
         live.renderer.reset();
         SlowestRank link(slow ? 10 : 1e-4);
         LiveRenderer::Hooks hooks;
-        hooks.finished = [&](LiveFrame const& f) { live.orders.push_back(f.order); };
+        FrameBudget budget; // of the last frame that moved: those that refine have another
+        hooks.finished = [&](LiveFrame const& f) {
+            if (f.result.still_frames <= 1) budget = f.budget;
+        };
         hooks.own_views = [](FrameOrder const& order) { return std::vector{order.views.at(0)}; };
         live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, &link, hooks);
         std::shared_ptr<LiveFrame const> frame;
@@ -94,10 +101,29 @@ TEST(LiveRenderer, GoesByTheSlowestRank)
             ASSERT_NE(frame, nullptr);
             EXPECT_EQ(frame->result.views.size(), 1u);
         }
-        EXPECT_EQ(frame->budget.scale, slow ? 0.25 : 1);
-        EXPECT_EQ(frame->budget.paths == 1, slow) << frame->budget.paths;
         live.renderer->stop();
+        EXPECT_EQ(budget.scale, slow ? 0.25 : 1);
+        EXPECT_EQ(budget.paths == 1, slow) << budget.paths;
     }
+}
+
+/// Its hit buffers are on the other ranks, and so is what it says of them.
+TEST(LiveRenderer, ALeaderWithoutWallsSaysWhatOthersDo)
+{
+    Live live;
+    live.renderer.reset();
+    SlowestRank link(0.01, gi::Following{160, 160, 3, 0});
+    LiveRenderer::Hooks hooks;
+    hooks.own_views = [](FrameOrder const&) { return std::vector<ViewOrder>{}; };
+    live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, &link, hooks);
+    std::shared_ptr<LiveFrame const> frame;
+    for (int i = 0; i < 3; ++i) {
+        live.look(0.01 * i);
+        frame = live.renderer->next_frame(20);
+        ASSERT_NE(frame, nullptr);
+    }
+    live.renderer->stop();
+    EXPECT_EQ(frame->schedule, "stored: all 160 directions; nothing has moved so far");
 }
 
 TEST(LiveRenderer, RendersWhatIsLookedAtAndConverges)

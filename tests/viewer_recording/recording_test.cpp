@@ -155,6 +155,7 @@ TEST(Recorder, RefusesWhatCouldNotBeReplayed)
     recorder.append(walk_frame(4));
     recorder.finish();
     recorder.finish();
+    EXPECT_EQ(recorder.written_frames(), 2u);
     RecordingReader reader(folder / "walk.lwr");
     EXPECT_EQ(reader.next(), walk_frame(3));
     EXPECT_EQ(reader.next(), walk_frame(4));
@@ -184,6 +185,7 @@ int record_onto_a_full_disk(std::filesystem::path const& file)
     }
     RecordingEnd const& end = reader.end();
     if (end.state != RecordingState::cut || end.unread_bytes != 0 || end.frames < 40) return 4;
+    if (end.frames != recorder.written_frames()) return 6;
     return end.frames + losses.begin()->second.count == 200 ? 0 : 5;
 }
 

@@ -133,6 +133,20 @@ TEST(RemoteServer, LinesMayComeByteByByteAndWithoutTheirWriter)
     EXPECT_EQ(server.report.losses().at("remote requests that end within their line").count, 1u);
 }
 
+TEST(RemoteServer, TheLastLineMayLackItsEnd)
+{
+    TestServer server;
+    Socket const other = connect_to(server.path());
+    std::string const text = "{\"id\":7,\"do\":\"ping\"}";
+    ASSERT_EQ(::send(other.fd(), text.data(), text.size(), 0), ssize_t(text.size()));
+    ::shutdown(other.fd(), SHUT_WR);
+    std::string got;
+    char chunk[4096];
+    for (ssize_t n; (n = ::recv(other.fd(), chunk, sizeof chunk, 0)) > 0;) got.append(chunk, std::size_t(n));
+    EXPECT_NE(got.find("\"id\":7"), std::string::npos) << got;
+    EXPECT_TRUE(server.report.losses().empty());
+}
+
 TEST(RemoteServer, WebPagesCannotSpeakToIt)
 {
     TestServer server;

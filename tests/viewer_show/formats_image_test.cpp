@@ -3,7 +3,9 @@
 #include "tests/viewer_show/live_view.h"
 #include "tests/viewer_show/x/x_window.h"
 
+#include <csignal>
 #include <set>
+#include <sys/resource.h>
 
 namespace viewer::test {
 namespace {
@@ -110,6 +112,56 @@ TEST_F(FormatsOfView, FrameLogAndRecording)
     EXPECT_NE(o.out.find("recorded to walk.lwr"), std::string::npos) << o.out;
 }
 
+/// While it lives, programs that are started find disks full after so many bytes of a file.
+class FullDisk {
+public:
+    explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN))
+    {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        rlimit const limit{bytes, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FullDisk()
+    {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    FullDisk(FullDisk const&) = delete;
+    FullDisk& operator=(FullDisk const&) = delete;
+
+private:
+    void (*handler_)(int);
+    rlimit before_{};
+};
+
+TEST_F(FormatsOfView, AFullDiskIsToldAtOnceAndCounted)
+{
+    TemporaryFolder const folder;
+    std::optional<FullDisk> full(16 << 10);
+    Program program(words("view cornell --size 64x48 --record full.lwr --stats stats.json"), folder.path());
+    full.reset();
+    std::string const alarm = "lightwell: 'full.lwr' cannot be written any further (File too large)";
+    auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (program.runs() && program.errors().find(alarm) == std::string::npos) {
+        ASSERT_LT(std::chrono::steady_clock::now(), end) << program.errors();
+        sleep_ms(20);
+    }
+    EXPECT_TRUE(program.runs()) << "the walk goes on";
+    sleep_ms(300); // some more that are lost
+    program.send(SIGINT);
+    Outcome const o = program.wait();
+    EXPECT_EQ(o.code, 1) << o.err;
+    EXPECT_EQ(o.err.find(alarm), o.err.rfind(alarm)) << "told once\n" << o.err;
+    Json const info = Json::parse(run_well("recording info full.lwr --json", folder.path()).out);
+    Json const stats = Json::parse(file_text(folder / "stats.json"));
+    EXPECT_GT(info.at("frames"), 0);
+    EXPECT_EQ(stats.at("recorded"), info.at("frames"));
+    EXPECT_GT(stats.at("frames_rendered"), info.at("frames"));
+    EXPECT_NE(o.out.find(std::to_string(info.at("frames").get<int>()) + " recorded to full.lwr"),
+              std::string::npos)
+        << o.out;
+}
+
 TEST_F(FormatsOfView, WhatIsThereIsNotOverwritten)
 {
     TemporaryFolder const folder;
@@ -138,6 +190,19 @@ TEST_F(FormatsOfView, WrongCalls)
           "cornell --remote-port 99999", "cornell --size 1000000x1000000"})
         expect_refused(wrong, folder.path());
     EXPECT_EQ(folder.files(), std::vector<std::string>{});
+}
+
+TEST_F(FormatsOfView, OptionsThatWouldNotBeRead)
+{
+    TemporaryFolder const folder;
+    for (char const* const wrong :
+         {"cornell --seated", "cornell --display walls.yaml --size 100x100",
+          "cornell --display walls.yaml --set exposure=1 --set stereo=rows", "cornell --paths 4"}) {
+        Outcome const o =
+            Program(words("view " + std::string(wrong)), folder.path()).wait(std::chrono::seconds(30));
+        EXPECT_EQ(o.code, 2) << wrong;
+        EXPECT_NE(o.err.find("it would not be read"), std::string::npos) << wrong << "\n" << o.err;
+    }
 }
 
 TEST_F(FormatsOfView, NoDisplay)

@@ -3,11 +3,13 @@
 #include "gi/base/picture_file.h"
 #include "tests/viewer_show/live_view.h"
 #include "tests/viewer_show/x/x_window.h"
+#include "viewer/recording/recording.h"
 
 #include <atomic>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <map>
 
 namespace viewer::test {
 namespace {
@@ -154,6 +156,47 @@ TEST_F(Input, ConvergedScreenshotOfAPictureThatRests)
     view->settle();
     Json const shot{{"do", "screenshot"}, {"file", view->folder() / "rests.png"}, {"converged", true}};
     EXPECT_TRUE(view->answer(shot, std::chrono::seconds(5)).contains("result"));
+    view->quit();
+}
+
+/// The recording tells which camera the frame had.
+TEST_F(Input, ScreenshotsShowWhatWasAskedBeforeThem)
+{
+    view.emplace("cornell --size 64x48 --record walk.lwr --set reproject=false");
+    std::map<std::uint64_t, glm::dvec3> asked;
+    auto const shoot = [&](glm::dvec3 at) { asked[std::uint64_t(view->screenshot("shot.png"))] = at; };
+    for (int i = 0; i < 5; ++i) {
+        glm::dvec3 const at{0.2 + 0.03 * i, 0.25, -0.5};
+        view->ask({{"do", "camera"}, {"position", {at.x, at.y, at.z}}});
+        shoot(at);
+    }
+    view->ask({{"do", "load"}, {"scene", "mirror"}});
+    shoot(position()); // the first camera of the other scene
+    view->quit();
+    std::size_t found = 0;
+    RecordingReader walk(view->folder() / "walk.lwr");
+    while (auto const f = walk.next())
+        if (auto const a = asked.find(f->order.frame); a != asked.end()) {
+            ++found;
+            EXPECT_LT(glm::distance(glm::dvec3(f->order.views[0].camera.world_from_camera[3]), a->second), 1e-9)
+                << "frame " << f->order.frame;
+        }
+    EXPECT_EQ(found, asked.size());
+}
+
+TEST_F(Input, WhatCannotBeAskedIsRefused)
+{
+    view.emplace("cornell --size 64x48" + kStill);
+    view->settle();
+    std::string const shot = view->folder() / "shot.png";
+    for (Json const& request :
+         {Json{{"do", "screenshot"}, {"file", shot}, {"view", -1}},
+          Json{{"do", "screenshot"}, {"file", shot}, {"view", 1}},
+          Json{{"do", "pick"}, {"x_px", -5}, {"y_px", 10}}, Json{{"do", "pick"}, {"x_px", 5}, {"y_px", 1e9}},
+          Json{{"do", "seek"}, {"time_s", 1e308}}, Json{{"do", "camera"}, {"position", {1e300, 0, 0}}},
+          Json{{"do", "get"}, {"key", "light.0.intensity"}}})
+        EXPECT_TRUE(view->answer(request).contains("error")) << request;
+    EXPECT_FALSE(std::filesystem::exists(shot));
     view->quit();
 }
 

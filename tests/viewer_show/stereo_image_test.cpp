@@ -234,10 +234,74 @@ TEST_F(Stereo, QuadBufferFallsBackToSideBySide)
     EXPECT_NE(o.err.find("quad-buffer"), std::string::npos) << o.err;
 }
 
-/// Depths of the eyes' pictures are those of the walls of the Cornell box, seen from where the eyes have to be.
-TEST_F(Stereo, EyesAreWhereTheGeometrySays)
+TEST_F(Stereo, TwoWindowsShowAnEyeEach)
 {
+    view->quit();
+    window.reset();
+    view.emplace("cornell --size 320x240 --set stereo=two-windows" + kStill);
+    window.emplace("Lightwell: cornell (left eye)");
+    XWindow const beside("Lightwell: cornell (right eye)");
+    EXPECT_EQ(beside.position_px(), window->position_px() + glm::ivec2(kSize.x, 0));
+    view->settle();
+    Eye const left = eye(0), right = eye(1);
+    ASSERT_EQ(eye_px, kSize);
+    EXPECT_GT(difference(left.low, right).differing, 10000u) << "both eyes see the same";
+    EXPECT_EQ(difference(window->picture(), left).differing, 0u);
+    EXPECT_EQ(difference(beside.picture(), right).differing, 0u);
+    Outcome const o = view->quit();
+    EXPECT_EQ(o.err.find("OpenGL"), std::string::npos) << o.err;
+}
+
+TEST_F(Stereo, TwoWindowsAreRefusedWhereThereIsOne)
+{
+    Json const refused = view->answer({{"do", "set"}, {"key", "stereo"}, {"value", "two-windows"}});
+    EXPECT_NE(refused.value("error", "").find("no second window"), std::string::npos) << refused;
+    view->ask({{"do", "key"}, {"key", "0"}});
+    EXPECT_EQ(view->ask({{"do", "get"}, {"key", "stereo"}}).at("value"), "off");
+    EXPECT_NE(view->settle().value("message", "").find("no second window"), std::string::npos);
+    view->quit();
+}
+
+/// The same place of the view, whatever share of the window an eye has.
+TEST_F(Stereo, PicksWhatIsSeen)
+{
+    auto const picked = [&](double x_px, double y_px) {
+        Json const p = view->ask({{"do", "pick"}, {"x_px", x_px}, {"y_px", y_px}}).at("position");
+        return glm::dvec3(p[0], p[1], p[2]);
+    };
     set_mode(StereoMode::rows);
+    glm::dvec3 const expected = picked(96, 72);
+    set_mode(StereoMode::side_by_side);
+    EXPECT_LT(glm::length(picked(48, 72) - expected), 1e-4);
+    set_mode(StereoMode::top_bottom);
+    EXPECT_LT(glm::length(picked(96, 36) - expected), 1e-4);
+    view->quit();
+}
+
+TEST_F(Stereo, AnEyeHasAtLeastOnePixel)
+{
+    for (StereoMode const mode : {StereoMode::side_by_side, StereoMode::top_bottom}) {
+        set_mode(mode);
+        window->resize({1, 1});
+        Json const eyes = view->settle().at("views");
+        ASSERT_EQ(eyes.size(), 2u);
+        for (Json const& e : eyes) {
+            EXPECT_EQ(e.at("width"), 1) << name_of(mode);
+            EXPECT_EQ(e.at("height"), 1) << name_of(mode);
+        }
+        window->resize(kSize);
+        view->settle();
+    }
+    view->quit();
+}
+
+/// Depths of the eyes' pictures are those of the walls of the Cornell box, seen from where the eyes have to be. In
+/// halves of the window the whole view is squeezed: what they show does not depend on their pixels' shape.
+class EyesInMode : public Stereo, public ::testing::WithParamInterface<StereoMode> {};
+
+TEST_P(EyesInMode, AreWhereTheGeometrySays)
+{
+    set_mode(GetParam());
     Json const camera = view->ask({{"do", "camera"}});
     glm::dvec3 const middle(camera["position"][0], camera["position"][1], camera["position"][2]);
     double const tan_half = std::tan(glm::radians(camera["fov_deg"].get<double>()) / 2);
@@ -250,7 +314,7 @@ TEST_F(Stereo, EyesAreWhereTheGeometrySays)
         gi::Layer const* const depth = p.find("depth");
         ASSERT_NE(depth, nullptr);
         double const aside = (number == 0 ? -0.5 : 0.5) * kEyeDistance_m;
-        std::size_t on_floor = 0, on_back = 0, on_wall = 0;
+        int on_floor = 0, on_back = 0, on_wall = 0;
         for (int y = 0; y < p.height; ++y)
             for (int x = 0; x < p.width; ++x) {
                 auto const right = [&](double at) {
@@ -288,11 +352,45 @@ TEST_F(Stereo, EyesAreWhereTheGeometrySays)
                     }
                 }
             }
-        EXPECT_GT(on_wall, 500u);
-        EXPECT_GT(on_floor, 500u);
-        EXPECT_GT(on_back, 500u);
+        int const enough = 500 * p.width * p.height / (kSize.x * kSize.y);
+        EXPECT_GT(on_wall, enough);
+        EXPECT_GT(on_floor, enough);
+        EXPECT_GT(on_back, enough);
     }
     view->quit();
+}
+
+INSTANTIATE_TEST_SUITE_P(Stereo, EyesInMode,
+                         ::testing::Values(StereoMode::rows, StereoMode::side_by_side, StereoMode::top_bottom),
+                         [](auto const& instance) {
+                             std::string name = name_of(instance.param);
+                             std::erase(name, '-');
+                             return name;
+                         });
+
+using Walls = OnScreen;
+
+/// Three windows of one process: one with two eyes, one with a wall pass.
+TEST_F(Walls, EndWithoutErrorsOfOpenGL)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "corner.yaml") << R"(name: corner
+walls:
+  - {name: left, lower_left_m: [-1, 0, 1], lower_right_m: [-1, 0, -1], upper_left_m: [-1, 2, 1], window: left}
+  - {name: front, lower_left_m: [-1, 0, -1], lower_right_m: [1, 0, -1], upper_left_m: [-1, 2, -1], window: front, stereo: side-by-side}
+  - {name: right, lower_left_m: [1, 0, -1], lower_right_m: [1, 0, 1], upper_left_m: [1, 2, -1], window: right, gain: [1, 0.9, 0.8]}
+windows:
+  - {name: left, size_px: [120, 120], position_px: [0, 0]}
+  - {name: front, size_px: [120, 120], position_px: [140, 0]}
+  - {name: right, size_px: [120, 120], position_px: [280, 0]}
+users:
+  - {name: guest, head_position_m: [0, 1, 0]}
+)";
+    LiveView view("cornell --display " + (folder / "corner.yaml").string() + kStill);
+    XWindow const left("Lightwell: left"), front("Lightwell: front"), right("Lightwell: right");
+    view.settle();
+    Outcome const o = view.quit();
+    EXPECT_EQ(o.err.find("OpenGL"), std::string::npos) << o.err;
 }
 
 } // namespace

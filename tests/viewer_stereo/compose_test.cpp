@@ -49,6 +49,15 @@ TEST(Compose, HalvesOfAnOddWindowLeaveABlackLine)
     EXPECT_EQ(pixel(high, 2, 1, 4), (Pixel{0, 0, 0}));
 }
 
+TEST(Compose, AnEyeHasAPixelWhereTheWindowHasOne)
+{
+    for (StereoMode const mode : {StereoMode::side_by_side, StereoMode::top_bottom}) {
+        EXPECT_EQ(eye_size(mode, {1, 1}), glm::ivec2(1, 1));
+        EXPECT_EQ(eye_size(mode, {0, 0}), glm::ivec2(0, 0));
+        EXPECT_EQ(composed(mode, {1, 1}), (Bytes{10, 0, 0}));
+    }
+}
+
 TEST(Compose, InterlacingCountsFromTheScreen)
 {
     glm::ivec2 const size{6, 6};

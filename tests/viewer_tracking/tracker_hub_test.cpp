@@ -1,11 +1,15 @@
 // Trackers put together.
 
 #include "gi/base/error.h"
+#include "viewer/display/display_file.h"
+#include "viewer/tracking/display_tracker.h"
+#include "viewer/tracking/dtrack.h"
 #include "viewer/tracking/known_walk.h"
 #include "viewer/tracking/pose_math.h"
 #include "viewer/tracking/tracker_hub.h"
 
 #include <gtest/gtest.h>
+#include <map>
 #include <thread>
 
 namespace viewer::test {
@@ -173,6 +177,82 @@ TEST(TrackerHub, TheFirstTrackerThatHasABodyCounts)
     EXPECT_EQ(hub.at(1.9).tracked.head->position.x, 1);
     EXPECT_EQ(hub.at(1.9).tracked.left_hand->position.x, 3);
     EXPECT_EQ(hub.at(2.5).tracked.head->position.x, 2) << "the first is lost by then";
+}
+
+/// That nobody has now.
+int free_port() { return UdpReceiver("127.0.0.1", 0).port(); }
+
+TEST(TrackerHub, TrackersOfOnePortShareItsPackets)
+{
+    TrackerSettings glasses, wand;
+    glasses.name = "glasses";
+    wand.name = "wand";
+    glasses.type = wand.type = TrackerType::dtrack;
+    glasses.port = wand.port = free_port();
+    glasses.head.id = "0";
+    wand.head.id = "1";
+    wand.to_room.room_from_tracker.position = {0, 0, 5};
+    wand.prediction.latency_s = 0.01;
+    TrackerHub hub({glasses, wand}, Polling::by_caller);
+    std::string const text =
+        format_dtrack({sample("0", {1, 1.7, 0}, 0), sample("1", {2, 1, 0}, 0), sample("2", {}, 0)}, 1);
+    UdpSender const sender("127.0.0.1", glasses.port);
+    ASSERT_TRUE(sender.send({reinterpret_cast<unsigned char const*>(text.data()), text.size()}));
+    std::vector<TrackerSample> samples;
+    for (double const end = steady_seconds() + 5; samples.empty() && steady_seconds() < end;)
+        hub.poll(steady_seconds(), &samples);
+    EXPECT_EQ(samples.size(), 3u) << "each is passed on once";
+    double const now = steady_seconds();
+    BodiesAt const head = hub.of_tracker(0, now), hand = hub.of_tracker(1, now);
+    ASSERT_TRUE(head.tracked.head && hand.tracked.head);
+    EXPECT_LT(glm::distance(head.tracked.head->position, {1, 1.7, 0}), 1e-6);
+    EXPECT_LT(glm::distance(hand.tracked.head->position, {2, 1, 5}), 1e-6);
+    for (TrackerReport const& r : hub.report(now)) {
+        EXPECT_EQ(r.port, glasses.port);
+        EXPECT_EQ(r.counts.packets, 1u);
+        EXPECT_EQ(r.other_bodies, std::vector<std::string>{"2"}) << "those that no tracker of the port asks for";
+    }
+}
+
+TEST(TrackerHub, APortHasOneProtocol)
+{
+    TrackerSettings glasses, wand;
+    glasses.name = "glasses";
+    wand.name = "wand";
+    wand.type = TrackerType::dtrack;
+    glasses.port = wand.port = free_port();
+    try {
+        TrackerHub const hub({glasses, wand}, Polling::by_caller);
+        ADD_FAILURE() << "taken";
+    } catch (gi::InputError const& e) {
+        EXPECT_NE(std::string(e.what()).find("trackers 'glasses' and 'wand' share 127.0.0.1 port"),
+                  std::string::npos)
+            << e.what();
+    }
+    wand.type = TrackerType::osc;
+    wand.frame_rate_hz = 60;
+    EXPECT_THROW(TrackerHub({glasses, wand}, Polling::by_caller), gi::InputError);
+    glasses.port = wand.port = 0; // any that is free: two
+    TrackerHub const hub({glasses, wand}, Polling::by_caller);
+    EXPECT_NE(hub.report(0)[0].port, hub.report(0)[1].port);
+}
+
+TEST(TrackerHub, OpensTheTrackersOfEveryShippedDisplay)
+{
+    int with_trackers = 0;
+    for (auto const& entry : std::filesystem::directory_iterator(LIGHTWELL_SOURCE_DIR "/data/displays")) {
+        if (entry.path().extension() != ".yaml") continue;
+        gi::Report report;
+        std::vector<TrackerSettings> settings;
+        for (DisplayTracker const& t : load_display(entry.path(), report).trackers)
+            if (t.type != DisplayTrackerType::openxr) settings.push_back(tracker_settings(t));
+        std::map<int, int> free; // in place of the files' own, which others may have
+        for (TrackerSettings& s : settings)
+            if (s.port > 0) s.port = free.try_emplace(s.port, free_port()).first->second;
+        with_trackers += !settings.empty();
+        EXPECT_NO_THROW(TrackerHub(settings, Polling::by_caller)) << entry.path();
+    }
+    EXPECT_GE(with_trackers, 3);
 }
 
 TEST(TrackerHub, PlaysFilesAndFakesOnItsThread)

@@ -294,6 +294,28 @@ Fault tracker_fault(DisplayTracker const& t, std::size_t i)
     return {};
 }
 
+/// Trackers of one protocol may share a port.
+Fault ports_fault(Display const& d)
+{
+    auto const is_network = [](DisplayTracker const& t) {
+        return t.type == DisplayTrackerType::osc || t.type == DisplayTrackerType::dtrack;
+    };
+    for (std::size_t i = 0; i < d.trackers.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            DisplayTracker const &a = d.trackers[i], &b = d.trackers[j];
+            if (!is_network(a) || !is_network(b) || a.type == b.type || a.port != b.port || a.address != b.address)
+                continue;
+            return DisplayFault{
+                "trackers",
+                i,
+                "port",
+                fmt::format("trackers '{}' and '{}' share {} port {}", b.name, a.name, a.address, a.port),
+                "one speaks OSC, the other DTrack",
+                "give each a port of its own"};
+        }
+    return {};
+}
+
 bool overlap(PixelRectangle const& a, PixelRectangle const& b)
 {
     return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
@@ -362,6 +384,7 @@ Fault find_fault(Display const& d)
         if (auto fault = window_fault(d.windows[i], i)) return fault;
     for (std::size_t i = 0; i < d.trackers.size(); ++i)
         if (auto fault = tracker_fault(d.trackers[i], i)) return fault;
+    if (auto fault = ports_fault(d)) return fault;
     for (std::size_t i = 0; i < d.users.size(); ++i)
         if (auto fault = user_fault(d, i)) return fault;
     for (std::size_t i = 0; i < d.walls.size(); ++i)

@@ -234,15 +234,18 @@ Display parse_display(std::string const& text, std::string const& name, gi::Repo
     check_display_keys(root, "display");
     Display d;
     if (root.has("name")) d.name = root.at("name").text();
-    auto const each = [&](char const* list, auto const& read) {
-        for (YamlReader const& item : needed(root, list, "").items()) read(item);
+    auto const each = [&](char const* list, char const* example, auto const& read) {
+        for (YamlReader const& item : needed(root, list, example).items()) read(item);
     };
     if (root.has("trackers"))
-        each("trackers", [&](YamlReader const& y) { d.trackers.push_back(read_tracker(y)); });
-    each("windows", [&](YamlReader const& y) { d.windows.push_back(read_window(y)); });
+        each("trackers", "[...]", [&](YamlReader const& y) { d.trackers.push_back(read_tracker(y)); });
+    each("windows", "[{name: front, size_px: [1920, 1080]}]",
+         [&](YamlReader const& y) { d.windows.push_back(read_window(y)); });
     auto const folder = std::filesystem::path(name).parent_path();
-    each("users", [&](YamlReader const& y) { d.users.push_back(read_user(y, d, folder)); });
-    each("walls", [&](YamlReader const& y) { d.walls.push_back(read_wall(y, d, folder)); });
+    each("users", "[{name: visitor, head_position_m: [0, 1.7, 0]}]",
+         [&](YamlReader const& y) { d.users.push_back(read_user(y, d, folder)); });
+    each("walls", "[{name: front, window: front, lower_left_m: [-1.5, 0, -1.5], ...}]",
+         [&](YamlReader const& y) { d.walls.push_back(read_wall(y, d, folder)); });
     if (auto const fault = find_fault(d)) throw error_of(*fault, root);
     report_doubts(d, report);
     return d;

@@ -6,9 +6,12 @@
 #include "viewer/display/import.h"
 #include "viewer/display/import_common.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
 
 namespace viewer {
 namespace {
@@ -195,11 +198,31 @@ std::map<std::string, int> read_users(YamlReader const& root, Context& c)
     return users;
 }
 
+YamlReader parse_json(std::string const& text, std::string const& file)
+{
+    try {
+        return YamlReader::parse(text, file, "SGCT");
+    } catch (gi::InputError const&) { // speaks of YAML, which nobody meant to write
+        try {
+            [[maybe_unused]] auto const json = nlohmann::json::parse(text);
+        } catch (nlohmann::json::parse_error const& e) {
+            std::string_view const read = std::string_view(text).substr(0, e.byte > 0 ? e.byte - 1 : 0);
+            auto const line_start = read.rfind('\n') + 1; // npos + 1 is 0
+            throw gi::InputError(
+                {file, int(std::ranges::count(read, '\n')) + 1, int(read.size() - line_start) + 1},
+                "this is not JSON", e.byte > text.size() ? "the text ends too early" : "this does not belong here",
+                "check the brackets, the commas and the quotes");
+        } catch (nlohmann::json::exception const&) { // a number is too large
+        }
+        throw;
+    }
+}
+
 } // namespace
 
 Display parse_sgct(std::string const& text, std::string const& name, gi::Report& report)
 {
-    YamlReader const root = YamlReader::parse(text, name, "SGCT");
+    YamlReader const root = parse_json(text, name);
     Context c{{}, name, report};
     lose_others(root, {"version", "masteraddress", "nodes", "users", "$schema", "title", "description", "author"},
                 "", c);

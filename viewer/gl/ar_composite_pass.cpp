@@ -1,6 +1,7 @@
 #include "viewer/gl/ar_composite_pass.h"
 
 #include "ar/base/error.h"
+#include "viewer/gl/fill_texture.h"
 
 #include <algorithm>
 #include <epoxy/gl.h>
@@ -8,22 +9,6 @@
 
 namespace viewer {
 namespace {
-
-/// Rows may have gaps between them.
-void fill(GlObject const& texture, cv::Mat const& picture, GLenum format, GLenum type)
-{
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    if (picture.step % picture.elemSize() == 0) {
-        glPixelStorei(GL_UNPACK_ROW_LENGTH, GLint(picture.step / picture.elemSize()));
-        glTextureSubImage2D(texture.id(), 0, 0, 0, picture.cols, picture.rows, format, type, picture.data);
-    } else {
-        glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-        for (int y = 0; y < picture.rows; ++y)
-            glTextureSubImage2D(texture.id(), 0, 0, y, picture.cols, 1, format, type, picture.ptr(y));
-    }
-    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-}
 
 std::string defines(ar::CompositeSettings const& settings)
 {
@@ -54,13 +39,13 @@ ArCompositePass::ArCompositePass(ar::Compositor const& compositor)
         std::copy(r.cells().begin(), r.cells().end(), cells.ptr(c));
         cells_per_unit[c] = r.cells_per_unit();
     }
-    fill(response_, table, GL_RGBA, GL_FLOAT);
-    fill(cells_, cells, GL_RED_INTEGER, GL_UNSIGNED_BYTE);
+    fill_texture(response_, table, GL_RGBA, GL_FLOAT);
+    fill_texture(cells_, cells, GL_RED_INTEGER, GL_UNSIGNED_BYTE);
     program_.set("cells_per_unit", cells_per_unit);
     ar::SensorNoise const& noise = compositor_.settings().noise;
     if (noise.any()) {
         noise_ = texture_2d(GL_RGB32F, {ar::NoiseField::kSize, ar::NoiseField::kSize}, GL_NEAREST);
-        fill(noise_, compositor_.noise().tile(), GL_RGB, GL_FLOAT);
+        fill_texture(noise_, compositor_.noise().tile(), GL_RGB, GL_FLOAT);
     }
     auto const& v = compositor_.photometry().vignetting;
     program_.set("vignetting", glm::vec3(v[0], v[1], v[2]));
@@ -83,14 +68,14 @@ void ArCompositePass::upload(cv::Mat const& rgb, ar::RenderedPair const& pair)
         coverage_ = texture_2d(GL_R32F, size, GL_NEAREST);
         direct_ = {};
     }
-    fill(camera_, rgb, GL_RGB, GL_UNSIGNED_BYTE);
-    fill(with_, pair.with, GL_RGB, GL_FLOAT);
-    fill(without_, pair.without, GL_RGB, GL_FLOAT);
-    fill(coverage_, pair.coverage, GL_RED, GL_FLOAT);
+    fill_texture(camera_, rgb, GL_RGB, GL_UNSIGNED_BYTE);
+    fill_texture(with_, pair.with, GL_RGB, GL_FLOAT);
+    fill_texture(without_, pair.without, GL_RGB, GL_FLOAT);
+    fill_texture(coverage_, pair.coverage, GL_RED, GL_FLOAT);
     has_direct_ = !pair.direct.empty();
     if (!has_direct_) return;
     if (direct_.id() == 0) direct_ = texture_2d(GL_RGB32F, size_px_, GL_NEAREST);
-    fill(direct_, pair.direct, GL_RGB, GL_FLOAT);
+    fill_texture(direct_, pair.direct, GL_RGB, GL_FLOAT);
 }
 
 void ArCompositePass::draw(DrawTarget const& target, ar::Exposure const& exposure, std::uint64_t frame) const

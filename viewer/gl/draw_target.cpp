@@ -66,12 +66,9 @@ std::vector<unsigned char> read_bytes(DrawTarget const& target, unsigned buffer)
 
 TextureTarget::TextureTarget(Format format, glm::ivec2 size_px)
     : size_px_(size_px),
-      texture_(GlObject::Kind::texture, GL_TEXTURE_2D),
+      texture_(texture_2d(format == Format::bytes ? GL_RGBA8 : GL_RGBA32F, size_px, GL_NEAREST)),
       framebuffer_(GlObject::Kind::framebuffer)
 {
-    glTextureStorage2D(texture_.id(), 1, format == Format::bytes ? GL_RGBA8 : GL_RGBA32F, size_px.x, size_px.y);
-    glTextureParameteri(texture_.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTextureParameteri(texture_.id(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     glNamedFramebufferTexture(framebuffer_.id(), GL_COLOR_ATTACHMENT0, texture_.id(), 0);
 }
 

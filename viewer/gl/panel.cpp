@@ -27,7 +27,7 @@ void add_font(float px)
 
 } // namespace
 
-Panel::Panel(Window& window, float font_px)
+Panel::Panel(Window& window, float font_px) : window_(window)
 {
     IMGUI_CHECKVERSION();
     context_ = ImGui::CreateContext();
@@ -42,6 +42,7 @@ Panel::Panel(Window& window, float font_px)
 
 Panel::~Panel()
 {
+    window_.gl().make_current();
     ImGui::SetCurrentContext(context_);
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();

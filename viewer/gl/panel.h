@@ -11,7 +11,7 @@ namespace viewer {
 class Panel {
 public:
     /// Listens to the window's input beside its queue. One panel in the program at a time: ImGui's callbacks know
-    /// no other. The window must outlive it, and its context must be current here and at the end.
+    /// no other. The window must outlive it, and its context must be current here; it is so after the end, too.
     /// @param font_px  height of its letters; 0 = small ones for tools
     explicit Panel(Window& window, float font_px = 0);
     ~Panel();
@@ -29,6 +29,7 @@ public:
     void claim(std::vector<InputEvent>& events) const;
 
 private:
+    Window const& window_;
     ImGuiContext* context_;
 };
 

@@ -1,21 +1,11 @@
 #include "viewer/gl/pass_through_pass.h"
 
 #include "ar/composite/warp.h"
+#include "viewer/gl/fill_texture.h"
 
 #include <epoxy/gl.h>
 
 namespace viewer {
-namespace {
-
-void fill(GlObject const& texture, cv::Mat const& picture, GLenum format, GLenum type)
-{
-    cv::Mat const whole = picture.isContinuous() ? picture : picture.clone();
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTextureSubImage2D(texture.id(), 0, 0, 0, whole.cols, whole.rows, format, type, whole.data);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-}
-
-} // namespace
 
 glm::dmat3 pinhole_from_eye(gi::Camera const& eye, glm::ivec2 eye_px, ar::CameraModel const& c,
                             ar::Pose const& room_from_camera, double plane_m)
@@ -43,14 +33,14 @@ PassThroughPass::PassThroughPass(ar::CameraModel const& camera)
       picture_(texture_2d(GL_RGBA8, camera.size_px, GL_LINEAR)),
       lens_(texture_2d(GL_RG32F, pinhole_.size_px, GL_LINEAR))
 {
-    fill(lens_, ar::remap_table(pinhole_, camera), GL_RG, GL_FLOAT);
-    fill(picture_, cv::Mat::zeros(size_px_.y, size_px_.x, CV_8UC3), GL_RGB, GL_UNSIGNED_BYTE);
+    fill_texture(lens_, ar::remap_table(pinhole_, camera), GL_RG, GL_FLOAT);
+    fill_texture(picture_, cv::Mat::zeros(size_px_.y, size_px_.x, CV_8UC3), GL_RGB, GL_UNSIGNED_BYTE);
 }
 
 void PassThroughPass::take(cv::Mat const& rgb)
 {
     CV_Assert(rgb.type() == CV_8UC3 && rgb.cols == size_px_.x && rgb.rows == size_px_.y);
-    fill(picture_, rgb, GL_RGB, GL_UNSIGNED_BYTE);
+    fill_texture(picture_, rgb, GL_RGB, GL_UNSIGNED_BYTE);
 }
 
 void PassThroughPass::draw(DrawTarget const& target, gi::Camera const& eye, ar::Pose const& room_from_camera,

@@ -7,6 +7,7 @@
 #include <limits>
 
 namespace viewer {
+
 void PictureTexture::upload(glm::ivec2 size_px, std::span<float const> rgb, std::span<float const> depth_m)
 {
     std::size_t const pixels = std::size_t(std::max(size_px.x, 0)) * std::size_t(std::max(size_px.y, 0));

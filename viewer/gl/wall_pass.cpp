@@ -110,8 +110,7 @@ WallPass::WallPass(WallSettings const& settings)
     float const all = 1;
     BlendMap const* const map = settings_.blend_map ? &*settings_.blend_map : nullptr;
     glm::ivec2 const size = map ? map->size_px : glm::ivec2(1);
-    map_ = GlObject(GlObject::Kind::texture, GL_TEXTURE_2D);
-    glTextureStorage2D(map_.id(), 1, GL_R32F, size.x, size.y);
+    map_ = texture_2d(GL_R32F, size, GL_NEAREST);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glTextureSubImage2D(map_.id(), 0, 0, 0, size.x, size.y, GL_RED, GL_FLOAT, map ? map->weights.data() : &all);
 

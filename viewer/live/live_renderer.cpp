@@ -211,12 +211,12 @@ FrameOrder LiveRenderer::make_order(Viewpoint const& now, bool still, FrameBudge
 void LiveRenderer::run_leading()
 {
     while (!quit_) {
-        do_jobs();
         Viewpoint now;
         {
             std::lock_guard const lock(mutex_);
             now = viewpoint_;
         }
+        do_jobs(); // after: so a frame has all that was asked before its viewpoint
         double const begun = clock_.now_s();
         Settings const& s = session_.settings();
         if (has_last_ && s.play && session_.moves()) scene_s_ += s.speed * (begun - last_begun_s_);
@@ -268,7 +268,6 @@ void LiveRenderer::measure(FrameWork const& work, FrameBudget const& budget)
     Settings const& s = session_.settings();
     governor_.measured({last_.paths, budget.scale}, pixels_of(last_views_) / (budget.scale * budget.scale),
                        work.seconds, s.rate_hz);
-    stored_ = work.following.stored;
     if (s.method == "slhb" && s.schedule == "auto")
         follow_governor_.measured({work.following, work.moved, s.rate_hz});
 }
@@ -309,6 +308,7 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
     frame->order = std::move(order);
     FrameWork const own{frame->done_s - frame->begun_s, frame->result.following, frame->result.moved};
     if (done && link_ == nullptr) measure(own, budget);
+    if (!frame->result.views.empty()) stored_ = own.following.stored;
     if (Settings const& s = frame->settings; s.method == "slhb")
         frame->schedule = schedule_sentence(s.schedule, s.followed, stored_, follow_governor_.share_of_all());
     if (done && hooks_.finished) hooks_.finished(*frame);
@@ -322,6 +322,7 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
     if (hooks_.published) hooks_.published();
     if (link_ == nullptr) return true;
     FrameWork const slowest = link_->wait_for_all(shown, own);
+    if (shown.views.empty()) stored_ = slowest.following.stored; // this rank has no hit buffers of its own
     if (link_->leads()) measure(slowest, budget);
     return true;
 }

@@ -110,6 +110,7 @@ void AppendFile::write_chunk(std::string const& chunk)
         done += std::size_t(n);
     }
     written_ += chunk.size();
+    ++written_chunks_;
 }
 
 void AppendFile::sync_every_second()

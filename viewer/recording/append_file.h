@@ -39,6 +39,7 @@ public:
 
     /// Why nothing is written any more; empty = all is well. To be shown once.
     std::string failure() const;
+    std::uint64_t written_chunks() const { return written_chunks_; }
     /// That could not be written.
     std::uint64_t lost_chunks() const { return lost_; }
 
@@ -62,8 +63,8 @@ private:
     bool closing_ = false;
 
     std::atomic<std::uint64_t> written_{0}; // bytes, all of whole chunks
-    std::atomic<std::uint64_t> lost_{0};    // chunks
-    bool can_write_ = true;                 // of the writing thread
+    std::atomic<std::uint64_t> written_chunks_{0}, lost_{0};
+    bool can_write_ = true; // of the writing thread
     std::thread writer_, syncer_;
 };
 

@@ -3,6 +3,7 @@
 #include "viewer/recording/crc32.h"
 #include "viewer/recording/record_format.h"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <fmt/chrono.h>
@@ -66,6 +67,12 @@ void Recorder::append(RecordedFrame const& f)
     file_.append(record.bytes());
     last_frame_ = f.order.frame;
     ++frames_;
+}
+
+std::uint64_t Recorder::written_frames() const
+{
+    std::uint64_t const chunks = file_.written_chunks();
+    return chunks == 0 ? 0 : std::min(chunks - 1, frames_); // the header is before them, the end behind
 }
 
 void Recorder::finish()

@@ -48,7 +48,8 @@ public:
     void append(RecordedFrame const& frame);
     /// Why nothing is recorded any more (a full disk); empty = all is well.
     std::string failure() const { return file_.failure(); }
-    std::uint64_t frames() const { return frames_; }
+    /// That are in the file so far.
+    std::uint64_t written_frames() const;
     /// Marks the end, waits for the disk and closes. May be called again.
     void finish();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <tuple>
 #include <type_traits>
 
 namespace viewer {
@@ -17,7 +18,7 @@ std::string to_bytes(FrameWork const& work) { return {reinterpret_cast<char cons
 FrameWork work_from(std::string const& bytes)
 {
     FrameWork work;
-    if (bytes.size() != sizeof work) throw std::runtime_error("a rank's note on its frame is cut short");
+    if (bytes.size() != sizeof work) throw std::runtime_error("a rank's note on its frame has another length");
     std::memcpy(&work, bytes.data(), sizeof work);
     return work;
 }
@@ -108,7 +109,8 @@ FrameWork ClusterLink::wait_for_all(FrameOrder const& order, FrameWork const& ow
         FrameWork const other = work_from(bytes);
         slowest.seconds = std::max(slowest.seconds, other.seconds);
         slowest.moved |= other.moved;
-        if (other.following.seconds > slowest.following.seconds) slowest.following = other.following;
+        gi::Following const &a = other.following, &b = slowest.following;
+        if (std::tie(a.seconds, a.stored) > std::tie(b.seconds, b.stored)) slowest.following = a;
     }
     return slowest;
 }

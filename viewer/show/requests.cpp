@@ -3,6 +3,9 @@
 #include "gi/base/error.h"
 #include "gi/base/picture_file.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>
 
@@ -16,6 +19,15 @@ Json list(gi::dvec3 v) { return {v.x, v.y, v.z}; }
 gi::dvec3 point(Json const& v) { return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()}; }
 
 constexpr double kTap_s = 0.05;
+constexpr double kFarthest_m = 1e9, kLatest_s = 1e9;
+
+/// Throws InputError where a number is beyond the limit to either side.
+void check_within(char const* what, double value, double limit, char const* unit)
+{
+    if (std::abs(value) > limit)
+        throw gi::InputError(fmt::format("'{}' = {:g}", what, value),
+                             fmt::format("it goes from {:g} to {:g} {}", -limit, limit, unit), "give less");
+}
 
 } // namespace
 
@@ -27,6 +39,8 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
         else
             server_->refuse(token, wrong);
     };
+    static std::array const reads{"ping", "stats", "get", "pick", "screenshot"};
+    if (std::ranges::find(reads, r.what) == reads.end()) changed_s_ = state_.clock.now_s();
     if (r.what == "ping") return Json::object();
     if (r.what == "stats") return stats();
     if (r.what == "quit") {
@@ -41,7 +55,9 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
         return Json::object();
     }
     if (r.what == "seek") {
-        state_.renderer->go_to(r.arguments.at("time_s").get<double>());
+        double const time_s = r.arguments.at("time_s").get<double>();
+        check_within("time_s", time_s, kLatest_s, "s");
+        state_.renderer->go_to(time_s);
         return Json::object();
     }
     if (r.what == "session")
@@ -56,9 +72,12 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
         if (!file.ends_with(".png") && !file.ends_with(".exr"))
             throw gi::InputError("a screenshot called '" + file + "'",
                                  "its end does not say which kind of file it is", "end it in .png or .exr");
-        shots_.push_back(
-            {r.arguments.at("file").get<std::string>(), r.has("view") ? r.arguments.at("view").get<int>() : -1,
-             r.has("converged") && r.arguments.at("converged").get<bool>(), state_.clock.now_s(), r.token});
+        if (r.has("view") && r.arguments.at("view").get<int>() < 0)
+            throw gi::InputError(fmt::format("view {}", r.arguments.at("view").get<int>()), "there is none",
+                                 "count from 0");
+        shots_.push_back({r.arguments.at("file").get<std::string>(),
+                          r.has("view") ? r.arguments.at("view").get<int>() : -1,
+                          r.has("converged") && r.arguments.at("converged").get<bool>(), changed_s_, r.token});
         state_.wants_screenshot = true;
     } else if (r.what == "key") {
         press(r);
@@ -83,6 +102,9 @@ Json Requests::camera(RemoteRequest const& r)
         state_.camera = *found;
         state_.navigation.go_to(found->world_from_camera);
     }
+    for (char const* what : {"position", "look_at"})
+        if (r.has(what))
+            for (Json const& x : r.arguments.at(what)) check_within(what, x.get<double>(), kFarthest_m, "m");
     gi::dmat4 place = state_.navigation.world_from_camera();
     if (r.has("position")) place[3] = glm::dvec4(point(r.arguments.at("position")), 1);
     if (r.has("look_at")) {
@@ -117,10 +139,17 @@ void Requests::load(RemoteRequest const& r)
 {
     Change const change{"scene", r.arguments.at("scene")};
     state_.change(change, [this, token = r.token](std::string const& wrong) {
-        if (wrong.empty())
-            loads_.push_back({state_.clock.now_s(), token});
-        else
+        if (!wrong.empty()) {
             server_->refuse(token, wrong);
+            return;
+        }
+        // Behind the question for the scene's first camera, which comes back by the same way.
+        state_.renderer->ask([this, token](Session&) {
+            state_.inbox.put([this, token] {
+                changed_s_ = state_.clock.now_s();
+                loads_.push_back({changed_s_, token});
+            });
+        });
     });
 }
 
@@ -145,7 +174,9 @@ void Requests::step()
 {
     double const now = state_.clock.now_s();
     // Who waits for a frame gets one, also of a picture that rests.
-    if (!keys_.empty() || !loads_.empty()) state_.renderer->again();
+    bool const waits = !keys_.empty() || !loads_.empty() ||
+                       std::ranges::any_of(shots_, [&](Shot const& s) { return !has_seen(s.since_s); });
+    if (waits) state_.renderer->again();
     std::erase_if(releases_, [&](auto const& release) {
         if (release.first > now) return false;
         InputEvent e;
@@ -163,9 +194,13 @@ void Requests::pick(RemoteRequest const& r)
     ViewOrder const& v = state_.frame->order.views[0];
     double const scale = state_.frame->budget.scale > 0 ? state_.frame->budget.scale : 1;
     double const width = v.width / scale, height = v.height / scale;
+    double const x = r.arguments.at("x_px").get<double>(), y = r.arguments.at("y_px").get<double>();
+    if (!(x >= 0 && x <= width && y >= 0 && y <= height))
+        throw gi::InputError(fmt::format("the pixel {:g}, {:g}", x, y),
+                             fmt::format("the view has {:g} x {:g}", width, height), "give one within it");
     bool const select = r.has("select") && r.arguments.at("select").get<bool>();
-    state_.pick({r.arguments.at("x_px").get<double>() / width, r.arguments.at("y_px").get<double>() / height},
-                width / height, [this, token = r.token, select](std::optional<Selection> const& found) {
+    state_.pick({x / width, y / height}, width / height,
+                [this, token = r.token, select](std::optional<Selection> const& found) {
                     if (select) state_.selection = found;
                     Json result{{"object", nullptr}};
                     if (found)
@@ -220,6 +255,7 @@ void Requests::presented(double shown_s, glm::ivec2 window_px, std::vector<unsig
     if (!state_.frame) return;
     LiveFrame const& f = *state_.frame;
     std::erase_if(shots_, [&](Shot const& shot) {
+        if (!has_seen(shot.since_s)) return false;
         if (bytes.empty() && shot.view < 0 && !shot.file.ends_with(".exr")) return false;
         if (shot.converged && state_.settings.refine && f.still_paths < kConvergedPaths) return false;
         save(shot, window_px, bytes);
@@ -238,7 +274,7 @@ void Requests::presented(double shown_s, glm::ivec2 window_px, std::vector<unsig
         return true;
     });
     std::erase_if(loads_, [&](Loaded const& l) {
-        if (f.begun_s < l.asked_s && f.done_s < l.asked_s) return false;
+        if (!has_seen(l.asked_s)) return false;
         server_->answer(l.token, Json::object());
         return true;
     });

@@ -33,7 +33,7 @@ private:
         std::string file;
         int view = -1; ///< -1 = the window
         bool converged = false;
-        double asked_s = 0;
+        double since_s = 0; ///< the last change before it
         std::uint64_t token = 0;
     };
     struct Key {
@@ -49,6 +49,7 @@ private:
     void load(RemoteRequest const& r);
     void press(RemoteRequest const& r);
     void pick(RemoteRequest const& r);
+    bool has_seen(double changed_s) const { return state_.frame && state_.frame->order.pose_s >= changed_s; }
     void save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned char> const& bytes);
 
     ViewState& state_;
@@ -59,6 +60,7 @@ private:
     std::list<Shot> shots_;
     std::list<Key> keys_;
     std::list<Loaded> loads_;
+    double changed_s_ = 0;                         ///< when something was asked last that pictures may show
     std::vector<std::pair<double, int>> releases_; ///< session time, key code
 };
 

@@ -17,6 +17,8 @@ struct ShownWindow {
         : window(settings, report), presenter(walls), timer(window, report)
     {
     }
+    /// Another window's context may be current, in which the same names belong to other objects.
+    ~ShownWindow() { window.gl().make_current(); }
 };
 
 } // namespace viewer

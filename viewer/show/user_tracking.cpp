@@ -4,21 +4,26 @@
 #include "viewer/tracking/display_tracker.h"
 
 namespace viewer {
+
 UserTracking::UserTracking(Display const& display) : display_(display)
 {
+    std::vector<TrackerSettings> settings;
     for (DisplayTracker const& t : display.trackers) {
         Source s;
-        if (t.type == DisplayTrackerType::openxr)
+        if (t.type == DisplayTrackerType::openxr) {
             s.headset = std::make_unique<HmdSession>(HmdOptions{});
-        else
-            s.hub = std::make_unique<TrackerHub>(std::vector{tracker_settings(t)}, Polling::by_thread);
+        } else {
+            s.in_hub = settings.size();
+            settings.push_back(tracker_settings(t));
+        }
         sources_.push_back(std::move(s));
     }
+    if (!settings.empty()) hub_ = std::make_unique<TrackerHub>(settings, Polling::by_thread);
 }
 
 Tracked UserTracking::of(Source& source, double steady_s) const
 {
-    if (source.hub) return source.hub->at(steady_s).tracked;
+    if (!source.headset) return hub_->of_tracker(source.in_hub, steady_s).tracked;
     source.headset->poll();
     auto const poses = source.headset->poses(steady_s);
     return poses ? poses->tracked : Tracked{};
@@ -40,8 +45,7 @@ Tracked UserTracking::bodies(std::size_t user, double steady_s)
 
 void UserTracking::set_fake(FakeInput const& input)
 {
-    for (Source& s : sources_)
-        if (s.hub) s.hub->set_fake(input);
+    if (hub_) hub_->set_fake(input);
 }
 
 bool UserTracking::has_fake() const
@@ -55,24 +59,21 @@ std::optional<double> UserTracking::age_ms(double steady_s) const
 {
     if (display_.users.empty() || display_.users[0].tracker < 0) return std::nullopt;
     Source const& s = sources_[std::size_t(display_.users[0].tracker)];
-    if (!s.hub) return std::nullopt;
-    for (TrackerReport const& r : s.hub->report(steady_s))
-        if (r.bodies[0].state != TrackState::never) return 1e3 * r.bodies[0].age_s;
-    return std::nullopt;
+    if (s.headset) return std::nullopt;
+    BodyReport const head = hub_->report(steady_s)[s.in_hub].bodies[0];
+    return head.state != TrackState::never ? std::optional(1e3 * head.age_s) : std::nullopt;
 }
 
 nlohmann::json UserTracking::stats(double steady_s) const
 {
     nlohmann::json all = nlohmann::json::object();
-    for (Source const& s : sources_) {
-        if (!s.hub) continue;
-        for (TrackerReport const& r : s.hub->report(steady_s)) {
-            nlohmann::json& j = all[r.name] = {{"packets", r.counts.packets},
-                                               {"malformed", r.counts.malformed},
-                                               {"port", r.port},
-                                               {"head_age_ms", 1e3 * r.bodies[0].age_s}};
-            for (auto const& [what, value] : numbers(r.latency)) j[what] = value;
-        }
+    if (!hub_) return all;
+    for (TrackerReport const& r : hub_->report(steady_s)) {
+        nlohmann::json& j = all[r.name] = {{"packets", r.counts.packets},
+                                           {"malformed", r.counts.malformed},
+                                           {"port", r.port},
+                                           {"head_age_ms", 1e3 * r.bodies[0].age_s}};
+        for (auto const& [what, value] : numbers(r.latency)) j[what] = value;
     }
     return all;
 }

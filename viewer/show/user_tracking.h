@@ -27,13 +27,14 @@ public:
 
 private:
     struct Source {
-        std::unique_ptr<TrackerHub> hub;     ///< else
-        std::unique_ptr<HmdSession> headset; ///< poses only
+        std::unique_ptr<HmdSession> headset; ///< poses only; else
+        std::size_t in_hub = 0;
     };
     Tracked of(Source& source, double steady_s) const;
 
     Display const& display_;
-    std::vector<Source> sources_; ///< per tracker of the display
+    std::unique_ptr<TrackerHub> hub_; ///< of all but headsets; null where there are none
+    std::vector<Source> sources_;     ///< per tracker of the display
 };
 
 } // namespace viewer

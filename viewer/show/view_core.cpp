@@ -5,6 +5,7 @@
 #include "viewer/show/frame_hash.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <fmt/format.h>
 
 namespace viewer {
@@ -131,6 +132,7 @@ bool ViewCore::poll(gi::StopRequest const& stop)
     if (last_poll_s_ > 0)
         summary.longest_block_ms = std::max(summary.longest_block_ms, 1e3 * (now - last_poll_s_));
     last_poll_s_ = now;
+    watch_files();
     state.inbox.read();
     requests.step();
     if (remote_) remote_->poll();
@@ -195,17 +197,34 @@ void ViewCore::log(FrameTimes const& times)
     if (log_) log_->append(times);
 }
 
+void ViewCore::watch_files()
+{
+    if (recorder_) tell_failure(options.record, recorder_->failure());
+    if (log_) tell_failure(options.frame_log, log_->failure());
+}
+
+void ViewCore::tell_failure(std::filesystem::path const& file, std::string const& why)
+{
+    if (why.empty() || !unwritten_.insert(file).second) return;
+    summary.files_whole = false;
+    state.message = fmt::format("'{}' cannot be written any further ({}) what came before is kept; make room and "
+                                "begin anew",
+                                file.string(), why);
+    std::fputs(("lightwell: " + state.message + "\n").c_str(), stderr);
+}
+
 void ViewCore::finish()
 {
     renderer->stop();
     if (recorder_) {
         recorder_->finish();
-        summary.recorded = recorder_->frames();
+        summary.recorded = recorder_->written_frames();
     }
     if (log_) {
         log_->close();
         summary.frames = log_->summary();
     }
+    watch_files();
 }
 
 void ViewCore::save_screenshot(glm::ivec2 window_px, std::vector<unsigned char> const& bytes)

@@ -8,6 +8,8 @@
 #include "viewer/show/requests.h"
 #include "viewer/show/view_program.h"
 
+#include <set>
+
 namespace viewer {
 
 class ViewCore {
@@ -45,11 +47,15 @@ public:
 private:
     void start_at(gi::Camera const& camera);
     void make_files();
+    /// Tells once of each file that cannot be written any more.
+    void watch_files();
+    void tell_failure(std::filesystem::path const& file, std::string const& why);
     void look_anew(); ///< at a scene that was loaded, from its first camera
 
     std::unique_ptr<RemoteServer> remote_;
     std::unique_ptr<Recorder> recorder_;
     std::unique_ptr<FrameLog> log_;
+    std::set<std::filesystem::path> unwritten_; ///< not to their end
     double last_poll_s_ = 0;
 };
 

@@ -10,6 +10,7 @@
 #include "viewer/show/user_body.h"
 #include "viewer/show/user_tracking.h"
 #include "viewer/show/view_core.h"
+#include "viewer/stereo/compose.h"
 
 #include <epoxy/gl.h>
 
@@ -41,6 +42,7 @@ public:
         } else {
             open_desktop();
         }
+        if (!shown_.windows.empty()) shown_.windows.front()->window.gl().release(); // to the thread that draws
         std::function<std::vector<ViewOrder>(FrameOrder const&)> own;
         if (link != nullptr && options.display)
             own = [this](FrameOrder const& order) {
@@ -83,9 +85,17 @@ private:
         settings.monitor = core_.options.monitor;
         settings.swap_interval = core_.options.swap_interval;
         if (state_.settings.stereo == name_of(StereoMode::quad_buffer)) settings.quad_buffer = QuadBuffer::wanted;
-        for (int i = 0; i < (two ? 2 : 1); ++i)
+        std::string const scene = settings.title;
+        for (int i = 0; i < (two ? 2 : 1); ++i) {
+            if (two) settings.title = scene + (i == 0 ? " (left eye)" : " (right eye)");
+            if (i == 1) {
+                Window const& left = shown_.windows[0]->window;
+                settings.position_px = left.position_px() + glm::ivec2(left.framebuffer_px().x, 0);
+            }
             shown_.windows.push_back(
                 std::make_unique<ShownWindow>(settings, std::vector<WallSettings>{}, core_.report));
+        }
+        state_.has_two_windows = two;
         shown_.windows[0]->window.gl().make_current();
         panel_ = std::make_unique<Panel>(shown_.windows[0]->window);
     }
@@ -106,8 +116,12 @@ private:
             if (c.command == Command::drag) drag({c.x, c.y});
         }
         int const mode = core_.controls.stereo_mode();
-        if (mode >= 0 && !core_.display)
+        if (mode < 0 || core_.display) return;
+        try {
             state_.change({"stereo", name_of(kStereoModes[std::size_t(mode) % std::size(kStereoModes)])});
+        } catch (gi::InputError const& e) {
+            state_.message = e.what();
+        }
     }
 
     glm::ivec2 first_px() const
@@ -116,10 +130,18 @@ private:
     }
     double height_px() const { return std::max(1, first_px().y); }
 
+    /// Of one eye's picture in the window.
+    glm::dvec2 eye_px()
+    {
+        StereoMode const mode = core_.display ? StereoMode::off : possible_mode();
+        return glm::max(glm::dvec2(eye_size(mode, first_px())), glm::dvec2(1));
+    }
+    double aspect() const { return std::max(1, first_px().x) / height_px(); }
+
     void select(glm::dvec2 at_px)
     {
-        glm::dvec2 const px = glm::max(glm::dvec2(first_px()), glm::dvec2(1));
-        state_.pick(at_px / px, px.x / px.y, [this](std::optional<Selection> const& found) {
+        glm::dvec2 const px = eye_px();
+        state_.pick(glm::mod(at_px, px) / px, aspect(), [this](std::optional<Selection> const& found) {
             state_.selection = found;
             if (found) state_.navigation.set_pivot(found->picked.position);
             dirty_ = true;
@@ -132,8 +154,9 @@ private:
         if (!state_.selection) return;
         gi::dmat4 const m = state_.navigation.world_from_camera();
         double const depth = glm::dot(state_.selection->picked.position - gi::dvec3(m[3]), -gi::dvec3(m[2]));
-        double const m_per_px = 2 * depth * std::tan(0.5 * state_.camera.yfov_rad) / height_px();
-        state_.move_selection(m_per_px * (by_px.x * gi::dvec3(m[0]) - by_px.y * gi::dvec3(m[1])));
+        double const height_m = 2 * depth * std::tan(0.5 * state_.camera.yfov_rad);
+        glm::dvec2 const by_m = by_px * height_m * glm::dvec2(aspect(), 1) / eye_px();
+        state_.move_selection(by_m.x * gi::dvec3(m[0]) - by_m.y * gi::dvec3(m[1]));
     }
 
     /// Where the windows have no buffers of the eyes, these are shown side by side.

@@ -39,6 +39,7 @@ struct ViewOptions {
 struct ViewSummary {
     FrameSummary frames;
     std::uint64_t rendered = 0, recorded = 0, presented = 0;
+    bool files_whole = true;     ///< recording and frame log have all that came
     double longest_block_ms = 0; ///< of the main thread: between two looks at the input
     std::string gl;
     std::string schedule; ///< of slhb: the one in use in the last frame and why; empty of other methods

@@ -2,6 +2,7 @@
 
 #include "gi/base/device.h"
 #include "gi/base/error.h"
+#include "viewer/display/stereo_mode.h"
 
 namespace viewer {
 
@@ -16,6 +17,9 @@ void ViewState::change(Change const& c, std::function<void(std::string const&)> 
                                      "start them with --set device=" + changed.device);
             gi::check_device(changed.device == "cuda" ? gi::Space::device : gi::Space::host);
         }
+        if (c.key == "stereo" && changed.stereo == name_of(StereoMode::two_windows) && !has_two_windows)
+            throw gi::InputError("'stereo' = two-windows", "there is no second window",
+                                 "start with --set stereo=two-windows");
         settings = std::move(changed);
         renderer->post(c);
         if (done) done({});
@@ -73,6 +77,11 @@ gi::Camera ViewState::now() const
 
 void ViewState::pick(glm::dvec2 at, double aspect, std::function<void(std::optional<Selection> const&)> done)
 {
+    // Pixels of an eye are not square where the halves of a window hold the whole view each.
+    if (frame && !frame->order.views.empty() && frame->order.views[0].camera.off_axis) {
+        gi::ViewTangents const edge = *frame->order.views[0].camera.off_axis;
+        aspect = (edge.right - edge.left) / (edge.top - edge.bottom);
+    }
     renderer->ask([this, at, aspect, eye = now(), done = std::move(done)](Session& s) {
         std::optional<Selection> found;
         if (auto const hit = viewer::pick(s.world(), eye, aspect, at)) {

@@ -55,6 +55,7 @@ struct ViewState {
     Inbox inbox;
     LiveRenderer* renderer = nullptr;
     bool is_one_of_ranks = false;                          ///< others render the same orders
+    bool has_two_windows = false;                          ///< for StereoMode::two_windows
     std::function<void()> loaded;                          ///< called after another scene was loaded
     bool wants_screenshot = false, own_screenshot = false; ///< the second: by key
 
@@ -69,6 +70,7 @@ struct ViewState {
     void refresh_ground();
     /// The camera as it is now.
     gi::Camera now() const;
+    /// @param at  in [0, 1]^2 of one eye's picture   @param aspect  of the view, where its camera does not say it
     void pick(glm::dvec2 at, double aspect, std::function<void(std::optional<Selection> const&)> done);
 
 private:

@@ -85,8 +85,9 @@ float decode_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0
 
 glm::ivec2 eye_size(StereoMode mode, glm::ivec2 window_px)
 {
-    if (mode == StereoMode::side_by_side) return {window_px.x / 2, window_px.y};
-    if (mode == StereoMode::top_bottom) return {window_px.x, window_px.y / 2};
+    auto const half = [](int px) { return std::max(px / 2, std::min(px, 1)); };
+    if (mode == StereoMode::side_by_side) return {half(window_px.x), window_px.y};
+    if (mode == StereoMode::top_bottom) return {window_px.x, half(window_px.y)};
     return window_px;
 }
 

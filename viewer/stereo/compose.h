@@ -14,7 +14,7 @@
 namespace viewer {
 
 /// Size of the picture of each eye in a window: half of it side by side or one above the other (an odd column or
-/// row at the end stays black), all of it otherwise.
+/// row at the end stays black; at least one pixel of a window that has any), all of it otherwise.
 glm::ivec2 eye_size(StereoMode mode, glm::ivec2 window_px);
 /// Size of what compose_stereo returns: the window's; quad-buffer and two windows, which have two pictures, are
 /// shown side by side, twice as wide.

@@ -34,7 +34,8 @@ public:
     explicit Footsteps(Stance const& stance) : stance_(stance) {}
 
     /// Adds the feet that the body has not: on the floor of the room (y = 0) or, of one that swings, above it.
-    /// Without a head there are none, and it begins anew. Feet that stand still are the same bits in the world.
+    /// Without a head there are none, and it begins anew. Feet that stand stay where they are in the world,
+    /// to rounding where the room moves.
     /// @param body  in the room, finite  @param world_from_room  upright, with any scale  @param seconds  since
     /// the last step
     void step(Tracked& body, gi::dmat4 const& world_from_room, double seconds);

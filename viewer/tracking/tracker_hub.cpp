@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <poll.h>
 
 namespace viewer {
@@ -17,13 +18,19 @@ constexpr std::size_t kMostOtherBodies = 32;
 constexpr int kLookAgain_ms = 2;   ///< where a source cannot be waited on
 constexpr int kLookAtStop_ms = 50; ///< where all can
 
-std::unique_ptr<Tracker> make_source(TrackerSettings const& s)
+int port_of(TrackerSettings const& s)
+{
+    if (s.port >= 0) return s.port;
+    return s.type == TrackerType::osc ? kOscPort : kDTrackPort;
+}
+
+std::shared_ptr<Tracker> make_source(TrackerSettings const& s)
 {
     switch (s.type) {
     case TrackerType::osc:
-        return make_osc_tracker(s.address, s.port < 0 ? kOscPort : s.port, s.osc_patterns, s.frame_rate_hz);
+        return make_osc_tracker(s.address, port_of(s), s.osc_patterns, s.frame_rate_hz);
     case TrackerType::dtrack:
-        return make_dtrack_tracker(s.address, s.port < 0 ? kDTrackPort : s.port, s.frame_rate_hz);
+        return make_dtrack_tracker(s.address, port_of(s), s.frame_rate_hz);
     case TrackerType::file:
         return std::make_unique<FileTracker>(read_tracker_file(s.file), s.file.string(), s.at_end, s.speed);
     case TrackerType::fake:
@@ -32,12 +39,40 @@ std::unique_ptr<Tracker> make_source(TrackerSettings const& s)
     return std::make_unique<FakeTracker>();
 }
 
-std::vector<std::unique_ptr<Tracker>> make_sources(std::vector<TrackerSettings> const& settings)
+bool share_a_port(TrackerSettings const& a, TrackerSettings const& b)
 {
-    std::vector<std::unique_ptr<Tracker>> sources;
+    auto const has_port = [](TrackerSettings const& s) {
+        return (s.type == TrackerType::osc || s.type == TrackerType::dtrack) && port_of(s) != 0;
+    };
+    return has_port(a) && has_port(b) && a.address == b.address && port_of(a) == port_of(b);
+}
+
+void check_packets_fit(TrackerSettings const& a, TrackerSettings const& b)
+{
+    auto const fault = [&](char const* why, char const* suggestion) {
+        throw gi::InputError(
+            fmt::format("trackers '{}' and '{}' share {} port {}", a.name, b.name, a.address, port_of(a)), why,
+            suggestion);
+    };
+    if (a.type != b.type) fault("one speaks OSC, the other DTrack", "give each a port of its own");
+    if (a.osc_patterns != b.osc_patterns || a.frame_rate_hz != b.frame_rate_hz)
+        fault("they read its packets differently", "give both the same patterns and frame rate");
+}
+
+/// One per settings; trackers at one port share theirs.
+std::vector<std::shared_ptr<Tracker>> make_sources(std::vector<TrackerSettings> const& settings)
+{
+    std::vector<std::shared_ptr<Tracker>> sources;
     for (TrackerSettings const& s : settings) {
         check(s);
-        sources.push_back(make_source(s));
+        auto const first = std::find_if(settings.begin(), settings.end(),
+                                        [&s](TrackerSettings const& o) { return &o == &s || share_a_port(o, s); });
+        if (&*first == &s) {
+            sources.push_back(make_source(s));
+        } else {
+            check_packets_fit(*first, s);
+            sources.push_back(sources[std::size_t(first - settings.begin())]);
+        }
     }
     return sources;
 }
@@ -144,7 +179,7 @@ void check(TrackerSettings const& s)
     if (ids.empty())
         refuse(s, "it has no body", "nothing would move", "name the id of head, left or right hand or foot");
     if (auto const twice = std::adjacent_find(ids.begin(), ids.end()); twice != ids.end())
-        refuse(s, "body '" + *twice + "' is asked for twice", "it cannot be head and hand at once",
+        refuse(s, "body '" + *twice + "' is asked for twice", "it cannot be two parts of a body at once",
                "give each its own");
     check_filter(s, s.filter.position, "positions");
     check_filter(s, s.filter.rotation, "rotations");
@@ -160,14 +195,14 @@ void check(TrackerSettings const& s)
 
 struct TrackerHub::Source {
     TrackerSettings settings;
-    std::unique_ptr<Tracker> tracker;
+    std::shared_ptr<Tracker> tracker;
     std::array<BodyTrack, kBodies> bodies;
     LatencyMeter latency;
     double last_received_s = -1;
     std::uint64_t other_samples = 0;
     std::vector<std::string> other_bodies;
 
-    Source(TrackerSettings const& s, std::unique_ptr<Tracker> t) : settings(s), tracker(std::move(t))
+    Source(TrackerSettings const& s, std::shared_ptr<Tracker> t) : settings(s), tracker(std::move(t))
     {
         std::array<BodySettings, kBodies> const of = bodies_of(s);
         for (std::size_t b = 0; b < kBodies; ++b) {
@@ -177,7 +212,8 @@ struct TrackerHub::Source {
         }
     }
 
-    void take(TrackerSample const& s)
+    /// @return whether it is of a body that is asked for
+    bool take(TrackerSample const& s)
     {
         if (s.received_s != last_received_s) { // one packet has one time
             if (s.measured_s)
@@ -192,11 +228,15 @@ struct TrackerHub::Source {
                 known = true;
                 if (b.take(s, settings.to_room) == ClockNote::was_set) latency.forget_delays();
             }
-        if (known) return;
+        return known;
+    }
+
+    void note_other(std::string const& body)
+    {
         ++other_samples;
         if (other_bodies.size() < kMostOtherBodies &&
-            std::find(other_bodies.begin(), other_bodies.end(), s.body) == other_bodies.end())
-            other_bodies.push_back(s.body);
+            std::find(other_bodies.begin(), other_bodies.end(), body) == other_bodies.end())
+            other_bodies.push_back(body);
     }
 };
 
@@ -206,6 +246,15 @@ TrackerHub::TrackerHub(std::vector<TrackerSettings> const& settings, Polling pol
 }
 
 TrackerHub::TrackerHub(std::vector<TrackerSettings> const& settings, std::vector<std::unique_ptr<Tracker>> sources,
+                       Polling polling)
+    : TrackerHub(settings,
+                 std::vector<std::shared_ptr<Tracker>>(std::move_iterator(sources.begin()),
+                                                       std::move_iterator(sources.end())),
+                 polling)
+{
+}
+
+TrackerHub::TrackerHub(std::vector<TrackerSettings> const& settings, std::vector<std::shared_ptr<Tracker>> sources,
                        Polling polling)
 {
     for (std::size_t i = 0; i < settings.size(); ++i) {
@@ -221,11 +270,37 @@ void TrackerHub::poll(double now_s, std::vector<TrackerSample>* samples)
 {
     std::lock_guard const lock(mutex_);
     std::vector<TrackerSample> fresh;
-    for (auto const& source : sources_) {
+    for (auto source = sources_.begin(); source != sources_.end(); ++source) {
+        Tracker* const tracker = (*source)->tracker.get();
+        auto const has_it = [tracker](auto const& s) { return s->tracker.get() == tracker; };
+        if (std::any_of(sources_.begin(), source, has_it)) continue;
         fresh.clear();
-        source->tracker->poll(now_s, fresh);
-        for (TrackerSample const& s : fresh) source->take(s);
+        tracker->poll(now_s, fresh);
+        for (TrackerSample const& s : fresh) take(*tracker, s);
         if (samples != nullptr) samples->insert(samples->end(), fresh.begin(), fresh.end());
+    }
+}
+
+void TrackerHub::take(Tracker const& from, TrackerSample const& s)
+{
+    bool known = false;
+    for (auto const& source : sources_)
+        if (source->tracker.get() == &from) known |= source->take(s);
+    if (known) return;
+    for (auto const& source : sources_)
+        if (source->tracker.get() == &from) source->note_other(s.body);
+}
+
+void TrackerHub::add_bodies(Source const& source, double time_s, BodiesAt& to)
+{
+    for (std::size_t b = 0; b < kBodies; ++b) {
+        BodyTrack const& body = source.bodies[b];
+        std::optional<RoomPose>& pose = to.tracked.*kBodyMembers[b];
+        if (body.settings.id.empty() || pose) continue;
+        TrackedPose const p = body.at(time_s);
+        pose = p.pose;
+        if (p.state != TrackState::never) to.states[b] = p.state;
+        to.buttons[b] = body.buttons;
     }
 }
 
@@ -233,16 +308,15 @@ BodiesAt TrackerHub::at(double time_s) const
 {
     std::lock_guard const lock(mutex_);
     BodiesAt result;
-    for (auto const& source : sources_)
-        for (std::size_t b = 0; b < kBodies; ++b) {
-            BodyTrack const& body = source->bodies[b];
-            std::optional<RoomPose>& pose = result.tracked.*kBodyMembers[b];
-            if (body.settings.id.empty() || pose) continue;
-            TrackedPose const p = body.at(time_s);
-            pose = p.pose;
-            if (p.state != TrackState::never) result.states[b] = p.state;
-            result.buttons[b] = body.buttons;
-        }
+    for (auto const& source : sources_) add_bodies(*source, time_s, result);
+    return result;
+}
+
+BodiesAt TrackerHub::of_tracker(std::size_t tracker, double time_s) const
+{
+    std::lock_guard const lock(mutex_);
+    BodiesAt result;
+    add_bodies(*sources_[tracker], time_s, result);
     return result;
 }
 

@@ -75,7 +75,7 @@ enum class Polling { by_caller, by_thread };
 /// Safe to call from any thread. Where several trackers have a body, the first that has a pose of it counts.
 class TrackerHub {
 public:
-    /// Binds, reads files. Throws InputError.
+    /// Binds, reads files. Trackers of one protocol at one address and port share a socket. Throws InputError.
     TrackerHub(std::vector<TrackerSettings> const& settings, Polling polling);
     /// With sources made by others, one per settings (whose type, address and file then are not read).
     TrackerHub(std::vector<TrackerSettings> const& settings, std::vector<std::unique_ptr<Tracker>> sources,
@@ -89,7 +89,9 @@ public:
     void poll(double now_s, std::vector<TrackerSample>* samples = nullptr);
     /// Poses expected at that time of the steady clock (s): of the display, for a picture.
     BodiesAt at(double time_s) const;
-    /// @param now_s for the states and ages
+    /// Of one of the trackers alone, as they were given from 0.
+    BodiesAt of_tracker(std::size_t tracker, double time_s) const;
+    /// Per tracker; counts are of all that came to the port. @param now_s for the states and ages
     std::vector<TrackerReport> report(double now_s) const;
     /// The keyboard and mouse of trackers of type fake.
     void set_fake(FakeInput const& input);
@@ -97,6 +99,10 @@ public:
 private:
     struct Source;
 
+    TrackerHub(std::vector<TrackerSettings> const& settings, std::vector<std::shared_ptr<Tracker>> sources,
+               Polling polling);
+    void take(Tracker const& from, TrackerSample const& sample);
+    static void add_bodies(Source const& source, double time_s, BodiesAt& to);
     void run(std::stop_token const& stop);
 
     mutable std::mutex mutex_;

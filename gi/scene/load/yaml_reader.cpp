@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <numeric>
 
 namespace gi {
@@ -96,9 +97,14 @@ void YamlReader::only_keys(std::set<std::string> const& known) const
             auto const nearest = std::min_element(known.begin(), known.end(), [&](auto const& a, auto const& b) {
                 return edit_distance(a, name.substr(0, 64)) < edit_distance(b, name.substr(0, 64));
             });
+            bool const is_near =
+                nearest != known.end() && edit_distance(*nearest, name.substr(0, 64)) <=
+                                              std::max(1, int(name.size()) / 2); // as of study scripts
             throw key.error(fmt::format("unknown key '{}' in {}", name.substr(0, 64), path_),
                             "it would be ignored",
-                            nearest == known.end() ? "remove it" : "did you mean '" + *nearest + "'?");
+                            is_near         ? "did you mean '" + *nearest + "'?"
+                            : known.empty() ? "remove it"
+                                            : fmt::format("there are: {}", fmt::join(known, ", ")));
         }
         if (!seen.insert(name).second)
             throw key.error("key '" + name + "' twice in " + path_, "only one of them can count", "remove one");
