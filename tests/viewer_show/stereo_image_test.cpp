@@ -266,6 +266,7 @@ TEST_F(Stereo, TwoWindowsAreRefusedWhereThereIsOne)
 TEST_F(Stereo, PicksWhatIsSeen)
 {
     auto const picked = [&](double x_px, double y_px) {
+        view->settle();
         Json const p = view->ask({{"do", "pick"}, {"x_px", x_px}, {"y_px", y_px}}).at("position");
         return glm::dvec3(p[0], p[1], p[2]);
     };

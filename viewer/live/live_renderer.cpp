@@ -4,6 +4,7 @@
 #include "viewer/live/background_priority.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace viewer {
 namespace {
@@ -19,6 +20,13 @@ bool same_views(std::vector<ViewOrder> const& a, std::vector<ViewOrder> const& b
 {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](ViewOrder const& x, ViewOrder const& y) {
         return x.camera == y.camera && x.name == y.name;
+    });
+}
+
+bool same_sizes(std::vector<ViewOrder> const& a, std::vector<ViewOrder> const& b)
+{
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](ViewOrder const& x, ViewOrder const& y) {
+        return x.width == y.width && x.height == y.height;
     });
 }
 
@@ -81,7 +89,7 @@ void LiveRenderer::look(Viewpoint viewpoint)
     {
         std::lock_guard const lock(mutex_);
         moved = !same_views(viewpoint.views, viewpoint_.views) || !(viewpoint.tracked == viewpoint_.tracked) ||
-                viewpoint.others != viewpoint_.others || pixels_of(viewpoint.views) != pixels_of(viewpoint_.views);
+                viewpoint.others != viewpoint_.others || !same_sizes(viewpoint.views, viewpoint_.views);
         viewpoint_ = std::move(viewpoint);
         if (moved) looked_ = true;
         if (moved && refining_) refining_->request();
@@ -212,9 +220,11 @@ void LiveRenderer::run_leading()
 {
     while (!quit_) {
         Viewpoint now;
+        bool looked = false;
         {
             std::lock_guard const lock(mutex_);
             now = viewpoint_;
+            looked = looked_.exchange(false);
         }
         do_jobs(); // after: so a frame has all that was asked before its viewpoint
         double const begun = clock_.now_s();
@@ -224,7 +234,7 @@ void LiveRenderer::run_leading()
         bool const still = !anything_moves(now);
         bool const rests = !session_.has_scene() || now.views.empty() ||
                            (still && (!s.refine || still_paths_ >= kConvergedPaths));
-        if (rests && !looked_) {
+        if (rests && !looked) {
             if (link_ != nullptr) link_->check();
             std::unique_lock lock(mutex_);
             wake_.wait_for(lock, std::chrono::milliseconds(100),
@@ -232,7 +242,6 @@ void LiveRenderer::run_leading()
             continue;
         }
         if (!session_.has_scene() || now.views.empty()) {
-            looked_ = false;
             wait_until(begun + 0.01);
             continue;
         }
@@ -242,7 +251,6 @@ void LiveRenderer::run_leading()
         if (link_ != nullptr) link_->send(order);
         {
             std::lock_guard const lock(mutex_);
-            looked_ = false;
             // Ranks must trace the same number of paths, and a comparison as many with both methods.
             bool const may_end_early = still && link_ == nullptr && s.method == "slhb" && s.compare.empty();
             refining_ = may_end_early ? std::make_shared<gi::StopRequest>() : nullptr;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>
+#include <utility>
 
 namespace viewer {
 namespace {
@@ -75,9 +76,9 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
         if (r.has("view") && r.arguments.at("view").get<int>() < 0)
             throw gi::InputError(fmt::format("view {}", r.arguments.at("view").get<int>()), "there is none",
                                  "count from 0");
-        shots_.push_back({r.arguments.at("file").get<std::string>(),
-                          r.has("view") ? r.arguments.at("view").get<int>() : -1,
-                          r.has("converged") && r.arguments.at("converged").get<bool>(), changed_s_, r.token});
+        shots_.push_back(
+            {r.arguments.at("file").get<std::string>(), r.has("view") ? r.arguments.at("view").get<int>() : -1,
+             r.has("converged") && r.arguments.at("converged").get<bool>(), changed_s_, false, r.token});
         state_.wants_screenshot = true;
     } else if (r.what == "key") {
         press(r);
@@ -174,8 +175,8 @@ void Requests::step()
 {
     double const now = state_.clock.now_s();
     // Who waits for a frame gets one, also of a picture that rests.
-    bool const waits = !keys_.empty() || !loads_.empty() ||
-                       std::ranges::any_of(shots_, [&](Shot const& s) { return !has_seen(s.since_s); });
+    bool waits = !keys_.empty() || !loads_.empty();
+    for (Shot& s : shots_) waits |= !std::exchange(s.has_frame, true) && !has_seen(s.since_s);
     if (waits) state_.renderer->again();
     std::erase_if(releases_, [&](auto const& release) {
         if (release.first > now) return false;

@@ -33,7 +33,8 @@ private:
         std::string file;
         int view = -1; ///< -1 = the window
         bool converged = false;
-        double since_s = 0; ///< the last change before it
+        double since_s = 0;     ///< the last change before it
+        bool has_frame = false; ///< that comes even where the picture rests
         std::uint64_t token = 0;
     };
     struct Key {
