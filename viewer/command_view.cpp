@@ -33,9 +33,9 @@ namespace {
 
 struct ViewArguments {
     RenderOptions scene; ///< scene, camera, sky
-    std::vector<std::string> settings;
-    std::string size, fullscreen, navigate = "fly", record, frame_log, remote, stats, screenshots, display, replay,
-                                  out, video, avatar;
+    std::vector<std::string> settings, fullscreen;
+    std::string size, navigate = "fly", record, frame_log, remote, stats, screenshots, display, replay, out, video,
+                      avatar;
     RankOptions ranks;
     double fps = 30, eye_height_m = 1.6;
     int paths = 0;
@@ -89,7 +89,7 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
     for (std::string const& s : a.settings) o.settings.push_back(parse_change(s));
     auto const size = parse_size(a.size.empty() ? "1280x720" : a.size);
     o.size_px = {size.first, size.second};
-    o.monitor = a.fullscreen;
+    o.monitors = a.fullscreen;
     o.swap_interval = a.no_vsync ? 0 : 1;
     o.threads = scene.threads;
     o.navigation = parse_navigation(a.navigate);
@@ -285,8 +285,10 @@ void check_mode(CLI::App const& command, ViewArguments const& a)
     else
         refuse({"--out", "--video", "--paths", "--fps"}, "without --replay");
     if (!a.hmd) refuse({"--seated"}, "without --hmd");
+    if (a.hmd) refuse({"--size", "--fullscreen", "--no-vsync"}, "with --hmd");
+    if (!a.fullscreen.empty()) refuse({"--size"}, "with --fullscreen");
     if (!a.display.empty()) {
-        refuse({"--size"}, "with --display");
+        refuse({"--size", "--fullscreen"}, "with --display");
         for (std::string const& s : a.settings)
             if (parse_change(s).key == "stereo")
                 throw gi::InputError("--set " + s + " with --display", "it would not be read",
@@ -311,7 +313,9 @@ void add_view(CLI::App& app, int& exit_code)
                   "KEY=VALUE before the first frame, e.g. stereo=anaglyph-dubois, or device=cuda; repeatable")
         ->take_all();
     c->add_option("--size", a->size, "of the window, pixels (default: 1280x720); of a replay: of each view");
-    c->add_option("--fullscreen", a->fullscreen, "on the monitor of this number or name");
+    c->add_option("--fullscreen", a->fullscreen,
+                  "on the monitor of this number or name; LEFT,RIGHT for stereo=two-windows")
+        ->delimiter(',');
     c->add_flag("--no-vsync", a->no_vsync, "swap at once");
     c->add_option("--display", a->display, "walls, users and trackers, YAML (docs/displays.md)");
     c->add_flag("--hmd", a->hmd, "in the headset of the OpenXR runtime (docs/hmd.md)");

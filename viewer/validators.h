@@ -1,19 +1,22 @@
 #pragma once
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <fmt/format.h>
 
 namespace viewer {
 
-/// As CLI::Range, but NaN is outside too.
+/// As CLI::Range, but NaN is outside too, and limits are written as short as they can be.
 inline CLI::Validator in_range(double low, double high)
 {
-    CLI::Range const range(low, high);
+    std::string const range = fmt::format("[{} - {}]", low, high);
     return CLI::Validator(
         [=](std::string& text) {
             double value = 0;
-            if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
-            return range(text).empty() ? "Value " + text + " is not a number" : range(text);
+            if (!CLI::detail::lexical_cast(text, value) || std::isnan(value))
+                return "Value " + text + " is not a number";
+            return value >= low && value <= high ? std::string() : "Value " + text + " not in range " + range;
         },
-        range.get_description());
+        "FLOAT in " + range);
 }
 
 } // namespace viewer

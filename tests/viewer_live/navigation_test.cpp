@@ -69,7 +69,7 @@ TEST(DesktopViews, DisparityIsWhatGeometrySays)
 {
     gi::Camera middle = gi::look_at({1, 2, 3}, {1, 2, 0}, 50);
     DesktopStereo const stereo{true, 0.064, 1.5};
-    auto const views = desktop_views(middle, stereo, 800, 600);
+    auto const views = desktop_views(middle, stereo, {800, 600}, {800, 600});
     ASSERT_EQ(views.size(), 2u);
     EXPECT_EQ(views[1].partner, 0);
     double const pixels_per_m = 600 / (2 * std::tan(0.5 * middle.yfov_rad)) / 1.5; // on the screen
@@ -82,7 +82,21 @@ TEST(DesktopViews, DisparityIsWhatGeometrySays)
         EXPECT_NEAR(double(at(1).x - at(0).x), disparity, 1e-3) << depth;
         EXPECT_NEAR(double(at(1).y - at(0).y), 0, 1e-4);
     }
-    EXPECT_EQ(desktop_views(middle, {}, 800, 600).size(), 1u);
+    EXPECT_EQ(desktop_views(middle, {}, {800, 600}, {800, 600}).size(), 1u);
+}
+
+TEST(DesktopViews, HalvesOfAWindowHoldTheWholeView)
+{
+    gi::Camera const middle = gi::look_at({1, 2, 3}, {1, 2, 0}, 50);
+    DesktopStereo const stereo{true, 0.064, 1.5};
+    auto const whole = desktop_views(middle, stereo, {800, 600}, {800, 600});
+    auto const half = desktop_views(middle, stereo, {800, 600}, {400, 600});
+    ASSERT_EQ(half.size(), 2u);
+    for (std::size_t k = 0; k < 2; ++k) {
+        EXPECT_EQ(half[k].camera, whole[k].camera);
+        EXPECT_EQ(half[k].width, 400);
+        EXPECT_EQ(half[k].height, 600);
+    }
 }
 
 } // namespace

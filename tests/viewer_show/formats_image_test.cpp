@@ -185,7 +185,8 @@ TEST_F(FormatsOfView, WrongCalls)
         expect_refused("cornell --set " + std::string(wrong), folder.path());
     for (char const* const wrong :
          {"missing.glb", "cornell --size 0x0", "cornell --size wide", "cornell --navigate swim",
-          "cornell --fullscreen 77", "cornell --remote /nowhere/socket", "cornell --record /nowhere/walk.lwr",
+          "cornell --fullscreen 77", "cornell --fullscreen 0,0", "cornell --fullscreen 0 --set stereo=two-windows",
+          "cornell --remote /nowhere/socket", "cornell --record /nowhere/walk.lwr",
           "cornell --frame-log /nowhere/frames.csv", "cornell --threads -1", "cornell --camera nobody",
           "cornell --remote-port 99999", "cornell --size 1000000x1000000"})
         expect_refused(wrong, folder.path());
@@ -197,6 +198,8 @@ TEST_F(FormatsOfView, OptionsThatWouldNotBeRead)
     TemporaryFolder const folder;
     for (char const* const wrong :
          {"cornell --seated", "cornell --display walls.yaml --size 100x100",
+          "cornell --display walls.yaml --fullscreen 0", "cornell --hmd --size 100x100",
+          "cornell --fullscreen 0 --size 100x100",
           "cornell --display walls.yaml --set exposure=1 --set stereo=rows", "cornell --paths 4"}) {
         Outcome const o =
             Program(words("view " + std::string(wrong)), folder.path()).wait(std::chrono::seconds(30));

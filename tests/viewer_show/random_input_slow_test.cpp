@@ -2,8 +2,9 @@
 // goes on, keeps answering, needs no more and more memory, and ends in order.
 //
 // Memory is judged where the viewer is as it was at its beginning, which it is brought back to every half a
-// minute: the same scene, settings, size and time. What it holds then beyond what it held before is what it has
-// kept. Between these moments it depends on what came together by chance, and is only printed.
+// minute: the same scene, settings, size and time, and nothing is being rendered. What it holds then beyond what
+// it held before is what it has kept. Between these moments it depends on what came together by chance, and is
+// only printed.
 //
 // LIGHTWELL_RANDOM_INPUT_S: seconds, 60 if it is not set (acceptance: 1800); LIGHTWELL_RANDOM_INPUT_SEED: another
 // walk; LIGHTWELL_RANDOM_INPUT_CSV: file for the resident memory, second by second.
@@ -115,21 +116,46 @@ protected:
         return all;
     }
 
-    /// Everything as at the beginning, and a few frames of it.
+    /// That the remote control presses, and may be holding.
+    static std::vector<std::string> const& remote_keys()
+    {
+        static std::vector<std::string> const all{"w", "a", "s", "d", "q", "e", "up",  "F1",    "F11", "v", "c",
+                                                  "m", "+", "-", "1", "5", "0", "tab", "space", "r",   "p"};
+        return all;
+    }
+
+    /// Everything as at the beginning, a frame of it, and then none until something changes.
     void rest()
     {
-        client.reset();
+        sleep_ms(500); // what was sent before is done first
+        connect();     // whose answers nobody waits for
+        for (std::string const& key : remote_keys())
+            client->send(Json{{"do", "key"}, {"key", key}, {"action", "release"}}.dump() + "\n");
         RemoteClient to(view->socket());
         auto const ask = [&](Json const& request) {
             Json const answer = to.ask(request, kFrame);
             if (!answer.contains("result")) throw gi::InputError(request.dump(), answer.dump(), "see above");
         };
-        for (auto const& [key, value] : first) ask({{"do", "set"}, {"key", key}, {"value", value}});
+        for (auto const& [key, value] : first)
+            ask({{"do", "set"}, {"key", key}, {"value", key == "refine" ? Json(false) : value}});
         ask({{"do", "pause"}});
         ask({{"do", "seek"}, {"time_s", 0}});
         ask({{"do", "load"}, {"scene", "cornell"}});
         window->resize(kSize);
-        sleep_ms(1500);
+        auto const begun = Clock::now();
+        int still = 0;
+        for (int frame = -1; still < 10;) {
+            if (Clock::now() - begun > kFrame) throw gi::InputError("refine", "goes on all the same", "see above");
+            int const newest = to.ask({{"do", "stats"}}, kAnswer).at("result").value("frame", -1);
+            still = newest == frame ? still + 1 : 0;
+            frame = newest;
+            sleep_ms(100);
+        }
+    }
+    void go_on()
+    {
+        RemoteClient(view->socket())
+            .ask({{"do", "set"}, {"key", "refine"}, {"value", first.at("refine")}}, kAnswer);
         connect();
     }
 
@@ -251,9 +277,7 @@ protected:
                 {"do", "pick"}, {"x_px", real(-10, 900)}, {"y_px", real(-10, 700)}, {"select", whole(0, 1) == 1}};
         case 6:
             return {{"do", "key"},
-                    {"key",
-                     one_of<std::string>({"w", "a", "s", "d", "q", "e",   "up",    "F1", "F11", "v",     "c", "m",
-                                          "+", "-", "1", "5", "0", "tab", "space", "r",  "p",   "nokey", ""})},
+                    {"key", whole(0, 10) == 0 ? one_of<std::string>({"nokey", ""}) : one_of(remote_keys())},
                     {"action", one_of<std::string>({"tap", "tap", "press", "release"})}};
         case 7:
             return {{"do", "seek"}, {"time_s", real(-10, 100)}};
@@ -409,6 +433,7 @@ TEST_F(RandomInput, NeitherCrashesNorGrows)
             if (Clock::now() >= next_rest) {
                 rest();
                 at_rest.push_back(memory.now_mib());
+                go_on();
                 next_rest = Clock::now() + between;
             }
             act();

@@ -1,5 +1,7 @@
 #include "viewer/display/views.h"
 
+#include <algorithm>
+
 namespace viewer {
 namespace {
 
@@ -12,8 +14,8 @@ DisplayView view_of(Display const& d, int wall_index, Eye eye, WallFrame const& 
     view.wall = wall_index;
     view.eye = eye;
     view.name = wall.name + ", " + name_of(eye) + (eye == Eye::middle ? "" : " eye");
-    view.width_px = area.width / (wall.stereo == StereoMode::side_by_side ? 2 : 1);
-    view.height_px = area.height / (wall.stereo == StereoMode::top_bottom ? 2 : 1);
+    view.width_px = std::max(1, area.width / (wall.stereo == StereoMode::side_by_side ? 2 : 1));
+    view.height_px = std::max(1, area.height / (wall.stereo == StereoMode::top_bottom ? 2 : 1));
     if (wall.render_width_px > 0) {
         view.width_px = wall.render_width_px;
         view.height_px = wall.render_height_px;

@@ -12,7 +12,10 @@ struct DesktopStereo {
 };
 
 /// One view for both eyes, or the left and the right one, whose frusta are off-axis so that they share the screen.
-/// @param middle  camera between the eyes, symmetric   @param width, height  of one eye's picture, pixels
-std::vector<ViewOrder> desktop_views(gi::Camera const& middle, DesktopStereo const& stereo, int width, int height);
+/// Each eye has the whole view, however few pixels: in halves of a window it is squeezed, as displays stretch it.
+/// An orthographic camera has one view, of the window's pixels, which say how wide it is.
+/// @param middle  camera between the eyes, symmetric   @param window, eye  of the whole and of one picture, pixels
+std::vector<ViewOrder> desktop_views(gi::Camera const& middle, DesktopStereo const& stereo, glm::ivec2 window,
+                                     glm::ivec2 eye);
 
 } // namespace viewer

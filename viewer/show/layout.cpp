@@ -16,14 +16,7 @@ Layout desktop_layout(ViewState const& state, StereoMode mode, std::span<glm::iv
     if (eye_px.x <= 0 || eye_px.y <= 0) return layout;
     layout.views = desktop_views(state.now(),
                                  {mode != StereoMode::off, state.settings.eye_distance_m, state.screen_distance_m},
-                                 px.x, px.y);
-    // A half holds the whole view, squeezed: displays stretch it. Orthographic views keep the window's pixels,
-    // which say how wide they are.
-    for (ViewOrder& view : layout.views)
-        if (view.camera.off_axis) {
-            view.width = eye_px.x;
-            view.height = eye_px.y;
-        }
+                                 px, eye_px);
     int const right = layout.views.size() > 1 ? 1 : -1;
     layout.panes[0] = {{{0, 0}, px, mode, 0, right}};
     if (window_px.size() > 1) layout.panes[1] = {{{0, 0}, window_px[1], mode, 0, right, true}};

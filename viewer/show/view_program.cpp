@@ -82,13 +82,18 @@ private:
         WindowSettings settings;
         settings.title = "Lightwell: " + core_.options.scene;
         settings.size_px = core_.options.size_px;
-        settings.monitor = core_.options.monitor;
         settings.swap_interval = core_.options.swap_interval;
         if (state_.settings.stereo == name_of(StereoMode::quad_buffer)) settings.quad_buffer = QuadBuffer::wanted;
         std::string const scene = settings.title;
-        for (int i = 0; i < (two ? 2 : 1); ++i) {
+        std::size_t const windows = two ? 2 : 1;
+        std::vector<std::string> const& monitors = core_.options.monitors;
+        if (!monitors.empty() && monitors.size() != windows)
+            throw gi::InputError(fmt::format("{} monitors for {} windows", monitors.size(), windows),
+                                 "each window fills one", two ? "--fullscreen LEFT,RIGHT" : "name one");
+        for (std::size_t i = 0; i < windows; ++i) {
+            if (!monitors.empty()) settings.monitor = monitors[i];
             if (two) settings.title = scene + (i == 0 ? " (left eye)" : " (right eye)");
-            if (i == 1) {
+            if (i == 1 && monitors.empty()) {
                 Window const& left = shown_.windows[0]->window;
                 settings.position_px = left.position_px() + glm::ivec2(left.framebuffer_px().x, 0);
             }

@@ -21,7 +21,7 @@ struct ViewOptions {
     std::function<gi::Camera(gi::World const&)> first_camera; ///< where a scene is looked at from at first
     std::vector<Change> settings;                             ///< set before the first frame
     glm::ivec2 size_px{1280, 720};
-    std::string monitor; ///< full screen there; empty = a window
+    std::vector<std::string> monitors; ///< full screen there, one for each window; empty = windows
     int swap_interval = 1;
     int threads = 0;
     NavigationMode navigation = NavigationMode::fly;

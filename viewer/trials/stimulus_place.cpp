@@ -40,7 +40,7 @@ std::vector<ViewOrder> stimulus_views(StimulusPlace const& place, StimulusSettin
     if (eye.x <= 0 || eye.y <= 0) return {};
     DesktopStereo const stereo{view.stereo != StereoMode::off, stimulus.settings.eye_distance_m,
                                place.screen_distance_m};
-    return desktop_views(camera, stereo, eye.x, eye.y);
+    return desktop_views(camera, stereo, view.size_px, eye);
 }
 
 } // namespace viewer
