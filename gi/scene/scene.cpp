@@ -60,6 +60,7 @@ void append(Scene& scene, Scene part, std::string const& name, dmat4 const& tran
     move_append(scene.playbacks, part.playbacks);
     move_append(scene.cameras, part.cameras);
     move_append(scene.lights, part.lights);
+    move_append(scene.files, part.files);
     if (!scene.environment) scene.environment = std::move(part.environment);
 }
 

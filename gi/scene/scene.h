@@ -120,7 +120,8 @@ struct Scene {
     std::vector<Camera> cameras;     ///< world_from_camera is taken from the node that holds it
     std::vector<Light> lights;       ///< position/direction are taken from the node that holds it
     std::optional<EnvironmentMap> environment;
-    Background background; ///< append() leaves it as it is
+    Background background;          ///< append() leaves it as it is
+    std::vector<std::string> files; ///< all that were read: the scene's own and those it names
 };
 
 /// Append a copy of everything in `part` below a new root node of that name and transform.

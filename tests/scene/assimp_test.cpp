@@ -8,6 +8,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
+#include <set>
 #include <unistd.h>
 
 namespace gi::test {
@@ -118,6 +119,16 @@ TEST_F(AssimpFolder, MissingTexturesAreCounted)
 {
     EXPECT_EQ(load_material("Kd 1 1 1\nmap_Kd nowhere.png\n").base_color_map.texture, -1);
     EXPECT_EQ(lost("textures that could not be read"), 1u);
+}
+
+TEST_F(AssimpFolder, FilesThatWereReadAreNoted)
+{
+    cv::imwrite((folder_ / "color.png").string(), cv::Mat(2, 2, CV_8UC3, cv::Scalar(10, 20, 30)));
+    write("m.mtl", "newmtl m\nKd 1 1 1\nmap_Kd color.png\n");
+    Scene const scene = load("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+    std::set<std::string> expected;
+    for (char const* name : {"m.obj", "m.mtl", "color.png"}) expected.insert((folder_ / name).string());
+    EXPECT_EQ(std::set(scene.files.begin(), scene.files.end()), expected);
 }
 
 TEST_F(AssimpFolder, TextureCoordinatesStartAtTheTop)

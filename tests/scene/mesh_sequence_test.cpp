@@ -81,6 +81,15 @@ TEST_F(MeshSequence, FramesFollowEachOtherAndLoop)
     EXPECT_TRUE(report_.losses().empty());
 }
 
+TEST_F(MeshSequence, FilesThatWereReadAreNoted)
+{
+    write_plys({1, 2});
+    write("sequence.json", R"({"fps": 10})");
+    std::vector<std::string> expected;
+    for (char const* name : {"f0.ply", "f1.ply", "sequence.json"}) expected.push_back((folder_ / name).string());
+    EXPECT_EQ(load().files, expected);
+}
+
 TEST_F(MeshSequence, WithoutAFileOfTimes24FramesASecond)
 {
     write_plys({1, 2});

@@ -11,6 +11,8 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
 #include <unistd.h>
 
 namespace gi::test {
@@ -53,6 +55,17 @@ protected:
     fs::path folder_;
     Report report_;
 };
+
+/// A glTF file without a material, its points in triangle.bin beside it.
+void write_triangle(fs::path const& folder, std::string const& name)
+{
+    write_text(folder / name, R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "triangle.bin"}]})");
+    float const points[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    write_text(folder / "triangle.bin", {reinterpret_cast<char const*>(points), sizeof points});
+}
 
 TEST(SceneFile, PlacesModelsByScaleRotationTranslation)
 {
@@ -353,6 +366,20 @@ TEST_F(SceneFileFolder, ScenesIncludeScenesRelativeToThemselves)
     EXPECT_EQ(report_.losses().size(), 1u) << "the inner environment is counted as lost";
 }
 
+TEST_F(SceneFileFolder, FilesThatWereReadAreNoted)
+{
+    write_triangle(folder_ / "sub", "a.gltf");
+    cv::imwrite((folder_ / "sky.hdr").string(), cv::Mat(2, 4, CV_32FC3, cv::Scalar(1, 1, 1)));
+    write_text(folder_ / "sub/inner.yaml", "models: [{file: a.gltf}]\nenvironment: {color: 1}");
+    write_text(folder_ / "outer.yaml", "models: [{file: sub/inner.yaml}]\nenvironment: {file: sky.hdr}");
+    std::set<std::string> expected;
+    for (char const* name : {"outer.yaml", "sky.hdr", "sub/inner.yaml", "sub/a.gltf", "sub/triangle.bin"})
+        expected.insert((folder_ / name).string());
+    std::vector<std::string> const files = load_scene_file(folder_ / "outer.yaml", report_).files;
+    EXPECT_EQ(std::set(files.begin(), files.end()), expected);
+    EXPECT_TRUE(parse("models: [{generate: {kind: cornell}}]").files.empty());
+}
+
 TEST_F(SceneFileFolder, LoopsOfScenesAreRefused)
 {
     write_text(folder_ / "a.yaml", "models: [{file: sub/b.yaml}, {file: sub/b.yaml}]");
@@ -387,13 +414,7 @@ TEST_F(SceneFileFolder, MissingFilesAreNamed)
 
 TEST_F(SceneFileFolder, MeshesWithoutMaterialCanBeOverridden)
 {
-    std::string const triangle = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
-"nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
-"bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "triangle.bin"}]})";
-    write_text(folder_ / "triangle.gltf", triangle);
-    float const points[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-    write_text(folder_ / "triangle.bin", {reinterpret_cast<char const*>(points), sizeof points});
+    write_triangle(folder_, "triangle.gltf");
     write_text(folder_ / "a.yaml",
                "models: [{file: triangle.gltf}]\nmaterials: [{match: default, roughness: 0.125}]");
     World const w = world_of(load_scene_file(folder_ / "a.yaml", report_));

@@ -7,6 +7,8 @@
 #include "gi/scene/load/assimp_convert.h"
 #include "gi/scene/load/assimp_import.h"
 
+#include <algorithm>
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -25,6 +27,23 @@ namespace {
 constexpr rlim_t kProbeSeconds = 60;
 constexpr rlim_t kProbeBytes = rlim_t(1) << 30,
                  kProbeBytesPerByte = 64; ///< memory: some, and some per byte of file
+
+/// Notes which files an import opens, each once.
+class NotingFiles : public Assimp::DefaultIOSystem {
+public:
+    explicit NotingFiles(std::vector<std::string>& opened) : opened_(opened) {}
+
+    Assimp::IOStream* Open(char const* file, char const* mode) override
+    {
+        Assimp::IOStream* const stream = DefaultIOSystem::Open(file, mode);
+        if (stream != nullptr && std::find(opened_.begin(), opened_.end(), file) == opened_.end())
+            opened_.emplace_back(file);
+        return stream;
+    }
+
+private:
+    std::vector<std::string>& opened_;
+};
 
 unsigned steps(AssimpFaces faces)
 {
@@ -113,24 +132,28 @@ void probe(std::filesystem::path const& file, AssimpFaces faces, std::size_t fil
 
 } // namespace
 
-void import_assimp(std::filesystem::path const& file, AssimpFaces faces,
-                   std::function<void(aiScene const&)> const& use)
+std::vector<std::string> import_assimp(std::filesystem::path const& file, AssimpFaces faces,
+                                       std::function<void(aiScene const&)> const& use)
 {
     std::size_t const file_bytes = read_bytes(file).size();
     if (file_bytes == 0)
         throw InputError("'" + file.string() + "' is empty", "there is nothing to load", "export it again");
     probe(file, faces, file_bytes);
+    std::vector<std::string> opened;
     Assimp::Importer importer;
+    importer.SetIOHandler(new NotingFiles(opened)); // which the importer deletes
     std::string const reason = try_import(importer, file, faces);
     if (!reason.empty()) throw InputError("'" + file.string() + "' cannot be read", reason, "export it again");
     use(*importer.GetScene());
+    return opened;
 }
 
 Scene load_assimp(std::filesystem::path const& file, Report& report)
 {
     Scene scene;
-    import_assimp(file, AssimpFaces::merged,
-                  [&](aiScene const& source) { scene = convert_assimp(source, file, report); });
+    std::vector<std::string> const opened = import_assimp(
+        file, AssimpFaces::merged, [&](aiScene const& source) { scene = convert_assimp(source, file, report); });
+    scene.files.insert(scene.files.end(), opened.begin(), opened.end());
     return scene;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 struct aiScene;
 
@@ -13,8 +15,9 @@ enum class AssimpFaces : unsigned char {
     polygons,  ///< as `triangles` but uncut: where a polygon is cut depends on its shape
 };
 
-/// Import a file and show it to `use`. Throws InputError where it cannot be read within limits of time and memory.
-void import_assimp(std::filesystem::path const& file, AssimpFaces faces,
-                   std::function<void(aiScene const&)> const& use);
+/// Import a file and show it to `use`. Returns the files that were opened: this one and those it names, such as
+/// material libraries. Throws InputError where it cannot be read within limits of time and memory.
+std::vector<std::string> import_assimp(std::filesystem::path const& file, AssimpFaces faces,
+                                       std::function<void(aiScene const&)> const& use);
 
 } // namespace gi

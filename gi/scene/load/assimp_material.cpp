@@ -142,7 +142,9 @@ private:
         std::filesystem::path file = path;
         if (file.is_absolute() || !std::filesystem::exists(folder_ / file)) file = file.filename();
         name = (folder_ / file).string();
-        return read_bytes(folder_ / file);
+        std::vector<unsigned char> bytes = read_bytes(folder_ / file);
+        scene_.files.push_back(name);
+        return bytes;
     }
     TextureRef texture(aiMaterial const& source, aiTextureType type, bool srgb)
     {

@@ -95,6 +95,7 @@ Scene parse_gltf(unsigned char const* bytes, std::size_t size, std::filesystem::
     GltfDocument document = open_gltf({bytes, size}, folder, name, report);
     Scene scene;
     scene.name = name;
+    scene.files = document.files;
     read_materials(document, scene, report);
     std::vector<GltfMesh> const meshes = read_meshes(document, scene, report);
     std::vector<std::int32_t> const place = read_nodes(document, meshes, scene, report);
@@ -106,7 +107,9 @@ Scene load_gltf(std::filesystem::path const& file, Report& report)
 {
     std::vector<unsigned char> const bytes = read_bytes(file);
     std::filesystem::path const folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-    return parse_gltf(bytes.data(), bytes.size(), folder, file.string(), report);
+    Scene scene = parse_gltf(bytes.data(), bytes.size(), folder, file.string(), report);
+    scene.files.push_back(file.string());
+    return scene;
 }
 
 } // namespace gi

@@ -172,7 +172,7 @@ std::vector<unsigned char> decode_data_uri(std::string const& uri, std::string c
 }
 
 std::vector<unsigned char> read_other_file(std::string const& uri, std::filesystem::path const& folder,
-                                           std::string const& what, GltfDocument const& d)
+                                           std::string const& what, GltfDocument& d)
 {
     if (folder.empty())
         throw d.error(fmt::format("{} is in another file, '{}'", what, uri), "no other files may be read here");
@@ -180,7 +180,9 @@ std::vector<unsigned char> read_other_file(std::string const& uri, std::filesyst
     if (file.is_absolute() || uri.find("://") != std::string::npos)
         throw d.error(fmt::format("{} is at '{}'", what, uri), "only files beside the scene are read");
     try {
-        return read_bytes(folder / file);
+        std::vector<unsigned char> bytes = read_bytes(folder / file);
+        d.files.push_back((folder / file).string());
+        return bytes;
     } catch (InputError const& e) {
         throw d.error(fmt::format("{} is in another file, '{}'", what, uri), e.what());
     }

@@ -30,6 +30,7 @@ struct GltfDocument {
     std::vector<std::unique_ptr<std::vector<unsigned char>>>
         storage;                        ///< of what was decoded or read from other files
     std::map<int, Bytes> decoded_views; ///< of EXT_meshopt_compression
+    std::vector<std::string> files;     ///< other files that were read
     std::size_t file_bytes = 0;         ///< with all buffers
     std::size_t elements_read = 0;
 

@@ -4,6 +4,7 @@
 #include "gi/base/math.h"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace gi {
@@ -18,6 +19,7 @@ struct MeshFrame {
 struct SequenceFrame {
     std::vector<MeshFrame> meshes;
     std::vector<std::vector<std::uint32_t>> polygons; ///< per mesh: size and corners of each face
+    std::vector<std::string> files;                   ///< that were opened for it
 };
 
 /// Throws InputError where the file cannot be read or has vertices that are not finite.

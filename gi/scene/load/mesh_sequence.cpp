@@ -89,11 +89,13 @@ public:
         for (std::size_t i = 0; i < files_.size(); ++i) {
             SequenceFrame frame = i > 0 ? read_sequence_frame(files_[i]) : first;
             check_topology(first, files_[0], frame, files_[i]);
+            scene_.files.insert(scene_.files.end(), frame.files.begin(), frame.files.end());
             for (std::size_t m = 0; m < frames_.size(); ++m) frames_[m].push_back(std::move(frame.meshes[m]));
         }
         for (std::size_t m = 0; m < frames_.size(); ++m)
             if (!scene_.meshes[m].positions.empty()) make_morphing(scene_.meshes[m], frames_[m]);
         play();
+        if (!timing_.file.empty()) scene_.files.push_back(timing_.file);
         return std::move(scene_);
     }
 

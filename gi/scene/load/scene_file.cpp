@@ -207,7 +207,9 @@ private:
             throw e.error("an environment needs either file, color or sky", "it has several or none", "keep one");
         EnvironmentMap map;
         if (e.has("file")) {
-            map = load_environment(find_file(e.at("file")), report_);
+            fs::path const file = find_file(e.at("file"));
+            map = load_environment(file, report_);
+            scene_.files.push_back(file.string());
         } else if (e.has("sky")) {
             map = make_sky(e.at("sky"));
         } else {
@@ -343,7 +345,9 @@ Scene load_scene_file(fs::path const& yaml, Report& report)
 {
     std::vector<unsigned char> const bytes = read_bytes(yaml, std::size_t(1) << 30);
     fs::path const folder = yaml.has_parent_path() ? yaml.parent_path() : fs::path(".");
-    return parse_scene_file(std::string(bytes.begin(), bytes.end()), folder, yaml.string(), report);
+    Scene scene = parse_scene_file(std::string(bytes.begin(), bytes.end()), folder, yaml.string(), report);
+    scene.files.push_back(yaml.string());
+    return scene;
 }
 
 } // namespace gi

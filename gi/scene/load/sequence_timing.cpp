@@ -28,6 +28,7 @@ public:
     {
         parse();
         SequenceTiming t;
+        t.file = file_;
         if (root_.contains("loop")) {
             if (!root_["loop"].is_boolean())
                 throw wrong("'loop' is neither true nor false", "write true or false");

@@ -2,6 +2,7 @@
 #include "gi/base/report.h"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace gi {
@@ -11,6 +12,7 @@ struct SequenceTiming {
     std::vector<float> times_s; ///< one per frame, strictly increasing, >= 0
     double period_s = 0;        ///< >= the last time
     bool loop = true;
+    std::string file; ///< that says so; empty = none
 };
 
 /// From the folder's sequence.json: `times_s` (one per frame) since `t0_s` (default 0), or `fps`; `duration_s`
