@@ -121,6 +121,21 @@ TEST_F(AssimpFolder, MissingTexturesAreCounted)
     EXPECT_EQ(lost("textures that could not be read"), 1u);
 }
 
+TEST_F(AssimpFolder, MissingMaterialLibrariesAreCounted)
+{
+    std::string const triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n",
+                      what = "material libraries that could not be read";
+    load("a.obj", "mtllib none.mtl\n" + triangle);
+    EXPECT_EQ(lost(what), 1u);
+    EXPECT_EQ(report_.losses().at(what).first, (folder_ / "none.mtl").string());
+    load("a.obj", "mtllib a.mtl\n" + triangle);
+    EXPECT_EQ(lost(what), 2u) << "of the file's own name";
+    load("a.obj", triangle);
+    write("a.mtl", "newmtl m\nKd 1 1 1\n");
+    load("a.obj", "mtllib a.mtl\n" + triangle);
+    EXPECT_EQ(lost(what), 2u);
+}
+
 TEST_F(AssimpFolder, FilesThatWereReadAreNoted)
 {
     cv::imwrite((folder_ / "color.png").string(), cv::Mat(2, 2, CV_8UC3, cv::Scalar(10, 20, 30)));
@@ -328,12 +343,18 @@ TEST_F(AssimpFolder, WhatCannotBeASceneIsRefusedWithAReason)
     EXPECT_NE(refusal(write("empty.obj", "")).find("is empty"), std::string::npos);
     EXPECT_NE(refusal(write("points.obj", "v 0 0 0\nv 1 0 0\n")).find("points.obj"), std::string::npos);
     EXPECT_NE(refusal(write("what.xyzzy", "nothing known")).find("cannot be read"), std::string::npos);
+    EXPECT_NE(refusal((folder_ / "what.xyzzy").string()).find("another format"), std::string::npos);
     EXPECT_NE(refusal(folder_.string()).find("empty.obj"), std::string::npos)
         << "a folder is a sequence of frames";
     fs::create_directories(folder_ / "bare");
     EXPECT_NE(refusal((folder_ / "bare").string()).find("folder"), std::string::npos);
     EXPECT_NE(refusal("no_such_scene").find("atrium, cornell"), std::string::npos);
-    EXPECT_NE(refusal(write("loop.off", "OFF\n99999999 99999999 0\n")), "accepted");
+    std::string const large = refusal(write("loop.off", "OFF\n99999999 99999999 0\n"));
+    EXPECT_NE(large, "accepted");
+    EXPECT_EQ(large.find("bad_alloc"), std::string::npos) << large;
+    std::string const bad_index = refusal(write("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"));
+    EXPECT_NE(bad_index.find("export it again"), std::string::npos) << bad_index;
+    EXPECT_EQ(bad_index.find("another format"), std::string::npos) << bad_index;
 }
 
 } // namespace

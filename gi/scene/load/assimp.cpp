@@ -7,7 +7,6 @@
 #include "gi/scene/load/assimp_convert.h"
 #include "gi/scene/load/assimp_import.h"
 
-#include <algorithm>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -17,6 +16,8 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fstream>
+#include <new>
+#include <strings.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -28,21 +29,20 @@ constexpr rlim_t kProbeSeconds = 60;
 constexpr rlim_t kProbeBytes = rlim_t(1) << 30,
                  kProbeBytesPerByte = 64; ///< memory: some, and some per byte of file
 
-/// Notes which files an import opens, each once.
+/// Notes which files an import opens or misses.
 class NotingFiles : public Assimp::DefaultIOSystem {
 public:
-    explicit NotingFiles(std::vector<std::string>& opened) : opened_(opened) {}
+    explicit NotingFiles(ImportedFiles& files) : files_(files) {}
 
     Assimp::IOStream* Open(char const* file, char const* mode) override
     {
         Assimp::IOStream* const stream = DefaultIOSystem::Open(file, mode);
-        if (stream != nullptr && std::find(opened_.begin(), opened_.end(), file) == opened_.end())
-            opened_.emplace_back(file);
+        (stream != nullptr ? files_.opened : files_.missing).insert(file);
         return stream;
     }
 
 private:
-    std::vector<std::string>& opened_;
+    ImportedFiles& files_;
 };
 
 unsigned steps(AssimpFaces faces)
@@ -104,8 +104,10 @@ std::string try_import(Assimp::Importer& importer, std::filesystem::path const& 
 void probe(std::filesystem::path const& file, AssimpFaces faces, std::size_t file_bytes)
 {
     auto const bad = [&](std::string const& why) {
+        bool const known = Assimp::Importer().IsExtensionSupported(file.extension().string());
         return InputError("'" + file.string() + "' cannot be read", why,
-                          "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp knows");
+                          known ? "export it again"
+                                : "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp knows");
     };
     rlim_t const most_memory = used_memory() + kProbeBytes + kProbeBytesPerByte * file_bytes;
     int ends[2];
@@ -127,33 +129,44 @@ void probe(std::filesystem::path const& file, AssimpFaces faces, std::size_t fil
     if (WIFSIGNALED(status))
         throw bad(WTERMSIG(status) == SIGXCPU ? "its reader (Assimp) did not come to an end"
                                               : "its reader (Assimp) crashed on it");
+    if (reason == std::bad_alloc().what()) reason = "its header asks for more memory than there is";
     if (WEXITSTATUS(status) != 0) throw bad(reason);
 }
 
 } // namespace
 
-std::vector<std::string> import_assimp(std::filesystem::path const& file, AssimpFaces faces,
-                                       std::function<void(aiScene const&)> const& use)
+ImportedFiles import_assimp(std::filesystem::path const& file, AssimpFaces faces,
+                            std::function<void(aiScene const&)> const& use)
 {
     std::size_t const file_bytes = read_bytes(file).size();
     if (file_bytes == 0)
         throw InputError("'" + file.string() + "' is empty", "there is nothing to load", "export it again");
     probe(file, faces, file_bytes);
-    std::vector<std::string> opened;
+    ImportedFiles files;
     Assimp::Importer importer;
-    importer.SetIOHandler(new NotingFiles(opened)); // which the importer deletes
+    importer.SetIOHandler(new NotingFiles(files)); // which the importer deletes
     std::string const reason = try_import(importer, file, faces);
     if (!reason.empty()) throw InputError("'" + file.string() + "' cannot be read", reason, "export it again");
     use(*importer.GetScene());
-    return opened;
+    return files;
+}
+
+void lose_material_libraries(std::filesystem::path const& file, ImportedFiles const& files, Report& report)
+{
+    if (files.missing.empty() || strcasecmp(file.extension().c_str(), ".obj") != 0) return;
+    // For each that is missing Assimp looks for one of the OBJ file's own name, too.
+    std::set<std::string> named = files.missing;
+    if (named.size() > 1) named.erase(std::filesystem::path(file).replace_extension("mtl").string());
+    report.lose("material libraries that could not be read", named.size(), *named.begin());
 }
 
 Scene load_assimp(std::filesystem::path const& file, Report& report)
 {
     Scene scene;
-    std::vector<std::string> const opened = import_assimp(
+    ImportedFiles const files = import_assimp(
         file, AssimpFaces::merged, [&](aiScene const& source) { scene = convert_assimp(source, file, report); });
-    scene.files.insert(scene.files.end(), opened.begin(), opened.end());
+    scene.files.insert(scene.files.end(), files.opened.begin(), files.opened.end());
+    lose_material_libraries(file, files, report);
     return scene;
 }
 

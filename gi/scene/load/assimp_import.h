@@ -1,8 +1,10 @@
 #pragma once
+#include "gi/base/report.h"
+
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
-#include <vector>
 
 struct aiScene;
 
@@ -15,9 +17,16 @@ enum class AssimpFaces : unsigned char {
     polygons,  ///< as `triangles` but uncut: where a polygon is cut depends on its shape
 };
 
-/// Import a file and show it to `use`. Returns the files that were opened: this one and those it names, such as
-/// material libraries. Throws InputError where it cannot be read within limits of time and memory.
-std::vector<std::string> import_assimp(std::filesystem::path const& file, AssimpFaces faces,
-                                       std::function<void(aiScene const&)> const& use);
+/// This file and those it names, such as material libraries.
+struct ImportedFiles {
+    std::set<std::string> opened, missing;
+};
+
+/// Import a file and show it to `use`. Throws InputError where it cannot be read within limits of time and memory.
+ImportedFiles import_assimp(std::filesystem::path const& file, AssimpFaces faces,
+                            std::function<void(aiScene const&)> const& use);
+
+/// Counts the material libraries that an OBJ file names and that are missing.
+void lose_material_libraries(std::filesystem::path const& file, ImportedFiles const& files, Report& report);
 
 } // namespace gi

@@ -37,7 +37,7 @@ MeshFrame read_mesh(aiMesh const& source, std::filesystem::path const& file)
 SequenceFrame read_sequence_frame(std::filesystem::path const& file)
 {
     SequenceFrame frame;
-    frame.files = import_assimp(file, AssimpFaces::polygons, [&](aiScene const& scene) {
+    ImportedFiles const files = import_assimp(file, AssimpFaces::polygons, [&](aiScene const& scene) {
         for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
             aiMesh const& mesh = *scene.mMeshes[m];
             frame.meshes.push_back(read_mesh(mesh, file));
@@ -49,6 +49,7 @@ SequenceFrame read_sequence_frame(std::filesystem::path const& file)
             }
         }
     });
+    frame.files.assign(files.opened.begin(), files.opened.end());
     return frame;
 }
 

@@ -75,8 +75,10 @@ public:
 
     Scene load()
     {
-        import_assimp(files_[0], AssimpFaces::triangles,
-                      [&](aiScene const& source) { scene_ = convert_assimp(source, files_[0], report_); });
+        ImportedFiles const first_files =
+            import_assimp(files_[0], AssimpFaces::triangles,
+                          [&](aiScene const& source) { scene_ = convert_assimp(source, files_[0], report_); });
+        lose_material_libraries(files_[0], first_files, report_);
         scene_.name = folder_.string();
         SequenceFrame first = read_sequence_frame(files_[0]);
         bool same = first.meshes.size() == scene_.meshes.size();
