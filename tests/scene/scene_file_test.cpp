@@ -26,22 +26,33 @@ Scene parse(std::string const& text)
     return parse_scene_file(text, {}, "test.yaml", report);
 }
 
-/// The message with which a text is refused.
-std::string refusal(std::string const& text)
+/// The message with which a text is refused, or a file.
+template <class Read>
+std::string message_of(Read const& read)
 {
     try {
-        parse(text);
+        read();
     } catch (InputError const& e) {
         return e.what();
     }
     return "was accepted";
 }
 
+std::string refusal(std::string const& text)
+{
+    return message_of([&] { parse(text); });
+}
+
+void expect_parts(std::string const& message, std::vector<std::string> const& parts)
+{
+    for (std::string const& part : parts)
+        EXPECT_NE(message.find(part), std::string::npos) << message << "\n" << part;
+}
+
 void expect_refusal(std::string const& text, std::vector<std::string> const& parts)
 {
-    std::string const message = refusal(text);
-    for (std::string const& part : parts)
-        EXPECT_NE(message.find(part), std::string::npos) << message << "\n" << text;
+    SCOPED_TRACE(text);
+    expect_parts(refusal(text), parts);
 }
 
 class SceneFileFolder : public testing::Test {
@@ -51,6 +62,13 @@ protected:
         fs::create_directories(folder_ / "sub");
     }
     ~SceneFileFolder() override { fs::remove_all(folder_); }
+
+    void expect_file_refusal(std::string const& text, std::vector<std::string> const& parts)
+    {
+        fs::path const file = folder_ / "a.yaml";
+        write_text(file, text);
+        expect_parts(message_of([&] { load_scene_file(file, report_); }), parts);
+    }
 
     fs::path folder_;
     Report report_;
@@ -295,6 +313,10 @@ TEST(SceneFile, MistakesAreNamedWithTheirPlace)
     expect_refusal("models: [{generate: {kind: cornell}, scale: [1, 2]}]", {"three"});
     expect_refusal("models: [{generate: {kind: castle}}]", {"castle", "atrium"});
     expect_refusal("models: [{generate: {kind: boxes, triangles: 1e18}}]", {"between"});
+    expect_refusal("models: [{generate: {kind: cornell, triangles: 100}}]",
+                   {"test.yaml:1:48", "cornell has no key 'triangles'"});
+    expect_refusal("models: [{generate: {kind: atrium, seed: 1}}]", {"'seed'"});
+    expect_refusal("models: [{generate: {kind: sphere, bays: 1}}]", {"'bays'"});
     expect_refusal("models: [{}]", {"file or generate"});
     expect_refusal("lights: [{type: lava}]", {"lava", "rectangle"});
     expect_refusal("lights: [{type: point, cone: [1, 2]}]", {"cone"});
@@ -385,6 +407,7 @@ TEST_F(SceneFileFolder, LoopsOfScenesAreRefused)
     write_text(folder_ / "a.yaml", "models: [{file: sub/b.yaml}, {file: sub/b.yaml}]");
     write_text(folder_ / "sub/b.yaml", "models: [{file: ../a.yaml}, {file: ../a.yaml}]");
     EXPECT_THROW(load_scene_file(folder_ / "a.yaml", report_), InputError);
+    expect_file_refusal("models: [{file: ./a.yaml}]", {"a.yaml:1:17", "include each other 8 deep"});
 }
 
 /// 20^7 models by eight small files.
@@ -401,13 +424,10 @@ TEST_F(SceneFileFolder, TreesOfScenesAreLimited)
 
 TEST_F(SceneFileFolder, MissingFilesAreNamed)
 {
-    write_text(folder_ / "a.yaml", "models: [{file: house.glb}]");
-    try {
-        load_scene_file(folder_ / "a.yaml", report_);
-        FAIL();
-    } catch (InputError const& e) {
-        EXPECT_NE(std::string(e.what()).find("house.glb"), std::string::npos) << e.what();
-    }
+    expect_file_refusal("models: [{file: house.glb}]", {"a.yaml:1:17", "house.glb", "check the path"});
+    expect_file_refusal("models: [{file: cornell}]", {"a.yaml:1:17", "generate: {kind: cornell}"});
+    expect_file_refusal("cameras: []\nenvironment: {file: sky.hdr}", {"a.yaml:2:21", "sky.hdr"});
+    expect_file_refusal("environment: {file: cornell}", {"a.yaml:1:21", "check the path"});
     EXPECT_THROW(load_scene_file(folder_ / "none.yaml", report_), InputError);
     EXPECT_THROW(load_scene_file(folder_, report_), InputError);
 }
@@ -435,6 +455,17 @@ TEST(SceneFile, SchemaAndReaderKnowTheSameKeys)
     for (auto const& [name, definition] : document.at("$defs").items())
         for (auto const& [key, value] : definition.at("properties").items()) in_schema[name].insert(key);
     EXPECT_EQ(in_schema, scene_file_keys());
+}
+
+TEST(SceneFile, SchemaAndReaderKnowTheSameKindsOfGenerated)
+{
+    nlohmann::json const generate = schema().at("$defs").at("generate");
+    std::set<std::string> kinds;
+    for (auto const& [kind, keys] : keys_of_generated()) {
+        kinds.insert(kind);
+        for (std::string const& key : keys) EXPECT_TRUE(generate.at("properties").contains(key)) << key;
+    }
+    EXPECT_EQ(generate.at("properties").at("kind").at("enum").get<std::set<std::string>>(), kinds);
 }
 
 TEST(SceneFile, TheCrowdLoadsAndMoves)

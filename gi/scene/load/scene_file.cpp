@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <fnmatch.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <strings.h>
 
 namespace gi {
 namespace {
@@ -66,12 +67,28 @@ private:
         std::size_t first_material, end_material;
     };
 
-    fs::path find_file(YamlReader const& at) const
+    fs::path find_file(YamlReader const& at, std::string const& suggestion) const
     {
         if (folder_.empty())
             throw at.error("no files may be read here", "the scene comes from memory", "use generate");
-        fs::path const file = at.text();
-        return file.is_absolute() ? file : folder_ / file;
+        fs::path const file = folder_ / at.text(); // which is the text alone where that is absolute
+        std::error_code error;
+        if (fs::status(file, error).type() == fs::file_type::not_found)
+            throw at.error("cannot read '" + file.string() + "'", "there is no such file", suggestion);
+        return file;
+    }
+
+    /// Throws unless there is such a kind that reads all keys that are given.
+    static void check_kind(YamlReader const& g, std::string const& kind)
+    {
+        auto const known = keys_of_generated().find(kind);
+        if (known == keys_of_generated().end())
+            throw g.at("kind").error("there is no built-in scene '" + kind.substr(0, 64) + "'",
+                                     "it cannot be generated",
+                                     "choose atrium, cornell, mirror, avatar, boxes or sphere");
+        for (std::string const& key : g.keys())
+            if (!known->second.contains(key))
+                throw g.at(key).error(kind + " has no key '" + key + "'", "it would be ignored", "remove it");
     }
 
     Scene generate(YamlReader const& g) const
@@ -79,6 +96,7 @@ private:
         check_keys(g, "generate");
         if (!g.has("kind")) throw g.error("generate has no kind", "it is not known what to make", "kind: atrium");
         std::string const kind = g.at("kind").text();
+        check_kind(g, kind);
         auto const triangles = [&] {
             // A text from memory may not ask for a scene of any size.
             return g.has("triangles")
@@ -92,10 +110,6 @@ private:
         if (kind == "cornell") return generate_cornell();
         if (kind == "mirror") return generate_mirror();
         if (kind == "avatar") return generate_avatar();
-        if (kind != "atrium")
-            throw g.at("kind").error("there is no built-in scene '" + kind.substr(0, 64) + "'",
-                                     "it cannot be generated",
-                                     "choose atrium, cornell, mirror, avatar, boxes or sphere");
         AtriumOptions o;
         double const most = folder_.empty() ? 1 : 50;
         if (g.has("bays")) o.bays = int(g.at("bays").integer(1, folder_.empty() ? 5 : 100));
@@ -117,7 +131,7 @@ private:
         Scene part;
         std::string name;
         if (m.has("file")) {
-            fs::path const file = find_file(m.at("file"));
+            fs::path const file = find_model(m.at("file"));
             part = load_scene(file.string(), report_);
             name = file.stem().string();
         } else {
@@ -140,6 +154,19 @@ private:
         std::size_t const first = scene_.materials.size();
         append(scene_, std::move(part), name, transform);
         models_.push_back({name, first, scene_.materials.size()});
+    }
+
+    fs::path find_model(YamlReader const& at) const
+    {
+        bool const is_built_in = keys_of_generated().contains(at.text());
+        fs::path const file = find_file(
+            at, is_built_in ? "write generate: {kind: " + at.text() + "} instead of file" : "check the path");
+        bool const is_scene_file = strcasecmp(file.extension().c_str(), ".yaml") == 0 ||
+                                   strcasecmp(file.extension().c_str(), ".yml") == 0;
+        if (is_scene_file && t_depth == kDeepest)
+            throw at.error("'" + file.string() + "' is not read",
+                           fmt::format("scene files include each other {} deep", kDeepest), "break the loop");
+        return file;
     }
 
     /// So that overrides reach meshes without a material.
@@ -207,7 +234,7 @@ private:
             throw e.error("an environment needs either file, color or sky", "it has several or none", "keep one");
         EnvironmentMap map;
         if (e.has("file")) {
-            fs::path const file = find_file(e.at("file"));
+            fs::path const file = find_file(e.at("file"), "check the path");
             map = load_environment(file, report_);
             scene_.files.push_back(file.string());
         } else if (e.has("sky")) {
@@ -325,9 +352,6 @@ private:
 Scene parse_scene_file(std::string const& text, fs::path const& folder, std::string const& name, Report& report)
 {
     DepthGuard const guard;
-    if (t_depth > kDeepest)
-        throw InputError("'" + name + "' is not read",
-                         fmt::format("scene files include each other {} deep", kDeepest), "break the loop");
     YamlReader const root = YamlReader::parse(text, name);
     if (!root.is_map())
         throw root.error("'" + name + "' is no scene file", "it has no keys", "start with models:");

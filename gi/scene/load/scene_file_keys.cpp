@@ -25,4 +25,17 @@ std::map<std::string, std::set<std::string>> const& scene_file_keys()
     return keys;
 }
 
+std::map<std::string, std::set<std::string>> const& keys_of_generated()
+{
+    static std::map<std::string, std::set<std::string>> const keys{
+        {"atrium", {"kind", "bays", "detail", "figure", "sun_elevation", "sun_azimuth"}},
+        {"avatar", {"kind"}},
+        {"boxes", {"kind", "triangles", "seed"}},
+        {"cornell", {"kind"}},
+        {"mirror", {"kind"}},
+        {"sphere", {"kind", "triangles", "seed"}},
+    };
+    return keys;
+}
+
 } // namespace gi
