@@ -209,7 +209,10 @@ void PathTracer<Visibility>::trace(std::span<Path> paths, PathCounts& counts) co
     for (int vertex = 0; !active.empty(); ++vertex) {
         std::size_t const n = active.size();
         counts.nearest_rays += n;
-        for (std::size_t i = 0; i < n; ++i) queries[i] = {.ray = active[i]->ray, .seed = active[i]->rng.next()};
+        for (std::size_t i = 0; i < n; ++i) {
+            queries[i] = {.ray = active[i]->ray, .seed = active[i]->rng.next()};
+            if (vertex == 0) queries[i].start = camera_clearance(queries[i].ray.origin);
+        }
         visibility.nearest(std::span(queries).first(n), std::span(hits).first(n));
         choose_lights(std::span(active).first(n), std::span<Hit const>(hits).first(n));
         constexpr std::size_t kAhead = 4;

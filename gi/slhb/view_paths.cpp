@@ -28,7 +28,7 @@ void exact_hits(SlhbTracer::Pass const& pass, SeenView const& view, RenderSettin
         vec2 const place{float(p % width) + 0.5f, float(p / width) + 0.5f};
         Ray const ray = view.rays.through(place + filter_offset(s.filter, stream.sample2(0)));
         out.push_back({std::uint32_t(p), kNoPrimitive, ray});
-        rays.push_back({.ray = ray, .seed = stream.seed + pass.index});
+        rays.push_back({.ray = ray, .seed = stream.seed + pass.index, .start = camera_clearance(ray.origin)});
     }
     std::vector<Hit> hits(rays.size());
     pass.exact->nearest(rays, hits);

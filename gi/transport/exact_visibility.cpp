@@ -29,7 +29,7 @@ PacketMask fill(RTCRay16& packet, std::span<RayQuery const> queries)
         packet.dir_x[k] = q.ray.direction.x;
         packet.dir_y[k] = q.ray.direction.y;
         packet.dir_z[k] = q.ray.direction.z;
-        packet.tnear[k] = 0;
+        packet.tnear[k] = q.start;
         packet.tfar[k] = q.reach;
         packet.time[k] = 0;
         packet.mask[k] = 0xffffffffu;

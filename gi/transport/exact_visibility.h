@@ -29,6 +29,7 @@ struct RayQuery {
     Ray ray;
     float reach = kFar;     ///< m; what lies beyond does not count
     std::uint32_t seed = 0; ///< decides partial coverage
+    float start = 0;        ///< m; what lies nearer does not count
 };
 
 /// What of the world rays can meet.

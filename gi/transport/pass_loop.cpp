@@ -1,5 +1,6 @@
 #include "gi/transport/pass_loop.h"
 
+#include "gi/base/error.h"
 #include "gi/base/threads.h"
 
 #include <algorithm>
@@ -29,6 +30,18 @@ std::uint32_t PassLoop::next_pass(double seconds_per_path) const
     return std::uint32_t(std::clamp(paths, 1.0, double(limit() - sums_.paths)));
 }
 
+/// A disk that is full must not cost what was rendered.
+bool PassLoop::save(std::uint64_t print)
+{
+    try {
+        save_checkpoint(settings_.checkpoint, sums_, print);
+        return true;
+    } catch (InputError const& e) {
+        report_.lose("states to go on from that could not be written", 1, e.what());
+        return false;
+    }
+}
+
 RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
 {
     constexpr double kCheckpointSeconds = 30;
@@ -36,6 +49,7 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
 
     if (settings_.resume) load_checkpoint(settings_.checkpoint, sums_, print);
     std::uint32_t const resumed = sums_.paths;
+    bool is_saved = resumed > 0;
     double const earlier = sums_.seconds;
     RenderResult result;
     auto const first_pass = Clock::now();
@@ -70,13 +84,13 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
             progress_({std::min(1.0, fraction), sums_.paths, relmse});
         }
         if (keeps_state() && seconds_since(saved) > kCheckpointSeconds) {
-            save_checkpoint(settings_.checkpoint, sums_, print);
+            is_saved |= save(print);
             saved = Clock::now();
         }
     }
-    result.resumable = keeps_state() && (result.end == RenderEnd::interrupted ||
-                                         (settings_.resume && result.end != RenderEnd::paths));
-    if (result.resumable) save_checkpoint(settings_.checkpoint, sums_, print);
+    bool const may_go_on = keeps_state() && (result.end == RenderEnd::interrupted ||
+                                             (settings_.resume && result.end != RenderEnd::paths));
+    if (may_go_on) result.resumable = save(print) || is_saved;
     if (settings_.share.merge) settings_.share.merge(sums_);
     report_.add_time("trace", seconds_since(first_pass));
     report_.lose("paths cut at 1024 surfaces", sums_.counts.cut_paths);

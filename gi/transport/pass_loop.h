@@ -38,6 +38,7 @@ private:
     {
         return std::chrono::duration<double>(Clock::now() - start).count();
     }
+    bool save(std::uint64_t print);
     std::uint32_t next_pass(double seconds_per_path) const;
     std::uint32_t limit() const { return std::min(settings_.paths, settings_.share.count); }
 

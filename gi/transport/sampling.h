@@ -4,6 +4,8 @@
 #include "gi/base/math.h"
 #include "gi/image/render_settings.h"
 
+#include <limits>
+
 namespace gi {
 
 /// Veach's power heuristic with exponent 2.
@@ -21,6 +23,13 @@ GI_FN inline vec2 filter_offset(PixelFilter filter, vec2 u)
         return v < 0.5f ? std::sqrt(2 * v) - 1 : 1 - std::sqrt(std::max(0.0f, 2 - 2 * v));
     };
     return {tent(u.x), tent(u.y)};
+}
+
+/// From where on rays of a camera see, m: one that lies in a surface would see nothing but that. Above the
+/// rounding error of the distance to a plane through it.
+GI_FN inline float camera_clearance(vec3 origin)
+{
+    return glm::max(2e-6f * max_component(glm::abs(origin)), std::numeric_limits<float>::min());
 }
 
 } // namespace gi

@@ -145,7 +145,10 @@ void CameraPaths::trace(std::span<CameraPath> paths, std::vector<Receiver>& rece
     for (CameraPath& p : paths) active.push_back(&p);
     for (int surface = 0; !active.empty(); ++surface) {
         queries.clear();
-        for (CameraPath* p : active) queries.push_back({.ray = p->ray, .seed = p->rng.next()});
+        for (CameraPath* p : active) {
+            queries.push_back({.ray = p->ray, .seed = p->rng.next()});
+            if (surface == 0) queries.back().start = camera_clearance(p->ray.origin);
+        }
         hits.resize(active.size());
         visibility.nearest(queries, hits);
         counts.nearest_rays += active.size();

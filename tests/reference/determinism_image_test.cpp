@@ -1,12 +1,13 @@
-// The same seed gives the same bits, however the work is divided; another seed gives another sample of the same mean.
+// The same seed gives the same bits, however the work is divided; another seed gives another sample of the same
+// mean.
 
 #include "gi/base/error.h"
 #include "gi/reference/reference.h"
 #include "tests/support/scenes.h"
 
 #include <cstdlib>
-#include <fstream>
 #include <cstring>
+#include <fstream>
 #include <gtest/gtest.h>
 
 namespace gi::test {
@@ -92,6 +93,21 @@ TEST(Determinism, ResumedEqualsUninterrupted)
     std::filesystem::remove(state);
 }
 
+TEST(Determinism, AStateThatCannotBeWrittenCostsNoPicture)
+{
+    RenderSettings s = settings();
+    s.checkpoint = std::filesystem::temp_directory_path() / "lightwell_no_folder" / "x.state";
+    StopRequest stop;
+    stop.request();
+    Report report;
+    RenderResult const part = render_reference(room(), look_at({0, 0.2, 2.5}, {0, 0, 0}, 50), s, stop, {}, report);
+    EXPECT_EQ(part.end, RenderEnd::interrupted);
+    EXPECT_FALSE(part.resumable);
+    EXPECT_GT(part.paths, 0u);
+    EXPECT_FALSE(part.picture.layers.empty());
+    EXPECT_EQ(report.losses().count("states to go on from that could not be written"), 1u);
+}
+
 /// Whatever changes the picture makes a state unusable.
 TEST(Determinism, StatesOfOtherScenesAreRefused)
 {
@@ -142,7 +158,8 @@ TEST(Determinism, AResumedRenderKnowsItsErrorBeforeItStops)
     RenderSettings s = settings();
     s.paths = 1u << 20;
     s.until_relmse = 1e-3;
-    s.checkpoint = std::filesystem::temp_directory_path() / ("lightwell_until_" + std::to_string(getpid()) + ".state");
+    s.checkpoint =
+        std::filesystem::temp_directory_path() / ("lightwell_until_" + std::to_string(getpid()) + ".state");
     StopRequest stop;
     stop.request();
     s.budget_s = 0;

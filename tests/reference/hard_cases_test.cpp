@@ -44,8 +44,7 @@ TEST(HardCases, SkyOverFloorAtEveryScale)
         add_quad(scene, scale * vec3{-1, 0, 1}, scale * vec3{2, 0, 0}, scale * vec3{0, 0, -2},
                  add_material(scene, lambert(vec3{0.5f})));
         double const s = double(scale);
-        Picture const p =
-            render(world_of(scene), orthographic({0, s, 0}, {0, 0, 0}, s), 1024).picture;
+        Picture const p = render(world_of(scene), orthographic({0, s, 0}, {0, 0, 0}, s), 1024).picture;
         EXPECT_NEAR(mean_of(p).mean, 0.5, 0.5 * 0.01) << scale;
     }
 }
@@ -104,6 +103,21 @@ TEST(HardCases, ClosedRoomKeepsTheSkyOut)
     add_sphere(scene, {0, 0, 0}, 0.9f, 4, add_material(scene, lambert(vec3{0.9f})), true);
     Picture const p = render(world_of(scene), look_at({0, 0, 0}, {1, 1, 1}, 100), 512, 20).picture;
     EXPECT_EQ(mean_of(p).mean, 0);
+}
+
+/// It sees what lies before it, not the surface.
+TEST(HardCases, CameraInASurface)
+{
+    for (dvec3 const away : {dvec3{0}, dvec3{100, 0, -30}}) {
+        Scene scene;
+        set_environment(scene, vec3{1});
+        add_quad(scene, vec3(away) + vec3{-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, add_material(scene, lambert(vec3{0})));
+        dvec3 const from = away + dvec3{0.3, 0, 0.2};
+        Picture const above = render(world_of(scene), look_at(from, from + dvec3{0.1, 1, 0}, 60)).picture;
+        EXPECT_EQ(mean_of(above).mean, 1) << away.x;
+        Picture const across = render(world_of(scene), look_at(from, from + dvec3{1, 0, 0}, 60)).picture;
+        EXPECT_EQ(mean_of(across).mean, 1) << away.x;
+    }
 }
 
 TEST(HardCases, LampTouchingAWall)
