@@ -6,6 +6,7 @@
 #include "viewer/interrupt.h"
 #include "viewer/report_json.h"
 #include "viewer/study_commands.h"
+#include "viewer/trials/prepared_files.h"
 #include "viewer/trials/prepared_list.h"
 #include "viewer/trials/trial_presenter.h"
 #include "viewer/validators.h"
@@ -53,8 +54,9 @@ void check_stimuli(std::vector<StimulusSettings> stimuli, SceneAccess const& sce
 
 void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOptions const& o)
 {
-    for (auto const& [key, wanted] : prepared_list(script, screen_px, float(o.font_px), version_text()))
-        if (!std::filesystem::exists(std::filesystem::path(o.prepared) / key / "stimulus.json"))
+    for (auto const& [key, wanted] : prepared_list(script, screen_px, float(o.font_px), version_text())) {
+        std::filesystem::path const folder = std::filesystem::path(o.prepared) / key;
+        if (!std::filesystem::exists(folder))
             throw gi::InputError(
                 fmt::format("a stimulus of {} is not in '{}'", name_of(wanted.stimulus), o.prepared),
                 fmt::format("nothing was prepared for it in a window of {} x {} px by this version", screen_px.x,
@@ -67,6 +69,8 @@ void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOption
 void check_one_at_a_time(study::Script const& script, study::Plan const& plan, bool in_headset, bool on_walls)
 {
     for (study::PlanStep const& step : plan.steps) {
+        read_prepared(folder);
+    }
         if (step.kind != study::PlanStepKind::trial || step.trial.stimuli.empty()) continue;
         study::Block const& block = script.blocks[std::size_t(step.block)];
         bool headset = in_headset, is_ar = false;
