@@ -36,18 +36,24 @@ std::string host_name()
 }
 
 /// Before anybody sits down: everything that will be shown can be set, read, and seen from its camera.
-void check_stimuli(std::vector<StimulusSettings> stimuli, SceneAccess const& scenes)
+void check_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scenes)
 {
     gi::Report report; // what scenes lose counts when they are shown
     Session session(scenes.load, 0, report);
     std::stable_sort(stimuli.begin(), stimuli.end(),
-                     [](auto const& a, auto const& b) { return a.scene < b.scene; });
+                     [](auto const& a, auto const& b) { return a.settings.scene < b.settings.scene; });
     bool is_edited = false;
-    for (StimulusSettings const& s : stimuli) {
+    for (auto const& [s, where] : stimuli) {
         if (s.ar) continue; // ArStimulusCheck has looked at it
-        if (s.scene != session.scene_name() || is_edited) session.apply({"scene", s.scene});
-        scenes.camera(session.world(), s.camera);
-        for (Change const& c : s.edits) session.apply(c);
+        try {
+            if (s.scene != session.scene_name() || is_edited) session.apply({"scene", s.scene});
+            scenes.camera(session.world(), s.camera);
+            for (Change const& c : s.edits) session.apply(c);
+        } catch (gi::InputError const& e) {
+            throw gi::InputError(
+                where, e.what(),
+                "mend its settings; scenes are looked for beside the script, then in the current folder");
+        }
         is_edited = !s.edits.empty();
     }
 }
@@ -63,14 +69,14 @@ void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOption
                             screen_px.y),
                 "run lightwell study prepare with this script, --size and --font, and name its "
                 "folder by --prepared");
+        read_prepared(folder);
+    }
 }
 
 /// Walls and headsets show one stimulus at a time, rendered as heads move.
 void check_one_at_a_time(study::Script const& script, study::Plan const& plan, bool in_headset, bool on_walls)
 {
     for (study::PlanStep const& step : plan.steps) {
-        read_prepared(folder);
-    }
         if (step.kind != study::PlanStepKind::trial || step.trial.stimuli.empty()) continue;
         study::Block const& block = script.blocks[std::size_t(step.block)];
         bool headset = in_headset, is_ar = false;
@@ -130,7 +136,7 @@ int run(RunOptions const& o)
     ArStimulusCheck ar(loaded);
     ar.add(plan);
     ar.check();
-    std::vector<StimulusSettings> const stimuli = stimuli_of(script, plan); // refuses settings, naming their block
+    std::vector<PlannedStimulus> const stimuli = stimuli_of(script, plan); // refuses settings, naming their block
     check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
     check_stimuli(stimuli, trials.scenes);
     if (!o.display.empty()) trials.screen.display = load_display(o.display, report);

@@ -17,12 +17,12 @@ namespace {
 
 constexpr int kPathsWithoutSetting = 64; ///< per pixel, where the script says nothing of quality
 
-/// Of a scene's file; built-in scenes are as the version of the program has them.
+/// Of a scene's file; all other scenes are known by their names, which their settings' hash has.
 std::string scene_hash(std::string const& scene)
 {
     static std::map<std::pair<std::string, std::filesystem::file_time_type>, std::string> known;
     std::error_code none;
-    if (!std::filesystem::is_regular_file(scene, none)) return scene;
+    if (!std::filesystem::is_regular_file(scene, none)) return "";
     auto& hash = known[{scene, std::filesystem::last_write_time(scene)}];
     if (hash.empty()) {
         auto const bytes = gi::read_bytes(scene);
