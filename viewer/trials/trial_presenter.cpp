@@ -68,7 +68,8 @@ std::vector<std::pair<std::string, std::string>> TrialPresenter::about() const
 {
     auto all = options_.about;
     for (auto const& fact : screen_->about()) all.push_back(fact);
-    all.emplace_back("refresh_hz", fmt::format("{:g}", screen_->refresh_hz()));
+    double const hz = screen_->refresh_hz();
+    all.emplace_back("refresh_hz", hz > 0 ? fmt::format("{:g}", hz) : "unknown");
     all.emplace_back("display_lag_ms", fmt::format("{:g}", script_.timing.display_lag_ms));
     return all;
 }
