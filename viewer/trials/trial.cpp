@@ -356,6 +356,7 @@ study::TrialDone TrialPresenter::show(study::TrialRequest const& request)
     study::TrialDone judged = done;
     judge(script_, request.step->trial, judged);
     status.bad_trials += !judged.is_valid;
+    status.trials_done += request.attempt == 1 ? 1 : 0; // each of the plan counts once
     status.last =
         done.reaction_ms ? fmt::format("{} after {:.0f} ms", done.response, *done.reaction_ms) : done.reason;
     trial_end_s_ = now();
