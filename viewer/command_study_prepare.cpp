@@ -1,4 +1,5 @@
 #include "gi/base/error.h"
+#include "study/record/durable_file.h"
 #include "viewer/arguments.h"
 #include "viewer/interrupt.h"
 #include "viewer/outputs.h"
@@ -31,12 +32,13 @@ int run(PrepareOptions const& o)
     if (list.empty())
         throw gi::InputError("nothing to prepare in " + o.script, "no block has stimuli: prepared",
                              "write it in the block, or run with live stimuli");
+    study::make_folder(o.out);
     Cluster cluster(
         {version_text(), "study prepare " + o.size, Cluster::started_by_mpirun() ? file_hash(o.script) : 0},
         cluster_settings(o.ranks));
     gi::Report report;
-    std::filesystem::create_directories(o.out);
     std::size_t made = 0, number = 0;
+    bool is_interrupted = false;
     try {
         RankWork work(cluster);
         InterruptGuard const guard(work.stop());
@@ -45,7 +47,13 @@ int run(PrepareOptions const& o)
         for (auto const& [key, wanted] : list) {
             bar.update(double(number) / double(list.size()), name_of(wanted.stimulus));
             if (int(number++ % std::size_t(work.size())) != work.rank()) continue;
-            made += prepare_stimulus(wanted, o.out, key, scenes, o.threads, work.stop(), report);
+            try {
+                made += prepare_stimulus(wanted, o.out, key, scenes, o.threads, work.stop(), report);
+            } catch (gi::InputError const& e) {
+                is_interrupted = work.stop().requested();
+                if (is_interrupted) break;
+                throw gi::InputError(wanted.where, e.what(), "stimuli that are complete stay");
+            }
         }
         work.talk([&](Cluster& c) {
             if (!c.leads()) {
@@ -56,6 +64,7 @@ int run(PrepareOptions const& o)
                 if (auto const count = c.take(rank))
                     made += std::size_t(std::stoul(std::string(count->begin(), count->end())));
         });
+        if (is_interrupted) throw RankInterrupted();
         bool const leads = work.leads();
         work.finish();
         if (!leads) return 0;

@@ -6,6 +6,7 @@
 #include "viewer/interrupt.h"
 #include "viewer/report_json.h"
 #include "viewer/study_commands.h"
+#include "viewer/trials/prepared_files.h"
 #include "viewer/trials/prepared_list.h"
 #include "viewer/trials/trial_presenter.h"
 #include "viewer/validators.h"
@@ -35,32 +36,41 @@ std::string host_name()
 }
 
 /// Before anybody sits down: everything that will be shown can be set, read, and seen from its camera.
-void check_stimuli(std::vector<StimulusSettings> stimuli, SceneAccess const& scenes)
+void check_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scenes)
 {
     gi::Report report; // what scenes lose counts when they are shown
     Session session(scenes.load, 0, report);
     std::stable_sort(stimuli.begin(), stimuli.end(),
-                     [](auto const& a, auto const& b) { return a.scene < b.scene; });
+                     [](auto const& a, auto const& b) { return a.settings.scene < b.settings.scene; });
     bool is_edited = false;
-    for (StimulusSettings const& s : stimuli) {
+    for (auto const& [s, where] : stimuli) {
         if (s.ar) continue; // ArStimulusCheck has looked at it
-        if (s.scene != session.scene_name() || is_edited) session.apply({"scene", s.scene});
-        scenes.camera(session.world(), s.camera);
-        for (Change const& c : s.edits) session.apply(c);
+        try {
+            if (s.scene != session.scene_name() || is_edited) session.apply({"scene", s.scene});
+            scenes.camera(session.world(), s.camera);
+            for (Change const& c : s.edits) session.apply(c);
+        } catch (gi::InputError const& e) {
+            throw gi::InputError(
+                where, e.what(),
+                "mend its settings; scenes are looked for beside the script, then in the current folder");
+        }
         is_edited = !s.edits.empty();
     }
 }
 
 void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOptions const& o)
 {
-    for (auto const& [key, wanted] : prepared_list(script, screen_px, float(o.font_px), version_text()))
-        if (!std::filesystem::exists(std::filesystem::path(o.prepared) / key / "stimulus.json"))
+    for (auto const& [key, wanted] : prepared_list(script, screen_px, float(o.font_px), version_text())) {
+        std::filesystem::path const folder = std::filesystem::path(o.prepared) / key;
+        if (!std::filesystem::exists(folder))
             throw gi::InputError(
                 fmt::format("a stimulus of {} is not in '{}'", name_of(wanted.stimulus), o.prepared),
                 fmt::format("nothing was prepared for it in a window of {} x {} px by this version", screen_px.x,
                             screen_px.y),
                 "run lightwell study prepare with this script, --size and --font, and name its "
                 "folder by --prepared");
+        read_prepared(folder);
+    }
 }
 
 /// Walls and headsets show one stimulus at a time, rendered as heads move.
@@ -126,7 +136,7 @@ int run(RunOptions const& o)
     ArStimulusCheck ar(loaded);
     ar.add(plan);
     ar.check();
-    std::vector<StimulusSettings> const stimuli = stimuli_of(script, plan); // refuses settings, naming their block
+    std::vector<PlannedStimulus> const stimuli = stimuli_of(script, plan); // refuses settings, naming their block
     check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
     check_stimuli(stimuli, trials.scenes);
     if (!o.display.empty()) trials.screen.display = load_display(o.display, report);

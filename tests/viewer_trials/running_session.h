@@ -111,6 +111,13 @@ public:
         return found;
     }
 
+    /// Why the last part ended, as the journal says.
+    std::string reason() const
+    {
+        auto const ends = entries<study::SessionEnded>();
+        return ends.empty() ? "none" : ends.back().reason;
+    }
+
 private:
     TemporaryFolder const& folder_;
     std::filesystem::path socket_;

@@ -160,6 +160,48 @@ TEST_F(Sessions, TheExperimenterSeesPausesNotesAndEndsIt)
     EXPECT_NE(notes.find("abort enough"), std::string::npos) << notes;
 }
 
+TEST_F(Sessions, OnlyTheParticipantAgrees)
+{
+    std::string text = script("vsync: record, on_bad_trial: keep", "[better]", kPair);
+    std::string const count = "{count: 2}";
+    text.replace(text.find(count), count.size(), "{count: 2, consent: \"# May we?\"}");
+    RunningSession run(folder, text);
+    NEED_KEYS(run);
+    ASSERT_TRUE(run.wait_until_at("consent")) << run.program().errors();
+    run.session("skip");
+    sleep_ms(300);
+    EXPECT_EQ(run.session("status").at("doing"), "consent") << "it cannot be skipped";
+    run.window().tap("y");
+    EXPECT_TRUE(run.markers.wait_for("stimulus").is_object());
+    run.session("abort");
+    run.wait();
+    EXPECT_EQ(run.reason(), "aborted by the experimenter");
+}
+
+TEST_F(Sessions, AnInterruptIsTheReason)
+{
+    RunningSession run(folder, script("vsync: record, on_bad_trial: keep", "[better]", kPair));
+    NEED_KEYS(run);
+    ASSERT_TRUE(run.markers.wait_for("stimulus").is_object()) << run.program().errors();
+    run.program().send(SIGINT);
+    EXPECT_EQ(run.wait().code, 1);
+    EXPECT_EQ(run.reason(), "interrupted (SIGINT or SIGTERM)");
+}
+
+TEST_F(Sessions, TrialsThatAreDoneCountInABreakToo)
+{
+    RunningSession run(folder,
+                       script("vsync: record, on_bad_trial: keep", "[better, {break: {min_s: 0}}]",
+                              "  better: {task: pair, prompt: better, pairs: {factor: bounces}, repeats: 1}\n"));
+    NEED_KEYS(run);
+    ASSERT_TRUE(run.markers.wait_for("stimulus").is_object()) << run.program().errors();
+    run.window().tap("Left");
+    ASSERT_TRUE(run.wait_until_at("break"));
+    EXPECT_EQ(run.session("status").at("trials_done"), 1);
+    run.window().tap("space");
+    EXPECT_EQ(run.wait().code, 0);
+}
+
 TEST_F(Sessions, EscapeTwiceEndsItAndItGoesOnInTheSameOrder)
 {
     std::string const text =
@@ -176,6 +218,7 @@ TEST_F(Sessions, EscapeTwiceEndsItAndItGoesOnInTheSameOrder)
         run.window().tap("Escape");
         EXPECT_EQ(run.wait().code, 1);
         EXPECT_EQ(run.entries<study::TrialDone>().size(), 1u);
+        EXPECT_EQ(run.reason(), "aborted by the participant");
     }
     EXPECT_EQ(RunningSession(folder, text).wait().code, 2) << "it is never overwritten";
     RunningSession run(folder, text, "--resume");
@@ -287,6 +330,31 @@ TEST_F(Sessions, PreparedStimuliThatAreNotThereAreRefusedBeforeAnybodySitsDown)
     Outcome const o = run.wait();
     EXPECT_EQ(o.code, 2);
     EXPECT_NE(o.err.find("study prepare"), std::string::npos) << o.err;
+}
+
+TEST_F(Sessions, PreparedStimuliThatAreDamagedAreRefusedToo)
+{
+    std::string const text =
+        script("vsync: record", "[better]",
+               "  better: {task: pair, prompt: better, pairs: {factor: bounces}, stimuli: prepared}\n");
+    std::ofstream(folder / "x.yaml") << text;
+    run_well("study prepare x.yaml --size 240x180 --font 12 --out prepared", folder.path());
+    for (auto const& entry : std::filesystem::directory_iterator(folder / "prepared"))
+        std::filesystem::remove(entry.path() / "00000_0.exr");
+    Outcome const o = RunningSession(folder, text, "--prepared prepared").wait();
+    EXPECT_EQ(o.code, 2);
+    EXPECT_NE(o.err.find("is not whole (its 00000_0.exr is missing or damaged)"), std::string::npos) << o.err;
+}
+
+TEST_F(Sessions, ScenesThatAreNotThereAreRefusedWithTheirBlock)
+{
+    RunningSession run(folder, script("vsync: record", "[seen]",
+                                      "  seen: {task: rating, prompt: how, scale: {min: 1, max: 7}, "
+                                      "cross: [bounces], settings: {scene: none.glb}}\n"));
+    Outcome const o = run.wait();
+    EXPECT_EQ(o.code, 2);
+    EXPECT_NE(o.err.find("x.yaml: block seen"), std::string::npos) << o.err;
+    EXPECT_NE(o.err.find("there is no scene 'none.glb'"), std::string::npos) << o.err;
 }
 
 TEST_F(Sessions, SettingsThatTheRendererDoesNotKnowAreRefusedAtOnce)

@@ -5,7 +5,10 @@
 #include "study/design/examples.h"
 #include "study/design/script_file.h"
 #include "study/run/adaptive_run.h"
+#include "tests/viewer/run_program.h"
+#include "viewer/remote/remote_client.h"
 #include "viewer/trials/answer_keys.h"
+#include "viewer/trials/experimenter.h"
 #include "viewer/trials/page.h"
 #include "viewer/trials/prepared_list.h"
 #include "viewer/trials/refresh.h"
@@ -15,7 +18,9 @@
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
+#include <future>
 #include <gtest/gtest.h>
+#include <numeric>
 
 namespace viewer::test {
 namespace {
@@ -104,8 +109,10 @@ TEST(Refresh, WhyADisplayDoesNotPassIsSaid)
     auto const fast = judge_refresh(swaps(600, 1e-4), 0, timing, "swap_finish");
     EXPECT_FALSE(fast.passed);
     EXPECT_NE(fast.reason.find("do not wait for the display"), std::string::npos) << fast.reason;
+    EXPECT_NE(fast.reason.find("the display does not tell its rate"), std::string::npos) << fast.reason;
     auto const half = judge_refresh(swaps(600, 1 / 30.0), 60, timing, "oml");
     EXPECT_NE(half.reason.find("in place of 16.7 ms"), std::string::npos) << half.reason;
+    EXPECT_EQ(half.reason.find("expected_hz"), std::string::npos) << half.reason;
     auto const shaky = judge_refresh(swaps(600, 1 / 60.0, 2e-3), 60, timing, "oml");
     EXPECT_NE(shaky.reason.find("standard deviation"), std::string::npos) << shaky.reason;
     EXPECT_FALSE(judge_refresh(swaps(2, 1 / 60.0), 60, timing, "oml").passed);
@@ -222,6 +229,86 @@ TEST(Response, NumbersAreTypedAndPositive)
     for (char const c : std::string(".x2.5")) type(c);
     EXPECT_TRUE(r.take(key(GLFW_KEY_ENTER)));
     EXPECT_DOUBLE_EQ(*r.value(), 0.25);
+}
+
+TEST(Response, ADecimalCommaIsAPoint)
+{
+    study::Script const s = script("{task: magnitude, prompt: how bright, cross: [scene]}");
+    AnswerKeys const keys(s);
+    Response r(s.blocks[0], keys, "a");
+    for (char const c : std::string("5,,.5")) {
+        InputEvent e;
+        e.kind = InputKind::character;
+        e.code = c;
+        r.take(e);
+    }
+    EXPECT_TRUE(r.take(key(GLFW_KEY_ENTER)));
+    EXPECT_DOUBLE_EQ(*r.value(), 5.5);
+}
+
+TEST(Frames, NearestRanksAreAmongTheValues)
+{
+    EXPECT_EQ(nearest_rank({}, 0.99), 0);
+    EXPECT_EQ(nearest_rank({3}, 0.99), 3);
+    EXPECT_EQ(nearest_rank({1, 2, 3, 100}, 0.99), 100) << "never less than the mean";
+    std::vector<double> many(200);
+    std::iota(many.begin(), many.end(), 1);
+    EXPECT_EQ(nearest_rank(many, 0.99), 198);
+    EXPECT_EQ(nearest_rank(many, 1), 200);
+    EXPECT_EQ(nearest_rank(many, 0), 1);
+}
+
+/// What a client is told by an experiment that runs.
+nlohmann::json asked(Experimenter& experimenter, std::filesystem::path const& socket,
+                     nlohmann::json const& request)
+{
+    auto answer = std::async(std::launch::async, [&] { return RemoteClient(socket).ask(request); });
+    while (answer.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) experimenter.poll(1);
+    return answer.get();
+}
+
+TEST(Experimenter, NotesHaveText)
+{
+    TemporaryFolder const folder;
+    gi::Report report;
+    RemoteOptions remote;
+    remote.socket = folder / "s";
+    Experimenter experimenter(remote, report);
+    nlohmann::json request{{"do", "session"}, {"action", "note"}};
+    EXPECT_TRUE(asked(experimenter, remote.socket, request).contains("error"));
+    request["text"] = " ";
+    EXPECT_TRUE(asked(experimenter, remote.socket, request).contains("error"));
+    EXPECT_TRUE(experimenter.take_notes().empty());
+    request["text"] = "late";
+    EXPECT_TRUE(asked(experimenter, remote.socket, request).contains("result"));
+    ASSERT_EQ(experimenter.take_notes().size(), 1u);
+}
+
+TEST(Experimenter, SaysWhoEndsASession)
+{
+    gi::Report report;
+    Experimenter experimenter({}, report);
+    EXPECT_NO_THROW(experimenter.check_aborted());
+    experimenter.abort("aborted by the participant");
+    experimenter.abort("interrupted");
+    try {
+        experimenter.check_aborted();
+        FAIL();
+    } catch (study::Aborted const& e) {
+        EXPECT_STREQ(e.what(), "aborted by the participant") << "the first";
+    }
+}
+
+TEST(Stimuli, ScenesAreLookedForBesideTheScript)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "room.glb") << "";
+    StimulusSettings const beside = stimulus_settings({{"scene", "room.glb"}}, "", folder.path());
+    EXPECT_EQ(beside.scene, (folder / "room.glb").string());
+    EXPECT_EQ(stimulus_settings({{"scene", "cornell"}}, "", folder.path()).scene, "cornell");
+    StimulusSettings const other = stimulus_settings({{"scene", "room.glb"}}, "");
+    EXPECT_EQ(other.scene, "room.glb");
+    EXPECT_EQ(beside.sha256, other.sha256) << "wherever the script lies";
 }
 
 TEST(Stimuli, SettingsOfTheScriptBecomeThoseOfTheRenderer)

@@ -4,6 +4,7 @@
 #include "gi/base/file.h"
 #include "viewer/ar/bridge.h"
 #include "viewer/trials/prepared.h"
+#include "viewer/trials/prepared_files.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +13,6 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <unistd.h>
 
 namespace viewer {
 namespace {
@@ -32,8 +32,7 @@ std::string png_of(cv::Mat const& rgb)
 
 std::vector<ArPicture> read_pictures(fs::path const& folder)
 {
-    auto const bytes = gi::read_bytes(folder / "stimulus.json");
-    auto const about = nlohmann::json::parse(bytes.begin(), bytes.end());
+    nlohmann::json const about = read_prepared(folder);
     std::vector<ArPicture> pictures;
     for (double const time_s : about.at("times_s")) {
         fs::path const file = folder / file_name(pictures.size());
@@ -96,25 +95,17 @@ std::shared_ptr<LiveFrame const> frame_of(ArPicture const& p, Settings const& se
 bool prepare_ar_stimulus(StimulusSettings const& stimulus, StimulusView const& view, fs::path const& folder,
                          std::string const& key, gi::StopRequest const& stop, gi::Report& report)
 {
-    if (fs::exists(folder / key)) return false;
+    if (prepared_flaw(folder / key).empty()) return false;
     auto const pictures = make_ar_pictures(*stimulus.ar, view, stop, report);
     if (stop.requested()) throw gi::InputError("preparing stimuli", "it was interrupted", "start it again");
-    fs::path const making = folder / fmt::format("{}.{}", key, getpid());
-    fs::create_directories(making);
-    try {
+    write_prepared(folder / key, [&](fs::path const& into) -> nlohmann::json {
         nlohmann::json times = nlohmann::json::array();
         for (ArPicture const& p : pictures) {
-            gi::write_text(making / file_name(times.size()), png_of(p.rgb));
+            gi::write_text(into / file_name(times.size()), png_of(p.rgb));
             times.push_back(p.time_s);
         }
-        nlohmann::json const about = {{"times_s", times}, {"sha256", stimulus.sha256}};
-        gi::write_text(making / "stimulus.json", about.dump(1) + "\n");
-        fs::rename(making, folder / key);
-    } catch (...) {
-        std::error_code none;
-        fs::remove_all(making, none);
-        if (!fs::exists(folder / key)) throw; // another process may have been faster
-    }
+        return {{"times_s", times}, {"sha256", stimulus.sha256}};
+    });
     return true;
 }
 

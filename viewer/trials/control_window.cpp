@@ -16,9 +16,20 @@ namespace {
 constexpr double kAsk_s = 0.2;
 constexpr std::chrono::milliseconds kAnswer{10000};
 
+RemoteClient connect(std::string const& where)
+{
+    try {
+        return RemoteClient(where);
+    } catch (gi::InputError const&) { // whose advice is for the viewer
+        throw gi::InputError("cannot connect to '" + where + "'", "no session listens there, or not to this user",
+                             "start lightwell study run with --remote and name the same, or the digits of its "
+                             "--remote-port");
+    }
+}
+
 class Control {
 public:
-    explicit Control(std::string const& where) : client_(where) {}
+    explicit Control(std::string const& where) : client_(connect(where)) {}
 
     /// False where the session has gone.
     bool ask(std::string const& action, std::string const& text = {})

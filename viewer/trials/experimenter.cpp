@@ -24,6 +24,20 @@ void Experimenter::note(double time_s, std::string kind, std::string text)
     notes_.push_back({time_s, std::move(kind), std::move(text)});
 }
 
+void Experimenter::abort(std::string why)
+{
+    if (wish_ == Wish::abort) return;
+    wish_ = Wish::abort;
+    why_aborted_ = std::move(why);
+}
+
+void Experimenter::check_aborted() const
+{
+    if (wish_ != Wish::abort) return;
+    if (why_aborted_.empty()) throw study::Aborted();
+    throw study::Aborted(why_aborted_);
+}
+
 std::optional<nlohmann::json> Experimenter::handle(RemoteRequest const& r)
 {
     if (r.what == "ping") return nlohmann::json::object();
@@ -38,6 +52,8 @@ std::optional<nlohmann::json> Experimenter::handle(RemoteRequest const& r)
     std::string const action = r.arguments.at("action").get<std::string>();
     std::string const text = r.has("text") ? r.arguments.at("text").get<std::string>() : "";
     if (action == "note") {
+        if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+            throw gi::InputError("a note without text", "nothing would be noted", "give its text");
         note(now_s_, "note", text);
     } else if (action == "pause") {
         paused_ = true;

@@ -33,12 +33,16 @@ public:
     std::vector<study::NoteTaken> take_notes() { return std::exchange(notes_, {}); }
     /// By a key of the participant's window, or what the machine saw.
     void note(double time_s, std::string kind, std::string text);
-    void ask(study::Wish wish) { wish_ = wish; }
+    /// Ends the session; who does it first counts. @param why  "aborted by the participant"
+    void abort(std::string why);
+    /// Throws Aborted, with who wanted it, where an abort was asked for.
+    void check_aborted() const;
 
 private:
     std::optional<nlohmann::json> handle(RemoteRequest const& request);
 
     study::Wish wish_ = study::Wish::go_on;
+    std::string why_aborted_; ///< empty = the experimenter wanted it
     bool paused_ = false;
     std::vector<study::NoteTaken> notes_;
     double now_s_ = 0;

@@ -5,24 +5,24 @@
 #include "gi/base/picture_file.h"
 #include "study/base/sha256.h"
 #include "viewer/trials/ar_source.h"
+#include "viewer/trials/prepared_files.h"
 #include "viewer/trials/stimulus_place.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <map>
-#include <unistd.h>
 
 namespace viewer {
 namespace {
 
 constexpr int kPathsWithoutSetting = 64; ///< per pixel, where the script says nothing of quality
 
-/// Of a scene's file; built-in scenes are as the version of the program has them.
+/// Of a scene's file; all other scenes are known by their names, which their settings' hash has.
 std::string scene_hash(std::string const& scene)
 {
     static std::map<std::pair<std::string, std::filesystem::file_time_type>, std::string> known;
     std::error_code none;
-    if (!std::filesystem::is_regular_file(scene, none)) return scene;
+    if (!std::filesystem::is_regular_file(scene, none)) return "";
     auto& hash = known[{scene, std::filesystem::last_write_time(scene)}];
     if (hash.empty()) {
         auto const bytes = gi::read_bytes(scene);
@@ -56,7 +56,7 @@ std::string prepared_key(PreparedStimulus const& w, std::string const& version)
 bool prepare_stimulus(PreparedStimulus const& wanted, std::filesystem::path const& folder, std::string const& key,
                       SceneAccess const& scenes, int threads, gi::StopRequest const& stop, gi::Report& report)
 {
-    if (std::filesystem::exists(folder / key)) return false;
+    if (prepared_flaw(folder / key).empty()) return false;
     StimulusSettings const& s = wanted.stimulus;
     if (s.ar) return prepare_ar_stimulus(s, wanted.view, folder, key, stop, report);
     Session session(scenes.load, threads, report);
@@ -68,9 +68,7 @@ bool prepare_stimulus(PreparedStimulus const& wanted, std::filesystem::path cons
     StimulusPlace const place = place_of(session.world(), scenes.camera(session.world(), s.camera));
     bool const moves = s.path != StimulusPath::none || (s.settings.play && session.moves());
     int const frames = moves ? std::max(1, int(std::lround(wanted.view.duration_s * s.settings.rate_hz))) : 1;
-    std::filesystem::path const making = folder / fmt::format("{}.{}", key, getpid());
-    std::filesystem::create_directories(making);
-    try {
+    write_prepared(folder / key, [&](std::filesystem::path const& into) -> nlohmann::json {
         FrameOrder order;
         order.paths = s.settings.paths > 0 ? s.settings.paths : kPathsWithoutSetting;
         for (int f = -wanted.view.warmup_frames; f < frames; ++f) {
@@ -82,20 +80,13 @@ bool prepare_stimulus(PreparedStimulus const& wanted, std::filesystem::path cons
             order.views = stimulus_views(place, s, wanted.view, seconds);
             SessionFrame const frame = session.render(order, {});
             for (std::size_t v = 0; f >= 0 && v < frame.views.size(); ++v)
-                gi::write_exr(making / file_name(f, int(v)), shown_part(frame.views[v].picture),
-                              gi::PixelType::half, report);
+                gi::write_exr(into / file_name(f, int(v)), shown_part(frame.views[v].picture), gi::PixelType::half,
+                              report);
         }
-        nlohmann::json tone = {{"exposure", s.settings.exposure_ev}, {"tone", s.settings.tone},
-                               {"swap_eyes", s.settings.swap_eyes},  {"frames", frames},
-                               {"views", order.views.size()},        {"sha256", s.sha256}};
-        gi::write_text(making / "stimulus.json", tone.dump(1) + "\n");
-        std::filesystem::rename(making, folder / key);
-    } catch (...) {
-        std::error_code none;
-        std::filesystem::remove_all(making, none);
-        // Another process may have been faster.
-        if (!std::filesystem::exists(folder / key)) throw;
-    }
+        return {{"exposure", s.settings.exposure_ev}, {"tone", s.settings.tone},
+                {"swap_eyes", s.settings.swap_eyes},  {"frames", frames},
+                {"views", order.views.size()},        {"sha256", s.sha256}};
+    });
     return true;
 }
 
@@ -108,8 +99,7 @@ void PreparedSource::prepare(StimulusSettings const& stimulus, StimulusView cons
                              fmt::format("nothing was prepared for a place of {} x {} px by this version",
                                          view.size_px.x, view.size_px.y),
                              "run lightwell study prepare with the same script and --size");
-    auto const bytes = gi::read_bytes(folder / "stimulus.json");
-    auto const about = nlohmann::json::parse(bytes.begin(), bytes.end());
+    nlohmann::json const about = read_prepared(folder);
     duration_s_ = view.duration_s;
     int const views = about.at("views").get<int>();
     for (int f = 0; f < about.at("frames").get<int>(); ++f) {

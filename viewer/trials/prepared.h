@@ -10,13 +10,14 @@ namespace viewer {
 struct PreparedStimulus {
     StimulusSettings stimulus;
     StimulusView view;
+    std::string where{}; ///< of the script, for messages
 };
 
 /// Pictures of a stimulus, of what is shown of it in one place of the screen. @param version  of the program
 std::string prepared_key(PreparedStimulus const& wanted, std::string const& version);
 
 /// Renders all pictures of a stimulus, where nothing in it moves one, into FOLDER/KEY, which appears whole;
-/// nothing where it is there.
+/// nothing where it is there and whole (prepared_files.h).
 /// @return whether it had to be rendered. Throws InputError.
 bool prepare_stimulus(PreparedStimulus const& wanted, std::filesystem::path const& folder, std::string const& key,
                       SceneAccess const& scenes, int threads, gi::StopRequest const& stop, gi::Report& report);

@@ -37,6 +37,7 @@ std::map<std::string, PreparedStimulus> prepared_list(study::Script const& scrip
         std::size_t const together =
             block.is_sequential ? 1 : trial.order.size() + (trial.reference.has_value() ? 1 : 0);
         p.view = view_of(block, p.stimulus, together, screen_px, font_px);
+        p.where = script.file + ": block " + block.name + ", " + stimulus_label(script, block, stimulus);
         list.emplace(prepared_key(p, version), p);
     };
     for (int participant = 1; participant <= script.participants.count; ++participant)

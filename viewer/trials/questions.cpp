@@ -42,13 +42,16 @@ void remove_last(std::string& text)
 bool TrialPresenter::ask_consent(std::string const& markdown)
 {
     bool agreed = false;
+    experimenter_.status.doing = "consent";
     std::vector<PageLine> const lines = parse_page(markdown);
-    page([&](glm::vec2 px) { draw_page(px, lines, "y: I agree     n: I do not"); },
-         [&](InputEvent const& e) {
-             if (e.kind != InputKind::key || e.action != InputAction::press) return false;
-             agreed = e.code == GLFW_KEY_Y;
-             return agreed || e.code == GLFW_KEY_N;
-         });
+    auto const draw = [&](glm::vec2 px) { draw_page(px, lines, "y: I agree     n: I do not"); };
+    auto const answer = [&](InputEvent const& e) {
+        if (e.kind != InputKind::key || e.action != InputAction::press) return false;
+        agreed = e.code == GLFW_KEY_Y;
+        return agreed || e.code == GLFW_KEY_N;
+    };
+    while (!page(draw, answer)) { // nobody else can answer for the participant: it cannot be skipped
+    }
     return agreed;
 }
 

@@ -113,9 +113,10 @@ bool Response::take_number(InputEvent const& event)
 {
     constexpr std::size_t kMost = 12;
     if (event.kind == InputKind::character) {
-        bool const point = event.code == '.' && typed_.find('.') == std::string::npos;
+        char const c = event.code == ',' ? '.' : char(event.code);
+        bool const point = (event.code == '.' || event.code == ',') && typed_.find('.') == std::string::npos;
         bool const digit = event.code >= '0' && event.code <= '9';
-        if ((point || digit) && typed_.size() < kMost) typed_ += char(event.code);
+        if ((point || digit) && typed_.size() < kMost) typed_ += c;
         return false;
     }
     if (event.kind == InputKind::key && event.action != InputAction::release && event.code == GLFW_KEY_BACKSPACE &&

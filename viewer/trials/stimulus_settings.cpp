@@ -72,6 +72,14 @@ void check_beside_ar(study::Patch const& patch, std::string const& camera)
                              "it is seen from where the session's camera was", "leave it out");
 }
 
+/// A name without a file may be that of a generated scene.
+std::string scene_file(std::filesystem::path const& folder, std::string const& scene)
+{
+    std::error_code none;
+    std::filesystem::path const beside = folder / scene;
+    return std::filesystem::exists(beside, none) ? beside.string() : scene;
+}
+
 std::string text_of(StimulusSettings const& s)
 {
     Json all = Json::object();
@@ -143,7 +151,8 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
     if (s.scene.empty())
         throw gi::InputError("a stimulus without a scene", "there would be nothing to show",
                              "give a factor or defaults.settings the setting `scene`, or `ar` for an AR session");
-    s.sha256 = study::sha256(text_of(s));
+    s.sha256 = study::sha256(text_of(s)); // with the scene's name as it is written, wherever the script lies
+    s.scene = scene_file(folder, s.scene);
     return s;
 }
 
@@ -156,21 +165,22 @@ study::Block plain_block(study::Script const& script)
     return block;
 }
 
-std::vector<StimulusSettings> stimuli_of(study::Script const& script, study::Plan const& plan)
+std::vector<PlannedStimulus> stimuli_of(study::Script const& script, study::Plan const& plan)
 {
-    std::map<std::string, StimulusSettings> all;
+    std::map<std::string, PlannedStimulus> all;
     for (study::PlanStep const& step : plan.steps) {
         bool const walks = step.kind == study::PlanStepKind::free_walk;
         if (step.kind != study::PlanStepKind::trial && !walks) continue;
         study::Block const block = step.block >= 0 ? script.blocks[std::size_t(step.block)] : plain_block(script);
         auto const add = [&](study::Stimulus const& stimulus) {
+            std::string const where =
+                fmt::format("{}: block {}, {}", script.file, block.name, stimulus_label(script, block, stimulus));
             try {
                 StimulusSettings s = stimulus_settings(script, block, stimulus);
-                all.emplace(s.sha256, std::move(s));
+                std::string const digits = s.sha256;
+                all.emplace(digits, PlannedStimulus{std::move(s), where});
             } catch (gi::InputError const& e) {
-                throw gi::InputError(fmt::format("{}: block {}, {}", script.file, block.name,
-                                                 stimulus_label(script, block, stimulus)),
-                                     e.what(), "lightwell info --settings lists all keys");
+                throw gi::InputError(where, e.what(), "lightwell info --settings lists all keys");
             }
         };
         std::vector<study::Stimulus> stimuli = step.trial.stimuli;
@@ -188,7 +198,7 @@ std::vector<StimulusSettings> stimuli_of(study::Script const& script, study::Pla
             }
         }
     }
-    std::vector<StimulusSettings> list;
+    std::vector<PlannedStimulus> list;
     for (auto& [digits, s] : all) list.push_back(std::move(s));
     return list;
 }

@@ -25,20 +25,20 @@ enum class StimulusViewer {
 };
 
 struct StimulusSettings {
-    std::string scene, camera; ///< camera: of the scene; empty = its first
+    std::string scene, camera; ///< scene: file or name; camera: of the scene, empty = its first
     StimulusPath path = StimulusPath::none;
     std::optional<StimulusViewer> view; ///< none = as the command line says
     Settings settings;                  ///< whole: what is not said is as it is by default
     std::vector<Change> edits;          ///< of the scene
     std::optional<ArStimulus> ar;       ///< in place of all that
-    std::string sha256;                 ///< of all this as text: the same digits, the same pictures
+    std::string sha256; ///< of all this as the script writes it: the same digits, the same pictures
 };
 
 /// Throws InputError on a key or value that the renderer does not know, naming it.
-/// @param camera  of the block: "", a name or "path:orbit"   @param folder  that AR sessions are relative to
+/// @param camera  of the block: "", a name or "path:orbit"   @param folder  that files are relative to
 StimulusSettings stimulus_settings(study::Patch const& patch, std::string const& camera,
                                    std::filesystem::path const& folder = {});
-/// Of a script's block. AR sessions are relative to the script.
+/// Of a script's block. AR sessions are relative to the script; so are scenes, or else to the current folder.
 StimulusSettings stimulus_settings(study::Script const& script, study::Block const& block,
                                    study::Stimulus const& stimulus);
 
@@ -48,8 +48,13 @@ std::string name_of(StimulusSettings const& stimulus);
 /// What a step of the sequence has that belongs to no block.
 study::Block plain_block(study::Script const& script);
 
+struct PlannedStimulus {
+    StimulusSettings settings;
+    std::string where; ///< "faces.yaml: block better, arches", for messages; of several the first
+};
+
 /// Every stimulus of a plan once, by its sha256; those whose level is chosen when the trial comes at the ends of
 /// its range. Throws InputError naming the block where one cannot be.
-std::vector<StimulusSettings> stimuli_of(study::Script const& script, study::Plan const& plan);
+std::vector<PlannedStimulus> stimuli_of(study::Script const& script, study::Plan const& plan);
 
 } // namespace viewer

@@ -5,6 +5,7 @@
 #include "viewer/trials/refresh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <numeric>
 
@@ -28,6 +29,13 @@ std::string presented(study::TrialRequest const& r)
 double render_ms(LiveFrame const& f) { return 1e3 * (f.done_s - f.begun_s); }
 
 } // namespace
+
+double nearest_rank(std::vector<double> const& sorted, double share)
+{
+    if (sorted.empty()) return 0;
+    double const rank = std::ceil(share * double(sorted.size()));
+    return sorted[std::size_t(std::clamp(rank, 1.0, double(sorted.size()))) - 1];
+}
 
 std::vector<ScreenPane> panes_for(std::size_t count, glm::ivec2 screen_px, float text_px)
 {
@@ -267,7 +275,7 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
         s.frames_dropped = dropped;
         s.render_ms_mean =
             std::accumulate(render.begin(), render.end(), 0.0) / std::max<double>(1, double(render.size()));
-        s.render_ms_p99 = render.empty() ? 0 : render[std::size_t(0.99 * double(render.size() - 1))];
+        s.render_ms_p99 = nearest_rank(render, 0.99);
         for (Known const& k : known_)
             if (k.letter == letter) s.settings_sha256 = k.settings.sha256;
         done_.shown.push_back(std::move(s));
@@ -348,6 +356,7 @@ study::TrialDone TrialPresenter::show(study::TrialRequest const& request)
     study::TrialDone judged = done;
     judge(script_, request.step->trial, judged);
     status.bad_trials += !judged.is_valid;
+    status.trials_done += request.attempt == 1 ? 1 : 0; // each of the plan counts once
     status.last =
         done.reaction_ms ? fmt::format("{} after {:.0f} ms", done.response, *done.reaction_ms) : done.reason;
     trial_end_s_ = now();

@@ -68,7 +68,8 @@ std::vector<std::pair<std::string, std::string>> TrialPresenter::about() const
 {
     auto all = options_.about;
     for (auto const& fact : screen_->about()) all.push_back(fact);
-    all.emplace_back("refresh_hz", fmt::format("{:g}", screen_->refresh_hz()));
+    double const hz = screen_->refresh_hz();
+    all.emplace_back("refresh_hz", hz > 0 ? fmt::format("{:g}", hz) : "unknown");
     all.emplace_back("display_lag_ms", fmt::format("{:g}", script_.timing.display_lag_ms));
     return all;
 }
@@ -120,7 +121,7 @@ void TrialPresenter::between_frames()
     experimenter_.poll(now());
     if (options_.stop != nullptr && options_.stop->requested() && !should_end()) {
         experimenter_.note(now(), "abort", "the program was interrupted");
-        experimenter_.ask(study::Wish::abort);
+        experimenter_.abort("interrupted (SIGINT or SIGTERM)");
     }
 }
 
@@ -149,6 +150,7 @@ study::CalibrationDone TrialPresenter::calibrate(study::Timing const& timing)
         method = swap.method;
         if (i >= kFirst) swaps.push_back(seconds(swap.seen));
     }
+    experimenter_.check_aborted(); // too few swaps are not the display's fault
     study::CalibrationDone done = judge_refresh(swaps, screen_->refresh_hz(), timing, method);
     using study::OnsetMethod;
     bool const is_less = (timing.onset == OnsetMethod::oml && method != "oml") ||
@@ -209,7 +211,7 @@ bool TrialPresenter::page(std::function<void(glm::vec2)> const& text,
 /// What the experimenter wished for ends what is under way: skipped, it is done; aborted, it is not.
 void TrialPresenter::end_early()
 {
-    if (experimenter_.wish() == study::Wish::abort) throw study::Aborted();
+    experimenter_.check_aborted();
     experimenter_.take_wish();
 }
 
@@ -223,7 +225,7 @@ bool TrialPresenter::heed_window(InputEvent const& e)
     if (escape) escaped_ = e.time;
     if (!twice && escape) return true;
     experimenter_.note(seconds(e.time), "abort", escape ? "escape was pressed twice" : "the window was closed");
-    experimenter_.ask(study::Wish::abort);
+    experimenter_.abort("aborted by the participant");
     return true;
 }
 
@@ -294,6 +296,7 @@ study::Wish TrialPresenter::wish()
             },
             [](InputEvent const&) { return false; }, [&] { return !experimenter_.is_paused(); });
     }
+    experimenter_.check_aborted();
     return experimenter_.take_wish();
 }
 
