@@ -30,6 +30,7 @@ void set_environment(gi::Scene& scene, RenderOptions const& o, gi::Report& repor
     if (!o.environment.empty()) {
         bool const replaces = scene.environment.has_value();
         scene.environment = gi::load_environment(o.environment, report);
+        scene.files.push_back(o.environment);
         if (replaces) say("--envmap replaces the scene's environment map");
     }
     if (!is_lit(scene)) {
