@@ -263,6 +263,18 @@ TEST(Session, WhatWasAbortedIsDoneLater)
     }
 }
 
+TEST(Session, KeepsWhoAborted)
+{
+    TemporaryFolder const dir;
+    TestPresenter p;
+    p.on_show = [](TrialRequest const& r, TrialDone&) {
+        if (r.step_index == 8) throw Aborted("ended by the participant");
+    };
+    SessionOutcome const o = run_session(rating_script(), 1, p, settings_in(dir.path()));
+    EXPECT_EQ(o.reason, "ended by the participant");
+    EXPECT_NE(file_text(o.folder / "session.json").find("ended by the participant"), std::string::npos);
+}
+
 TEST(Session, EndsWhereTheDisplayIsLostAndGoesOnLater)
 {
     TemporaryFolder const dir;
