@@ -20,9 +20,19 @@ void add_interval(std::vector<Column>& columns, std::string const& prefix, doubl
     columns.push_back({prefix + "high", "Upper end"});
 }
 
-void add(std::vector<std::string>& row, Uncertain const& u)
+/// What is 0 but for rounding is 0. @param scale of the numbers beside it
+void add(std::vector<std::string>& row, Uncertain const& u, double scale = 0)
 {
-    row.insert(row.end(), {cell(u.value), cell(u.interval.low), cell(u.interval.high)});
+    for (double const v : {u.value, u.interval.low, u.interval.high}) scale = std::fmax(scale, std::abs(v));
+    for (double const v : {u.value, u.interval.low, u.interval.high})
+        row.push_back(cell(std::abs(v) < 1e-12 * scale ? 0.0 : v));
+}
+
+double largest_score(ScaleResult const& s)
+{
+    double largest = 0;
+    for (ScaledItem const& i : s.items) largest = std::fmax(largest, std::abs(i.score.value));
+    return largest;
 }
 
 ResultTable exclusions(Analysis const& a)
@@ -100,7 +110,7 @@ ResultTable scores(Analysis const& a)
         for (ScaleResult const& s : b.scales)
             for (ScaledItem const& i : s.items) {
                 std::vector<std::string> row{cell(b.name), cell(s.group), cell(i.name), cell(s.unit)};
-                add(row, i.score);
+                add(row, i.score, largest_score(s));
                 row.push_back(cell(i.score.n));
                 add(row, i.render_ms);
                 t.table.rows.push_back(std::move(row));

@@ -1,6 +1,7 @@
 #include "study/analysis/threshold_run.h"
 
 #include "study/design/procedure_settings.h"
+#include "study/stats/root.h"
 #include "study/stats/special.h"
 #include "study/stats/summary.h"
 
@@ -46,18 +47,35 @@ void add_staircase(ThresholdRun& run, Block const& b, Procedure const& p)
     run.estimates.push_back(std::move(e));
 }
 
-void add_maximum_likelihood(ThresholdRun& run, Block const& b, double proportion, AnalysisSettings const& settings)
+/// Of what is never told: by guessing, or the share of false alarms in the run (log-linear); none where the run
+/// has nothing that says it.
+std::optional<double> lowest_share(Task task, std::vector<TrialRow> const& trials)
+{
+    if (guess_rate(task) > 0) return guess_rate(task);
+    double false_alarms = 0, noises = 0;
+    for (TrialRow const& row : trials)
+        if (row.done->is_correct && row.step->trial.is_noise) {
+            noises += 1;
+            false_alarms += !*row.done->is_correct;
+        }
+    if (noises == 0) return {};
+    return (false_alarms + 0.5) / (noises + 1);
+}
+
+void add_maximum_likelihood(ThresholdRun& run, Block const& b, std::optional<double> guess, double proportion,
+                            AnalysisSettings const& settings)
 {
     ThresholdEstimate e{"maximum likelihood", proportion, {}, {}};
     try {
         PsychometricSettings s;
         s.shape = shape_of(*b.compare);
-        s.guess.value = guess_rate(b.task);
+        s.guess.value = guess.value_or(0);
         s.lapse.value = 0.02; // one run says nothing of lapses
         auto const fit = fit_psychometric(count_levels(run.levels, run.correct), s);
         auto const on_u = [&](double level) { return transformed(fit.shape, level); };
         double const level = level_at(fit.shape, fit.parameters, proportion);
         e.note = fit.note;
+        if (e.note.empty() && !guess) e.note = "no trials without a signal: false alarms are taken for none";
         double const error = fit.standard_error.threshold;
         if (std::isfinite(level)) {
             e.level = {level, {kUnknown, kUnknown}, 1};
@@ -71,7 +89,7 @@ void add_maximum_likelihood(ThresholdRun& run, Block const& b, double proportion
                 e.level.interval = {std::min(back(u - half), back(u + half)),
                                     std::max(back(u - half), back(u + half))};
             }
-        } else if (e.note.empty())
+        } else if (fit.note.empty())
             e.note = "the fitted function never has this share";
     } catch (std::invalid_argument const& error) {
         e.note = error.what();
@@ -108,18 +126,19 @@ void add_questplus(ThresholdRun& run, Block const& b, Procedure const& p, double
             normal_quantile((1 + settings.confidence) / 2) * std::sqrt(std::max(0.0, squares - m * m));
         mean.threshold = on_axis(from_scale(c.scale, m));
         // The level where the function of the posterior's mean has that share.
-        double low = to_scale(c.scale, c.low), high = to_scale(c.scale, c.high);
-        double const width = high - low;
-        low -= width, high += width;
-        bool const falls = c.harder_up;
-        for (int i = 0; i < 100; ++i) {
-            double const mid = (low + high) / 2;
-            double const share = proportion_at(s.function, s.direction, mean, on_axis(from_scale(c.scale, mid)));
-            ((share > proportion) == falls ? low : high) = mid;
-        }
-        double const at = (low + high) / 2;
-        double const a = from_scale(c.scale, at - half), z = from_scale(c.scale, at + half);
-        e.level = {from_scale(c.scale, at), {std::min(a, z), std::max(a, z)}, 1};
+        double const width = to_scale(c.scale, c.high) - to_scale(c.scale, c.low);
+        double const low = to_scale(c.scale, c.low) - width, high = to_scale(c.scale, c.high) + width;
+        auto const above = [&](double at) { // of the share that is wanted
+            return proportion_at(s.function, s.direction, mean, on_axis(from_scale(c.scale, at))) - proportion;
+        };
+        double const at_low = above(low), at_high = above(high);
+        if (at_low * at_high < 0) {
+            double const sign = at_low < 0 ? 1 : -1;
+            double const at = bisect([&](double x) { return sign * above(x); }, low, high);
+            double const a = from_scale(c.scale, at - half), z = from_scale(c.scale, at + half);
+            e.level = {from_scale(c.scale, at), {std::min(a, z), std::max(a, z)}, 1};
+        } else
+            e.note = "the function of the posterior's mean never has this share";
     } catch (std::invalid_argument const& error) {
         e.note = error.what();
     }
@@ -158,12 +177,13 @@ ThresholdRun threshold_run(Block const& b, Procedure const& p, std::vector<Trial
             run.levels.push_back(*row.done->level);
             run.correct.push_back(*row.done->is_correct ? 1 : 0);
         }
+    auto const guess = lowest_share(b.task, trials);
     // Every method at the middle of the rise; where a staircase settles, both at its own share too.
     if (p.method == Method::staircase) {
         add_staircase(run, b, p);
-        if (settles_at(p) > guess_rate(b.task)) add_maximum_likelihood(run, b, settles_at(p), settings);
+        if (settles_at(p) > guess_rate(b.task)) add_maximum_likelihood(run, b, guess, settles_at(p), settings);
     }
-    add_maximum_likelihood(run, b, middle(b.task), settings);
+    add_maximum_likelihood(run, b, guess, middle(b.task), settings);
     if (p.method == Method::questplus) add_questplus(run, b, p, middle(b.task), settings);
     return run;
 }

@@ -182,28 +182,34 @@ private:
                      "nothing in the sequence asks it", "add it to the sequence, or remove it");
     }
 
+    /// No input gives two of these answers. @param where they are asked for
+    void check_inputs(std::set<std::string> const& answers, std::string const& where) const
+    {
+        std::map<std::string, std::string> answer_by_input;
+        for (Device const& d : s_.devices) {
+            if (!answers.contains(d.answer)) continue;
+            for (std::string const& input : d.inputs)
+                if (auto const [other, is_new] = answer_by_input.emplace(input, d.answer); !is_new)
+                    fail(d.place,
+                         fmt::format("'{}' is both {} and {} in {}", input, other->second, d.answer, where),
+                         "the answer would not be known", "choose another input");
+        }
+    }
+
     void check_devices() const
     {
         std::set<std::string> answers{"pause"};
-        if (std::any_of(questionnaire_used_.begin(), questionnaire_used_.end(), [](bool used) { return used; }))
-            for (auto const a : facts(Task::questionnaire).answers) answers.emplace(a);
-        for (Block const& b : s_.blocks) {
-            std::map<std::string, std::string> answer_by_input;
-            for (auto const a : facts(b.task).answers) answers.emplace(a);
-            if (b.may_tie) answers.emplace("neither");
-            for (Device const& d : s_.devices) {
-                auto const& own = facts(b.task).answers;
-                bool const is_own = std::find(own.begin(), own.end(), d.answer) != own.end() ||
-                                    d.answer == "pause" || (b.may_tie && d.answer == "neither");
-                if (!is_own) continue;
-                for (std::string const& input : d.inputs)
-                    if (auto const [other, is_new] = answer_by_input.emplace(input, d.answer); !is_new)
-                        fail(d.place,
-                             fmt::format("'{}' is both {} and {} in block '{}'", input, other->second, d.answer,
-                                         b.name),
-                             "the answer would not be known", "choose another input");
-            }
-        }
+        auto const check = [&](Task task, bool may_tie, std::string const& where) {
+            std::set<std::string> own{"pause"};
+            for (auto const a : facts(task).answers) own.emplace(a);
+            if (may_tie) own.emplace("neither");
+            check_inputs(own, where);
+            answers.merge(own);
+        };
+        for (Block const& b : s_.blocks) check(b.task, b.may_tie, "block '" + b.name + "'");
+        for (std::size_t q = 0; q < s_.questionnaires.size(); ++q)
+            if (questionnaire_used_[q])
+                check(Task::questionnaire, false, "questionnaire '" + s_.questionnaires[q].name + "'");
         for (Device const& d : s_.devices)
             if (!answers.contains(d.answer))
                 fail(d.place, fmt::format("the answer '{}' is not used", d.answer), "no task of the script has it",

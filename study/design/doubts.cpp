@@ -9,6 +9,17 @@
 #include <map>
 
 namespace study {
+namespace {
+
+/// QUEST+ with a function that lies above a half everywhere, where its middle is a half.
+bool never_reaches_half(Block const& b, Procedure const& p)
+{
+    bool const goes_to_false_alarms = b.task == Task::yes_no || b.task == Task::same_different;
+    return goes_to_false_alarms && p.method == Method::questplus &&
+           std::all_of(p.guess.begin(), p.guess.end(), [](double guess) { return guess >= 0.5; });
+}
+
+} // namespace
 
 std::vector<std::string> find_doubts(Script const& s)
 {
@@ -19,6 +30,15 @@ std::vector<std::string> find_doubts(Script const& s)
             fmt::format("{} participants do not have all {} combinations of orders equally often; a multiple "
                         "of {} would",
                         s.participants.count, cycle, cycle));
+    for (Block const& b : s.blocks)
+        for (Procedure const& p : b.procedures)
+            if (never_reaches_half(b, p))
+                doubts.push_back(fmt::format("block '{}': guess of procedure '{}' is 0.5 or more; in {} it is the "
+                                             "share of false alarms, and "
+                                             "the threshold, where half of the answers are {}, is never reached; "
+                                             "guess: [0, 0.1, 0.2] would do",
+                                             b.name, p.name, facts(b.task).name,
+                                             b.task == Task::yes_no ? "yes" : "different"));
     for (Block const& b : s.blocks) {
         std::size_t const orders = presented_orders(b.task, false).size();
         if (orders == 0 || !b.procedures.empty() || std::size_t(b.repeats) % orders == 0) continue;

@@ -219,7 +219,9 @@ void read_stimuli(Yaml const& y, Script const& s, Block& b)
         check_keys(rank, "rank");
         b.rank = read_factor(rank.needed("factor", "visibility"), s);
         b.rank_levels = read_levels_of(rank, s, b.rank, 2);
-        if (b.rank_levels.size() > 26) throw rank.error("more than 26 to rank", "nobody can", "omit some");
+        if (b.rank_levels.size() > 9)
+            throw rank.error(fmt::format("{} to rank", b.rank_levels.size()),
+                             "the order is given by digits, of which there are 9", "omit some");
     }
     auto const has_reference = [&](int factor) {
         return std::any_of(s.reference.begin(), s.reference.end(),

@@ -85,11 +85,15 @@ std::string suggest(std::string const& name, std::vector<std::string> const& kno
 
 } // namespace
 
-Yaml Yaml::parse(std::string const& text, std::string const& file)
+Yaml Yaml::parse(std::string const& text, std::string const& file, std::string const& what)
 {
     check_shape(text, file);
     try {
-        return {YAML::Load(text), file, "script"};
+        std::vector<YAML::Node> const documents = YAML::LoadAll(text);
+        if (documents.size() > 1)
+            throw Yaml(documents[1], file, what)
+                .error("a second document (---)", "it would be ignored", "one file has one: remove it");
+        return {documents.empty() ? YAML::Node() : documents[0], file, what};
     } catch (YAML::Exception const& e) {
         throw ScriptError(file, {e.mark.line + 1, e.mark.column + 1}, "this is not YAML", e.msg,
                           "check the indentation and the quotes");

@@ -18,9 +18,11 @@ public:
         : node_(std::move(node)), file_(file), path_(std::move(path))
     {
     }
-    /// The whole text. Throws ScriptError where it is not YAML, or nests or expands without bounds.
+    /// The whole text. Throws ScriptError where it is not YAML, is several documents, or nests or expands without
+    /// bounds.
     /// @param file as named in messages; must live as long as this and all that comes of it
-    static Yaml parse(std::string const& text, std::string const& file);
+    /// @param what the whole is called in messages
+    static Yaml parse(std::string const& text, std::string const& file, std::string const& what = "script");
 
     Place place() const;
     std::string const& path() const { return path_; }

@@ -19,6 +19,14 @@ ScriptError cannot(char const* what, fs::path const& file, int error)
                        error == ENOENT ? "check the path" : "free some space, or choose another folder");
 }
 
+ScriptError cannot_read(fs::path const& file, int error)
+{
+    char const* const suggestion = error == ENOENT                     ? "check the path"
+                                   : error == EACCES || error == EPERM ? "make it readable"
+                                                                       : "check the file and its disk";
+    return ScriptError(file.string(), {}, "the file cannot be read", std::strerror(error), suggestion);
+}
+
 struct Descriptor {
     int fd = -1;
     ~Descriptor()
@@ -33,16 +41,16 @@ std::string read_whole(fs::path const& file)
 {
     constexpr std::size_t kMost = std::size_t(1) << 30;
     Descriptor const in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
-    if (in.fd < 0) throw cannot("the file cannot be read", file, errno);
+    if (in.fd < 0) throw cannot_read(file, errno);
     std::string text;
     std::string chunk(1 << 16, '\0');
     while (true) {
         ssize_t const n = ::read(in.fd, chunk.data(), chunk.size());
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0) throw cannot("the file cannot be read", file, errno);
+        if (n < 0) throw cannot_read(file, errno);
         if (n == 0) return text;
         text.append(chunk, 0, std::size_t(n));
-        if (text.size() > kMost) throw cannot("the file cannot be read", file, EFBIG);
+        if (text.size() > kMost) throw cannot_read(file, EFBIG);
     }
 }
 

@@ -26,9 +26,9 @@ struct TrialRequest {
 /// The experimenter's wish, which may come at any time.
 enum class Wish { go_on, pause, skip, abort };
 
-/// Thrown out of any call: the experimenter aborts while it is under way.
+/// Thrown out of any call: somebody aborts while it is under way. The reason says who; it stands in session.json.
 struct Aborted : std::runtime_error {
-    Aborted() : std::runtime_error("aborted by the experimenter") {}
+    explicit Aborted(std::string const& reason = "aborted by the experimenter") : std::runtime_error(reason) {}
 };
 
 class Presenter {

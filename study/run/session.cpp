@@ -60,6 +60,7 @@ public:
         try {
             take_up();
             if (is_over_) {
+                keep_plan();
                 finish();
                 return outcome_;
             }
@@ -148,7 +149,7 @@ private:
             outcome_.reason = "the participant did not agree; nothing is kept";
             return false;
         }
-        if (is_first) write_durably(files_.folder / "plan.tsv", plan_text());
+        keep_plan();
         outcome_.folder = files_.folder;
         started_.about = settings_.about;
         for (auto& item : p_.about()) started_.about.push_back(std::move(item));
@@ -321,6 +322,13 @@ private:
     }
     void note(std::string const& kind, std::string const& text) { keep(NoteTaken{p_.now(), kind, text}); }
 
+    /// take_up has seen that it is the plan of then.
+    void keep_plan() const
+    {
+        auto const file = files_.folder / "plan.tsv";
+        std::error_code ignored;
+        if (!std::filesystem::exists(file, ignored)) write_durably(file, plan_text());
+    }
     void write_summary() const { write_durably(files_.folder / "session.json", session_summary(record_)); }
 
     /// What follows from the journal's end, also where the process was killed before it came to that.

@@ -1,6 +1,7 @@
 #pragma once
 // One participant's session: a plan, run through a presenter, kept in a journal.
 
+#include "study/record/journal_folders.h"
 #include "study/run/presenter.h"
 
 #include <filesystem>
@@ -40,19 +41,16 @@ struct SessionOutcome {
     std::vector<double> bookkeeping_ms, unsynced_ms;
 };
 
-/// DIR/sub-ID/ses-01/beh (BIDS). @throws ScriptError where the id has anything but letters and digits, or the
-/// session is not 1 to 99
-std::filesystem::path session_folder(std::filesystem::path const& dir, std::string const& participant_id,
-                                     int session);
-
-/// @throws ScriptError where this session of the participant is there already, as run_session does
+/// @throws ScriptError where this session of the participant is there already, or the folder has sessions of
+/// another script, as run_session does
 void check_is_new(std::string const& participant_id, SessionSettings const& settings);
 
 /// The folder then has plan.tsv (the whole order, before the first trial), journal.jsonl (the truth) and
 /// session.json (a summary).
 /// @throws ScriptError where the session cannot begin or go on, and nothing of it was written: it is there
-/// already, another process runs it, its script is another, the display does not pass its test and the script
-/// requires it; and where the disk fails, after which the journal has all entries before
+/// already, another process runs it, its script or that of other sessions in the folder is another, the display
+/// does not pass its test and the script requires it; and where the disk fails, after which the journal has all
+/// entries before
 SessionOutcome run_session(Script const& script, int participant, Presenter& presenter,
                            SessionSettings const& settings);
 

@@ -1,10 +1,11 @@
 #include "study/run/session_files.h"
 
 #include "study/base/script_error.h"
+#include "study/base/sha256.h"
 #include "study/record/durable_file.h"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <fstream>
 
 namespace study {
 namespace {
@@ -26,23 +27,39 @@ fs::path first_missing(fs::path folder)
     return missing;
 }
 
-} // namespace
-
-fs::path session_folder(fs::path const& dir, std::string const& id, int session)
+/// The first entry of a journal; nothing where none is whole.
+std::optional<SessionStarted> start_of(fs::path const& journal)
 {
-    bool const is_plain = !id.empty() && id.size() <= 64 && std::all_of(id.begin(), id.end(), [](char c) {
-        return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-    });
-    if (!is_plain)
-        throw ScriptError("", {}, "'" + id + "' is no participant's id", "it becomes a name of files (BIDS)",
-                          "use letters and digits only");
-    if (session < 1 || session > 99)
-        throw ScriptError("", {}, fmt::format("session {}", session), "there are 1 to 99", "choose one of them");
-    return dir / ("sub-" + id) / fmt::format("ses-{:02}", session) / "beh";
+    std::ifstream in(journal, std::ios::binary);
+    if (!in)
+        throw ScriptError(journal.string(), {}, "this journal cannot be read",
+                          "it is not known whether it is of this script", "make it readable");
+    std::string line;
+    if (!std::getline(in, line)) return {};
+    auto const entries = parse_journal(line + "\n", journal.string()).record.entries;
+    auto const* const start = entries.empty() ? nullptr : std::get_if<SessionStarted>(&entries.front());
+    return start == nullptr ? std::nullopt : std::optional(*start);
 }
+
+/// Sessions of two scripts in one folder could not be analysed (read_dataset).
+void check_same_script(SessionSettings const& settings)
+{
+    std::string const hash = sha256(settings.script_text);
+    for (fs::path const& journal : find_journals(settings.dir).files)
+        if (auto const start = start_of(journal); start && start->script_sha256 != hash)
+            throw ScriptError(
+                journal.string(), {}, "the folder has sessions of another script",
+                fmt::format("this one is of '{}' with the sha256 {:.12}..., now it is {:.12}...; sessions of two "
+                            "scripts cannot be analysed together",
+                            start->experiment, start->script_sha256, hash),
+                "record into another folder, or use the script as it was then (it lies in code/ of the folder)");
+}
+
+} // namespace
 
 void check_is_new(std::string const& id, SessionSettings const& settings)
 {
+    check_same_script(settings);
     fs::path const folder = session_folder(settings.dir, id, settings.session);
     std::error_code ignored;
     if (!is_there(folder) || (fs::is_directory(folder, ignored) && fs::is_empty(folder, ignored))) return;
@@ -60,6 +77,7 @@ SessionFiles open_session(std::string const& id, SessionSettings const& settings
     if (settings.start == SessionStart::go_on && is_there(file)) {
         JournalText found;
         Journal journal = Journal::open(file, found);
+        if (found.record.entries.empty()) check_same_script(settings);
         return {folder, std::move(journal), std::move(found), false, {}};
     }
     check_is_new(id, settings);

@@ -57,7 +57,7 @@ void read_varied(Yaml const& y, ObserverModel& m)
 ObserverModel read_observers(std::string const& text, std::string const& name, Script const& s)
 {
     ObserverModel m = usual_observers(s);
-    Yaml const y = Yaml::parse(text, name);
+    Yaml const y = Yaml::parse(text, name, "observer");
     std::vector<Number> const shares{{"between_sd", &m.between_sd, 0, 100},
                                      {"noise", &m.noise, 0, 100},
                                      {"lapse", &m.lapse, 0, 1},

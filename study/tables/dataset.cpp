@@ -4,8 +4,8 @@
 #include "study/design/script_file.h"
 #include "study/record/durable_file.h"
 #include "study/record/journal_file.h"
+#include "study/record/journal_folders.h"
 
-#include <algorithm>
 #include <fmt/format.h>
 
 namespace study {
@@ -13,28 +13,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names in a folder that begin with `prefix`, sorted; none where there is no such folder.
-std::vector<fs::path> entries(fs::path const& folder, std::string const& prefix)
+std::vector<fs::path> journals(fs::path const& dir, std::vector<std::string>& remarks)
 {
-    std::vector<fs::path> found;
-    std::error_code failed;
-    for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed))
-        if (it->path().filename().string().starts_with(prefix)) found.push_back(it->path());
-    std::sort(found.begin(), found.end());
-    return found;
-}
-
-std::vector<fs::path> journals(fs::path const& dir)
-{
-    std::vector<fs::path> found;
-    for (fs::path const& subject : entries(dir, "sub-"))
-        for (fs::path const& session : entries(subject, "ses-"))
-            if (fs::path const file = session / "beh" / "journal.jsonl"; fs::exists(file)) found.push_back(file);
-    if (found.empty())
+    JournalsFound found = find_journals(dir);
+    if (found.files.empty())
         throw ScriptError(dir.string(), {}, "no session is there",
                           "sessions are in sub-ID/ses-01/beh/journal.jsonl below that folder",
                           "name the folder that `study run` or `study simulate` was given");
-    return found;
+    remarks = std::move(found.remarks);
+    return std::move(found.files);
 }
 
 struct Text {
@@ -44,7 +31,7 @@ struct Text {
 Text script_of(fs::path const& dir, fs::path const& named, std::string const& hash)
 {
     if (!named.empty()) return {named.string(), read_whole(named)};
-    for (fs::path const& file : entries(dir / "code", ""))
+    for (fs::path const& file : names_in(dir / "code", ""))
         if (file.extension() == ".yaml")
             if (std::string text = read_whole(file); sha256(text) == hash) return {file.string(), text};
     throw ScriptError((dir / "code").string(), {}, "the script of the sessions is not there",
@@ -60,6 +47,18 @@ SessionStarted const& first_of(SessionRecord const& record, fs::path const& file
     return *start;
 }
 
+/// A copy of a session in another folder would count twice.
+void check_place(fs::path const& dir, fs::path const& file, SessionStarted const& start)
+{
+    fs::path const right = session_folder(dir, start.participant_id, start.session) / "journal.jsonl";
+    if (file != right)
+        throw ScriptError(file.string(), {},
+                          fmt::format("this is the journal of participant {} in session {}", start.participant_id,
+                                      start.session),
+                          "its folder says otherwise: what was copied would count twice",
+                          "move it to " + right.parent_path().string() + ", or out of the data set");
+}
+
 } // namespace
 
 fs::path kept_script(fs::path const& dir, Script const& script) { return dir / "code" / (script.id + ".yaml"); }
@@ -68,7 +67,7 @@ Dataset read_dataset(fs::path const& dir, fs::path const& script)
 {
     Dataset d;
     std::string hash;
-    for (fs::path const& file : journals(dir)) {
+    for (fs::path const& file : journals(dir, d.remarks)) {
         JournalText journal = read_journal(file);
         if (journal.torn_bytes > 0)
             d.remarks.push_back(fmt::format("{}: {} bytes of a line that is not whole are left out", file.string(),
@@ -78,6 +77,7 @@ Dataset read_dataset(fs::path const& dir, fs::path const& script)
             continue;
         }
         SessionStarted const& start = first_of(journal.record, file);
+        check_place(dir, file, start);
         if (hash.empty()) {
             Text const text = script_of(dir, script, start.script_sha256);
             d.script = parse_script(text.text, text.file);

@@ -11,12 +11,13 @@ struct Dataset {
     Script script;
     std::string script_text;
     std::vector<RecordedSession> sessions; ///< by folder: participant, then session
-    std::vector<std::string> remarks;      ///< journals that end in a line that is not whole, and such
+    std::vector<std::string> remarks;      ///< folders without a journal, lines that are not whole, and such
 };
 
 /// Reads DIR/sub-*/ses-*/beh/journal.jsonl, and plans each session anew.
 /// @param script file; empty = DIR/code/*.yaml, the one with which the sessions were recorded
-/// @throws ScriptError where there is no session, no script, or a journal is of another script or broken
+/// @throws ScriptError where there is no session, no script, a journal is of another script, broken or in the
+/// folder of another session, or something cannot be read
 Dataset read_dataset(std::filesystem::path const& dir, std::filesystem::path const& script);
 
 /// Where read_dataset looks for the script: DIR/code/ID.yaml.

@@ -25,6 +25,9 @@ std::vector<TextFile> export_files(Script const& script, std::vector<NamedTable>
 /// @param trials_file relative to the script's folder
 std::string lme4_script(Script const& script, std::string const& trials_file);
 
+/// @throws ScriptError where the file is there and is no database (of SQLite): whoever names another file by
+/// mistake does not lose it
+void check_may_become_sqlite(std::filesystem::path const& file);
 /// A database with these tables at `file`, which must not be there. Columns whose cells are all numbers are
 /// numbers, nothing is NULL. @throws std::runtime_error with SQLite's message
 void write_sqlite(std::filesystem::path const& file, std::vector<NamedTable> const& tables);

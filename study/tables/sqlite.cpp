@@ -1,7 +1,10 @@
 #include "study/tables/export.h"
 
+#include "study/base/script_error.h"
+
 #include <cstdlib>
 #include <fmt/format.h>
+#include <fstream>
 #include <memory>
 #include <sqlite3.h>
 #include <stdexcept>
@@ -87,6 +90,18 @@ void add(Database const& db, NamedTable const& t)
 }
 
 } // namespace
+
+void check_may_become_sqlite(std::filesystem::path const& file)
+{
+    std::string const magic("SQLite format 3", 16); // with the zero at its end
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return;
+    std::string begin(magic.size(), '\0');
+    std::ifstream(file, std::ios::binary).read(begin.data(), std::streamsize(begin.size()));
+    if (begin == magic) return;
+    throw ScriptError(file.string(), {}, "this file is no database", "it would be replaced by one",
+                      "name another file, or remove it");
+}
 
 void write_sqlite(std::filesystem::path const& file, std::vector<NamedTable> const& tables)
 {

@@ -1,4 +1,5 @@
 #include "study/analysis/groups.h"
+#include "study/analysis/result_tables.h"
 #include "study/base/random.h"
 #include "study/stats/staircase.h"
 #include "tests/study_analysis/made_sessions.h"
@@ -199,6 +200,84 @@ blocks:
     ASSERT_EQ(b.curves.size(), 1u);
     EXPECT_NEAR(std::log2(b.curves[0].threshold.value), 10, 0.5);
     EXPECT_LT(b.curves[0].threshold.interval.low, b.curves[0].threshold.value);
+}
+
+/// Yes or no at levels 1 to 100, `harder: down`; false alarms in a fifth of 50 trials without a signal.
+BlockResult yes_no_block(std::string const& procedure)
+{
+    Script const s = parse_script(R"(schema: study/1
+id: s
+seed: 1
+participants: {count: 1}
+factors: {scene: [hall]}
+reference: {scene: hall}
+defaults: {stimulus_ms: 2000}
+sequence: [find]
+blocks:
+  find:
+    task: yes_no
+    cross: [scene]
+    compare: {vary: points, scale: log10, range: [1, 100], harder: down}
+    procedure: )" + procedure + "\n",
+                                  "s.yaml");
+    MadeSession made(s, "P001");
+    auto const add = [&](double level, bool says_yes, bool is_noise) {
+        TrialDone& t = made.add(0, {{0}, {0}}, says_yes ? "yes" : "no");
+        t.level = level;
+        t.is_correct = says_yes != is_noise;
+        made.last_step().trial.procedure = 0;
+        made.last_step().trial.is_noise = is_noise;
+    };
+    for (double const level : {1.0, 3.16227766, 10.0, 31.6227766, 100.0})
+        for (int i = 0; i < 50; ++i) {
+            double const share = 0.2 + 0.78 * (1 - std::exp(-std::pow(level / 10, 1.5)));
+            add(level, i < 50 * share, false);
+        }
+    for (int i = 0; i < 50; ++i) add(1, i % 5 == 0, true);
+    return analyze(s, {made.finished()}).blocks.at(0);
+}
+
+TEST(Analysis, OfARunOfYesAndNoKnowsItsFalseAlarms)
+{
+    BlockResult const b =
+        yes_no_block("{method: constant, levels: [1, 3.16227766, 10, 31.6227766, 100], trials_per_level: 100}");
+    ASSERT_EQ(b.runs.size(), 1u);
+    ThresholdEstimate const& e = b.runs[0].estimates.at(0);
+    EXPECT_EQ(e.note, "");
+    // Where 0.2 + 0.78 (1 - exp(-(level / 10)^1.5)) is a half.
+    double const level = 10 * std::pow(-std::log(1 - 0.3 / 0.78), 1 / 1.5);
+    EXPECT_NEAR(std::log10(e.level.value), std::log10(level), 0.05);
+}
+
+TEST(Analysis, OfQuestPlusThatNeverReachesItsShareSaysSo)
+{
+    auto const estimate = [](char const* guess) {
+        auto const b =
+            yes_no_block(std::string("{method: questplus, threshold: 1..100/21, slope: [1, 2], guess: ") + guess +
+                         ", lapse: 0.02, stop: {trials: 300}}");
+        return b.runs.at(0).estimates.at(1);
+    };
+    EXPECT_EQ(estimate("0.5").method, "QUEST+ posterior");
+    EXPECT_TRUE(std::isnan(estimate("0.5").level.value));
+    EXPECT_EQ(estimate("0.5").note, "the function of the posterior's mean never has this share");
+    EXPECT_EQ(estimate("0.2").note, "");
+    EXPECT_NEAR(std::log10(estimate("0.2").level.value), std::log10(6), 0.15);
+}
+
+TEST(ResultTables, HaveNoRoundingInPlaceOfZero)
+{
+    Analysis a;
+    ScaleResult scale;
+    scale.items = {{"a", {0.5, {-1.646e-16, 1}, 3}, {}}, {"b", {1e-17, {-2e-17, 3e-17}, 3}, {}}};
+    a.blocks.emplace_back();
+    a.blocks[0].scales = {scale};
+    for (ResultTable const& t : result_tables(a)) {
+        if (t.name != "scores") continue;
+        ASSERT_EQ(t.table.rows.size(), 2u);
+        EXPECT_EQ(t.table.rows[0].at(5), "0");
+        EXPECT_EQ(t.table.rows[0].at(4), "0.5");
+        for (std::size_t c : {4, 5, 6}) EXPECT_EQ(t.table.rows[1].at(c), "0");
+    }
 }
 
 TEST(Holm, RaisesSmallPValuesMost)

@@ -335,6 +335,22 @@ TEST(Doubts, AreLongSessionsAndUnbalancedCycles)
     EXPECT_NE(find_doubts(odd)[0].find("a multiple of 12 would"), std::string::npos);
 }
 
+TEST(Doubts, AreFalseAlarmsOfAHalf)
+{
+    auto const doubts = [](std::string const& task, std::string const& guess) {
+        return find_doubts(parse("factors: {q: {best: {paths: 4096}}}\nreference: {q: best}\n"
+                                 "defaults: {stimulus_ms: 1000}\nsequence: [b]\nblocks:\n  b:\n    task: " +
+                                 task +
+                                 "\n    compare: {vary: paths, scale: log2, range: [1, 1024], harder: up}\n"
+                                 "    procedure: {method: questplus, threshold: 1..1024/21, slope: 2, guess: " +
+                                 guess + ", lapse: 0.02, stop: {trials: 12}}\n"));
+    };
+    ASSERT_EQ(doubts("yes_no", "0.5").size(), 1u);
+    EXPECT_NE(doubts("yes_no", "0.5")[0].find("share of false alarms"), std::string::npos);
+    EXPECT_TRUE(doubts("yes_no", "[0.1, 0.5]").empty());
+    EXPECT_TRUE(doubts("2ifc", "0.5").empty());
+}
+
 TEST(Transitions, CountNeighbours)
 {
     Script const s =

@@ -189,6 +189,40 @@ TEST(ScriptErrors, OfProceduresSayWhy)
     }
 }
 
+TEST(ScriptErrors, OfRankingsThatDigitsCannotGive)
+{
+    std::string const nine = "factors: {n: [a, b, c, d, e, f, g, h, i";
+    std::string const rest = "]}\nsequence: [b]\nblocks:\n  b: {task: ranking, rank: {factor: n}}\n";
+    EXPECT_EQ(message_of(kHead + nine + rest), "");
+    EXPECT_EQ(message_of(kHead + nine + ", j" + rest),
+              "t.yaml:8:28: 10 to rank (the order is given by digits, of which there are 9) omit some");
+}
+
+TEST(ScriptErrors, OfInputsThatGiveTwoAnswersToAQuestionnaire)
+{
+    EXPECT_NE(message_of(spoiled("second: [key:right]", "up: [key:a], down: [key:a]"))
+                  .find("'key:a' is both up and down in block 'rate'"),
+              std::string::npos);
+    std::string const script =
+        "factors: {q: [a, b]}\ndevices: {up: key:up, down: key:KEY}\n"
+        "sequence: [{questionnaire: ssq}, b]\nblocks: {b: {task: pair, pairs: {factor: q}}}\n";
+    auto const with = [&](std::string const& key) {
+        std::string text = kHead + script;
+        return text.replace(text.find("KEY"), 3, key);
+    };
+    EXPECT_EQ(message_of(with("down")), "");
+    EXPECT_EQ(message_of(with("up")),
+              "t.yaml:6:23: 'key:up' is both up and down in questionnaire 'ssq' (the answer "
+              "would not be known) choose another input");
+}
+
+TEST(ScriptErrors, OfASecondDocumentNameItsLine)
+{
+    EXPECT_EQ(message_of("---\n" + kSound), "");
+    std::string const message = message_of(kSound + "---\nid: other\n");
+    EXPECT_EQ(message, "t.yaml:33:1: a second document (---) (it would be ignored) one file has one: remove it");
+}
+
 TEST(ScriptErrors, OfYamlThatNestsWithoutEndComeBeforeTheParser)
 {
     EXPECT_NE(message_of(std::string(100000, '[')).find("nests deeper"), std::string::npos);

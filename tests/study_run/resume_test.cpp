@@ -139,6 +139,22 @@ TEST(Resume, WithoutADisplayChangesNothing)
     EXPECT_EQ(file_text(journal_in(dir / "data")), before);
 }
 
+TEST(Resume, WritesAPlanThatIsMissing)
+{
+    TemporaryFolder const dir;
+    TestPresenter p;
+    p.on_wish = [&] { return p.shown.size() > 5 ? Wish::abort : Wish::go_on; };
+    Script const s = rating_script();
+    fs::path const plan = run_session(s, 1, p, settings_in(dir.path())).folder / "plan.tsv";
+    std::string const text = file_text(plan);
+    p.on_wish = [] { return Wish::go_on; };
+    for (bool const was_complete : {false, true}) {
+        fs::remove(plan);
+        EXPECT_TRUE(run_session(s, 1, p, settings_in(dir.path(), SessionStart::go_on)).is_complete);
+        EXPECT_EQ(file_text(plan), text) << was_complete;
+    }
+}
+
 TEST(Resume, OfWhatWasCompleteMakesTheSummaryThatWasMissing)
 {
     TemporaryFolder const dir;

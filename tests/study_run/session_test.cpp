@@ -108,6 +108,36 @@ TEST(Session, NeverOverwritesAndSaysWhatToDo)
     EXPECT_EQ(file_text(journal_in(dir.path())), before);
 }
 
+TEST(Session, RefusesAFolderOfAnotherScript)
+{
+    TemporaryFolder const dir;
+    TestPresenter p;
+    Script const s = rating_script();
+    run_session(s, 1, p, settings_in(dir.path()));
+    auto const before = all_files(dir.path());
+    std::size_t const shown = p.shown.size();
+    for (SessionStart const start : {SessionStart::begin, SessionStart::go_on})
+        for (int const participant : {1, 2}) {
+            SessionSettings settings = settings_in(dir.path(), start);
+            settings.script_text = "edited";
+            settings.session = 2;
+            try {
+                run_session(s, participant, p, settings);
+                ADD_FAILURE() << "participant " << participant;
+            } catch (ScriptError const& e) {
+                EXPECT_EQ(e.problem(), "the folder has sessions of another script");
+                EXPECT_EQ(e.file(), journal_in(dir.path()).string());
+            }
+        }
+    EXPECT_EQ(all_files(dir.path()), before);
+    EXPECT_EQ(p.shown.size(), shown);
+    SessionSettings edited = settings_in(dir.path());
+    edited.script_text = "edited";
+    EXPECT_EQ(refusal(s, p, edited).find("--session"), std::string::npos) << "that would be refused too";
+    write_durably(journal_in(dir.path()), ""); // it had not begun
+    EXPECT_TRUE(run_session(s, 2, p, edited).is_complete);
+}
+
 TEST(Session, RefusesAFolderWithOtherThings)
 {
     TemporaryFolder const dir;
@@ -231,6 +261,18 @@ TEST(Session, WhatWasAbortedIsDoneLater)
         EXPECT_TRUE(run_session(s, 1, p, settings_in(dir.path(), SessionStart::go_on)).is_complete);
         EXPECT_EQ(entries_of<TrialDone>(journal_in(dir.path())).size(), 26u);
     }
+}
+
+TEST(Session, KeepsWhoAborted)
+{
+    TemporaryFolder const dir;
+    TestPresenter p;
+    p.on_show = [](TrialRequest const& r, TrialDone&) {
+        if (r.step_index == 8) throw Aborted("ended by the participant");
+    };
+    SessionOutcome const o = run_session(rating_script(), 1, p, settings_in(dir.path()));
+    EXPECT_EQ(o.reason, "ended by the participant");
+    EXPECT_NE(file_text(o.folder / "session.json").find("ended by the participant"), std::string::npos);
 }
 
 TEST(Session, EndsWhereTheDisplayIsLostAndGoesOnLater)

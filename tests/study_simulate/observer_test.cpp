@@ -184,6 +184,8 @@ TEST(ObserverFile, SaysWhatIsWrongAndWhere)
     };
     EXPECT_TRUE(message("lapse: 0.1\nnoize: 2\n").starts_with("o.yaml:2:1: "))
         << message("lapse: 0.1\nnoize: 2\n");
+    EXPECT_NE(message("noize: 2\n").find("unknown key 'noize' in observer"), std::string::npos);
+    EXPECT_NE(message("noise: loud").find("observer.noise is not a number"), std::string::npos);
     EXPECT_NE(message("quality: {q: {goood: 1}}").find("did you mean 'good'?"), std::string::npos);
     EXPECT_NE(message("lapse: 2"), "");
     EXPECT_NE(message("rating: {best: high}"), "");

@@ -5,6 +5,7 @@
 #include "tests/study_tables/recorded.h"
 
 #include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sqlite3.h>
@@ -228,6 +229,18 @@ TEST(Exports, AreADatabaseToo)
                  keep, &found, nullptr);
     sqlite3_close(db);
     EXPECT_EQ(found, "2 real integer NULL ");
+}
+
+TEST(Exports, DoNotReplaceWhatIsNoDatabase)
+{
+    auto const file = std::filesystem::path(testing::TempDir()) / "lightwell_no_database.sqlite";
+    std::filesystem::remove(file);
+    EXPECT_NO_THROW(check_may_become_sqlite(file));
+    write_sqlite(file, export_tables(script(), {session(script())}));
+    EXPECT_NO_THROW(check_may_become_sqlite(file));
+    std::ofstream(file) << "participants";
+    EXPECT_THROW(check_may_become_sqlite(file), ScriptError);
+    std::filesystem::remove(file);
 }
 
 } // namespace
