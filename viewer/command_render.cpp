@@ -76,10 +76,16 @@ Shot shoot_motion(RenderOptions const& o, gi::RenderSettings const& settings, gi
     return {gi::plan_scene(world.world()), std::move(result), {}};
 }
 
+std::vector<std::string> outputs_of(RenderOptions const& o, gi::RenderSettings const& settings)
+{
+    return {o.out, o.png, o.stats, settings.checkpoint.string()};
+}
+
 Shot shoot(RenderOptions const& o, gi::RenderSettings const& settings, CameraChoice const& choice,
            CameraMotion const& motion, RankWork& work, gi::Report& report)
 {
     auto const scene = load_lit_scene(o, report);
+    check_outputs(outputs_of(o, settings), scene->files);
     bool const blurs = o.shutter_s > 0 && depends_on_time(*scene, false, motion);
     if (o.shutter_s > 0 && !blurs) say(kNothingMoves);
     gi::World still;
@@ -132,7 +138,7 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
                    gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work)
 {
     CameraMotion const motion = make_motion(o);
-    check_outputs({o.out, o.png, o.stats, settings.checkpoint.string()}, {o.scene, o.environment, o.camera_path});
+    check_outputs(outputs_of(o, settings), {o.scene, o.environment, o.camera_path});
     std::string const state = o.out.empty() ? "" : o.out + ".state"; // also where this render keeps none
     bool const has_state = !state.empty() && std::filesystem::exists(state);
     if (!work.alone()) {

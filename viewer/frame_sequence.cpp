@@ -10,6 +10,7 @@
 #include "viewer/frame_record.h"
 #include "viewer/frame_state.h"
 #include "viewer/interrupt.h"
+#include "viewer/outputs.h"
 #include "viewer/render_picture.h"
 #include "viewer/render_record.h"
 #include "viewer/report_json.h"
@@ -42,6 +43,7 @@ public:
         if (!f_.video.empty() && work.leads())
             video_ = std::make_unique<VideoWriter>(f_.video, settings.width, settings.height, f_.range.fps());
         scene_ = load_lit_scene(o_, report_);
+        check_outputs(f_.files, scene_->files);
         gi::Report unused; // the frame itself reports what its world lost
         gi::World const first = world_of(f_.range.first, unused);
         if (o.reuse > 1) origin_ = first.origin; // one world is moved on through all of them

@@ -4,14 +4,32 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <set>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace viewer {
 namespace fs = std::filesystem;
+namespace {
+
+/// The same for all names of a file.
+using Identity = std::pair<dev_t, ino_t>;
+
+std::optional<Identity> identity(std::string const& file)
+{
+    struct stat s {};
+    if (file.empty() || stat(file.c_str(), &s) != 0) return std::nullopt;
+    return Identity{s.st_dev, s.st_ino};
+}
+
+} // namespace
 
 void check_outputs(std::vector<std::string> const& files, std::vector<std::string> const& inputs)
 {
+    std::set<Identity> read;
+    for (std::string const& input : inputs)
+        if (auto const found = identity(input)) read.insert(*found);
     std::set<fs::path> seen;
     for (std::string const& file : files) {
         if (file.empty()) continue;
@@ -29,8 +47,7 @@ void check_outputs(std::vector<std::string> const& files, std::vector<std::strin
             throw cannot("it is a device or a pipe, which a file would replace", "name a file");
         if (!seen.insert(fs::weakly_canonical(fs::absolute(path), error)).second)
             throw cannot("two outputs have this name", "give each its own");
-        if (std::any_of(inputs.begin(), inputs.end(),
-                        [&](std::string const& input) { return fs::equivalent(path, input, error); }))
+        if (auto const found = identity(file); found && read.contains(*found))
             throw cannot("it is read as well", "choose another name");
     }
 }
