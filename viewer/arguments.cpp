@@ -3,9 +3,11 @@
 #include "gi/base/error.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
 namespace viewer {
 namespace {
@@ -101,9 +103,12 @@ double parse_target(std::string const& option, std::string const& text, std::str
     return value;
 }
 
-std::string refuse_negative(std::string const& text)
+std::string check_seed(std::string const& text)
 {
-    return text.starts_with('-') ? "'" + text + "' is negative" : std::string();
+    if (text.starts_with('-')) return "'" + text + "' is negative";
+    errno = 0;
+    std::strtoull(text.c_str(), nullptr, 0); // as CLI11 reads it
+    return errno == ERANGE ? "'" + text + "' is larger than 18446744073709551615" : std::string();
 }
 
 } // namespace viewer

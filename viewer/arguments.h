@@ -26,7 +26,8 @@ double parse_target(std::string const& option, std::string const& text, std::str
 /// "flip=0.05" of any name.
 std::pair<std::string, double> parse_limit(std::string const& option, std::string const& text);
 
-/// A check for CLI11, whose unsigned numbers would wrap around: what is wrong, empty = nothing.
-std::string refuse_negative(std::string const& text);
+/// A check for CLI11, whose unsigned numbers wrap around below 0 and stop at the largest of 64 bits: what is
+/// wrong, empty = nothing.
+std::string check_seed(std::string const& text);
 
 } // namespace viewer

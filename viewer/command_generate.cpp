@@ -142,7 +142,7 @@ A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them
     for (CLI::App* const kind : {boxes, sphere}) {
         kind->add_option("--triangles", o->triangles, "about so many")->capture_default_str();
         kind->add_option("--seed", o->seed, "another seed, another scene")
-            ->check(refuse_negative)
+            ->check(check_seed)
             ->capture_default_str();
     }
     declare_sky(*c, o, exit_code);

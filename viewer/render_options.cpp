@@ -305,7 +305,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
         ->check(CLI::IsMember({"box", "tent"}))
         ->capture_default_str();
     declare_denoise(c, o);
-    c.add_option("--seed", o.seed, "another seed, another noise")->check(refuse_negative)->capture_default_str();
+    c.add_option("--seed", o.seed, "another seed, another noise")->check(check_seed)->capture_default_str();
     c.add_option("--threads", o.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c.add_option("--out", o.out, "EXR with all layers (default: the scene's name)");
     c.add_flag("--half", o.half, "half floats where they suffice");
