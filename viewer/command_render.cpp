@@ -112,6 +112,12 @@ void check_display(CLI::App const& command, RenderOptions const& o)
                                  "it is about pictures for a display", "add --png F.png, or leave it out");
 }
 
+void check_endings(RenderOptions const& o)
+{
+    check_ending(o.out, ".exr", "an OpenEXR picture", "use --png for a PNG, or end it with .exr");
+    check_ending(o.png, ".png", "a PNG", "use --out for an OpenEXR picture, or end it with .png");
+}
+
 /// What several processes cannot share.
 void check_ranks(RenderOptions const& o, gi::RenderSettings const& s)
 {
@@ -187,6 +193,7 @@ int run(RenderOptions o)
     gi::find_method(o.method);
     gi::RenderSettings const settings = make_settings(o);
     gi::DenoiseSettings const denoise_settings = make_denoise_settings(o, settings);
+    check_endings(o);
     CameraChoice const choice = camera_choice(o);
     if (!o.background.empty()) parse_background(o.background); // before any work
     if (Cluster::started_by_mpirun()) check_ranks(o, settings);

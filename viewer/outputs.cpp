@@ -3,6 +3,7 @@
 #include "gi/base/error.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -50,6 +51,15 @@ void check_outputs(std::vector<std::string> const& files, std::vector<std::strin
         if (auto const found = identity(file); found && read.contains(*found))
             throw cannot("it is read as well", "choose another name");
     }
+}
+
+void check_ending(std::string const& file, std::string const& ending, std::string const& what,
+                  std::string const& suggestion)
+{
+    std::string given = fs::path(file).extension().string();
+    std::ranges::transform(given, given.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    if (!given.empty() && given != ending)
+        throw gi::InputError("'" + file + "' cannot be " + what, "its ending is not " + ending, suggestion);
 }
 
 } // namespace viewer

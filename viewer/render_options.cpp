@@ -307,9 +307,9 @@ void declare_options(CLI::App& c, RenderOptions& o)
     declare_denoise(c, o);
     c.add_option("--seed", o.seed, "another seed, another noise")->check(check_seed)->capture_default_str();
     c.add_option("--threads", o.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
-    c.add_option("--out", o.out, "EXR with all layers (default: the scene's name)");
+    c.add_option("--out", o.out, "EXR with all layers, .exr (default: the scene's name)");
     c.add_flag("--half", o.half, "half floats where they suffice");
-    c.add_option("--png", o.png, "tone-mapped picture");
+    c.add_option("--png", o.png, "tone-mapped picture, .png");
     c.add_option("--exposure", o.exposure_ev, "stops, for --png and --video")->check(in_range(-100, 100));
     c.add_option("--tone", o.tone, "curve, for --png and --video")
         ->check(CLI::IsMember({"srgb", "filmic"}))
