@@ -249,6 +249,10 @@ void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods
         throw gi::InputError("--directions with --axes or --fresh-axes",
                              "a set of directions is stored, and axes are drawn by the other schedules",
                              "leave one of them out");
+    for (auto const& [part, all] : {std::pair{"--fresh-axes", "--axes"}, std::pair{"--fresh-lamps", "--lamps"}})
+        if (given(part) && given(all) && command.get_option(part)->as<int>() > command.get_option(all)->as<int>())
+            throw gi::InputError(std::string(part) + " is larger than " + all, "it is how many of these are new",
+                                 fmt::format("give at most {}", command.get_option(all)->as<int>()));
 }
 
 void declare_slhb(CLI::App& c, RenderOptions& o)
