@@ -29,7 +29,14 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
     for (WrongCall const call : {
              WrongCall{"", "subcommand"},
              {"paint", "--help"},
+             {"paint", "no subcommand 'paint'"},
+             {"rendr cornell", "no subcommand 'rendr' (the call does not fit) did you mean 'render'?"},
+             {"track lisen", "no subcommand 'lisen' (the call does not fit) did you mean 'listen'?"},
+             {"--bogus", "'--bogus' was not expected"},
              {"render", "SCENE"},
+             {"render cornell --path 1",
+              "'--path' was not expected (the call does not fit) did you mean '--paths'?"},
+             {"render --sice=8x8", "'--sice' was not expected (the call does not fit) did you mean '--size'?"},
              {"render cornell more", "more"},
              {"render cornell --bogus", "--bogus"},
              {"render nowhere.glb", "nowhere.glb"},
@@ -87,6 +94,7 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"render cornell --budget 1s --until relmse=1", "--until"},
              {"render cornell --budget soon", "--budget"},
              {"render cornell --until flip=0.1", "--until"},
+             {"render cornell --until relmse", "write relmse=0.001"},
              {"render cornell --bounces -1", "--bounces"},
              {"render cornell --filter sinc", "--filter"},
              {"render cornell --denoise median", "--denoise"},
@@ -153,7 +161,7 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"generate sky --ground-albedo green --out a.exr", "--ground-albedo"},
              {"generate sky --size 2x1 --out a.exr", "2 x 1"},
              {"render cornell --background purple", "--background"},
-             {"render cornell --background 1,2", "--background"},
+             {"render cornell --background 1,2", "write 0.9,0.5,0.1"},
              {"render cornell --background 1,-2,3", "--background"},
          })
         expect_refused(call.arguments, call.mentions, folder.path());
