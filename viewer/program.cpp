@@ -107,6 +107,7 @@ int run_program(int argc, char const* const* argv)
 
 Exit codes: 0 done, 1 a comparison failed or not all could be written, 2 the input or the call is wrong, 130 interrupted.
 Who ends view by Ctrl-C leaves it in order: 0.)");
+    setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); // none: messages of this program say what is wrong
     int exit_code = 0;
     add_render(app, exit_code);
     add_view(app, exit_code);
