@@ -3,9 +3,11 @@
 #include "gi/base/error.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
 namespace viewer {
 namespace {
@@ -44,14 +46,14 @@ std::pair<int, int> parse_size(std::string const& text)
               "write 512x384");
 }
 
-gi::dvec3 parse_point(std::string const& option, std::string const& text)
+gi::dvec3 parse_point(std::string const& option, std::string const& text, std::string const& example)
 {
     gi::dvec3 point;
     std::string_view rest = text;
     for (int i = 0; i < 3; ++i) {
         auto const comma = i < 2 ? rest.find(',') : rest.size();
         auto const v = comma == std::string_view::npos ? std::nullopt : to_number(rest.substr(0, comma));
-        if (!v) throw bad(option, text, "three numbers with commas between them are needed", "write 1,1.6,-3");
+        if (!v) throw bad(option, text, "three numbers with commas between them are needed", "write " + example);
         point[i] = *v;
         rest.remove_prefix(std::min(comma + 1, rest.size()));
     }
@@ -62,11 +64,11 @@ gi::dvec3 parse_color(std::string const& option, std::string const& text)
 {
     if (auto const grey = to_number(text); grey && *grey >= 0 && *grey <= 1e9) return gi::dvec3{*grey};
     if (text.find(',') != std::string::npos) {
-        gi::dvec3 const c = parse_point(option, text);
+        gi::dvec3 const c = parse_point(option, text, "0.9,0.5,0.1");
         if (std::min({c.x, c.y, c.z}) >= 0 && std::max({c.x, c.y, c.z}) <= 1e9) return c;
     }
     throw bad(option, text, "one number or three with commas between them, from 0 to 1e9, are needed",
-              "write 0.2 or 0.9,0.5,0.1");
+              "write 0.9,0.5,0.1");
 }
 
 double parse_duration(std::string const& option, std::string const& text)
@@ -83,27 +85,31 @@ double parse_duration(std::string const& option, std::string const& text)
     throw bad(option, text, "a positive duration is needed", "write 500ms, 2s or 3min");
 }
 
-std::pair<std::string, double> parse_limit(std::string const& option, std::string const& text)
+std::pair<std::string, double> parse_limit(std::string const& option, std::string const& text,
+                                           std::string const& example)
 {
     auto const equals = text.find('=');
     if (equals != std::string::npos && equals > 0)
         if (auto const v = to_number(std::string_view(text).substr(equals + 1)))
             return {text.substr(0, equals), *v};
-    throw bad(option, text, "a name, '=' and a number are needed", "write flip=0.05");
+    throw bad(option, text, "a name, '=' and a number are needed", "write " + example);
 }
 
 double parse_target(std::string const& option, std::string const& text, std::string const& name)
 {
-    auto const [given, value] = parse_limit(option, text);
+    std::string const example = name + "=0.001";
+    auto const [given, value] = parse_limit(option, text, example);
     if (given != name || !(value > 0))
-        throw bad(option, text, "only " + name + " with a positive value can be waited for",
-                  "write " + name + "=0.001");
+        throw bad(option, text, "only " + name + " with a positive value can be waited for", "write " + example);
     return value;
 }
 
-std::string refuse_negative(std::string const& text)
+std::string check_seed(std::string const& text)
 {
-    return text.starts_with('-') ? "'" + text + "' is negative" : std::string();
+    if (text.starts_with('-')) return "'" + text + "' is negative";
+    errno = 0;
+    std::strtoull(text.c_str(), nullptr, 0); // as CLI11 reads it
+    return errno == ERANGE ? "'" + text + "' is larger than 18446744073709551615" : std::string();
 }
 
 } // namespace viewer

@@ -22,6 +22,7 @@ struct CompareOptions {
 
 int run(CompareOptions const& o)
 {
+    check_ending(o.difference, ".png", "a PNG", "end it with .png");
     check_outputs({o.difference}, {o.image, o.reference});
     gi::Picture const image = gi::read_picture(o.image), reference = gi::read_picture(o.reference);
     std::vector<std::pair<std::string, double>> limits;
@@ -92,7 +93,7 @@ void add_compare(CLI::App& app, int& exit_code)
     c->add_option("--fail-above", o->limits, "NAME=LIMIT: exit with 1 where a value is larger")
         ->delimiter(',')
         ->allow_extra_args(false);
-    c->add_option("--diff", o->difference, "PNG of the FLIP error, black = none");
+    c->add_option("--diff", o->difference, "PNG of the FLIP error, .png; black = none");
     c->add_flag("--json", o->json, "print JSON");
     c->footer(R"(Examples:
   lightwell render cornell --size 64x64 --paths 16 --out a.exr

@@ -86,8 +86,9 @@ void declare_sky(CLI::App& generate, std::shared_ptr<GenerateOptions> const& o, 
     c->add_flag("--no-sun", o->no_sun, "leave its disc out; the ground stays lit by it");
     c->add_option("--ground-albedo", o->ground, "below the horizon: one number or R,G,B (default: 0.2)");
     c->add_option("--size", o->sky_size, "texels")->capture_default_str();
-    c->add_option("--out", o->out, "EXR to write")->required();
+    c->add_option("--out", o->out, "EXR to write, .exr")->required();
     c->callback([o, &exit_code] {
+        check_ending(o->out, ".exr", "an OpenEXR picture", "end it with .exr");
         check_outputs({o->out}, {});
         exit_code = save_sky(*o);
     });
@@ -114,8 +115,9 @@ A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them
     using Make = std::function<gi::Scene()>;
     auto const add = [&](char const* name, char const* help, Make const& make) {
         CLI::App* const kind = c->add_subcommand(name, help);
-        kind->add_option("--out", o->out, "GLB to write")->required();
+        kind->add_option("--out", o->out, "GLB to write, .glb")->required();
         kind->callback([o, make, &exit_code] {
+            check_ending(o->out, ".glb", "a binary glTF scene", "end it with .glb");
             check_outputs({o->out}, {});
             exit_code = save(make(), o->out);
         });
@@ -142,7 +144,7 @@ A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them
     for (CLI::App* const kind : {boxes, sphere}) {
         kind->add_option("--triangles", o->triangles, "about so many")->capture_default_str();
         kind->add_option("--seed", o->seed, "another seed, another scene")
-            ->check(refuse_negative)
+            ->check(check_seed)
             ->capture_default_str();
     }
     declare_sky(*c, o, exit_code);

@@ -28,6 +28,7 @@ struct InfoOptions {
 int run_directions(InfoOptions const& o)
 {
     constexpr std::size_t kSamples = std::size_t(1) << 18;
+    check_ending(o.png, ".png", "a PNG", "end it with .png");
     check_outputs({o.png}, {});
     gi::DirectionSet const set = gi::make_directions(o.directions);
     gi::DirectionQuality const q = gi::measure(set, kSamples);

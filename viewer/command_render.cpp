@@ -76,10 +76,16 @@ Shot shoot_motion(RenderOptions const& o, gi::RenderSettings const& settings, gi
     return {gi::plan_scene(world.world()), std::move(result), {}};
 }
 
+std::vector<std::string> outputs_of(RenderOptions const& o, gi::RenderSettings const& settings)
+{
+    return {o.out, o.png, o.stats, settings.checkpoint.string()};
+}
+
 Shot shoot(RenderOptions const& o, gi::RenderSettings const& settings, CameraChoice const& choice,
            CameraMotion const& motion, RankWork& work, gi::Report& report)
 {
     auto const scene = load_lit_scene(o, report);
+    check_outputs(outputs_of(o, settings), scene->files);
     bool const blurs = o.shutter_s > 0 && depends_on_time(*scene, false, motion);
     if (o.shutter_s > 0 && !blurs) say(kNothingMoves);
     gi::World still;
@@ -104,6 +110,12 @@ void check_display(CLI::App const& command, RenderOptions const& o)
         if (command.get_option(name)->count() > 0 && o.png.empty() && o.video.empty())
             throw gi::InputError(std::string(name) + " without --png or --video",
                                  "it is about pictures for a display", "add --png F.png, or leave it out");
+}
+
+void check_endings(RenderOptions const& o)
+{
+    check_ending(o.out, ".exr", "an OpenEXR picture", "use --png for a PNG, or end it with .exr");
+    check_ending(o.png, ".png", "a PNG", "use --out for an OpenEXR picture, or end it with .png");
 }
 
 /// What several processes cannot share.
@@ -132,7 +144,7 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
                    gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work)
 {
     CameraMotion const motion = make_motion(o);
-    check_outputs({o.out, o.png, o.stats, settings.checkpoint.string()}, {o.scene, o.environment, o.camera_path});
+    check_outputs(outputs_of(o, settings), {o.scene, o.environment, o.camera_path});
     std::string const state = o.out.empty() ? "" : o.out + ".state"; // also where this render keeps none
     bool const has_state = !state.empty() && std::filesystem::exists(state);
     if (!work.alone()) {
@@ -181,6 +193,7 @@ int run(RenderOptions o)
     gi::find_method(o.method);
     gi::RenderSettings const settings = make_settings(o);
     gi::DenoiseSettings const denoise_settings = make_denoise_settings(o, settings);
+    check_endings(o);
     CameraChoice const choice = camera_choice(o);
     if (!o.background.empty()) parse_background(o.background); // before any work
     if (Cluster::started_by_mpirun()) check_ranks(o, settings);

@@ -94,15 +94,15 @@ FrameSettings make_frame_settings(RenderOptions const& o, gi::RenderSettings con
     if (!o.png.empty()) f.png = parse_frame_name("--png", o.png);
     f.video = o.video;
     if (!f.video.empty()) check_video(f.video, settings.width, settings.height, f.range.fps());
-    std::vector<std::string> files{f.video, f.state, o.stats};
+    f.files = {f.video, f.state, o.stats};
     for (int k = f.range.first; k < f.range.end; ++k) {
-        if (f.exr) files.push_back(f.exr->of(k));
-        if (f.png) files.push_back(f.png->of(k));
+        if (f.exr) f.files.push_back(f.exr->of(k));
+        if (f.png) f.files.push_back(f.png->of(k));
         if (f.motion.path) // a path without a direction somewhere is found before the work
             for (double const after_s : {0.0, o.shutter_s})
                 gi::camera_at(*f.motion.path, f.range.time_s(k) + after_s, 1);
     }
-    check_outputs(files, {o.scene, o.environment, o.camera_path});
+    check_outputs(f.files, {o.scene, o.environment, o.camera_path});
     return f;
 }
 

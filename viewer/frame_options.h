@@ -9,7 +9,8 @@ namespace viewer {
 struct FrameSettings {
     FrameRange range;
     std::optional<FrameName> exr, png;
-    std::string video, state; ///< empty = none; state: a file that is there while frames are missing
+    std::string video, state;       ///< empty = none; state: a file that is there while frames are missing
+    std::vector<std::string> files; ///< all that may be written
     CameraMotion motion;
 
     /// Of the animation: that of the frame, or where --time holds it still.

@@ -75,7 +75,8 @@ std::string FrameName::of_all(FrameRange const& range) const
 FrameName parse_frame_name(std::string const& option, std::string const& pattern)
 {
     auto const refuse = [&](std::string const& why) {
-        return gi::InputError(option + " '" + pattern + "' does not name frames", why, "write f_%04d.exr");
+        std::string const ending = option == "--png" ? ".png" : ".exr";
+        return gi::InputError(option + " '" + pattern + "' does not name frames", why, "write f_%04d" + ending);
     };
     FrameName name;
     bool found = false;

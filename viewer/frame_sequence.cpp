@@ -10,6 +10,7 @@
 #include "viewer/frame_record.h"
 #include "viewer/frame_state.h"
 #include "viewer/interrupt.h"
+#include "viewer/outputs.h"
 #include "viewer/render_picture.h"
 #include "viewer/render_record.h"
 #include "viewer/report_json.h"
@@ -42,6 +43,7 @@ public:
         if (!f_.video.empty() && work.leads())
             video_ = std::make_unique<VideoWriter>(f_.video, settings.width, settings.height, f_.range.fps());
         scene_ = load_lit_scene(o_, report_);
+        check_outputs(f_.files, scene_->files);
         gi::Report unused; // the frame itself reports what its world lost
         gi::World const first = world_of(f_.range.first, unused);
         if (o.reuse > 1) origin_ = first.origin; // one world is moved on through all of them
@@ -57,16 +59,17 @@ public:
     {
         std::vector<char> const there =
             o_.resume ? find_frames() : std::vector<char>(std::size_t(f_.range.count()));
+        bool const begins = !f_.state.empty() && work_.leads() && !fs::exists(f_.state);
         if (!f_.state.empty() && work_.leads()) gi::write_text(f_.state, stats_command() + "\n");
         for (int k = f_.range.first; k < f_.range.end; ++k)
             missing_ += is_mine(k) && there[std::size_t(k - f_.range.first)] == 0;
         say_what_is_rendered_again(there);
         bar_.emplace("render " + fs::path(o_.scene).filename().string(), !o_.quiet && work_.leads());
-        for (int k = f_.range.first; k < f_.range.end && !stop_.requested(); ++k) {
-            if (!is_mine(k)) continue;
-            bool const kept = there[std::size_t(k - f_.range.first)] != 0;
-            if (kept && is_history(there, k) && !remember(k)) break;
-            if (kept ? !reuse(k) : !render(k)) break;
+        try {
+            render_all(there);
+        } catch (gi::InputError const&) {
+            if (begins && records_.empty()) fs::remove(f_.state); // or a call that is right would be refused, too
+            throw;
         }
         bar_.reset();
         if (!work_.alone()) gather();
@@ -81,6 +84,16 @@ public:
 
 private:
     bool is_mine(int frame) const { return (frame - f_.range.first) % work_.size() == work_.rank(); }
+
+    void render_all(std::vector<char> const& there)
+    {
+        for (int k = f_.range.first; k < f_.range.end && !stop_.requested(); ++k) {
+            if (!is_mine(k)) continue;
+            bool const kept = there[std::size_t(k - f_.range.first)] != 0;
+            if (kept && is_history(there, k) && !remember(k)) break;
+            if (kept ? !reuse(k) : !render(k)) break;
+        }
+    }
 
     /// The world of a frame.
     gi::World world_of(int frame, gi::Report& report) const

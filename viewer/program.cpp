@@ -7,9 +7,12 @@
 #include "viewer/version.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <new>
+#include <numeric>
 #include <stdexcept>
 
 namespace viewer {
@@ -22,6 +25,71 @@ std::string path_of_given(CLI::App const& app)
     for (auto given = app.get_subcommands(); !given.empty(); given = given.back()->get_subcommands())
         path += given.back()->get_name() + " ";
     return path;
+}
+
+int edit_distance(std::string const& a, std::string const& b)
+{
+    std::vector<int> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), 0);
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        int diagonal = row[0];
+        row[0] = int(i);
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            int const above = row[j];
+            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+            diagonal = above;
+        }
+    }
+    return row.back();
+}
+
+/// "did you mean 'render'? ", or nothing where none is near.
+std::string suggest(std::string const& word, std::vector<std::string> const& known)
+{
+    int least = 3;
+    std::string nearest;
+    for (std::string const& name : known)
+        if (int const distance = edit_distance(word, name); distance < std::min(least, int(word.size()) / 2)) {
+            least = distance;
+            nearest = name;
+        }
+    return nearest.empty() ? "" : "did you mean '" + nearest + "'? ";
+}
+
+std::vector<std::string> subcommands_of(CLI::App const& app)
+{
+    std::vector<std::string> names;
+    for (CLI::App const* const s : app.get_subcommands([](CLI::App const*) { return true; }))
+        names.push_back(s->get_name());
+    return names;
+}
+
+std::vector<std::string> options_of(CLI::App const& app)
+{
+    std::vector<std::string> names;
+    for (CLI::Option const* const o : app.get_options())
+        for (std::string const& name : o->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+/// What is said of a call that does not fit. A word that is not known comes before what is missing without it.
+std::string describe(CLI::ParseError const& e, CLI::App const& app)
+{
+    std::string const misfit = " (the call does not fit) ";
+    bool const may_be_unknown = dynamic_cast<CLI::ExtrasError const*>(&e) != nullptr ||
+                                dynamic_cast<CLI::RequiredError const*>(&e) != nullptr;
+    for (CLI::App const* a = &app; may_be_unknown && a != nullptr;) {
+        auto const given = a->get_subcommands();
+        if (std::vector<std::string> const unknown = a->remaining(); !unknown.empty()) {
+            std::string const word =
+                unknown.front().substr(0, std::min<std::size_t>(64, unknown.front().find('=')));
+            if (!word.starts_with('-') && given.empty() && a->get_require_subcommand_min() > 0)
+                return "there is no subcommand '" + word + "'" + misfit + suggest(word, subcommands_of(*a));
+            return "'" + word + "' was not expected" + misfit + suggest(word, options_of(*a));
+        }
+        a = given.empty() ? nullptr : given.back();
+    }
+    return e.what() + misfit;
 }
 
 } // namespace
@@ -39,6 +107,7 @@ int run_program(int argc, char const* const* argv)
 
 Exit codes: 0 done, 1 a comparison failed or not all could be written, 2 the input or the call is wrong, 130 interrupted.
 Who ends view by Ctrl-C leaves it in order: 0.)");
+    setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); // none: messages of this program say what is wrong
     int exit_code = 0;
     add_render(app, exit_code);
     add_view(app, exit_code);
@@ -61,10 +130,9 @@ Who ends view by Ctrl-C leaves it in order: 0.)");
     } catch (CLI::Success const& e) { // --help and --version
         return app.exit(e);
     } catch (CLI::ParseError const& e) {
-        std::fputs(fmt::format("lightwell: {} (the call does not fit) see lightwell {}--help\n", e.what(),
-                               path_of_given(app))
-                       .c_str(),
-                   stderr);
+        std::fputs(
+            fmt::format("lightwell: {}see lightwell {}--help\n", describe(e, app), path_of_given(app)).c_str(),
+            stderr);
         return 2;
     } catch (gi::InputError const& e) {
         std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);

@@ -249,6 +249,10 @@ void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods
         throw gi::InputError("--directions with --axes or --fresh-axes",
                              "a set of directions is stored, and axes are drawn by the other schedules",
                              "leave one of them out");
+    for (auto const& [part, all] : {std::pair{"--fresh-axes", "--axes"}, std::pair{"--fresh-lamps", "--lamps"}})
+        if (given(part) && given(all) && command.get_option(part)->as<int>() > command.get_option(all)->as<int>())
+            throw gi::InputError(std::string(part) + " is larger than " + all, "it is how many of these are new",
+                                 fmt::format("give at most {}", command.get_option(all)->as<int>()));
 }
 
 void declare_slhb(CLI::App& c, RenderOptions& o)
@@ -305,11 +309,11 @@ void declare_options(CLI::App& c, RenderOptions& o)
         ->check(CLI::IsMember({"box", "tent"}))
         ->capture_default_str();
     declare_denoise(c, o);
-    c.add_option("--seed", o.seed, "another seed, another noise")->check(refuse_negative)->capture_default_str();
+    c.add_option("--seed", o.seed, "another seed, another noise")->check(check_seed)->capture_default_str();
     c.add_option("--threads", o.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
-    c.add_option("--out", o.out, "EXR with all layers (default: the scene's name)");
+    c.add_option("--out", o.out, "EXR with all layers, .exr (default: the scene's name)");
     c.add_flag("--half", o.half, "half floats where they suffice");
-    c.add_option("--png", o.png, "tone-mapped picture");
+    c.add_option("--png", o.png, "tone-mapped picture, .png");
     c.add_option("--exposure", o.exposure_ev, "stops, for --png and --video")->check(in_range(-100, 100));
     c.add_option("--tone", o.tone, "curve, for --png and --video")
         ->check(CLI::IsMember({"srgb", "filmic"}))

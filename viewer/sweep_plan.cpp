@@ -72,18 +72,17 @@ SweepMethod find_method(std::string const& name, std::string const& schedule_of_
 }
 
 /// A second sweep may replace what a first one wrote, but not what it reads itself.
-void check_pictures(SweepOptions const& o, std::vector<std::string> const& names)
+void check_pictures(SweepOptions const& o, std::vector<std::string> const& names,
+                    std::vector<std::string> const& inputs)
 {
     if (!std::filesystem::exists(o.out)) return;
-    std::vector<std::string> files, inputs = o.scenes;
+    std::vector<std::string> files;
     for (std::string const& scene : names)
         for (std::string const& method : o.methods)
             for (std::string const& budget : o.budgets)
                 for (char const* end : {".exr", ".png", "_flip.png"})
                     files.push_back(
                         (std::filesystem::path(o.out) / (picture_stem(scene, method, budget) + end)).string());
-    inputs.push_back(o.reference);
-    inputs.push_back(o.render.environment);
     check_outputs(files, inputs);
 }
 
@@ -134,9 +133,12 @@ SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
         throw gi::InputError("--reference is given for several scenes", "one picture cannot judge them all",
                              "sweep one scene at a time, or drop it");
     check_folder(o.out);
-    check_pictures(o, names);
+    std::vector<std::string> inputs = o.scenes;
+    inputs.insert(inputs.end(), {o.reference, o.render.environment});
+    check_pictures(o, names, inputs);
     if (!o.reference.empty()) plan.reference = read_reference(o.reference, plan.settings);
     for (std::string const& scene : o.scenes) plan.scenes.push_back(load(scene, o.render, choice, report));
+    for (SweepScene const& scene : plan.scenes) check_pictures(o, names, scene.world.scene->files);
     return plan;
 }
 

@@ -51,6 +51,31 @@ TEST(Arguments, Limit)
         EXPECT_THROW(parse_limit("--fail-above", bad), gi::InputError) << bad;
 }
 
+TEST(Arguments, Seed)
+{
+    for (char const* good : {"0", "7", "18446744073709551615", "0xffffffffffffffff"})
+        EXPECT_EQ(check_seed(good), "") << good;
+    for (char const* bad : {"-1", "18446744073709551616", "99999999999999999999", "0x10000000000000000"})
+        EXPECT_NE(check_seed(bad), "") << bad;
+}
+
+TEST(Arguments, ExamplesAreOfTheOption)
+{
+    auto const suggestion = [](auto const& parse) -> std::string {
+        try {
+            parse();
+        } catch (gi::InputError const& e) {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_NE(suggestion([] { parse_target("--until", "relmse", "relmse"); }).find("write relmse=0.001"),
+              std::string::npos);
+    EXPECT_NE(suggestion([] { parse_limit("--fail-above", "flip"); }).find("write flip=0.05"), std::string::npos);
+    EXPECT_NE(suggestion([] { parse_color("--background", "1,2"); }).find("write 0.9,0.5,0.1"), std::string::npos);
+    EXPECT_NE(suggestion([] { parse_point("--look-at", "1,2"); }).find("write 1,1.6,-3"), std::string::npos);
+}
+
 TEST(Arguments, MessagesNameTheOptionAndAWayOut)
 {
     try {

@@ -63,7 +63,7 @@ TEST_F(CompareCommand, RefusesWhatItDoesNotKnow)
           "one.exr two.exr --metrics rmse --fail-above beauty=1", "one.exr two.exr --fail-above bias.q=1",
           "one.exr two.exr --fail-above rmse", "one.exr two.exr --layer L7", "one.exr odd.exr",
           "one.exr two.exr --metrics ztest", "one.exr two.exr --diff nowhere/d.png",
-          "one.exr two.exr --diff one.exr", "one.exr nowhere.exr"}) {
+          "one.exr two.exr --diff one.exr", "one.exr two.exr --diff d.exr", "one.exr nowhere.exr"}) {
         Outcome const o = compare(arguments);
         EXPECT_EQ(o.code, 2) << arguments << o.err;
         EXPECT_TRUE(o.out.empty()) << arguments;

@@ -77,6 +77,18 @@ TEST(FrameName, RefusesOtherPatterns)
         EXPECT_THROW(parse_frame_name("--out", pattern), gi::InputError) << pattern;
 }
 
+TEST(FrameName, TheExampleIsOfTheOption)
+{
+    for (auto const& [option, example] :
+         {std::pair{"--out", "write f_%04d.exr"}, std::pair{"--png", "write f_%04d.png"}})
+        try {
+            parse_frame_name(option, "f");
+            FAIL();
+        } catch (gi::InputError const& e) {
+            EXPECT_NE(std::string(e.what()).find(example), std::string::npos) << e.what();
+        }
+}
+
 TEST(FrameRecords, PercentilesAreValuesThatOccurred)
 {
     std::vector<double> values;

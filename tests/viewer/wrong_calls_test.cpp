@@ -29,7 +29,14 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
     for (WrongCall const call : {
              WrongCall{"", "subcommand"},
              {"paint", "--help"},
+             {"paint", "no subcommand 'paint'"},
+             {"rendr cornell", "no subcommand 'rendr' (the call does not fit) did you mean 'render'?"},
+             {"track lisen", "no subcommand 'lisen' (the call does not fit) did you mean 'listen'?"},
+             {"--bogus", "'--bogus' was not expected"},
              {"render", "SCENE"},
+             {"render cornell --path 1",
+              "'--path' was not expected (the call does not fit) did you mean '--paths'?"},
+             {"render --sice=8x8", "'--sice' was not expected (the call does not fit) did you mean '--size'?"},
              {"render cornell more", "more"},
              {"render cornell --bogus", "--bogus"},
              {"render nowhere.glb", "nowhere.glb"},
@@ -48,6 +55,9 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"render cornell --method slhb --schedule stored --axes 4", "--axes with --schedule stored"},
              {"render cornell --method slhb --schedule temporal --directions icosahedron:80", "--directions"},
              {"render cornell --method slhb --directions icosahedron:80 --axes 4", "--directions with --axes"},
+             {"render cornell --method slhb --schedule temporal --axes 2 --fresh-axes 4",
+              "--fresh-axes is larger than --axes"},
+             {"render cornell --method slhb --lamps 2 --fresh-lamps 4", "--fresh-lamps is larger than --lamps"},
              {"render cornell --size 0x5", "--size"},
              {"render cornell --size 16384x16385", "--size"},
              {"render cornell --camera nobody", "nobody"},
@@ -84,11 +94,21 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"render cornell --budget 1s --until relmse=1", "--until"},
              {"render cornell --budget soon", "--budget"},
              {"render cornell --until flip=0.1", "--until"},
+             {"render cornell --until relmse", "write relmse=0.001"},
              {"render cornell --bounces -1", "--bounces"},
              {"render cornell --filter sinc", "--filter"},
              {"render cornell --denoise median", "--denoise"},
              {"render cornell --denoise atrous --paths 1", "--denoise"},
              {"render cornell --seed -1", "--seed"},
+             {"render cornell --seed 18446744073709551616", "--seed"},
+             {"generate boxes --seed 18446744073709551616 --out a.glb", "--seed"},
+             {"render cornell --out a.png", "'a.png' cannot be an OpenEXR picture"},
+             {"render cornell --png a.jpg", "'a.jpg' cannot be a PNG"},
+             {"render cornell --frames 0:2@4 --out f_%d.png", "cannot be an OpenEXR picture"},
+             {"render cornell --frames 0:2@4 --png f_%d.exr", "cannot be a PNG"},
+             {"info --directions icosahedron:20 --png a.exr", "cannot be a PNG"},
+             {"generate sky --out sky.hdr", "cannot be an OpenEXR picture"},
+             {"generate cornell --out a.obj", "cannot be a binary glTF scene"},
              {"render cornell --threads x", "--threads"},
              {"render cornell --aovs L9", "L9"},
              {"render cornell --tone neon --png a.png", "--tone"},
@@ -96,8 +116,8 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"render cornell --png a.png --exposure nan", "--exposure"},
              {"render cornell --frames 0:4@30 --out f.exr", "%04d"},
              {"render cornell --frames 0:4@30 --out f_%04d.exr --png f.png", "--png 'f.png'"},
-             {"render cornell --frames 0:4@30 --out f_%d.exr --png f_%d.exr", "two outputs"},
-             {"render cornell --frames 0:12@30 --out f_1%d.exr --png f_%d.exr", "two outputs"},
+             {"render cornell --frames 0:4@30 --out f_%d --png f_%d", "two outputs"},
+             {"render cornell --frames 0:12@30 --out f_1%d --png f_%d", "two outputs"},
              {"render cornell --frames 0:4@30 --out nowhere/f_%d.exr", "no folder 'nowhere'"},
              {"render cornell --frames 4:4@30", "no frame"},
              {"render cornell --frames -4:4@30", "--frames"},
@@ -141,7 +161,7 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"generate sky --ground-albedo green --out a.exr", "--ground-albedo"},
              {"generate sky --size 2x1 --out a.exr", "2 x 1"},
              {"render cornell --background purple", "--background"},
-             {"render cornell --background 1,2", "--background"},
+             {"render cornell --background 1,2", "write 0.9,0.5,0.1"},
              {"render cornell --background 1,-2,3", "--background"},
          })
         expect_refused(call.arguments, call.mentions, folder.path());
@@ -175,7 +195,7 @@ TEST(WrongCalls, OutputsAreCheckedBeforeTheWork)
              {"--out pipe", "pipe"},
              {"--out a.exr --png nowhere/a.png", "nowhere"},
              {"--out a.exr --stats nowhere/a.json", "nowhere"},
-             {"--out a.exr --png ./a.exr", "two outputs"},
+             {"--out a --png ./a", "two outputs"},
              {"--out a.exr --stats a.exr.state", "two outputs"},
          })
         expect_refused(std::string("render atrium --budget 1h ") + call.arguments, call.mentions, folder.path());
@@ -245,10 +265,52 @@ TEST(WrongCalls, ReadOnlyFolder)
 TEST(WrongCalls, AnInputIsNotOverwritten)
 {
     TemporaryFolder const folder;
-    run_well("generate cornell --out room.glb", folder.path());
-    std::string const before = file_text(folder / "room.glb");
-    expect_refused("render room.glb --size 8x8 --paths 1 --out ./room.glb", "read as well", folder.path());
-    EXPECT_EQ(file_text(folder / "room.glb"), before);
+    run_well("generate sky --size 64x32 --out sky.exr", folder.path());
+    std::string const before = file_text(folder / "sky.exr");
+    expect_refused("render cornell --envmap sky.exr --size 8x8 --paths 1 --out ./sky.exr", "read as well",
+                   folder.path());
+    EXPECT_TRUE(file_text(folder / "sky.exr") == before);
+}
+
+/// Those, too, that a scene names, which are known once it is loaded.
+TEST(WrongCalls, WhatASceneReadsIsNotOverwritten)
+{
+    TemporaryFolder const folder;
+    run_well("generate sky --size 64x32 --out studio_0.exr", folder.path());
+    std::string const scene =
+        "models: [{generate: {kind: cornell}}]\nenvironment: {file: studio_0.exr, scale: 0.01}\n";
+    std::ofstream(folder / "studio.yaml") << scene;
+    std::filesystem::create_directory(folder / "sweep");
+    std::filesystem::copy(folder / "studio_0.exr", folder / "sweep/room_reference_20ms.exr");
+    std::ofstream(folder / "room.yaml") << "models: [{generate: {kind: cornell}}]\n"
+                                           "environment: {file: sweep/room_reference_20ms.exr, scale: 0.01}\n";
+    std::string const before = file_text(folder / "studio_0.exr");
+    for (std::string const call :
+         {"render studio.yaml --out studio_0.exr", "render studio.yaml --frames 0:2@4 --out studio_%d.exr",
+          "bench sweep --scene room.yaml --methods reference --budgets 20ms --out sweep"})
+        expect_refused(call + " --size 8x8", "read as well", folder.path());
+    EXPECT_TRUE(file_text(folder / "studio_0.exr") == before);
+    EXPECT_TRUE(file_text(folder / "sweep/room_reference_20ms.exr") == before);
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"room.yaml", "studio.yaml", "studio_0.exr", "sweep"}));
+}
+
+/// Case does not matter, and without an ending every name fits.
+TEST(WrongCalls, OtherEndingsAreRight)
+{
+    TemporaryFolder const folder;
+    run_well("render cornell --size 8x8 --paths 1 --out A.EXR --png a", folder.path());
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"A.EXR", "a"}));
+}
+
+/// What is refused once frames were to be rendered, is not in the way of the call that is right.
+TEST(WrongCalls, RefusedFramesLeaveNoState)
+{
+    TemporaryFolder const folder;
+    std::string const call =
+        "render cornell --size 8x8 --paths 1 --quiet --frames 0:2@4 --reuse 4 --out f_%d.exr ";
+    expect_refused(call + "--method vpl_exact", "--reuse with method 'vpl_exact'", folder.path());
+    EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
+    run_well(call + "--method slhb", folder.path());
 }
 
 TEST(WrongCalls, DamagedScenes)
