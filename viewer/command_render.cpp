@@ -184,6 +184,7 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
     say(std::string("interrupted: the picture so far is saved") +
         (o.shutter_s > 0               ? "; with --shutter it cannot be resumed"
          : settings.checkpoint.empty() ? "; with --out it could be resumed"
+         : !result.resumable           ? "; its state could not be written, so that it cannot be resumed"
                                        : "; the same command with --resume goes on"));
     return kInterrupted;
 }

@@ -29,6 +29,7 @@ int run_export(TablesOptions const& o)
     if (o.out.empty() && o.sqlite.empty())
         throw gi::InputError("nothing to export to", "neither --out nor --sqlite is given", "give one of them");
     check_outputs({o.sqlite}, {o.script});
+    if (!o.sqlite.empty()) study::check_may_become_sqlite(o.sqlite);
     study::Dataset const records = load_records(o.dir, o.script);
     auto const tables = study::export_tables(records.script, records.sessions);
     if (!o.out.empty()) write_files(o.out, study::export_files(records.script, tables));
