@@ -14,7 +14,9 @@ if(LIGHTWELL_FUZZ)
   target_compile_options(lightwell_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 if(LIGHTWELL_SANITIZE)
-  target_compile_options(lightwell_options INTERFACE -fsanitize=${LIGHTWELL_SANITIZE} -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  target_compile_options(lightwell_options INTERFACE -fsanitize=${LIGHTWELL_SANITIZE} -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+    # GCC 12 with ASan warns of its own std::regex.
+    "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-Wno-maybe-uninitialized>")
   target_link_options(lightwell_options INTERFACE -fsanitize=${LIGHTWELL_SANITIZE})
 endif()
 
