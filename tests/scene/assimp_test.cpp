@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace gi::test {
@@ -134,6 +135,18 @@ TEST_F(AssimpFolder, MissingMaterialLibrariesAreCounted)
     write("a.mtl", "newmtl m\nKd 1 1 1\n");
     load("a.obj", "mtllib a.mtl\n" + triangle);
     EXPECT_EQ(lost(what), 2u);
+}
+
+/// A pipe that nobody writes to would be waited for without end.
+TEST_F(AssimpFolder, AReaderThatStallsIsEnded)
+{
+    ASSERT_EQ(mkfifo((folder_ / "pipe.mtl").c_str(), 0600), 0);
+    try {
+        load("a.obj", "mtllib pipe.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        FAIL() << "it was read";
+    } catch (InputError const& e) {
+        EXPECT_NE(std::string(e.what()).find("waits for something"), std::string::npos) << e.what();
+    }
 }
 
 TEST_F(AssimpFolder, FilesThatWereReadAreNoted)

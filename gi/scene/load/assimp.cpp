@@ -6,6 +6,7 @@
 #include "gi/scene/load.h"
 #include "gi/scene/load/assimp_convert.h"
 #include "gi/scene/load/assimp_import.h"
+#include "gi/scene/load/child_process.h"
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
@@ -17,6 +18,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <new>
+#include <optional>
 #include <strings.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -26,6 +28,7 @@ namespace gi {
 namespace {
 
 constexpr rlim_t kProbeSeconds = 60;
+constexpr int kAttempts = 2; ///< as the first may have stalled on a lock, see run_child
 constexpr rlim_t kProbeBytes = rlim_t(1) << 30,
                  kProbeBytesPerByte = 64; ///< memory: some, and some per byte of file
 
@@ -110,22 +113,14 @@ void probe(std::filesystem::path const& file, AssimpFaces faces, std::size_t fil
                                 : "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp knows");
     };
     rlim_t const most_memory = used_memory() + kProbeBytes + kProbeBytesPerByte * file_bytes;
-    int ends[2];
-    if (pipe(ends) != 0) throw bad("there is no pipe to be had for its reader");
-    pid_t const child = fork();
-    if (child == 0) import_with_limits(file, faces, most_memory, ends[1]);
-    close(ends[1]);
     std::string reason;
-    char chunk[4096];
-    for (ssize_t n; child > 0 && (n = read(ends[0], chunk, sizeof chunk)) != 0;) {
-        if (n > 0) reason.append(chunk, std::size_t(n));
-        if (n < 0 && errno != EINTR) break;
+    std::optional<int> ended;
+    for (int attempt = 0; attempt < kAttempts && !ended; ++attempt) {
+        reason.clear();
+        ended = run_child([&](int pipe) { import_with_limits(file, faces, most_memory, pipe); }, reason);
     }
-    close(ends[0]);
-    if (child < 0) throw bad("there is no process to be had for its reader");
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
+    if (!ended) throw bad("its reader (Assimp) waits for something, perhaps for a file it names");
+    int const status = *ended;
     if (WIFSIGNALED(status))
         throw bad(WTERMSIG(status) == SIGXCPU ? "its reader (Assimp) did not come to an end"
                                               : "its reader (Assimp) crashed on it");

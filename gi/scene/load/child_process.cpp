@@ -1,0 +1,74 @@
+#include "gi/scene/load/child_process.h"
+
+#include "gi/base/error.h"
+
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <ctime>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace gi {
+namespace {
+
+constexpr int kStallSeconds = 5;
+
+std::int64_t processor_time_ns(pid_t process)
+{
+    clockid_t clock{};
+    timespec t{};
+    if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &t) != 0) return -1;
+    return std::int64_t(t.tv_sec) * 1000000000 + t.tv_nsec;
+}
+
+/// Until the other end of the pipe is closed, or the process stalls, which is false.
+bool read_all(int pipe, pid_t process, std::string& told)
+{
+    std::int64_t used_ns = 0;
+    for (int idle_s = 0; idle_s < kStallSeconds;) {
+        pollfd waiting{pipe, POLLIN, 0};
+        int const ready = poll(&waiting, 1, 1000);
+        if (ready > 0) {
+            char chunk[4096];
+            ssize_t const n = read(pipe, chunk, sizeof chunk);
+            if (n > 0) told.append(chunk, std::size_t(n));
+            if (n == 0 || (n < 0 && errno != EINTR)) return true;
+        } else if (ready == 0) {
+            std::int64_t const now_ns = processor_time_ns(process);
+            idle_s = now_ns == used_ns ? idle_s + 1 : 0;
+            used_ns = now_ns;
+        }
+    }
+    return false;
+}
+
+} // namespace
+
+std::optional<int> run_child(std::function<void(int pipe)> const& work, std::string& told)
+{
+    int ends[2];
+    if (pipe(ends) != 0)
+        throw InputError("a file cannot be tried out", "there is no pipe to be had", "close other programs");
+    pid_t const child = fork();
+    if (child == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL); // or one that stalls would outlive us
+        close(ends[0]);
+        work(ends[1]);
+        _exit(1);
+    }
+    close(ends[1]);
+    bool const ended = child < 0 || read_all(ends[0], child, told);
+    close(ends[0]);
+    if (child < 0)
+        throw InputError("a file cannot be tried out", "there is no process to be had", "close other programs");
+    if (!ended) kill(child, SIGKILL);
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    return ended ? std::optional(status) : std::nullopt;
+}
+
+} // namespace gi
