@@ -5,6 +5,9 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numeric>
+#include <sstream>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/parser.h>
 
 namespace study {
 namespace {
@@ -45,6 +48,35 @@ void check_shape(std::string const& text, std::string const& file)
         if (!why.empty()) break;
     }
     if (!why.empty()) throw ScriptError(file, {1, 1}, "this YAML is not read", why, "scripts are small and flat");
+}
+
+/// Keeps where the last document begins.
+class DocumentStart : public YAML::EventHandler {
+public:
+    YAML::Mark mark;
+
+    void OnDocumentStart(YAML::Mark const& at) override { mark = at; }
+    void OnDocumentEnd() override {}
+    void OnNull(YAML::Mark const&, YAML::anchor_t) override {}
+    void OnAlias(YAML::Mark const&, YAML::anchor_t) override {}
+    void OnScalar(YAML::Mark const&, std::string const&, YAML::anchor_t, std::string const&) override {}
+    void OnSequenceStart(YAML::Mark const&, std::string const&, YAML::anchor_t, YAML::EmitterStyle::value) override
+    {
+    }
+    void OnSequenceEnd() override {}
+    void OnMapStart(YAML::Mark const&, std::string const&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+    void OnMapEnd() override {}
+};
+
+/// What Load would leave unread, without LoadAll: that goes on for ever at a comma of its own.
+void check_one_document(std::string const& text, std::string const& file)
+{
+    std::istringstream in(text);
+    YAML::Parser parser(in);
+    DocumentStart second;
+    if (parser.HandleNextDocument(second) && parser.HandleNextDocument(second))
+        throw ScriptError(file, {second.mark.line + 1, second.mark.column + 1}, "a second document begins here",
+                          "it would be ignored", "one file has one: check the indentation, or remove it");
 }
 
 /// Insertions, deletions, replacements and exchanges of neighbours (optimal string alignment).
@@ -89,11 +121,8 @@ Yaml Yaml::parse(std::string const& text, std::string const& file, std::string c
 {
     check_shape(text, file);
     try {
-        std::vector<YAML::Node> const documents = YAML::LoadAll(text);
-        if (documents.size() > 1)
-            throw Yaml(documents[1], file, what)
-                .error("a second document (---)", "it would be ignored", "one file has one: remove it");
-        return {documents.empty() ? YAML::Node() : documents[0], file, what};
+        check_one_document(text, file);
+        return {YAML::Load(text), file, what};
     } catch (YAML::Exception const& e) {
         throw ScriptError(file, {e.mark.line + 1, e.mark.column + 1}, "this is not YAML", e.msg,
                           "check the indentation and the quotes");

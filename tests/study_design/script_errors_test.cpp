@@ -219,8 +219,12 @@ TEST(ScriptErrors, OfInputsThatGiveTwoAnswersToAQuestionnaire)
 TEST(ScriptErrors, OfASecondDocumentNameItsLine)
 {
     EXPECT_EQ(message_of("---\n" + kSound), "");
-    std::string const message = message_of(kSound + "---\nid: other\n");
-    EXPECT_EQ(message, "t.yaml:33:1: a second document (---) (it would be ignored) one file has one: remove it");
+    EXPECT_EQ(message_of("# first\n\n---  # here\n" + kSound + "...\n# last\n"), "");
+    std::string const second = "a second document begins here (it would be ignored) one file has one: check the "
+                               "indentation, or remove it";
+    EXPECT_EQ(message_of(kSound + "---\nid: other\n"), "t.yaml:32:1: " + second);
+    EXPECT_EQ(message_of("- id\nseed: 1\n"), "t.yaml:2:1: " + second);
+    EXPECT_NE(message_of(","), "") << "where YAML::LoadAll never ends";
 }
 
 TEST(ScriptErrors, OfYamlThatNestsWithoutEndComeBeforeTheParser)
