@@ -1,6 +1,7 @@
 #include "viewer/program.h"
 
 #include "ar/base/error.h"
+#include "gi/base/edit_distance.h"
 #include "gi/base/error.h"
 #include "study/base/script_error.h"
 #include "viewer/commands.h"
@@ -12,7 +13,6 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <new>
-#include <numeric>
 #include <stdexcept>
 
 namespace viewer {
@@ -27,29 +27,13 @@ std::string path_of_given(CLI::App const& app)
     return path;
 }
 
-int edit_distance(std::string const& a, std::string const& b)
-{
-    std::vector<int> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), 0);
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        int diagonal = row[0];
-        row[0] = int(i);
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            int const above = row[j];
-            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
-            diagonal = above;
-        }
-    }
-    return row.back();
-}
-
 /// "did you mean 'render'? ", or nothing where none is near.
 std::string suggest(std::string const& word, std::vector<std::string> const& known)
 {
     int least = 3;
     std::string nearest;
     for (std::string const& name : known)
-        if (int const distance = edit_distance(word, name); distance < std::min(least, int(word.size()) / 2)) {
+        if (int const distance = gi::edit_distance(word, name); distance < std::min(least, int(word.size()) / 2)) {
             least = distance;
             nearest = name;
         }
