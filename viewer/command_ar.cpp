@@ -1,3 +1,4 @@
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 
 #include <CLI/CLI.hpp>
@@ -6,7 +7,7 @@ namespace viewer {
 
 void add_ar(CLI::App& app, int& exit_code)
 {
-    CLI::App* const ar = app.add_subcommand("ar", "Augmented reality: virtual things in a camera's pictures");
+    CLI::App* const ar = app.add_subcommand("ar", about("ar"));
     ar->require_subcommand(1);
     ar->footer(R"(Examples:
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4

@@ -80,7 +80,7 @@ Played play(ar::FrameSource& source, ReplayOptions const& o, gi::StopRequest con
     return p;
 }
 
-nlohmann::ordered_json to_json(Played const& p, ar::SourceDescription const& d)
+nlohmann::ordered_json played_json(Played const& p, ar::SourceDescription const& d)
 {
     Spread const age = spread_of(p.ages_ms);
     nlohmann::ordered_json j;
@@ -122,7 +122,7 @@ int run_replay(ReplayOptions const& o)
     InterruptGuard const guard(stop);
     Played const p = play(*source, o, stop);
     if (o.json)
-        fmt::print("{}", to_text(to_json(p, source->description())));
+        fmt::print("{}", to_text(played_json(p, source->description())));
     else
         print(p, source->description());
     if (stop.requested()) return kInterrupted;

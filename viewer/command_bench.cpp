@@ -1,3 +1,4 @@
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 
 #include <CLI/CLI.hpp>
@@ -6,7 +7,7 @@ namespace viewer {
 
 void add_bench(CLI::App& app, int& exit_code)
 {
-    CLI::App* const c = app.add_subcommand("bench", "Measure methods against each other, and report on it.");
+    CLI::App* const c = app.add_subcommand("bench", about("bench"));
     c->require_subcommand(1);
     add_bench_raster(*c, exit_code);
     add_bench_rays(*c, exit_code);

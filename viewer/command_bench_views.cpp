@@ -63,7 +63,7 @@ std::vector<ViewOrder> walls(gi::Camera const& eye, int size)
     return views;
 }
 
-struct Variant {
+struct ViewVariant {
     std::string name;
     Views views;
     bool in_cave = false;
@@ -92,7 +92,7 @@ double error_of(Session const& session, FrameOrder const& order, SessionFrame co
 }
 
 /// What the frames of a variant spent their time on, median of each stage, ms.
-std::string stages_of(Variant const& v)
+std::string stages_of(ViewVariant const& v)
 {
     std::string text;
     for (auto const& [stage, ms] : v.stages_ms)
@@ -106,7 +106,7 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
     auto const [width, height] = parse_size(o.size);
     int const w = width, h = height;
     double const apart = o.eye_distance_m;
-    std::vector<Variant> variants;
+    std::vector<ViewVariant> variants;
     variants.push_back({"one view", [=](gi::Camera const& c) {
                             return std::vector<ViewOrder>{{"left", c, w, h, -1}};
                         }});
@@ -123,17 +123,17 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
     variants.push_back({"four walls", [=](gi::Camera const& c) { return walls(c, h); }, true});
     std::vector<Change> settings;
     for (std::string const& text : o.settings) settings.push_back(parse_change(text));
-    for (Variant& v : variants) {
+    for (ViewVariant& v : variants) {
         v.report = std::make_unique<gi::Report>();
         v.session = bench_session(scene, settings, *v.report);
     }
     gi::Camera const start = choose_camera(variants[0].session->world(), {}).camera;
     gi::Camera const in_cave = inside(start, variants[0].session->world());
     double const step = 0.002 * double(variants[0].session->world().bounds.radius());
-    auto const eye = [&](Variant const& v, int f) { return aside(v.in_cave ? in_cave : start, step * f); };
+    auto const eye = [&](ViewVariant const& v, int f) { return aside(v.in_cave ? in_cave : start, step * f); };
     FrameOrder order;
     for (int f = 0; f < o.frames; ++f) // they take turns
-        for (Variant& v : variants) {
+        for (ViewVariant& v : variants) {
             order.frame = std::uint64_t(f);
             order.scene_s = f / 20.0;
             order.views = v.views(eye(v, f));
@@ -143,7 +143,7 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
             for (auto const& [stage, stage_s] : v.last.stages_s) v.stages_ms[stage].push_back(1e3 * stage_s);
         }
     for (std::size_t k = 0; k < variants.size(); ++k) {
-        Variant& v = variants[k];
+        ViewVariant& v = variants[k];
         order.views = v.views(eye(v, o.frames - 1));
         double const more = double(order.views.size()) - 1;
         // Against the variant of one view that came in the same round.

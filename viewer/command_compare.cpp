@@ -2,6 +2,7 @@
 #include "gi/base/picture_file.h"
 #include "gi/image/compare.h"
 #include "viewer/arguments.h"
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 #include "viewer/outputs.h"
 #include "viewer/report_json.h"
@@ -81,7 +82,7 @@ int run(CompareOptions const& o)
 void add_compare(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<CompareOptions>();
-    CLI::App* const c = app.add_subcommand("compare", "Measure how far a picture is from a reference.");
+    CLI::App* const c = app.add_subcommand("compare", about("compare"));
     c->add_option("IMAGE", o->image, "EXR, HDR, PNG, JPEG, ...")->required();
     c->add_option("REFERENCE", o->reference, "the truth; may be a whole multiple larger or smaller")->required();
     std::string known;

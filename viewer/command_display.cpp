@@ -1,5 +1,6 @@
 #include "gi/base/file.h"
 #include "gi/base/picture_file.h"
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 #include "viewer/display/calibration.h"
 #include "viewer/display/display_file.h"
@@ -21,7 +22,7 @@ struct DisplayOptions {
     bool json = false;
 };
 
-nlohmann::ordered_json to_json(Display const& d, std::vector<ViewSummary> const& views)
+nlohmann::ordered_json display_json(Display const& d, std::vector<ViewSummary> const& views)
 {
     nlohmann::ordered_json j;
     j["name"] = d.name;
@@ -69,8 +70,8 @@ int run_check(DisplayOptions const& o)
             report.lose("eyes at rest that do not see their wall, which stays dark", 1,
                         fmt::format("{}: the eye is {} the wall", v.view.name, name_of(v.view.place)));
     if (o.json) {
-        nlohmann::ordered_json j = to_json(d, views);
-        j["report"] = viewer::to_json(report);
+        nlohmann::ordered_json j = display_json(d, views);
+        j["report"] = to_json(report);
         std::fputs(to_text(j).c_str(), stdout);
         return 0;
     }
@@ -165,8 +166,7 @@ int run_example(DisplayOptions const& o)
 void add_display(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<DisplayOptions>();
-    CLI::App* const display = app.add_subcommand(
-        "display", "Walls, windows, users and trackers: check, import, pictures for setting up.");
+    CLI::App* const display = app.add_subcommand("display", about("display"));
     display->require_subcommand(1);
 
     CLI::App* const check =

@@ -4,6 +4,7 @@
 #include "gi/scene/sky.h"
 #include "gi/scene/write_glb.h"
 #include "viewer/arguments.h"
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 #include "viewer/outputs.h"
 #include "viewer/report_json.h"
@@ -99,7 +100,7 @@ void declare_sky(CLI::App& generate, std::shared_ptr<GenerateOptions> const& o, 
 void add_generate(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<GenerateOptions>();
-    CLI::App* const c = app.add_subcommand("generate", "Save a scene or a sky that the program makes itself.");
+    CLI::App* const c = app.add_subcommand("generate", about("generate"));
     c->require_subcommand(1);
     c->footer(R"(Examples:
   lightwell generate cornell --out cornell.glb

@@ -6,6 +6,7 @@
 #include "gi/slhb/direction_picture.h"
 #include "gi/slhb/direction_quality.h"
 #include "gi/slhb/settings.h"
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 #include "viewer/outputs.h"
 #include "viewer/report_json.h"
@@ -122,7 +123,7 @@ int run(InfoOptions const& o)
 void add_info(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<InfoOptions>();
-    CLI::App* const c = app.add_subcommand("info", "What is in a scene, what will be built for it, and why.");
+    CLI::App* const c = app.add_subcommand("info", about("info"));
     c->add_option("SCENE", o->scene,
                   "a scene file, a folder of OBJ or PLY frames, or atrium, cornell, mirror, avatar");
     c->add_option("--directions", o->directions,

@@ -1,3 +1,4 @@
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 #include "viewer/order/json_text.h"
 #include "viewer/outputs.h"
@@ -97,7 +98,7 @@ int run_export(RecordingOptions const& o)
 void add_recording(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<RecordingOptions>();
-    CLI::App* const c = app.add_subcommand("recording", "What a recorded walk holds.");
+    CLI::App* const c = app.add_subcommand("recording", about("recording"));
     c->require_subcommand(1);
     CLI::App* const info = c->add_subcommand("info", "Scene, settings, frames, times, and whether it is whole.");
     info->add_option("FILE", o->file, "made by --record")->required();

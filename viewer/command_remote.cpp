@@ -1,5 +1,6 @@
 #include "gi/base/error.h"
 #include "viewer/arguments.h"
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 #include "viewer/order/json_text.h"
 #include "viewer/remote/remote_client.h"
@@ -44,7 +45,7 @@ int run(RemoteCommand const& o)
 void add_remote(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<RemoteCommand>();
-    CLI::App* const c = app.add_subcommand("remote", "Ask a running viewer to do something; prints its results.");
+    CLI::App* const c = app.add_subcommand("remote", about("remote"));
     c->add_option("WHERE", o->where, "the socket's path, or the port, that the viewer was given")->required();
     c->add_option("REQUESTS", o->requests, "JSON objects such as '{\"do\": \"stats\"}', asked in turn")
         ->required();

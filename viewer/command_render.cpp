@@ -2,6 +2,7 @@
 #include "gi/base/file.h"
 #include "gi/base/picture_file.h"
 #include "gi/registry/registry.h"
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 #include "viewer/exposure.h"
 #include "viewer/frame_options.h"
@@ -227,7 +228,7 @@ int run(RenderOptions o)
 void add_render(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<RenderOptions>();
-    CLI::App* const c = app.add_subcommand("render", "Render a scene to a picture with its error.");
+    CLI::App* const c = app.add_subcommand("render", about("render"));
     declare_options(*c, *o);
     c->callback([o, c, &exit_code] {
         NamedMethod const method{o->method, parse_schedule(o->schedule), "--schedule " + o->schedule};

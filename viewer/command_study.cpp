@@ -5,6 +5,7 @@
 #include "study/design/examples.h"
 #include "study/design/plan_text.h"
 #include "study/design/transitions.h"
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 #include "viewer/outputs.h"
 #include "viewer/report_json.h"
@@ -22,48 +23,6 @@ struct StudyOptions {
     int participant = 1;
     bool json = false;
 };
-
-void print_doubts(std::vector<std::string> const& doubts)
-{
-    std::fflush(stdout);
-    for (std::string const& doubt : doubts) std::fputs(("doubt: " + doubt + "\n").c_str(), stderr);
-}
-
-int run_check(StudyOptions const& o)
-{
-    constexpr int kMostPlans = 2000;
-    LoadedScript const loaded = load_script(o.script);
-    study::Script const& s = loaded.script;
-    int const plans = std::min(s.participants.count, kMostPlans);
-    ArStimulusCheck ar(loaded);
-    study::Plan longest = study::make_plan(s, 1);
-    ar.add(longest);
-    for (int p = 2; p <= plans; ++p) {
-        study::Plan plan = study::make_plan(s, p);
-        ar.add(plan);
-        if (plan.duration_us > longest.duration_us) longest = std::move(plan);
-    }
-    ar.check();
-    auto doubts = study::find_doubts(s);
-    for (std::string& doubt : study::find_doubts(s, longest)) doubts.push_back(std::move(doubt));
-    if (o.json) {
-        nlohmann::ordered_json const j{{"id", s.id},
-                                       {"participants", s.participants.count},
-                                       {"plans_made", plans},
-                                       {"full_cycle", study::full_cycle(s)},
-                                       {"ar_stimuli", ar.count()},
-                                       {"longest_s", double(longest.duration_us) * 1e-6},
-                                       {"doubts", doubts}};
-        std::fputs(to_text(j).c_str(), stdout);
-        return 0;
-    }
-    std::fputs(study::script_text(s, longest).c_str(), stdout);
-    if (ar.count() > 0) fmt::print("{} stimuli from AR sessions\n", ar.count());
-    fmt::print("{} plans made, the longest is expected to take {}\n", plans,
-               study::clock_text(longest.duration_us));
-    print_doubts(doubts);
-    return 0;
-}
 
 nlohmann::ordered_json to_json(study::Script const& s, study::Plan const& plan)
 {
@@ -137,14 +96,8 @@ void add_study(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<StudyOptions>();
     CLI::App* const study =
-        app.add_subcommand("study", "Experiments from a script: check, plan, run, simulate, analyze, report.");
+        app.add_subcommand("study", about("study"));
     study->require_subcommand(1);
-
-    CLI::App* const check = study->add_subcommand(
-        "check", "What a script holds; every participant's plan is made, and what is wrong is said.");
-    check->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
-    check->add_flag("--json", o->json, "print JSON");
-    check->callback([o, &exit_code] { exit_code = run_check(*o); });
 
     CLI::App* const plan = study->add_subcommand(
         "plan", "What will happen to a participant: order, counts, transitions, expected duration.");
@@ -162,9 +115,8 @@ void add_study(CLI::App& app, int& exit_code)
     example->add_option("--out", o->out, "file to write")->required();
     example->callback([o, &exit_code] { exit_code = run_example(*o); });
 
-    add_study_run(*study, exit_code);
-    add_study_control(*study, exit_code);
-    add_study_prepare(*study, exit_code);
+    for (Command const& c : commands()) // those of another program, for --help
+        if (c.name.starts_with("study ")) study->add_subcommand(std::string(c.name.substr(6)), std::string(c.about));
     add_study_simulate(*study, exit_code);
     add_study_tables(*study, exit_code);
     add_study_analyze(*study, exit_code);

@@ -1,3 +1,4 @@
+#include "viewer/command_table.h"
 #include "viewer/interrupt.h"
 #include "viewer/report_json.h"
 #include "viewer/study_commands.h"
@@ -11,8 +12,7 @@ namespace viewer {
 void add_study_control(CLI::App& study, int& exit_code)
 {
     auto const where = std::make_shared<std::string>();
-    CLI::App* const c = study.add_subcommand(
-        "control", "The experimenter's window on a session: progress, pause, skip, abort, notes.");
+    CLI::App* const c = study.add_subcommand("control", about("study control"));
     c->add_option("SOCKET", *where, "the --remote of study run, or the digits of its --remote-port")->required();
     c->callback([where, &exit_code] {
         gi::Report report;

@@ -1,12 +1,13 @@
 #include "gi/base/error.h"
 #include "study/record/durable_file.h"
+#include "viewer/command_table.h"
 #include "viewer/arguments.h"
 #include "viewer/interrupt.h"
 #include "viewer/outputs.h"
 #include "viewer/rank_options.h"
 #include "viewer/rank_work.h"
 #include "viewer/report_json.h"
-#include "viewer/study_commands.h"
+#include "viewer/study_stimuli.h"
 #include "viewer/trials/prepared_list.h"
 #include "viewer/version.h"
 
@@ -88,8 +89,7 @@ int run(PrepareOptions const& o)
 void add_study_prepare(CLI::App& study, int& exit_code)
 {
     auto const o = std::make_shared<PrepareOptions>();
-    CLI::App* const c = study.add_subcommand(
-        "prepare", "Render ahead what blocks with `stimuli: prepared` show; what is there already is kept.");
+    CLI::App* const c = study.add_subcommand("prepare", about("study prepare"));
     c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
     c->add_option("--size", o->size, "of the participant's window, px")->capture_default_str();
     c->add_option("--font", o->font_px, "height of its letters, px")

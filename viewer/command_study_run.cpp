@@ -1,11 +1,12 @@
 #include "gi/base/error.h"
 #include "study/design/plan.h"
 #include "study/run/session.h"
+#include "viewer/command_table.h"
 #include "viewer/arguments.h"
 #include "viewer/display/display_file.h"
 #include "viewer/interrupt.h"
 #include "viewer/report_json.h"
-#include "viewer/study_commands.h"
+#include "viewer/study_stimuli.h"
 #include "viewer/trials/prepared_files.h"
 #include "viewer/trials/prepared_list.h"
 #include "viewer/trials/trial_presenter.h"
@@ -180,7 +181,7 @@ void add_study_run(CLI::App& study, int& exit_code)
 {
     auto const o = std::make_shared<RunOptions>();
     CLI::App* const c =
-        study.add_subcommand("run", "A session with a participant: in a window, on walls, in a headset.");
+        study.add_subcommand("run", about("study run"));
     c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
     c->add_option("--participant", o->participant, "number, from 1")->check(CLI::Range(1, 100000))->required();
     c->add_option("--session", o->session, "number of the session")

@@ -1,6 +1,7 @@
 #include "gi/base/error.h"
 #include "gi/base/file.h"
 #include "viewer/arguments.h"
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 #include "viewer/interrupt.h"
 #include "viewer/outputs.h"
@@ -148,7 +149,7 @@ char const* name_of(TrackState s)
     return "never";
 }
 
-nlohmann::ordered_json to_json(TrackerReport const& r)
+nlohmann::ordered_json tracker_json(TrackerReport const& r)
 {
     nlohmann::ordered_json j;
     j["tracker"] = r.description;
@@ -216,7 +217,7 @@ int run_listen(TrackOptions const& o)
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     TrackerReport const r = hub.report(steady_seconds())[0];
-    nlohmann::ordered_json const j = to_json(r);
+    nlohmann::ordered_json const j = tracker_json(r);
     if (o.json) {
         std::fputs(to_text(j).c_str(), stdout);
         return 0;
@@ -302,7 +303,7 @@ void add_walk(CLI::App& track, int& exit_code)
 
 void add_track(CLI::App& app, int& exit_code)
 {
-    CLI::App* const c = app.add_subcommand("track", "Try out trackers: listen, send, walk.");
+    CLI::App* const c = app.add_subcommand("track", about("track"));
     c->require_subcommand(1);
     add_listen(*c, exit_code);
     add_send(*c, exit_code);

@@ -1,6 +1,7 @@
 #include "gi/base/error.h"
 #include "gi/base/file.h"
 #include "viewer/arguments.h"
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 #include "viewer/display/display_file.h"
 #include "viewer/interrupt.h"
@@ -151,7 +152,7 @@ void follow(ViewOptions& o)
     if (!o.frame_log.empty()) o.frame_log += fmt::format(".{}", o.rank);
 }
 
-int finish(ViewArguments const& a, ViewSummary const& done, ClusterLink const* link, gi::Report const& report)
+int finish(ViewArguments const& a, ViewerSummary const& done, ClusterLink const* link, gi::Report const& report)
 {
     nlohmann::ordered_json stats;
     stats["version"] = version_text();
@@ -219,7 +220,7 @@ int run(ViewArguments const& a, std::string const& command_line)
     }
     ClusterLink link({version_text(), what, hash}, cluster_settings(a.ranks));
     if (o.rank == 0) check_results(a); // by now the others learn of a leader that leaves
-    ViewSummary const done = run_view(o, &link, stop, report);
+    ViewerSummary const done = run_view(o, &link, stop, report);
     if (o.rank == 0) return finish(a, done, &link, report);
     print_losses(report, fmt::format("rank {}: ", o.rank));
     if (!link.failure().empty()) std::fputs(("lightwell: " + link.failure() + "\n").c_str(), stderr);
@@ -306,7 +307,7 @@ void add_view(CLI::App& app, int& exit_code)
 {
     auto const a = std::make_shared<ViewArguments>();
     CLI::App* const c =
-        app.add_subcommand("view", "Walk through a scene: window, stereo, recording, remote control.");
+        app.add_subcommand("view", about("view"));
     c->add_option("scene", a->scene.scene, "a file or a generated scene, as of render");
     declare_view_options(*c, a->scene);
     c->add_option("--set", a->settings,

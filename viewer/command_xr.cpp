@@ -1,3 +1,4 @@
+#include "viewer/command_table.h"
 #include "viewer/commands.h"
 #include "viewer/report_json.h"
 #include "viewer/xr/info.h"
@@ -48,7 +49,7 @@ int run_info(bool as_json)
 
 void add_xr(CLI::App& app, int& exit_code)
 {
-    CLI::App* const c = app.add_subcommand("xr", "Headsets through OpenXR.");
+    CLI::App* const c = app.add_subcommand("xr", about("xr"));
     c->require_subcommand(1);
     auto const as_json = std::make_shared<bool>(false);
     CLI::App* const info = c->add_subcommand("info", "What the OpenXR runtime and its headset say of themselves.");

@@ -4,7 +4,7 @@
 #include "gi/base/edit_distance.h"
 #include "gi/base/error.h"
 #include "study/base/script_error.h"
-#include "viewer/commands.h"
+#include "viewer/command_table.h"
 #include "viewer/version.h"
 
 #include <CLI/CLI.hpp>
@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <new>
 #include <stdexcept>
 
@@ -76,10 +77,28 @@ std::string describe(CLI::ParseError const& e, CLI::App const& app)
     return e.what() + misfit;
 }
 
+/// All of the table, so that every program knows what there is; those of other programs have no options here.
+void add_commands(CLI::App& app, std::span<AddedCommand const> own, int& exit_code)
+{
+    for (Command const& c : commands()) {
+        std::size_t const space = c.name.find(' ');
+        auto const mine = std::find_if(own.begin(), own.end(), [&](AddedCommand const& a) { return a.name == c.name; });
+        if (mine != own.end())
+            mine->add(space == c.name.npos ? app : *app.get_subcommand(std::string(c.name.substr(0, space))), exit_code);
+        else if (space == c.name.npos)
+            app.add_subcommand(std::string(c.name), std::string(c.about));
+    }
+}
+
 } // namespace
 
-int run_program(int argc, char const* const* argv)
+int run_program(int argc, char const* const* argv, std::span<AddedCommand const> own)
 {
+    // Frames need the same memory again and again; taking its pages anew costs a quarter of a short one.
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
+    mallopt(M_TOP_PAD, 64 << 20);
+    mallopt(M_ARENA_MAX, 2); // each keeps what it once had
     CLI::App app{"Lightwell: globally lit pictures with their error beside them."};
     app.set_version_flag("--version", version_text());
     app.require_subcommand(1);
@@ -93,19 +112,7 @@ Exit codes: 0 done, 1 a comparison failed or not all could be written, 2 the inp
 Who ends view by Ctrl-C leaves it in order: 0.)");
     setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); // none: messages of this program say what is wrong
     int exit_code = 0;
-    add_render(app, exit_code);
-    add_view(app, exit_code);
-    add_compare(app, exit_code);
-    add_info(app, exit_code);
-    add_generate(app, exit_code);
-    add_recording(app, exit_code);
-    add_remote(app, exit_code);
-    add_track(app, exit_code);
-    add_display(app, exit_code);
-    add_xr(app, exit_code);
-    add_study(app, exit_code);
-    add_ar(app, exit_code);
-    add_bench(app, exit_code);
+    add_commands(app, own, exit_code);
     try {
         app.parse(argc, argv);
         if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)

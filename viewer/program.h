@@ -1,9 +1,22 @@
 #pragma once
+#include <span>
+#include <string_view>
+
+namespace CLI {
+class App;
+}
 
 namespace viewer {
 
-/// The whole command line. Exit codes: 0 done, 1 a comparison failed or something broke inside, 2 the input or the
+/// A command that this program has itself.
+struct AddedCommand {
+    std::string_view name; ///< as in the table of commands
+    void (*add)(CLI::App& parent, int& exit_code);
+};
+
+/// The whole command line. @param own  what is done here; of the other commands only --help speaks
+/// Exit codes: 0 done, 1 a comparison failed or something broke inside, 2 the input or the
 /// call is wrong, 130 interrupted (what was done so far is kept).
-int run_program(int argc, char const* const* argv);
+int run_program(int argc, char const* const* argv, std::span<AddedCommand const> own);
 
 } // namespace viewer

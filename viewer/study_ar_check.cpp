@@ -1,7 +1,7 @@
 #include "ar/base/error.h"
 #include "study/design/condition.h"
 #include "study/design/setting_place.h"
-#include "viewer/study_commands.h"
+#include "viewer/study_stimuli.h"
 #include "viewer/trials/ar_pictures.h"
 
 #include <algorithm>

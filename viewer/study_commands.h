@@ -1,12 +1,11 @@
 #pragma once
 // What the subcommands of `lightwell study` have in common, and how each is added: one line in add_study.
 
+#include "study/design/script.h"
 #include "study/run/session.h"
-#include "viewer/trials/stimulus_source.h"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -31,30 +30,13 @@ std::vector<int> parse_participants(std::string const& text, int count);
 /// that cannot be (records of another script), says so on stderr: the journals are the truth, and study rebuild
 /// goes on.
 void keep_tables(std::filesystem::path const& dir, std::string const& script_file);
-/// Scenes as every command reads them.
-SceneAccess study_scenes();
-
-/// Stimuli that are made of AR sessions, over several plans, each once.
-class ArStimulusCheck {
-public:
-    explicit ArStimulusCheck(LoadedScript const& loaded) : loaded_(loaded) {}
-    void add(study::Plan const& plan);
-    /// Reads all that they name; no picture is made. Throws ScriptError at the setting that is to blame; what is
-    /// wrong within a session is said with its own place.
-    void check() const;
-    std::size_t count() const { return patches_.size(); }
-
-private:
-    void add(study::Block const& block, study::Stimulus const& stimulus);
-
-    LoadedScript const& loaded_;
-    std::set<std::pair<study::Patch, std::string>> patches_; ///< settings and camera
-};
-
 /// What a session came to, as JSON and for people.
 nlohmann::ordered_json session_json(std::string const& id, study::SessionOutcome const& outcome);
 void print_session(std::string const& id, study::SessionOutcome const& outcome);
 
+void print_doubts(std::vector<std::string> const& doubts); ///< on stderr, a line each
+
+void add_study_check(CLI::App& study, int& exit_code);
 void add_study_run(CLI::App& study, int& exit_code);
 void add_study_control(CLI::App& study, int& exit_code);
 void add_study_prepare(CLI::App& study, int& exit_code);

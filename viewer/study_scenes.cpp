@@ -1,6 +1,6 @@
 #include "viewer/choose_camera.h"
 #include "viewer/load_world.h"
-#include "viewer/study_commands.h"
+#include "viewer/study_stimuli.h"
 
 namespace viewer {
 

@@ -46,4 +46,10 @@ std::vector<int> parse_participants(std::string const& text, int count)
     return {chosen.begin(), chosen.end()};
 }
 
+void print_doubts(std::vector<std::string> const& doubts)
+{
+    std::fflush(stdout);
+    for (std::string const& doubt : doubts) std::fputs(("doubt: " + doubt + "\n").c_str(), stderr);
+}
+
 } // namespace viewer

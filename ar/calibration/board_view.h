@@ -10,6 +10,8 @@
 
 namespace ar {
 
+inline constexpr std::size_t kFewestPoints = 6; ///< of a view that a lens is fitted to
+
 struct BoardView {
     std::string name;                ///< of the picture, for messages
     std::vector<glm::dvec3> board_m; ///< z = 0, in the board's frame (marker_map.h)

@@ -9,7 +9,6 @@
 namespace ar {
 namespace {
 
-constexpr std::size_t kFewestPoints = 6;
 constexpr double kStill_px = 1.5; ///< between frames; more is blur
 constexpr double kAlike = 0.12;   ///< distance of features
 constexpr int kColumns = 8, kRows = 6;

@@ -10,7 +10,7 @@
 namespace ar {
 namespace {
 
-constexpr std::size_t kFewestViews = 3, kFewestPoints = 6;
+constexpr std::size_t kFewestViews = 3;
 
 struct Fit {
     CameraModel camera;

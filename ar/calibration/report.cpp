@@ -77,21 +77,21 @@ std::string residual_drawing(CalibrationReport const& r)
 
 std::string coverage_drawing(CalibrationReport const& r)
 {
-    constexpr int kColumns = 16, kRows = 12;
+    constexpr int kAcross = 16, kDown = 12;
     auto const size = r.lens.camera.size_px;
-    std::array<int, kColumns * kRows> count{};
+    std::array<int, kAcross * kDown> count{};
     for (std::size_t v = 0; v < r.views.size() && v < r.lens.views.size(); ++v)
         if (r.lens.views[v].used)
             for (auto const& p : r.views[v].pixels) {
-                int const x = std::clamp(int((p.x + 0.5) / size.x * kColumns), 0, kColumns - 1);
-                int const y = std::clamp(int((p.y + 0.5) / size.y * kRows), 0, kRows - 1);
-                ++count[std::size_t(kColumns * y + x)];
+                int const x = std::clamp(int((p.x + 0.5) / size.x * kAcross), 0, kAcross - 1);
+                int const y = std::clamp(int((p.y + 0.5) / size.y * kDown), 0, kDown - 1);
+                ++count[std::size_t(kAcross * y + x)];
             }
     int const most = std::max(1, *std::max_element(count.begin(), count.end()));
-    std::string s = fmt::format("<svg viewBox=\"0 0 {} {}\" class=\"picture\">", 40 * kColumns, 40 * kRows);
-    for (int y = 0; y < kRows; ++y)
-        for (int x = 0; x < kColumns; ++x) {
-            int const n = count[std::size_t(kColumns * y + x)];
+    std::string s = fmt::format("<svg viewBox=\"0 0 {} {}\" class=\"picture\">", 40 * kAcross, 40 * kDown);
+    for (int y = 0; y < kDown; ++y)
+        for (int x = 0; x < kAcross; ++x) {
+            int const n = count[std::size_t(kAcross * y + x)];
             s += fmt::format(
                 "<rect x=\"{}\" y=\"{}\" width=\"39\" height=\"39\" fill=\"#2e7d32\" fill-opacity=\"{:.2f}\"/>"
                 "<text x=\"{}\" y=\"{}\">{}</text>",

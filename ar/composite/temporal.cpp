@@ -12,7 +12,7 @@
 namespace ar {
 namespace {
 
-bool is_finite(cv::Vec3f const& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+bool all_finite(cv::Vec3f const& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
 /// What objects add, and where that is anything.
 struct Added {
@@ -54,7 +54,7 @@ Neighbourhood around(Added const& added, int radius)
 {
     cv::Mat finite = added.radiance(added.where).clone(); // a NaN would spoil all sums after it
     finite.forEach<cv::Vec3f>([](cv::Vec3f& v, int const*) {
-        if (!is_finite(v)) v = {0, 0, 0};
+        if (!all_finite(v)) v = {0, 0, 0};
     });
     Neighbourhood n;
     cv::Size const box(2 * radius + 1, 2 * radius + 1);
@@ -141,7 +141,7 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
                     double const d = depth_.at<float>(q);
                     if ((d > 0) != (z > 0) || std::abs(d - z) > settings_.depth_tolerance * z) continue;
                     cv::Vec3f const v = added_.at<cv::Vec3f>(q);
-                    if (!is_finite(v)) continue;
+                    if (!all_finite(v)) continue;
                     sum += w * v;
                     weight += w;
                 }
@@ -161,7 +161,7 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
                     cv::Vec3f const now = added.radiance.at<cv::Vec3f>(y, x);
                     float const a = pair.coverage.at<float>(y, x);
                     auto const h = history(x, y, a);
-                    if (!h || !is_finite(now)) {
+                    if (!h || !all_finite(now)) {
                         ++counts.fresh;
                         continue;
                     }

@@ -12,7 +12,7 @@
 namespace ar {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kPiF = std::numbers::pi_v<float>;
 constexpr float kWellSeen = 0.5f; ///< share of a texel from which ratios and changes are read
 constexpr double kLeastRatio = 1e-3, kMostRatio = 1e3;
 
@@ -77,7 +77,7 @@ void LiveProbe::gather(cv::Mat const& radiance, cv::Mat const& clipped, glm::dqu
     std::fill(sums_.begin(), sums_.end(), Sum{});
     glm::mat3 const m(glm::mat3_cast(world_from_camera));
     int const w = settings_.size.width, h = settings_.size.height, width = radiance.cols;
-    float const across = float(w) / (2 * kPi), down = float(h) / kPi;
+    float const across = float(w) / (2 * kPiF), down = float(h) / kPiF;
     for (Sample const& s : samples_) {
         int const y = s.index / width, x = s.index - y * width;
         cv::Vec3f const& v = radiance.ptr<cv::Vec3f>(y)[x];
@@ -87,7 +87,7 @@ void LiveProbe::gather(cv::Mat const& radiance, cv::Mat const& clipped, glm::dqu
             continue;
         }
         glm::vec3 const d = m * glm::vec3(s.direction[0], s.direction[1], s.direction[2]);
-        int const i = int((kPi + std::atan2(d.x, -d.z)) * across);
+        int const i = int((kPiF + std::atan2(d.x, -d.z)) * across);
         int const j = int(std::acos(std::clamp(d.y, -1.0f, 1.0f)) * down);
         Sum& to = sums_[std::size_t(std::min(j, h - 1) * w + std::clamp(i, 0, w - 1))];
         to.light += s.sr * v;

@@ -20,13 +20,6 @@ cv::Ptr<cv::aruco::Dictionary> dictionary_named(std::string const& name)
     return cv::aruco::getPredefinedDictionary(int(at - names.begin()));
 }
 
-double shortest_side(std::array<cv::Point2f, 4> const& c)
-{
-    double least = 1e9;
-    for (std::size_t i = 0; i < 4; ++i) least = std::min(least, cv::norm(c[i] - c[(i + 1) % 4]));
-    return least;
-}
-
 /// cv::cornerSubPix with a window that other edges of the marker do not reach: three tenths of a cell, at most 5
 /// pixels, as OpenCV has it from 4.8 on.
 void refine(cv::Mat const& gray, std::array<cv::Point2f, 4>& corners, int cells)

@@ -23,7 +23,6 @@ constexpr DictionarySize kDictionaries[] = {
     {"DICT_APRILTAG_25h9", 35}, {"DICT_APRILTAG_36h10", 2320}, {"DICT_APRILTAG_36h11", 587},
 };
 
-constexpr int kMostSquares = 200;
 constexpr double kLongest_m = 1000;
 
 /// The corners of a square whose upper left corner is given: upper left, upper right, lower right, lower left.

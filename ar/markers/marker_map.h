@@ -14,6 +14,8 @@
 
 namespace ar {
 
+inline constexpr int kMostSquares = 200; ///< along a side of a board or grid
+
 struct Marker {
     std::string dictionary; ///< as OpenCV names it: DICT_4X4_50, DICT_APRILTAG_36h11, ...
     int id = 0;

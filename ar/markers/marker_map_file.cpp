@@ -9,7 +9,7 @@ namespace ar {
 namespace {
 
 constexpr double kFar_m = 1000;
-constexpr int kMostIds = 100000, kMostSquares = 200;
+constexpr int kMostIds = 100000;
 
 Pose read_pose(Yaml const& y)
 {

@@ -95,13 +95,6 @@ std::optional<cv::Point2d> crossing(Line const& a, Line const& b)
     return cv::Point2d((ca * b.normal.y - cb * a.normal.y) / det, (a.normal.x * cb - b.normal.x * ca) / det);
 }
 
-double shortest_side(std::array<cv::Point2f, 4> const& c)
-{
-    double least = 1e9;
-    for (std::size_t i = 0; i < 4; ++i) least = std::min(least, cv::norm(c[i] - c[(i + 1) % 4]));
-    return least;
-}
-
 cv::Point2d seen_at(cv::Mat const& homography, glm::dvec3 m)
 {
     cv::Vec3d const p = cv::Matx33d(homography) * cv::Vec3d(m.x, m.y, 1);
@@ -172,6 +165,13 @@ std::optional<cv::Point2d> saddle(cv::Mat const& gray, cv::Point2d at, std::arra
 }
 
 } // namespace
+
+double shortest_side(std::array<cv::Point2f, 4> const& corners)
+{
+    double least = 1e9;
+    for (std::size_t i = 0; i < 4; ++i) least = std::min(least, cv::norm(corners[i] - corners[(i + 1) % 4]));
+    return least;
+}
 
 void refine_by_edges(cv::Mat const& gray, std::array<cv::Point2f, 4>& corners,
                      std::vector<std::vector<bool>> const& cells)

@@ -6,6 +6,9 @@
 
 namespace ar {
 
+/// In pixels.
+double shortest_side(std::array<cv::Point2f, 4> const& corners);
+
 /// Lines through the four sides of a marker, where bytes change most, and where they cross (as in AprilTag 3:
 /// Krogius et al. 2019, section III), moved by how much black has grown, as the cells of the marker say. Where a
 /// side has no edge, its corners stay.

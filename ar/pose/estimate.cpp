@@ -12,7 +12,7 @@
 namespace ar {
 namespace {
 
-using Points = std::vector<SightedPoint>;
+using SightedPoints = std::vector<SightedPoint>;
 
 constexpr double kCoarseSigmas = 40; ///< within which a first guess counts as agreeing with a point
 constexpr double kLimitSigmas = 5;   ///< beyond which a refined pose does not
@@ -22,14 +22,14 @@ constexpr int kRandomGuesses = 40;
 constexpr std::size_t kRefinedGuesses = 4;
 constexpr double kAmbiguous = 0.01;
 
-std::map<int, Points> by_marker(Points const& points)
+std::map<int, SightedPoints> by_marker(SightedPoints const& points)
 {
-    std::map<int, Points> markers;
+    std::map<int, SightedPoints> markers;
     for (SightedPoint const& p : points) markers[p.marker].push_back(p);
     return markers;
 }
 
-double size_px(Points const& points)
+double size_px(SightedPoints const& points)
 {
     glm::dvec2 low = points[0].pixel, high = low;
     for (SightedPoint const& p : points) {
@@ -39,7 +39,7 @@ double size_px(Points const& points)
     return glm::length(high - low);
 }
 
-double truncated_cost(CameraModel const& camera, Points const& points, Pose const& pose, double limit)
+double truncated_cost(CameraModel const& camera, SightedPoints const& points, Pose const& pose, double limit)
 {
     double sum = 0;
     for (SightedPoint const& p : points) {
@@ -55,7 +55,7 @@ void append(std::vector<Pose>& to, std::vector<Pose> const& more)
 }
 
 /// Of all points; where not all agree, of each of the larger markers, and then of few points drawn at random.
-std::vector<Pose> first_guesses(CameraModel const& camera, Points const& points, std::optional<Pose> const& last)
+std::vector<Pose> first_guesses(CameraModel const& camera, SightedPoints const& points, std::optional<Pose> const& last)
 {
     std::vector<Pose> guesses = candidates(camera, points);
     if (last) guesses.push_back(*last);
@@ -65,18 +65,18 @@ std::vector<Pose> first_guesses(CameraModel const& camera, Points const& points,
         });
     };
     if (!some_disagree()) return guesses;
-    std::vector<Points> markers;
+    std::vector<SightedPoints> markers;
     for (auto& [unused, own] : by_marker(points)) markers.push_back(own);
     if (markers.size() > 1) {
         std::stable_sort(markers.begin(), markers.end(),
-                         [](Points const& a, Points const& b) { return size_px(a) > size_px(b); });
+                         [](SightedPoints const& a, SightedPoints const& b) { return size_px(a) > size_px(b); });
         for (std::size_t i = 0; i < std::min(markers.size(), kMarkerGuesses); ++i)
             append(guesses, candidates(camera, markers[i]));
     }
     if (points.size() < 6 || !some_disagree()) return guesses;
     std::mt19937 random(1);
     for (int i = 0; i < kRandomGuesses; ++i) {
-        Points few;
+        SightedPoints few;
         std::sample(points.begin(), points.end(), std::back_inserter(few), 5, random);
         append(guesses, candidates(camera, few));
     }
@@ -84,7 +84,7 @@ std::vector<Pose> first_guesses(CameraModel const& camera, Points const& points,
 }
 
 /// How much worse than their sigmas the better half of the points are, 1 to kMostScale.
-double scale_of(CameraModel const& camera, Points const& points, Pose const& pose)
+double scale_of(CameraModel const& camera, SightedPoints const& points, Pose const& pose)
 {
     std::vector<double> misses;
     for (SightedPoint const& p : points) misses.push_back(miss_sigmas(camera, pose, p));
@@ -94,11 +94,11 @@ double scale_of(CameraModel const& camera, Points const& points, Pose const& pos
 }
 
 /// Single points, and whole markers of which half of the points disagree.
-Points agreeing(CameraModel const& camera, Points const& points, Pose const& pose, double limit)
+SightedPoints agreeing(CameraModel const& camera, SightedPoints const& points, Pose const& pose, double limit)
 {
-    Points kept;
+    SightedPoints kept;
     for (auto const& [unused, own] : by_marker(points)) {
-        Points good;
+        SightedPoints good;
         for (SightedPoint const& p : own)
             if (miss_sigmas(camera, pose, p) <= limit) good.push_back(p);
         if (2 * good.size() > own.size()) kept.insert(kept.end(), good.begin(), good.end());
@@ -108,11 +108,11 @@ Points agreeing(CameraModel const& camera, Points const& points, Pose const& pos
 
 struct Agreed {
     Refined refined;
-    Points points;
+    SightedPoints points;
     double cost = 0; ///< truncated, over all points: what guesses are compared by
 };
 
-Agreed agree(CameraModel const& camera, Points const& points, Pose const& guess)
+Agreed agree(CameraModel const& camera, SightedPoints const& points, Pose const& guess)
 {
     Agreed a;
     Pose pose = guess;
@@ -124,7 +124,7 @@ Agreed agree(CameraModel const& camera, Points const& points, Pose const& guess)
             pose = refine(camera, points, pose, limits * kLimitSigmas * scale_of(camera, points, pose))
                        .world_from_camera;
     for (int round = 0; round < 4; ++round) {
-        Points const kept = agreeing(camera, points, pose, kLimitSigmas * scale_of(camera, points, pose));
+        SightedPoints const kept = agreeing(camera, points, pose, kLimitSigmas * scale_of(camera, points, pose));
         bool const same = kept.size() == a.points.size();
         a.points = kept;
         if (kept.size() < 4) break;
@@ -143,7 +143,7 @@ double chi2_scale(Agreed const& a)
     return std::max(1.0, a.refined.chi2 / freedom);
 }
 
-double rms_px(CameraModel const& camera, Points const& points, Pose const& pose)
+double rms_px(CameraModel const& camera, SightedPoints const& points, Pose const& pose)
 {
     double sum = 0;
     for (SightedPoint const& p : points)
@@ -210,7 +210,7 @@ void decide(PoseEstimate& e, CameraModel const& camera, Agreed& chosen, std::opt
     e.other_likelihood = likelihood();
 }
 
-void count(PoseEstimate& e, Sighting const& sighting, Points const& used)
+void count(PoseEstimate& e, Sighting const& sighting, SightedPoints const& used)
 {
     e.points_used = int(used.size());
     e.points_rejected = int(sighting.points.size() - used.size());
@@ -245,7 +245,7 @@ std::string name_of(PoseFailure failure)
 
 PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera, std::optional<Pose> const& last)
 {
-    Points points;
+    SightedPoints points;
     std::copy_if(sighting.points.begin(), sighting.points.end(), std::back_inserter(points), is_usable);
     PointSet const all = survey(points);
     if (all.different < 4) return failed(PoseFailure::too_few_points, sighting);

@@ -13,8 +13,8 @@
 namespace gi {
 namespace {
 
-constexpr int kLargestSide = 65536;
-constexpr std::size_t kMostPixels = std::size_t(1) << 29;
+constexpr int kLargestHdrSide = 65536;
+constexpr std::size_t kMostHdrPixels = std::size_t(1) << 29;
 
 class HdrReader {
 public:
@@ -64,7 +64,7 @@ private:
         line.remove_prefix(axis.size());
         int value = 0;
         auto const [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
-        if (error != std::errc{} || value < 1 || value > kLargestSide) fail("its size is not between 1 and 65536");
+        if (error != std::errc{} || value < 1 || value > kLargestHdrSide) fail("its size is not between 1 and 65536");
         line.remove_prefix(std::size_t(end - line.data()));
         if (line.starts_with(' ')) line.remove_prefix(1);
         return value;
@@ -95,7 +95,7 @@ private:
         std::string_view size = next_line();
         picture.height = read_side(size, "-Y ");
         picture.width = read_side(size, "+X ");
-        if (picture.pixels() > kMostPixels) fail("it has more than 512 M pixels");
+        if (picture.pixels() > kMostHdrPixels) fail("it has more than 512 M pixels");
         // New run-length encoding holds at most 127 values in two bytes; flat rows in the old one reach some more.
         if (picture.pixels() / 512 > bytes_.size()) fail("it is too short for its size");
     }

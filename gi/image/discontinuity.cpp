@@ -5,8 +5,8 @@
 namespace gi {
 namespace {
 
-constexpr float kCosine = 0.95f;    // 18 degrees
-constexpr float kAlbedo = 1;        // only what is too dark in other channels differs by more
+constexpr float kCosineStep = 0.95f;    // 18 degrees
+constexpr float kAlbedoStep = 1;        // only what is too dark in other channels differs by more
 constexpr float kPlaneDistance = 1; // in distances of neighbouring pixels
 
 /// Planes of the sums: direct and indirect light as in namespace light, then the weights.
@@ -30,7 +30,7 @@ void add_row(Planes const& g, Planes const& light, Spans spans, int y, int dx, i
             vec3 const n = normal[x];
             float const cosine = glm::dot(n, q_normal[x + dx]);
             float const off_plane = glm::dot(n, q_position[x + dx] - position[x]);
-            bool const agree = (cosine > kCosine) & (std::abs(q_albedo[x] - albedo[x]) < kAlbedo) &
+            bool const agree = (cosine > kCosineStep) & (std::abs(q_albedo[x] - albedo[x]) < kAlbedoStep) &
                                (off_plane * off_plane * footprint[x] < square(kPlaneDistance));
             float const w = agree ? share : 0;
             if constexpr (with_direct) direct.set(x, direct[x] + w * q_direct[x + dx]);

@@ -15,7 +15,7 @@ constexpr float kKnee = 0.4f, kKneeValue = 0.95f;                  // p_c, p_t
 constexpr float kFeatureWidth_deg = 0.082f;
 
 using Plane = std::vector<float>;
-struct Planes {
+struct OpponentPlanes {
     std::array<Plane, 3> c;
 };
 struct Size {
@@ -126,9 +126,9 @@ Plane filter(Plane const& in, Size size, Sensitivity const& s, float pixels_per_
     return out;
 }
 
-Planes to_ycxcz(std::vector<float> const& linear, Size size)
+OpponentPlanes to_ycxcz(std::vector<float> const& linear, Size size)
 {
-    Planes out;
+    OpponentPlanes out;
     for (Plane& p : out.c) p.resize(size.pixels());
     for (std::size_t i = 0; i < size.pixels(); ++i) {
         vec3 const c = xyz_to_ycxcz(linear_to_xyz({linear[3 * i], linear[3 * i + 1], linear[3 * i + 2]}));
@@ -138,9 +138,9 @@ Planes to_ycxcz(std::vector<float> const& linear, Size size)
 }
 
 /// Colours after the eye's blur, in Hunt-adjusted CIELAB.
-std::vector<vec3> perceived(Planes const& ycxcz, Size size, float pixels_per_degree)
+std::vector<vec3> perceived(OpponentPlanes const& ycxcz, Size size, float pixels_per_degree)
 {
-    Planes blurred;
+    OpponentPlanes blurred;
     for (std::size_t k = 0; k < 3; ++k)
         blurred.c[k] = filter(ycxcz.c[k], size, kSensitivity[k], pixels_per_degree);
     std::vector<vec3> out(size.pixels());
@@ -198,7 +198,7 @@ std::vector<float> flip(std::vector<float> const& image, std::vector<float> cons
                         int height, float pixels_per_degree)
 {
     Size const size{width, height};
-    Planes const a = to_ycxcz(image, size), b = to_ycxcz(reference, size);
+    OpponentPlanes const a = to_ycxcz(image, size), b = to_ycxcz(reference, size);
     std::vector<vec3> const seen_a = perceived(a, size, pixels_per_degree);
     std::vector<vec3> const seen_b = perceived(b, size, pixels_per_degree);
     Features const fa = detect_features(a.c[0], size, pixels_per_degree);

@@ -6,7 +6,7 @@
 namespace gi {
 namespace {
 
-constexpr int kRadius = 5;
+constexpr int kWindowRadius = 5;
 constexpr double kSigma = 1.5, kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;
 
 std::vector<double> window(int size)
@@ -49,8 +49,8 @@ std::vector<double> local_means(std::vector<double> const& in, int width, int he
 
 double ssim(std::vector<float> const& image, std::vector<float> const& reference, int width, int height)
 {
-    std::vector<double> const wx = window(std::min(width, 2 * kRadius + 1)),
-                              wy = window(std::min(height, 2 * kRadius + 1));
+    std::vector<double> const wx = window(std::min(width, 2 * kWindowRadius + 1)),
+                              wy = window(std::min(height, 2 * kWindowRadius + 1));
     std::size_t const n = image.size();
     std::vector<double> a(n), b(n), aa(n), bb(n), ab(n);
     for (std::size_t i = 0; i < n; ++i) {

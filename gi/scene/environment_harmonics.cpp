@@ -10,7 +10,6 @@
 namespace gi {
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
 constexpr int kDegrees = EnvironmentHarmonics::kMostDegree + 1;
 constexpr double kCosineLobe[kDegrees] = {kPiD, 2 * kPiD / 3, kPiD / 4, 0, -kPiD / 24};
 

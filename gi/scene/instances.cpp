@@ -12,7 +12,6 @@
 namespace gi {
 namespace {
 
-constexpr float kFarthest = 1e18f; ///< m; squares of larger coordinates overflow a float
 
 bool usable(vec3 p)
 {

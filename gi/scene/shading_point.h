@@ -20,6 +20,13 @@ struct ShadingPoint {
 /// @param direction    of the ray that arrived, unit
 GI_FN ShadingPoint shading_point(WorldView const& world, std::uint32_t triangle, vec2 barycentric, vec3 direction);
 
+/// Where a ray along `direction` starts, off the surface on its side (m). @param direction unit
+GI_FN inline vec3 leave(ShadingPoint const& at, vec3 direction)
+{
+    return at.position +
+           (glm::dot(direction, at.geometric_normal) > 0 ? at.clearance : -at.clearance) * at.geometric_normal;
+}
+
 /// For the layer of that name: diffuse + normal reflectance + transmitted, without regard to directions.
 GI_FN vec3 albedo(Bsdf const& bsdf);
 

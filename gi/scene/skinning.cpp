@@ -10,7 +10,6 @@ namespace gi {
 namespace {
 
 /// Beyond this from zero, m, vertices are skipped (world.h), so they have no say in where the centre is.
-constexpr float kFarthest = 1e18f;
 
 Affine to_affine(glm::dmat3 const& linear, dvec3 offset)
 {

@@ -10,7 +10,6 @@
 namespace gi {
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
 
 void check(bool good, std::string const& problem, char const* why, char const* suggestion)
 {

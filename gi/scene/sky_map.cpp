@@ -6,7 +6,6 @@
 namespace gi {
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
 
 dvec3 direction_to(double theta, double phi)
 {

@@ -8,7 +8,6 @@
 namespace gi {
 namespace {
 
-constexpr double kPiExactly = 3.14159265358979323846;
 constexpr int kMapHeight = 480, kMapWidth = 2 * kMapHeight, kStrip = 320, kMargin = 40;
 cv::Scalar const kInk(40, 40, 40);
 
@@ -50,7 +49,7 @@ void fill(cv::Mat& image, cv::Rect const& where, Cells const& cells, DirectionAt
 
 dvec3 from_lat_long(double u, double v)
 {
-    double const phi = 2 * kPiExactly * (u - 0.5), theta = kPiExactly * v;
+    double const phi = 2 * kPiD * (u - 0.5), theta = kPiD * v;
     return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 
@@ -62,7 +61,7 @@ void draw_map(cv::Mat& image, Cells const& cells)
     });
     for (std::size_t i = 0; i < cells.directions.size(); ++i) {
         dvec3 const d = cells.directions.direction(i);
-        double const u = 0.5 + std::atan2(d.x, -d.z) / (2 * kPiExactly), v = std::acos(d.y) / kPiExactly;
+        double const u = 0.5 + std::atan2(d.x, -d.z) / (2 * kPiD), v = std::acos(d.y) / kPiD;
         cv::circle(image, {int(u * kMapWidth), int(v * kMapHeight)}, 2, kInk, cv::FILLED, cv::LINE_AA);
     }
 }
@@ -110,7 +109,7 @@ void draw_profile(cv::Mat& image, DirectionSet const& directions)
 DirectionPicture draw(DirectionSet const& directions)
 {
     Cells cells{directions, solid_angles(directions, std::size_t(1) << 19)};
-    double const mean = 2 * kPiExactly / double(directions.axes.size());
+    double const mean = 2 * kPiD / double(directions.axes.size());
     for (double& s : cells.relative) s /= mean;
     cv::Mat image(kMapHeight + kStrip, kMapWidth, CV_8UC3, cv::Scalar(255, 255, 255));
     draw_map(image, cells);

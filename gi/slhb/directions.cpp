@@ -11,7 +11,6 @@
 namespace gi {
 namespace {
 
-constexpr double kPiExactly = 3.14159265358979323846;
 constexpr std::size_t kMostDirections = 1u << 16;
 
 using Triangle = std::array<dvec3, 3>;
@@ -89,8 +88,8 @@ std::vector<Triangle> icosahedron()
 std::vector<dvec3> uv_grid(int rows)
 {
     auto const corner = [&](int row, int column) {
-        double const theta = 0.5 * kPiExactly * row / rows;
-        double const phi = row > 0 ? 0.5 * kPiExactly * column / row : 0;
+        double const theta = 0.5 * kPiD * row / rows;
+        double const phi = row > 0 ? 0.5 * kPiD * column / row : 0;
         return dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
     };
     std::vector<dvec3> out;
@@ -111,7 +110,7 @@ std::vector<dvec3> uv_grid(int rows)
 dvec3 on_half_sphere(double u, double v)
 {
     double const r = std::sqrt(std::max(0.0, 1 - u * u));
-    return {r * std::cos(2 * kPiExactly * v), r * std::sin(2 * kPiExactly * v), u};
+    return {r * std::cos(2 * kPiD * v), r * std::sin(2 * kPiD * v), u};
 }
 
 double radical_inverse(std::size_t i, std::size_t base)

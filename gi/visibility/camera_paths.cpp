@@ -8,19 +8,13 @@
 namespace gi {
 namespace {
 
-vec3 leave(ShadingPoint const& at, vec3 direction)
-{
-    return at.position +
-           (glm::dot(direction, at.geometric_normal) > 0 ? at.clearance : -at.clearance) * at.geometric_normal;
-}
-
 bool has_delta_lobe(Bsdf const& b) { return b.clear > 0 || (b.f90.x > 0 && bsdf_detail::specular_is_delta(b)); }
 
 } // namespace
 
-CameraPath CameraPaths::start(int x, int y, std::uint32_t index) const
+CameraSubpath CameraPaths::start(int x, int y, std::uint32_t index) const
 {
-    CameraPath p;
+    CameraSubpath p;
     p.rng = Pcg32::for_path(seed, std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x), index);
     vec2 const place = vec2{float(x) + 0.5f, float(y) + 0.5f} + filter_offset(filter, p.rng.uniform2());
     p.ray = camera.has_lens() ? camera.at_lens(square_to_disk(p.rng.uniform2())).through(place)
@@ -29,7 +23,7 @@ CameraPath CameraPaths::start(int x, int y, std::uint32_t index) const
 }
 
 /// @param share  of what is found that these paths bring
-void CameraPaths::aim_at_light(CameraPath& p, ShadingPoint const& at, vec3 wo, float share) const
+void CameraPaths::aim_at_light(CameraSubpath& p, ShadingPoint const& at, vec3 wo, float share) const
 {
     LightChoice const choice = choose_light(world, p.rng.uniform_double());
     LightSample const light = sample_light(world, choice, at.position, p.rng.uniform2());
@@ -53,7 +47,7 @@ void CameraPaths::aim_at_light(CameraPath& p, ShadingPoint const& at, vec3 wo, f
 }
 
 /// From a hit to the next ray. False where the path ends.
-bool CameraPaths::advance(CameraPath& p, Hit const& hit, int surface, std::uint32_t index,
+bool CameraPaths::advance(CameraSubpath& p, Hit const& hit, int surface, std::uint32_t index,
                           std::vector<Receiver>& receivers, PathCounts& counts) const
 {
     p.shadow_radiance = vec3{0};
@@ -137,15 +131,15 @@ bool CameraPaths::advance(CameraPath& p, Hit const& hit, int surface, std::uint3
     return true;
 }
 
-void CameraPaths::trace(std::span<CameraPath> paths, std::vector<Receiver>& receivers, PathCounts& counts) const
+void CameraPaths::trace(std::span<CameraSubpath> paths, std::vector<Receiver>& receivers, PathCounts& counts) const
 {
-    std::vector<CameraPath*> active;
+    std::vector<CameraSubpath*> active;
     std::vector<RayQuery> queries;
     std::vector<Hit> hits;
-    for (CameraPath& p : paths) active.push_back(&p);
+    for (CameraSubpath& p : paths) active.push_back(&p);
     for (int surface = 0; !active.empty(); ++surface) {
         queries.clear();
-        for (CameraPath* p : active) {
+        for (CameraSubpath* p : active) {
             queries.push_back({.ray = p->ray, .seed = p->rng.next()});
             if (surface == 0) queries.back().start = camera_clearance(p->ray.origin);
         }
@@ -156,8 +150,8 @@ void CameraPaths::trace(std::span<CameraPath> paths, std::vector<Receiver>& rece
             auto const index = std::uint32_t(active[k] - paths.data());
             active[k]->ended = !advance(*active[k], hits[k], surface, index, receivers, counts);
         }
-        add_unshadowed(std::span<CameraPath* const>(active), visibility, counts);
-        std::erase_if(active, [](CameraPath const* p) { return p->ended; });
+        add_unshadowed(std::span<CameraSubpath* const>(active), visibility, counts);
+        std::erase_if(active, [](CameraSubpath const* p) { return p->ended; });
     }
 }
 

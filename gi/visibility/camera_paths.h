@@ -45,7 +45,7 @@ struct Receiver {
     bool matt;
 };
 
-struct CameraPath {
+struct CameraSubpath {
     Pcg32 rng{0, 0};
     Ray ray;
     vec3 throughput{1};
@@ -72,14 +72,14 @@ struct CameraPaths {
     int width;
     float bound; ///< b of the formula above, 1/m^2
 
-    CameraPath start(int x, int y, std::uint32_t index) const;
+    CameraSubpath start(int x, int y, std::uint32_t index) const;
     /// Follows all paths to their ends. @param receivers  are added, in the order of surfaces, then of paths
-    void trace(std::span<CameraPath> paths, std::vector<Receiver>& receivers, PathCounts& counts) const;
+    void trace(std::span<CameraSubpath> paths, std::vector<Receiver>& receivers, PathCounts& counts) const;
 
 private:
-    bool advance(CameraPath& p, Hit const& hit, int surface, std::uint32_t index, std::vector<Receiver>& receivers,
+    bool advance(CameraSubpath& p, Hit const& hit, int surface, std::uint32_t index, std::vector<Receiver>& receivers,
                  PathCounts& counts) const;
-    void aim_at_light(CameraPath& p, ShadingPoint const& at, vec3 wo, float share) const;
+    void aim_at_light(CameraSubpath& p, ShadingPoint const& at, vec3 wo, float share) const;
 };
 
 } // namespace gi

@@ -94,7 +94,7 @@ void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index,
         Counts& local = counts.local();
         int const left = tile % columns * kTile, right = std::min(left + kTile, v.width);
         int const top = tile / columns * kTile, bottom = std::min(top + kTile, v.height);
-        thread_local std::vector<CameraPath> batch;
+        thread_local std::vector<CameraSubpath> batch;
         thread_local std::vector<Receiver> receivers;
         thread_local std::vector<vec3> gathered;
         batch.clear();

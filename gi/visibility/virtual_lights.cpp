@@ -11,7 +11,7 @@ namespace gi {
 namespace {
 
 /// Paths that advance together, so that rays travel in packets.
-constexpr std::uint32_t kTogether = 64;
+constexpr std::uint32_t kPathsTogether = 64;
 
 struct LightPath {
     Pcg32 rng{0, 0};
@@ -20,12 +20,6 @@ struct LightPath {
     bool from_lamp = true;
     std::vector<VirtualLight> left; ///< on its way
 };
-
-vec3 leave(ShadingPoint const& at, vec3 direction)
-{
-    return at.position +
-           (glm::dot(direction, at.geometric_normal) > 0 ? at.clearance : -at.clearance) * at.geometric_normal;
-}
 
 /// From a hit to the next ray. False where the path ends.
 bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit const& hit)
@@ -105,12 +99,12 @@ std::vector<VirtualLight> trace_light_paths(WorldView const& world, Bounds const
                                             PathCounts& counts)
 {
     if (s.bounces < 1 || world.light_select.empty()) return {};
-    std::uint32_t const blocks = (s.count + kTogether - 1) / kTogether;
+    std::uint32_t const blocks = (s.count + kPathsTogether - 1) / kPathsTogether;
     std::vector<std::vector<VirtualLight>> found(blocks);
     std::vector<PathCounts> of_block(blocks);
     tbb::parallel_for(0u, blocks, [&](std::uint32_t block) {
         FlushDenormals const guard;
-        std::uint32_t const first = block * kTogether, last = std::min(s.count, first + kTogether);
+        std::uint32_t const first = block * kPathsTogether, last = std::min(s.count, first + kPathsTogether);
         std::vector<LightPath> paths(last - first);
         for (std::uint32_t i = first; i < last; ++i) {
             LightPath& p = paths[i - first];

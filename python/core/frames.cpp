@@ -2,7 +2,7 @@
 
 #include "gi/base/error.h"
 #include "viewer/session/scene_edits.h"
-#include "viewer/study_commands.h"
+#include "viewer/study_stimuli.h"
 
 #include <chrono>
 

@@ -9,7 +9,7 @@
 namespace study {
 namespace {
 
-void add(std::vector<std::string>& row, Uncertain const& u)
+void add_estimate(std::vector<std::string>& row, Uncertain const& u)
 {
     row.insert(row.end(), {cell(u.value), cell(u.interval.low), cell(u.interval.high)});
 }
@@ -83,7 +83,7 @@ ResultTable thresholds(Analysis const& a)
         for (ThresholdSummary const& s : b.thresholds) {
             std::vector<std::string> row{cell(b.name), cell(s.cell), cell(s.procedure), cell(s.method),
                                          cell(s.proportion)};
-            add(row, s.level);
+            add_estimate(row, s.level);
             row.push_back(cell(s.level.n));
             t.table.rows.push_back(std::move(row));
         }
@@ -116,7 +116,7 @@ ResultTable runs(Analysis const& a)
                                              cell(int(r.reversals.size())),
                                              cell(e.method),
                                              cell(e.proportion)};
-                add(row, e.level);
+                add_estimate(row, e.level);
                 row.push_back(cell(e.note));
                 t.table.rows.push_back(std::move(row));
             }
@@ -150,7 +150,7 @@ ResultTable curves(Analysis const& a)
             for (LevelCount const& l : c.counts) trials += l.trials;
             std::vector<std::string> row{cell(b.name), cell(c.cell), cell(c.observers), cell(trials),
                                          cell(c.proportion)};
-            add(row, c.threshold);
+            add_estimate(row, c.threshold);
             bool const is_fitted = !c.counts.empty();
             auto const fitted = [&](double v) { return is_fitted ? cell(v) : cell(""); };
             row.insert(row.end(), {fitted(c.fit.parameters.scale), fitted(c.fit.parameters.lapse),
@@ -186,7 +186,7 @@ ResultTable detection(Analysis const& a)
             std::vector<std::string> row{cell(b.name),         cell(d.condition),     cell(d.observers),
                                          cell(d.correct),      cell(d.trials),        cell(d.correct / d.trials),
                                          cell(d.interval.low), cell(d.interval.high), cell(d.dprime)};
-            add(row, d.observer_dprime);
+            add_estimate(row, d.observer_dprime);
             row.push_back(cell(d.model));
             t.table.rows.push_back(std::move(row));
         }
@@ -204,7 +204,7 @@ ResultTable questionnaires(Analysis const& a)
                                     {{"sd", "Standard deviation"}});
     for (QuestionnaireResult const& q : a.questionnaires) {
         std::vector<std::string> row{cell(q.questionnaire), cell(q.score), cell(q.when), cell(q.mean.n)};
-        add(row, q.mean);
+        add_estimate(row, q.mean);
         row.push_back(cell(q.deviation));
         t.table.rows.push_back(std::move(row));
     }
@@ -228,7 +228,7 @@ ResultTable changes(Analysis const& a)
     for (QuestionnaireChange const& q : a.changes) {
         std::vector<std::string> row{cell(q.questionnaire), cell(q.score), cell(q.from), cell(q.to),
                                      cell(q.change.n)};
-        add(row, q.change);
+        add_estimate(row, q.change);
         row.push_back(cell(q.p));
         t.table.rows.push_back(std::move(row));
     }

@@ -11,7 +11,6 @@
 namespace study {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLargest = 40; ///< beyond which proportions are 1 to rounding
 constexpr double kSqrt2 = std::numbers::sqrt2;
 

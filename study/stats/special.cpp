@@ -10,7 +10,6 @@ namespace study {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = 1e-16;
 
 /// The continued fraction of Q(a, x), by Lentz's method, without its leading factor.

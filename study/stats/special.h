@@ -3,7 +3,11 @@
 // their relative accuracy down to the smallest doubles. Equations: Abramowitz & Stegun 1964 (A&S), DLMF.
 // NaN in, NaN out.
 
+#include <limits>
+
 namespace study {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double normal_pdf(double z);
 double normal_cdf(double z);

@@ -9,7 +9,7 @@ namespace study {
 namespace {
 
 /// As a string of R.
-std::string quoted(std::string const& text)
+std::string quoted_for_r(std::string const& text)
 {
     std::string out = "\"";
     for (char const c : text)
@@ -26,7 +26,7 @@ std::string named(std::string const& column) { return "`" + column + "`"; }
 std::string listed(std::vector<std::string> const& words)
 {
     std::string out = "c(";
-    for (std::size_t i = 0; i < words.size(); ++i) out += (i ? ", " : "") + quoted(words[i]);
+    for (std::size_t i = 0; i < words.size(); ++i) out += (i ? ", " : "") + quoted_for_r(words[i]);
     return out + ")";
 }
 
@@ -147,12 +147,12 @@ fit <- function(formula, data, family = NULL) {{
   print(summary(if (is.null(family)) lmer(formula, data) else glmer(formula, data, family = family)))
 }}
 )",
-        quoted(script.id), quoted(trials_file));
+        quoted_for_r(script.id), quoted_for_r(trials_file));
     auto const columns = factor_columns(script);
     for (LevelChoice const& c : script.reference) {
         Factor const& f = script.factors[std::size_t(c.factor)];
-        std::string const column = quoted(columns[std::size_t(c.factor)]),
-                          level = quoted(f.levels[std::size_t(c.level)].name);
+        std::string const column = quoted_for_r(columns[std::size_t(c.factor)]),
+                          level = quoted_for_r(f.levels[std::size_t(c.level)].name);
         r += fmt::format("if (any(trials[[{0}]] %in% {1})) trials[[{0}]] <- relevel(factor(trials[[{0}]]), {1})\n",
                          column, level);
     }
@@ -161,7 +161,7 @@ fit <- function(formula, data, family = NULL) {{
         if (text.empty()) continue;
         r += fmt::format(
             "\ncat(\"\\n== {} ({})\\n\")\nd <- trials[trials$block == {}, ]\nif (nrow(d) > 0) {{\n{}}}\n", b.name,
-            study::facts(b.task).name, quoted(b.name), text);
+            study::facts(b.task).name, quoted_for_r(b.name), text);
     }
     return r;
 }

@@ -21,7 +21,7 @@ std::string joined(Table const& table, std::vector<std::string> const& cells)
     return line + "\n";
 }
 
-std::string quoted(std::string const& text)
+std::string quoted_for_csv(std::string const& text)
 {
     if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
     std::string out = "\"";
@@ -69,11 +69,11 @@ std::string tsv_text(Table const& table)
 std::string csv_text(Table const& table, std::string_view nothing)
 {
     std::string text;
-    for (std::size_t c = 0; c < table.columns.size(); ++c) text += (c ? "," : "") + quoted(table.columns[c].name);
+    for (std::size_t c = 0; c < table.columns.size(); ++c) text += (c ? "," : "") + quoted_for_csv(table.columns[c].name);
     text += "\n";
     for (auto const& row : table.rows) {
         for (std::size_t c = 0; c < row.size(); ++c)
-            text += (c ? "," : "") + (row[c] == kNothing ? std::string(nothing) : quoted(row[c]));
+            text += (c ? "," : "") + (row[c] == kNothing ? std::string(nothing) : quoted_for_csv(row[c]));
         text += "\n";
     }
     return text;

@@ -15,11 +15,11 @@ Echo trip(double at, double there, double back, double ahead, double& returned)
     return e;
 }
 
-TEST(ClockOffset, KnowsNothingBeforeTheFirstMessage) { EXPECT_FALSE(ClockOffset().estimate()); }
+TEST(RoundTripClockOffset, KnowsNothingBeforeTheFirstMessage) { EXPECT_FALSE(RoundTripClockOffset().estimate()); }
 
-TEST(ClockOffset, EqualWaysAreExact)
+TEST(RoundTripClockOffset, EqualWaysAreExact)
 {
-    ClockOffset clock;
+    RoundTripClockOffset clock;
     double back = 0;
     Echo const e = trip(100, 2e-3, 2e-3, -7.5, back);
     clock.add(e, back);
@@ -27,11 +27,11 @@ TEST(ClockOffset, EqualWaysAreExact)
     EXPECT_NEAR(clock.estimate()->error_s, 2e-3, 1e-12);
 }
 
-TEST(ClockOffset, IsWithinItsErrorWhateverTheWays)
+TEST(RoundTripClockOffset, IsWithinItsErrorWhateverTheWays)
 {
     std::mt19937 random(5);
     std::exponential_distribution<double> late(1e3);
-    ClockOffset clock;
+    RoundTripClockOffset clock;
     for (int k = 0; k < 1000; ++k) {
         double back = 0, const_ahead = 12.25;
         Echo const e = trip(k, 1e-5 + late(random), 1e-5 + late(random), const_ahead, back);
@@ -42,9 +42,9 @@ TEST(ClockOffset, IsWithinItsErrorWhateverTheWays)
     EXPECT_LT(clock.estimate()->error_s, 2e-4); // of 256 trips one is quick
 }
 
-TEST(ClockOffset, FollowsADrift)
+TEST(RoundTripClockOffset, FollowsADrift)
 {
-    ClockOffset clock;
+    RoundTripClockOffset clock;
     double ahead = 0, back = 0;
     for (int k = 0; k < 20000; ++k) { // 60 Hz, 20 parts in a million: 6.7 ms in all
         ahead = 20e-6 * k / 60;

@@ -104,11 +104,11 @@ TEST(ArrivalClock, SmoothsJitter)
     EXPECT_EQ(clock.note(100), 100.0) << "after a pause";
 }
 
-TEST(ClockOffset, IsTheFastestPackets)
+TEST(OneWayClockOffset, IsTheFastestPackets)
 {
     std::mt19937 rng(3);
     std::uniform_real_distribution<double> jitter(0, 0.05);
-    ClockOffset clock;
+    OneWayClockOffset clock;
     double const offset = 1e6, drift = 1e-4; // 100 ppm
     for (int i = 0; i < 60 * 60; ++i) {
         double const sent = i / 60.0;
@@ -119,9 +119,9 @@ TEST(ClockOffset, IsTheFastestPackets)
     EXPECT_EQ(clock.restarts() + clock.doubtful(), 0u);
 }
 
-TEST(ClockOffset, BelievesAStepOnlyIfItIsRepeated)
+TEST(OneWayClockOffset, BelievesAStepOnlyIfItIsRepeated)
 {
-    ClockOffset clock;
+    OneWayClockOffset clock;
     for (int i = 0; i < 100; ++i) EXPECT_EQ(clock.note(i * 0.01, 5 + i * 0.01), ClockNote::fits);
     EXPECT_EQ(clock.note(2, 6.01), ClockNote::doubtful) << "one second ahead";
     EXPECT_EQ(clock.note(1.02, 6.02), ClockNote::fits);

@@ -8,7 +8,7 @@ namespace viewer {
 namespace {
 
 constexpr int kSide = 2, kPoints = kSide * kSide; ///< of each pixel of the frame
-constexpr float kLeastAlbedo = 0.01f;
+constexpr float kLeastDivisor = 0.01f;
 constexpr int kReach_px = 4; ///< rendered pixels around that are looked at
 
 cv::Vec3f vector(gi::vec3 v) { return {v.x, v.y, v.z}; }
@@ -114,7 +114,7 @@ void VirtualSurfaces::know(PairPictures const& low, cv::Size size, cv::Rect low_
             k.depth_m /= points;
             cv::Vec3f const direct = low.direct.at<cv::Vec3f>(y, x);
             for (int c = 0; c < 3; ++c)
-                k.light[c] = direct[c] / covered / std::max(albedo[c] / points, kLeastAlbedo);
+                k.light[c] = direct[c] / covered / std::max(albedo[c] / points, kLeastDivisor);
             known_(y, x) = k;
         }
 }
@@ -166,7 +166,7 @@ std::size_t VirtualSurfaces::light(SurfaceView const& surfaces, cv::Size low_siz
                 if (!light) unlit += std::size_t(points);
                 for (int c = 0; light && c < 3; ++c)
                     to.radiance.at<cv::Vec3f>(y, x)[c] +=
-                        (*light)[c] * std::max(albedo[c], kLeastAlbedo) * float(points) / kPoints;
+                        (*light)[c] * std::max(albedo[c], kLeastDivisor) * float(points) / kPoints;
             };
             if (!p.is_split) {
                 add(p.normal, p.depth_m, p.albedo, p.points);

@@ -11,7 +11,7 @@ namespace viewer {
 /// says it best (Cristian 1989). With t1 sent, t2 received, t3 answered, t4 back:
 ///     ahead = ((t2 - t1) + (t3 - t4)) / 2 +- delay / 2,   delay = (t4 - t1) - (t3 - t2)
 /// The last 256 count, so that clocks may drift.
-class ClockOffset {
+class RoundTripClockOffset {
 public:
     /// @param back_s  t4
     void add(Echo const& echo, double back_s);

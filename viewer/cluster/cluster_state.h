@@ -28,7 +28,7 @@ struct Cluster::State {
         bool lost = false;
         bool said_goodbye = false;
         double heard_s = 0; ///< on the clock listened_s
-        ClockOffset clock;
+        RoundTripClockOffset clock;
         std::optional<Arrival> arrival;
         std::string note; ///< that came with it
         std::deque<std::vector<std::uint8_t>> data;

@@ -21,7 +21,7 @@ struct Channel {
     Viewport viewport;
 };
 
-struct Context {
+struct EqualizerContext {
     Display display;
     std::string file;
     gi::Report& report;
@@ -94,7 +94,7 @@ struct Area {
     bool in_pixels = false;
 };
 
-std::optional<Area> read_area(TextNode const& of, Context const& c)
+std::optional<Area> read_area(TextNode const& of, EqualizerContext const& c)
 {
     TextNode const* const node = of.find("viewport");
     if (!node) return {};
@@ -105,7 +105,7 @@ std::optional<Area> read_area(TextNode const& of, Context const& c)
     return Area{v[0], v[1], v[2], v[3], !has_point && !is_small};
 }
 
-void read_channel(TextNode const& node, int window, Context& c)
+void read_channel(TextNode const& node, int window, EqualizerContext& c)
 {
     c.lose_others(node, {"name", "viewport", "attributes"});
     std::string const name = node.text("name");
@@ -122,7 +122,7 @@ void read_channel(TextNode const& node, int window, Context& c)
 
 int pixels(double x) { return int(std::lround(std::clamp(x, -1e6, 1e6))); }
 
-void read_window(TextNode const& node, TextNode const& pipe, int rank, Context& c)
+void read_window(TextNode const& node, TextNode const& pipe, int rank, EqualizerContext& c)
 {
     c.lose_others(node, {"name", "viewport", "channel", "attributes"});
     constexpr int kPipeWidth = 1920, kPipeHeight = 1080;
@@ -157,7 +157,7 @@ void read_window(TextNode const& node, TextNode const& pipe, int rank, Context& 
         if (child.key == "channel") read_channel(child, index, c);
 }
 
-void read_node(TextNode const& node, int rank, Context& c)
+void read_node(TextNode const& node, int rank, EqualizerContext& c)
 {
     c.lose_others(node, {"name", "pipe", "connection", "attributes", "host", "hostname"});
     for (TextNode const& pipe : node.children) {
@@ -168,13 +168,13 @@ void read_node(TextNode const& node, int rank, Context& c)
     }
 }
 
-gi::dvec3 corner(TextNode const& wall, char const* key, gi::dvec3 usual, Context const& c)
+gi::dvec3 corner(TextNode const& wall, char const* key, gi::dvec3 usual, EqualizerContext const& c)
 {
     TextNode const* const node = wall.find(key);
     return node ? point_of(*node, c.file) : usual;
 }
 
-WallCorners from_projection(TextNode const& p, Context const& c)
+WallCorners from_projection(TextNode const& p, EqualizerContext const& c)
 {
     auto const values = [&](char const* key, std::size_t count, std::vector<double> usual) {
         TextNode const* const node = p.find(key);
@@ -197,7 +197,7 @@ WallCorners from_projection(TextNode const& p, Context const& c)
 }
 
 /// The wall or projection stated by the block itself.
-std::optional<WallCorners> stated_wall(TextNode const& node, Context& c)
+std::optional<WallCorners> stated_wall(TextNode const& node, EqualizerContext& c)
 {
     if (TextNode const* wall = node.find("wall")) {
         c.lose_others(*wall, {"bottom_left", "bottom_right", "top_left", "type"});
@@ -223,7 +223,7 @@ WallCorners part_of(WallCorners const& wall, Area const& a)
     return {ll, ll + a.width * u, ll + a.height * v};
 }
 
-void add_wall(TextNode const& node, WallCorners const& corners, StereoMode stereo, Context& c)
+void add_wall(TextNode const& node, WallCorners const& corners, StereoMode stereo, EqualizerContext& c)
 {
     std::string const name = node.text("channel");
     auto const channel = c.channels.find(name);
@@ -243,7 +243,7 @@ void add_wall(TextNode const& node, WallCorners const& corners, StereoMode stere
     c.display.walls.push_back(wall);
 }
 
-void read_canvas(TextNode const& canvas, Context& c)
+void read_canvas(TextNode const& canvas, EqualizerContext& c)
 {
     c.lose_others(canvas, {"name", "layout", "wall", "projection", "segment"});
     std::optional<WallCorners> const whole = stated_wall(canvas, c);
@@ -260,7 +260,7 @@ void read_canvas(TextNode const& canvas, Context& c)
     }
 }
 
-void read_compound(TextNode const& compound, Context& c)
+void read_compound(TextNode const& compound, EqualizerContext& c)
 {
     StereoMode stereo = StereoMode::off;
     if (TextNode const* attributes = compound.find("attributes")) {
@@ -276,7 +276,7 @@ void read_compound(TextNode const& compound, Context& c)
         if (child.key == "compound") read_compound(child, c);
 }
 
-void read_observer(TextNode const& node, double eye_base, Context& c)
+void read_observer(TextNode const& node, double eye_base, EqualizerContext& c)
 {
     User user;
     user.name = free_name(c.display.users, node.text("name", "observer"));
@@ -288,7 +288,7 @@ void read_observer(TextNode const& node, double eye_base, Context& c)
     c.display.users.push_back(user);
 }
 
-void read_config(TextNode const& config, double eye_base, Context& c)
+void read_config(TextNode const& config, double eye_base, EqualizerContext& c)
 {
     c.lose_others(config, {"name", "appNode", "node", "observer", "layout", "canvas", "compound", "attributes"});
     if (TextNode const* attributes = config.find("attributes"))
@@ -322,7 +322,7 @@ Display parse_equalizer(std::string const& text, std::string const& name, gi::Re
     std::vector<TextToken> const tokens = tokens_of(text, "{}[]()", name);
     std::size_t at = 0;
     std::vector<TextNode> const top = read_block(tokens, at, 0, name);
-    Context c{{}, name, report, {}, {}, {}, false};
+    EqualizerContext c{{}, name, report, {}, {}, {}, false};
     double eye_base = 0.05; // Equalizer's own
     bool has_config = false;
     for (TextNode const& node : top) {

@@ -15,7 +15,7 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-struct Context {
+struct PvxContext {
     Display display;
     std::string file;
     gi::Report& report;
@@ -36,7 +36,7 @@ bool parse_number(char const*& at, double& value)
     return failure == std::errc{};
 }
 
-gi::dvec3 point(XMLElement const& e, char const* name, Context const& c)
+gi::dvec3 point(XMLElement const& e, char const* name, PvxContext const& c)
 {
     char const* at = e.Attribute(name);
     gi::dvec3 v{0};
@@ -55,7 +55,7 @@ std::string attribute(XMLElement const& e, char const* name)
     return value ? value : "";
 }
 
-void lose_others(XMLElement const& e, std::set<std::string> const& known, Context& c)
+void lose_others(XMLElement const& e, std::set<std::string> const& known, PvxContext& c)
 {
     for (auto const* a = e.FirstAttribute(); a; a = a->Next())
         if (!known.contains(a->Name()))
@@ -64,7 +64,7 @@ void lose_others(XMLElement const& e, std::set<std::string> const& known, Contex
                           1, fmt::format("{}:{}", c.file, e.GetLineNum()));
 }
 
-StereoMode stereo_of(std::string const& name, XMLElement const& e, Context& c)
+StereoMode stereo_of(std::string const& name, XMLElement const& e, PvxContext& c)
 {
     if (name.empty() || name == "None") return StereoMode::off;
     if (name == "Crystal Eyes") return StereoMode::quad_buffer;
@@ -90,7 +90,7 @@ bool read_geometry(std::string const& text, DisplayWindow& window)
     return true;
 }
 
-void read_machine(XMLElement const& m, int rank, bool default_fullscreen, Context& c)
+void read_machine(XMLElement const& m, int rank, bool default_fullscreen, PvxContext& c)
 {
     lose_others(m,
                 {"Name", "Geometry", "FullScreen", "ShowBorders", "LowerLeft", "LowerRight", "UpperLeft",
@@ -142,7 +142,7 @@ Display parse_pvx(std::string const& text, std::string const& name, gi::Report& 
         throw gi::InputError({name, document.ErrorLineNum(), 0}, "this is not XML",
                              tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()), "check the brackets");
     XMLElement const* const root = document.FirstChildElement("pvx");
-    Context c{{}, name, report};
+    PvxContext c{{}, name, report};
     if (!root)
         throw gi::InputError({name, 1, 1}, "there is no element <pvx>", "configurations of ParaView have one",
                              "is this a file of ParaView?");

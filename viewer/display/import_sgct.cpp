@@ -18,13 +18,13 @@ namespace {
 
 using gi::YamlReader;
 
-struct Context {
+struct SgctContext {
     Display display;
     std::string file;
     gi::Report& report;
 };
 
-void lose_others(YamlReader const& map, std::set<std::string> const& known, std::string const& path, Context& c)
+void lose_others(YamlReader const& map, std::set<std::string> const& known, std::string const& path, SgctContext& c)
 {
     for (std::string const& key : map.keys())
         if (!known.contains(key)) c.report.lose("SGCT " + path + key.substr(0, 64) + ": not imported", 1, c.file);
@@ -56,7 +56,7 @@ struct Stereo {
 };
 
 /// SGCT's interlaced modes count rows from below and put the left eye on row 0.
-Stereo read_stereo(YamlReader const& y, int height_px, Context& c)
+Stereo read_stereo(YamlReader const& y, int height_px, SgctContext& c)
 {
     std::string const name = y.text();
     std::string const plain = name.substr(0, name.find("_inverted"));
@@ -88,7 +88,7 @@ gi::dquat orientation(YamlReader const& y)
     return about("yaw", -1, {0, 1, 0}) * about("pitch", 1, {1, 0, 0}) * about("roll", -1, {0, 0, 1});
 }
 
-WallCorners planar(YamlReader const& p, Context& c)
+WallCorners planar(YamlReader const& p, SgctContext& c)
 {
     lose_others(p, {"type", "fov", "distance", "orientation", "offset"}, "projection.", c);
     YamlReader const fov = needed(p, "fov");
@@ -105,7 +105,7 @@ WallCorners planar(YamlReader const& p, Context& c)
     return {corner(left, bottom), corner(right, bottom), corner(left, top)};
 }
 
-WallCorners plane(YamlReader const& p, Context& c)
+WallCorners plane(YamlReader const& p, SgctContext& c)
 {
     lose_others(p, {"type", "lowerleft", "upperleft", "upperright"}, "projection.", c);
     gi::dvec3 const ll = point(needed(p, "lowerleft")), ul = point(needed(p, "upperleft")),
@@ -114,7 +114,7 @@ WallCorners plane(YamlReader const& p, Context& c)
 }
 
 void read_viewport(YamlReader const& v, int window, int rank, Stereo stereo, std::string const& default_user,
-                   std::map<std::string, int> const& users, Context& c)
+                   std::map<std::string, int> const& users, SgctContext& c)
 {
     lose_others(v, {"pos", "size", "projection", "user"}, "viewport.", c);
     YamlReader const p = needed(v, "projection");
@@ -151,7 +151,7 @@ void read_viewport(YamlReader const& v, int window, int rank, Stereo stereo, std
     c.display.walls.push_back(wall);
 }
 
-void read_window(YamlReader const& w, int rank, std::map<std::string, int> const& users, Context& c)
+void read_window(YamlReader const& w, int rank, std::map<std::string, int> const& users, SgctContext& c)
 {
     lose_others(w, {"name", "id", "pos", "size", "fullscreen", "monitor", "stereo", "viewports"}, "window.", c);
     DisplayWindow window;
@@ -175,7 +175,7 @@ void read_window(YamlReader const& w, int rank, std::map<std::string, int> const
     if (c.display.walls.size() == walls) c.display.windows.pop_back();
 }
 
-std::map<std::string, int> read_users(YamlReader const& root, Context& c)
+std::map<std::string, int> read_users(YamlReader const& root, SgctContext& c)
 {
     std::map<std::string, int> users;
     if (root.has("users"))
@@ -223,7 +223,7 @@ YamlReader parse_json(std::string const& text, std::string const& file)
 Display parse_sgct(std::string const& text, std::string const& name, gi::Report& report)
 {
     YamlReader const root = parse_json(text, name);
-    Context c{{}, name, report};
+    SgctContext c{{}, name, report};
     lose_others(root, {"version", "masteraddress", "nodes", "users", "$schema", "title", "description", "author"},
                 "", c);
     YamlReader const nodes = needed(root, "nodes");

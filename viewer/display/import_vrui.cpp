@@ -11,7 +11,7 @@
 namespace viewer {
 namespace {
 
-struct Context {
+struct VruiContext {
     Display display;
     std::string file;
     gi::Report& report;
@@ -96,7 +96,7 @@ std::vector<std::string> names_in(TextNode const& environment, std::string const
     return out;
 }
 
-TextNode const& section_of(TextNode const& environment, std::string const& name, char const* of, Context const& c)
+TextNode const& section_of(TextNode const& environment, std::string const& name, char const* of, VruiContext const& c)
 {
     TextNode const* const node = environment.find(name);
     if (!node)
@@ -105,27 +105,27 @@ TextNode const& section_of(TextNode const& environment, std::string const& name,
     return *node;
 }
 
-gi::dvec3 needed_point(TextNode const& section, char const* tag, Context const& c)
+gi::dvec3 needed_point(TextNode const& section, char const* tag, VruiContext const& c)
 {
     TextNode const* const node = section.find(tag);
     if (!node) throw c.error(section, std::string(tag) + " is missing", "the wall is not defined", "add it");
     return point_of(*node, c.file);
 }
 
-double number_in(TextNode const& section, char const* tag, double otherwise, Context const& c)
+double number_in(TextNode const& section, char const* tag, double otherwise, VruiContext const& c)
 {
     TextNode const* const node = section.find(tag);
     return node ? numbers_of(*node, 1, c.file)[0] : otherwise;
 }
 
-gi::dvec3 unit(gi::dvec3 v, TextNode const& at, Context const& c)
+gi::dvec3 unit(gi::dvec3 v, TextNode const& at, VruiContext const& c)
 {
     if (!(glm::length(v) > 1e-9)) throw c.error(at, "a direction is zero", "it points nowhere", "give another");
     return glm::normalize(v);
 }
 
 /// Nothing for screens that are no fixed rectangles.
-std::optional<WallCorners> read_screen(TextNode const& s, Context& c)
+std::optional<WallCorners> read_screen(TextNode const& s, VruiContext& c)
 {
     char const* odd = s.text("deviceMounted") == "true"               ? "carried by a device"
                       : s.text("offAxis") == "true"                   ? "with a homography"
@@ -155,7 +155,7 @@ std::optional<WallCorners> read_screen(TextNode const& s, Context& c)
     return WallCorners{c.place(corners[0]), c.place(corners[1]), c.place(corners[2])};
 }
 
-User read_viewer(TextNode const& s, Context& c)
+User read_viewer(TextNode const& s, VruiContext& c)
 {
     static std::set<std::string> const kLights{
         "headLightEnabled",    "headLightPosition",     "headLightDirection",  "headLightColor",
@@ -195,7 +195,7 @@ User read_viewer(TextNode const& s, Context& c)
     return user;
 }
 
-StereoMode stereo_of(TextNode const& window, Context& c)
+StereoMode stereo_of(TextNode const& window, VruiContext& c)
 {
     std::string const type = window.text("windowType", "Mono");
     if (type == "Mono") return StereoMode::off;
@@ -207,7 +207,7 @@ StereoMode stereo_of(TextNode const& window, Context& c)
     return StereoMode::off;
 }
 
-void read_window(TextNode const& environment, std::string const& name, int rank, Context& c)
+void read_window(TextNode const& environment, std::string const& name, int rank, VruiContext& c)
 {
     TextNode const& s = section_of(environment, name, "the list of windows", c);
     c.lose_others(s, {"display", "windowPos", "windowFullscreen", "windowType", "screenName", "viewerName"});
@@ -248,7 +248,7 @@ void read_window(TextNode const& environment, std::string const& name, int rank,
     c.display.walls.push_back(wall);
 }
 
-void read_units(TextNode const& environment, Context& c)
+void read_units(TextNode const& environment, VruiContext& c)
 {
     TextNode const *const metre = environment.find("meterScale"), *const inch = environment.find("inchScale");
     double const scale = metre ? numbers_of(*metre, 1, c.file)[0] : inch ? numbers_of(*inch, 1, c.file)[0] : 1;
@@ -283,7 +283,7 @@ Display parse_vrui(std::string const& text, std::string const& name, std::string
             others += (other_count++ ? ", " : "") + child.key.substr(0, 64);
         }
     }
-    Context c{{}, name, report};
+    VruiContext c{{}, name, report};
     if (!environment)
         throw c.error(*vrui,
                       section.empty() ? "no environment has screenNames"

@@ -11,7 +11,7 @@
 namespace viewer {
 namespace {
 
-struct Column {
+struct CsvColumn {
     std::string name, meaning;
 };
 
@@ -30,7 +30,7 @@ Place place_of(gi::dmat4 const& m)
     return {gi::dvec3(m[3]), glm::normalize(glm::quat_cast(axes)), scale};
 }
 
-void add_place(std::vector<Column>& to, std::string const& prefix, std::string const& meaning)
+void add_place(std::vector<CsvColumn>& to, std::string const& prefix, std::string const& meaning)
 {
     for (char const* axis : {"x", "y", "z"}) to.push_back({prefix + axis + "_m", meaning + ": position, m"});
     for (char const* part : {"qx", "qy", "qz", "qw"})
@@ -42,9 +42,9 @@ struct Most {
     std::size_t others = 0, views = 0;
 };
 
-std::vector<Column> columns(Most const& most)
+std::vector<CsvColumn> columns(Most const& most)
 {
-    std::vector<Column> c{{"frame", "number of the frame"},
+    std::vector<CsvColumn> c{{"frame", "number of the frame"},
                           {"pose_s", "s, when the poses were taken; the clock of the session starts at 0"},
                           {"display_s", "s, when the frame was expected to be seen"},
                           {"scene_s", "s, time of the scene's animations"},
@@ -163,7 +163,7 @@ RecordingEnd export_csv(RecordingReader& recording, std::filesystem::path const&
             {"command_line", h.command_line}, {"created", h.created}, {"settings", h.settings}};
         for (auto const& [key, value] : about.items()) out << "# " << key << ": " << json_line(value) << "\n";
         std::string names;
-        for (Column const& c : columns(most)) {
+        for (CsvColumn const& c : columns(most)) {
             out << "# " << c.name << " - " << c.meaning << "\n";
             names += (names.empty() ? "" : ",") + c.name;
         }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kLevels[] = {0, 32, 16, 8};         // axes of a bounce, 0 = all
 constexpr double kMost[] = {0.2, 0.2, 0.35, 1e9}; // of the time between frames, for each level
-constexpr double kToGrow = 0.6, kAtOnce = 0.5;
+constexpr double kShareToGrow = 0.6, kAtOnce = 0.5;
 constexpr int kFramesToGrow = 8, kFramesKept = 3, kQuiet = 8;
 
 /// The set is parted into so many; each bounce has one in a frame.
@@ -44,7 +44,7 @@ void FollowGovernor::measured(Frame const& f)
     if (axis_s_.size() > kFramesKept) axis_s_.pop_front();
     if (!at_once && axis_s_.size() < kFramesKept) return;
     while (level_ + 1 < std::size(kLevels) && share(level_) > kMost[level_]) ++level_;
-    calm_ = level_ > 0 && share(level_ - 1) < kToGrow * kMost[level_ - 1] ? calm_ + 1 : 0;
+    calm_ = level_ > 0 && share(level_ - 1) < kShareToGrow * kMost[level_ - 1] ? calm_ + 1 : 0;
     if (calm_ < kFramesToGrow) return;
     --level_;
     calm_ = 0;

@@ -43,7 +43,7 @@ public:
         core_.start(nullptr, {});
     }
 
-    ViewSummary run(gi::StopRequest const& stop)
+    ViewerSummary run(gi::StopRequest const& stop)
     {
         double last = state_.clock.now_s();
         while (core_.poll(stop) && !keeper_.ended()) {
@@ -211,7 +211,7 @@ private:
 
 } // namespace
 
-ViewSummary run_hmd(ViewOptions const& options, HmdOptions const& headset, gi::StopRequest const& stop,
+ViewerSummary run_hmd(ViewOptions const& options, HmdOptions const& headset, gi::StopRequest const& stop,
                     gi::Report& report)
 {
     return HmdLoop(options, headset, report).run(stop);

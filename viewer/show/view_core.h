@@ -42,7 +42,7 @@ public:
     Controls controls;
     Requests requests;
     std::unique_ptr<LiveRenderer> renderer;
-    ViewSummary summary;
+    ViewerSummary summary;
 
 private:
     void start_at(gi::Camera const& camera);

@@ -52,7 +52,7 @@ public:
             link, [] { glfwPostEmptyEvent(); }, own);
     }
 
-    ViewSummary run(gi::StopRequest const& stop)
+    ViewerSummary run(gi::StopRequest const& stop)
     {
         double last = state_.clock.now_s();
         while (core_.poll(stop)) {
@@ -417,7 +417,7 @@ private:
 
 } // namespace
 
-ViewSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop, gi::Report& report)
+ViewerSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop, gi::Report& report)
 {
     return WindowLoop(options, link, report).run(stop);
 }

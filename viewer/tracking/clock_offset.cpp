@@ -6,7 +6,7 @@
 
 namespace viewer {
 
-ClockNote ClockOffset::note(double measured_s, double received_s)
+ClockNote OneWayClockOffset::note(double measured_s, double received_s)
 {
     double const delay = received_s - measured_s;
     bool const fits = !started_ || (delay > offset_s_ - kEarliest && delay < offset_s_ + kLatest);

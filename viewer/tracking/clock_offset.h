@@ -16,7 +16,7 @@ enum class ClockNote {
     was_set   ///< two did: what was known before is forgotten
 };
 
-class ClockOffset {
+class OneWayClockOffset {
 public:
     /// Both in s.
     ClockNote note(double measured_s, double received_s);

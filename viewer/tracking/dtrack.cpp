@@ -9,7 +9,7 @@
 namespace viewer {
 namespace {
 
-constexpr std::size_t kMostBodies = 256; ///< of a packet
+constexpr std::size_t kMostPacketBodies = 256; ///< of a packet
 
 /// Numbers of one [...], taken off the text; false where there is none or one of them is no number.
 bool take_block(std::string_view& text, std::vector<double>& numbers)
@@ -95,13 +95,13 @@ void read_bodies(std::string_view rest, LineForm form, TrackerPacket& packet)
     std::string_view const first = take_word(rest);
     auto count = read_count(first);
     if (count && form == LineForm::flystick2) count = read_count(take_word(rest)); // defined, then in the line
-    if (!count || *count > kMostBodies) {
+    if (!count || *count > kMostPacketBodies) {
         ++packet.malformed;
         return;
     }
     for (std::uint64_t i = 0; i < *count; ++i) {
         TrackerSample sample;
-        if (packet.samples.size() >= kMostBodies || !take_body(rest, form, sample)) {
+        if (packet.samples.size() >= kMostPacketBodies || !take_body(rest, form, sample)) {
             ++packet.malformed;
             return;
         }

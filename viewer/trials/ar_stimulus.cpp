@@ -34,7 +34,7 @@ void set_at(YAML::Node node, std::string const& key, YAML::Node const& value)
     set_at(node[first], key.substr(dot + 1), value);
 }
 
-YAML::Node value_of(std::string const& text)
+YAML::Node yaml_value_of(std::string const& text)
 {
     try {
         return YAML::Load(text);
@@ -46,7 +46,7 @@ YAML::Node value_of(std::string const& text)
 std::string with(std::string const& text, study::Patch const& overrides)
 {
     YAML::Node root = YAML::Load(text);
-    for (auto const& [key, value] : overrides) set_at(root, key, value_of(value));
+    for (auto const& [key, value] : overrides) set_at(root, key, yaml_value_of(value));
     YAML::Emitter out;
     out << root;
     return out.c_str();

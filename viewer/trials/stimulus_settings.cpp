@@ -27,7 +27,7 @@ std::string visibility_method(std::string const& word)
     throw gi::InputError("gi.visibility: " + word, "there is no such approximation", "choose one of: " + known);
 }
 
-Json value_of(std::string const& text)
+Json json_value_of(std::string const& text)
 {
     Json const value = Json::parse(text, nullptr, false);
     return value.is_discarded() ? Json(text) : value;
@@ -143,9 +143,9 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
                                  "stimuli are rendered on the CPU, so that all sites have the same",
                                  "leave it out");
         } else if (is_scene_edit(key)) {
-            s.edits.push_back({key, value_of(text)});
+            s.edits.push_back({key, json_value_of(text)});
         } else {
-            set(s.settings, {key, fitting(key, value_of(text))});
+            set(s.settings, {key, fitting(key, json_value_of(text))});
         }
     }
     if (s.scene.empty())

@@ -7,7 +7,7 @@
 namespace viewer {
 namespace {
 
-double steady_now_s()
+double keeper_now_s()
 {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -35,15 +35,15 @@ HmdSession* HmdKeeper::poll()
         ++losses_;
         trouble_ = "lost: " + session_->why();
         session_.reset();
-        next_attempt_s_ = steady_now_s() + 1;
+        next_attempt_s_ = keeper_now_s() + 1;
     }
-    if (session_ || ended_ || steady_now_s() < next_attempt_s_) return session_.get();
+    if (session_ || ended_ || keeper_now_s() < next_attempt_s_) return session_.get();
     try {
         build();
         trouble_.clear();
     } catch (gi::InputError const& e) {
         trouble_ = e.what();
-        next_attempt_s_ = steady_now_s() + 1;
+        next_attempt_s_ = keeper_now_s() + 1;
     }
     return session_.get();
 }

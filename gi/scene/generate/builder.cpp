@@ -4,6 +4,14 @@
 
 namespace gi {
 
+Material matt(vec3 albedo)
+{
+    Material m;
+    m.base_color = albedo;
+    m.specular = 0;
+    return m;
+}
+
 int SceneBuilder::add_material(std::string const& name, Material const& material)
 {
     scene_.materials.push_back(material);

@@ -13,6 +13,9 @@ struct GridVertex {
     vec2 uv;
 };
 
+/// A Lambertian reflector: no specular lobe.
+Material matt(vec3 albedo);
+
 class SceneBuilder {
 public:
     int add_material(std::string const& name, Material const& material);

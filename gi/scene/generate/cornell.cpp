@@ -32,14 +32,6 @@ constexpr double kLampAlbedo = 0.78;
 
 using Quad = std::array<dvec3, 4>;
 
-Material matt(vec3 albedo)
-{
-    Material m;
-    m.base_color = albedo;
-    m.specular = 0;
-    return m;
-}
-
 class CornellBuilder {
 public:
     int add_material(std::string const& name, Material const& m)

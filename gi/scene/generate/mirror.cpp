@@ -7,15 +7,7 @@
 namespace gi {
 namespace {
 
-constexpr float kHalfWidth = 2.5f, kFront = -1.6f, kBack = 3, kHeight = 2.7f; // m; the camera stands at x = z = 0
-
-Material matt(vec3 albedo)
-{
-    Material m;
-    m.base_color = albedo;
-    m.specular = 0;
-    return m;
-}
+constexpr float kHalfWidth = 2.5f, kFront = -1.6f, kBackWall = 3, kHeight = 2.7f; // m; the camera stands at x = z = 0
 
 Material tiles(TexturePool& pool)
 {
@@ -36,7 +28,7 @@ void add_walls(SceneBuilder& b)
     int const white = b.add_material("white wall", matt({0.74f, 0.72f, 0.68f}));
     int const red = b.add_material("red wall", matt({0.55f, 0.16f, 0.12f}));
     int const blue = b.add_material("blue wall", matt({0.13f, 0.3f, 0.5f}));
-    float const width = 2 * kHalfWidth, depth = kBack - kFront;
+    float const width = 2 * kHalfWidth, depth = kBackWall - kFront;
     vec3 const low{-kHalfWidth, 0, kFront};
     b.quad(b.add_material("floor", tiles(b.scene().textures)), low, {0, 0, depth}, {width, 0, 0});
     b.quad(white, low + vec3{0, kHeight, 0}, {width, 0, 0}, {0, 0, depth});
@@ -64,8 +56,8 @@ void add_mirror(SceneBuilder& b)
 void add_furniture(SceneBuilder& b)
 {
     int const wood = b.add_material("wood", matt({0.45f, 0.3f, 0.16f}));
-    b.box(wood, {1.2f, 0, 1.2f}, {kHalfWidth, 0.18f, kBack});
-    b.box(wood, {1.6f, 0.18f, 1.6f}, {kHalfWidth, 0.36f, kBack});
+    b.box(wood, {1.2f, 0, 1.2f}, {kHalfWidth, 0.18f, kBackWall});
+    b.box(wood, {1.6f, 0.18f, 1.6f}, {kHalfWidth, 0.36f, kBackWall});
     Material glossy = matt({0.75f, 0.55f, 0.1f});
     glossy.specular = 1;
     glossy.roughness = 0.25f;

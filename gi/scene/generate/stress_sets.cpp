@@ -22,7 +22,7 @@ void check(std::uint32_t triangles)
                          fmt::format("12 to {} are possible", kMost), "choose a number in between");
 }
 
-Material matt(vec3 albedo)
+Material matt_on_both_sides(vec3 albedo)
 {
     Material m;
     m.base_color = albedo;
@@ -34,7 +34,7 @@ Material matt(vec3 albedo)
 /// 14 triangles: six walls and the lamp below the ceiling.
 void add_room(SceneBuilder& b)
 {
-    int const wall = b.add_material("wall", matt(vec3{0.7f}));
+    int const wall = b.add_material("wall", matt_on_both_sides(vec3{0.7f}));
     float const h = 2 * kHalf;
     vec3 const low{-kHalf, 0, -kHalf};
     b.quad(wall, low, {0, 0, h}, {h, 0, 0});
@@ -43,7 +43,7 @@ void add_room(SceneBuilder& b)
     b.quad(wall, low + vec3{0, 0, h}, {0, h, 0}, {h, 0, 0});
     b.quad(wall, low, {0, h, 0}, {0, 0, h});
     b.quad(wall, low + vec3{h, 0, 0}, {0, 0, h}, {0, h, 0});
-    Material lamp = matt(vec3{0});
+    Material lamp = matt_on_both_sides(vec3{0});
     lamp.double_sided = false;
     lamp.emission = vec3{12};
     b.quad(b.add_material("lamp", lamp), {-1.5f, h - 0.05f, -1.5f}, {3, 0, 0}, {0, 0, 3});
@@ -69,7 +69,7 @@ Scene generate_boxes(std::uint32_t triangles, std::uint64_t seed)
                                   vec3{0.7f}};
     std::array<int, kAlbedos.size()> materials{};
     for (std::size_t i = 0; i < kAlbedos.size(); ++i)
-        materials[i] = b.add_material(fmt::format("box {}", i), matt(kAlbedos[i]));
+        materials[i] = b.add_material(fmt::format("box {}", i), matt_on_both_sides(kAlbedos[i]));
     std::uint32_t const boxes = (triangles + 6) / 12;
     auto const side = std::uint32_t(std::ceil(std::cbrt(double(boxes))));
     float const cell = 1.7f * kHalf / float(side);
@@ -101,7 +101,7 @@ Scene generate_sphere(std::uint32_t triangles, std::uint64_t seed)
     check(triangles);
     SceneBuilder b;
     add_room(b);
-    int const material = b.add_material("sphere", matt(vec3{0.6f, 0.5f, 0.4f}));
+    int const material = b.add_material("sphere", matt_on_both_sides(vec3{0.6f, 0.5f, 0.4f}));
     // A sphere of s segments and s / 2 rings has s * s - 2 s triangles.
     int const segments = std::max(6, int(std::lround(1 + std::sqrt(1 + double(triangles)))));
     Pcg32 rng(mix_bits(seed), 2);

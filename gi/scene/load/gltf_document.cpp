@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kDeepest = 64; ///< nesting of a file's JSON; deeper files would exhaust the stack of the parser
+constexpr int kDeepestJson = 64; ///< nesting of a file's JSON; deeper files would exhaust the stack of the parser
 
 constexpr std::array<std::string_view, 15> kKnownExtensions{
     "KHR_draco_mesh_compression", "KHR_lights_punctual",    "KHR_materials_emissive_strength",
@@ -71,8 +71,8 @@ void check_depth(Bytes text, GltfDocument const& d)
         } else if (c == '"') {
             quoted = true;
         } else if (c == '{' || c == '[') {
-            if (++depth > kDeepest)
-                throw d.error("nests too deeply", fmt::format("more than {} levels of JSON", kDeepest));
+            if (++depth > kDeepestJson)
+                throw d.error("nests too deeply", fmt::format("more than {} levels of JSON", kDeepestJson));
         } else if (c == '}' || c == ']') {
             --depth;
         }

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDeepest = 8;        ///< scene files that include scene files
+constexpr int kDeepestInclusion = 8;        ///< scene files that include scene files
 constexpr int kMostModels = 10000; ///< of a file and all that it includes
 
 thread_local int t_depth = 0;  ///< of this file below the first
@@ -163,9 +163,9 @@ private:
             at, is_built_in ? "write generate: {kind: " + at.text() + "} instead of file" : "check the path");
         bool const is_scene_file = strcasecmp(file.extension().c_str(), ".yaml") == 0 ||
                                    strcasecmp(file.extension().c_str(), ".yml") == 0;
-        if (is_scene_file && t_depth == kDeepest)
+        if (is_scene_file && t_depth == kDeepestInclusion)
             throw at.error("'" + file.string() + "' is not read",
-                           fmt::format("scene files include each other {} deep", kDeepest), "break the loop");
+                           fmt::format("scene files include each other {} deep", kDeepestInclusion), "break the loop");
         return file;
     }
 

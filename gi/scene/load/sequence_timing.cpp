@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kFramesPerSecond = 24;
-constexpr double kLongest = 1e6; ///< s
+constexpr double kLongestSequence = 1e6; ///< s
 
 class TimingReader {
 public:
@@ -36,7 +36,7 @@ public:
         }
         std::vector<double> times = times_s();
         double const step = frames_ > 1 ? (times.back() - times.front()) / double(frames_ - 1) : 0;
-        t.period_s = root_.contains("duration_s") ? number("duration_s", 0, kLongest) : times.back() + step;
+        t.period_s = root_.contains("duration_s") ? number("duration_s", 0, kLongestSequence) : times.back() + step;
         for (double const time : times) t.times_s.push_back(float(time));
         for (std::size_t i = 1; i < t.times_s.size(); ++i)
             if (!(t.times_s[i] > t.times_s[i - 1]))
@@ -98,12 +98,12 @@ private:
         if (!list.is_array() || list.size() != frames_)
             throw wrong(fmt::format("'times_s' is not a list of {} numbers", frames_),
                         fmt::format("give one for each of the {} frames beside it", frames_));
-        double const start = root_.contains("t0_s") ? number("t0_s", -kLongest, kLongest) : 0;
+        double const start = root_.contains("t0_s") ? number("t0_s", -kLongestSequence, kLongestSequence) : 0;
         for (json const& value : list) {
             double const t = value.is_number() ? value.get<double>() - start : -1;
-            if (!(t >= 0) || !(t <= kLongest))
+            if (!(t >= 0) || !(t <= kLongestSequence))
                 throw wrong(
-                    fmt::format("time {} is not a number from t0_s on, below {:g}", times.size(), kLongest),
+                    fmt::format("time {} is not a number from t0_s on, below {:g}", times.size(), kLongestSequence),
                     "give seconds");
             times.push_back(t);
         }

@@ -11,8 +11,8 @@
 namespace gi {
 namespace {
 
-constexpr std::size_t kLongest = std::size_t(1) << 20; ///< the parser takes up to 300 times as much memory
-constexpr int kDeepest = 100;
+constexpr std::size_t kLongestYaml = std::size_t(1) << 20; ///< the parser takes up to 300 times as much memory
+constexpr int kDeepestYaml = 100;
 
 /// The parser calls itself for every level and every alias; this is counted before it starts.
 void check_shape(std::string const& text, std::string const& file)
@@ -20,7 +20,7 @@ void check_shape(std::string const& text, std::string const& file)
     auto const refuse = [&](std::string const& why) {
         return InputError({file, 1, 1}, "this YAML is not read", why, "such files are small and flat");
     };
-    if (text.size() > kLongest) throw refuse("it is larger than 1 MiB");
+    if (text.size() > kLongestYaml) throw refuse("it is larger than 1 MiB");
     int flow = 0, line_depth = 0;
     std::size_t aliases = 0;
     bool at_start = true;
@@ -43,8 +43,8 @@ void check_shape(std::string const& text, std::string const& file)
             indents.push_back(indent);
         }
         if (c == '*') ++aliases;
-        if (flow > kDeepest || line_depth > 50 * kDeepest || int(indents.size()) > kDeepest)
-            throw refuse(fmt::format("it nests deeper than {} levels", kDeepest));
+        if (flow > kDeepestYaml || line_depth > 50 * kDeepestYaml || int(indents.size()) > kDeepestYaml)
+            throw refuse(fmt::format("it nests deeper than {} levels", kDeepestYaml));
         if (aliases > 1000) throw refuse("it has more than 1000 '*'");
     }
 }
