@@ -1,11 +1,11 @@
 #include "viewer/video_writer.h"
 
 #include "gi/base/error.h"
+#include "viewer/video_codec/video_codec.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
-#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 
 namespace viewer {
 namespace {
@@ -15,10 +15,9 @@ namespace fs = std::filesystem;
 struct Codec {
     char const* extension;
     char const* name;
-    int code;
+    char const* code; ///< of four letters
 };
-int const kFfv1 = cv::VideoWriter::fourcc('F', 'F', 'V', '1'), kH264 = cv::VideoWriter::fourcc('a', 'v', 'c', '1');
-Codec const kCodecs[]{{".mkv", "FFV1", kFfv1}, {".mp4", "H.264", kH264}};
+constexpr Codec kCodecs[]{{".mkv", "FFV1", "FFV1"}, {".mp4", "H.264", "avc1"}};
 
 gi::InputError cannot(fs::path const& file, std::string const& why, std::string const& suggestion)
 {
@@ -30,6 +29,20 @@ Codec const& codec_of(fs::path const& file)
     for (Codec const& codec : kCodecs)
         if (file.extension() == codec.extension) return codec;
     throw cannot(file, "its ending names no video that is written here", "choose .mkv (lossless) or .mp4 (H.264)");
+}
+
+/// The module that knows FFmpeg, loaded by the first video.
+VideoCodec& video_codec()
+{
+    static VideoCodec& codec = [&]() -> VideoCodec& {
+        void* const module = dlopen("liblightwell_video.so", RTLD_NOW | RTLD_LOCAL);
+        auto* const make = module != nullptr ? reinterpret_cast<VideoCodec* (*)()>(dlsym(module, "lightwell_video_codec"))
+                                             : nullptr;
+        if (make == nullptr)
+            throw gi::InputError("videos cannot be written", dlerror(), "build all: scripts/build release");
+        return *make();
+    }();
+    return codec;
 }
 
 } // namespace
@@ -45,23 +58,17 @@ void check_video(fs::path const& file, int width, int height, double fps)
                      "change --frames");
 }
 
-struct VideoWriter::Stream {
-    cv::VideoWriter out;
-};
-
 VideoWriter::VideoWriter(fs::path const& file, int width, int height, double fps)
     : file_(file),
       temporary_(fs::absolute(file).parent_path() / // absolute, or FFmpeg takes "a:" for a protocol
                  ("." + file.stem().string() + ".unfinished" + file.extension().string())),
       width_(width),
-      height_(height),
-      stream_(std::make_unique<Stream>())
+      height_(height)
 {
     check_video(file, width, height, fps);
     Codec const& codec = codec_of(file);
-    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); // the message below says it
-    bool const open = stream_->out.open(temporary_.string(), cv::CAP_FFMPEG, codec.code, fps, {width, height});
-    if (open) return;
+    stream_ = video_codec().open(temporary_, codec.code, fps, width, height);
+    if (stream_) return;
     std::error_code ignored;
     fs::remove(temporary_, ignored);
     throw cannot(file,
@@ -81,16 +88,14 @@ void VideoWriter::add(std::span<unsigned char const> rgb8)
     cv::Mat const rgb(height_, width_, CV_8UC3, const_cast<unsigned char*>(rgb8.data()));
     cv::Mat bgr;
     cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-    stream_->out.write(bgr);
+    stream_->write(bgr);
     ++frames_;
 }
 
 void VideoWriter::finish()
 {
-    stream_->out.release();
-    int read = 0;
-    cv::VideoCapture in(temporary_.string(), cv::CAP_FFMPEG);
-    while (read <= frames_ && in.isOpened() && in.grab()) ++read;
+    stream_.reset();
+    int const read = video_codec().count_frames(temporary_, frames_ + 1);
     if (read != frames_)
         throw cannot(file_, fmt::format("read back it has {} of {} frames", read, frames_),
                      "free some space or choose another folder");

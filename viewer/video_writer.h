@@ -6,6 +6,8 @@
 
 namespace viewer {
 
+class VideoStream;
+
 /// Throws InputError where no video of this name, size and rate can be written: .mkv (FFV1, lossless) and .mp4
 /// (H.264), even sizes, 0.01 to 1000 frames per second. Writes nothing.
 void check_video(std::filesystem::path const& file, int width, int height, double fps);
@@ -27,10 +29,9 @@ public:
     void finish();
 
 private:
-    struct Stream;
     std::filesystem::path file_, temporary_;
     int width_, height_, frames_ = 0;
-    std::unique_ptr<Stream> stream_;
+    std::unique_ptr<VideoStream> stream_;
 };
 
 } // namespace viewer
