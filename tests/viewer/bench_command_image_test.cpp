@@ -2,7 +2,7 @@
 
 #include "gi/base/picture_file.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/bench/table_file.h"
+#include "viewer/bench/folder.h"
 
 #include <set>
 
@@ -15,7 +15,7 @@ constexpr char const* kTiny = "bench sweep --scene cornell --methods reference -
 /// Every opening tag has its closing one, in the right order; names of elements that were seen.
 std::set<std::string> check_tags(std::string const& html)
 {
-    static std::set<std::string> const kVoid{"meta", "img", "br"};
+    static std::set<std::string> const kVoid{"meta", "img", "br", "input"};
     std::set<std::string> seen;
     std::vector<std::string> open;
     for (std::size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at + 1)) {
@@ -42,7 +42,7 @@ TEST(BenchCommand, SweepsAndReports)
     TemporaryFolder const folder;
     Outcome const sweep = run_well(kTiny, folder.path());
     EXPECT_NE(sweep.out.find("relmse"), std::string::npos) << sweep.out;
-    std::vector<BenchTable> const tables = read_tables(folder / "d");
+    std::vector<BenchTable> const tables = read_bench_folder(folder / "d").tables;
     ASSERT_EQ(tables.size(), 1u);
     BenchTable const& t = tables[0];
     EXPECT_EQ(t.command, std::string("lightwell ") + kTiny);
@@ -218,7 +218,7 @@ TEST(BenchCommand, ControlCKeepsTheRowsSoFar)
     Outcome const o = program.wait(std::chrono::seconds(30));
     EXPECT_EQ(o.code, 130) << o.err;
     EXPECT_NE(o.err.find("interrupted"), std::string::npos) << o.err;
-    std::vector<BenchTable> const tables = read_tables(folder / "d");
+    std::vector<BenchTable> const tables = read_bench_folder(folder / "d").tables;
     ASSERT_EQ(tables.size(), 1u);
     ASSERT_EQ(tables[0].rows.size(), 1u);
     EXPECT_EQ(number(cell(tables[0], tables[0].rows[0], "budget_s")), 0.02);
