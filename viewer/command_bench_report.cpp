@@ -86,7 +86,7 @@ void add_bench_report(CLI::App& bench, int& exit_code)
   lightwell bench report sweep
   lightwell render cornell --eye left --paths 4 --size 64x48 --out sweep/left.exr --png sweep/left.png --stats sweep/left.json
   lightwell render cornell --eye right --paths 4 --size 64x48 --out sweep/right.exr --png sweep/right.png --stats sweep/right.json
-  lightwell bench report sweep --out index.html --title "Cornell box" --next "lightwell view cornell"
+  lightwell bench report sweep --out index.html --title Cornell
 
 The page needs nothing beside itself: pictures (PNG) and videos (MP4) are in it. Two renders that differ in --eye alone are shown as a
 stereo pair, and for red and cyan glasses as DIR/LEFT_anaglyph.png.)");

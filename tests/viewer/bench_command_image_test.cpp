@@ -3,6 +3,7 @@
 #include "gi/base/picture_file.h"
 #include "tests/viewer/run_program.h"
 #include "viewer/bench/folder.h"
+#include "viewer/bench/table_file.h"
 
 #include <set>
 
