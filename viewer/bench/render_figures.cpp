@@ -76,7 +76,7 @@ std::string costs_html(std::vector<RenderStats const*> const& renders)
         html += "<p class=\"note\">" + escaped(machine + "; " + renders.front()->program) + "</p>\n";
     html += "<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\">file</th><th scope=\"col\">what</th>";
     for (char const* column : {"structures, s", "tracing, s", "filter, s", "whole, s", "median of frames, s",
-                               "95 % of frames, s", "estimated relMSE before the filter", "most memory, MiB"})
+                               "95 % of frames, s", "estimated relMSE, unfiltered", "most memory, MiB"})
         html += fmt::format("<th scope=\"col\" class=\"number\">{}</th>", column);
     html += "</tr></thead>\n<tbody>\n";
     for (RenderStats const* const r : renders) html += cost_row(*r);

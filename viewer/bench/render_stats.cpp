@@ -16,7 +16,7 @@ using StatsJson = nlohmann::json;
 constexpr int kStatsSchema = 1; // of viewer/render_record.cpp
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-StatsJson const* at(StatsJson const& json, char const* key)
+StatsJson const* value_at(StatsJson const& json, char const* key)
 {
     auto const found = json.find(key);
     return found == json.end() || found->is_null() ? nullptr : &*found;
@@ -24,13 +24,13 @@ StatsJson const* at(StatsJson const& json, char const* key)
 
 std::string text_at(StatsJson const& json, char const* key)
 {
-    StatsJson const* const value = at(json, key);
+    StatsJson const* const value = value_at(json, key);
     return value == nullptr ? "" : value->get<std::string>();
 }
 
 double number_at(StatsJson const& json, char const* key, double otherwise)
 {
-    StatsJson const* const value = at(json, key);
+    StatsJson const* const value = value_at(json, key);
     return value == nullptr ? otherwise : value->get<double>();
 }
 
@@ -63,7 +63,7 @@ RenderStats to_render_stats(StatsJson const& json)
     StatsJson const &settings = json.at("settings"), &outputs = json.at("outputs"), &report = json.at("report");
     r.command = json.at("command");
     r.program = json.at("program");
-    if (StatsJson const* const m = at(json, "machine"))
+    if (StatsJson const* const m = value_at(json, "machine"))
         r.machine = to_text(Machine{m->at("cpu"), m->at("cores"), m->at("memory_gib")});
     r.method = settings.at("method");
     r.denoise = settings.at("denoise");
@@ -80,7 +80,7 @@ RenderStats to_render_stats(StatsJson const& json)
     read_stages(report.at("stages_s"), r);
     r.memory_bytes = number_at(report, "peak_memory_bytes", kUnknown);
     r.paths = r.relmse = r.frame_s = r.frame_p95_s = kUnknown;
-    if (StatsJson const* const result = at(json, "result")) {
+    if (StatsJson const* const result = value_at(json, "result")) {
         r.paths = result->at("paths_per_pixel");
         r.relmse = number_at(*result, "relmse_estimate", kUnknown);
         return r;
@@ -88,7 +88,7 @@ RenderStats to_render_stats(StatsJson const& json)
     StatsJson const& frames = json.at("frames");
     r.frames = int(frames.size());
     for (StatsJson const& frame : frames) r.paths = number_at(frame, "paths_per_pixel", r.paths);
-    if (StatsJson const* const seconds = at(json, "frame_seconds")) {
+    if (StatsJson const* const seconds = value_at(json, "frame_seconds")) {
         r.frame_s = seconds->at("median");
         r.frame_p95_s = seconds->at("p95");
         r.whole_s = seconds->at("total");
