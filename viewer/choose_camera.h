@@ -1,6 +1,7 @@
 #pragma once
 #include "gi/scene/world.h"
 
+#include <glm/vec2.hpp>
 #include <optional>
 #include <string>
 
@@ -8,11 +9,20 @@ namespace viewer {
 
 inline constexpr double kDefaultFov_deg = 45;
 
+/// One of two eyes beside the camera, which share a virtual screen.
+struct EyeChoice {
+    bool right = false;
+    double eye_distance_m = 0.063;
+    std::optional<double> screen_distance_m; ///< m along the view; what lies there has no disparity
+    glm::ivec2 size{1};                      ///< of the picture, pixels
+};
+
 /// What the command line says about the point of view; all may be empty.
 struct CameraChoice {
     std::string name;
     std::optional<gi::dvec3> look_from, look_at;
     std::optional<double> fov_deg, aperture_radius_m, focus_distance_m;
+    std::optional<EyeChoice> eye; ///< of FrameCamera alone
 };
 
 struct ChosenCamera {

@@ -2,7 +2,10 @@
 
 #include "gi/base/error.h"
 #include "viewer/arguments.h"
+#include "viewer/live/desktop_views.h"
 
+#include <algorithm>
+#include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
@@ -28,6 +31,7 @@ FrameCamera::FrameCamera(gi::World const& first, CameraChoice const& choice, Cam
     if (motion_.path) {
         gi::Camera any; // refused before the work
         put_lens(any, choice_, std::nullopt, "");
+        if (choice_.eye) place_screen(first);
         return;
     }
     first_ = choose_camera(first, choice);
@@ -36,9 +40,40 @@ FrameCamera::FrameCamera(gi::World const& first, CameraChoice const& choice, Cam
     of_scene_ = !choice.look_from && !first.cameras.empty();
     center_ = choice.look_at.value_or(gi::dvec3(first.bounds.empty() ? gi::vec3{0} : first.bounds.center()) +
                                       first.origin);
+    if (choice_.eye) place_screen(first);
+}
+
+/// As the viewer does it, and then it stays there.
+void FrameCamera::place_screen(gi::World const& first)
+{
+    constexpr double kNearest_m = 0.2, kFarthest_m = 1e4;
+    if (!motion_.path && first_.camera.orthographic)
+        throw gi::InputError("--eye with the camera '" + first_.camera.name + "'",
+                             "it is orthographic: all of its rays are parallel, from no eye",
+                             "choose a perspective camera");
+    if (choice_.eye->screen_distance_m) return;
+    gi::dvec3 const from =
+        motion_.path ? motion_.path->keys.front().from : gi::dvec3(first_.camera.world_from_camera[3]);
+    gi::dvec3 const middle = gi::dvec3(first.bounds.empty() ? gi::vec3{0} : first.bounds.center()) + first.origin;
+    double const distance = std::clamp(glm::length(middle - from), kNearest_m, kFarthest_m);
+    choice_.eye->screen_distance_m = distance;
+    first_.note +=
+        fmt::format("{}the pictures of the two eyes coincide {:.3g} m before the camera, as far away as "
+                    "the middle of the scene",
+                    first_.note.empty() ? "" : "; ", distance);
 }
 
 gi::Camera FrameCamera::of(gi::World const& world, double time_s, double fraction) const
+{
+    gi::Camera camera = middle(world, time_s, fraction);
+    if (!choice_.eye) return camera;
+    EyeChoice const& eye = *choice_.eye;
+    auto const views =
+        desktop_views(camera, {true, eye.eye_distance_m, *eye.screen_distance_m}, eye.size, eye.size);
+    return views[eye.right ? 1 : 0].camera;
+}
+
+gi::Camera FrameCamera::middle(gi::World const& world, double time_s, double fraction) const
 {
     if (motion_.path) {
         gi::Camera camera =

@@ -17,8 +17,9 @@ double parse_turn(std::string const& text);
 class FrameCamera {
 public:
     /// @param first the world of the first frame: its middle is circled, and a camera that frames the whole scene
-    ///              stays where it is then; what a lens focuses on without being told how far
-    /// Throws InputError as choose_camera does.
+    ///              stays where it is then; what a lens focuses on, and where the screen of two eyes is, without
+    ///              being told how far
+    /// Throws InputError as choose_camera does, and where an eye of an orthographic camera is asked for.
     FrameCamera(gi::World const& first, CameraChoice const& choice, CameraMotion const& motion);
 
     /// @param time_s on the path   @param fraction of the turn, 0..1
@@ -26,6 +27,9 @@ public:
     std::string const& note() const { return first_.note; }
 
 private:
+    gi::Camera middle(gi::World const& world, double time_s, double fraction) const;
+    void place_screen(gi::World const& first);
+
     CameraChoice choice_;
     CameraMotion motion_;
     ChosenCamera first_;

@@ -69,6 +69,10 @@ CameraChoice camera_choice(RenderOptions const& o)
     choice.fov_deg = o.fov_deg;
     choice.aperture_radius_m = o.aperture_radius_m;
     choice.focus_distance_m = o.focus_distance_m;
+    if (!o.eye.empty()) {
+        auto const [width, height] = parse_size(o.size);
+        choice.eye = EyeChoice{o.eye == "right", o.eye_distance_m, o.screen_distance_m, {width, height}};
+    }
     return choice;
 }
 

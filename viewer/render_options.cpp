@@ -153,6 +153,25 @@ void declare_lens_options(CLI::App& c, RenderOptions& o)
         ->check(in_range(gi::kNearestFocus_m, gi::kFarthestFocus_m));
 }
 
+void declare_eye_options(CLI::App& c, RenderOptions& o)
+{
+    CLI::Option* const eye =
+        c.add_option("--eye", o.eye,
+                     "left or right, of a stereo pair: beside the camera, with an off-axis view, "
+                     "so that both share a\nvirtual screen; render one after the other")
+            ->check(CLI::IsMember({"left", "right"}));
+    c.add_option("--eye-distance", o.eye_distance_m, "m between the pupils")
+        ->check(in_range(0, 1))
+        ->capture_default_str()
+        ->needs(eye);
+    c.add_option(
+         "--screen-distance", o.screen_distance_m,
+         "m along the view, to the virtual screen, where the two pictures coincide (default: as far as the\n"
+         "middle of the scene)")
+        ->check(in_range(0.01, 1e6))
+        ->needs(eye);
+}
+
 void declare_denoise(CLI::App& c, RenderOptions& o)
 {
     c.add_option(
@@ -289,6 +308,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_option("--size", o.size, "width x height, pixels")->capture_default_str();
     declare_view_options(c, o);
     declare_lens_options(c, o);
+    declare_eye_options(c, o);
     c.add_option(
         "--background", o.background,
         "what the camera sees past all surfaces (default: what the scene says, else map):"
@@ -341,11 +361,13 @@ void declare_options(CLI::App& c, RenderOptions& o)
   lightwell render atrium --size 64x64 --paths 4 --denoise atrous --out smooth.exr
   lightwell render atrium --size 64x48 --paths 8 --aperture-radius 0.1 --focus-distance 3 --out lens.exr
   lightwell render atrium --camera courtyard --time 0.4 --shutter 0.04 --size 64x48 --paths 8 --out blur.exr
+  lightwell render atrium --time 0.4 --eye left --screen-distance 6 --size 64x48 --paths 4 --out left.exr --png left.png
+  lightwell render atrium --time 0.4 --eye right --screen-distance 6 --size 64x48 --paths 4 --out right.exr --png right.png
   lightwell render atrium --frames 0:3@10 --size 48x48 --paths 2 --out walk_%04d.exr --png walk_%04d.png
   lightwell render atrium --method slhb --frames 0:3@24 --reuse 16 --paths 1 --bounces 2 --size 48x48 --out reuse_%04d.exr --stats reuse.json
   lightwell render cornell --frames 0:4@8 --turntable --size 48x48 --paths 2 --video turn.mkv
 
---stats and --json hold: schema, program, command, settings, outputs, result (end, paths_per_pixel, seconds,
+--stats and --json hold: schema, program, command, machine, settings, outputs, result (end, paths_per_pixel, seconds,
 relmse_estimate, rays, rays_per_s), plan (what, build, reason), report (stages_s, counts, losses,
 peak_memory_bytes); for --frames, instead of result, one record per frame (frame, time_s, outputs, reused, seconds,
 trace_s, paths_per_pixel, rays, relmse_estimate, end, losses) and frame_seconds (median, p95, p99, most, total).

@@ -18,10 +18,11 @@ namespace viewer {
 
 struct RenderOptions {
     std::string scene, method = "reference", size = "512x512", camera, look_from, look_at, environment, background,
-                       budget, until, filter = "box", denoise = "none", out, png, stats, tone = "srgb";
+                       budget, until, filter = "box", denoise = "none", out, png, stats, tone = "srgb", eye;
     std::vector<std::string> layers;
     std::optional<double> fov_deg, time_s, aperture_radius_m, focus_distance_m;
-    double environment_rotate_deg = 0, environment_scale = 1, exposure_ev = 0;
+    double environment_rotate_deg = 0, environment_scale = 1, exposure_ev = 0, eye_distance_m = 0.063;
+    std::optional<double> screen_distance_m; ///< of --eye
     std::optional<std::uint32_t> paths;
     std::uint64_t seed = 0;
     int bounces = 64, threads = 0;
@@ -45,6 +46,8 @@ gi::Schedule parse_schedule(std::string const& name);
 void declare_view_options(CLI::App& command, RenderOptions& options);
 /// Of the camera's lens, for commands that render whole pictures.
 void declare_lens_options(CLI::App& command, RenderOptions& options);
+/// Which eye of a pair sees it.
+void declare_eye_options(CLI::App& command, RenderOptions& options);
 void declare_denoise(CLI::App& command, RenderOptions& options);
 /// A method that was chosen, and, of slhb, with which schedule.
 struct NamedMethod {

@@ -1,5 +1,6 @@
 #include "viewer/render_record.h"
 
+#include "viewer/bench/machine.h"
 #include "viewer/report_json.h"
 #include "viewer/version.h"
 
@@ -28,6 +29,11 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
     if (o.fov_deg) add("--fov", fmt::format("{}", *o.fov_deg));
     if (o.aperture_radius_m) add("--aperture-radius", fmt::format("{}", *o.aperture_radius_m));
     if (o.focus_distance_m) add("--focus-distance", fmt::format("{}", *o.focus_distance_m));
+    if (!o.eye.empty()) {
+        add("--eye", o.eye);
+        add("--eye-distance", fmt::format("{}", o.eye_distance_m));
+        if (o.screen_distance_m) add("--screen-distance", fmt::format("{}", *o.screen_distance_m));
+    }
     if (o.time_s) add("--time", fmt::format("{}", *o.time_s));
     add("--envmap", o.environment);
     if (o.environment_rotate_deg != 0) add("--envmap-rotate", fmt::format("{}", o.environment_rotate_deg));
@@ -109,6 +115,8 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
     j["schema"] = kSchema;
     j["program"] = version_text();
     j["command"] = normalised_command(o, s, amount, chosen);
+    Machine const machine = this_machine();
+    j["machine"] = {{"cpu", machine.cpu}, {"cores", machine.cores}, {"memory_gib", machine.memory_gib}};
     j["settings"] = {{"scene", o.scene},
                      {"method", o.method},
                      {"width", s.width},
@@ -119,6 +127,9 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
                      {"fov_deg", or_null(o.fov_deg)},
                      {"aperture_radius_m", or_null(o.aperture_radius_m)},
                      {"focus_distance_m", or_null(o.focus_distance_m)},
+                     {"eye", name_or_null(o.eye)},
+                     {"eye_distance_m", o.eye.empty() ? Json() : Json(o.eye_distance_m)},
+                     {"screen_distance_m", or_null(o.screen_distance_m)},
                      {"time_s", or_null(o.time_s)},
                      {"envmap", name_or_null(o.environment)},
                      {"envmap_rotate_deg", o.environment_rotate_deg},

@@ -179,12 +179,22 @@ bool Sweep::run(SweepScene const& scene, SweepReference const& reference, BenchT
     return true;
 }
 
+/// With what it says of itself where a render of ours has written it.
+std::string describe_reference(std::string const& file, gi::Picture const& picture)
+{
+    auto const method = picture.metadata.find("method"), paths = picture.metadata.find("paths");
+    if (method == picture.metadata.end() || paths == picture.metadata.end()) return file;
+    return fmt::format("{}: method {}, {} paths per pixel", file, method->second, paths->second);
+}
+
 BenchTable empty_table(SweepOptions const& o, SweepPlan const& plan)
 {
-    BenchTable table = start_table("sweep", "Error over time, method against method",
-                                   {"scene", "method", "budget_s", "frame_s", "trace_s", "paths", "Mrays_per_s",
-                                    "relmse", "relmse_indirect", "flip", "bias", "repeats", "reference_relmse",
-                                    "picture_file", "flip_file", "reference_file"});
+    BenchTable table = start_table(
+        "sweep",
+        o.render.denoise == "none" ? "Error over time, method against method"
+                                   : "Error over time, all through the filter " + o.render.denoise,
+        {"scene", "method", "budget_s", "frame_s", "trace_s", "paths", "Mrays_per_s", "relmse", "relmse_indirect",
+         "flip", "bias", "repeats", "reference_relmse", "picture_file", "flip_file", "reference_file"});
     gi::RenderSettings const& s = plan.settings;
     table.facts = {{"size", fmt::format("{}x{}", s.width, s.height)},
                    {"bounces", std::to_string(s.bounces)},
@@ -192,7 +202,7 @@ BenchTable empty_table(SweepOptions const& o, SweepPlan const& plan)
                    {"threads", s.threads == 0 ? "all" : std::to_string(s.threads)},
                    {"reference", o.reference.empty()
                                      ? fmt::format("path tracing, {} paths per pixel", o.reference_paths)
-                                     : o.reference}};
+                                     : describe_reference(o.reference, *plan.reference)}};
     return table;
 }
 

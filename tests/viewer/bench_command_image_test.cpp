@@ -2,6 +2,7 @@
 
 #include "gi/base/picture_file.h"
 #include "tests/viewer/run_program.h"
+#include "viewer/bench/folder.h"
 #include "viewer/bench/table_file.h"
 
 #include <set>
@@ -15,7 +16,7 @@ constexpr char const* kTiny = "bench sweep --scene cornell --methods reference -
 /// Every opening tag has its closing one, in the right order; names of elements that were seen.
 std::set<std::string> check_tags(std::string const& html)
 {
-    static std::set<std::string> const kVoid{"meta", "img", "br"};
+    static std::set<std::string> const kVoid{"meta", "img", "br", "input"};
     std::set<std::string> seen;
     std::vector<std::string> open;
     for (std::size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at + 1)) {
@@ -42,7 +43,7 @@ TEST(BenchCommand, SweepsAndReports)
     TemporaryFolder const folder;
     Outcome const sweep = run_well(kTiny, folder.path());
     EXPECT_NE(sweep.out.find("relmse"), std::string::npos) << sweep.out;
-    std::vector<BenchTable> const tables = read_tables(folder / "d");
+    std::vector<BenchTable> const tables = read_bench_folder(folder / "d").tables;
     ASSERT_EQ(tables.size(), 1u);
     BenchTable const& t = tables[0];
     EXPECT_EQ(t.command, std::string("lightwell ") + kTiny);
@@ -88,6 +89,46 @@ TEST(BenchCommand, SweepsAndReports)
          at = html.find("src=\"", at + 1), ++sources)
         EXPECT_EQ(html.compare(at, 27, "src=\"data:image/png;base64,"), 0);
     EXPECT_EQ(sources, pictures);
+}
+
+TEST(BenchCommand, ReportsWhatWasRendered)
+{
+    TemporaryFolder const folder;
+    std::filesystem::create_directory(folder / "d");
+    for (std::string const eye : {"left", "right"})
+        run_well("render cornell --paths 2 --size 16x12 --eye " + eye + " --screen-distance 1 --png d/" + eye +
+                     ".png --stats d/" + eye + ".json",
+                 folder.path());
+    run_well(
+        "render cornell --paths 2 --size 16x12 --frames 0:3@10 --turntable --video d/turn.mp4 --stats d/turn.json",
+        folder.path());
+    EXPECT_EQ(
+        run_well("bench report d --out page.html --title A&B --lead <i> --next one --next two", folder.path()).out,
+        "page.html\n");
+    std::string const html = file_text(folder / "page.html");
+    std::set<std::string> const seen = check_tags(html);
+    EXPECT_TRUE(seen.contains("video"));
+    EXPECT_FALSE(seen.contains("script"));
+    EXPECT_EQ(html.find("class=\"missing\""), std::string::npos);
+    for (char const* words : {"A&amp;B", "&lt;i&gt;", "<code>one</code>", "<code>two</code>", "63 mm apart",
+                              "1 m away", "3 frames", "data:video/mp4;base64,", "--eye left", "--eye right"})
+        EXPECT_NE(html.find(words), std::string::npos) << words;
+
+    auto const color = [&](char const* file) {
+        gi::Picture const p = gi::read_picture(folder / "d" / file);
+        EXPECT_EQ(p.width, 16) << file;
+        return gi::rgb(*p.find("color"), 6 * 16 + 8);
+    };
+    gi::vec3 const left = color("left.png"), right = color("right.png"), both = color("left_anaglyph.png");
+    EXPECT_GT(both.x, 0.2f * left.x);
+    EXPECT_GT(both.y, 0.2f * right.y);
+
+    run_well("render cornell --paths 2 --size 16x12 --eye right --screen-distance 2 --png d/right.png --stats "
+             "d/right.json",
+             folder.path());
+    std::filesystem::remove(folder / "d" / "left_anaglyph.png");
+    run_well("bench report d", folder.path());
+    EXPECT_FALSE(std::filesystem::exists(folder / "d" / "left_anaglyph.png")) << "no pair: their screens differ";
 }
 
 TEST(BenchCommand, TakesTheReferenceFromItsFolder)
@@ -149,6 +190,8 @@ TEST(BenchCommand, WrongCallsLeaveNothing)
     std::filesystem::create_directory(folder / "empty");
     std::filesystem::create_directory(folder / "damaged");
     std::ofstream(folder / "damaged" / "sweep.json") << "{\"lightwell_table\": 1, ";
+    std::filesystem::create_directory(folder / "statistics");
+    std::ofstream(folder / "statistics" / "render.json") << "{\"settings\": {}, \"outputs\": {}}";
     struct WrongCall {
         char const *arguments, *mentions;
     };
@@ -194,6 +237,9 @@ TEST(BenchCommand, WrongCallsLeaveNothing)
              {"bench report file", "folder"},
              {"bench report empty", "json"},
              {"bench report damaged", "sweep.json"},
+             {"bench report statistics", "render.json"},
+             {"bench report damaged empty", "--out"},
+             {"bench report damaged --out page.txt", ".html"},
          }) {
         Outcome const o = run(call.arguments, folder.path());
         EXPECT_EQ(o.code, 2) << call.arguments << "\nsignal " << o.signal << "\n" << o.err;
@@ -202,7 +248,7 @@ TEST(BenchCommand, WrongCallsLeaveNothing)
         EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << call.arguments << "\n" << o.err;
         EXPECT_NE(o.err.find(call.mentions), std::string::npos) << call.arguments << "\n" << o.err;
     }
-    EXPECT_EQ(folder.files(), (std::vector<std::string>{"damaged", "empty", "file"}));
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"damaged", "empty", "file", "statistics"}));
 }
 
 TEST(BenchCommand, ControlCKeepsTheRowsSoFar)
@@ -218,7 +264,7 @@ TEST(BenchCommand, ControlCKeepsTheRowsSoFar)
     Outcome const o = program.wait(std::chrono::seconds(30));
     EXPECT_EQ(o.code, 130) << o.err;
     EXPECT_NE(o.err.find("interrupted"), std::string::npos) << o.err;
-    std::vector<BenchTable> const tables = read_tables(folder / "d");
+    std::vector<BenchTable> const tables = read_bench_folder(folder / "d").tables;
     ASSERT_EQ(tables.size(), 1u);
     ASSERT_EQ(tables[0].rows.size(), 1u);
     EXPECT_EQ(number(cell(tables[0], tables[0].rows[0], "budget_s")), 0.02);

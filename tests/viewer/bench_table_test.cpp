@@ -160,8 +160,12 @@ TEST(Page, EscapesAllText)
     t.title = t.program = t.command = t.date = t.machine.cpu = "<x>";
     t.facts = {{"<f>", "<v>"}};
     t.add({std::string("<r>"), std::string("<s>"), std::string("<m>"), 1.0, 1.0, 1.0, std::string("../<p>.png")});
-    std::string const html = make_page({t}, "/nowhere");
-    for (char const* tag : {"<t>", "<c>", "<x>", "<f>", "<v>", "<r>", "<s>", "<m>", "<p>."})
+    Page page;
+    page.folders = {{"/nowhere", {t}, {}}};
+    page.title = page.lead = "<w>";
+    page.next = {"<n>"};
+    std::string const html = make_page(page);
+    for (char const* tag : {"<t>", "<c>", "<x>", "<f>", "<v>", "<r>", "<s>", "<m>", "<p>.", "<w>", "<n>"})
         EXPECT_EQ(html.find(tag), std::string::npos) << tag;
     EXPECT_NE(html.find("/nowhere/&lt;p&gt;.png"), std::string::npos) << "only names within the folder";
 }

@@ -1,4 +1,4 @@
-// Every example that the program and the README give is run as it stands.
+// Every example that the program, the README and docs/commands.md give is run as it stands.
 
 #include "tests/viewer/run_program.h"
 
@@ -50,11 +50,13 @@ INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
                              return name;
                          });
 
-TEST(ReadmeExamples, Run)
+class DocumentExamples : public testing::TestWithParam<char const*> {};
+
+TEST_P(DocumentExamples, Run)
 {
     std::vector<std::string> shell;
     bool inside = false;
-    for (std::string const& line : lines(file_text(LIGHTWELL_SOURCE_DIR "/README.md"))) {
+    for (std::string const& line : lines(file_text(std::string(LIGHTWELL_SOURCE_DIR "/") + GetParam()))) {
         if (line.starts_with("```"))
             inside = line == "```sh";
         else if (inside)
@@ -62,6 +64,11 @@ TEST(ReadmeExamples, Run)
     }
     EXPECT_GT(run_examples(shell, "build/release/lightwell "), 0);
 }
+
+INSTANTIATE_TEST_SUITE_P(Of, DocumentExamples, testing::Values("README.md", "docs/commands.md"),
+                         [](auto const& example) {
+                             return std::string(example.param).starts_with("README") ? "Readme" : "Commands";
+                         });
 
 } // namespace
 } // namespace viewer::test

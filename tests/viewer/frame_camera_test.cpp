@@ -96,5 +96,41 @@ TEST(FrameCamera, AFocusOnceChosenStays)
     EXPECT_EQ(FrameCamera(first, choice, {path, 0}).of(first, 0, 0).focus_distance_m, 3);
 }
 
+TEST(FrameCamera, TwoEyesShareAScreen)
+{
+    gi::World const world = box_world();
+    CameraChoice choice;
+    choice.look_from = gi::dvec3{2, 3, 15};
+    choice.look_at = gi::dvec3{2, 3, 5};
+    choice.eye = EyeChoice{false, 0.07, 4, {300, 200}};
+    gi::Camera const left = FrameCamera(world, choice, {}).of(world, 0, 0);
+    choice.eye->right = true;
+    gi::Camera const right = FrameCamera(world, choice, {}).of(world, 0, 0);
+    EXPECT_LT(glm::length(place(right) - place(left) - gi::dvec3(0.07, 0, 0)), 1e-12);
+    EXPECT_LT(glm::length(0.5 * (place(right) + place(left)) - *choice.look_from), 1e-12);
+    gi::CameraRays const l = gi::camera_rays(left, 300, 200, {}), r = gi::camera_rays(right, 300, 200, {});
+    gi::vec3 const on_screen{2.5f, 3.4f, 11}, behind{2.5f, 3.4f, 7};
+    EXPECT_NEAR(gi::project(l, on_screen).x, gi::project(r, on_screen).x, 1e-3);
+    EXPECT_NEAR(gi::project(l, on_screen).y, gi::project(r, on_screen).y, 1e-3);
+    EXPECT_LT(gi::project(l, behind).x, gi::project(r, behind).x - 1) << "what is behind it is farther apart";
+}
+
+TEST(FrameCamera, TheScreenOfTwoEyesIsInTheMiddleOfTheSceneAndStays)
+{
+    gi::World first = box_world(), second = first;
+    first.cameras = {gi::look_at({2, 3, 15}, {2, 3, 5}, 30)};
+    second.cameras = {gi::look_at({2, 3, 25}, {2, 3, 5}, 30)};
+    CameraChoice choice, told;
+    choice.eye = EyeChoice{true, 0.063, std::nullopt, {64, 48}};
+    told.eye = EyeChoice{true, 0.063, 10, {64, 48}};
+    FrameCamera const found(first, choice, {});
+    EXPECT_NE(found.note().find("10 m before the camera"), std::string::npos) << found.note();
+    for (gi::World const* const world : {&first, &second})
+        EXPECT_EQ(found.of(*world, 0, 0), FrameCamera(first, told, {}).of(*world, 0, 0));
+
+    first.cameras[0].orthographic = true;
+    EXPECT_THROW(FrameCamera(first, told, {}), gi::InputError) << "it has no eyes";
+}
+
 } // namespace
 } // namespace viewer

@@ -24,6 +24,26 @@ std::string base64(std::span<unsigned char const> bytes)
     return text;
 }
 
+constexpr char const* kNotMarked = "something else";
+
+/// Whole files that have `mark` at byte `at`. @return why not; empty = read
+std::string read_marked(std::filesystem::path const& file, std::string_view mark, std::size_t at,
+                        std::size_t least, std::vector<unsigned char>& bytes)
+{
+    constexpr std::size_t kMostBytes = std::size_t(64) << 20;
+    try {
+        bytes = gi::read_bytes(file, kMostBytes);
+    } catch (gi::InputError const& e) {
+        return e.what();
+    }
+    bool const marked = bytes.size() >= std::max(least, at + mark.size()) &&
+                        std::equal(mark.begin(), mark.end(), bytes.begin() + std::ptrdiff_t(at),
+                                   [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
+    return marked ? "" : kNotMarked;
+}
+
+std::string missing(std::string const& words) { return "<p class=\"missing\">" + escaped(words) + "</p>"; }
+
 } // namespace
 
 std::string escaped(std::string_view text)
@@ -65,18 +85,10 @@ std::string readable(std::string const& column_name)
 
 std::string embedded_png(std::filesystem::path const& file, std::string const& description)
 {
-    constexpr std::string_view kMark = "\x89PNG";
-    constexpr std::size_t kMostBytes = std::size_t(64) << 20, kSize = 16; // where its width and height stand
+    constexpr std::size_t kSize = 16; // where its width and height stand
     std::vector<unsigned char> bytes;
-    try {
-        bytes = gi::read_bytes(file, kMostBytes);
-    } catch (gi::InputError const& e) {
-        return fmt::format("<p class=\"missing\">{}</p>", escaped(e.what()));
-    }
-    if (bytes.size() < kSize + 8 ||
-        !std::equal(kMark.begin(), kMark.end(), bytes.begin(),
-                    [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; }))
-        return fmt::format("<p class=\"missing\">{} is no PNG</p>", escaped(file.filename().string()));
+    if (std::string const why = read_marked(file, "\x89PNG", 0, kSize + 8, bytes); !why.empty())
+        return missing(why == kNotMarked ? file.filename().string() + " is no PNG" : why);
     auto const word = [&](std::size_t at) {
         return std::uint32_t(bytes[at]) << 24 | std::uint32_t(bytes[at + 1]) << 16 |
                std::uint32_t(bytes[at + 2]) << 8 | bytes[at + 3];
@@ -84,6 +96,17 @@ std::string embedded_png(std::filesystem::path const& file, std::string const& d
     return fmt::format(
         "<img tabindex=\"0\" width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">", word(kSize),
         word(kSize + 4), escaped(description), base64(bytes));
+}
+
+std::string embedded_video(std::filesystem::path const& file, std::string const& description)
+{
+    std::vector<unsigned char> bytes;
+    if (std::string const why = read_marked(file, "ftyp", 4, 8, bytes); !why.empty())
+        return missing(why == kNotMarked ? file.filename().string() + " is no MP4, and browsers would not play it"
+                                         : why);
+    return fmt::format("<video controls loop autoplay muted playsinline title=\"{}\" "
+                       "src=\"data:video/mp4;base64,{}\"></video>",
+                       escaped(description), base64(bytes));
 }
 
 } // namespace viewer

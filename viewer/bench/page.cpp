@@ -55,7 +55,8 @@ bool has_spread(BenchTable const& t)
 
 std::string origin_html(BenchTable const& t)
 {
-    std::string html = "<dl>\n";
+    std::string html =
+        "<details>\n<summary>how it was measured: " + escaped(to_text(t.machine)) + "</summary>\n<dl>\n";
     auto const entry = [&](std::string const& what, std::string const& value) {
         html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(what), escaped(value));
     };
@@ -63,29 +64,40 @@ std::string origin_html(BenchTable const& t)
     entry("program", t.program);
     entry("date", t.date);
     for (auto const& [what, value] : t.facts) entry(what, value);
-    return html + "</dl>\n<p>To repeat it:</p>\n<pre><code>" + escaped(t.command) + "</code></pre>\n";
+    return html + "</dl>\n<p>To repeat it:</p>\n<pre><code>" + escaped(t.command) + "</code></pre>\n</details>\n";
 }
 
 std::string section(BenchTable const& t, std::filesystem::path const& folder)
 {
     std::string html = fmt::format("<section>\n<h2>{}</h2>\n", escaped(t.title.empty() ? t.name : t.title));
-    html += origin_html(t) + sweep_figures(t, folder) + "<h3>Rows</h3>\n";
+    std::string const figures = sweep_figures(t, folder);
+    html +=
+        origin_html(t) + figures + (figures.empty() ? "<h3>Rows</h3>\n" : "<details>\n<summary>rows</summary>\n");
     if (has_spread(t))
         html += "<p class=\"note\">Medians; below them the least and the most that was measured.</p>\n";
-    return html + rows_html(t) + "</section>\n";
+    return html + rows_html(t) + (figures.empty() ? "" : "</details>\n") + "</section>\n";
 }
 
 } // namespace
 
-std::string make_page(std::vector<BenchTable> const& tables, std::filesystem::path const& folder)
+std::string make_page(Page const& page)
 {
-    std::string html =
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<meta name=\"color-scheme\" content=\"light dark\">\n<title>Lightwell bench</title>\n<style>\n";
+    std::string const title = escaped(page.title);
+    std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+                       "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
+                       title + "</title>\n<style>\n";
     html += page_style();
-    html += "</style>\n</head>\n<body>\n<header><h1>Lightwell bench</h1></header>\n<main>\n";
-    for (BenchTable const& table : tables) html += section(table, folder);
+    html += "</style>\n</head>\n<body>\n<header><h1>" + title + "</h1></header>\n<main>\n";
+    if (!page.lead.empty()) html += "<p>" + escaped(page.lead) + "</p>\n";
+    for (BenchFolder const& folder : page.folders) html += render_figures(folder);
+    for (BenchFolder const& folder : page.folders)
+        for (BenchTable const& table : folder.tables) html += section(table, folder.path);
+    if (!page.next.empty()) {
+        html += "<section>\n<h2>Next</h2>\n";
+        for (std::string const& command : page.next) html += "<pre><code>" + escaped(command) + "</code></pre>\n";
+        html += "</section>\n";
+    }
     return html + "</main>\n</body>\n</html>\n";
 }
 

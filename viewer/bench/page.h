@@ -1,14 +1,20 @@
 #pragma once
 // One HTML page of tables, that needs nothing beside itself: no scripts, drawings inline, pictures as data.
 
-#include "viewer/bench/table.h"
-
-#include <filesystem>
+#include "viewer/bench/folder.h"
 
 namespace viewer {
 
-/// @param folder where the pictures are that the tables name
-std::string make_page(std::vector<BenchTable> const& tables, std::filesystem::path const& folder);
+struct Page {
+    std::string title = "Lightwell bench";
+    std::string lead;                 ///< a paragraph below it; empty = none
+    std::vector<BenchFolder> folders; ///< pictures that they name are looked for in them
+    std::vector<std::string> next;    ///< commands to try, at the end
+};
+std::string make_page(Page const& page);
+
+/// Pictures, pairs and videos of a folder with what they cost; empty where nothing was rendered.
+std::string render_figures(BenchFolder const& folder);
 
 /// Curves of error over time and strips of pictures, per scene; empty unless the table has the columns scene,
 /// method, budget_s, frame_s and relmse.

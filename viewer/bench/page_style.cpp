@@ -58,6 +58,16 @@ svg .name text { fill: inherit; font-weight: 600; }
   cursor: zoom-in; }
 .pictures img:focus { position: fixed; inset: 0; z-index: 1; margin: auto; width: auto; max-width: 96vw;
   max-height: 96vh; outline: 100vmax solid rgb(0 0 0 / .75); cursor: default; }
+.pair { display: flex; gap: .5rem; }
+.pair figure, .renders figure { margin: 0; min-width: 0; flex: 1 1 30rem; }
+.renders { display: flex; flex-wrap: wrap; gap: 1rem; margin-top: 1rem; }
+.renders figure { max-width: 40rem; }
+.pair img, .renders img, .renders video, details img { display: block; width: 100%; height: auto;
+  border-radius: 4px; }
+details img { max-width: 40rem; margin-top: .5rem; }
+summary, label { cursor: pointer; color: var(--faint); font-size: .9rem; }
+label { display: block; margin-bottom: .4rem; }
+label:has(.swap:checked) + .pair { flex-direction: row-reverse; }
 .missing { padding: .5rem; background: var(--box); color: var(--faint); font-size: .85rem; }
 .scale { display: inline-block; width: 9rem; height: .7rem; margin: 0 .4rem; vertical-align: baseline;
   background: linear-gradient(to right, #000004, #3b0f70, #8c2981, #dd4968, #fe9f6d, #fcfdbf); }

@@ -15,8 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kSchema = 1;                               // counts up when a key changes its meaning or goes
-constexpr std::size_t kMostBytes = std::size_t(1) << 28; // of a file of rows
+constexpr int kSchema = 1; // counts up when a key changes its meaning or goes
 
 Json to_json(double v) { return std::isfinite(v) ? Json(v) : Json(); }
 
@@ -164,29 +163,6 @@ BenchTable parse_table(std::string const& json, std::string const& name)
     } catch (std::exception const& e) { // of the parser, of a wrong type, or a row with too few cells
         throw bad(e.what());
     }
-}
-
-std::vector<BenchTable> read_tables(fs::path const& folder)
-{
-    auto const cannot = [&](std::string const& why, std::string const& suggestion) {
-        return gi::InputError("cannot read tables from '" + folder.string() + "'", why, suggestion);
-    };
-    std::error_code error;
-    if (!fs::exists(folder, error)) throw cannot("there is no such folder", "make one with lightwell bench sweep");
-    if (!fs::is_directory(folder, error)) throw cannot("it is no folder", "name the folder that --out named");
-    std::vector<fs::path> files;
-    for (auto const& entry : fs::directory_iterator(folder, error))
-        if (entry.path().extension() == ".json" && !entry.path().filename().string().starts_with('.'))
-            files.push_back(entry.path());
-    if (error) throw cannot(error.message(), "check its permissions");
-    if (files.empty()) throw cannot("it holds no *.json", "make one with lightwell bench sweep");
-    std::sort(files.begin(), files.end());
-    std::vector<BenchTable> tables;
-    for (fs::path const& file : files) {
-        std::vector<unsigned char> const bytes = gi::read_bytes(file, kMostBytes);
-        tables.push_back(parse_table({bytes.begin(), bytes.end()}, file.string()));
-    }
-    return tables;
 }
 
 } // namespace viewer

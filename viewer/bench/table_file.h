@@ -19,7 +19,5 @@ void write(BenchTable const& table, std::filesystem::path const& folder);
 
 /// `name` is used in messages. Throws InputError on what is no table.
 BenchTable parse_table(std::string const& json, std::string const& name);
-/// Every *.json of the folder, by name. Throws InputError where there is none, or one is damaged.
-std::vector<BenchTable> read_tables(std::filesystem::path const& folder);
 
 } // namespace viewer
