@@ -99,6 +99,7 @@ function(lightwell_tests folder)
       target_link_libraries(${target} PRIVATE ${arg_UNPARSED_ARGUMENTS} GTest::gtest GTest::gtest_main)
       target_compile_definitions(${target} PRIVATE
         LIGHTWELL_SOURCE_DIR="${PROJECT_SOURCE_DIR}" LIGHTWELL_PROGRAM="${PROJECT_BINARY_DIR}/lightwell")
+      lightwell_unity(${target})
       lightwell_reuse_precompiled(${target} lightwell_test_headers)
       gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${folder}." PROPERTIES LABELS ${label} TIMEOUT 600 RUN_SERIAL ${arg_SERIAL})
     endif()

@@ -12,16 +12,16 @@
 namespace ar::test {
 namespace {
 
-cv::Size const kSize(96, 72);
+cv::Size const kFrameSize(96, 72);
 CameraModel const kCamera{LensModel::pinhole, {96, 72}, 90, 90, 47.5, 35.5, {}};
 
 /// A shadow of `depth` on a place of 0.5, with noise of sigma 0.05 in the shadow; nothing in the left quarter.
 RenderedPair noisy_shadow(int frame, float change = -0.2f)
 {
-    RenderedPair pair = unchanged_pair(kSize);
+    RenderedPair pair = unchanged_pair(kFrameSize);
     pair.without = cv::Scalar::all(0.5);
     pair.with = pair.without.clone();
-    cv::Mat noise(kSize, CV_32FC3);
+    cv::Mat noise(kFrameSize, CV_32FC3);
     cv::RNG random{std::uint64_t(frame + 1)};
     random.fill(noise, cv::RNG::NORMAL, change, 0.05);
     cv::Mat const place = pair.with.colRange(24, 96);
@@ -43,7 +43,7 @@ double mean_within(RenderedPair const& pair) { return cv::mean(pair.with(kShadow
 
 TEST(TemporalFilter, TakesNoiseAwayAndFollowsChanges)
 {
-    cv::Mat const depth(kSize, CV_32FC1, cv::Scalar(2));
+    cv::Mat const depth(kFrameSize, CV_32FC1, cv::Scalar(2));
     for (float const weight : {0.1f, 0.2f, 0.5f}) {
         TemporalFilter filter(kCamera, {.weight = weight});
         RenderedPair out;
@@ -71,14 +71,14 @@ TEST(TemporalFilter, TakesNoiseAwayAndFollowsChanges)
 
 TEST(TemporalFilter, KeepsNothingNothing)
 {
-    cv::Mat const depth(kSize, CV_32FC1, cv::Scalar(2));
+    cv::Mat const depth(kFrameSize, CV_32FC1, cv::Scalar(2));
     TemporalFilter filter(kCamera);
     for (int i = 0; i < 5; ++i) {
         RenderedPair const out = filter(noisy_shadow(i), depth, {});
         EXPECT_TRUE(equal(out.with.colRange(0, 20), out.without.colRange(0, 20)));
     }
     // The object is taken away: nothing of it stays.
-    RenderedPair none = unchanged_pair(kSize);
+    RenderedPair none = unchanged_pair(kFrameSize);
     RenderedPair const out = filter(none, depth, {});
     EXPECT_TRUE(equal(out.with, none.with));
     EXPECT_TRUE(equal(out.without, none.without));
@@ -88,15 +88,15 @@ TEST(TemporalFilter, FollowsSurfacesByPose)
 {
     // A texture of changes on a plane at 2 m; the camera moves 3.5 pixels to the right between frames.
     TemporalFilter filter(kCamera, {.weight = 0.1f, .gamma = std::numeric_limits<float>::infinity()});
-    cv::Mat const depth(kSize, CV_32FC1, cv::Scalar(2));
+    cv::Mat const depth(kFrameSize, CV_32FC1, cv::Scalar(2));
     double const step_m = 3.5 / kCamera.fx * 2;
     auto const change_at = [](double world_px) { return float(0.2 * std::sin(world_px / 6)); };
     RenderedPair out;
     double now_error = 0, still_error = 0;
     for (int i = 0; i < 8; ++i) {
-        RenderedPair pair = unchanged_pair(kSize);
+        RenderedPair pair = unchanged_pair(kFrameSize);
         for (int y = 0; y < kSize.height; ++y)
-            for (int x = 0; x < kSize.width; ++x)
+            for (int x = 0; x < kFrameSize.width; ++x)
                 pair.with.at<cv::Vec3f>(y, x) += cv::Vec3f::all(change_at(x + 3.5 * i));
         Pose pose;
         pose.position_m.x = step_m * i;
@@ -111,7 +111,7 @@ TEST(TemporalFilter, FollowsSurfacesByPose)
 TEST(TemporalFilter, DropsHistoryOfOtherSurfaces)
 {
     TemporalFilter filter(kCamera, {.weight = 0.1f, .gamma = std::numeric_limits<float>::infinity()});
-    cv::Mat depth(kSize, CV_32FC1, cv::Scalar(2));
+    cv::Mat depth(kFrameSize, CV_32FC1, cv::Scalar(2));
     filter(noisy_shadow(1), depth, {});
     depth.colRange(48, 96) = 1;
     RenderedPair const in = noisy_shadow(2), out = filter(in, depth, {});
@@ -127,7 +127,7 @@ TEST(TemporalFilter, DropsHistoryOfOtherSurfaces)
 TEST(TemporalFilter, SurvivesWhatIsNotFinite)
 {
     TemporalFilter filter(kCamera);
-    cv::Mat const depth(kSize, CV_32FC1, cv::Scalar(2));
+    cv::Mat const depth(kFrameSize, CV_32FC1, cv::Scalar(2));
     RenderedPair bad = noisy_shadow(0);
     bad.with.at<cv::Vec3f>(30, 50)[1] = std::numeric_limits<float>::quiet_NaN();
     filter(bad, depth, {});
@@ -144,7 +144,7 @@ TEST(TemporalFilter, RefusesWhatDoesNotFit)
     EXPECT_THROW(TemporalFilter{lens}, InputError);
     EXPECT_THROW(TemporalFilter(kCamera, {.weight = 0}), InputError);
     TemporalFilter filter(kCamera);
-    EXPECT_THROW(filter(unchanged_pair(kSize), cv::Mat(), {}), InputError);
+    EXPECT_THROW(filter(unchanged_pair(kFrameSize), cv::Mat(), {}), InputError);
 }
 
 } // namespace

@@ -15,7 +15,7 @@ namespace ar::test {
 namespace {
 
 constexpr double kRadius = 0.1;
-std::vector<Disc> const kDiscs{
+std::vector<Disc> const kBallDiscs{
     {{0.3, 0.9, 0.2}, 0.06, 60}, {{-1, 0.2, 0.4}, 0.05, 60}, {{0.5, 0.4, 0.9}, 0.05, 50}};
 
 /// A camera that shows the ball with a radius of about 110 px, off the middle, and where it stands.
@@ -70,7 +70,7 @@ cv::Mat traced(Shot const& s, Environment const& light, double reflectivity, boo
 
 BallSight truth(Shot const& s) { return *predicted_ball(s.world_from_camera, {0, 0, 0}, kRadius); }
 
-double angle_deg(glm::dvec3 a, glm::dvec3 b)
+double between_deg(glm::dvec3 a, glm::dvec3 b)
 {
     return glm::degrees(std::acos(std::clamp(glm::dot(glm::normalize(a), glm::normalize(b)), -1.0, 1.0)));
 }
@@ -79,13 +79,13 @@ double angle_deg(glm::dvec3 a, glm::dvec3 b)
 double nearest_deg(std::vector<Lamp> const& lamps, Disc const& disc)
 {
     double best = 180;
-    for (Lamp const& l : lamps) best = std::min(best, angle_deg(l.direction, disc.direction));
+    for (Lamp const& l : lamps) best = std::min(best, between_deg(l.direction, disc.direction));
     return best;
 }
 
 TEST(MirrorBall, GivesBackTheSurroundFromAnyDistance)
 {
-    Environment const light = with_discs(kRoom, kDiscs);
+    Environment const light = with_discs(kRoom, kBallDiscs);
     cv::Mat const true_irradiance = irradiance_map(drawn({256, 128}, light), {16, 8}, IrradianceBy::exact_sum);
     for (double const distance : {0.3, 1.0, 4.0}) {
         Shot const s = shot(distance, 0.2);
@@ -100,13 +100,13 @@ TEST(MirrorBall, GivesBackTheSurroundFromAnyDistance)
             relative_error2(irradiance_map(f.radiance, {16, 8}, IrradianceBy::exact_sum), true_irradiance);
         auto const lamps = split_lamps(f.radiance).lamps;
         double worst = 0;
-        for (Disc const& d : kDiscs) worst = std::max(worst, nearest_deg(lamps, d));
+        for (Disc const& d : kBallDiscs) worst = std::max(worst, nearest_deg(lamps, d));
         fmt::print(
             "ball at {:.1f} m: {:.1f} % of the sphere, relMSE of irradiance {:.1e}, lamps within {:.3f} deg\n",
             distance, 100 * covered_share(seen), error, worst);
         EXPECT_LT(error, 0.02);
         EXPECT_LT(worst, 1);
-        EXPECT_EQ(lamps.size(), kDiscs.size());
+        EXPECT_EQ(lamps.size(), kBallDiscs.size());
         EXPECT_GT(covered_share(seen), distance < 0.5 ? 0.92 : 0.97);
         EXPECT_NEAR(covered_share(seen) + f.filled_share, 1, 1e-9);
     }
@@ -116,7 +116,7 @@ TEST(MirrorBall, IsNotTheOrthographicOne)
 {
     // Near the camera the orthographic rule would be degrees off: the lamp of a picture unwrapped so is elsewhere.
     Shot const s = shot(0.3, 0.2);
-    Environment const light = with_discs(kRoom, {kDiscs[1]});
+    Environment const light = with_discs(kRoom, {kBallDiscs[1]});
     cv::Mat const picture = traced(s, light, 1, false);
     BallSight flat = truth(s);
     CameraModel far = s.camera; // the same pixels as from far away
@@ -129,12 +129,12 @@ TEST(MirrorBall, IsNotTheOrthographicOne)
     flat.half_angle_rad = std::atan(std::tan(flat.half_angle_rad) * shrink);
     auto const lamps =
         split_lamps(filled(unwrap_ball(picture, far, s.world_from_camera.rotation, flat)).radiance).lamps;
-    EXPECT_GT(nearest_deg(lamps, kDiscs[1]), 1);
+    EXPECT_GT(nearest_deg(lamps, kBallDiscs[1]), 1);
 }
 
 TEST(MirrorBall, TwoPicturesLeaveNoHole)
 {
-    Environment const light = with_discs(kRoom, kDiscs);
+    Environment const light = with_discs(kRoom, kBallDiscs);
     cv::Mat const true_irradiance = irradiance_map(drawn({256, 128}, light), {16, 8}, IrradianceBy::exact_sum);
     std::vector<PartialMap> seen;
     for (double const turn : {0.2, 0.2 + std::numbers::pi / 2}) {
@@ -160,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(At, Found, testing::Values(0.3, 1.0, 4.0),
 TEST_P(Found, BallIsWhereItIsToAFractionOfAPixel)
 {
     Shot const s = shot(GetParam(), 0.2);
-    cv::Mat const picture = traced(s, with_discs(kRoom, kDiscs), 0.6, true);
+    cv::Mat const picture = traced(s, with_discs(kRoom, kBallDiscs), 0.6, true);
     BallSight const is = truth(s);
     auto const check = [&](BallSight const& found, char const* how) {
         double const f = s.camera.fx;
@@ -179,11 +179,11 @@ TEST_P(Found, BallIsWhereItIsToAFractionOfAPixel)
     settings.size = {256, 128};
     settings.reflectivity = cv::Vec3d::all(0.6);
     FilledMap const f = filled(unwrap_ball(picture, s.camera, s.world_from_camera.rotation, found, settings));
-    cv::Mat const map = drawn({256, 128}, with_discs(kRoom, kDiscs));
+    cv::Mat const map = drawn({256, 128}, with_discs(kRoom, kBallDiscs));
     double const error = relative_error2(irradiance_map(f.radiance), irradiance_map(map));
     double worst = 0;
     auto const lamps = split_lamps(f.radiance).lamps;
-    for (Disc const& d : kDiscs) worst = std::max(worst, nearest_deg(lamps, d));
+    for (Disc const& d : kBallDiscs) worst = std::max(worst, nearest_deg(lamps, d));
     fmt::print("unwrapped as found: relMSE of irradiance {:.1e}, lamps within {:.2f} deg\n", error, worst);
     EXPECT_LT(error, 0.02);
     EXPECT_LT(worst, 1);
@@ -224,7 +224,7 @@ TEST(MirrorBall, PartlyOutsideThePictureCoversLess)
 
 TEST(WideLens, TwoFisheyesGiveTheSurround)
 {
-    Environment const light = with_discs(kRoom, kDiscs);
+    Environment const light = with_discs(kRoom, kBallDiscs);
     cv::Mat const true_irradiance = irradiance_map(drawn({256, 128}, light), {16, 8}, IrradianceBy::exact_sum);
     CameraModel const camera{LensModel::fisheye, {360, 360}, 102, 102, 179.5, 179.5, {0.02, -0.005, 0, 0}};
     std::vector<PartialMap> seen;

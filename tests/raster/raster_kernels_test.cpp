@@ -40,7 +40,7 @@ std::vector<Fragment> kernel_fragments(TriangleSoup const& soup, RasterGrid cons
     return all;
 }
 
-std::vector<Fragment> sorted(Fragments const& f)
+std::vector<Fragment> sorted_layers(Fragments const& f)
 {
     std::vector<Fragment> all;
     for (std::size_t k = 0; k < f.count; ++k) all.emplace_back(f.texel[k], f.primitive[k], f.depth[k]);
@@ -60,9 +60,9 @@ void check_layers()
         auto const found = kernel_fragments<S>(soup, grid, shares);
         Fragments plain, vectors;
         rasterize_plain(soup, 0, soup.count, grid, MacroPath::linear_blocks, plain);
-        ASSERT_EQ(found, sorted(plain)); // bit for bit
+        ASSERT_EQ(found, sorted_layers(plain)); // bit for bit
         rasterize(soup, 0, soup.count, grid, MacroPath::edge_table, vectors);
-        auto const expected = sorted(vectors);
+        auto const expected = sorted_layers(vectors);
         ASSERT_EQ(found.size(), expected.size());
         for (std::size_t k = 0; k < found.size(); ++k) {
             ASSERT_EQ(std::get<0>(found[k]), std::get<0>(expected[k]));
@@ -100,7 +100,7 @@ void check_one_triangle()
         Fragments plain;
         rasterize_plain(soup, 0, soup.count, grid, MacroPath::square_blocks, plain);
         EXPECT_GT(plain.count, 1000u);
-        EXPECT_EQ(kernel_fragments<S>(soup, grid, shares), sorted(plain));
+        EXPECT_EQ(kernel_fragments<S>(soup, grid, shares), sorted_layers(plain));
     }
 }
 LIGHTWELL_TEST_BOTH(RasterKernels, OneTriangleInManyShares, check_one_triangle);

@@ -9,7 +9,7 @@
 namespace gi::test {
 namespace {
 
-RenderResult render(World const& world, Camera const& camera, int size, std::uint32_t paths, int bounces = 0)
+RenderResult render_square(World const& world, Camera const& camera, int size, std::uint32_t paths, int bounces = 0)
 {
     RenderSettings s;
     s.width = s.height = size;
@@ -40,7 +40,7 @@ constexpr float kAlbedo = 0.6f;
 Estimate floor_radiance(Scene scene, dvec3 at)
 {
     add_quad(scene, {-50, 0, 50}, {100, 0, 0}, {0, 0, -100}, add_material(scene, lambert(vec3{kAlbedo})));
-    return mean_of(render(world_of(scene), orthographic(at + dvec3{0, 0.1, 0}, at, 1e-3), 8, 16384).picture, "L1");
+    return mean_of(render_square(world_of(scene), orthographic(at + dvec3{0, 0.1, 0}, at, 1e-3), 8, 16384).picture, "L1");
 }
 
 TEST(Radiometry, RectangleLightIrradiance)
@@ -144,7 +144,7 @@ TEST(Radiometry, FormFactorOfParallelSquares)
     Scene scene;
     add_quad(scene, {-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}, add_material(scene, emitter(vec3{1})));
     add_quad(scene, {-0.5f, 0, 0.5f}, {1, 0, 0}, {0, 0, -1}, add_material(scene, lambert(vec3{1})));
-    RenderResult const r = render(world_of(scene), orthographic({0, 0.5, 0}, {0, 0, 0}, 1), 64, 256);
+    RenderResult const r = render_square(world_of(scene), orthographic({0, 0.5, 0}, {0, 0, 0}, 1), 64, 256);
     expect_estimate(mean_of(r.picture, "L1"), factor, "parallel squares");
 }
 
@@ -158,7 +158,7 @@ TEST(Radiometry, FormFactorOfPerpendicularSquares)
     Scene scene;
     add_quad(scene, {0, 0, 0}, {0, 1, 0}, {0, 0, 1}, add_material(scene, emitter(vec3{1}))); // x = 0, faces +x
     add_quad(scene, {0, 0, 1}, {1, 0, 0}, {0, 0, -1}, add_material(scene, lambert(vec3{1})));
-    RenderResult const r = render(world_of(scene), orthographic({0.5, 0.5, 0.5}, {0.5, 0, 0.5}, 1), 64, 256);
+    RenderResult const r = render_square(world_of(scene), orthographic({0.5, 0.5, 0.5}, {0.5, 0, 0.5}, 1), 64, 256);
     expect_estimate(mean_of(r.picture, "L1"), factor, "perpendicular squares");
 }
 
@@ -182,7 +182,7 @@ TEST(Radiometry, EnergyBalanceOfAClosedRoom)
                 dvec3 at{0.5};
                 from[axis] = 0.5 - 0.499 * side;
                 at[axis] = 0.5 + 0.5 * side;
-                RenderResult const r = render(world, orthographic(from, at, 1), 32, 128, 1000);
+                RenderResult const r = render_square(world, orthographic(from, at, 1), 32, 128, 1000);
                 direct += glm::pi<double>() * mean_of(r.picture, "L1").mean;
                 Estimate const e = mean_of(r.picture);
                 all += glm::pi<double>() * e.mean;

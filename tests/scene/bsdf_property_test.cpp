@@ -66,7 +66,7 @@ std::string describe(Material const& m, vec3 wo, vec3 wi)
 
 bool sound(vec3 v) { return all_finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; }
 
-void expect_sound(Material const& m, RandomMaterials& random, bool front)
+void expect_sound_bsdf(Material const& m, RandomMaterials& random, bool front)
 {
     Bsdf const b = make_bsdf(m);
     for (int i = 0; i < 30; ++i) {
@@ -88,7 +88,7 @@ TEST(BsdfProperty, EverythingIsFiniteAndNotNegative)
 {
     RandomMaterials random(2033, Fields::in_range);
     for (int i = 0; i < 10000; ++i) {
-        expect_sound(random.next(), random, i % 2 == 0);
+        expect_sound_bsdf(random.next(), random, i % 2 == 0);
         if (HasFatalFailure()) return;
     }
 }

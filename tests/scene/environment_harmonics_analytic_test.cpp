@@ -13,7 +13,6 @@
 namespace gi::test {
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
 
 /// A map whose texels have the values of a function in their middles.
 EnvironmentMap map_of(std::uint32_t width, std::uint32_t height, std::function<dvec3(dvec3)> const& radiance)

@@ -14,12 +14,12 @@
 namespace gi::test {
 namespace {
 
-constexpr int kSize = 32;
+constexpr int kFrameSize = 32;
 constexpr std::uint32_t kWall = 0, kBlock = 1, kLamp = 2, kBall = 3; // materials
 
 /// A room with a block, a lamp of triangles, a small one of none, and a smooth ball with a box on it that is moved
 /// from outside.
-std::shared_ptr<Scene const> room()
+std::shared_ptr<Scene const> frame_room()
 {
     Scene scene = box_with_block_and_lamp(), object;
     Light light;
@@ -34,7 +34,7 @@ std::shared_ptr<Scene const> room()
     return std::make_shared<Scene const>(std::move(scene));
 }
 
-Camera eye(double aside = 0)
+Camera frame_eye(double aside = 0)
 {
     Camera camera = look_at({-0.6, 0.1, 0.9}, {0.2, -0.5, 0}, 70);
     camera.world_from_camera = camera.world_from_camera * glm::translate(dmat4(1), dvec3{aside, 0, 0});
@@ -43,7 +43,7 @@ Camera eye(double aside = 0)
 
 RenderSettings settings_of(Schedule schedule)
 {
-    RenderSettings s = small_settings(kSize, 2, 2);
+    RenderSettings s = small_settings(kFrameSize, 2, 2);
     s.slhb.schedule = schedule;
     if (schedule == Schedule::stored) s.slhb.directions = "icosahedron:80";
     s.slhb.resolution = 48;
@@ -92,11 +92,11 @@ void expect_same(RenderResult const& found, RenderResult const& expected)
 template <Space S>
 class Both {
 public:
-    explicit Both(RenderSettings const& settings, std::shared_ptr<Scene const> scene = room())
+    explicit Both(RenderSettings const& settings, std::shared_ptr<Scene const> scene = frame_room())
         : scene_(std::move(scene)),
           world(scene_, 0, report),
-          kernels(start_kernel_frames(S, world, eye(), settings, report)),
-          cpu_(start_slhb_frames(world, eye(), settings, cpu_report_))
+          kernels(start_kernel_frames(S, world, frame_eye(), settings, report)),
+          cpu_(start_slhb_frames(world, frame_eye(), settings, cpu_report_))
     {
     }
 
@@ -127,7 +127,7 @@ public:
     }
     std::vector<float> next(Changes const& changes, char const* what)
     {
-        FrameView const view{eye(), kSize, kSize};
+        FrameView const view{frame_eye(), kFrameSize, kFrameSize};
         return layer(next(changes, {&view, 1}, what)[0], "color");
     }
     void follow(int axes)
@@ -263,19 +263,19 @@ template <Space S>
 void check_views()
 {
     std::vector<std::uint8_t> hidden;
-    for (int y = 0; y < kSize; ++y)
-        for (int x = 0; x < kSize; ++x) hidden.push_back(std::hypot(x - 15.5, y - 15.5) > 16);
+    for (int y = 0; y < kFrameSize; ++y)
+        for (int x = 0; x < kFrameSize; ++x) hidden.push_back(std::hypot(x - 15.5, y - 15.5) > 16);
     Both<S> both(settings_of(Schedule::stored));
-    std::vector<FrameView> views{{eye(), kSize, kSize}, {eye(0.3), 24, 20}, {eye(0.06), kSize, kSize}};
+    std::vector<FrameView> views{{frame_eye(), kFrameSize, kFrameSize}, {frame_eye(0.3), 24, 20}, {frame_eye(0.06), kFrameSize, kFrameSize}};
     auto const whole = both.next({}, views, "three views");
     Both<S> alone(settings_of(Schedule::stored));
     for (std::size_t k = 0; k < 3; ++k) { // none of the others counts, nor of a partner
-        auto const one = start_kernel_frames(S, alone.world, eye(), settings_of(Schedule::stored), alone.report)
+        auto const one = start_kernel_frames(S, alone.world, frame_eye(), settings_of(Schedule::stored), alone.report)
                              ->views({&views[k], 1}, 2, Endings::exact, {});
         EXPECT_EQ(layer(one[0], "color"), layer(whole[k], "color")) << k;
     }
     views[2].partner = 0;
-    auto const partners = start_kernel_frames(S, alone.world, eye(), settings_of(Schedule::stored), alone.report)
+    auto const partners = start_kernel_frames(S, alone.world, frame_eye(), settings_of(Schedule::stored), alone.report)
                               ->views(views, 2, Endings::in_cells, {});
     EXPECT_EQ(layer(partners[2], "color"), layer(whole[2], "color"));
     EXPECT_TRUE(partners[2].light_from.empty());
@@ -301,19 +301,19 @@ LIGHTWELL_TEST_BOTH(KernelFrames, OfSeveralViewsAreThoseOfEach, check_views);
 template <Space S>
 void check_moments()
 {
-    auto const scene = room();
+    auto const scene = frame_room();
     auto const render = [&](bool by_kernels) {
         Report report;
         MovingWorld world(scene, 0, report);
         RenderSettings s = settings_of(Schedule::streamed);
         s.paths = 4;
-        auto const frames = by_kernels ? start_kernel_frames(S, world, eye(), s, report)
-                                       : start_slhb_frames(world, eye(), s, report);
-        return frames->frame(eye(), {}, {}, [&](std::uint32_t pass) {
+        auto const frames = by_kernels ? start_kernel_frames(S, world, frame_eye(), s, report)
+                                       : start_slhb_frames(world, frame_eye(), s, report);
+        return frames->frame(frame_eye(), {}, {}, [&](std::uint32_t pass) {
             Pose pose = evaluate_pose(*scene, 0);
             pose.world_from_node.back() =
                 glm::translate(dmat4(1), dvec3{-0.1 * pass, 0, 0}) * pose.world_from_node.back();
-            return Moment{world.advance(pose), eye(0.01 * pass)};
+            return Moment{world.advance(pose), frame_eye(0.01 * pass)};
         });
     };
     RenderResult const found = render(true), expected = render(false);
@@ -330,7 +330,7 @@ void check_end()
     Both<S> both(settings_of(Schedule::temporal));
     StopRequest stop;
     stop.request();
-    FrameView const view{eye(), kSize, kSize};
+    FrameView const view{frame_eye(), kFrameSize, kFrameSize};
     auto const one = both.kernels->views({&view, 1}, 5, Endings::own, stop);
     EXPECT_EQ(one[0].paths, 1u);
     EXPECT_EQ(one[0].end, RenderEnd::interrupted);
@@ -346,9 +346,9 @@ void check_mirror()
     add_sphere(scene, {0.4f, -0.3f, 0}, 0.3f, 2, add_material(scene, mirror(vec3{0.9f})), true);
     Report report;
     MovingWorld const world(std::make_shared<Scene const>(std::move(scene)), 0, report);
-    auto const frames = start_kernel_frames(S, world, eye(), settings_of(Schedule::streamed), report);
+    auto const frames = start_kernel_frames(S, world, frame_eye(), settings_of(Schedule::streamed), report);
     auto const lost = [&] {
-        frames->frame(eye(), {}, {});
+        frames->frame(frame_eye(), {}, {});
         auto const all = report.losses();
         return all.at("paths that ended at a mirror, glass or narrow lobe, as the kernels have no exact rays")
             .count;
@@ -362,17 +362,17 @@ LIGHTWELL_TEST_BOTH(KernelFrames, PathsThatEndAtMirrorsAreCounted, check_mirror)
 TEST(KernelFrames, RefuseWhatKernelsLackAndGoOn)
 {
     Both<Space::host> both(settings_of(Schedule::stored));
-    FrameView const view{orthographic({0, 0, 0.9}, {0, 0, 0}, 1), kSize, kSize};
+    FrameView const view{orthographic({0, 0, 0.9}, {0, 0, 0}, 1), kFrameSize, kFrameSize};
     EXPECT_THROW(both.kernels->views({&view, 1}, 1, Endings::own, {}), InputError);
-    EXPECT_THROW(both.kernels->pair({eye(), kSize, kSize}, {}, [](PairSide) { return Changes{}; }, {}),
+    EXPECT_THROW(both.kernels->pair({frame_eye(), kFrameSize, kFrameSize}, {}, [](PairSide) { return Changes{}; }, {}),
                  InputError);
     both.next({}, "and goes on");
     RenderSettings gather = settings_of(Schedule::stored), device = gather;
     gather.slhb.gather = true;
-    EXPECT_THROW(start_kernel_frames(Space::host, both.world, eye(), gather, both.report), InputError);
+    EXPECT_THROW(start_kernel_frames(Space::host, both.world, frame_eye(), gather, both.report), InputError);
     if (device_present()) return;
     device.slhb.space = Space::device;
-    EXPECT_THROW(start_slhb_frames(both.world, eye(), device, both.report), InputError);
+    EXPECT_THROW(start_slhb_frames(both.world, frame_eye(), device, both.report), InputError);
 }
 
 } // namespace

@@ -50,7 +50,7 @@ void check_build()
 LIGHTWELL_TEST_BOTH(SlhbKernels, BuffersAreThoseOfTheCpu, check_build);
 
 template <Space S>
-void check_nothing()
+void check_no_layers()
 {
     World const world = world_of(Scene{});
     RasterGrid const grid = make_grid(world.bounds, vec3{0, 1, 0}, 16, {0, 0}, 0);
@@ -58,7 +58,7 @@ void check_nothing()
     EXPECT_EQ(b.layers.size(), 0u);
     EXPECT_EQ(download(b.offset), (std::vector<std::uint32_t>(grid.texels() + 1, 0)));
 }
-LIGHTWELL_TEST_BOTH(SlhbKernels, NoTrianglesNoLayers, check_nothing);
+LIGHTWELL_TEST_BOTH(SlhbKernels, NoTrianglesNoLayers, check_no_layers);
 
 template <Space S>
 void check_one_triangle()

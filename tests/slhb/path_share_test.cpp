@@ -10,7 +10,7 @@
 namespace gi::test {
 namespace {
 
-World room()
+World shared_room()
 {
     Scene scene;
     add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, lambert({0.7f, 0.6f, 0.5f})), true);
@@ -19,9 +19,9 @@ World room()
     return world_of(scene);
 }
 
-using Render = std::function<RenderResult(World const&, Camera const&, RenderSettings const&)>;
+using RenderShare = std::function<RenderResult(World const&, Camera const&, RenderSettings const&)>;
 
-Accumulator sums_of(World const& world, RenderSettings settings, PathShare share, Render const& render)
+Accumulator sums_of(World const& world, RenderSettings settings, PathShare share, RenderShare const& render)
 {
     Accumulator sums(settings.width, settings.height);
     settings.share = std::move(share);
@@ -30,9 +30,9 @@ Accumulator sums_of(World const& world, RenderSettings settings, PathShare share
     return sums;
 }
 
-void expect_shares_make_the_whole(RenderSettings const& settings, Render const& render)
+void expect_shares_make_the_whole(RenderSettings const& settings, RenderShare const& render)
 {
-    World const world = room();
+    World const world = shared_room();
     Accumulator const whole = sums_of(world, settings, {}, render);
     Accumulator parts(settings.width, settings.height);
     std::uint32_t first = 0;
@@ -60,7 +60,7 @@ void expect_shares_make_the_whole(RenderSettings const& settings, Render const& 
 using Function = RenderResult(World const&, Camera const&, RenderSettings const&, StopRequest const&,
                               RenderProgress const&, Report&);
 
-Render with(Function* function)
+RenderShare with(Function* function)
 {
     return [function](World const& world, Camera const& camera, RenderSettings const& s) {
         Report report;

@@ -12,11 +12,11 @@
 namespace gi::test {
 namespace {
 
-constexpr int kSize = 64;
+constexpr int kEndingSize = 64;
 
 RenderSettings settings_of_cells()
 {
-    RenderSettings s = small_settings(kSize, 1, 3);
+    RenderSettings s = small_settings(kEndingSize, 1, 3);
     s.slhb.schedule = Schedule::stored;
     s.slhb.directions = "icosahedron:320";
     s.slhb.resolution = 64;
@@ -33,7 +33,7 @@ Seen see(MovingWorld const& world, Camera const& camera, Endings endings, std::u
          RenderSettings const& s = settings_of_cells())
 {
     Report report;
-    FrameView const view{camera, kSize, kSize};
+    FrameView const view{camera, kEndingSize, kEndingSize};
     auto result = start_slhb_frames(world, camera, s, report)->views({&view, 1}, paths, endings, {});
     return {std::move(result[0].picture), report.counts().at("endings shaded for several paths") / double(paths)};
 }
@@ -48,7 +48,7 @@ TEST(SharedEndings, InCellsBringTheSameLight)
                cells = see(world, in_box(), Endings::in_cells, 256);
     EXPECT_EQ(exact.shaded, 0);
     EXPECT_GT(cells.shaded, 100);
-    EXPECT_LT(cells.shaded, 0.6 * kSize * kSize);
+    EXPECT_LT(cells.shaded, 0.6 * kEndingSize * kEndingSize);
     EXPECT_NEAR(mean_of(cells.picture).mean / mean_of(exact.picture).mean, 1, 0.003);
     EXPECT_EQ(cells.picture.find("L1")->data, exact.picture.find("L1")->data)
         << "direct light is each pixel's own";
@@ -56,10 +56,10 @@ TEST(SharedEndings, InCellsBringTheSameLight)
     auto const blocks = [](Layer const& l) {
         constexpr int kAcross = 8;
         std::vector<double> sums(std::size_t(kAcross * kAcross));
-        for (int y = 0; y < kSize; ++y)
-            for (int x = 0; x < kSize; ++x)
-                sums[std::size_t(y * kAcross / kSize * kAcross + x * kAcross / kSize)] +=
-                    double(luminance(rgb(l, std::size_t(y * kSize + x))));
+        for (int y = 0; y < kEndingSize; ++y)
+            for (int x = 0; x < kEndingSize; ++x)
+                sums[std::size_t(y * kAcross / kEndingSize * kAcross + x * kAcross / kEndingSize)] +=
+                    double(luminance(rgb(l, std::size_t(y * kEndingSize + x))));
         return sums;
     };
     auto const a = blocks(*exact.picture.find("L2")), b = blocks(*cells.picture.find("L2"));

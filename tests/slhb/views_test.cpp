@@ -14,10 +14,10 @@
 namespace gi::test {
 namespace {
 
-std::shared_ptr<Scene const> room() { return std::make_shared<Scene const>(box_with_block_and_lamp()); }
+std::shared_ptr<Scene const> view_room() { return std::make_shared<Scene const>(box_with_block_and_lamp()); }
 
 /// @param aside  m to the right
-Camera eye(double aside = 0)
+Camera view_eye(double aside = 0)
 {
     Camera camera = look_at({-0.6, 0.1, 0.9}, {0.1, -0.4, 0}, 60);
     camera.world_from_camera = camera.world_from_camera * glm::translate(dmat4(1), dvec3{aside, 0, 0});
@@ -41,13 +41,13 @@ double relmse_of(Layer const& a, Layer const& b) { return measure_errors(a.data,
 TEST(Views, AreThePicturesThatTheyWouldBeAlone)
 {
     Report report;
-    MovingWorld const world(room(), 0, report);
+    MovingWorld const world(view_room(), 0, report);
     RenderSettings s = settings_of_views(0);
-    std::vector<FrameView> const all{{eye(), 64, 64}, {eye(0.5), 40, 56}, {eye(-0.2), 64, 30}};
-    auto const together = start_slhb_frames(world, eye(), s, report)->views(all, 3, Endings::exact, {});
+    std::vector<FrameView> const all{{view_eye(), 64, 64}, {view_eye(0.5), 40, 56}, {view_eye(-0.2), 64, 30}};
+    auto const together = start_slhb_frames(world, view_eye(), s, report)->views(all, 3, Endings::exact, {});
     ASSERT_EQ(together.size(), 3u);
     for (std::size_t k = 0; k < all.size(); ++k) {
-        auto const alone = start_slhb_frames(world, eye(), s, report)->views({&all[k], 1}, 3, Endings::exact, {});
+        auto const alone = start_slhb_frames(world, view_eye(), s, report)->views({&all[k], 1}, 3, Endings::exact, {});
         EXPECT_EQ(color(together[k]), color(alone[0])) << k;
         EXPECT_EQ(together[k].picture.width, all[k].width);
     }
@@ -58,15 +58,15 @@ TEST(Views, AreThePicturesThatTheyWouldBeAlone)
 TEST(Views, LightTakenFromAPartnerIsTheLightThere)
 {
     Report report;
-    MovingWorld const world(room(), 0, report);
+    MovingWorld const world(view_room(), 0, report);
     RenderSettings const s = settings_of_views(2);
     double const apart = 0.063;
-    std::vector<FrameView> const own{{eye(), 64, 64}, {eye(apart), 64, 64}};
+    std::vector<FrameView> const own{{view_eye(), 64, 64}, {view_eye(apart), 64, 64}};
     std::vector<FrameView> taking = own;
     taking[1].partner = 0;
-    auto const a = start_slhb_frames(world, eye(), s, report)->views(own, 256, Endings::exact, {});
+    auto const a = start_slhb_frames(world, view_eye(), s, report)->views(own, 256, Endings::exact, {});
     Report counted;
-    auto const b = start_slhb_frames(world, eye(), s, counted)->views(taking, 256, Endings::exact, {});
+    auto const b = start_slhb_frames(world, view_eye(), s, counted)->views(taking, 256, Endings::exact, {});
     double const share = counted.counts().at("share of pixels lit by a partner view");
     EXPECT_GT(share, 0.8);
     EXPECT_LT(share, 0.99); // what only the second eye sees is traced
@@ -102,10 +102,10 @@ TEST(Views, MirrorsAreTracedForEachEye)
 TEST(Views, TellWhoseLightTheyTook)
 {
     Report report;
-    MovingWorld const world(room(), 0, report);
+    MovingWorld const world(view_room(), 0, report);
     RenderSettings const s = settings_of_views(1);
-    std::vector<FrameView> const views{{eye(), 48, 40}, {eye(0.05), 64, 56, 0}};
-    auto const frames = start_slhb_frames(world, eye(), s, report);
+    std::vector<FrameView> const views{{view_eye(), 48, 40}, {view_eye(0.05), 64, 56, 0}};
+    auto const frames = start_slhb_frames(world, view_eye(), s, report);
     std::size_t told_of_one = 0;
     for (std::uint32_t const paths : {1u, 6u}) {
         auto const results = frames->views(views, paths, Endings::exact, {});
@@ -143,12 +143,12 @@ TEST(Views, TellWhoseLightTheyTook)
 TEST(Views, MayChangeFromFrameToFrame)
 {
     Report report;
-    MovingWorld const world(room(), 0, report);
-    auto const frames = start_slhb_frames(world, eye(), settings_of_views(1), report);
-    std::vector<FrameView> views{{eye(), 32, 32}, {eye(0.1), 32, 32, 0}};
+    MovingWorld const world(view_room(), 0, report);
+    auto const frames = start_slhb_frames(world, view_eye(), settings_of_views(1), report);
+    std::vector<FrameView> views{{view_eye(), 32, 32}, {view_eye(0.1), 32, 32, 0}};
     EXPECT_EQ(frames->views(views, 1, Endings::exact, {}).size(), 2u);
     views[1].width = 20;
-    views[1].camera = eye(0.3);
+    views[1].camera = view_eye(0.3);
     auto const resized = frames->views(views, 1, Endings::exact, {});
     EXPECT_EQ(resized[1].picture.pixels(), 640u);
     for (std::size_t i = 0; i < 640; ++i)

@@ -6,27 +6,27 @@ namespace viewer::test {
 namespace {
 
 // Some seconds of work: passes take half a second, and the signal has to come before the last one.
-constexpr char const* kLong = "render cornell --size 96x96 --paths 160 --quiet --threads 2 --out a.exr";
+constexpr char const* kLongRender = "render cornell --size 96x96 --paths 160 --quiet --threads 2 --out a.exr";
 
 void interrupt_and_resume(int signal)
 {
     TemporaryFolder const folder, undisturbed;
-    Program program(words(kLong), folder.path());
+    Program program(words(kLongRender), folder.path());
     ASSERT_TRUE(program.wait_until_catches(signal, true));
     program.send(signal);
     Outcome const o = program.wait();
     EXPECT_EQ(o.code, 130) << o.err;
     EXPECT_EQ(folder.files(), (std::vector<std::string>{"a.exr", "a.exr.state"}));
     EXPECT_NE(o.err.find("--resume"), std::string::npos) << o.err;
-    Outcome const again = run(kLong, folder.path());
+    Outcome const again = run(kLongRender, folder.path());
     EXPECT_EQ(again.code, 2) << "would destroy what is unfinished";
     EXPECT_NE(again.err.find("--resume"), std::string::npos) << again.err;
     std::string const part = file_text(folder / "a.exr");
     EXPECT_TRUE(part.starts_with("\x76\x2f\x31\x01"));
 
-    run_well(std::string(kLong) + " --resume", folder.path());
+    run_well(std::string(kLongRender) + " --resume", folder.path());
     EXPECT_EQ(folder.files(), std::vector<std::string>{"a.exr"});
-    run_well(kLong, undisturbed.path());
+    run_well(kLongRender, undisturbed.path());
     std::string const whole = file_text(undisturbed / "a.exr");
     EXPECT_NE(part, whole);
     EXPECT_TRUE(file_text(folder / "a.exr") == whole) << "resumed and undisturbed pictures differ";
@@ -51,12 +51,12 @@ TEST(Interrupt, ASecondControlCEndsAtOnce)
 TEST(Interrupt, AnotherRendersStateIsRefused)
 {
     TemporaryFolder const folder;
-    Program program(words(kLong), folder.path());
+    Program program(words(kLongRender), folder.path());
     ASSERT_TRUE(program.wait_until_catches(SIGINT, true));
     program.send(SIGINT);
     ASSERT_EQ(program.wait().code, 130);
     std::string const state = file_text(folder / "a.exr.state"), picture = file_text(folder / "a.exr");
-    Outcome const o = run(std::string(kLong) + " --resume --seed 5", folder.path());
+    Outcome const o = run(std::string(kLongRender) + " --resume --seed 5", folder.path());
     EXPECT_EQ(o.code, 2);
     EXPECT_NE(o.err.find("belongs to another render"), std::string::npos) << o.err;
     EXPECT_TRUE(file_text(folder / "a.exr.state") == state);

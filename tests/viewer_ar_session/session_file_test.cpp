@@ -5,9 +5,9 @@
 namespace viewer::test {
 namespace {
 
-std::string const kLeast = "schema: ar/1\nframes: {source: frames}\ncamera: camera.yaml\nmarkers: markers.yaml\n";
+std::string const kLeastSession = "schema: ar/1\nframes: {source: frames}\ncamera: camera.yaml\nmarkers: markers.yaml\n";
 
-std::string refusal(std::string const& text)
+std::string session_refusal(std::string const& text)
 {
     try {
         parse_ar_session(text, "folder/s.yaml");
@@ -19,7 +19,7 @@ std::string refusal(std::string const& text)
 
 TEST(ArSessions, SayWhatTheyAreMadeOf)
 {
-    ArSession const s = parse_ar_session(kLeast + R"(light: {map: probe.exr, turn_deg: 30, scale: 2, live: 10}
+    ArSession const s = parse_ar_session(kLeastSession + R"(light: {map: probe.exr, turn_deg: 30, scale: 2, live: 10}
 real: {scene: near.glb}
 virtual: {scene: statue.glb, at: [0, 0, -0.1], turn_deg: 90, scale: 0.5}
 render: {paths: 4, resolution: 0.75, bounces: 2, seed: 9}
@@ -38,7 +38,7 @@ composite: {blend: ratio, clipped: as_measured, largest_ratio: 4, smoothing: 0.3
     EXPECT_EQ(s.composite.blend, ar::Blend::ratio);
     EXPECT_EQ(s.composite.clipped, ar::ClippedBytes::as_measured);
     EXPECT_EQ(s.smoothing, 0.3);
-    ArSession const least = parse_ar_session(kLeast, "s.yaml");
+    ArSession const least = parse_ar_session(kLeastSession, "s.yaml");
     EXPECT_TRUE(least.real.scene.empty());
     EXPECT_TRUE(least.light.empty());
 }
@@ -46,7 +46,7 @@ composite: {blend: ratio, clipped: as_measured, largest_ratio: 4, smoothing: 0.3
 TEST(ArSessions, SayHowPairsAreFinishedAndPosesUsed)
 {
     ArSession const s =
-        parse_ar_session(kLeast + R"(composite: {upsample: false, mattes: true, match_blur: true, noise: false}
+        parse_ar_session(kLeastSession + R"(composite: {upsample: false, mattes: true, match_blur: true, noise: false}
 pose: {smoothing: {position: {min_cutoff_hz: 2, beta: 3}}, predict_s: 0.4}
 )",
                          "s.yaml");
@@ -58,16 +58,16 @@ pose: {smoothing: {position: {min_cutoff_hz: 2, beta: 3}}, predict_s: 0.4}
     EXPECT_EQ(s.pose.tracker.position.beta, 3);
     EXPECT_EQ(s.pose.predict_s, 0.4);
     EXPECT_GE(s.pose.tracker.lost_after_s, 0.8);
-    ArSession const still = parse_ar_session(kLeast + "pose: {tripod: true}\n", "s.yaml");
+    ArSession const still = parse_ar_session(kLeastSession + "pose: {tripod: true}\n", "s.yaml");
     EXPECT_EQ(still.pose.tracker.motion, ar::CameraMotion::tripod);
-    ArSession const averaged = parse_ar_session(kLeast + "pose: {tripod: true, smoothing: false}\n", "s.yaml");
+    ArSession const averaged = parse_ar_session(kLeastSession + "pose: {tripod: true, smoothing: false}\n", "s.yaml");
     EXPECT_EQ(averaged.pose.tracker.motion, ar::CameraMotion::tripod);
     EXPECT_TRUE(averaged.pose.filtered);
-    ArSession const least = parse_ar_session(kLeast, "s.yaml");
+    ArSession const least = parse_ar_session(kLeastSession, "s.yaml");
     EXPECT_FALSE(least.pose.filtered || least.finish.mattes || least.finish.match_blur);
     EXPECT_TRUE(least.match_noise);
-    EXPECT_NE(refusal(kLeast + "pose: {tripod: true, smoothing: true}\n").find("averaged"), std::string::npos);
-    EXPECT_NE(refusal(kLeast + "composite: {mattes: 3}\n").find("s.yaml:5:"), std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "pose: {tripod: true, smoothing: true}\n").find("averaged"), std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "composite: {mattes: 3}\n").find("s.yaml:5:"), std::string::npos);
 }
 
 TEST(ArSessions, OfDevicesKeepTheirNames)
@@ -82,17 +82,17 @@ TEST(ArSessions, OfDevicesKeepTheirNames)
 
 TEST(ArSessions, ThatAreWrongAreRefusedWithTheirPlace)
 {
-    EXPECT_NE(refusal("frames: {source: x}\ncamera: c\nmarkers: m\n").find("schema: ar/1"), std::string::npos);
-    EXPECT_NE(refusal("schema: ar/1\nframes: {source: x}\ncamera: c\n").find("no 'markers'"), std::string::npos);
-    EXPECT_NE(refusal(kLeast + "lihgt: {map: x}\n").find("s.yaml:5:1"), std::string::npos);
-    EXPECT_NE(refusal(kLeast + "light: {turn_deg: 3}\n").find("no 'map'"), std::string::npos);
-    EXPECT_NE(refusal(kLeast + "render: {paths: 0}\n").find("s.yaml:5:"), std::string::npos);
-    EXPECT_NE(refusal(kLeast + "composite: {blend: add}\n").find("difference, ratio"), std::string::npos);
-    EXPECT_NE(refusal("schema: ar/1\nframes: {}\ncamera: c\nmarkers: m\n").find("no 'source'"), std::string::npos);
+    EXPECT_NE(session_refusal("frames: {source: x}\ncamera: c\nmarkers: m\n").find("schema: ar/1"), std::string::npos);
+    EXPECT_NE(session_refusal("schema: ar/1\nframes: {source: x}\ncamera: c\n").find("no 'markers'"), std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "lihgt: {map: x}\n").find("s.yaml:5:1"), std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "light: {turn_deg: 3}\n").find("no 'map'"), std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "render: {paths: 0}\n").find("s.yaml:5:"), std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "composite: {blend: add}\n").find("difference, ratio"), std::string::npos);
+    EXPECT_NE(session_refusal("schema: ar/1\nframes: {}\ncamera: c\nmarkers: m\n").find("no 'source'"), std::string::npos);
     EXPECT_NE(
-        refusal("schema: ar/1\nframes: {source: x, size: [640]}\ncamera: c\nmarkers: m\n").find("[640, 480]"),
+        session_refusal("schema: ar/1\nframes: {source: x, size: [640]}\ncamera: c\nmarkers: m\n").find("[640, 480]"),
         std::string::npos);
-    EXPECT_NE(refusal("schema: [").find("s.yaml"), std::string::npos);
+    EXPECT_NE(session_refusal("schema: [").find("s.yaml"), std::string::npos);
 }
 
 } // namespace

@@ -13,11 +13,11 @@
 namespace viewer::test {
 namespace {
 
-void write(std::filesystem::path const& file, std::string const& text) { std::ofstream(file) << text; }
+void write_poses(std::filesystem::path const& file, std::string const& text) { std::ofstream(file) << text; }
 
 std::string const kSession = "schema: ar/1\nframes: {source: f}\ncamera: c.yaml\nmarkers: m.yaml\n";
 
-std::string refusal(std::string const& more)
+std::string pose_refusal(std::string const& more)
 {
     try {
         parse_ar_session(kSession + more, "folder/s.yaml");
@@ -42,9 +42,9 @@ TEST(TrackedCameras, KeysAreReadAndRefusedWithTheirPlace)
     EXPECT_EQ(s.tracked->camera_from_sensor.position_m, glm::dvec3(0, -0.05, 0));
     EXPECT_EQ(s.tracked->camera_from_sensor.rotation, glm::dquat(0, 1, 0, 0)) << "as heads look";
     EXPECT_NEAR(ar::angle_between_deg(s.tracked->world_from_room.rotation, {1, 0, 0, 0}), 90, 1e-9);
-    EXPECT_NE(refusal("pose: {trackr: x}\n").find("s.yaml:5:"), std::string::npos);
-    EXPECT_NE(refusal("pose: {camera_from_sensor: {position: [0, 0, 0]}}\n").find("s.yaml:5:"), std::string::npos);
-    EXPECT_NE(refusal("pose: {offset_s: soon}\n").find("s.yaml:5:"), std::string::npos);
+    EXPECT_NE(pose_refusal("pose: {trackr: x}\n").find("s.yaml:5:"), std::string::npos);
+    EXPECT_NE(pose_refusal("pose: {camera_from_sensor: {position: [0, 0, 0]}}\n").find("s.yaml:5:"), std::string::npos);
+    EXPECT_NE(pose_refusal("pose: {offset_s: soon}\n").find("s.yaml:5:"), std::string::npos);
 }
 
 TEST(TrackedCameras, OfHeadsetsAreReadAndRefusedWithTheirPlace)
@@ -59,8 +59,8 @@ TEST(TrackedCameras, OfHeadsetsAreReadAndRefusedWithTheirPlace)
     EXPECT_EQ(s.hmd->right->calibration, "folder/right.yaml");
     EXPECT_EQ(s.hmd->right->left_from_right, (ar::Pose{{1, 0, 0, 0}, {0.064, 0, 0}}));
     EXPECT_EQ(s.hmd->head_from_camera.rotation, glm::dquat(0, 1, 0, 0));
-    EXPECT_NE(refusal("hmd: {plane_m: 0}\n").find("s.yaml:5:"), std::string::npos);
-    EXPECT_NE(refusal("hmd: {right: {source: right}}\n").find("no 'camera'"), std::string::npos);
+    EXPECT_NE(pose_refusal("hmd: {plane_m: 0}\n").find("s.yaml:5:"), std::string::npos);
+    EXPECT_NE(pose_refusal("hmd: {right: {source: right}}\n").find("no 'camera'"), std::string::npos);
 }
 
 class RecordedTrackers : public testing::Test {
@@ -75,11 +75,11 @@ protected:
                     fmt::format("{:.6f},{},{},{},{},{},{},{},{}\n", 7 + 0.02 * i, body, p.position.x, p.position.y,
                                 p.position.z, p.rotation.x, p.rotation.y, p.rotation.z, p.rotation.w);
         }
-        write(folder_ / "walk.csv", text);
+        write_poses(folder_ / "walk.csv", text);
     }
     ArTracked room(std::string const& tracker) const
     {
-        write(folder_ / "room.yaml",
+        write_poses(folder_ / "room.yaml",
               "windows: [{name: w, size_px: [64, 48]}]\nwalls: [{name: w, window: w, lower_left_m: [-1, 0, 0], "
               "lower_right_m: [1, 0, 0], upper_left_m: [-1, 1, 0]}]\ntrackers: [" +
                   tracker + "]\nusers: [{name: a, head_position_m: [0, 1.7, 0], head_tracker: sensor}]\n");

@@ -11,23 +11,23 @@ using Wall = Surfaceless;
 using Bytes = std::vector<unsigned char>;
 using Format = TextureTarget::Format;
 
-constexpr glm::ivec2 kSize{64, 48};
+constexpr glm::ivec2 kWallSize{64, 48};
 
 /// An encoded picture of the room.
 struct Shown {
-    TextureTarget target{Format::bytes, kSize};
+    TextureTarget target{Format::bytes, kWallSize};
     Bytes bytes;
 
     Shown()
     {
-        Eyes const eyes(kSize, 4.0 / 3);
+        Eyes const eyes(kWallSize, 4.0 / 3);
         DisplayPass pass;
         pass.draw(target.target(), {eyes.left.shown(), {}}, {}, {});
         bytes = read_bytes(target.target());
     }
 };
 
-Bytes walled(WallSettings const& settings, ShownPicture const& picture, glm::ivec2 size = kSize)
+Bytes walled(WallSettings const& settings, ShownPicture const& picture, glm::ivec2 size = kWallSize)
 {
     WallPass const pass(settings);
     TextureTarget const out(Format::bytes, size);
@@ -43,7 +43,7 @@ ShownPicture white(TextureTarget const& target)
     return target.shown();
 }
 
-std::size_t at(int x, int y) { return std::size_t(3 * (y * kSize.x + x)); }
+std::size_t at(int x, int y) { return std::size_t(3 * (y * kWallSize.x + x)); }
 
 TEST_F(Wall, PlainWallChangesNothing)
 {
@@ -65,21 +65,21 @@ TEST_F(Wall, MeshTurnsAndShrinks)
     WallSettings turned;
     for (WarpVertex& v : turned.mesh.vertices) v.picture = glm::vec2(1) - v.picture;
     Bytes const upside_down = walled(turned, shown.target.shown());
-    for (int y = 0; y < kSize.y; ++y)
-        for (int x = 0; x < kSize.x; ++x)
-            EXPECT_EQ(upside_down[at(x, y)], shown.bytes[at(kSize.x - 1 - x, kSize.y - 1 - y)]);
+    for (int y = 0; y < kWallSize.y; ++y)
+        for (int x = 0; x < kWallSize.x; ++x)
+            EXPECT_EQ(upside_down[at(x, y)], shown.bytes[at(kWallSize.x - 1 - x, kWallSize.y - 1 - y)]);
     WallSettings corner; // into the upper right quarter
     for (WarpVertex& v : corner.mesh.vertices) v.position = glm::vec2(0.5f) + 0.5f * v.position;
     Bytes const small = walled(corner, shown.target.shown());
-    for (int y = 0; y < kSize.y / 2; ++y)
-        for (int x = kSize.x / 2; x < kSize.x; ++x) {
+    for (int y = 0; y < kWallSize.y / 2; ++y)
+        for (int x = kWallSize.x / 2; x < kWallSize.x; ++x) {
             int sum = 0; // two pixels to one: in the middle of four
-            for (int k = 0; k < 4; ++k) sum += shown.bytes[at(2 * (x - kSize.x / 2) + k % 2, 2 * y + k / 2)];
+            for (int k = 0; k < 4; ++k) sum += shown.bytes[at(2 * (x - kWallSize.x / 2) + k % 2, 2 * y + k / 2)];
             EXPECT_NEAR(small[at(x, y)], sum / 4.0, 1);
         }
-    for (int y = 0; y < kSize.y; ++y)
-        for (int x = 0; x < kSize.x; ++x)
-            if (x < kSize.x / 2 || y >= kSize.y / 2) {
+    for (int y = 0; y < kWallSize.y; ++y)
+        for (int x = 0; x < kWallSize.x; ++x)
+            if (x < kWallSize.x / 2 || y >= kWallSize.y / 2) {
                 EXPECT_EQ(int(small[at(x, y)]), 0);
             }
 }
@@ -91,8 +91,8 @@ TEST_F(Wall, BeyondThePictureItIsBlack)
     for (WarpVertex& v : wide.mesh.vertices) v.picture = 2.0f * v.picture - glm::vec2(0.5f);
     Bytes const bytes = walled(wide, shown.target.shown());
     EXPECT_EQ(int(bytes[at(2, 20)]), 0);
-    EXPECT_EQ(int(bytes[at(kSize.x - 3, 20)]), 0);
-    EXPECT_GT(int(bytes[at(kSize.x / 2, 30)]), 0);
+    EXPECT_EQ(int(bytes[at(kWallSize.x - 3, 20)]), 0);
+    EXPECT_GT(int(bytes[at(kWallSize.x / 2, 30)]), 0);
 }
 
 TEST(EdgeBlendFormula, NeighboursHaveTheSumOne)
@@ -117,16 +117,16 @@ TEST(EdgeBlendFormula, NeighboursHaveTheSumOne)
 
 TEST_F(Wall, WeightsAndGainsAreThoseOfLight)
 {
-    TextureTarget const source(Format::bytes, kSize);
+    TextureTarget const source(Format::bytes, kWallSize);
     ShownPicture const picture = white(source);
     WallSettings settings;
     settings.blend = {0.25f, 0.1f, 0, 0.5f, 1.5f};
     settings.gain = {1, 0.5f, 0.25f};
     settings.gamma = {2.2f, 1.8f, 1};
     Bytes const seen = walled(settings, picture);
-    for (int y = 0; y < kSize.y; ++y)
-        for (int x = 0; x < kSize.x; ++x) {
-            glm::vec2 const p((float(x) + 0.5f) / float(kSize.x), 1 - (float(y) + 0.5f) / float(kSize.y));
+    for (int y = 0; y < kWallSize.y; ++y)
+        for (int x = 0; x < kWallSize.x; ++x) {
+            glm::vec2 const p((float(x) + 0.5f) / float(kWallSize.x), 1 - (float(y) + 0.5f) / float(kWallSize.y));
             float const weight = blend_weight(settings.blend, p);
             for (int k = 0; k < 3; ++k)
                 EXPECT_NEAR(seen[at(x, y) + std::size_t(k)],
@@ -137,16 +137,16 @@ TEST_F(Wall, WeightsAndGainsAreThoseOfLight)
 
 TEST_F(Wall, BlendMapAndVertexWeightsMultiply)
 {
-    TextureTarget const source(Format::bytes, kSize);
+    TextureTarget const source(Format::bytes, kWallSize);
     ShownPicture const picture = white(source);
     WallSettings settings;
     settings.gamma = glm::vec3(1);
-    settings.blend_map = BlendMap{kSize, std::vector<float>(64 * 48, 0.5f)};
+    settings.blend_map = BlendMap{kWallSize, std::vector<float>(64 * 48, 0.5f)};
     settings.blend_map->weights[5] = 0; // sixth pixel of the top row
     for (WarpVertex& v : settings.mesh.vertices) v.weight = v.position.y;
     Bytes const seen = walled(settings, picture);
     EXPECT_EQ(int(seen[at(5, 0)]), 0);
-    for (int const y : {3, 20, 45}) EXPECT_NEAR(seen[at(9, y)], 255 * 0.5 * (1 - (y + 0.5) / kSize.y), 0.51);
+    for (int const y : {3, 20, 45}) EXPECT_NEAR(seen[at(9, y)], 255 * 0.5 * (1 - (y + 0.5) / kWallSize.y), 0.51);
 }
 
 TEST_F(Wall, WindowsAndTexturesAreTheSameWayUp)
@@ -156,20 +156,20 @@ TEST_F(Wall, WindowsAndTexturesAreTheSameWayUp)
     settings.blend.top = 0.5f;
     WallPass const pass(settings);
     TextureTarget const whole(Format::bytes, {100, 90});
-    DrawTarget upright = part_of(whole.target(), {7, 9}, kSize), as_window = whole.target();
+    DrawTarget upright = part_of(whole.target(), {7, 9}, kWallSize), as_window = whole.target();
     pass.draw(upright, shown.target.shown());
     Bytes const a = read_bytes(upright);
     as_window.rows = RowOrder::top_last;
-    as_window = part_of(as_window, {7, 9}, kSize);
+    as_window = part_of(as_window, {7, 9}, kWallSize);
     pass.draw(as_window, shown.target.shown());
     EXPECT_EQ(read_bytes(as_window), a);
-    keep_picture("wall_top_blended", kSize, a);
+    keep_picture("wall_top_blended", kWallSize, a);
 }
 
 /// Eyes are bent one by one and interlaced then: rows of the result are rows of one eye's wall.
 TEST_F(Wall, BentWallsAreInterlacedAtTheEnd)
 {
-    Eyes const eyes(kSize, 4.0 / 3);
+    Eyes const eyes(kWallSize, 4.0 / 3);
     DisplayPass display;
     WallSettings bent;
     bent.mesh.vertices[3].position = {0.9f, 0.8f};
@@ -177,21 +177,21 @@ TEST_F(Wall, BentWallsAreInterlacedAtTheEnd)
     WallPass const wall(bent);
     std::vector<TextureTarget> walls;
     for (PictureTexture const* eye : {&eyes.left, &eyes.right}) {
-        TextureTarget const flat(Format::bytes, kSize);
+        TextureTarget const flat(Format::bytes, kWallSize);
         display.draw(flat.target(), {eye->shown(), {}}, {}, {});
-        walls.emplace_back(Format::bytes, kSize);
+        walls.emplace_back(Format::bytes, kWallSize);
         wall.draw(walls.back().target(), flat.shown());
     }
     DisplaySettings settings;
     settings.values = PictureValues::encoded;
     settings.stereo = StereoMode::rows;
-    TextureTarget const out(Format::bytes, kSize);
+    TextureTarget const out(Format::bytes, kWallSize);
     display.draw(out.target(), {walls[0].shown(), {}}, {walls[1].shown(), {}}, settings);
     Bytes const seen = read_bytes(out.target());
     EXPECT_EQ(seen, compose_stereo(StereoMode::rows, read_bytes(walls[0].target()), read_bytes(walls[1].target()),
-                                   kSize));
-    keep_picture("wall_bent_rows", kSize, seen);
-    keep_picture("wall_bent", kSize, read_bytes(walls[0].target()));
+                                   kWallSize));
+    keep_picture("wall_bent_rows", kWallSize, seen);
+    keep_picture("wall_bent", kWallSize, read_bytes(walls[0].target()));
 }
 
 TEST_F(Wall, RefusesWhatIsNoWall)

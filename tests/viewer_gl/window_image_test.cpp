@@ -14,7 +14,7 @@ namespace {
 
 using WindowOnX = OnXvfb;
 
-WindowSettings settings_of(glm::ivec2 size, glm::ivec2 position)
+WindowSettings window_settings(glm::ivec2 size, glm::ivec2 position)
 {
     WindowSettings settings;
     settings.size_px = size;
@@ -41,7 +41,7 @@ bool have_xdotool() { return gi::test::run_shell("xdotool version > /dev/null 2>
 
 TEST_F(WindowOnX, HasOpenGl45AndTheSizeAskedFor)
 {
-    Window window(settings_of({320, 240}, {10, 20}), report);
+    Window window(window_settings({320, 240}, {10, 20}), report);
     EXPECT_EQ(window.framebuffer_px(), glm::ivec2(320, 240));
     poll_windows();
     EXPECT_EQ(window.position_px(), glm::ivec2(10, 20));
@@ -56,7 +56,7 @@ TEST_F(WindowOnX, HasOpenGl45AndTheSizeAskedFor)
 TEST_F(WindowOnX, KeysMouseAndResizeArriveAsEvents)
 {
     if (!have_xdotool()) GTEST_SKIP() << "SKIPPED: there is no xdotool";
-    Window window(settings_of({320, 240}, {0, 0}), report);
+    Window window(window_settings({320, 240}, {0, 0}), report);
     window.swap();
     poll_windows();
     glfwFocusWindow(window.glfw());
@@ -100,8 +100,8 @@ TEST_F(WindowOnX, KeysMouseAndResizeArriveAsEvents)
 TEST_F(WindowOnX, FocusArrivesAsEvents)
 {
     if (!have_xdotool()) GTEST_SKIP() << "SKIPPED: there is no xdotool";
-    Window window(settings_of({320, 240}, {0, 0}), report);
-    Window const other(settings_of({64, 64}, {400, 0}), report);
+    Window window(window_settings({320, 240}, {0, 0}), report);
+    Window const other(window_settings({64, 64}, {400, 0}), report);
     window.set_title("first of two");
     inject("search --sync --name 'first of two' windowfocus");
     auto const gained = [](InputEvent const& e) {
@@ -142,7 +142,7 @@ TEST_F(WindowOnX, UnknownMonitorIsNamedWithThoseThatAre)
 
 TEST_F(WindowOnX, QuadBufferFallsBackAndSaysSo)
 {
-    WindowSettings settings = settings_of({64, 64}, {0, 0});
+    WindowSettings settings = window_settings({64, 64}, {0, 0});
     settings.quad_buffer = QuadBuffer::wanted;
     Window const window(settings, report);
     if (window.has_quad_buffer()) GTEST_SKIP() << "SKIPPED: this driver has quad-buffer stereo";
@@ -154,10 +154,10 @@ TEST_F(WindowOnX, QuadBufferFallsBackAndSaysSo)
 
 TEST_F(WindowOnX, TwoWindowsShareTextures)
 {
-    Window a(settings_of({64, 64}, {0, 0}), report);
+    Window a(window_settings({64, 64}, {0, 0}), report);
     GLuint texture = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &texture);
-    Window b(settings_of({64, 64}, {100, 0}), report, &a);
+    Window b(window_settings({64, 64}, {100, 0}), report, &a);
     EXPECT_EQ(b.number(), a.number() + 1);
     EXPECT_TRUE(glIsTexture(texture));
     b.gl().make_current();
@@ -166,7 +166,7 @@ TEST_F(WindowOnX, TwoWindowsShareTextures)
 
 TEST_F(WindowOnX, PanelDrawsAndClaimsTheMouseOverIt)
 {
-    Window window(settings_of({320, 240}, {0, 0}), report);
+    Window window(window_settings({320, 240}, {0, 0}), report);
     Panel panel(window);
     if (have_xdotool()) inject("mousemove 60 60");
     std::vector<InputEvent> events;

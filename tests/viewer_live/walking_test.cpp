@@ -107,11 +107,11 @@ TEST(Walking, AWorldOfNothingIsNoGround)
     EXPECT_FALSE(ground.touch({0, 1, 0}, {0, -1, 0}, 10));
 }
 
-dmat4 looking(dvec3 from, dvec3 at) { return gi::look_at(from, at, 45).world_from_camera; }
+dmat4 looking_at(dvec3 from, dvec3 at) { return gi::look_at(from, at, 45).world_from_camera; }
 
 Navigation walker(std::shared_ptr<Ground const> ground, dvec3 from, double speed_m_s = 1.4)
 {
-    Navigation n(looking(from, from + dvec3{0, -0.3, -1}), speed_m_s, {});
+    Navigation n(looking_at(from, from + dvec3{0, -0.3, -1}), speed_m_s, {});
     n.set_mode(NavigationMode::walk);
     n.set_eye_height(1.7);
     n.set_ground(std::move(ground));
@@ -162,7 +162,7 @@ TEST(NavigationOnFoot, GoingElsewhereIsNotHeldByTheFloor)
 {
     Navigation n = walker(ground_with({}), {0, 1.7, 0});
     n.step({.forward = 1}, 0.1);
-    n.go_to(looking({5, 8, 5}, {0, 0, 0}));
+    n.go_to(looking_at({5, 8, 5}, {0, 0, 0}));
     n.step({}, 0.1);
     EXPECT_EQ(n.position(), dvec3(5, 8, 5));
     n.step({.right = 1}, 0.1);

@@ -45,7 +45,7 @@ std::shared_ptr<gi::Scene const> room(std::string const&, gi::Report&)
     return std::make_shared<gi::Scene const>(std::move(scene));
 }
 
-FrameOrder order(std::uint64_t frame, double aside = 0)
+FrameOrder view_order(std::uint64_t frame, double aside = 0)
 {
     FrameOrder o;
     o.frame = frame;
@@ -82,7 +82,7 @@ protected:
     Session masked{room, 0, report}, whole{room, 0, other_report};
 };
 
-std::vector<float> const& color(SessionFrame const& f, std::size_t view = 0)
+std::vector<float> const& view_color(SessionFrame const& f, std::size_t view = 0)
 {
     return f.views[view].picture.find("color")->data;
 }
@@ -93,11 +93,11 @@ double share(std::vector<std::uint8_t> const& hidden)
 }
 
 /// Colours of the pixels that have this value in a mask.
-std::vector<float> where(std::vector<float> const& color, std::vector<std::uint8_t> const& mask, int value)
+std::vector<float> where(std::vector<float> const& view_color, std::vector<std::uint8_t> const& mask, int value)
 {
     std::vector<float> out;
     for (std::size_t i = 0; i < mask.size(); ++i)
-        if (mask[i] == value) out.insert(out.end(), &color[3 * i], &color[3 * i] + 3);
+        if (mask[i] == value) out.insert(out.end(), &view_color[3 * i], &view_color[3 * i] + 3);
     return out;
 }
 
@@ -113,13 +113,13 @@ TEST_F(HiddenViews, WithoutFilterWhatIsSeenIsTheSameInEveryBit)
         set(c);
     for (char const* const method : {"slhb", "reference", "vpl_none"}) {
         set({"method", method});
-        SessionFrame const a = masked.render(order(0), {}), b = whole.render(order(0), {});
+        SessionFrame const a = masked.render(view_order(0), {}), b = whole.render(view_order(0), {});
         EXPECT_FALSE(b.views[0].hidden);
         for (std::size_t eye = 0; eye < 2; ++eye) {
             ASSERT_TRUE(a.views[eye].hidden);
             auto const& hidden = *a.views[eye].hidden;
-            EXPECT_TRUE(is_black(where(color(a, eye), hidden, 1))) << method;
-            EXPECT_EQ(where(color(a, eye), hidden, 0), where(color(b, eye), hidden, 0)) << method;
+            EXPECT_TRUE(is_black(where(view_color(a, eye), hidden, 1))) << method;
+            EXPECT_EQ(where(view_color(a, eye), hidden, 0), where(view_color(b, eye), hidden, 0)) << method;
         }
         if (std::string(method) == "slhb") {
             std::printf("slhb: %.1f %% of the pixels left out, %.1f %% of the look-ups\n",
@@ -139,12 +139,12 @@ TEST_F(HiddenViews, FiltersDoNotMixBlackIntoWhatIsSeen)
         set({"denoise", filter});
         SessionFrame a, b;
         for (std::uint64_t f = 0; f < 12; ++f) {
-            FrameOrder o = order(f, 0.004 * double(f));
+            FrameOrder o = view_order(f, 0.004 * double(f));
             o.paths = 2;
             a = masked.render(o, {});
             b = whole.render(o, {});
         }
-        auto const in = where(color(a), seen, 0), right = where(color(b), seen, 0);
+        auto const in = where(view_color(a), seen, 0), right = where(view_color(b), seen, 0);
         std::size_t differ = 0;
         float darkest = 0;
         for (std::size_t i = 0; i < in.size(); ++i) {
@@ -154,7 +154,7 @@ TEST_F(HiddenViews, FiltersDoNotMixBlackIntoWhatIsSeen)
         double const relmse = gi::measure_errors(in, right, 3).relmse;
         std::printf("%s: %.2f %% of what is seen differs, relMSE %.2g, at most %.3f darker\n", filter,
                     100 * double(differ) / double(in.size()), relmse, double(darkest));
-        EXPECT_TRUE(is_black(where(color(a), *a.views[0].hidden, 1)));
+        EXPECT_TRUE(is_black(where(view_color(a), *a.views[0].hidden, 1)));
         EXPECT_LT(relmse, 1e-4);
     }
 }
@@ -162,17 +162,17 @@ TEST_F(HiddenViews, FiltersDoNotMixBlackIntoWhatIsSeen)
 TEST_F(HiddenViews, AMaskThatGoesLeavesNoBlackBehind)
 {
     for (std::uint64_t f = 0; f < 4; ++f) {
-        masked.render(order(f), {});
-        whole.render(order(f), {});
+        masked.render(view_order(f), {});
+        whole.render(view_order(f), {});
     }
-    auto const hidden = masked.render(order(4), {}).views[0].hidden;
+    auto const hidden = masked.render(view_order(4), {}).views[0].hidden;
     ASSERT_TRUE(hidden);
     masked.apply(hidden_change("left eye", {}));
-    SessionFrame const a = masked.render(order(5), {}), b = whole.render(order(5), {});
+    SessionFrame const a = masked.render(view_order(5), {}), b = whole.render(view_order(5), {});
     EXPECT_FALSE(a.views[0].hidden);
     EXPECT_TRUE(a.views[1].hidden);
     EXPECT_EQ(a.still_frames, 1) << "the mean over frames starts anew";
-    auto const in = where(color(a), *hidden, 1), right = where(color(b), *hidden, 1);
+    auto const in = where(view_color(a), *hidden, 1), right = where(view_color(b), *hidden, 1);
     EXPECT_NEAR(gi::measure_errors(in, right, 3).mean_bias, 1, 0.03);
     EXPECT_EQ(std::ranges::count(in, 0.0f), std::ranges::count(right, 0.0f));
 }
@@ -183,7 +183,7 @@ TEST_F(HiddenViews, OrdersBringTheSamePixelsElsewhere)
     Session leader(room, 0, report), follower(room, 0, other_report);
     for (Session* s : {&leader, &follower}) s->apply({"scene", "room"});
     for (std::uint64_t f = 0; f < 6; ++f) {
-        FrameOrder o = order(f, 0.01 * double(f));
+        FrameOrder o = view_order(f, 0.01 * double(f));
         if (f == 1) o.changes.push_back(hidden_change("left eye", around_a_lens()));
         if (f == 2) o.changes.push_back(hidden_change("right eye", around_a_lens()));
         if (f == 4) o.changes.push_back(hidden_change("left eye", {}));
@@ -193,7 +193,7 @@ TEST_F(HiddenViews, OrdersBringTheSamePixelsElsewhere)
         FrameOrder const there = order_from_bytes(to_bytes(o));
         for (Change const& c : there.changes) follower.apply(c);
         SessionFrame const b = follower.render(there, {});
-        for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_EQ(color(a, eye), color(b, eye)) << f;
+        for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_EQ(view_color(a, eye), view_color(b, eye)) << f;
         EXPECT_EQ(bool(a.views[0].hidden), f >= 1 && f < 4) << f;
         EXPECT_EQ(bool(a.views[1].hidden), f >= 2) << f;
         if (a.views[1].hidden) {
@@ -204,10 +204,10 @@ TEST_F(HiddenViews, OrdersBringTheSamePixelsElsewhere)
 
 TEST_F(HiddenViews, KeepWhatTheyHaveWhereAMaskIsRefused)
 {
-    SessionFrame const before = masked.render(order(0), {});
+    SessionFrame const before = masked.render(view_order(0), {});
     EXPECT_THROW(masked.apply({"hidden.left eye", {{"points", {{0, 0}}}, {"triangles", {0, 0, 1}}}}),
                  gi::InputError);
-    SessionFrame const after = masked.render(order(0), {});
+    SessionFrame const after = masked.render(view_order(0), {});
     EXPECT_EQ(after.views[0].hidden, before.views[0].hidden);
     EXPECT_EQ(after.still_frames, 2);
     for (std::size_t k = 0; k + 2 < OrderLimits::views; ++k)

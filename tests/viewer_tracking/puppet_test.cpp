@@ -64,7 +64,7 @@ TEST(Puppet, TargetsAreInTheWorldAndRigid)
               1e-12);
 }
 
-void expect_follows(std::string const& name)
+void expect_puppet_follows(std::string const& name)
 {
     Puppet const p(name);
     SCOPED_TRACE(name);
@@ -104,13 +104,13 @@ void expect_follows(std::string const& name)
 TEST(Puppet, QuaterniusHumanFollows)
 {
     LIGHTWELL_NEED_DATA("avatars/quaternius_human.glb");
-    expect_follows("quaternius_human.glb");
+    expect_puppet_follows("quaternius_human.glb");
 }
 
 TEST(Puppet, RobotExpressiveFollows)
 {
     LIGHTWELL_NEED_DATA("avatars/robot_expressive.glb");
-    expect_follows("robot_expressive.glb");
+    expect_puppet_follows("robot_expressive.glb");
 }
 
 TEST(Puppet, HeightsThatCannotBeAreRefused)

@@ -21,7 +21,7 @@ RoomPose walk(double t) { return *known_walk(t).head; }
 RoomPose stand(double) { return {{0.3, 1.7, -0.2}, exp_rotation({0.1, 0.7, 0})}; }
 
 /// A source that is handed its samples.
-class GivenTracker : public Tracker {
+class SteadyTracker : public Tracker {
 public:
     std::vector<TrackerSample> next;
     void poll(double, std::vector<TrackerSample>& samples) override
@@ -39,8 +39,8 @@ enum class Shown { hub, last_received };
 Steadiness run(Motion const& motion, Network const& network, Stamps stamps, Shown shown, double seconds = 62,
                TrackerSettings settings = {})
 {
-    auto source = std::make_unique<GivenTracker>();
-    GivenTracker& given = *source;
+    auto source = std::make_unique<SteadyTracker>();
+    SteadyTracker& given = *source;
     std::vector<std::unique_ptr<Tracker>> sources;
     sources.push_back(std::move(source));
     TrackerHub hub({settings}, std::move(sources), Polling::by_caller);

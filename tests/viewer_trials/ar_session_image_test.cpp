@@ -6,7 +6,7 @@ namespace viewer::test {
 namespace {
 
 /// Stills are all that a slow machine needs to show.
-constexpr char const* kScript = R"(schema: study/1
+constexpr char const* kArScript = R"(schema: study/1
 id: augmented
 seed: 4
 participants: {count: 2}
@@ -22,7 +22,7 @@ blocks:
 
 std::string script(std::string const& stimuli)
 {
-    std::string text = kScript;
+    std::string text = kArScript;
     return text.replace(text.find("STIMULI"), 7, stimuli);
 }
 
