@@ -1,9 +1,9 @@
+#include "gi/core/quantile.h"
 #include "study/base/random.h"
 #include "study/stats/error.h"
 #include "study/stats/likelihood.h"
 #include "study/stats/psychometric.h"
 #include "study/stats/sigmoid.h"
-#include "study/stats/summary.h"
 
 #include <algorithm>
 #include <array>
@@ -232,8 +232,8 @@ PsychometricBootstrap bootstrap_psychometric(std::span<LevelCount const> counts,
     PsychometricBootstrap result;
     result.replicates = int(thresholds.size());
     double const tail = (1 - confidence) / 2;
-    result.threshold = {quantile(thresholds, tail), quantile(thresholds, 1 - tail)};
-    result.scale = {quantile(scales, tail), quantile(scales, 1 - tail)};
+    result.threshold = {gi::quantile(thresholds, tail), gi::quantile(thresholds, 1 - tail)};
+    result.scale = {gi::quantile(scales, tail), gi::quantile(scales, 1 - tail)};
     result.deviance_p = double(as_large) / std::max(1, result.replicates);
     return result;
 }
