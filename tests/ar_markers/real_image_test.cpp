@@ -3,6 +3,7 @@
 #include "ar/markers/detect.h"
 #include "ar/markers/refine.h"
 #include "gi/core/quantile.h"
+#include "tests/ar_markers/refinement_name.h"
 
 #include <cmath>
 #include <filesystem>

@@ -3,6 +3,7 @@
 #include "ar/markers/detect.h"
 #include "gi/core/quantile.h"
 #include "tests/ar_markers/drawn_view.h"
+#include "tests/ar_markers/refinement_name.h"
 
 #include <algorithm>
 #include <chrono>

@@ -50,9 +50,8 @@ TEST_P(PoseOf, GridOfMarkersAtAMetreIsRightToAMillimetre)
             for (int k = 0; k < 3; ++k) normalised += std::pow(d[k] / e.position_sigma_m[k], 2) / 900;
         }
         errors.print(fmt::format("{} {:.1f} px", name_of(GetParam()), noise));
-        EXPECT_LE(Errors::gi::quantile(errors.mm, 0.5),
-                  GetParam() == LensModel::fisheye ? 2 * 10 * noise : 10 * noise);
-        EXPECT_LE(Errors::gi::quantile(errors.deg, 0.5), GetParam() == LensModel::fisheye ? 0.2 : 0.1);
+        EXPECT_LE(gi::quantile(errors.mm, 0.5), GetParam() == LensModel::fisheye ? 2 * 10 * noise : 10 * noise);
+        EXPECT_LE(gi::quantile(errors.deg, 0.5), GetParam() == LensModel::fisheye ? 0.2 : 0.1);
         EXPECT_NEAR(normalised, 1, 0.35); // the standard deviations are those of the errors
     }
 }
@@ -84,7 +83,7 @@ TEST(Pose, OfMarkersOnTwoWallsComesFromPointsInSpace)
         errors.add(e.world_from_camera, truth);
     }
     errors.print("two walls 0.1 px");
-    EXPECT_LT(Errors::gi::quantile(errors.mm, 0.5), 1);
+    EXPECT_LT(gi::quantile(errors.mm, 0.5), 1);
 }
 
 TEST(Pose, LeavesOutAMarkerThatWasMoved)

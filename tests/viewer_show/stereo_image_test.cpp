@@ -4,6 +4,7 @@
 #include "gi/image/tone_map.h"
 #include "tests/viewer_show/live_view.h"
 #include "tests/viewer_show/x/x_window.h"
+#include "tests/viewer_stereo/compose_bytes.h"
 #include "viewer/stereo/compose.h"
 
 #include <fmt/format.h>

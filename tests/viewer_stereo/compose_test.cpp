@@ -1,4 +1,5 @@
 #include "gi/base/error.h"
+#include "tests/viewer_stereo/compose_bytes.h"
 #include "viewer/stereo/compose.h"
 
 #include <gtest/gtest.h>
