@@ -23,6 +23,9 @@ void add_ar(CLI::App& app, int& exit_code)
     add_ar_board(*ar, exit_code);
     add_ar_calibrate(*ar, exit_code);
     add_ar_response(*ar, exit_code);
+    add_ar_vignetting(*ar, exit_code);
+    add_ar_noise(*ar, exit_code);
+    add_ar_colour(*ar, exit_code);
     add_ar_probe(*ar, exit_code);
     add_ar_albedo(*ar, exit_code);
 }

@@ -117,6 +117,9 @@ ar::Calibration known_sensor(std::string const& file)
     known.camera.size_px = before.camera.size_px;
     known.photometry = before.photometry;
     known.noise = before.noise;
+    for (auto const& entry : before.provenance)
+        if (entry.first == "vignetting" || entry.first == "noise" || entry.first == "colour")
+            known.provenance.push_back(entry);
     return known;
 }
 
@@ -177,10 +180,15 @@ int run_calibrate(CalibrateOptions const& o)
     calibration.camera = report.lens.camera;
     calibration.rms_px = report.lens.rms_px;
     calibration.covariance = report.lens.covariance;
-    calibration.provenance = {{"made_by", "lightwell ar calibrate"},
-                              {"version", version_text()},
-                              {"source", o.source.source},
-                              {"views", std::to_string(report.lens.used_views())}};
+    std::vector<std::pair<std::string, std::string>> provenance{
+        {"made_by", "lightwell ar calibrate"},
+        {"version", version_text()},
+        {"source", o.source.source},
+        {"views", std::to_string(report.lens.used_views())}};
+    provenance.insert(provenance.end(), calibration.provenance.begin(), calibration.provenance.end());
+    calibration.provenance = std::move(provenance);
+    report.photometry = calibration.photometry;
+    report.noise = calibration.noise;
     ar::write_calibration(o.out, calibration);
     if (!o.report.empty()) ar::write_report(o.report, report);
     if (report.choice) fmt::print("lens: {}\n", report.choice->why);
@@ -220,7 +228,7 @@ void add_ar_calibrate(CLI::App& ar, int& exit_code)
   lightwell ar calibrate views --squares 7x5 --every 2 --lens fisheye --out fisheye.yaml
 
 Of cameras, videos and sessions only frames count between which the board was held still. Exit code 1: views do not suffice.
-Of a calibration that is replaced, response and noise stay.)");
+Of a calibration that is replaced, response, vignetting, colour and noise stay.)");
     c->callback([o, &exit_code] { exit_code = run_calibrate(*o); });
 }
 

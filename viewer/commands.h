@@ -32,6 +32,9 @@ void add_ar_board(CLI::App& ar, int& exit_code);
 void add_ar_albedo(CLI::App& ar, int& exit_code);
 void add_ar_calibrate(CLI::App& ar, int& exit_code);
 void add_ar_response(CLI::App& ar, int& exit_code);
+void add_ar_vignetting(CLI::App& ar, int& exit_code);
+void add_ar_noise(CLI::App& ar, int& exit_code);
+void add_ar_colour(CLI::App& ar, int& exit_code);
 void add_ar_probe(CLI::App& ar, int& exit_code);
 // Within bench
 void add_bench_dynamic(CLI::App& bench, int& exit_code);

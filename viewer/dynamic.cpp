@@ -1,6 +1,7 @@
 #include "viewer/dynamic.h"
 
 #include "gi/base/picture_file.h"
+#include "gi/core/quantile.h"
 #include "gi/image/compare.h"
 #include "gi/image/tone_map.h"
 #include "gi/registry/registry.h"
@@ -180,7 +181,7 @@ private:
         auto const over = [&](double share, auto const& value) {
             std::vector<double> v;
             for (std::size_t f = 1; f < seconds.size(); ++f) v.push_back(value(f));
-            return to_cell(percentile(v, share));
+            return to_cell(gi::quantile(std::move(v), share));
         };
         auto const whole = [&](std::size_t f) { return 1e3 * seconds[f].whole; };
         auto const lag_of = [&](std::size_t f) { return lags[f]; };

@@ -1,5 +1,6 @@
 #include "viewer/frame_record.h"
 
+#include "gi/core/quantile.h"
 #include "viewer/rank_work.h"
 #include "viewer/render_record.h"
 
@@ -34,13 +35,6 @@ FrameRecord record_of(nlohmann::json const& m)
     r.result.rays = m.at("rays");
     r.losses = losses_of(m.at("losses"));
     return r;
-}
-
-double percentile(std::vector<double> values, double fraction)
-{
-    std::sort(values.begin(), values.end());
-    double const rank = std::ceil(fraction * double(values.size()));
-    return values[std::size_t(std::clamp(rank, 1.0, double(values.size()))) - 1];
 }
 
 Json to_json(std::vector<FrameRecord> const& records, FrameSettings const& frames)
@@ -78,10 +72,11 @@ Json frame_seconds(std::vector<FrameRecord> const& records)
     for (FrameRecord const& r : records)
         if (!r.reused) s.push_back(r.seconds);
     if (s.empty()) return {};
-    return {{"median", percentile(s, 0.5)},
-            {"p95", percentile(s, 0.95)},
-            {"p99", percentile(s, 0.99)},
-            {"most", percentile(s, 1)},
+    s = gi::sorted_values(std::move(s));
+    return {{"median", gi::quantile_of_sorted(s, 0.5)},
+            {"p95", gi::quantile_of_sorted(s, 0.95)},
+            {"p99", gi::quantile_of_sorted(s, 0.99)},
+            {"most", s.back()},
             {"total", std::accumulate(s.begin(), s.end(), 0.0)}};
 }
 

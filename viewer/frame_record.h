@@ -23,12 +23,10 @@ struct FrameRecord {
 nlohmann::json to_message(FrameRecord const& record);
 FrameRecord record_of(nlohmann::json const& message);
 
-/// Nearest-rank percentile: the least value that `fraction` of all values do not exceed. Not empty.
-double percentile(std::vector<double> values, double fraction);
-
 /// An array with an object per frame.
 nlohmann::ordered_json to_json(std::vector<FrameRecord> const& records, FrameSettings const& frames);
-/// Seconds of the frames that were rendered: median, p95, p99, most, total; null where there are none.
+/// Seconds of the frames that were rendered: median, p95, p99 (gi/core/quantile.h), most, total; null where there
+/// are none.
 nlohmann::ordered_json frame_seconds(std::vector<FrameRecord> const& records);
 
 } // namespace viewer

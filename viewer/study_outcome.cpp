@@ -1,17 +1,19 @@
+#include "gi/core/quantile.h"
 #include "viewer/study_commands.h"
 #include "viewer/study_records.h"
 
-#include <algorithm>
 #include <fmt/format.h>
 
 namespace viewer {
 namespace {
 
-double percentile(std::vector<double> values, double share)
+/// What a participant waited for between trials; nothing where there were no trials.
+std::string pause_text(study::SessionOutcome const& s)
 {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    return values[std::min(values.size() - 1, std::size_t(share * double(values.size())))];
+    if (s.bookkeeping_ms.empty()) return {};
+    return fmt::format("; between trials {:.2f} ms (median {:.2f} ms, the disk aside {:.2f} ms)",
+                       gi::quantile(s.bookkeeping_ms, 0.99), gi::median(s.bookkeeping_ms),
+                       gi::quantile(s.unsynced_ms, 0.99));
 }
 
 } // namespace
@@ -26,9 +28,9 @@ nlohmann::ordered_json session_json(std::string const& id, study::SessionOutcome
             {"bad_trials", s.bad_trials},
             {"torn_bytes", s.torn_bytes},
             {"bookkeeping_ms",
-             {{"median", percentile(s.bookkeeping_ms, 0.5)},
-              {"p99", percentile(s.bookkeeping_ms, 0.99)},
-              {"p99_without_disk", percentile(s.unsynced_ms, 0.99)}}}};
+             {{"median", gi::quantile(s.bookkeeping_ms, 0.5)},
+              {"p99", gi::quantile(s.bookkeeping_ms, 0.99)},
+              {"p99_without_disk", gi::quantile(s.unsynced_ms, 0.99)}}}};
 }
 
 void print_session(std::string const& id, study::SessionOutcome const& s)
@@ -38,10 +40,8 @@ void print_session(std::string const& id, study::SessionOutcome const& s)
                                s.torn_bytes)
                        .c_str(),
                    stderr);
-    fmt::print(
-        "{}: {} trials, {} bad, {}; between trials {:.2f} ms (median {:.2f} ms, the disk aside {:.2f} ms)\n", id,
-        s.trials, s.bad_trials, s.is_complete ? "complete" : s.reason, percentile(s.bookkeeping_ms, 0.99),
-        percentile(s.bookkeeping_ms, 0.5), percentile(s.unsynced_ms, 0.99));
+    fmt::print("{}: {} trials, {} bad, {}{}\n", id, s.trials, s.bad_trials, s.is_complete ? "complete" : s.reason,
+               pause_text(s));
 }
 
 void keep_tables(std::filesystem::path const& dir, std::string const& script_file)

@@ -39,8 +39,6 @@ cv::Vec3d rotation_vector(Pose const& p)
     return {factor * v.x, factor * v.y, factor * v.z};
 }
 
-cv::Vec3d translation(Pose const& p) { return {p.position_m.x, p.position_m.y, p.position_m.z}; }
-
 double angle_between_deg(glm::dquat const& a, glm::dquat const& b)
 {
     glm::dquat const d = glm::conjugate(a) * b;

@@ -23,7 +23,6 @@ Pose inverse(Pose const& a_from_b);
 /// Of the rotation vector (axis times angle in radians) and translation of OpenCV's solvePnP: camera_from_object.
 Pose pose_of(cv::Vec3d const& rotation_vector, cv::Vec3d const& translation_m);
 cv::Vec3d rotation_vector(Pose const& p);
-cv::Vec3d translation(Pose const& p);
 
 /// The angle between two orientations, 0 to 180 degrees.
 double angle_between_deg(glm::dquat const& a, glm::dquat const& b);

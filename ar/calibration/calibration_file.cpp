@@ -189,7 +189,7 @@ Calibration parse_calibration(std::string const& text, std::string const& file, 
     if (top.has("noise")) {
         Yaml const y = top.at("noise", "");
         y.only_keys({"read", "photon"});
-        out.noise = NoiseModel{y.at("read", "1e-6").number(0, 1e6), y.at("photon", "1e-4").number(0, 1e6), 0, 0};
+        out.noise = NoiseModel{y.at("read", "1e-6").number(0, 1e6), y.at("photon", "1e-4").number(0, 1e6)};
     }
     if (top.has("provenance")) {
         Yaml const y = top.at("provenance", "");
@@ -205,7 +205,7 @@ std::string format_calibration(Calibration const& c)
     s += fmt::format("image_width: {}\nimage_height: {}\nlens_model: {}\n", m.size_px.x, m.size_px.y,
                      name_of(m.lens));
     if (m.lens == LensModel::fisheye) s += "fisheye_model: 1\n";
-    s += matrix("camera_matrix", 3, 3, {m.fx, 0, m.cx, 0, m.fy, m.cy, 0, 0, 1});
+    s += matrix("camera_matrix", 3, 3, values_of(cv::Mat(camera_matrix(m))));
     if (coefficient_count(m.lens) > 0)
         s += matrix("distortion_coefficients", 1, coefficient_count(m.lens), values_of(distortion_of(m)));
     if (c.rms_px > 0) s += "rms_px: " + number(c.rms_px) + "\n";

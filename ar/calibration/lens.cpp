@@ -1,6 +1,7 @@
 #include "ar/calibration/lens.h"
 
 #include "ar/base/error.h"
+#include "gi/core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,13 +85,6 @@ Fit fit(std::vector<BoardView const*> const& views, glm::ivec2 size_px, LensMode
         out.poses.push_back(pose_of(cv::Vec3d(turn), cv::Vec3d(shift)));
     }
     return out;
-}
-
-double median(std::vector<double> v)
-{
-    auto const middle = v.begin() + std::ptrdiff_t(v.size() / 2);
-    std::nth_element(v.begin(), middle, v.end());
-    return *middle;
 }
 
 void add_warnings(LensCalibration& c, std::vector<BoardView> const& used)
@@ -245,14 +239,14 @@ LensCalibration calibrate_lens(std::vector<BoardView> const& views, glm::ivec2 s
         for (std::size_t i = 0; i < used.size(); ++i)
             errors.push_back(rms(residuals(best.camera, best.poses[i], *chosen[i])));
         auto const worst = std::size_t(std::max_element(errors.begin(), errors.end()) - errors.begin());
-        double const limit = std::max(options.outlier_floor_px, options.outlier_factor * median(errors));
+        double const limit = std::max(options.outlier_floor_px, options.outlier_factor * gi::median(errors));
         if (!(options.outlier_factor > 0) || errors[worst] <= limit || dropped >= most_outliers ||
             used.size() <= kFewestViews)
             break;
         ViewResult& r = out.views[used[worst]];
         r.used = false;
         r.why = fmt::format("its error of {:.2f} px is {:.1f} times the median", errors[worst],
-                            errors[worst] / median(errors));
+                            errors[worst] / gi::median(errors));
         used.erase(used.begin() + std::ptrdiff_t(worst));
     }
     out.camera = best.camera;

@@ -1,6 +1,7 @@
 #include "ar/calibration/report.h"
 
 #include "ar/base/yaml.h"
+#include "ar/calibration/page.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,24 +11,6 @@
 
 namespace ar {
 namespace {
-
-std::string escaped(std::string const& s)
-{
-    std::string out;
-    for (char const c : s) {
-        if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '&')
-            out += "&amp;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += c;
-    }
-    return out;
-}
 
 std::string base64(std::vector<std::uint8_t> const& bytes)
 {
@@ -146,18 +129,11 @@ std::string curve_drawing(Photometry const& p)
 std::string to_html(CalibrationReport const& r)
 {
     auto const& c = r.lens.camera;
-    std::string s =
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Camera "
-        "calibration</title><style>\n"
-        "body{font:15px sans-serif;max-width:960px;margin:2em auto;color:#222}table{border-collapse:collapse;margin-bottom:1em}\n"
-        "td,th{padding:2px 10px;text-align:left;border-bottom:1px solid #ddd}.picture{width:100%;max-width:800px;"
-        "border:1px solid #ccc}\nsvg text{font:12px "
-        "sans-serif;text-anchor:middle}.bar{height:10px;background:#1565c0}"
-        ".out{background:#c62828}.warning{color:#b71c1c}\n</style></head><body>\n";
-    s += fmt::format(
-        "<h1>Camera calibration</h1>\n<p>{} x {} pixels, {}; {} of {} views; RMS reprojection error {:.3f} "
-        "px.</p>\n",
-        c.size_px.x, c.size_px.y, name_of(c.lens), r.lens.used_views(), r.lens.views.size(), r.lens.rms_px);
+    std::string s = page_begin("Camera calibration");
+    s += fmt::format("<p>{} x {} pixels, {}; {} of {} views; RMS reprojection error {:.3f} "
+                     "px.</p>\n",
+                     c.size_px.x, c.size_px.y, name_of(c.lens), r.lens.used_views(), r.lens.views.size(),
+                     r.lens.rms_px);
     for (auto const& w : r.lens.warnings) s += "<p class=\"warning\">" + escaped(w) + "</p>\n";
     s += "<h2>Lens</h2>\n<table><tr><th></th><th>value</th><th>standard deviation</th></tr>\n";
     auto const values = parameters_of(c);
@@ -182,7 +158,7 @@ std::string to_html(CalibrationReport const& r)
         s += fmt::format(
             "<h2>Noise</h2>\n<p>Variance of a unit: {:.3g} + {:.3g} unit; sigma at 0.18: {:.4f}.</p>\n",
             r.noise->read, r.noise->photon, r.noise->sigma(0.18));
-    return s + "</body></html>\n";
+    return s + page_end();
 }
 
 void write_report(std::filesystem::path const& file, CalibrationReport const& report)

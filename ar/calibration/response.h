@@ -43,7 +43,7 @@ struct MergedRadiance {
 };
 
 struct MergeOptions {
-    NoiseModel noise{1e-5, 1e-4, 0, 0}; ///< of the sensor
+    NoiseModel noise{1e-5, 1e-4};       ///< of the sensor
     double moved_sigmas = 5;            ///< how many sigmas apart exposures may be
 };
 

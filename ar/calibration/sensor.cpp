@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <opencv2/imgproc.hpp>
 
 namespace ar {
 namespace {
@@ -22,16 +23,6 @@ bool is_clipped(std::uint8_t v) { return v <= 2 || v >= 253; }
 double unit_of(Photometry const& p, std::size_t channel, std::uint8_t byte)
 {
     return p.unit_of_byte[channel][byte];
-}
-
-VignettingFit solved(cv::Mat const& rows, cv::Mat const& right, int first_column)
-{
-    cv::Mat x;
-    cv::solve(rows, right, x, cv::DECOMP_SVD);
-    VignettingFit fit;
-    for (int i = 0; i < 3; ++i) fit.vignetting[std::size_t(i)] = x.at<double>(first_column + i);
-    fit.samples = std::size_t(rows.rows);
-    return fit;
 }
 
 void check_pictures(std::span<cv::Mat const> rgb, std::string const& what)
@@ -89,6 +80,11 @@ VignettingFit vignetting_of_flat(std::span<cv::Mat const> rgb, Photometry const&
     if (samples.size() < 100)
         throw InputError(fmt::format("{} parts of the flat field can be used", samples.size()),
                          "the others are clipped", "expose it to the middle of the range");
+    double furthest = 0;
+    for (Sample const& s : samples) furthest = std::max(furthest, std::sqrt(s.r2));
+    if (furthest < 0.8)
+        throw InputError(fmt::format("what is not clipped of the flat field reaches to radius {:.2f}", furthest),
+                         "the curve is fitted up to 1, the corners", "expose it so that the corners are in range");
     // unit = level (1 + a r2 + b r4 + c r6): given the levels linear in a, b, c, and the other way round.
     VignettingFit fit;
     std::vector<double> level(std::size_t(levels), 0);
@@ -115,51 +111,17 @@ VignettingFit vignetting_of_flat(std::span<cv::Mat const> rgb, Photometry const&
         for (int k = 0; k < 3; ++k) fit.vignetting[std::size_t(k)] = x.at<double>(k + 1) / x.at<double>(0);
         cv::Mat const left = right - rows * x;
         fit.rms = std::sqrt(left.dot(left) / rows.rows);
-        fit.samples = samples.size();
         double change = 0;
         for (std::size_t k = 0; k < 3; ++k) change = std::max(change, std::abs(fit.vignetting[k] - before[k]));
         if (change < 1e-9) break;
     }
-    return fit;
-}
-
-VignettingFit vignetting_of_pairs(std::span<SeenTwice const> pairs, cv::Size picture, Photometry const& response)
-{
-    // u1 g(r2) = u2 g(r1): linear in a, b, c.
-    std::vector<std::array<double, 4>> rows;
-    double spread = 0;
-    for (SeenTwice const& s : pairs) {
-        double const p = radius_squared(picture, s.first_px.x, s.first_px.y);
-        double const q = radius_squared(picture, s.second_px.x, s.second_px.y);
-        spread = std::max(spread, std::abs(p - q));
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (is_clipped(s.first[c]) || is_clipped(s.second[c])) continue;
-            double const u = unit_of(response, c, s.first[c]), v = unit_of(response, c, s.second[c]);
-            double const w = 1 / std::max(1e-6, u + v); // errors of light grow with it
-            rows.push_back({w * (u * q - v * p), w * (u * q * q - v * p * p), w * (u * q * q * q - v * p * p * p),
-                            w * (v - u)});
-        }
-    }
-    if (rows.size() < 30 || spread < 0.1)
-        throw InputError(fmt::format("{} values seen twice, at radii that differ by up to {:.2f}", rows.size(),
-                                     std::sqrt(spread)),
-                         "30 or more are needed, at the centre and near the corners",
-                         "overlap the pictures otherwise");
-    cv::Mat all(int(rows.size()), 3, CV_64F), right(int(rows.size()), 1, CV_64F);
-    for (int i = 0; i < all.rows; ++i) {
-        for (int k = 0; k < 3; ++k) all.at<double>(i, k) = rows[std::size_t(i)][std::size_t(k)];
-        right.at<double>(i) = rows[std::size_t(i)][3];
-    }
-    VignettingFit fit = solved(all, right, 0);
-    cv::Mat const x = (cv::Mat_<double>(3, 1) << fit.vignetting[0], fit.vignetting[1], fit.vignetting[2]);
-    cv::Mat const left = right - all * x;
-    fit.rms = 2 * std::sqrt(left.dot(left) / all.rows);
+    for (Sample const& s : samples) fit.points.emplace_back(std::sqrt(s.r2), s.unit / level[std::size_t(s.level)]);
     return fit;
 }
 
 double NoiseModel::sigma(double unit) const { return std::sqrt(std::max(0., read + photon * std::max(0., unit))); }
 
-NoiseModel noise_of_pairs(std::span<cv::Mat const> rgb, Photometry const& response)
+NoiseFit noise_of_pairs(std::span<cv::Mat const> rgb, Photometry const& response)
 {
     check_pictures(rgb, "pairs of frames");
     if (rgb.size() % 2 != 0)
@@ -168,6 +130,10 @@ NoiseModel noise_of_pairs(std::span<cv::Mat const> rgb, Photometry const& respon
         double sum = 0, squares = 0, rounding = 0;
         std::size_t count = 0;
     };
+    for (std::size_t k = 0; k < rgb.size(); k += 2)
+        if (cv::norm(rgb[k], rgb[k + 1], cv::NORM_INF) == 0)
+            throw InputError(fmt::format("the frames of pair {} do not differ", k / 2 + 1),
+                             "no sensor is without noise", "take two pictures, not one twice");
     std::map<int, Bin> bins; // of the pair's mean byte in steps of two
     for (std::size_t k = 0; k < rgb.size(); k += 2)
         for (int y = 0; y < rgb[k].rows; ++y)
@@ -197,8 +163,8 @@ NoiseModel noise_of_pairs(std::span<cv::Mat const> rgb, Photometry const& respon
         if (bin.count >= 200 && unit - reach > unit_of(response, 1, 8) && unit + reach < unit_of(response, 1, 245))
             points.push_back({unit, variance, n});
     }
-    NoiseModel model;
-    model.bins = points.size();
+    NoiseFit fit;
+    NoiseModel& model = fit.noise;
     if (points.size() < 5)
         throw InputError(fmt::format("the frames have {} brightnesses that occur often", points.size()),
                          "noise is fitted over them", "take a scene with dark and bright parts, at rest");
@@ -219,8 +185,9 @@ NoiseModel noise_of_pairs(std::span<cv::Mat const> rgb, Photometry const& respon
     double sum = 0;
     for (auto const& p : points)
         sum += std::pow(p.variance / std::max(1e-12, model.read + model.photon * p.unit) - 1, 2);
-    model.rms = std::sqrt(sum / double(points.size()));
-    return model;
+    fit.rms = std::sqrt(sum / double(points.size()));
+    for (auto const& p : points) fit.points.emplace_back(p.unit, p.variance);
+    return fit;
 }
 
 std::array<cv::Vec3f, 24> const& chart_linear_rgb()
@@ -253,7 +220,7 @@ ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f cons
             known.at<double>(i, c) = chart[std::size_t(i)][c];
         }
     cv::SVD const svd(seen, cv::SVD::NO_UV);
-    if (!(svd.w.at<double>(2) > 1e-4 * svd.w.at<double>(0)))
+    if (!(svd.w.at<double>(2) > 5e-3 * svd.w.at<double>(0)))
         throw InputError("the patches seen do not span colours", "a matrix cannot be told from them",
                          "check the patches' positions");
     cv::Mat transposed;
@@ -273,10 +240,53 @@ ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f cons
         before += cv::norm(lab_of(brightness * s) - lab_of(k)) / n;
     }
     fit.delta_e_before = before;
+    if (fit.mean_delta_e > 10)
+        throw InputError(fmt::format("the patches are off by delta E {:.0f} on the mean", fit.mean_delta_e),
+                         "no matrix makes the chart's colours of those seen",
+                         "check the patches' positions and order");
+    fit.brightness = brightness;
     fit.largest_delta_e = *std::max_element(fit.delta_e.begin(), fit.delta_e.end());
     for (int c = 0; c < 3; ++c)
         for (int j = 0; j < 3; ++j) fit.colour(c, j) = float(transposed.at<double>(j, c) / brightness);
     return fit;
+}
+
+std::vector<cv::Point2d> chart_centres(std::array<cv::Point2d, 4> const& corners_px, CameraModel const& camera)
+{
+    constexpr int kColumns = 6, kRows = 4;
+    std::array<cv::Point2f, 4> seen;
+    double turns = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        auto const d = direction_of(camera, {corners_px[i].x, corners_px[i].y});
+        if (!d || d->z < 1e-3)
+            throw InputError(
+                fmt::format("the lens sees nothing at ({:.1f}, {:.1f})", corners_px[i].x, corners_px[i].y),
+                "a patch's centre has to be in the picture", "give pixels of this picture");
+        seen[i] = cv::Point2f(float(d->x / d->z), float(d->y / d->z));
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+        cv::Point2f const u = seen[(i + 1) % 4] - seen[i], v = seen[(i + 2) % 4] - seen[(i + 1) % 4];
+        double const turn = u.cross(v);
+        if (turn == 0 || turns * turn < 0)
+            throw InputError("the corner patches are not the corners of a chart",
+                             "they are given one after the other around it",
+                             "give dark skin, bluish green, black and white, in this order");
+        turns = turn;
+    }
+    std::array<cv::Point2f, 4> const chart{
+        cv::Point2f(0, 0), {kColumns - 1, 0}, {kColumns - 1, kRows - 1}, {0, kRows - 1}};
+    cv::Matx33d const seen_from_chart = cv::getPerspectiveTransform(chart.data(), seen.data());
+    std::vector<cv::Point2d> centres;
+    for (int row = 0; row < kRows; ++row)
+        for (int column = 0; column < kColumns; ++column) {
+            cv::Vec3d const p = seen_from_chart * cv::Vec3d(column, row, 1);
+            auto const px = project(camera, {p[0] / p[2], p[1] / p[2], 1});
+            if (!px)
+                throw InputError("the lens does not see the whole chart", "patches lie between the corners",
+                                 "check the corners");
+            centres.emplace_back(px->x, px->y);
+        }
+    return centres;
 }
 
 std::vector<cv::Vec3f> patch_units(cv::Mat const& rgb, std::span<cv::Point2d const> centres, double half_px,

@@ -1,6 +1,7 @@
 #include "ar/composite/albedo_samples.h"
 
 #include "ar/base/error.h"
+#include "gi/core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,10 +20,7 @@ float median_of_lit(cv::Mat const& white, cv::Mat const& surface)
             if (float const l = luminance(white.at<cv::Vec3f>(y, x));
                 surface.at<int>(y, x) >= 0 && std::isfinite(l) && l > 0)
                 values.push_back(l);
-    if (values.empty()) return 0;
-    auto const middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return values.empty() ? 0 : float(gi::median(std::move(values)));
 }
 
 bool is_at_border(cv::Mat const& surface, int x, int y, int reach)
@@ -32,22 +30,6 @@ bool is_at_border(cv::Mat const& surface, int x, int y, int reach)
         for (int i = std::max(0, x - reach); i <= std::min(surface.cols - 1, x + reach); ++i)
             if (surface.at<int>(j, i) != s) return true;
     return false;
-}
-
-/// Of the pairs (value, weight), which are sorted.
-float weighted_median(std::vector<std::pair<float, float>>& values)
-{
-    std::sort(values.begin(), values.end());
-    double total = 0, below = 0;
-    for (auto const& [value, weight] : values) total += weight;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        double const up_to = below + values[i].second;
-        // Exactly half on either side: the middle of the two.
-        if (up_to == 0.5 * total && i + 1 < values.size()) return 0.5f * (values[i].first + values[i + 1].first);
-        if (up_to > 0.5 * total) return values[i].first;
-        below = up_to;
-    }
-    return values.back().first;
 }
 
 struct Centre {
@@ -60,10 +42,10 @@ Centre centre_of(std::span<AlbedoSample const> samples)
     std::vector<std::pair<float, float>> values(samples.size());
     for (int c = 0; c < 3; ++c) {
         for (std::size_t i = 0; i < samples.size(); ++i) values[i] = {samples[i].ratio[c], samples[i].weight};
-        centre.median[c] = weighted_median(values);
+        centre.median[c] = float(gi::weighted_median(values));
         for (std::size_t i = 0; i < samples.size(); ++i)
             values[i] = {std::abs(samples[i].ratio[c] - centre.median[c]), samples[i].weight};
-        centre.deviation[c] = 1.4826f * weighted_median(values);
+        centre.deviation[c] = 1.4826f * float(gi::weighted_median(values));
     }
     return centre;
 }

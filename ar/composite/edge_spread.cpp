@@ -1,6 +1,7 @@
 #include "ar/composite/edge_spread.h"
 
 #include "ar/base/error.h"
+#include "gi/core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -131,15 +132,10 @@ std::optional<Sharpness> estimate_sharpness(cv::Mat const& light, std::span<Edge
             ++found.refused;
     }
     if (sigmas.empty()) return std::nullopt;
-    auto const median = [](std::vector<double>& v) {
-        auto const middle = v.begin() + std::ptrdiff_t(v.size() / 2);
-        std::nth_element(v.begin(), middle, v.end());
-        return *middle;
-    };
     found.edges = int(sigmas.size());
-    found.sigma_px = median(sigmas);
+    found.sigma_px = gi::median(sigmas);
     for (double& s : sigmas) s = std::abs(s - found.sigma_px);
-    found.spread_px = 1.4826 * median(sigmas);
+    found.spread_px = 1.4826 * gi::median(std::move(sigmas));
     return found;
 }
 

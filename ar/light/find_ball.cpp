@@ -1,5 +1,6 @@
 #include "ar/base/error.h"
 #include "ar/light/mirror_ball.h"
+#include "gi/core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -90,10 +91,9 @@ BallSight fit_cone(Rim const& rim, BallSight const& start)
         std::vector<double> misses;
         for (glm::dvec3 const& d : rim.rays)
             misses.push_back(std::acos(std::clamp(glm::dot(d, ball.axis), -1.0, 1.0)) - ball.half_angle_rad);
-        std::vector<double> sorted;
-        for (double const m : misses) sorted.push_back(std::abs(m));
-        std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(sorted.size() / 2), sorted.end());
-        scale = std::max(0.2 * rim.rad_per_px, 3 * sorted[sorted.size() / 2]);
+        std::vector<double> sizes;
+        for (double const m : misses) sizes.push_back(std::abs(m));
+        scale = std::max(0.2 * rim.rad_per_px, 3 * gi::median(std::move(sizes)));
         cv::Matx33d a = cv::Matx33d::zeros();
         cv::Vec3d b(0, 0, 0);
         double sum = 0, weights = 0;

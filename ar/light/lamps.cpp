@@ -119,23 +119,4 @@ SplitMap split_lamps(cv::Mat const& map, LampSettings const& settings)
     return out;
 }
 
-cv::Mat with_lamps(cv::Mat const& rest, std::vector<Lamp> const& lamps)
-{
-    cv::Mat out = rest.clone();
-    for (Lamp const& lamp : lamps) {
-        double const cosine = std::cos(lamp.half_angle_rad);
-        Texels disc;
-        glm::dvec2 const uv = uv_of(lamp.direction);
-        for (int j = 0; j < out.rows; ++j)
-            for (int i = 0; i < out.cols; ++i)
-                if (glm::dot(lamp.direction, texel_direction(out.size(), i, j)) >= cosine) disc.emplace_back(i, j);
-        if (disc.empty())
-            disc.emplace_back(std::min(out.cols - 1, int(uv.x * out.cols)),
-                              std::min(out.rows - 1, int(uv.y * out.rows)));
-        cv::Vec3d const radiance = lamp.irradiance / region_sr(out.size(), disc);
-        for (cv::Point const& t : disc) out.at<cv::Vec3f>(t) += cv::Vec3f(radiance);
-    }
-    return out;
-}
-
 } // namespace ar

@@ -39,8 +39,6 @@ struct SplitMap {
 
 /// Light is conserved in each channel: integral(rest) + sum of irradiance = integral(map).
 SplitMap split_lamps(cv::Mat const& map, LampSettings const& settings = {});
-/// The map with the lamps drawn as discs, each with its light whatever texels the disc falls on.
-cv::Mat with_lamps(cv::Mat const& rest, std::vector<Lamp> const& lamps);
 
 /// 0.2126 R + 0.7152 G + 0.0722 B.
 double luminance(cv::Vec3d const& rgb);

@@ -1,7 +1,6 @@
 #include "ar/light/lat_long.h"
 
 #include "ar/base/error.h"
-#include "ar/base/rotation_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,33 +81,6 @@ cv::Mat resampled(cv::Mat const& map, cv::Size size, glm::dquat const& to_from)
                 out.at<cv::Vec3f>(j, i) = cv::Vec3f(sum / weights);
             }
     });
-    return out;
-}
-
-MapAlignment align_directions(std::span<glm::dvec3 const> in_map, std::span<glm::dvec3 const> in_world)
-{
-    auto const refuse = [](std::string const& problem, std::string const& why) {
-        throw InputError("alignment of an environment map: " + problem, why,
-                         "give two or more directions of the same features in the map and in the world");
-    };
-    if (in_map.size() != in_world.size())
-        refuse(fmt::format("{} directions in the map and {} in the world", in_map.size(), in_world.size()),
-               "they are matched one by one");
-    std::vector<glm::dvec3> from, to;
-    for (std::size_t i = 0; i < in_map.size(); ++i) {
-        double const a = glm::length(in_map[i]), b = glm::length(in_world[i]);
-        if (!(a > 0 && b > 0 && std::isfinite(a) && std::isfinite(b)))
-            refuse(fmt::format("direction {} is zero or not finite", i + 1), "it points nowhere");
-        from.push_back(in_map[i] / a);
-        to.push_back(in_world[i] / b);
-    }
-    auto const rotation = rotation_fit(from, to);
-    if (from.size() < 2 || !rotation) refuse("the directions are parallel", "the turn about them is free");
-    MapAlignment out;
-    out.world_from_map = *rotation;
-    for (std::size_t i = 0; i < from.size(); ++i)
-        out.residual_deg.push_back(
-            glm::degrees(2 * std::asin(std::clamp(0.5 * glm::length(*rotation * from[i] - to[i]), 0.0, 1.0))));
     return out;
 }
 

@@ -31,15 +31,6 @@ cv::Vec3d integral(cv::Mat const& map);
 /// @param to_from takes directions of `map` to directions of the result
 cv::Mat resampled(cv::Mat const& map, cv::Size size, glm::dquat const& to_from = {1, 0, 0, 0});
 
-/// The rotation `world_from_map` that brings directions of features seen in the map (lamps, windows) to their
-/// directions in the world, and how far each is off then.
-struct MapAlignment {
-    glm::dquat world_from_map{1, 0, 0, 0};
-    std::vector<double> residual_deg;
-};
-/// @throws InputError fewer than two, as many of one as of the other not given, or all parallel
-MapAlignment align_directions(std::span<glm::dvec3 const> in_map, std::span<glm::dvec3 const> in_world);
-
 /// @throws InputError empty, not CV_32FC3, not 2 : 1, not finite, negative; `where` begins the message
 void check_map(cv::Mat const& map, std::string const& where);
 

@@ -2,6 +2,7 @@
 
 #include "ar/base/error.h"
 #include "ar/light/lamps.h"
+#include "gi/core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,15 +17,11 @@ constexpr float kPiF = std::numbers::pi_v<float>;
 constexpr float kWellSeen = 0.5f; ///< share of a texel from which ratios and changes are read
 constexpr double kLeastRatio = 1e-3, kMostRatio = 1e3;
 
-/// The value that half of the weight is below; 1 of nothing.
-double weighted_median(std::vector<std::pair<double, double>> values)
+/// The weighted median of ratios, within what is possible; 1 of nothing.
+double middle_ratio(std::vector<std::pair<double, double>> ratios)
 {
-    std::sort(values.begin(), values.end());
-    double all = 0, sum = 0;
-    for (auto const& [unused, w] : values) all += w;
-    for (auto const& [v, w] : values)
-        if ((sum += w) >= 0.5 * all && all > 0) return std::clamp(v, kLeastRatio, kMostRatio);
-    return 1;
+    double const middle = gi::weighted_median(std::move(ratios));
+    return std::isnan(middle) ? 1 : std::clamp(middle, kLeastRatio, kMostRatio);
 }
 
 double light(cv::Vec3f const& v) { return luminance(cv::Vec3d(v)); }
@@ -120,7 +117,7 @@ double LiveProbe::frame_gain() const
         if (t.confidence > 0.3f) known.emplace_back(light(t.value) / now, sr);
         if (has_prior_) prior.emplace_back(luminance(before.mul(scale_)) / now, sr);
     }
-    return known.size() >= 8 ? weighted_median(known) : prior.size() >= 8 ? weighted_median(prior) : gain_;
+    return known.size() >= 8 ? middle_ratio(known) : prior.size() >= 8 ? middle_ratio(prior) : gain_;
 }
 
 void LiveProbe::follow(ProbeUpdate& update, double time_s)
@@ -184,7 +181,7 @@ void LiveProbe::scale_prior()
             if (prior > 0) ratios.emplace_back(t.value[c] / prior, w * prior);
         }
         if (has_prior_)
-            scale_[c] = weighted_median(std::move(ratios));
+            scale_[c] = middle_ratio(std::move(ratios));
         else if (weights > 0)
             scale_[c] = sum / weights;
     }

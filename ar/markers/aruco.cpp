@@ -65,12 +65,6 @@ FoundMarkers find_squares(cv::Mat const& searched, std::string const& dictionary
 
 } // namespace
 
-std::string name_of(Refinement refinement)
-{
-    constexpr std::array<char const*, 5> names{"none", "edges", "subpixel", "contour", "apriltag"};
-    return names[std::size_t(refinement)];
-}
-
 FoundMarkers find_markers(cv::Mat const& gray, std::string const& dictionary, SearchSettings const& s)
 {
     cv::Mat searched = gray;

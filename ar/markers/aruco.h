@@ -16,7 +16,6 @@ enum class Refinement {
     contour,  ///< lines through the contour
     apriltag, ///< AprilTag 2's own search for quads (Wang and Olson 2016); slow
 };
-std::string name_of(Refinement refinement);
 
 struct SearchSettings {
     Refinement refinement = Refinement::edges;

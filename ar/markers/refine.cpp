@@ -1,5 +1,7 @@
 #include "ar/markers/refine.h"
 
+#include "gi/core/quantile.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -140,9 +142,7 @@ double growth_of(cv::Mat const& gray, std::array<cv::Point2f, 4> const& corners,
             growths.push_back(sum / weight / (2 * (1 - 1 / double(n))));
         }
     if (growths.size() < 4) return 0;
-    auto const middle = growths.begin() + std::ptrdiff_t(growths.size() / 2);
-    std::nth_element(growths.begin(), middle, growths.end());
-    return std::clamp(*middle, -1., 1.);
+    return std::clamp(gi::median(std::move(growths)), -1., 1.);
 }
 
 /// Where two lines of a chessboard cross. The four arms reach to these places; black is clockwise of the first

@@ -1,8 +1,9 @@
 #include "ar/pose/estimate.h"
 
-#include "ar/base/rotation_fit.h"
+#include "ar/base/rotation_vector.h"
 #include "ar/pose/candidates.h"
 #include "ar/pose/refine.h"
+#include "gi/core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -88,9 +89,7 @@ double scale_of(CameraModel const& camera, SightedPoints const& points, Pose con
 {
     std::vector<double> misses;
     for (SightedPoint const& p : points) misses.push_back(miss_sigmas(camera, pose, p));
-    auto const middle = misses.begin() + std::ptrdiff_t(misses.size() / 2);
-    std::nth_element(misses.begin(), middle, misses.end());
-    return std::clamp(*middle / 1.1774, 1.0, kMostScale); // the median of a Rayleigh distribution
+    return std::clamp(gi::median(std::move(misses)) / 1.1774, 1.0, kMostScale); // of a Rayleigh distribution
 }
 
 /// Single points, and whole markers of which half of the points disagree.

@@ -1,6 +1,6 @@
 #include "ar/pose/one_euro.h"
 
-#include "ar/base/rotation_fit.h"
+#include "ar/base/rotation_vector.h"
 
 #include <numbers>
 

@@ -1,6 +1,6 @@
 #include "ar/pose/refine.h"
 
-#include "ar/base/rotation_fit.h"
+#include "ar/base/rotation_vector.h"
 
 #include <cmath>
 

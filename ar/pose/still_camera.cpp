@@ -1,6 +1,7 @@
 #include "ar/pose/still_camera.h"
 
-#include "ar/base/rotation_fit.h"
+#include "ar/base/rotation_vector.h"
+#include "gi/core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +30,7 @@ Pose median(std::deque<PoseEstimate> const& kept)
     std::vector<double> v(kept.size());
     auto const middle = [&](auto const& value) {
         std::transform(kept.begin(), kept.end(), v.begin(), value);
-        std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
-        return v[v.size() / 2];
+        return gi::median(v);
     };
     for (int k = 0; k < 3; ++k) {
         m.position_m[k] = middle([&](PoseEstimate const& e) { return e.world_from_camera.position_m[k]; });

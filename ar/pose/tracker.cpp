@@ -38,12 +38,6 @@ void check(TrackerSettings const& s)
 
 } // namespace
 
-std::string name_of(TrackState state)
-{
-    constexpr char const* names[]{"lost", "predicted", "tracked"};
-    return names[std::size_t(state)];
-}
-
 PoseTracker::PoseTracker(TrackerSettings const& settings)
     : settings_(settings), filter_(settings.position, settings.rotation), still_(settings.still)
 {

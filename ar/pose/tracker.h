@@ -15,7 +15,6 @@ enum class TrackState {
     predicted, ///< from the motion: later than the newest estimate by more than a frame
     tracked    ///< measured
 };
-std::string name_of(TrackState state);
 
 enum class CameraMotion { moving, tripod };
 

@@ -1,6 +1,7 @@
 #include "gi/image/flip.h"
 
 #include "gi/base/math.h"
+#include "gi/core/quantile.h"
 
 #include <algorithm>
 #include <array>
@@ -223,12 +224,8 @@ FlipExposures flip_exposures(std::vector<float> const& reference)
     for (std::size_t i = 0; i + 2 < reference.size(); i += 3)
         y.push_back(luminance({reference[i], reference[i + 1], reference[i + 2]}));
     if (y.empty()) return {0, 0, 1};
-    auto const middle = y.begin() + std::ptrdiff_t(y.size() / 2);
-    std::nth_element(y.begin(), middle, y.end());
-    float median = *middle;
-    if (y.size() % 2 == 0) median = 0.5f * (median + *std::max_element(y.begin(), middle));
-    float const largest = std::max(*std::max_element(middle, y.end()), 1e-4f);
-    median = std::max(median, 1e-4f);
+    float const largest = std::max(*std::max_element(y.begin(), y.end()), 1e-4f);
+    float const median = std::max(1e-4f, float(gi::median(std::move(y))));
     // Where ACES reaches 0.85.
     constexpr double kLevel = 0.85;
     double const a = 0.36 * 2.51 - kLevel * 0.36 * 2.43, b = 0.6 * 0.03 - kLevel * 0.6 * 0.59, c = -kLevel * 0.14;

@@ -18,8 +18,4 @@ inline constexpr int kMicroSide = 4;
 void rasterize(TriangleSoup const& soup, std::size_t first, std::size_t last, RasterGrid const& grid,
                MacroPath macro, Fragments& out);
 
-/// The same, one triangle after the other through the scan alone.
-void rasterize_plain(TriangleSoup const& soup, std::size_t first, std::size_t last, RasterGrid const& grid,
-                     MacroPath macro, Fragments& out);
-
 } // namespace gi

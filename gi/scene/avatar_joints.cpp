@@ -212,18 +212,4 @@ AvatarJoints find_avatar_joints(Scene const& scene, AvatarNames const& names, st
                      "no joint has one of the usual names", "name them; there are: " + known);
 }
 
-std::string describe(Scene const& scene, AvatarJoints const& joints)
-{
-    auto const name = [&](std::int32_t node) { return scene.nodes[std::size_t(node)].name; };
-    auto const arm = [&](ArmJoints const& a) {
-        return fmt::format("{} > {} > {}", name(a.upper), name(a.lower), name(a.hand));
-    };
-    std::string text = fmt::format("head: {}, left arm: {}, right arm: {}", name(joints.head), arm(joints.left),
-                                   arm(joints.right));
-    for (auto const& [leg, which] : {std::pair{joints.left_leg, "left"}, {joints.right_leg, "right"}})
-        if (leg.foot >= 0)
-            text += fmt::format(", {} leg: {} > {} > {}", which, name(leg.upper), name(leg.lower), name(leg.foot));
-    return text;
-}
-
 } // namespace gi

@@ -44,8 +44,4 @@ struct AvatarNames {
 /// what of these was not found and which joints there are; legs may be missing.
 AvatarJoints find_avatar_joints(Scene const& scene, AvatarNames const& names = {}, std::int32_t skin = -1);
 
-/// What was matched, for people: "head: Head, left arm: LeftArm > LeftForeArm > LeftHand, right arm: ..., left
-/// leg: ...".
-std::string describe(Scene const& scene, AvatarJoints const& joints);
-
 } // namespace gi

@@ -77,8 +77,6 @@ CameraRays camera_rays(Camera const& camera, int width, int height, dvec3 world_
 /// Throws InputError on a radius or a distance that is negative or not finite, a lens that focuses at 0, and one
 /// of an orthographic camera.
 void check_lens(Camera const& camera);
-/// Inverse of CameraRays::through for a point in the same frame: pixel position and depth along forward (m).
-vec3 project(CameraRays const& camera, vec3 point);
 /// A camera at `from` looking at `at`, +Y up (any other up if the two are vertical above each other).
 /// Throws InputError if from == at or a value is not finite.
 Camera look_at(dvec3 from, dvec3 at, double yfov_deg);

@@ -18,6 +18,4 @@ Projection::Projection(CameraRays const& camera)
 {
 }
 
-vec3 project(CameraRays const& camera, vec3 point) { return Projection(camera)(point); }
-
 } // namespace gi

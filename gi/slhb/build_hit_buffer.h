@@ -1,6 +1,6 @@
 #pragma once
 // Hit buffers built by kernels, in either space: count, scan, fill, sort; then what is cut out, or beyond a limit,
-// is taken out. The layers are those of rasterize_plain and fill_hit_buffer, bit for bit.
+// is taken out. The layers are those of rasterize and fill_hit_buffer, bit for bit.
 
 #include "gi/base/error.h"
 #include "gi/base/launch.h"

@@ -14,6 +14,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from lightwell import FrameRenderer, study
 
 SCRIPT = """\
@@ -134,7 +136,7 @@ class PsychoPyPresenter(study.Presenter):
                 frames_shown=len(flips_s),
                 frames_dropped=dropped,
                 render_ms_mean=1000 * sum(render_s) / len(render_s),
-                render_ms_p99=1000 * sorted(render_s)[int(0.99 * (len(render_s) - 1))],
+                render_ms_p99=1000 * float(np.quantile(render_s, 0.99)),
                 settings_sha256=trial.stimuli[letter].settings_sha256,
             )
             for letter in trial.order

@@ -1,6 +1,6 @@
 #include "study/analysis/result_details.h"
 
-#include "study/stats/summary.h"
+#include "gi/core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -252,20 +252,20 @@ ResultTable timing(Analysis const& a)
     if (!r.calibrations.empty()) {
         row("tests of the display", double(r.calibrations.size()));
         row("tests of the display that it passed", passed);
-        row("period of the display, median ms", quantile(periods, 0.5));
-        row("standard deviation of the period, largest ms", quantile(deviations, 1));
+        row("period of the display, median ms", gi::quantile(periods, 0.5));
+        row("standard deviation of the period, largest ms", gi::quantile(deviations, 1));
     }
     for (auto const& [method, n] : r.onset_methods) row("stimuli timed by " + (method.empty() ? "?" : method), n);
-    row("onset uncertainty, median ms", quantile(r.uncertainty_ms, 0.5));
-    row("onset uncertainty, most ms", quantile(r.uncertainty_ms, 1));
+    row("onset uncertainty, median ms", gi::quantile(r.uncertainty_ms, 0.5));
+    row("onset uncertainty, most ms", gi::quantile(r.uncertainty_ms, 1));
     row("frames planned", double(r.frames_planned));
     row("frames shown", double(r.frames_shown));
     row("frames dropped", double(r.frames_dropped));
     row("stimuli with dropped frames", r.stimuli_with_drops);
     row("stimuli", r.stimuli);
-    row("time to render a frame, median of stimuli ms", quantile(r.frame_ms, 0.5));
-    row("time to render a frame, 99 % of stimuli ms", quantile(r.frame_ms, 0.99));
-    row("bookkeeping between trials, 99 % ms", quantile(r.bookkeeping_ms, 0.99));
+    row("time to render a frame, median of stimuli ms", gi::quantile(r.frame_ms, 0.5));
+    row("time to render a frame, 99 % of stimuli ms", gi::quantile(r.frame_ms, 0.99));
+    row("bookkeeping between trials, 99 % ms", gi::quantile(r.bookkeeping_ms, 0.99));
     return t;
 }
 
@@ -298,7 +298,7 @@ ResultTable reactions(Analysis const& a)
                        {"q95", "95 %", "ms"}};
     for (ReactionResult const& r : a.timing.reactions) {
         std::vector<std::string> row{cell(r.block), cell(int(r.ms.size()))};
-        for (double const p : {0.05, 0.25, 0.5, 0.75, 0.95}) row.push_back(cell(quantile(r.ms, p)));
+        for (double const p : {0.05, 0.25, 0.5, 0.75, 0.95}) row.push_back(cell(gi::quantile(r.ms, p)));
         t.table.rows.push_back(std::move(row));
     }
     return t;

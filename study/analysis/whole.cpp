@@ -1,5 +1,6 @@
 #include "study/analysis/whole.h"
 
+#include "gi/core/quantile.h"
 #include "study/design/transitions.h"
 #include "study/stats/summary.h"
 #include "study/tables/events.h"
@@ -72,7 +73,7 @@ void finish_summary(ObserverTrials const& observer, AnalysisSettings const& sett
     for (TrialRow const& row : observer.rows)
         if (row.standing == Standing::counted && row.done->reaction_ms)
             reactions.push_back(*row.done->reaction_ms);
-    s.reaction_median_ms = quantile(reactions, 0.5);
+    s.reaction_median_ms = gi::quantile(reactions, 0.5);
     if (s.choices > 0) s.bias_p = binomial_test(s.chose_first, s.choices);
     if (s.is_excluded) {
         a.exclusions.push_back({s.participant, "left out", "the caller asked for it", int(observer.rows.size())});

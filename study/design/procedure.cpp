@@ -6,15 +6,6 @@
 
 namespace study {
 
-std::optional<Scale> scale_of(std::string_view name)
-{
-    if (name == "linear") return Scale::linear;
-    if (name == "log2") return Scale::log2;
-    if (name == "log10") return Scale::log10;
-    if (name == "db") return Scale::db;
-    return {};
-}
-
 double to_scale(Scale scale, double level)
 {
     switch (scale) {
@@ -54,14 +45,6 @@ std::string_view name_of(Method method)
 {
     constexpr std::string_view kNames[] = {"constant", "staircase", "questplus", "adjustment"};
     return kNames[std::size_t(method)];
-}
-
-std::optional<Psychometric> psychometric_of(std::string_view name)
-{
-    if (name == "weibull") return Psychometric::weibull;
-    if (name == "normal") return Psychometric::normal;
-    if (name == "logistic") return Psychometric::logistic;
-    return {};
 }
 
 bool is_adaptive(Procedure const& procedure)

@@ -13,7 +13,6 @@ namespace study {
 /// In which a level's steps are equal. Steps and thresholds are in its units: levels, octaves, decades, decibels
 /// (20 log10 of the level).
 enum class Scale { linear, log2, log10, db };
-std::optional<Scale> scale_of(std::string_view name);
 double to_scale(Scale scale, double level);
 double from_scale(Scale scale, double value);
 
@@ -29,7 +28,6 @@ struct Stop {
 
 /// The psychometric function that QUEST+ fits.
 enum class Psychometric { weibull, normal, logistic };
-std::optional<Psychometric> psychometric_of(std::string_view name);
 
 struct Procedure {
     std::string name;

@@ -64,9 +64,4 @@ struct QuestionnaireScores {
 /// Throws std::invalid_argument where there are too few, too many, or one is out of its range or not a step of it.
 QuestionnaireScores score(Questionnaire const& questionnaire, std::span<std::optional<double> const> answers);
 
-/// The weighted NASA-TLX: sum of rating * weight / 15, where the weight of a scale is how often it was chosen in
-/// the 15 comparisons of two (Hart and Staveland 1988). @param ratings six, 0 to 100 @param weights six, 0 to 5,
-/// sum 15 Throws std::invalid_argument otherwise.
-double weighted_tlx(std::span<double const> ratings, std::span<int const> weights);
-
 } // namespace study

@@ -51,21 +51,4 @@ QuestionnaireScores score(Questionnaire const& q, std::span<std::optional<double
     return scores;
 }
 
-double weighted_tlx(std::span<double const> ratings, std::span<int const> weights)
-{
-    double sum = 0;
-    int total = 0;
-    bool is_good = ratings.size() == 6 && weights.size() == 6;
-    for (std::size_t i = 0; is_good && i < 6; ++i) {
-        is_good = ratings[i] >= 0 && ratings[i] <= 100 && weights[i] >= 0 && weights[i] <= 5;
-        sum += ratings[i] * weights[i];
-        total += weights[i];
-    }
-    if (!is_good || total != 15)
-        throw std::invalid_argument(
-            "these are no weighted NASA-TLX (six ratings from 0 to 100 and six weights from 0 "
-            "to 5 with the sum 15 are needed) count how often each scale was chosen");
-    return sum / 15;
-}
-
 } // namespace study

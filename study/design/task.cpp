@@ -32,20 +32,6 @@ constexpr TaskFacts kFacts[] = {
 
 TaskFacts const& facts(Task task) { return kFacts[std::size_t(task)]; }
 
-std::optional<Task> task_of(std::string_view name)
-{
-    for (TaskFacts const& f : kFacts)
-        if (f.name == name) return f.task;
-    return {};
-}
-
-std::string task_names()
-{
-    std::string all;
-    for (TaskFacts const& f : kFacts) all += (all.empty() ? "" : ", ") + std::string(f.name);
-    return all;
-}
-
 std::vector<PresentedOrder> presented_orders(Task task, bool without_noise)
 {
     switch (task) {

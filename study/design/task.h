@@ -44,8 +44,6 @@ struct TaskFacts {
     double response_ms; ///< expected for planning; of ranking for each stimulus
 };
 TaskFacts const& facts(Task task);
-std::optional<Task> task_of(std::string_view name);
-std::string task_names();
 
 /// Presentation orders of a task as letters of its stimuli ("aab": a, a, then b) and the right answer to each;
 /// only of tasks that have one. @param without_noise leaves out those in which there is nothing to find

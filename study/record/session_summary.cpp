@@ -1,5 +1,7 @@
 #include "study/record/session_summary.h"
 
+#include "gi/core/quantile.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -35,10 +37,8 @@ Json to_json(SessionStarted const& s)
 Json percentiles(std::vector<double> values)
 {
     if (values.empty()) return nullptr;
-    std::sort(values.begin(), values.end());
-    auto const at = [&](double p) {
-        return number(values[std::size_t(std::ceil(p * double(values.size()))) - 1]);
-    };
+    values = gi::sorted_values(std::move(values));
+    auto const at = [&](double p) { return number(gi::quantile_of_sorted(values, p)); };
     return {{"count", values.size()}, {"median", at(0.5)}, {"p99", at(0.99)}, {"max", at(1)}};
 }
 

@@ -36,13 +36,6 @@ Interval wilson(double k, double n, double confidence)
     return {k == 0 ? 0 : std::max(0.0, centre - half), k == n ? 1 : std::min(1.0, centre + half)};
 }
 
-Interval clopper_pearson(double k, double n, double confidence)
-{
-    check(k, n, confidence);
-    double const tail = (1 - confidence) / 2;
-    return {k == 0 ? 0 : beta_quantile(k, n - k + 1, tail), k == n ? 1 : beta_quantile(k + 1, n - k, 1 - tail)};
-}
-
 double log_binomial(double k, double n, double p)
 {
     check(k, n);

@@ -10,10 +10,6 @@ struct Interval {
 /// The score interval (Wilson 1927, JASA 22:209). k and n need not be whole: ties count half.
 /// @throws std::invalid_argument unless 0 <= k <= n and 0 < confidence < 1, all of them numbers
 Interval wilson(double k, double n, double confidence = 0.95);
-/// The interval that never covers less than `confidence` (Clopper & Pearson 1934, Biometrika 26:404):
-/// the quantiles of Beta(k, n-k+1) and Beta(k+1, n-k).
-/// @throws std::invalid_argument as wilson
-Interval clopper_pearson(double k, double n, double confidence = 0.95);
 
 /// log P(K = k) of n trials of probability p; -infinity where it cannot be. @throws as wilson
 double log_binomial(double k, double n, double p);

@@ -1,5 +1,6 @@
 #include "study/stats/bootstrap.h"
 
+#include "gi/core/quantile.h"
 #include "study/base/random.h"
 #include "study/stats/error.h"
 #include "study/stats/special.h"
@@ -54,7 +55,7 @@ Bootstrap bootstrap(int observers, ObserverStatistic const& statistic, Bootstrap
     for (std::size_t k = 0; k < result.replicates.front().size(); ++k) {
         std::vector<double> values;
         for (auto const& r : result.replicates) values.push_back(r[k]);
-        result.interval.push_back({quantile(values, low), quantile(values, 1 - low)});
+        result.interval.push_back({gi::quantile(values, low), gi::quantile(values, 1 - low)});
         result.standard_error.push_back(standard_deviation(values));
     }
     return result;

@@ -1,11 +1,11 @@
 #include "study/stats/outliers.h"
 
+#include "gi/core/quantile.h"
 #include "study/stats/binomial.h"
 #include "study/stats/distance_prior.h"
 #include "study/stats/error.h"
 #include "study/stats/pair_scale.h"
 #include "study/stats/special.h"
-#include "study/stats/summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,7 +77,7 @@ std::vector<ObserverFit> observer_outliers(std::vector<std::vector<Matrix>> cons
         if (pairs[o] > 0) known.push_back(sum[o]);
     }
     if (known.size() < 3) refuse_so_few();
-    double const q25 = quantile(known, 0.25), range = quantile(known, 0.75) - q25;
+    double const q25 = gi::quantile(known, 0.25), range = gi::quantile(known, 0.75) - q25;
     std::vector<ObserverFit> result;
     for (double const l : sum) {
         double const below = l < q25 ? q25 - l : 0;

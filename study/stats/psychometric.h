@@ -75,14 +75,4 @@ PsychometricFit fit_psychometric(std::span<LevelCount const> counts, Psychometri
 /// Single trials as counts, levels rising. @throws std::invalid_argument lists of different lengths
 std::vector<LevelCount> count_levels(std::span<double const> levels, std::span<int const> correct);
 
-/// Confidence by simulating the fitted observer (Wichmann & Hill 2001, Percept. Psychophys. 63:1314).
-struct PsychometricBootstrap {
-    Interval threshold, scale; ///< percentiles
-    double deviance_p = 1;     ///< share of simulated deviances that are as large
-    int replicates = 0;        ///< that converged
-};
-PsychometricBootstrap bootstrap_psychometric(std::span<LevelCount const> counts,
-                                             PsychometricSettings const& settings, int replicates = 1000,
-                                             double confidence = 0.95, std::uint64_t seed = 1);
-
 } // namespace study

@@ -1,9 +1,7 @@
-#include "study/base/random.h"
 #include "study/stats/error.h"
 #include "study/stats/likelihood.h"
 #include "study/stats/psychometric.h"
 #include "study/stats/sigmoid.h"
-#include "study/stats/summary.h"
 
 #include <algorithm>
 #include <array>
@@ -131,17 +129,6 @@ MaximumLikelihood best_fit(Model const& m)
     return best;
 }
 
-/// The best fit of data like those that gave `p`: nearly always the maximum next to it.
-MaximumLikelihood fit_near(Model const& m, PsychometricParameters const& p)
-{
-    std::vector<double> x{(p.threshold - m.centre) / m.range, std::log(p.scale / m.range)};
-    if (m.fits_guess()) x.push_back(std::clamp(p.guess, m.guess.limit * 0.02, m.guess.limit * 0.98));
-    if (m.fits_lapse()) x.push_back(std::clamp(p.lapse, m.lapse.limit * 0.02, m.lapse.limit * 0.98));
-    MaximumLikelihood const fit =
-        maximise([&](std::span<double const> at, Likelihood& l) { m.evaluate(at, l); }, x, m.bounds());
-    return fit.converged && !fit.at_bound[0] && !fit.at_bound[1] ? fit : best_fit(m);
-}
-
 std::string note_of(Model const& m, MaximumLikelihood const& fit)
 {
     std::string note;
@@ -201,41 +188,6 @@ PsychometricFit fit_psychometric(std::span<LevelCount const> counts, Psychometri
 {
     Model const m = make_model(counts, settings);
     return describe(m, settings.shape, best_fit(m));
-}
-
-PsychometricBootstrap bootstrap_psychometric(std::span<LevelCount const> counts,
-                                             PsychometricSettings const& settings, int replicates,
-                                             double confidence, std::uint64_t seed)
-{
-    if (replicates < 2 || !(confidence > 0 && confidence < 1))
-        refuse("a bootstrap with " + std::to_string(replicates) + " replicates and confidence " +
-                   std::to_string(confidence),
-               "it needs two replicates or more and a probability", "use 1000 and 0.95");
-    PsychometricFit const fit = fit_psychometric(counts, settings);
-    Random random(seed);
-    std::vector<double> thresholds, scales;
-    int as_large = 0;
-    for (int i = 0; i < replicates; ++i) {
-        std::vector<LevelCount> simulated(counts.begin(), counts.end());
-        for (LevelCount& c : simulated) {
-            double const p = proportion_at(settings.shape, fit.parameters, c.level);
-            c.correct = 0;
-            for (int t = 0; t < int(c.trials); ++t) c.correct += random.uniform() < p;
-        }
-        Model const m = make_model(simulated, settings);
-        PsychometricFit const again = describe(m, settings.shape, fit_near(m, fit.parameters));
-        if (!again.converged) continue;
-        thresholds.push_back(again.parameters.threshold);
-        scales.push_back(again.parameters.scale);
-        as_large += again.deviance >= fit.deviance - 1e-9;
-    }
-    PsychometricBootstrap result;
-    result.replicates = int(thresholds.size());
-    double const tail = (1 - confidence) / 2;
-    result.threshold = {quantile(thresholds, tail), quantile(thresholds, 1 - tail)};
-    result.scale = {quantile(scales, tail), quantile(scales, 1 - tail)};
-    result.deviance_p = double(as_large) / std::max(1, result.replicates);
-    return result;
 }
 
 } // namespace study

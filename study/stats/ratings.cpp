@@ -55,29 +55,6 @@ std::vector<MeanOpinion> mean_opinions(Matrix const& ratings, double confidence)
     return result;
 }
 
-std::vector<double> observer_means(Matrix const& ratings)
-{
-    check(ratings);
-    Matrix const by_observer = transposed(ratings);
-    std::vector<double> means;
-    for (std::size_t o = 0; o < by_observer.rows; ++o) means.push_back(mean(given(by_observer, o)));
-    return means;
-}
-
-Matrix normalised(Matrix const& ratings)
-{
-    check(ratings);
-    Matrix const by_observer = transposed(ratings);
-    Matrix result = ratings;
-    for (std::size_t o = 0; o < ratings.columns; ++o) {
-        std::vector<double> const values = given(by_observer, o);
-        double const m = mean(values), d = standard_deviation(values);
-        for (std::size_t j = 0; j < ratings.rows; ++j)
-            if (!std::isnan(ratings(j, o))) result(j, o) = d > 0 ? (ratings(j, o) - m) / d : 0;
-    }
-    return result;
-}
-
 Matrix transposed(Matrix const& table)
 {
     Matrix t(table.columns, table.rows);

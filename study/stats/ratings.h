@@ -19,10 +19,6 @@ struct MeanOpinion {
 /// @throws std::invalid_argument a rating that is infinite, a confidence outside of (0, 1)
 std::vector<MeanOpinion> mean_opinions(Matrix const& ratings, double confidence = 0.95);
 
-/// Mean rating of each observer; NaN of one who rated nothing.
-std::vector<double> observer_means(Matrix const& ratings);
-/// Each observer's ratings with mean 0 and deviation 1; 0 where somebody rated everything the same.
-Matrix normalised(Matrix const& ratings);
 /// Observers x items, as friedman() wants it.
 Matrix transposed(Matrix const& table);
 

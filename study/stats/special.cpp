@@ -91,25 +91,9 @@ double normal_quantile(double p)
     return z;
 }
 
-double erf_inverse(double y)
-{
-    if (std::abs(y) > 0.5) return std::copysign(normal_quantile((1 - std::abs(y)) / 2), y) / std::numbers::sqrt2;
-    double x = 0.5 * std::sqrt(std::numbers::pi) * y; // (1 + y) / 2 would lose the digits of a small y
-    for (int i = 0; i < 6; ++i) x -= (std::erf(x) - y) * 0.5 * std::sqrt(std::numbers::pi) * std::exp(x * x);
-    return x;
-}
-
 double log_gamma(double x) { return std::lgamma(x); }
 
 double log_choose(double n, double k) { return log_gamma(n + 1) - log_gamma(k + 1) - log_gamma(n - k + 1); }
-
-double gamma_p(double a, double x)
-{
-    if (!(a > 0 && x >= 0)) return kNaN;
-    if (x == 0) return 0;
-    if (x == kInfinity) return 1;
-    return x < a + 1 ? gamma_series(a, x) * gamma_factor(a, x) : 1 - gamma_fraction(a, x) * gamma_factor(a, x);
-}
 
 double gamma_q(double a, double x)
 {
@@ -127,13 +111,6 @@ double beta_i(double a, double b, double x)
         std::exp(log_gamma(a + b) - log_gamma(a) - log_gamma(b) + a * std::log(x) + b * std::log1p(-x));
     if (x < (a + 1) / (a + b + 2)) return factor * beta_fraction(a, b, x) / a;
     return 1 - factor * beta_fraction(b, a, 1 - x) / b;
-}
-
-double beta_quantile(double a, double b, double p)
-{
-    if (!(a > 0 && b > 0 && p >= 0 && p <= 1)) return kNaN;
-    if (p == 0 || p == 1) return p;
-    return bisect([&](double x) { return beta_i(a, b, x) - p; }, 0, 1);
 }
 
 double chi_square_tail(double x, double degrees_of_freedom)

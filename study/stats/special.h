@@ -15,20 +15,14 @@ double normal_cdf(double z);
 double log_normal_cdf(double z);
 /// The z with Phi(z) = p: -infinity at 0, infinity at 1. NaN outside of [0, 1].
 double normal_quantile(double p);
-/// The x with erf(x) = y, y in [-1, 1].
-double erf_inverse(double y);
 
 double log_gamma(double x);
 /// log of n over k, also of numbers that are not whole.
 double log_choose(double n, double k);
-/// Regularised incomplete gamma functions P(a, x) and Q = 1 - P, a > 0, x >= 0: series A&S 6.5.29, continued
-/// fraction A&S 6.5.31.
-double gamma_p(double a, double x);
+/// Regularised incomplete gamma function Q(a, x), a > 0, x >= 0: series A&S 6.5.29, continued fraction A&S 6.5.31.
 double gamma_q(double a, double x);
 /// Regularised incomplete beta function I_x(a, b), a, b > 0, x in [0, 1]: continued fraction DLMF 8.17.22.
 double beta_i(double a, double b, double x);
-/// The x with I_x(a, b) = p.
-double beta_quantile(double a, double b, double p);
 
 /// P(X >= x) of a chi-square distribution. 1 where x <= 0; with no degrees of freedom X is 0.
 double chi_square_tail(double x, double degrees_of_freedom);

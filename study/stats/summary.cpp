@@ -21,15 +21,4 @@ double standard_deviation(std::span<double const> values)
     return std::sqrt(squares / double(values.size() - 1));
 }
 
-double quantile(std::vector<double> values, double p)
-{
-    if (values.empty()) return std::nan("");
-    std::sort(values.begin(), values.end());
-    double const last = double(values.size() - 1);
-    double const at = std::clamp(p * double(values.size()) - 0.5, 0.0, last);
-    auto const below = std::size_t(at);
-    double const share = at - double(below);
-    return share == 0 ? values[below] : values[below] * (1 - share) + values[below + 1] * share;
-}
-
 } // namespace study

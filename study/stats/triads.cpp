@@ -101,17 +101,4 @@ CircularTriads circular_triads(Matrix const& prefers)
     return r;
 }
 
-Matrix majority(Matrix const& wins)
-{
-    check_square(wins);
-    Matrix prefers(wins.rows, wins.rows);
-    for (std::size_t i = 0; i < wins.rows; ++i)
-        for (std::size_t j = 0; j < i; ++j) {
-            if (!(wins(i, j) > wins(j, i)) && !(wins(j, i) > wins(i, j)))
-                refuse(pair_name(j, i), "neither was chosen more often", "show it an odd number of times");
-            (wins(i, j) > wins(j, i) ? prefers(i, j) : prefers(j, i)) = 1;
-        }
-    return prefers;
-}
-
 } // namespace study

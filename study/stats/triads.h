@@ -29,8 +29,4 @@ CircularTriads circular_triads(Matrix const& prefers);
 /// How many of the 2^(n(n-1)/2) outcomes have T = 0, 1, ... circular triads. @param n 1 to kExactTriadItems
 std::vector<std::uint64_t> circular_triad_counts(int n);
 
-/// One observer's majority choices. @param wins  wins(i, j) = how often i was chosen over j
-/// @throws std::invalid_argument a pair that was not shown or ended even
-Matrix majority(Matrix const& wins);
-
 } // namespace study

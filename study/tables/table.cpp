@@ -52,10 +52,6 @@ std::string seconds_cell(double seconds)
 {
     return std::isfinite(seconds) ? fmt::format("{:.6f}", seconds) : std::string(kNothing);
 }
-std::string seconds_cell(std::optional<double> seconds)
-{
-    return seconds ? seconds_cell(*seconds) : std::string(kNothing);
-}
 
 std::string tsv_text(Table const& table)
 {

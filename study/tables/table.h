@@ -41,7 +41,6 @@ inline std::string cell(char const* text) { return cell(std::string_view(text));
 inline std::string cell(std::string const& text) { return cell(std::string_view(text)); }
 /// Seconds with six decimals.
 std::string seconds_cell(double seconds);
-std::string seconds_cell(std::optional<double> seconds);
 
 /// A line of column names and one per row, tabs between.
 std::string tsv_text(Table const& table);

@@ -31,7 +31,7 @@ Calibration full(LensModel lens)
     c.photometry->colour = {1.7f, -0.5f, -0.15f, -0.25f, 1.5f, -0.3f, 0.02f, -0.6f, 1.6f};
     c.photometry->reference = {0.01, 2, 1.5, 1.25};
     c.photometry->radiance_per_unit = 12.5;
-    c.noise = NoiseModel{1e-6, 1e-4, 0, 0};
+    c.noise = NoiseModel{1e-6, 1e-4};
     c.provenance = {{"camera", "a \"webcam\" \\ no. 3"}, {"views", "20"}};
     return c;
 }

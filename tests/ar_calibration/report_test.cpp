@@ -27,7 +27,7 @@ TEST(Report, IsOnePageWithAllThereIs)
     for (auto& p : r.views[4].pixels) p += 3. * glm::dvec2(std::sin(p.y), std::cos(p.x));
     r.lens = calibrate_lens(r.views, camera.size_px, LensModel::pinhole);
     r.photometry = film_photometry();
-    r.noise = NoiseModel{1e-6, 1e-4, 0, 0};
+    r.noise = NoiseModel{1e-6, 1e-4};
     r.background = cv::Mat(480, 640, CV_8UC3, cv::Scalar(90, 120, 60));
     std::string const html = to_html(r);
     for (char const* text : {"data:image/jpeg;base64,", "&lt;b&gt;third", "left out: its error",

@@ -1,6 +1,4 @@
-#include "ar/composite/region.h"
-
-#include "ar/base/error.h"
+#include "tests/ar_composite/region.h"
 #include "tests/ar_composite/test_pictures.h"
 
 #include <gtest/gtest.h>

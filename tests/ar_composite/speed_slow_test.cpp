@@ -6,6 +6,7 @@
 #include "ar/composite/temporal.h"
 #include "ar/composite/upsample.h"
 #include "ar/composite/warp.h"
+#include "gi/core/quantile.h"
 #include "tests/ar_composite/test_pictures.h"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ Cost cost_of(Work const& work, int times = 21)
     }
     double const processor = 1e3 * double(std::clock() - before) / CLOCKS_PER_SEC / times;
     std::sort(ms.begin(), ms.end());
-    return {ms[ms.size() / 2], ms.front(), processor};
+    return {gi::quantile_of_sorted(ms, 0.5), ms.front(), processor};
 }
 
 std::ostream& operator<<(std::ostream& out, Cost const& c)

@@ -3,7 +3,7 @@
 
 #include "ar/composite/blur.h"
 #include "ar/composite/composite.h"
-#include "ar/composite/region.h"
+#include "tests/ar_composite/region.h"
 #include "tests/ar_composite/test_pictures.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "ar/light/lamps.h"
 
-#include "ar/light/irradiance.h"
 #include "tests/ar_light/environments.h"
+#include "tests/ar_light/irradiance_maps.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "ar/light/lat_long.h"
 
 #include "ar/base/error.h"
-#include "ar/base/rotation_fit.h"
+#include "ar/base/rotation_vector.h"
 #include "tests/ar_light/environments.h"
 
 #include <gtest/gtest.h>
@@ -44,24 +44,6 @@ TEST(LatLong, TurningKeepsTheLightAndTheDirections)
     EXPECT_NEAR(sample(turned, turn * d)[1], sample(map, d)[1], 0.02);
     cv::Vec3d const small = integral(resampled(map, {32, 16}));
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(small[c] / a[c], 1, 0.005);
-}
-
-TEST(LatLong, IsAlignedByDirections)
-{
-    glm::dquat const turn = exp_rotation({0.3, 1.1, -0.4});
-    std::vector<glm::dvec3> const in_map{{0, 1, 0}, {1, 0.2, 0}};
-    std::vector<glm::dvec3> in_world;
-    for (auto const& d : in_map) in_world.push_back(turn * d);
-    MapAlignment const a = align_directions(in_map, in_world);
-    EXPECT_LT(angle_between_deg(a.world_from_map, turn), 1e-6);
-    EXPECT_LT(a.residual_deg[1], 1e-6);
-    in_world[1] += glm::dvec3(0.05, 0, 0);
-    EXPECT_GT(align_directions(in_map, in_world).residual_deg[1], 0.1);
-    std::vector<glm::dvec3> const one{{0, 1, 0}}, parallel{{0, 1, 0}, {0, 2, 0}}, zero{{0, 1, 0}, {0, 0, 0}};
-    EXPECT_THROW(align_directions(one, one), InputError);
-    EXPECT_THROW(align_directions(parallel, parallel), InputError);
-    EXPECT_THROW(align_directions(zero, parallel), InputError);
-    EXPECT_THROW(align_directions(one, parallel), InputError);
 }
 
 TEST(LatLong, HolesAreFilledSmoothlyAndCounted)

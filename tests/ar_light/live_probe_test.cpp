@@ -2,9 +2,9 @@
 
 #include "ar/base/error.h"
 #include "ar/base/photometry.h"
-#include "ar/base/rotation_fit.h"
-#include "ar/light/irradiance.h"
+#include "ar/base/rotation_vector.h"
 #include "tests/ar_light/environments.h"
+#include "tests/ar_light/irradiance_maps.h"
 
 #include <chrono>
 #include <fmt/format.h>

@@ -1,11 +1,10 @@
 #include "ar/light/mirror_ball.h"
 
 #include "ar/base/error.h"
-#include "ar/base/rotation_fit.h"
-#include "ar/light/irradiance.h"
+#include "ar/base/rotation_vector.h"
 #include "ar/light/lamps.h"
-#include "ar/light/wide_lens.h"
 #include "tests/ar_light/environments.h"
+#include "tests/ar_light/irradiance_maps.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -220,37 +219,6 @@ TEST(MirrorBall, PartlyOutsideThePictureCoversLess)
     double const cut = covered_share(unwrap_ball(picture, s.camera, s.world_from_camera.rotation, is));
     EXPECT_LT(cut, 0.75 * whole);
     EXPECT_GT(cut, 0.2);
-}
-
-TEST(WideLens, TwoFisheyesGiveTheSurround)
-{
-    Environment const light = with_discs(kRoom, kBallDiscs);
-    cv::Mat const true_irradiance = irradiance_map(drawn({256, 128}, light), {16, 8}, IrradianceBy::exact_sum);
-    CameraModel const camera{LensModel::fisheye, {360, 360}, 102, 102, 179.5, 179.5, {0.02, -0.005, 0, 0}};
-    std::vector<PartialMap> seen;
-    for (double const turn : {0.3, 0.3 + std::numbers::pi}) {
-        glm::dquat const rotation = exp_rotation({0, turn, 0}) * glm::dquat(0, 1, 0, 0);
-        cv::Mat picture = cv::Mat::zeros(360, 360, CV_32FC3);
-        for (int y = 0; y < 360; ++y)
-            for (int x = 0; x < 360; ++x)
-                for (int k = 0; k < 4; ++k)
-                    if (auto const d = direction_of(camera, {x - 0.25 + 0.5 * (k % 2), y - 0.25 + 0.5 * (k / 2)}))
-                        picture.at<cv::Vec3f>(y, x) += 0.25f * cv::Vec3f(light(rotation * *d));
-        WideLensSettings settings;
-        settings.size = {256, 128};
-        settings.largest_angle_rad = glm::radians(96.0);
-        seen.push_back(unwrap_lens(picture, camera, rotation, settings));
-        EXPECT_NEAR(covered_share(seen.back()), 0.55, 0.01);
-    }
-    PartialMap const both = merged(seen);
-    FilledMap const f = filled(both);
-    double const error =
-        relative_error2(irradiance_map(f.radiance, {16, 8}, IrradianceBy::exact_sum), true_irradiance);
-    fmt::print("two fisheye pictures: {:.2f} % of the sphere, relMSE of irradiance {:.1e}\n",
-               100 * covered_share(both), error);
-    EXPECT_EQ(f.filled_texels, 0);
-    EXPECT_LT(error, 0.001);
-    EXPECT_THROW(unwrap_lens(cv::Mat(), camera, {1, 0, 0, 0}), InputError);
 }
 
 } // namespace

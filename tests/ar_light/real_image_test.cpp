@@ -1,13 +1,12 @@
 // Light of a real place: a captured map, pictures made from it by others, and what this room makes of them.
 
 #include "ar/base/photometry.h"
-#include "ar/base/rotation_fit.h"
-#include "ar/light/irradiance.h"
+#include "ar/base/rotation_vector.h"
 #include "ar/light/lamps.h"
 #include "ar/light/live_probe.h"
 #include "ar/light/map_file.h"
 #include "ar/light/mirror_ball.h"
-#include "ar/light/wide_lens.h"
+#include "tests/ar_light/irradiance_maps.h"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -56,22 +55,6 @@ TEST(Workshop, FromItsOrthographicMirrorBall)
                100 * covered_share(seen), error, nearest, lamps.size(), true_lamps.size());
     EXPECT_LT(error, 0.02);
     EXPECT_LT(nearest, 1);
-}
-
-TEST(Workshop, FromItsAngularProbe)
-{
-    if (is_missing("envmaps/autoshop_01_angular_probe_512.exr")) GTEST_SKIP() << "SKIPPED: no shared data";
-    cv::Mat const truth = read_map(kData / "envmaps/autoshop_01_1k.hdr");
-    // Debevec's angular map is an equidistant fisheye of 360 degrees.
-    double const f = 256 / std::numbers::pi;
-    CameraModel const camera{LensModel::fisheye, {512, 512}, f, f, 255.5, 255.5, {}};
-    cv::Mat const picture = read_radiance(kData / "envmaps/autoshop_01_angular_probe_512.exr");
-    PartialMap const seen = unwrap_lens(picture, camera, {0, 1, 0, 0});
-    double const error = relative_error2(irradiance_map(filled(seen).radiance), irradiance_map(truth));
-    fmt::print("workshop by its angular map: {:.1f} % covered, relMSE of irradiance {:.1e}\n",
-               100 * covered_share(seen), error);
-    EXPECT_LT(error, 0.02);
-    EXPECT_GT(covered_share(seen), 0.95);
 }
 
 TEST(Maps, KeepTheirLightWithoutTheirLamps)

@@ -2,6 +2,7 @@
 
 #include "ar/base/error.h"
 #include "tests/ar_markers/drawn_view.h"
+#include "tests/ar_markers/refinement_name.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

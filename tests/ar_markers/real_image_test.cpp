@@ -2,6 +2,8 @@
 
 #include "ar/markers/detect.h"
 #include "ar/markers/refine.h"
+#include "gi/core/quantile.h"
+#include "tests/ar_markers/refinement_name.h"
 
 #include <cmath>
 #include <filesystem>
@@ -220,17 +222,13 @@ TEST(Photographs, CharucoOnAScreen)
     double const our_rms = rms_of(ours_m, ours_px, each_ours),
                  their_rms = rms_of(theirs_m, theirs_px, each_theirs);
     shift *= 1. / both;
-    auto const median = [](std::vector<double> v) {
-        std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
-        return v[v.size() / 2];
-    };
     fmt::print("charuco_lifecam_1280: {} corners in {} pictures, {} with all 49 (OpenCV: {}); {:.3f} px rms from "
                "OpenCV's, of which ({:.3f}, {:.3f}) are its shift of (0.5, 0.5)\n",
                ours, detections.size(), full, theirs, std::sqrt(sum / both), shift.x, shift.y);
     fmt::print(
         "  reprojection after cv::calibrateCamera: {:.3f} px rms, median view {:.3f} (OpenCV's corners: {:.3f}, "
         "{:.3f}; as written down: {:.3f})\n",
-        our_rms, median(each_ours), their_rms, median(each_theirs),
+        our_rms, gi::median(each_ours), their_rms, gi::median(each_theirs),
         all["opencv_4_6_calibration"]["rms_px"].as<double>());
     EXPECT_GE(full, 14);
     EXPECT_LT(our_rms, 0.3);

@@ -1,7 +1,9 @@
 // What detection takes, printed. Nothing depends on it.
 
 #include "ar/markers/detect.h"
+#include "gi/core/quantile.h"
 #include "tests/ar_markers/drawn_view.h"
+#include "tests/ar_markers/refinement_name.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,12 +12,6 @@
 
 namespace ar::test {
 namespace {
-
-double median_ms(std::vector<double> v)
-{
-    std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
-    return v[v.size() / 2];
-}
 
 TEST(Speed, OfDetection)
 {
@@ -50,7 +46,7 @@ TEST(Speed, OfDetection)
             }
             fmt::print("{} x {}, {}: whole picture {:.1f} ms, near {:.1f} ms (medians of 24; {} points; {} of {} "
                        "searched as a whole)\n",
-                       size.x, size.y, name_of(refinement), median_ms(whole), median_ms(near), points,
+                       size.x, size.y, name_of(refinement), gi::median(whole), gi::median(near), points,
                        tracker.counts().whole, tracker.counts().pictures);
             EXPECT_EQ(points, 28u);
         }

@@ -1,5 +1,6 @@
 #include "ar/pose/estimate.h"
 
+#include "gi/core/quantile.h"
 #include "tests/ar_pose/synthetic.h"
 
 #include <algorithm>
@@ -18,15 +19,11 @@ struct Errors {
         mm.push_back(1e3 * glm::length(found.position_m - truth.position_m));
         deg.push_back(angle_between_deg(found.rotation, truth.rotation));
     }
-    static double at(std::vector<double> v, double share)
-    {
-        std::sort(v.begin(), v.end());
-        return v[std::min(v.size() - 1, std::size_t(share * double(v.size())))];
-    }
     void print(std::string const& what) const
     {
         fmt::print("{}: median {:.3f} mm {:.4f} deg, 95 % {:.3f} mm {:.4f} deg, most {:.3f} mm {:.4f} deg\n", what,
-                   at(mm, 0.5), at(deg, 0.5), at(mm, 0.95), at(deg, 0.95), at(mm, 1), at(deg, 1));
+                   gi::quantile(mm, 0.5), gi::quantile(deg, 0.5), gi::quantile(mm, 0.95), gi::quantile(deg, 0.95),
+                   gi::quantile(mm, 1), gi::quantile(deg, 1));
     }
 };
 
@@ -53,8 +50,8 @@ TEST_P(PoseOf, GridOfMarkersAtAMetreIsRightToAMillimetre)
             for (int k = 0; k < 3; ++k) normalised += std::pow(d[k] / e.position_sigma_m[k], 2) / 900;
         }
         errors.print(fmt::format("{} {:.1f} px", name_of(GetParam()), noise));
-        EXPECT_LE(Errors::at(errors.mm, 0.5), GetParam() == LensModel::fisheye ? 2 * 10 * noise : 10 * noise);
-        EXPECT_LE(Errors::at(errors.deg, 0.5), GetParam() == LensModel::fisheye ? 0.2 : 0.1);
+        EXPECT_LE(gi::quantile(errors.mm, 0.5), GetParam() == LensModel::fisheye ? 2 * 10 * noise : 10 * noise);
+        EXPECT_LE(gi::quantile(errors.deg, 0.5), GetParam() == LensModel::fisheye ? 0.2 : 0.1);
         EXPECT_NEAR(normalised, 1, 0.35); // the standard deviations are those of the errors
     }
 }
@@ -86,7 +83,7 @@ TEST(Pose, OfMarkersOnTwoWallsComesFromPointsInSpace)
         errors.add(e.world_from_camera, truth);
     }
     errors.print("two walls 0.1 px");
-    EXPECT_LT(Errors::at(errors.mm, 0.5), 1);
+    EXPECT_LT(gi::quantile(errors.mm, 0.5), 1);
 }
 
 TEST(Pose, LeavesOutAMarkerThatWasMoved)

@@ -3,7 +3,7 @@
 
 #include "ar/base/camera_model.h"
 #include "ar/base/pose.h"
-#include "ar/base/rotation_fit.h"
+#include "ar/base/rotation_vector.h"
 #include "ar/base/sighting.h"
 
 #include <cmath>

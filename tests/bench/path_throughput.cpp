@@ -4,6 +4,7 @@
 //   bench_path_throughput [SCENE...]      default: boxes of 1M triangles, atrium, cornell
 
 #include "gi/base/report.h"
+#include "gi/core/quantile.h"
 #include "gi/reference/path_tracer.h"
 #include "gi/scene/generate.h"
 #include "gi/scene/load.h"
@@ -116,12 +117,6 @@ double seconds(Work const& work)
     auto const start = std::chrono::steady_clock::now();
     work();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> v)
-{
-    std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
-    return v[v.size() / 2];
 }
 
 void measure(std::string const& name, Scene scene)

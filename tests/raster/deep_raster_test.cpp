@@ -1,6 +1,7 @@
 // The deep rasteriser: watertight by exact arithmetic, and one answer in all its forms.
 
 #include "gi/raster/deep_raster.h"
+#include "tests/raster/plain_raster.h"
 #include "tests/support/closed_mesh.h"
 
 #include <algorithm>

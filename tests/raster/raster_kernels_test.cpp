@@ -3,6 +3,7 @@
 #include "gi/base/scan.h"
 #include "gi/raster/deep_raster.h"
 #include "gi/raster/draw_nearest.h"
+#include "tests/raster/plain_raster.h"
 #include "tests/support/closed_mesh.h"
 #include "tests/support/on_device.h"
 

@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 #include "gi/scene/camera.h"
+#include "gi/scene/projection.h"
 
 #include <gtest/gtest.h>
 
@@ -40,7 +41,7 @@ TEST(Camera, ProjectIsTheInverse)
         for (vec2 const pixel : {vec2{0, 0}, vec2{63.5f, 20.25f}, vec2{640, 480}}) {
             CameraRays const rays = camera_rays(look_at({1, 2, 3}, {-2, 0, 1}, fov), 640, 480, dvec3{0});
             Ray const ray = rays.through(pixel);
-            vec3 const p = project(rays, ray.origin + 7.0f * ray.direction);
+            vec3 const p = Projection(rays)(ray.origin + 7.0f * ray.direction);
             // A pixel of the narrowest view is 4e-7 rad: float positions cannot say more than a part of it.
             float const tolerance = fov < 1 ? 4.0f : 0.02f;
             EXPECT_NEAR(p.x, pixel.x, tolerance) << fov;
@@ -58,7 +59,7 @@ TEST(Camera, OrthographicRaysAreParallel)
     for (vec2 const pixel : {vec2{0, 0}, vec2{100, 100}, vec2{25, 75}}) {
         Ray const ray = rays.through(pixel);
         EXPECT_LT(glm::distance(ray.direction, vec3{0, -1, 0}), 1e-6f);
-        vec3 const p = project(rays, ray.origin + 3.0f * ray.direction);
+        vec3 const p = Projection(rays)(ray.origin + 3.0f * ray.direction);
         EXPECT_NEAR(p.x, pixel.x, 1e-3f);
         EXPECT_NEAR(p.y, pixel.y, 1e-3f);
         EXPECT_NEAR(p.z, 3, 1e-5f);
@@ -109,7 +110,7 @@ TEST(Lens, SpreadsWhatIsOutOfFocusAsAThinLensDoes)
             CameraRays const at = rays.at_lens(disk);
             EXPECT_FALSE(at.has_lens());
             EXPECT_NEAR(glm::distance(at.origin, rays.origin), kRadius * double(glm::length(disk)), 1e-6);
-            vec3 const seen = project(at, point);
+            vec3 const seen = Projection(at)(point);
             double const aside_px = radius_px * (1 / kFocus - 1 / depth);
             EXPECT_NEAR(seen.x, 130 + double(disk.x) * aside_px, 0.01) << depth;
             EXPECT_NEAR(seen.y, 40 - double(disk.y) * aside_px, 0.01) << depth;

@@ -226,10 +226,10 @@ TEST_F(MeshSequence, FramesThatDifferAreRefusedByName)
 TEST_F(MeshSequence, TimesThatContradictAreRefused)
 {
     write_plys({1, 2, 3});
-    auto const expect_refusal = [&](std::string const& json, std::vector<std::string> const& parts) {
-        write("sequence.json", json);
+    auto const expect_refusal = [&](std::string const& text, std::vector<std::string> const& parts) {
+        write("sequence.json", text);
         std::string const message = refusal();
-        for (std::string const& part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << json;
+        for (std::string const& part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << text;
     };
     expect_refusal("{\n \"fps\": ]", {"sequence.json:2:9", "not JSON"});
     expect_refusal("[]", {"no keys"});

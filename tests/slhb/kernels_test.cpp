@@ -2,6 +2,7 @@
 
 #include "gi/slhb/build_hit_buffer.h"
 #include "gi/slhb/query_batch.h"
+#include "tests/raster/plain_raster.h"
 #include "tests/support/closed_mesh.h"
 #include "tests/support/on_device.h"
 

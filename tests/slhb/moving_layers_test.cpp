@@ -190,7 +190,7 @@ TEST(Moving, SomeAxesFollowInTurns)
 TEST(Moving, SomeAxesBringWhatAllDo)
 {
     constexpr std::uint32_t kParts = 10, kTurns = 4 * kParts;
-    constexpr int kSamples = 2000;
+    constexpr int kTurnSamples = 2000;
     Moving moving(0, false);
     AxisSet set(moving.source(true, 0));
     set.store(make_directions("icosahedron:320"));
@@ -198,11 +198,11 @@ TEST(Moving, SomeAxesBringWhatAllDo)
         for (std::uint32_t bounce : {0u, 2u}) {
             auto const mean = [&] {
                 vec3 sum{0};
-                for (int k = 0; k < kSamples; ++k) {
-                    AxisSample const s = set.sample(bounce, normal, (float(k) + 0.5f) / kSamples);
+                for (int k = 0; k < kTurnSamples; ++k) {
+                    AxisSample const s = set.sample(bounce, normal, (float(k) + 0.5f) / kTurnSamples);
                     sum += s.weight * vec3{1, s.direction.x * s.direction.x, std::max(0.0f, s.direction.y)};
                 }
-                return sum / float(kSamples);
+                return sum / float(kTurnSamples);
             };
             set.follow();
             vec3 const all = mean();

@@ -18,7 +18,7 @@ struct Place {
 };
 std::ostream& operator<<(std::ostream& out, Place const& p) { return out << p.name; }
 
-void room(Scene& s)
+void pair_room(Scene& s)
 {
     s = box_with_block_and_lamp();
     Material gloss = lambert(vec3{0.5f});
@@ -116,12 +116,12 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(Places, InPlace,
-                         testing::Values(Place{"block", room, block},
-                                         Place{"mirror_and_glass", room, mirror_and_glass},
+                         testing::Values(Place{"block", pair_room, block},
+                                         Place{"mirror_and_glass", pair_room, mirror_and_glass},
                                          Place{"sky", table_under_the_sky, block},
-                                         Place{"lamps", two_lamps, block}, Place{"fence", room, fence},
+                                         Place{"lamps", two_lamps, block}, Place{"fence", pair_room, fence},
                                          Place{"walker", table_under_the_sky, walker, 0.2},
-                                         Place{"walker_in_a_room", room, walker, 0.2}),
+                                         Place{"walker_in_a_room", pair_room, walker, 0.2}),
                          [](auto const& p) { return p.param.name; });
 
 void expect_same(Picture const& a, Picture const& b, std::string const& what)

@@ -81,13 +81,10 @@ TEST(SusUsability, GoesFromZeroToOneHundred)
     EXPECT_DOUBLE_EQ(scores_of(q, std::vector<double>(10, 3)).at("total"), 50);
 }
 
-TEST(NasaTlx, IsTheMeanOrWeighted)
+TEST(NasaTlx, IsTheMean)
 {
     std::vector<double> const ratings{80, 20, 60, 40, 75, 5};
     EXPECT_DOUBLE_EQ(scores_of(known("nasa_tlx"), ratings).at("raw"), 280.0 / 6);
-    EXPECT_DOUBLE_EQ(weighted_tlx(ratings, std::vector<int>{5, 0, 3, 2, 4, 1}), (400 + 180 + 80 + 300 + 5) / 15.0);
-    EXPECT_THROW(weighted_tlx(ratings, std::vector<int>{5, 5, 3, 2, 4, 1}), std::invalid_argument);
-    EXPECT_THROW(weighted_tlx(std::vector<double>(5, 1), std::vector<int>{5, 5, 3, 1, 1}), std::invalid_argument);
 }
 
 TEST(Scores, AreMissingWhereAnItemIs)

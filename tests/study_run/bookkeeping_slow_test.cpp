@@ -1,5 +1,6 @@
 // What a participant waits for between two trials.
 
+#include "gi/core/quantile.h"
 #include "tests/study_run/support.h"
 
 #include <fcntl.h>
@@ -7,12 +8,6 @@
 
 namespace study::test {
 namespace {
-
-double percentile(std::vector<double> v, double share)
-{
-    std::sort(v.begin(), v.end());
-    return v[std::size_t(share * double(v.size() - 1))];
-}
 
 /// What the disk alone takes for as many lines: other processes may keep it busy.
 double disk_p99_ms(std::filesystem::path const& file)
@@ -27,7 +22,7 @@ double disk_p99_ms(std::filesystem::path const& file)
         ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
     close(fd);
-    return percentile(std::move(ms), 0.99);
+    return gi::quantile(std::move(ms), 0.99);
 }
 
 TEST(Bookkeeping, OfSixHundredTrialsStaysBelowAMillisecond)
@@ -63,12 +58,12 @@ blocks:
         double const after = disk_p99_ms(dir / "alone");
         ASSERT_TRUE(o.is_complete);
         ASSERT_GE(o.bookkeeping_ms.size(), 600u);
-        double const p99 = percentile(o.bookkeeping_ms, 0.99), unsynced = percentile(o.unsynced_ms, 0.99);
+        double const p99 = gi::quantile(o.bookkeeping_ms, 0.99), unsynced = gi::quantile(o.unsynced_ms, 0.99);
         fmt::print("{} trials: bookkeeping {:.3f} ms median, {:.3f} ms p99; without waiting for the disk {:.3f} "
                    "ms median, "
                    "{:.3f} ms p99; the disk alone {:.3f} ms p99 before, {:.3f} ms after\n",
-                   o.bookkeeping_ms.size(), percentile(o.bookkeeping_ms, 0.5), p99, percentile(o.unsynced_ms, 0.5),
-                   unsynced, before, after);
+                   o.bookkeeping_ms.size(), gi::quantile(o.bookkeeping_ms, 0.5), p99,
+                   gi::quantile(o.unsynced_ms, 0.5), unsynced, before, after);
         EXPECT_LT(unsynced, 1);
         if (p99 < 1) return;
         was_quiet = was_quiet || std::max(before, after) < 0.5;

@@ -63,15 +63,6 @@ TEST(Triads, OfAnOrderAreNone)
     EXPECT_THROW(circular_triads(Matrix(0, 0)), std::invalid_argument);
 }
 
-TEST(Triads, OfRepeatedTrialsAreThoseOfTheMajority)
-{
-    Matrix wins(3, 3);
-    wins(0, 1) = 2, wins(1, 0) = 1, wins(1, 2) = 3, wins(2, 0) = 2, wins(0, 2) = 1;
-    EXPECT_EQ(circular_triads(majority(wins)).count, 1);
-    wins(1, 0) = 2;
-    EXPECT_THROW(majority(wins), std::invalid_argument);
-}
-
 TEST(Agreement, OfSchoolchildrenIsThatOfKendall)
 {
     LIGHTWELL_NEED_STUDY_DATA();

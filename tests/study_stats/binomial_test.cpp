@@ -12,30 +12,15 @@ namespace {
 
 TEST(Binomial, IntervalsAreThoseOfNewcombe)
 {
-    // Newcombe 1998 (Stat. Med. 17:857), table I: methods 3 (Wilson) and 5 (Clopper-Pearson).
+    // Newcombe 1998 (Stat. Med. 17:857), table I, method 3.
     struct Row {
-        double k, n, wilson_low, wilson_high, exact_low, exact_high;
+        double k, n, wilson_low, wilson_high;
     };
-    for (Row const& r :
-         {Row{81, 263, 0.2553, 0.3662, 0.2527, 0.3676}, Row{15, 148, 0.0624, 0.1605, 0.0578, 0.1617},
-          Row{0, 20, 0.0, 0.1611, 0.0, 0.1684}, Row{1, 29, 0.0061, 0.1718, 0.0009, 0.1776}}) {
-        Interval const w = wilson(r.k, r.n), c = clopper_pearson(r.k, r.n);
+    for (Row const& r : {Row{81, 263, 0.2553, 0.3662}, Row{15, 148, 0.0624, 0.1605}, Row{0, 20, 0.0, 0.1611},
+                         Row{1, 29, 0.0061, 0.1718}}) {
+        Interval const w = wilson(r.k, r.n);
         EXPECT_NEAR(w.low, r.wilson_low, 6e-5);
         EXPECT_NEAR(w.high, r.wilson_high, 6e-5);
-        EXPECT_NEAR(c.low, r.exact_low, 6e-5);
-        EXPECT_NEAR(c.high, r.exact_high, 6e-5);
-    }
-}
-
-TEST(Binomial, ExactIntervalsCoverAtLeastWhatTheySay)
-{
-    int const n = 17;
-    for (double p = 0.02; p < 1; p += 0.03) {
-        double covered = 0;
-        for (int k = 0; k <= n; ++k)
-            if (Interval const i = clopper_pearson(k, n); i.low <= p && p <= i.high)
-                covered += std::exp(log_binomial(k, n, p));
-        EXPECT_GE(covered, 0.95) << p;
     }
 }
 
@@ -51,8 +36,6 @@ TEST(Binomial, WithoutTrialsNothingIsKnown)
 {
     EXPECT_EQ(wilson(0, 0).low, 0);
     EXPECT_EQ(wilson(0, 0).high, 1);
-    EXPECT_EQ(clopper_pearson(0, 0).low, 0);
-    EXPECT_EQ(clopper_pearson(0, 0).high, 1);
     EXPECT_EQ(wilson(5, 5).high, 1);
 }
 
@@ -60,7 +43,7 @@ TEST(Binomial, RefusesWhatIsNoCount)
 {
     EXPECT_THROW(wilson(3, 2), std::invalid_argument);
     EXPECT_THROW(wilson(NAN, 2), std::invalid_argument);
-    EXPECT_THROW(clopper_pearson(-1, 2), std::invalid_argument);
+    EXPECT_THROW(wilson(-1, 2), std::invalid_argument);
     EXPECT_THROW(wilson(1, 2, 95), std::invalid_argument);
     EXPECT_THROW(binomial_test(1, 2, 1.5), std::invalid_argument);
 }

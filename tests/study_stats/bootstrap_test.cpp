@@ -12,15 +12,9 @@
 namespace study::test {
 namespace {
 
-TEST(Summary, QuantilesAreThoseOfHazen)
+TEST(Summary, OfTooFewIsNotANumber)
 {
-    std::vector<double> const v{4, 1, 3, 2};
-    EXPECT_EQ(quantile(v, 0.25), 1.5); // R: quantile(1:4, .25, type = 5)
-    EXPECT_EQ(quantile(v, 0.5), 2.5);
-    EXPECT_NEAR(quantile(v, 0.4), 2.1, 1e-12);
-    EXPECT_EQ(quantile(v, 0), 1);
-    EXPECT_EQ(quantile(v, 1), 4);
-    EXPECT_TRUE(std::isnan(quantile({}, 0.5)) && std::isnan(mean({})));
+    EXPECT_TRUE(std::isnan(mean({})));
     EXPECT_TRUE(std::isnan(standard_deviation(std::vector<double>{1})));
 }
 

@@ -101,21 +101,6 @@ TEST(Psychometric, WithAForgottenLapseTheScaleIsTooLarge)
     EXPECT_EQ(with.degrees_of_freedom, without.degrees_of_freedom - 1);
 }
 
-TEST(Psychometric, BootstrapAgreesWithTheErrorOfTheFit)
-{
-    PsychometricShape const shape{};
-    auto const counts = simulated(shape, {1, 2, 0.5, 0.02}, {-4, -2, 0, 1, 2, 4, 7}, 100);
-    PsychometricSettings const settings{shape, {0.5, 0}, {0.02, 0}};
-    PsychometricFit const f = fit_psychometric(counts, settings);
-    PsychometricBootstrap const b = bootstrap_psychometric(counts, settings, 400);
-    EXPECT_EQ(b.replicates, 400);
-    EXPECT_NEAR((b.threshold.high - b.threshold.low) / (2 * 1.96 * f.standard_error.threshold), 1, 0.2);
-    EXPECT_LT(b.threshold.low, f.parameters.threshold);
-    EXPECT_GT(b.threshold.high, f.parameters.threshold);
-    EXPECT_NEAR(b.deviance_p, f.fit_p, 0.1);
-    EXPECT_THROW(bootstrap_psychometric(counts, settings, 1), std::invalid_argument);
-}
-
 TEST(Psychometric, SaysWhatTheDataDoNotSettle)
 {
     auto const note = [](std::vector<LevelCount> const& counts) { return fit_psychometric(counts).note; };

@@ -30,25 +30,16 @@ TEST(Special, LogOfTheNormalDistributionGoesOnWhereThatIsNought)
     EXPECT_NEAR(log_normal_cdf(8), -normal_cdf(-8), 1e-28);
 }
 
-TEST(Special, ErfInverseUndoesErf)
-{
-    for (double x : {-3.0, -0.4, 0.0, 1e-12, 0.1, 0.47, 0.5, 1.7})
-        EXPECT_NEAR(erf_inverse(std::erf(x)), x, 1e-11 * (1 + std::abs(x))) << x;
-    EXPECT_TRUE(std::isinf(erf_inverse(1)));
-}
-
 TEST(Special, IncompleteGammaAndBetaMeetTheirClosedForms)
 {
     for (double x : {1e-6, 0.3, 1.0, 5.0, 40.0}) {
         EXPECT_NEAR(gamma_q(1, x), std::exp(-x), 1e-14);
-        EXPECT_NEAR(gamma_p(0.5, x), std::erf(std::sqrt(x)), 1e-14);
-        EXPECT_NEAR(gamma_p(7.5, x) + gamma_q(7.5, x), 1, 1e-14);
+        EXPECT_NEAR(gamma_q(0.5, x), std::erfc(std::sqrt(x)), 1e-14);
     }
     for (double x : {1e-5, 0.2, 0.5, 0.9}) {
         EXPECT_NEAR(beta_i(1, 3, x), 1 - std::pow(1 - x, 3), 1e-14);
         EXPECT_NEAR(beta_i(4, 1, x), std::pow(x, 4), 1e-14);
         EXPECT_NEAR(beta_i(2.5, 6, x), 1 - beta_i(6, 2.5, 1 - x), 1e-13);
-        EXPECT_NEAR(beta_quantile(2.5, 6, beta_i(2.5, 6, x)), x, 1e-11);
     }
 }
 

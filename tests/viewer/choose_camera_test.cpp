@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 #include "gi/scene/camera.h"
+#include "gi/scene/projection.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +35,7 @@ TEST(ChooseCamera, FramesAllOfASceneWithoutCameras)
     constexpr int kSize = 100;
     gi::CameraRays const rays = gi::camera_rays(chosen.camera, kSize, kSize, world.origin);
     for (gi::vec3 const corner : world.positions) {
-        gi::vec3 const p = gi::project(rays, corner);
+        gi::vec3 const p = gi::Projection(rays)(corner);
         EXPECT_GT(p.x, 0);
         EXPECT_LT(p.x, kSize);
         EXPECT_GT(p.y, 0);

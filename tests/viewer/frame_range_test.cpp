@@ -89,15 +89,17 @@ TEST(FrameName, TheExampleIsOfTheOption)
         }
 }
 
-TEST(FrameRecords, PercentilesAreValuesThatOccurred)
+TEST(FrameRecords, SecondsOfFramesAsQuantiles)
 {
-    std::vector<double> values;
-    for (int i = 100; i > 0; --i) values.push_back(i);
-    EXPECT_EQ(percentile(values, 0.5), 50);
-    EXPECT_EQ(percentile(values, 0.95), 95);
-    EXPECT_EQ(percentile(values, 0.99), 99);
-    EXPECT_EQ(percentile(values, 1), 100);
-    EXPECT_EQ(percentile({3}, 0.5), 3);
+    std::vector<FrameRecord> records(101);
+    for (int i = 0; i <= 100; ++i) records[std::size_t(i)].seconds = 100 - i;
+    records[0].reused = true;
+    nlohmann::ordered_json const seconds = frame_seconds(records); // of 0 to 99 s
+    EXPECT_EQ(seconds.at("median"), 49.5);
+    EXPECT_NEAR(seconds.at("p95").get<double>(), 94.05, 1e-12);
+    EXPECT_NEAR(seconds.at("p99").get<double>(), 98.01, 1e-12);
+    EXPECT_EQ(seconds.at("most"), 99);
+    EXPECT_TRUE(frame_seconds({records[0]}).is_null()) << "none was rendered";
 }
 
 } // namespace

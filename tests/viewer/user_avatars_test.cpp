@@ -63,12 +63,12 @@ TEST(UserAvatars, FeetAreAskedForWhereTheRoomHasItsFloorAtZero)
 
 TEST(UserAvatars, DamagedRecordingsAreRefused)
 {
-    using Json = nlohmann::json;
-    for (Json const& load :
-         {Json{{"avatar", 5}}, Json{{"avatar", "a.glb"}, {"eye_height_m", "x"}}, Json{{"avatars", 5}},
-          Json{{"avatars", {"x"}}}, Json{{"avatars", {{{"avatar", "a.glb"}, {"user", 100}}}}},
-          Json{{"avatar", "a.glb"}, {"avatars", {{{"avatar", "b.glb"}, {"user", 0}}}}},
-          Json{{"avatars", {{{"avatar", "a.glb"}, {"user", 2}}, {{"avatar", "b.glb"}, {"user", 2}}}}}})
+    using AnyJson = nlohmann::json;
+    for (AnyJson const& load :
+         {AnyJson{{"avatar", 5}}, AnyJson{{"avatar", "a.glb"}, {"eye_height_m", "x"}}, AnyJson{{"avatars", 5}},
+          AnyJson{{"avatars", {"x"}}}, AnyJson{{"avatars", {{{"avatar", "a.glb"}, {"user", 100}}}}},
+          AnyJson{{"avatar", "a.glb"}, {"avatars", {{{"avatar", "b.glb"}, {"user", 0}}}}},
+          AnyJson{{"avatars", {{{"avatar", "a.glb"}, {"user", 2}}, {{"avatar", "b.glb"}, {"user", 2}}}}}})
         EXPECT_THROW(avatars_of(load), gi::InputError) << load.dump();
 }
 

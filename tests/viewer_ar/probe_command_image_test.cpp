@@ -2,11 +2,11 @@
 // there.
 
 #include "ar/calibration/calibration_file.h"
-#include "ar/light/irradiance.h"
 #include "ar/light/lamps.h"
 #include "ar/light/map_file.h"
 #include "ar/markers/marker_map_file.h"
 #include "tests/ar_light/environments.h"
+#include "tests/ar_light/irradiance_maps.h"
 #include "tests/ar_markers/drawn_view.h"
 #include "tests/viewer/run_program.h"
 
@@ -97,7 +97,7 @@ TEST(ArProbe, GivesBackTheLightInTheWorldOfTheMarkers)
     auto const light = ar::test::with_discs(ar::test::kRoom, kDiscs);
     write_brackets(folder, light);
     cv::Mat const truth =
-        ar::irradiance_map(ar::test::drawn({256, 128}, light), {16, 8}, ar::IrradianceBy::exact_sum);
+        ar::test::irradiance_map(ar::test::drawn({256, 128}, light), {16, 8}, ar::test::IrradianceBy::exact_sum);
     std::string const rest =
         " --calibration camera.yaml --markers m.yaml --ball-radius 0.08 --exposures 1/30,1/240,1/1920 --size 256";
     for (std::string const ball : {"", " --ball 0.145,0.085,-0.325"}) {
@@ -106,8 +106,8 @@ TEST(ArProbe, GivesBackTheLightInTheWorldOfTheMarkers)
         fmt::print("{}", o.out);
         cv::Mat const map = ar::read_map(folder / "p.exr");
         ASSERT_EQ(map.size(), cv::Size(256, 128));
-        double const error =
-            ar::relative_error2(ar::irradiance_map(map, {16, 8}, ar::IrradianceBy::exact_sum), truth);
+        double const error = ar::test::relative_error2(
+            ar::test::irradiance_map(map, {16, 8}, ar::test::IrradianceBy::exact_sum), truth);
         auto const lamps = ar::split_lamps(map).lamps;
         fmt::print("relMSE of irradiance {:.1e}\n", error);
         EXPECT_LT(error, 0.02);

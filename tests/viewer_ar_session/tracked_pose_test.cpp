@@ -4,6 +4,7 @@
 
 #include "gi/base/error.h"
 #include "tests/viewer/run_program.h"
+#include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/ar/session/hmd_cameras.h"
 #include "viewer/ar/session/session_file.h"
 #include "viewer/tracking/tracker_hub.h"

@@ -1,6 +1,7 @@
 // Display files: what they say, what they refuse and how, and that they come back as they were.
 
 #include "tests/viewer_display/display_samples.h"
+#include "tests/viewer_display/mesh_samples.h"
 #include "viewer/display/check.h"
 #include "viewer/display/display_keys.h"
 

@@ -1,5 +1,6 @@
 // The frusta: what the eye sees of a wall is exactly the wall.
 
+#include "gi/scene/projection.h"
 #include "tests/viewer_display/display_samples.h"
 #include "viewer/display/views.h"
 
@@ -36,7 +37,7 @@ Misses misses_of(gi::Camera const& camera, WallFrame const& wall, gi::dvec3 eye)
     for (int corner = 0; corner < 4; ++corner) {
         gi::dvec3 const p = corner_point(wall, corner);
         glm::dvec2 const expected(corner % 2, corner / 2);
-        gi::vec3 const pixel = gi::project(rays, gi::vec3(p - eye));
+        gi::vec3 const pixel = gi::Projection(rays)(gi::vec3(p - eye));
         gi::Ray const ray = rays.through({float(expected.x * kWidth), float((1 - expected.y) * kHeight)});
         worst.tangents = std::max(worst.tangents, glm::length(seen_at(camera, p) - expected));
         worst.pixels = std::max(
@@ -210,7 +211,7 @@ TEST(OffAxis, WallsOfAllSizesAndPlaces)
             for (int corner = 0; corner < 4; ++corner) {
                 gi::dvec3 const p = corner_point(wall, corner);
                 EXPECT_LT(glm::length(seen_at(*camera, p) - glm::dvec2(corner % 2, corner / 2)), tolerance);
-                gi::vec3 const pixel = gi::project(rays, gi::vec3(p - eye));
+                gi::vec3 const pixel = gi::Projection(rays)(gi::vec3(p - eye));
                 EXPECT_NEAR(pixel.x / 1000, corner % 2, 1e-5 + tolerance);
                 EXPECT_NEAR(pixel.y / 1000, 1 - corner / 2, 1e-5 + tolerance);
             }

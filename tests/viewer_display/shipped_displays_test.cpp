@@ -1,6 +1,7 @@
 // Every display of data/displays loads without a doubt, comes back as it was, and is what it says.
 
 #include "tests/viewer_display/display_samples.h"
+#include "tests/viewer_display/mesh_samples.h"
 #include "viewer/display/examples.h"
 #include "viewer/display/import.h"
 #include "viewer/display/views.h"

@@ -1,3 +1,4 @@
+#include "gi/scene/projection.h"
 #include "tests/viewer_gl/stereo_check.h"
 #include "tests/viewer_gl/surfaceless.h"
 #include "viewer/gl/reprojection.h"
@@ -73,7 +74,7 @@ struct Flat {
                 vec3 point{0}, color{0};
                 int const what = hit(rays.through({float(x) + 0.5f, float(y) + 0.5f}), point, color);
                 for (int k = 0; k < 3; ++k) out.rgb.push_back(color[k]);
-                out.depth_m.push_back(what == 0 ? 0 : gi::project(rays, point).z);
+                out.depth_m.push_back(what == 0 ? 0 : gi::Projection(rays)(point).z);
             }
         return out;
     }
@@ -100,7 +101,7 @@ Errors compare(Flat const& scene, gi::Camera const& a, gi::Camera const& b, Rgba
             e.black += got.rgb(i) == vec3(0);
             vec3 point, color;
             int const what = scene.hit(from_b.through({float(x) + 0.5f, float(y) + 0.5f}), point, color);
-            vec3 const in_a = gi::project(from_a, point);
+            vec3 const in_a = gi::Projection(from_a)(point);
             bool const inside = in_a.z > 0 && in_a.x > 1 && in_a.y > 1 && in_a.x < float(kSize.x) - 1 &&
                                 in_a.y < float(kSize.y) - 1;
             if (what == 0 || !inside) continue;

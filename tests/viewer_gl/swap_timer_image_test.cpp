@@ -38,9 +38,10 @@ TEST_F(SwapOnX, TimesAreOrderedAndBounded)
         uncertainties.push_back(last.uncertainty_ms);
     }
     std::sort(uncertainties.begin(), uncertainties.end());
-    std::cout << "sync control listed: " << sync_control_listed() << "; method " << name_of(last.method)
-              << ", uncertainty median " << uncertainties[30] << " ms, greatest " << uncertainties.back()
-              << " ms; monitor " << window.refresh_hz() << " Hz\n";
+    std::cout << "sync control listed: " << sync_control_listed() << "; method "
+              << (last.method == GlSwapMethod::fence ? "fence" : "sync_control") << ", uncertainty median "
+              << uncertainties[30] << " ms, greatest " << uncertainties.back() << " ms; monitor "
+              << window.refresh_hz() << " Hz\n";
     for (auto const& [what, loss] : report.losses()) std::cout << what << ": " << loss.first << "\n";
 }
 

@@ -1,5 +1,6 @@
 #include "tests/viewer_gl/stereo_check.h"
 #include "tests/viewer_gl/surfaceless.h"
+#include "viewer/stereo/compose.h"
 #include "viewer/gl/wall_pass.h"
 
 #include <epoxy/gl.h>
@@ -12,6 +13,20 @@ using Bytes = std::vector<unsigned char>;
 using Format = TextureTarget::Format;
 
 constexpr glm::ivec2 kWallSize{64, 48};
+
+float side(float at, float width, float power)
+{
+    if (width <= 0 || at >= width) return 1;
+    float const t = std::max(at / width, 0.0f);
+    return t < 0.5f ? 0.5f * std::pow(2 * t, power) : 1 - 0.5f * std::pow(2 * (1 - t), power);
+}
+
+/// Weight of light of the formula of EdgeBlend at a place of the picture, 0..1 from the lower left.
+float blend_weight(EdgeBlend const& b, glm::vec2 at)
+{
+    return side(at.x, b.left, b.power) * side(1 - at.x, b.right, b.power) * side(at.y, b.bottom, b.power) *
+           side(1 - at.y, b.top, b.power);
+}
 
 /// An encoded picture of the room.
 struct Shown {

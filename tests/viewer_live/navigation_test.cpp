@@ -1,3 +1,4 @@
+#include "gi/scene/projection.h"
 #include "viewer/live/desktop_views.h"
 #include "viewer/live/navigation.h"
 
@@ -76,7 +77,7 @@ TEST(DesktopViews, DisparityIsWhatGeometrySays)
     for (double const depth : {0.5, 1.5, 10.0}) {
         gi::vec3 const point{1.1f, 1.9f, float(3 - depth)};
         auto const at = [&](int k) {
-            return gi::project(gi::camera_rays(views[std::size_t(k)].camera, 800, 600, dvec3{0}), point);
+            return gi::Projection(gi::camera_rays(views[std::size_t(k)].camera, 800, 600, dvec3{0}))(point);
         };
         double const disparity = stereo.eye_distance_m * (depth - stereo.screen_distance_m) / depth * pixels_per_m;
         EXPECT_NEAR(double(at(1).x - at(0).x), disparity, 1e-3) << depth;

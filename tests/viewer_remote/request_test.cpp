@@ -3,6 +3,8 @@
 #include "gi/base/error.h"
 #include "tests/viewer/run_program.h"
 
+#include <fmt/format.h>
+
 namespace viewer::test {
 namespace {
 
@@ -98,6 +100,22 @@ TEST(Request, WhatIsWrongIsSaid)
     EXPECT_NE(why_refused(deep).find("deeper"), std::string::npos);
     std::string const long_id = R"({"do": "ping", "id": ")" + std::string(257, 'a') + "\"}";
     EXPECT_LT(why_refused(long_id).size(), 300u);
+}
+
+/// The table of docs/remote.md.
+std::string requests_as_markdown()
+{
+    std::string table = "| do | what it does | arguments | result |\n|---|---|---|---|\n";
+    for (RequestRule const& r : request_rules()) {
+        std::string arguments;
+        for (ArgumentRule const& a : r.arguments)
+            arguments += fmt::format("{}`{}` {}{}{}: {}", arguments.empty() ? "" : "; ", a.name, name_of(a.type),
+                                     a.presence == Presence::optional ? ", optional" : "",
+                                     *a.choices == '\0' ? "" : fmt::format(" (one of {})", a.choices), a.meaning);
+        table += fmt::format("| `{}` | {} | {} | {} |\n", r.name, r.meaning, arguments.empty() ? "—" : arguments,
+                             r.result);
+    }
+    return table;
 }
 
 TEST(Request, DocumentationIsTheTable)

@@ -3,6 +3,7 @@
 
 #include "gi/scene/generate.h"
 #include "gi/scene/load.h"
+#include "gi/scene/projection.h"
 #include "tests/support/data.h"
 #include "viewer/session/session.h"
 #include "viewer/tracking/footsteps.h"
@@ -72,8 +73,8 @@ Share differing(std::vector<float> const& a, std::vector<float> const& b)
 {
     constexpr int kTile = 2;
     gi::CameraRays const rays = gi::camera_rays(standing(0, 0).views[0].camera, kWidth, kHeight, gi::dvec3{0});
-    gi::vec2 const low = gi::project(rays, {-0.86f, 2.16f, -1.58f}),
-                   high = gi::project(rays, {0.86f, 0.14f, -1.58f});
+    gi::vec2 const low = gi::Projection(rays)({-0.86f, 2.16f, -1.58f}),
+                   high = gi::Projection(rays)({0.86f, 0.14f, -1.58f});
     int count[3] = {}, other[3] = {};
     for (int y0 = 0; y0 < kHeight; y0 += kTile)
         for (int x0 = 0; x0 < kWidth; x0 += kTile) {

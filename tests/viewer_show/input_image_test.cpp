@@ -1,6 +1,7 @@
 // Real keys, mouse and window sizes, and how long they take to be seen.
 
 #include "gi/base/picture_file.h"
+#include "gi/core/quantile.h"
 #include "tests/viewer_show/live_view.h"
 #include "tests/viewer_show/x/x_window.h"
 #include "viewer/recording/recording.h"
@@ -212,12 +213,8 @@ constexpr int kPresses = 30;
 struct Times {
     std::vector<double> ms;
 
-    double at(double share)
-    {
-        std::sort(ms.begin(), ms.end());
-        return ms.empty() ? 1e9 : ms[std::min(ms.size() - 1, std::size_t(share * double(ms.size())))];
-    }
-    std::string text()
+    double at(double share) const { return ms.empty() ? 1e9 : gi::quantile(ms, share); }
+    std::string text() const
     {
         return fmt::format("median {:.1f}, p95 {:.1f}, p99 {:.1f}, longest {:.1f} ms of {}", at(0.5), at(0.95),
                            at(0.99), at(1), ms.size());

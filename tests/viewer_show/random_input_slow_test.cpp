@@ -9,6 +9,7 @@
 // LIGHTWELL_RANDOM_INPUT_S: seconds, 60 if it is not set (acceptance: 1800); LIGHTWELL_RANDOM_INPUT_SEED: another
 // walk; LIGHTWELL_RANDOM_INPUT_CSV: file for the resident memory, second by second.
 
+#include "gi/core/quantile.h"
 #include "tests/viewer_show/live_view.h"
 #include "tests/viewer_show/memory_log.h"
 #include "tests/viewer_show/x/x_window.h"
@@ -37,13 +38,11 @@ double seconds_from_environment(char const* name, double otherwise)
     return text != nullptr && *text != '\0' ? std::atof(text) : otherwise;
 }
 
-/// Of the samples of a part of the time, the one below which `share` of them are.
-double quantile(std::vector<double> const& samples, double from, double to, double share)
+/// Of the samples of a part of the time.
+double median_of_part(std::vector<double> const& samples, double from, double to)
 {
     auto const at = [&](double part) { return samples.begin() + std::ptrdiff_t(part * double(samples.size())); };
-    std::vector<double> some(at(from), at(to));
-    std::ranges::sort(some);
-    return some[std::size_t(share * double(some.size() - 1))];
+    return gi::median(std::vector<double>(at(from), at(to)));
 }
 
 template <class T>
@@ -439,7 +438,7 @@ TEST_F(RandomInput, NeitherCrashesNorGrows)
     view->quit();
     ASSERT_GE(at_rest.size(), 3u) << "too short a walk";
     double const growth = limit_s < kShortWalk_s ? kGrowthOfShortWalks : kGrowth;
-    double const middle = quantile(at_rest, 1.0 / 3, 2.0 / 3, 0.5), last = quantile(at_rest, 2.0 / 3, 1, 0.5);
+    double const middle = median_of_part(at_rest, 1.0 / 3, 2.0 / 3), last = median_of_part(at_rest, 2.0 / 3, 1);
     fmt::print("at rest: {:.0f} MiB in the middle third, {:.0f} MiB in the last\n", middle, last);
     EXPECT_LE(last, growth * middle);
 }

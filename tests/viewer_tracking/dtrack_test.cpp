@@ -1,5 +1,6 @@
 // ART DTrack's ASCII packets.
 
+#include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/tracking/dtrack.h"
 #include "viewer/tracking/pose_math.h"
 

@@ -2,6 +2,7 @@
 
 #include "viewer/tracking/footsteps.h"
 
+#include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/tracking/known_walk.h"
 #include "viewer/tracking/pose_math.h"
 

@@ -1,6 +1,7 @@
 // Poses in OSC packets.
 
 #include "gi/base/error.h"
+#include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/tracking/osc.h"
 #include "viewer/tracking/pose_math.h"
 

@@ -8,6 +8,7 @@
 #include "gi/scene/load.h"
 #include "gi/scene/skinning.h"
 #include "tests/support/data.h"
+#include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/tracking/footsteps.h"
 #include "viewer/tracking/key_hands.h"
 #include "viewer/tracking/known_walk.h"

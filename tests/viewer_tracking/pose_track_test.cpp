@@ -1,5 +1,6 @@
 // One body: prediction, order, dropouts, recovery.
 
+#include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/tracking/known_walk.h"
 #include "viewer/tracking/pose_math.h"
 #include "viewer/tracking/pose_track.h"

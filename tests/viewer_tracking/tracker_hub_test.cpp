@@ -1,6 +1,7 @@
 // Trackers put together.
 
 #include "gi/base/error.h"
+#include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/display/display_file.h"
 #include "viewer/tracking/display_tracker.h"
 #include "viewer/tracking/dtrack.h"
@@ -270,9 +271,6 @@ TEST(TrackerHub, PlaysFilesAndFakesOnItsThread)
     fake.type = TrackerType::fake;
     fake.head.id = "";
     TrackerHub hub({played, fake}, Polling::by_thread);
-    FakeInput input;
-    input.right_buttons = 2;
-    hub.set_fake(input);
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     BodiesAt const b = hub.at(steady_seconds());
     std::filesystem::remove(file);

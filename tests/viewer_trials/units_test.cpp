@@ -246,18 +246,6 @@ TEST(Response, ADecimalCommaIsAPoint)
     EXPECT_DOUBLE_EQ(*r.value(), 5.5);
 }
 
-TEST(Frames, NearestRanksAreAmongTheValues)
-{
-    EXPECT_EQ(nearest_rank({}, 0.99), 0);
-    EXPECT_EQ(nearest_rank({3}, 0.99), 3);
-    EXPECT_EQ(nearest_rank({1, 2, 3, 100}, 0.99), 100) << "never less than the mean";
-    std::vector<double> many(200);
-    std::iota(many.begin(), many.end(), 1);
-    EXPECT_EQ(nearest_rank(many, 0.99), 198);
-    EXPECT_EQ(nearest_rank(many, 1), 200);
-    EXPECT_EQ(nearest_rank(many, 0), 1);
-}
-
 /// What a client is told by an experiment that runs.
 nlohmann::json asked(Experimenter& experimenter, std::filesystem::path const& socket,
                      nlohmann::json const& request)

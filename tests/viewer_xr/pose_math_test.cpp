@@ -1,3 +1,4 @@
+#include "gi/scene/projection.h"
 #include "viewer/xr/pose_math.h"
 
 #include <gtest/gtest.h>
@@ -88,7 +89,7 @@ TEST(PoseMath, AnglesAreTheEdgesOfThePicture)
     gi::CameraRays const rays = gi::camera_rays(camera, 100, 80, gi::dvec3(0));
     auto const seen_at = [&](double x_rad, double y_rad) {
         gi::dvec3 const in_eye(3 * std::tan(x_rad), 3 * std::tan(y_rad), -3);
-        return gi::project(rays, gi::vec3(room_from_eye.position + room_from_eye.rotation * in_eye));
+        return gi::Projection(rays)(gi::vec3(room_from_eye.position + room_from_eye.rotation * in_eye));
     };
     EXPECT_NEAR(seen_at(-0.9, 0).x, 0, 1e-3);
     EXPECT_NEAR(seen_at(0.7, 0).x, 100, 1e-3);

@@ -42,14 +42,4 @@ gi::EnvironmentMap environment_of(cv::Mat const& lat_long)
     return map;
 }
 
-cv::Mat matrix_of(gi::EnvironmentMap const& map)
-{
-    cv::Mat out(int(map.height), int(map.width), CV_32FC3);
-    for (std::size_t i = 0; i < map.radiance.size(); ++i) {
-        gi::vec3 const v = map.radiance[i];
-        out.at<cv::Vec3f>(int(i / map.width), int(i % map.width)) = {v.x, v.y, v.z};
-    }
-    return out;
-}
-
 } // namespace viewer

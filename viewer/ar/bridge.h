@@ -20,6 +20,5 @@ cv::Mat matrix_of(gi::Picture const& picture, std::string const& layer);
 
 /// Of CV_32FC3, RGB, lat-long as both rooms have it. Values below 0 and not finite ones become 0.
 gi::EnvironmentMap environment_of(cv::Mat const& lat_long);
-cv::Mat matrix_of(gi::EnvironmentMap const& map);
 
 } // namespace viewer

@@ -1,5 +1,7 @@
 #include "viewer/bench/measure.h"
 
+#include "gi/core/quantile.h"
+
 #include <algorithm>
 #include <chrono>
 #include <stdexcept>
@@ -9,11 +11,8 @@ namespace viewer {
 Measured summarise(std::span<double const> values)
 {
     if (values.empty()) throw std::logic_error("nothing was measured");
-    std::vector<double> sorted(values.begin(), values.end());
-    std::sort(sorted.begin(), sorted.end());
-    std::size_t const n = sorted.size();
-    double const median = n % 2 == 1 ? sorted[n / 2] : 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]);
-    return {median, sorted.front(), sorted.back(), int(n)};
+    auto const [least, most] = std::minmax_element(values.begin(), values.end());
+    return {gi::median(std::vector<double>(values.begin(), values.end())), *least, *most, int(values.size())};
 }
 
 Measured ratio(std::span<double const> numerator, std::span<double const> denominator)

@@ -13,7 +13,7 @@ struct Measured {
     int repeats = 0;
 };
 
-/// Of any values; the median of an even number is the mean of the two in the middle. Throws on none.
+/// Of any values. Throws on none.
 Measured summarise(std::span<double const> values);
 /// Of numerator[i] / denominator[i]: what was measured in the same round is compared.
 Measured ratio(std::span<double const> numerator, std::span<double const> denominator);

@@ -46,7 +46,6 @@ bool Cluster::started_by_mpirun() { return Messenger::started_with_others(); }
 int Cluster::rank() const { return state_->rank; }
 int Cluster::size() const { return state_->size; }
 std::string Cluster::name(int r) const { return state_->name(r); }
-bool Cluster::lost(int r) const { return state_->peers[std::size_t(r)].lost; }
 std::vector<std::string> Cluster::take_news() { return std::exchange(state_->news, {}); }
 
 double Cluster::now_s()

@@ -67,7 +67,6 @@ public:
     bool leads() const { return rank() == 0; }
     std::string name(int rank) const; ///< "rank 2 on HOST"
     std::string name() const { return name(rank()); }
-    bool lost(int rank) const;
     /// Ranks lost so far, each as a sentence; those that were not fetched yet. With OnRankLoss::go_on.
     std::vector<std::string> take_news();
 

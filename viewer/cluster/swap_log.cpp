@@ -1,5 +1,7 @@
 #include "viewer/cluster/swap_log.h"
 
+#include "gi/core/quantile.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -39,15 +41,11 @@ SwapSkew SwapLog::skew() const
     s.frames = all.size();
     s.clock_error_s = clock_error_s_;
     if (all.empty()) return s;
-    std::sort(all.begin(), all.end());
-    auto const at = [&](double fraction) {
-        double const rank = std::ceil(fraction * double(all.size()));
-        return double(all[std::size_t(std::max(rank, 1.0)) - 1]);
-    };
-    s.median_s = at(0.5);
-    s.p95_s = at(0.95);
-    s.p99_s = at(0.99);
-    s.most_s = all.back();
+    all = gi::sorted_values(std::move(all));
+    s.median_s = gi::quantile_of_sorted(all, 0.5);
+    s.p95_s = gi::quantile_of_sorted(all, 0.95);
+    s.p99_s = gi::quantile_of_sorted(all, 0.99);
+    s.most_s = gi::quantile_of_sorted(all, 1);
     return s;
 }
 

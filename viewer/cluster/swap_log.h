@@ -22,7 +22,7 @@ class SwapLog {
 public:
     /// @param time_s on the clock of the leader  @param clock_error_s  of that
     void add(std::uint64_t frame, double time_s, double clock_error_s);
-    /// Of all frames so far; nearest-rank percentiles.
+    /// Of all frames so far; quantiles as gi/core/quantile.h defines them.
     SwapSkew skew() const;
 
 private:

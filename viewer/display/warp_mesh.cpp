@@ -55,41 +55,4 @@ std::optional<std::string> find_fault(WallMesh const& m)
     return {};
 }
 
-WallMesh plain_mesh(int columns, int rows)
-{
-    WallMesh mesh{columns, rows, {}};
-    for (int j = 0; j < rows; ++j)
-        for (int i = 0; i < columns; ++i) {
-            glm::dvec2 const p{double(i) / (columns - 1), double(j) / (rows - 1)};
-            mesh.nodes.push_back({p, p});
-        }
-    return mesh;
-}
-
-std::vector<std::uint32_t> triangle_indices(WallMesh const& m)
-{
-    std::vector<std::uint32_t> out;
-    for (int j = 0; j + 1 < m.rows; ++j)
-        for (int i = 0; i + 1 < m.columns; ++i) {
-            auto const ll = std::uint32_t(j * m.columns + i), ul = ll + std::uint32_t(m.columns);
-            out.insert(out.end(), {ll, ll + 1, ul + 1, ll, ul + 1, ul});
-        }
-    return out;
-}
-
-std::optional<glm::dvec2> picture_at(WallMesh const& m, glm::dvec2 p)
-{
-    for (int j = 0; j + 1 < m.rows; ++j)
-        for (int i = 0; i + 1 < m.columns; ++i)
-            for (auto const& t : triangles(m, i, j)) {
-                double const whole = twice_area(t[0]->place, t[1]->place, t[2]->place);
-                double const a = twice_area(p, t[1]->place, t[2]->place) / whole;
-                double const b = twice_area(t[0]->place, p, t[2]->place) / whole;
-                double const c = 1 - a - b;
-                if (a >= -1e-12 && b >= -1e-12 && c >= -1e-12)
-                    return a * t[0]->picture + b * t[1]->picture + c * t[2]->picture;
-            }
-    return {};
-}
-
 } // namespace viewer

@@ -39,11 +39,4 @@ inline constexpr int kMostWarpNodes = 257; ///< along one side
 /// (mirrored is fine, folded is not), have area, and lie within one picture of the viewport; `picture` within the
 /// picture. That no two triangles far apart overlap is not looked at.
 std::optional<std::string> find_fault(WallMesh const& mesh);
-/// Nodes where they would be without a mesh.
-WallMesh plain_mesh(int columns, int rows);
-/// Three nodes per triangle, for a draw call.
-std::vector<std::uint32_t> triangle_indices(WallMesh const& mesh);
-/// Where the point of the viewport is in the picture; nothing outside of the mesh.
-std::optional<glm::dvec2> picture_at(WallMesh const& mesh, glm::dvec2 place);
-
 } // namespace viewer

@@ -19,8 +19,6 @@ constexpr GLuint64 kFence_ns = 1'000'000'000;
 
 } // namespace
 
-char const* name_of(GlSwapMethod method) { return method == GlSwapMethod::fence ? "fence" : "sync_control"; }
-
 SwapTimer::SwapTimer(Window& window, gi::Report& report) : window_(window), report_(report)
 {
     window_.gl().make_current();

@@ -17,8 +17,6 @@ enum class GlSwapMethod {
     fence         ///< swap + glClientWaitSync
 };
 
-char const* name_of(GlSwapMethod method);
-
 struct SwapTime {
     using Clock = std::chrono::steady_clock;
     Clock::time_point time; ///< best guess

@@ -54,13 +54,6 @@ void check_blend(WallSettings const& s)
             "it needs one per pixel, each in 0 to 1", "mend the map");
 }
 
-float side(float at, float width, float power)
-{
-    if (width <= 0 || at >= width) return 1;
-    float const t = std::max(at / width, 0.0f);
-    return t < 0.5f ? 0.5f * std::pow(2 * t, power) : 1 - 0.5f * std::pow(2 * (1 - t), power);
-}
-
 std::vector<unsigned> grid_triangles(int columns, int rows)
 {
     std::vector<unsigned> out;
@@ -80,12 +73,6 @@ WallSettings const& checked(WallSettings const& settings)
 }
 
 } // namespace
-
-float blend_weight(EdgeBlend const& b, glm::vec2 at)
-{
-    return side(at.x, b.left, b.power) * side(1 - at.x, b.right, b.power) * side(at.y, b.bottom, b.power) *
-           side(1 - at.y, b.top, b.power);
-}
 
 WallPass::WallPass(WallSettings const& settings)
     : settings_(checked(settings)),

@@ -63,9 +63,6 @@ struct WallSettings {
     bool operator==(WallSettings const&) const = default;
 };
 
-/// Weight of light of the formula at a place of the picture, 0..1 from the lower left.
-float blend_weight(EdgeBlend const& blend, glm::vec2 at);
-
 /// One wall. Belongs to the context that was current when it was made.
 class WallPass {
 public:

@@ -24,11 +24,6 @@ char const* name_of(NavigationMode mode)
     return mode == NavigationMode::fly ? "fly" : mode == NavigationMode::walk ? "walk" : "orbit";
 }
 
-bool NavigationInput::any() const
-{
-    return right != 0 || up != 0 || forward != 0 || turn_right_rad != 0 || turn_up_rad != 0 || closer != 0;
-}
-
 Navigation::Navigation(dmat4 const& world_from_camera, double speed_m_s, dvec3 pivot)
     : pivot_(pivot), speed_m_s_(speed_m_s)
 {

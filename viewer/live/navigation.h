@@ -16,8 +16,6 @@ struct NavigationInput {
     double turn_right_rad = 0, turn_up_rad = 0; ///< since the last step
     double closer = 0;                          ///< of scroll wheels: steps
     bool fast = false, slow = false;            ///< 4 times, a quarter
-
-    bool any() const;
 };
 
 class Navigation {

@@ -1,5 +1,7 @@
 #include "viewer/recording/frame_summary.h"
 
+#include "gi/core/quantile.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -31,15 +33,21 @@ void FrameStatistics::add(FrameTimes const& t)
     reprojected_ += t.reprojected ? 1 : 0;
 }
 
-double FrameStatistics::percentile_ms(double fraction) const
+double FrameStatistics::interval_ms(std::uint64_t rank) const
 {
-    double const rank = fraction * double(intervals_);
-    std::uint64_t below = 0;
+    if (rank + 1 >= intervals_) return max_ms_;
+    std::uint64_t up_to = 0;
     for (int i = 0; i < kBins; ++i) {
-        below += bins_[std::size_t(i)];
-        if (below > 0 && double(below) >= rank) return std::min(max_ms_, std::exp((i + 0.5) * kLogStep) / 1000);
+        up_to += bins_[std::size_t(i)];
+        if (up_to > rank) return std::min(max_ms_, std::exp((i + 0.5) * kLogStep) / 1000);
     }
-    return 0;
+    return max_ms_;
+}
+
+double FrameStatistics::quantile_ms(double p) const
+{
+    gi::QuantilePlace const at = gi::quantile_place(intervals_, p);
+    return gi::interpolated(interval_ms(at.below), interval_ms(at.below + 1), at.share);
 }
 
 FrameSummary FrameStatistics::summary() const
@@ -50,9 +58,9 @@ FrameSummary FrameStatistics::summary() const
     s.reprojected = reprojected_;
     if (intervals_ == 0) return s;
     s.mean_ms = sum_ms_ / double(intervals_);
-    s.p50_ms = percentile_ms(0.5);
-    s.p95_ms = percentile_ms(0.95);
-    s.p99_ms = percentile_ms(0.99);
+    s.p50_ms = quantile_ms(0.5);
+    s.p95_ms = quantile_ms(0.95);
+    s.p99_ms = quantile_ms(0.99);
     s.max_ms = max_ms_;
     return s;
 }

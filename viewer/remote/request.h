@@ -48,9 +48,7 @@ nlohmann::json parse_request(std::string_view line);
 /// another type.
 RemoteRequest check_request(nlohmann::json const& request);
 
-/// request_rules() as a table in Markdown.
-std::string requests_as_markdown();
-/// As lines for --help: name, arguments (optional ones in brackets), meaning.
+/// request_rules() as lines for --help: name, arguments (optional ones in brackets), meaning.
 std::string requests_as_text();
 
 } // namespace viewer

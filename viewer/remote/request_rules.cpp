@@ -66,21 +66,6 @@ std::span<RequestRule const> request_rules()
     return rules;
 }
 
-std::string requests_as_markdown()
-{
-    std::string table = "| do | what it does | arguments | result |\n|---|---|---|---|\n";
-    for (RequestRule const& r : request_rules()) {
-        std::string arguments;
-        for (ArgumentRule const& a : r.arguments)
-            arguments += fmt::format("{}`{}` {}{}{}: {}", arguments.empty() ? "" : "; ", a.name, name_of(a.type),
-                                     a.presence == Presence::optional ? ", optional" : "",
-                                     *a.choices == '\0' ? "" : fmt::format(" (one of {})", a.choices), a.meaning);
-        table += fmt::format("| `{}` | {} | {} | {} |\n", r.name, r.meaning, arguments.empty() ? "—" : arguments,
-                             r.result);
-    }
-    return table;
-}
-
 std::string requests_as_text()
 {
     std::string text;

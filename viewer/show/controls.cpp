@@ -125,14 +125,6 @@ void Controls::release_all()
     dragging_ = false;
 }
 
-bool Controls::holds() const
-{
-    for (int const k : {GLFW_KEY_W, GLFW_KEY_A, GLFW_KEY_S, GLFW_KEY_D, GLFW_KEY_Q, GLFW_KEY_E, GLFW_KEY_UP,
-                        GLFW_KEY_DOWN, GLFW_KEY_LEFT, GLFW_KEY_RIGHT})
-        if (held_.contains(k)) return true;
-    return std::any_of(axes_, axes_ + 4, [](double a) { return live(a) != 0; });
-}
-
 bool Controls::raises_left() const { return held_.contains(GLFW_KEY_Z); }
 bool Controls::raises_right() const { return held_.contains(GLFW_KEY_X); }
 

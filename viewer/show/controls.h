@@ -54,8 +54,6 @@ public:
     std::vector<CommandEvent> commands();
     /// A stereo mode by number, -1 = none was asked for since the last call.
     int stereo_mode();
-    /// Something is held that moves.
-    bool holds() const;
     /// The key that raises a hand of the avatar is held.
     bool raises_left() const;
     bool raises_right() const;

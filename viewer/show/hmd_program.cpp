@@ -62,7 +62,7 @@ public:
             if (!frame) continue;
             double const now = state_.clock.now_s();
             double const seconds = now - std::exchange(last, now);
-            act(*frame, seconds);
+            act(*session, *frame, seconds);
             show(*session, *frame, seconds);
         }
         core_.finish();
@@ -83,7 +83,7 @@ private:
     }
 
     /// Left stick moves, right stick turns.
-    void act(HmdFrame const& frame, double seconds)
+    void act(HmdSession& session, HmdFrame const& frame, double seconds)
     {
         constexpr double kTurn_rad_s = 1.5;
         NavigationInput in = core_.controls.motion(seconds);
@@ -91,7 +91,11 @@ private:
         in.forward += frame.hands[0].move.y;
         in.turn_right_rad += frame.hands[1].move.x * kTurn_rad_s * seconds;
         state_.navigation.step(in, seconds);
-        for (CommandEvent const& c : core_.controls.commands()) core_.obey(c.command);
+        for (CommandEvent const& c : core_.controls.commands()) {
+            core_.obey(c.command);
+            // Who goes to the first camera looks the way it does, wherever head and body are turned.
+            if (c.command == Command::first_camera && session.recentre()) started_ = false;
+        }
     }
 
     gi::dmat4 world_from_room() const

@@ -43,18 +43,6 @@ Tracked UserTracking::bodies(std::size_t user, double steady_s)
     return of(sources_[std::size_t(display_.users[user].tracker)], steady_s);
 }
 
-void UserTracking::set_fake(FakeInput const& input)
-{
-    if (hub_) hub_->set_fake(input);
-}
-
-bool UserTracking::has_fake() const
-{
-    for (DisplayTracker const& t : display_.trackers)
-        if (t.type == DisplayTrackerType::fake) return true;
-    return false;
-}
-
 std::optional<double> UserTracking::age_ms(double steady_s) const
 {
     if (display_.users.empty() || display_.users[0].tracker < 0) return std::nullopt;

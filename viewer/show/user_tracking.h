@@ -17,9 +17,6 @@ public:
     std::vector<std::optional<RoomPose>> heads(double steady_s);
     /// Head, hands and feet of a user, for avatars and recordings.
     Tracked bodies(std::size_t user, double steady_s);
-    /// Keyboard and mouse, where a tracker is fake.
-    void set_fake(FakeInput const& input);
-    bool has_fake() const;
     /// Age of the newest packet of the first user's tracker, ms; none without a tracker.
     std::optional<double> age_ms(double steady_s) const;
     /// Packets, losses, latencies, by tracker.

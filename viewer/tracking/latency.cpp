@@ -1,5 +1,7 @@
 #include "viewer/tracking/latency.h"
 
+#include "gi/core/quantile.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,14 +17,6 @@ void push(std::vector<double>& ring, std::size_t& next, double value)
         ring[next] = value;
         next = (next + 1) % kLatencyWindow;
     }
-}
-
-/// Nearest rank of sorted values.
-double percentile(std::vector<double> const& sorted, double share)
-{
-    if (sorted.empty()) return 0;
-    auto const rank = std::size_t(std::ceil(share * double(sorted.size())));
-    return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
 }
 
 } // namespace
@@ -48,7 +42,7 @@ Latency LatencyMeter::estimate() const
         std::vector<double> d = delays_s_;
         std::sort(d.begin(), d.end());
         l.offset_s = d.front();
-        auto const ms = [&](double share) { return 1e3 * (percentile(d, share) - d.front()); };
+        auto const ms = [&](double share) { return 1e3 * (gi::quantile_of_sorted(d, share) - d.front()); };
         l.delay_p50_ms = ms(0.5);
         l.delay_p95_ms = ms(0.95);
         l.delay_p99_ms = ms(0.99);
@@ -61,8 +55,8 @@ Latency LatencyMeter::estimate() const
     for (std::size_t i = a.size() - 1; i > 0; --i) a[i] -= a[i - 1];
     a.erase(a.begin());
     std::sort(a.begin(), a.end());
-    l.interval_p50_ms = 1e3 * percentile(a, 0.5);
-    l.interval_p95_ms = 1e3 * percentile(a, 0.95);
+    l.interval_p50_ms = 1e3 * gi::quantile_of_sorted(a, 0.5);
+    l.interval_p95_ms = 1e3 * gi::quantile_of_sorted(a, 0.95);
     l.interval_max_ms = 1e3 * a.back();
     return l;
 }

@@ -32,30 +32,12 @@ RoomPose compose(RoomPose const& a, RoomPose const& b)
     return {a.position + a.rotation * b.position, glm::normalize(a.rotation * b.rotation)};
 }
 
-RoomPose inverted(RoomPose const& a)
-{
-    gi::dquat const back = glm::inverse(a.rotation);
-    return {-(back * a.position), back};
-}
-
-gi::dmat4 to_matrix(RoomPose const& pose)
-{
-    gi::dmat4 m = glm::mat4_cast(pose.rotation);
-    m[3] = glm::dvec4(pose.position, 1);
-    return m;
-}
-
 bool is_finite(RoomPose const& p)
 {
     for (int i = 0; i < 3; ++i)
         if (!std::isfinite(p.position[i])) return false;
     return std::isfinite(p.rotation.w) && std::isfinite(p.rotation.x) && std::isfinite(p.rotation.y) &&
            std::isfinite(p.rotation.z);
-}
-
-double angle_between(gi::dquat const& a, gi::dquat const& b)
-{
-    return glm::length(log_rotation(glm::inverse(a) * b));
 }
 
 gi::dquat heading_of(gi::dquat const& body)

@@ -13,11 +13,7 @@ gi::dquat exp_rotation(gi::dvec3 vector_rad);
 RoomPose between(RoomPose const& a, RoomPose const& b, double t);
 /// a after b: room from b's frame.
 RoomPose compose(RoomPose const& a, RoomPose const& b);
-RoomPose inverted(RoomPose const& a);
-gi::dmat4 to_matrix(RoomPose const& pose);
 bool is_finite(RoomPose const& pose);
-/// Angle between two orientations, rad, 0..pi.
-double angle_between(gi::dquat const& a, gi::dquat const& b);
 /// The turn about the vertical of a body that looks so, also straight up or down.
 gi::dquat heading_of(gi::dquat const& body);
 

@@ -345,13 +345,6 @@ std::vector<TrackerReport> TrackerHub::report(double now_s) const
     return reports;
 }
 
-void TrackerHub::set_fake(FakeInput const& input)
-{
-    std::lock_guard const lock(mutex_);
-    for (auto const& source : sources_)
-        if (auto* const fake = dynamic_cast<FakeTracker*>(source->tracker.get())) fake->set(input);
-}
-
 void TrackerHub::run(std::stop_token const& stop)
 {
     std::vector<pollfd> waits;

@@ -93,8 +93,6 @@ public:
     BodiesAt of_tracker(std::size_t tracker, double time_s) const;
     /// Per tracker; counts are of all that came to the port. @param now_s for the states and ages
     std::vector<TrackerReport> report(double now_s) const;
-    /// The keyboard and mouse of trackers of type fake.
-    void set_fake(FakeInput const& input);
 
 private:
     struct Source;

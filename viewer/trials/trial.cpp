@@ -1,5 +1,6 @@
 #include "viewer/trials/trial.h"
 
+#include "gi/core/quantile.h"
 #include "study/run/trial.h"
 #include "viewer/trials/page.h"
 #include "viewer/trials/refresh.h"
@@ -29,13 +30,6 @@ std::string presented(study::TrialRequest const& r)
 double render_ms(LiveFrame const& f) { return 1e3 * (f.done_s - f.begun_s); }
 
 } // namespace
-
-double nearest_rank(std::vector<double> const& sorted, double share)
-{
-    if (sorted.empty()) return 0;
-    double const rank = std::ceil(share * double(sorted.size()));
-    return sorted[std::size_t(std::clamp(rank, 1.0, double(sorted.size()))) - 1];
-}
 
 std::vector<ScreenPane> panes_for(std::size_t count, glm::ivec2 screen_px, float text_px)
 {
@@ -262,7 +256,7 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
     for (Known* const k : seen) k->source->rest();
     longest_look_ms_ = std::max(longest_look_ms_, p_.screen_->take_longest_look_ms());
 
-    std::sort(render.begin(), render.end());
+    double const p99_ms = render.empty() ? 0 : gi::quantile(render, 0.99);
     for (char const letter : letters) {
         study::StimulusShown s;
         s.letter = letter;
@@ -275,7 +269,7 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
         s.frames_dropped = dropped;
         s.render_ms_mean =
             std::accumulate(render.begin(), render.end(), 0.0) / std::max<double>(1, double(render.size()));
-        s.render_ms_p99 = nearest_rank(render, 0.99);
+        s.render_ms_p99 = p99_ms;
         for (Known const& k : known_)
             if (k.letter == letter) s.settings_sha256 = k.settings.sha256;
         done_.shown.push_back(std::move(s));

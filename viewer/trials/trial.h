@@ -4,9 +4,6 @@
 
 namespace viewer {
 
-/// The smallest of the values that this share of them do not exceed. @param sorted  rising; none: 0
-double nearest_rank(std::vector<double> const& sorted, double share);
-
 /// Places side by side for so many pictures; below them there is room for text.
 std::vector<ScreenPane> panes_for(std::size_t count, glm::ivec2 screen_px, float text_px);
 

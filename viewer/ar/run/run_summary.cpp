@@ -1,5 +1,6 @@
 // What a session came to, in words.
 
+#include "gi/core/quantile.h"
 #include "viewer/ar/run/runner.h"
 
 #include <algorithm>
@@ -9,10 +10,9 @@ namespace viewer {
 
 Spread spread_of(std::vector<double> values)
 {
+    values = gi::sorted_values(std::move(values));
     if (values.empty()) return {};
-    std::sort(values.begin(), values.end());
-    auto const at = [&](double share) { return values[std::size_t(share * double(values.size() - 1) + 0.5)]; };
-    return {at(0.5), at(0.95), values.back()};
+    return {gi::quantile_of_sorted(values, 0.5), gi::quantile_of_sorted(values, 0.95), values.back()};
 }
 
 std::string describe(ArSummary const& s)

@@ -79,6 +79,7 @@ void run_ar(ArSession const& session, ar::FrameSource& source, ArRunOptions cons
 struct Spread {
     double median = 0, p95 = 0, most = 0;
 };
+/// Quantiles as gi/core/quantile.h defines them; zeros of nothing.
 Spread spread_of(std::vector<double> values);
 
 /// Median, 95 % and most of each stage, frames per second, latency, poses: lines of text.

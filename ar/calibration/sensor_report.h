@@ -1,0 +1,23 @@
+#pragma once
+// What was fitted of a sensor, beside what it was fitted to, as one HTML page that needs no other file.
+
+#include "ar/calibration/sensor.h"
+
+#include <filesystem>
+#include <optional>
+
+namespace ar {
+
+struct SensorReport {
+    std::optional<VignettingFit> vignetting;
+    std::optional<NoiseFit> noise;
+    std::optional<ColourFit> colour;
+    std::vector<cv::Vec3f> patches; ///< units of the chart's 24 patches, which `colour` was fitted to
+};
+
+std::string to_html(SensorReport const& report);
+
+/// @throws InputError the file cannot be written
+void write_report(std::filesystem::path const& file, SensorReport const& report);
+
+} // namespace ar
