@@ -60,6 +60,6 @@ TEST_P(FuzzSeeds, KeepThePromiseOfTheirParser)
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, FuzzSeeds, testing::ValuesIn(fuzz_targets().begin(), fuzz_targets().end()),
-                         [](auto const& info) { return std::string(info.param.format); });
+                         [](auto const& target) { return std::string(target.param.format); });
 
 } // namespace

@@ -1,6 +1,7 @@
 // The Cornell box against its published numbers.
 
 #include "gi/scene/generate.h"
+#include "gi/scene/projection.h"
 #include "gi/scene/spectrum.h"
 #include "tests/scene/scene_checks.h"
 
@@ -77,7 +78,7 @@ TEST(Cornell, IsNotMirrored)
         Mesh const& m = find_mesh(scene, name);
         vec3 center{0};
         for (vec3 const p : m.positions) center += p / float(m.positions.size());
-        return project(camera, center).x;
+        return Projection(camera)(center).x;
     };
     EXPECT_LT(column("left wall"), 20);
     EXPECT_GT(column("right wall"), 80);

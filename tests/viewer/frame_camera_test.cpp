@@ -3,6 +3,7 @@
 #include "viewer/frame_camera.h"
 
 #include "gi/base/error.h"
+#include "gi/scene/projection.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -110,9 +111,9 @@ TEST(FrameCamera, TwoEyesShareAScreen)
     EXPECT_LT(glm::length(0.5 * (place(right) + place(left)) - *choice.look_from), 1e-12);
     gi::CameraRays const l = gi::camera_rays(left, 300, 200, {}), r = gi::camera_rays(right, 300, 200, {});
     gi::vec3 const on_screen{2.5f, 3.4f, 11}, behind{2.5f, 3.4f, 7};
-    EXPECT_NEAR(gi::project(l, on_screen).x, gi::project(r, on_screen).x, 1e-3);
-    EXPECT_NEAR(gi::project(l, on_screen).y, gi::project(r, on_screen).y, 1e-3);
-    EXPECT_LT(gi::project(l, behind).x, gi::project(r, behind).x - 1) << "what is behind it is farther apart";
+    EXPECT_NEAR(gi::Projection(l)(on_screen).x, gi::Projection(r)(on_screen).x, 1e-3);
+    EXPECT_NEAR(gi::Projection(l)(on_screen).y, gi::Projection(r)(on_screen).y, 1e-3);
+    EXPECT_LT(gi::Projection(l)(behind).x, gi::Projection(r)(behind).x - 1) << "what is behind it is farther apart";
 }
 
 TEST(FrameCamera, TheScreenOfTwoEyesIsInTheMiddleOfTheSceneAndStays)

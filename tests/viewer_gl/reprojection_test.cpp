@@ -99,7 +99,7 @@ Errors compare(Flat const& scene, gi::Camera const& a, gi::Camera const& b, Rgba
         for (int x = 2; x < kSize.x - 2; ++x) {
             std::size_t const i = std::size_t(y * kSize.x + x);
             e.black += got.rgb(i) == vec3(0);
-            vec3 point, color;
+            vec3 point{0}, color;
             int const what = scene.hit(from_b.through({float(x) + 0.5f, float(y) + 0.5f}), point, color);
             vec3 const in_a = gi::Projection(from_a)(point);
             bool const inside = in_a.z > 0 && in_a.x > 1 && in_a.y > 1 && in_a.x < float(kSize.x) - 1 &&
