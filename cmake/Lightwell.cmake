@@ -40,8 +40,8 @@ function(lightwell_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${LIGHTWELL_UNITY} UNITY_BUILD_BATCH_SIZE 0)
 endfunction()
 
-# lightwell_library(NAME [MATCHING regex] [BUT regex] [PUBLIC targets...] [PRIVATE targets...])
-# All .cpp files of the current folder whose names fit. What PUBLIC names is what its headers may include.
+# lightwell_library(NAME [SEPARATE] [MATCHING regex] [BUT regex] [PUBLIC targets...] [PRIVATE targets...])
+# All .cpp files of the current folder whose names fit, as one unit unless SEPARATE. What PUBLIC names is what its headers may include.
 function(lightwell_library name)
   cmake_parse_arguments(arg "SEPARATE" "MATCHING;BUT" "PUBLIC;PRIVATE" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)

@@ -107,7 +107,7 @@ void print(ar::LensCalibration const& c)
                    v.used ? "" : "; left out: " + v.why);
 }
 
-/// Response and noise belong to the sensor: what the file that is replaced knew of them stays.
+/// Response, vignetting, colour and noise belong to the sensor: what the file that is replaced knew of them stays.
 ar::Calibration known_sensor(std::string const& file)
 {
     ar::Calibration known;
@@ -125,12 +125,12 @@ ar::Calibration known_sensor(std::string const& file)
 
 void say_what_is_kept(ar::Calibration& c, glm::ivec2 size_px, std::string const& file)
 {
-    if (!c.photometry && !c.noise) return;
+    if (!c.photometry && !c.noise && c.provenance.empty()) return;
     if (c.camera.size_px == size_px) {
-        fmt::print("{}: response and noise are those that it had\n", file);
+        fmt::print("{}: response, vignetting, colour and noise are those that it had\n", file);
         return;
     }
-    fmt::print("warning: {} had a response for pictures of {} x {}: left out\n", file, c.camera.size_px.x,
+    fmt::print("warning: {} had response, vignetting, colour or noise for pictures of {} x {}: left out\n", file, c.camera.size_px.x,
                c.camera.size_px.y);
     c = {};
 }

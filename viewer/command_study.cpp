@@ -8,6 +8,7 @@
 #include "viewer/command_table.h"
 #include "viewer/commands.h"
 #include "viewer/outputs.h"
+#include "viewer/program.h"
 #include "viewer/report_json.h"
 #include "viewer/study_commands.h"
 
@@ -116,7 +117,7 @@ void add_study(CLI::App& app, int& exit_code)
     example->callback([o, &exit_code] { exit_code = run_example(*o); });
 
     for (Command const& c : commands()) // those of another program, for --help
-        if (c.name.starts_with("study ")) study->add_subcommand(std::string(c.name.substr(6)), std::string(c.about));
+        if (c.name.starts_with("study ")) add_elsewhere(*study, c);
     add_study_simulate(*study, exit_code);
     add_study_tables(*study, exit_code);
     add_study_analyze(*study, exit_code);

@@ -152,7 +152,7 @@ void follow(ViewOptions& o)
     if (!o.frame_log.empty()) o.frame_log += fmt::format(".{}", o.rank);
 }
 
-int finish(ViewArguments const& a, ViewerSummary const& done, ClusterLink const* link, gi::Report const& report)
+int finish(ViewArguments const& a, ViewRunSummary const& done, ClusterLink const* link, gi::Report const& report)
 {
     nlohmann::ordered_json stats;
     stats["version"] = version_text();
@@ -220,7 +220,7 @@ int run(ViewArguments const& a, std::string const& command_line)
     }
     ClusterLink link({version_text(), what, hash}, cluster_settings(a.ranks));
     if (o.rank == 0) check_results(a); // by now the others learn of a leader that leaves
-    ViewerSummary const done = run_view(o, &link, stop, report);
+    ViewRunSummary const done = run_view(o, &link, stop, report);
     if (o.rank == 0) return finish(a, done, &link, report);
     print_losses(report, fmt::format("rank {}: ", o.rank));
     if (!link.failure().empty()) std::fputs(("lightwell: " + link.failure() + "\n").c_str(), stderr);

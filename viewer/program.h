@@ -14,6 +14,10 @@ struct AddedCommand {
     void (*add)(CLI::App& parent, int& exit_code);
 };
 
+struct Command;
+/// A command of another program: for --help; calling it here says where it is (InputError).
+void add_elsewhere(CLI::App& parent, Command const& command);
+
 /// The whole command line. @param own  what is done here; of the other commands only --help speaks
 /// Exit codes: 0 done, 1 a comparison failed or something broke inside, 2 the input or the
 /// call is wrong, 130 interrupted (what was done so far is kept).

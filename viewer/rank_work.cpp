@@ -9,7 +9,6 @@
 namespace viewer {
 namespace {
 
-using PlainJson = nlohmann::json;
 
 constexpr std::size_t kPieceBytes = std::size_t(4) << 20;
 
@@ -119,14 +118,14 @@ void RankWork::gather(gi::RenderResult& result, gi::Report& report,
         if (!leads()) {
             std::map<std::string, gi::Report::Loss> of_paths = report.losses();
             std::erase_if(of_paths, [&](auto const& l) { return loaded.contains(l.first); });
-            cluster.give(PlainJson::to_cbor(
+            cluster.give(nlohmann::json::to_cbor(
                 {{"rays", result.rays}, {"loaded", losses_json(loaded)}, {"lost", losses_json(of_paths)}}));
             return;
         }
         for (int r = 1; r < size(); ++r) {
             auto const bytes = cluster.take(r);
             if (!bytes) continue;
-            PlainJson const theirs = PlainJson::from_cbor(*bytes);
+            nlohmann::json const theirs = nlohmann::json::from_cbor(*bytes);
             result.rays += theirs.at("rays").get<double>();
             for (auto const& [what, loss] : losses_of(theirs.at("lost")))
                 report.lose(what, loss.count, loss.first);
@@ -149,14 +148,14 @@ void RankWork::finish()
     alive_.reset();
 }
 
-PlainJson losses_json(std::map<std::string, gi::Report::Loss> const& losses)
+nlohmann::json losses_json(std::map<std::string, gi::Report::Loss> const& losses)
 {
-    PlainJson all = PlainJson::object();
+    nlohmann::json all = nlohmann::json::object();
     for (auto const& [what, loss] : losses) all[what] = {loss.count, loss.first};
     return all;
 }
 
-std::map<std::string, gi::Report::Loss> losses_of(PlainJson const& json)
+std::map<std::string, gi::Report::Loss> losses_of(nlohmann::json const& json)
 {
     std::map<std::string, gi::Report::Loss> all;
     for (auto const& [what, loss] : json.items())

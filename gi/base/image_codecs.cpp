@@ -1,9 +1,10 @@
 // OpenCV's image files, loaded when the first is read or written: its module brings 120 libraries (GDAL and theirs),
 // which take 0.1 s to load. Programs link this in place of the module; the declarations are OpenCV's own.
 
+#include "gi/base/error.h"
+
 #include <dlfcn.h>
 #include <opencv2/imgcodecs.hpp>
-#include <stdexcept>
 
 namespace {
 
@@ -11,12 +12,12 @@ namespace {
 template <typename Function>
 Function* codec(char const* name)
 {
-    static void* const module = dlopen(OPENCV_IMGCODECS, RTLD_NOW | RTLD_LOCAL);
+    void* const module = dlopen(OPENCV_IMGCODECS, RTLD_NOW | RTLD_LOCAL); // counted: loaded once, and stays
     void* const found = module != nullptr ? dlsym(module, name) : nullptr;
-    if (found == nullptr)
-        throw std::runtime_error("image files cannot be read or written (" + std::string(dlerror()) +
-                                 ") install OpenCV's module imgcodecs of the version that this was built with");
-    return reinterpret_cast<Function*>(found);
+    if (found != nullptr) return reinterpret_cast<Function*>(found);
+    char const* const why = dlerror();
+    throw gi::InputError("image files cannot be read or written", why != nullptr ? why : "OpenCV has no codecs",
+                         "install OpenCV's module imgcodecs of the version that this was built with");
 }
 
 } // namespace

@@ -82,6 +82,22 @@ double quantile(std::vector<T> values, double p)
     return at.share == 0 ? low : interpolated(low, double(*std::min_element(below + 1, values.end())), at.share);
 }
 
+/// Number 5 of Hyndman & Fan (Hazen), the default of MATLAB: at position n p - 1/2, counted from 0, linear between
+/// neighbours, held at the first and the last value. Only where results are to be those of published MATLAB code.
+/// @param values  in any order; those that are NaN are ignored
+/// @param p  in [0, 1]
+/// @return NaN if there are no values, or none but NaN
+/// @throws std::invalid_argument p outside [0, 1] or NaN
+template <class T>
+double hazen_quantile(std::vector<T> values, double p)
+{
+    values = sorted_values(std::move(values));
+    if (values.size() < 2) return quantile_of_sorted(values, p);
+    if (!(p >= 0 && p <= 1)) throw std::invalid_argument("a quantile is asked for outside of 0 to 1");
+    double const last = double(values.size() - 1);
+    return quantile_of_sorted(values, std::clamp(double(values.size()) * p - 0.5, 0.0, last) / last);
+}
+
 /// quantile(values, 0.5): of an even number the mean of the two in the middle.
 template <class T>
 double median(std::vector<T> values)

@@ -12,7 +12,6 @@
 namespace gi {
 namespace {
 
-
 bool usable(vec3 p)
 {
     return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest &&

@@ -9,8 +9,6 @@
 namespace gi {
 namespace {
 
-/// Beyond this from zero, m, vertices are skipped (world.h), so they have no say in where the centre is.
-
 Affine to_affine(glm::dmat3 const& linear, dvec3 offset)
 {
     Affine a;
@@ -112,6 +110,7 @@ vec3 center_of(Mesh const& mesh)
     constexpr float kFar = 4; // times the size; nearer than that the rounding does not matter
     vec3 low{kInf}, high{-kInf};
     for (vec3 const p : mesh.positions)
+        // Others are skipped (world.h), so they have no say in where the centre is.
         if (max_component(glm::abs(p)) <= kFarthest && all_finite(p)) {
             low = glm::min(low, p);
             high = glm::max(high, p);

@@ -10,7 +10,6 @@
 namespace gi {
 namespace {
 
-
 void check(bool good, std::string const& problem, char const* why, char const* suggestion)
 {
     if (!good) throw InputError(problem, why, suggestion);

@@ -6,7 +6,6 @@
 namespace gi {
 namespace {
 
-
 dvec3 direction_to(double theta, double phi)
 {
     return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};

@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture(scope="session")
 def program() -> str:
     path = os.environ.get("LIGHTWELL_PROGRAM") or str(ROOT / "build" / "release" / "lightwell")
-    if not os.access(path, os.X_OK):
+    if not os.access(path, os.X_OK) or not os.access(path + "-render", os.X_OK):
         pytest.skip(f"{path} is not there: set LIGHTWELL_PROGRAM")
     return path
 

@@ -77,7 +77,8 @@ std::vector<ObserverFit> observer_outliers(std::vector<std::vector<Matrix>> cons
         if (pairs[o] > 0) known.push_back(sum[o]);
     }
     if (known.size() < 3) refuse_so_few();
-    double const q25 = gi::quantile(known, 0.25), range = gi::quantile(known, 0.75) - q25;
+    // As pwcmp, which is MATLAB code, or its published scores would not be met.
+    double const q25 = gi::hazen_quantile(known, 0.25), range = gi::hazen_quantile(known, 0.75) - q25;
     std::vector<ObserverFit> result;
     for (double const l : sum) {
         double const below = l < q25 ? q25 - l : 0;

@@ -74,7 +74,7 @@ CircularTriads circular_triads(Matrix const& prefers)
             double const a = prefers(i, j), b = prefers(j, i);
             if (i != j && !((a == 1 && b == 0) || (a == 0 && b == 1)))
                 refuse(pair_name(i, j), "circular triads need one choice for each pair",
-                       "leave this observer out, or take majorities of repeated trials");
+                       "leave this observer out");
             if (i != j) wins[i] += int(a);
         }
     CircularTriads r;

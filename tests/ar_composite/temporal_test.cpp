@@ -95,7 +95,7 @@ TEST(TemporalFilter, FollowsSurfacesByPose)
     double now_error = 0, still_error = 0;
     for (int i = 0; i < 8; ++i) {
         RenderedPair pair = unchanged_pair(kFrameSize);
-        for (int y = 0; y < kSize.height; ++y)
+        for (int y = 0; y < kFrameSize.height; ++y)
             for (int x = 0; x < kFrameSize.width; ++x)
                 pair.with.at<cv::Vec3f>(y, x) += cv::Vec3f::all(change_at(x + 3.5 * i));
         Pose pose;

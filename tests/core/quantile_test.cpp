@@ -98,5 +98,17 @@ TEST(WeightedMedian, OfEqualWeightsIsTheMedian)
     EXPECT_TRUE(std::isnan(weighted_median(Pairs{})));
 }
 
+TEST(Quantile, OfHazenIsMatlabs)
+{
+    std::vector<double> const values{6, 47, 49, 15, 42, 41, 7, 39, 43, 40, 36}; // numpy 2.2.6, method "hazen"
+    EXPECT_NEAR(hazen_quantile(values, 0.25), 20.25, 1e-12);
+    EXPECT_NEAR(hazen_quantile(values, 0.75), 42.75, 1e-12);
+    EXPECT_EQ(hazen_quantile(values, 0), 6);
+    EXPECT_EQ(hazen_quantile(values, 1), 49);
+    EXPECT_EQ(hazen_quantile(std::vector<double>{3}, 0.9), 3);
+    EXPECT_TRUE(std::isnan(hazen_quantile(std::vector<double>{}, 0.5)));
+    EXPECT_THROW(hazen_quantile(values, 1.1), std::invalid_argument);
+}
+
 } // namespace
 } // namespace gi::test

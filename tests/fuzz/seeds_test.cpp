@@ -14,8 +14,8 @@ namespace {
 
 using Bytes = std::vector<unsigned char>;
 
-constexpr int kCopies = 40;             ///< damaged, of each seed
-constexpr std::size_t kLongest = 4096;  ///< bytes of a damaged copy, as in scripts/test -L fuzz
+constexpr int kCopies = 400;            ///< damaged, of each seed
+constexpr std::size_t kLongest = 4096; ///< bytes of a damaged copy, as in scripts/test -L fuzz
 
 /// A few bytes changed, taken out or put in twice, or the end cut off.
 Bytes damaged(Bytes bytes, std::mt19937& random)

@@ -11,7 +11,6 @@
 namespace gi::test {
 namespace {
 
-
 /// Share of the light that leaves through delta lobes, over all numbers that choose the lobe. Light that changes
 /// its medium is counted as power: without the eta^2 of radiance.
 struct DeltaAlbedo {

@@ -13,7 +13,6 @@
 namespace gi::test {
 namespace {
 
-
 /// A map whose texels have the values of a function in their middles.
 EnvironmentMap map_of(std::uint32_t width, std::uint32_t height, std::function<dvec3(dvec3)> const& radiance)
 {

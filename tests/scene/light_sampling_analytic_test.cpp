@@ -11,7 +11,6 @@
 namespace gi::test {
 namespace {
 
-
 /// Mean of radiance cos / pdf at a point, of the red channel. @param paths independent samples
 RunningMean irradiance(World const& world, vec3 point, vec3 normal, std::uint64_t seed, int paths = 500000)
 {

@@ -163,7 +163,7 @@ int pid_of_rank(int rank, std::string const& folder)
         if (environment.find(fmt::format("OMPI_COMM_WORLD_RANK={}", rank) + '\0') != std::string::npos &&
             std::filesystem::read_symlink(entry.path() / "cwd", ignored) == folder &&
             std::filesystem::read_symlink(entry.path() / "exe", ignored) ==
-                std::filesystem::canonical(LIGHTWELL_PROGRAM))
+                std::filesystem::canonical(LIGHTWELL_PROGRAM "-render"))
             return std::stoi(name);
     }
     return 0;

@@ -43,7 +43,7 @@ public:
         core_.start(nullptr, {});
     }
 
-    ViewerSummary run(gi::StopRequest const& stop)
+    ViewRunSummary run(gi::StopRequest const& stop)
     {
         double last = state_.clock.now_s();
         while (core_.poll(stop) && !keeper_.ended()) {
@@ -215,7 +215,7 @@ private:
 
 } // namespace
 
-ViewerSummary run_hmd(ViewOptions const& options, HmdOptions const& headset, gi::StopRequest const& stop,
+ViewRunSummary run_hmd(ViewOptions const& options, HmdOptions const& headset, gi::StopRequest const& stop,
                     gi::Report& report)
 {
     return HmdLoop(options, headset, report).run(stop);

@@ -42,7 +42,7 @@ public:
     Controls controls;
     Requests requests;
     std::unique_ptr<LiveRenderer> renderer;
-    ViewerSummary summary;
+    ViewRunSummary summary;
 
 private:
     void start_at(gi::Camera const& camera);

@@ -52,7 +52,7 @@ public:
             link, [] { glfwPostEmptyEvent(); }, own);
     }
 
-    ViewerSummary run(gi::StopRequest const& stop)
+    ViewRunSummary run(gi::StopRequest const& stop)
     {
         double last = state_.clock.now_s();
         while (core_.poll(stop)) {
@@ -417,7 +417,7 @@ private:
 
 } // namespace
 
-ViewerSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop, gi::Report& report)
+ViewRunSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop, gi::Report& report)
 {
     return WindowLoop(options, link, report).run(stop);
 }

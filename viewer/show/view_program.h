@@ -36,7 +36,7 @@ struct ViewOptions {
     int rank = -1;           ///< of a cluster; -1 = alone
 };
 
-struct ViewerSummary {
+struct ViewRunSummary {
     FrameSummary frames;
     std::uint64_t rendered = 0, recorded = 0, presented = 0;
     bool files_whole = true;     ///< recording and frame log have all that came
@@ -48,6 +48,6 @@ struct ViewerSummary {
 
 /// Until the user, the remote control, the limit or `stop` ends it. Throws InputError on what cannot be opened.
 /// @param link  to the other ranks; null where there are none
-ViewerSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop, gi::Report& report);
+ViewRunSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop, gi::Report& report);
 
 } // namespace viewer

@@ -7,7 +7,7 @@
 namespace viewer {
 namespace {
 
-double keeper_now_s()
+double seconds_now()
 {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -35,15 +35,15 @@ HmdSession* HmdKeeper::poll()
         ++losses_;
         trouble_ = "lost: " + session_->why();
         session_.reset();
-        next_attempt_s_ = keeper_now_s() + 1;
+        next_attempt_s_ = seconds_now() + 1;
     }
-    if (session_ || ended_ || keeper_now_s() < next_attempt_s_) return session_.get();
+    if (session_ || ended_ || seconds_now() < next_attempt_s_) return session_.get();
     try {
         build();
         trouble_.clear();
     } catch (gi::InputError const& e) {
         trouble_ = e.what();
-        next_attempt_s_ = keeper_now_s() + 1;
+        next_attempt_s_ = seconds_now() + 1;
     }
     return session_.get();
 }
