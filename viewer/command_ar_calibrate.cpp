@@ -130,8 +130,8 @@ void say_what_is_kept(ar::Calibration& c, glm::ivec2 size_px, std::string const&
         fmt::print("{}: response, vignetting, colour and noise are those that it had\n", file);
         return;
     }
-    fmt::print("warning: {} had response, vignetting, colour or noise for pictures of {} x {}: left out\n", file, c.camera.size_px.x,
-               c.camera.size_px.y);
+    fmt::print("warning: {} had response, vignetting, colour or noise for pictures of {} x {}: left out\n", file,
+               c.camera.size_px.x, c.camera.size_px.y);
     c = {};
 }
 

@@ -96,8 +96,7 @@ int run_example(StudyOptions const& o)
 void add_study(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<StudyOptions>();
-    CLI::App* const study =
-        app.add_subcommand("study", about("study"));
+    CLI::App* const study = app.add_subcommand("study", about("study"));
     study->require_subcommand(1);
 
     CLI::App* const plan = study->add_subcommand(

@@ -1,7 +1,7 @@
 #include "gi/base/error.h"
 #include "study/record/durable_file.h"
-#include "viewer/command_table.h"
 #include "viewer/arguments.h"
+#include "viewer/command_table.h"
 #include "viewer/interrupt.h"
 #include "viewer/outputs.h"
 #include "viewer/rank_options.h"

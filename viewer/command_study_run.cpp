@@ -1,8 +1,8 @@
 #include "gi/base/error.h"
 #include "study/design/plan.h"
 #include "study/run/session.h"
-#include "viewer/command_table.h"
 #include "viewer/arguments.h"
+#include "viewer/command_table.h"
 #include "viewer/display/display_file.h"
 #include "viewer/interrupt.h"
 #include "viewer/report_json.h"
@@ -180,8 +180,7 @@ int run(RunOptions const& o)
 void add_study_run(CLI::App& study, int& exit_code)
 {
     auto const o = std::make_shared<RunOptions>();
-    CLI::App* const c =
-        study.add_subcommand("run", about("study run"));
+    CLI::App* const c = study.add_subcommand("run", about("study run"));
     c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
     c->add_option("--participant", o->participant, "number, from 1")->check(CLI::Range(1, 100000))->required();
     c->add_option("--session", o->session, "number of the session")

@@ -25,15 +25,16 @@ constexpr Command kCommands[]{
     {"study check", kTrials, "What a script holds; every participant's plan is made, and what is wrong is said."},
     {"study run", kTrials, "A session with a participant: in a window, on walls, in a headset."},
     {"study control", kTrials, "The experimenter's window on a session: progress, pause, skip, abort, notes."},
-    {"study prepare", kTrials, "Render ahead what blocks with `stimuli: prepared` show; what is there already is kept."},
+    {"study prepare", kTrials,
+     "Render ahead what blocks with `stimuli: prepared` show; what is there already is kept."},
     {"ar", kAr, "Augmented reality: virtual things in a camera's pictures"},
     {"bench", kRender, "Measure methods against each other, and report on it."},
 };
 
 Command const* find(std::string_view name)
 {
-    auto const found = std::find_if(std::begin(kCommands), std::end(kCommands),
-                                    [&](Command const& c) { return c.name == name; });
+    auto const found =
+        std::find_if(std::begin(kCommands), std::end(kCommands), [&](Command const& c) { return c.name == name; });
     return found == std::end(kCommands) ? nullptr : found;
 }
 

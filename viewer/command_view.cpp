@@ -306,8 +306,7 @@ void check_mode(CLI::App const& command, ViewArguments const& a)
 void add_view(CLI::App& app, int& exit_code)
 {
     auto const a = std::make_shared<ViewArguments>();
-    CLI::App* const c =
-        app.add_subcommand("view", about("view"));
+    CLI::App* const c = app.add_subcommand("view", about("view"));
     c->add_option("scene", a->scene.scene, "a file or a generated scene, as of render");
     declare_view_options(*c, a->scene);
     c->add_option("--set", a->settings,

@@ -81,10 +81,12 @@ std::string describe(CLI::ParseError const& e, CLI::App const& app)
 
 void add_elsewhere(CLI::App& parent, Command const& c)
 {
-    CLI::App* const stub = parent.add_subcommand(std::string(c.name.substr(c.name.find(' ') + 1)), std::string(c.about));
+    CLI::App* const stub =
+        parent.add_subcommand(std::string(c.name.substr(c.name.find(' ') + 1)), std::string(c.about));
     stub->callback([stub, name = std::string(c.name), program = std::string(c.program)] {
         if (stub->get_subcommands().empty())
-            throw gi::InputError("'" + name + "' is not in this program", program + " has it", "call lightwell " + name);
+            throw gi::InputError("'" + name + "' is not in this program", program + " has it",
+                                 "call lightwell " + name);
     });
 }
 
@@ -95,7 +97,8 @@ void add_commands(CLI::App& app, std::span<AddedCommand const> own, int& exit_co
 {
     for (Command const& c : commands()) {
         std::size_t const space = c.name.find(' ');
-        auto const mine = std::find_if(own.begin(), own.end(), [&](AddedCommand const& a) { return a.name == c.name; });
+        auto const mine =
+            std::find_if(own.begin(), own.end(), [&](AddedCommand const& a) { return a.name == c.name; });
         CLI::App& parent = space == c.name.npos ? app : *app.get_subcommand(std::string(c.name.substr(0, space)));
         if (mine != own.end())
             mine->add(parent, exit_code);

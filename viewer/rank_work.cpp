@@ -9,7 +9,6 @@
 namespace viewer {
 namespace {
 
-
 constexpr std::size_t kPieceBytes = std::size_t(4) << 20;
 
 /// What goes before the pixels.

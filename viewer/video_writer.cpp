@@ -36,8 +36,9 @@ VideoCodec& video_codec()
 {
     static VideoCodec& codec = [&]() -> VideoCodec& {
         void* const module = dlopen("liblightwell_video.so", RTLD_NOW | RTLD_LOCAL);
-        auto* const make = module != nullptr ? reinterpret_cast<VideoCodec* (*)()>(dlsym(module, "lightwell_video_codec"))
-                                             : nullptr;
+        auto* const make = module != nullptr
+                               ? reinterpret_cast<VideoCodec* (*)()>(dlsym(module, "lightwell_video_codec"))
+                               : nullptr;
         if (make == nullptr)
             throw gi::InputError("videos cannot be written", dlerror(), "build all: scripts/build release");
         return *make();

@@ -19,7 +19,8 @@ struct VignettingFit {
 
 /// From pictures of something that is evenly bright: a lit wall through paper, an integrating sphere. The
 /// brightness of each picture is fitted, too. Clipped pixels do not count.
-/// @throws InputError no picture, another type, fewer than 100 parts that are not clipped, or none beyond a radius of 0.8
+/// @throws InputError no picture, another type, fewer than 100 parts that are not clipped, or none beyond a radius
+/// of 0.8
 VignettingFit vignetting_of_flat(std::span<cv::Mat const> rgb, Photometry const& response);
 
 struct NoiseModel {

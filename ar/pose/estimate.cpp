@@ -56,7 +56,8 @@ void append(std::vector<Pose>& to, std::vector<Pose> const& more)
 }
 
 /// Of all points; where not all agree, of each of the larger markers, and then of few points drawn at random.
-std::vector<Pose> first_guesses(CameraModel const& camera, SightedPoints const& points, std::optional<Pose> const& last)
+std::vector<Pose> first_guesses(CameraModel const& camera, SightedPoints const& points,
+                                std::optional<Pose> const& last)
 {
     std::vector<Pose> guesses = candidates(camera, points);
     if (last) guesses.push_back(*last);

@@ -64,7 +64,8 @@ private:
         line.remove_prefix(axis.size());
         int value = 0;
         auto const [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
-        if (error != std::errc{} || value < 1 || value > kLargestHdrSide) fail("its size is not between 1 and 65536");
+        if (error != std::errc{} || value < 1 || value > kLargestHdrSide)
+            fail("its size is not between 1 and 65536");
         line.remove_prefix(std::size_t(end - line.data()));
         if (line.starts_with(' ')) line.remove_prefix(1);
         return value;

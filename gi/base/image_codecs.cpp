@@ -1,5 +1,5 @@
-// OpenCV's image files, loaded when the first is read or written: its module brings 120 libraries (GDAL and theirs),
-// which take 0.1 s to load. Programs link this in place of the module; the declarations are OpenCV's own.
+// OpenCV's image files, loaded when the first is read or written: its module brings 120 libraries (GDAL and
+// theirs), which take 0.1 s to load. Programs link this in place of the module; the declarations are OpenCV's own.
 
 #include "gi/base/error.h"
 
@@ -40,15 +40,18 @@ Mat imdecode(InputArray bytes, int flags)
 bool imwrite(String const& file, InputArray image, std::vector<int> const& parameters)
 {
     static auto* const function = codec<bool(String const&, InputArray, std::vector<int> const&)>(
-        "_ZN2cv7imwriteERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEERKNS_11_InputArrayERKSt6vectorIiSaIiEE");
+        "_ZN2cv7imwriteERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEERKNS_11_"
+        "InputArrayERKSt6vectorIiSaIiEE");
     return function(file, image, parameters);
 }
 
-bool imencode(String const& extension, InputArray image, std::vector<uchar>& bytes, std::vector<int> const& parameters)
+bool imencode(String const& extension, InputArray image, std::vector<uchar>& bytes,
+              std::vector<int> const& parameters)
 {
     static auto* const function =
         codec<bool(String const&, InputArray, std::vector<uchar>&, std::vector<int> const&)>(
-            "_ZN2cv8imencodeERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEERKNS_11_InputArrayERSt6vectorIhSaIhEE"
+            "_ZN2cv8imencodeERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEERKNS_11_"
+            "InputArrayERSt6vectorIhSaIhEE"
             "RKSB_IiSaIiEE");
     return function(extension, image, bytes, parameters);
 }

@@ -5,8 +5,8 @@
 namespace gi {
 namespace {
 
-constexpr float kCosineStep = 0.95f;    // 18 degrees
-constexpr float kAlbedoStep = 1;        // only what is too dark in other channels differs by more
+constexpr float kCosineStep = 0.95f; // 18 degrees
+constexpr float kAlbedoStep = 1;     // only what is too dark in other channels differs by more
 constexpr float kPlaneDistance = 1; // in distances of neighbouring pixels
 
 /// Planes of the sums: direct and indirect light as in namespace light, then the weights.

@@ -77,8 +77,8 @@ struct CameraPaths {
     void trace(std::span<CameraSubpath> paths, std::vector<Receiver>& receivers, PathCounts& counts) const;
 
 private:
-    bool advance(CameraSubpath& p, Hit const& hit, int surface, std::uint32_t index, std::vector<Receiver>& receivers,
-                 PathCounts& counts) const;
+    bool advance(CameraSubpath& p, Hit const& hit, int surface, std::uint32_t index,
+                 std::vector<Receiver>& receivers, PathCounts& counts) const;
     void aim_at_light(CameraSubpath& p, ShadingPoint const& at, vec3 wo, float share) const;
 };
 

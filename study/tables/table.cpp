@@ -65,7 +65,8 @@ std::string tsv_text(Table const& table)
 std::string csv_text(Table const& table, std::string_view nothing)
 {
     std::string text;
-    for (std::size_t c = 0; c < table.columns.size(); ++c) text += (c ? "," : "") + quoted_for_csv(table.columns[c].name);
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+        text += (c ? "," : "") + quoted_for_csv(table.columns[c].name);
     text += "\n";
     for (auto const& row : table.rows) {
         for (std::size_t c = 0; c < row.size(); ++c)

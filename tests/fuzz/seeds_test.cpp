@@ -1,4 +1,5 @@
-// The seeds of every target of libFuzzer, each whole and in damaged copies: a target traps where its parser breaks a promise.
+// The seeds of every target of libFuzzer, each whole and in damaged copies: a target traps where its parser breaks
+// a promise.
 
 #include "tests/fuzz/targets.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 using Bytes = std::vector<unsigned char>;
 
-constexpr int kCopies = 400;            ///< damaged, of each seed
+constexpr int kCopies = 400;           ///< damaged, of each seed
 constexpr std::size_t kLongest = 4096; ///< bytes of a damaged copy, as in scripts/test -L fuzz
 
 /// A few bytes changed, taken out or put in twice, or the end cut off.
@@ -23,17 +24,25 @@ Bytes damaged(Bytes bytes, std::mt19937& random)
     bytes.resize(std::min(bytes.size(), kLongest));
     for (int edits = 1 + int(random() % 8); edits > 0 && !bytes.empty(); --edits) {
         auto const at = bytes.begin() + std::ptrdiff_t(random() % bytes.size());
-        auto const end = at + std::ptrdiff_t(1 + random() % std::min<std::size_t>(16, std::size_t(bytes.end() - at)));
+        auto const end =
+            at + std::ptrdiff_t(1 + random() % std::min<std::size_t>(16, std::size_t(bytes.end() - at)));
         switch (random() % 5) {
-        case 0: *at = static_cast<unsigned char>(random()); break;
-        case 1: *at = static_cast<unsigned char>(*at ^ (1u << random() % 8)); break;
-        case 2: bytes.erase(at, end); break;
+        case 0:
+            *at = static_cast<unsigned char>(random());
+            break;
+        case 1:
+            *at = static_cast<unsigned char>(*at ^ (1u << random() % 8));
+            break;
+        case 2:
+            bytes.erase(at, end);
+            break;
         case 3: {
             Bytes const again(at, end);
             bytes.insert(at, again.begin(), again.end());
             break;
         }
-        default: bytes.erase(end, bytes.end());
+        default:
+            bytes.erase(end, bytes.end());
         }
     }
     return bytes;

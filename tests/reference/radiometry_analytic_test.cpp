@@ -9,7 +9,8 @@
 namespace gi::test {
 namespace {
 
-RenderResult render_square(World const& world, Camera const& camera, int size, std::uint32_t paths, int bounces = 0)
+RenderResult render_square(World const& world, Camera const& camera, int size, std::uint32_t paths,
+                           int bounces = 0)
 {
     RenderSettings s;
     s.width = s.height = size;
@@ -40,7 +41,8 @@ constexpr float kAlbedo = 0.6f;
 Estimate floor_radiance(Scene scene, dvec3 at)
 {
     add_quad(scene, {-50, 0, 50}, {100, 0, 0}, {0, 0, -100}, add_material(scene, lambert(vec3{kAlbedo})));
-    return mean_of(render_square(world_of(scene), orthographic(at + dvec3{0, 0.1, 0}, at, 1e-3), 8, 16384).picture, "L1");
+    return mean_of(render_square(world_of(scene), orthographic(at + dvec3{0, 0.1, 0}, at, 1e-3), 8, 16384).picture,
+                   "L1");
 }
 
 TEST(Radiometry, RectangleLightIrradiance)
@@ -158,7 +160,8 @@ TEST(Radiometry, FormFactorOfPerpendicularSquares)
     Scene scene;
     add_quad(scene, {0, 0, 0}, {0, 1, 0}, {0, 0, 1}, add_material(scene, emitter(vec3{1}))); // x = 0, faces +x
     add_quad(scene, {0, 0, 1}, {1, 0, 0}, {0, 0, -1}, add_material(scene, lambert(vec3{1})));
-    RenderResult const r = render_square(world_of(scene), orthographic({0.5, 0.5, 0.5}, {0.5, 0, 0.5}, 1), 64, 256);
+    RenderResult const r =
+        render_square(world_of(scene), orthographic({0.5, 0.5, 0.5}, {0.5, 0, 0.5}, 1), 64, 256);
     expect_estimate(mean_of(r.picture, "L1"), factor, "perpendicular squares");
 }
 

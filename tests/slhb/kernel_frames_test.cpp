@@ -266,17 +266,21 @@ void check_views()
     for (int y = 0; y < kFrameSize; ++y)
         for (int x = 0; x < kFrameSize; ++x) hidden.push_back(std::hypot(x - 15.5, y - 15.5) > 16);
     Both<S> both(settings_of(Schedule::stored));
-    std::vector<FrameView> views{{frame_eye(), kFrameSize, kFrameSize}, {frame_eye(0.3), 24, 20}, {frame_eye(0.06), kFrameSize, kFrameSize}};
+    std::vector<FrameView> views{{frame_eye(), kFrameSize, kFrameSize},
+                                 {frame_eye(0.3), 24, 20},
+                                 {frame_eye(0.06), kFrameSize, kFrameSize}};
     auto const whole = both.next({}, views, "three views");
     Both<S> alone(settings_of(Schedule::stored));
     for (std::size_t k = 0; k < 3; ++k) { // none of the others counts, nor of a partner
-        auto const one = start_kernel_frames(S, alone.world, frame_eye(), settings_of(Schedule::stored), alone.report)
-                             ->views({&views[k], 1}, 2, Endings::exact, {});
+        auto const one =
+            start_kernel_frames(S, alone.world, frame_eye(), settings_of(Schedule::stored), alone.report)
+                ->views({&views[k], 1}, 2, Endings::exact, {});
         EXPECT_EQ(layer(one[0], "color"), layer(whole[k], "color")) << k;
     }
     views[2].partner = 0;
-    auto const partners = start_kernel_frames(S, alone.world, frame_eye(), settings_of(Schedule::stored), alone.report)
-                              ->views(views, 2, Endings::in_cells, {});
+    auto const partners =
+        start_kernel_frames(S, alone.world, frame_eye(), settings_of(Schedule::stored), alone.report)
+            ->views(views, 2, Endings::in_cells, {});
     EXPECT_EQ(layer(partners[2], "color"), layer(whole[2], "color"));
     EXPECT_TRUE(partners[2].light_from.empty());
     views[0].hidden = views[2].hidden = hidden;
@@ -364,8 +368,9 @@ TEST(KernelFrames, RefuseWhatKernelsLackAndGoOn)
     Both<Space::host> both(settings_of(Schedule::stored));
     FrameView const view{orthographic({0, 0, 0.9}, {0, 0, 0}, 1), kFrameSize, kFrameSize};
     EXPECT_THROW(both.kernels->views({&view, 1}, 1, Endings::own, {}), InputError);
-    EXPECT_THROW(both.kernels->pair({frame_eye(), kFrameSize, kFrameSize}, {}, [](PairSide) { return Changes{}; }, {}),
-                 InputError);
+    EXPECT_THROW(
+        both.kernels->pair({frame_eye(), kFrameSize, kFrameSize}, {}, [](PairSide) { return Changes{}; }, {}),
+        InputError);
     both.next({}, "and goes on");
     RenderSettings gather = settings_of(Schedule::stored), device = gather;
     gather.slhb.gather = true;

@@ -47,7 +47,8 @@ TEST(Views, AreThePicturesThatTheyWouldBeAlone)
     auto const together = start_slhb_frames(world, view_eye(), s, report)->views(all, 3, Endings::exact, {});
     ASSERT_EQ(together.size(), 3u);
     for (std::size_t k = 0; k < all.size(); ++k) {
-        auto const alone = start_slhb_frames(world, view_eye(), s, report)->views({&all[k], 1}, 3, Endings::exact, {});
+        auto const alone =
+            start_slhb_frames(world, view_eye(), s, report)->views({&all[k], 1}, 3, Endings::exact, {});
         EXPECT_EQ(color(together[k]), color(alone[0])) << k;
         EXPECT_EQ(together[k].picture.width, all[k].width);
     }

@@ -113,7 +113,8 @@ TEST(FrameCamera, TwoEyesShareAScreen)
     gi::vec3 const on_screen{2.5f, 3.4f, 11}, behind{2.5f, 3.4f, 7};
     EXPECT_NEAR(gi::Projection(l)(on_screen).x, gi::Projection(r)(on_screen).x, 1e-3);
     EXPECT_NEAR(gi::Projection(l)(on_screen).y, gi::Projection(r)(on_screen).y, 1e-3);
-    EXPECT_LT(gi::Projection(l)(behind).x, gi::Projection(r)(behind).x - 1) << "what is behind it is farther apart";
+    EXPECT_LT(gi::Projection(l)(behind).x, gi::Projection(r)(behind).x - 1)
+        << "what is behind it is farther apart";
 }
 
 TEST(FrameCamera, TheScreenOfTwoEyesIsInTheMiddleOfTheSceneAndStays)

@@ -5,7 +5,8 @@
 namespace viewer::test {
 namespace {
 
-std::string const kLeastSession = "schema: ar/1\nframes: {source: frames}\ncamera: camera.yaml\nmarkers: markers.yaml\n";
+std::string const kLeastSession =
+    "schema: ar/1\nframes: {source: frames}\ncamera: camera.yaml\nmarkers: markers.yaml\n";
 
 std::string session_refusal(std::string const& text)
 {
@@ -19,13 +20,14 @@ std::string session_refusal(std::string const& text)
 
 TEST(ArSessions, SayWhatTheyAreMadeOf)
 {
-    ArSession const s = parse_ar_session(kLeastSession + R"(light: {map: probe.exr, turn_deg: 30, scale: 2, live: 10}
+    ArSession const s =
+        parse_ar_session(kLeastSession + R"(light: {map: probe.exr, turn_deg: 30, scale: 2, live: 10}
 real: {scene: near.glb}
 virtual: {scene: statue.glb, at: [0, 0, -0.1], turn_deg: 90, scale: 0.5}
 render: {paths: 4, resolution: 0.75, bounces: 2, seed: 9}
 composite: {blend: ratio, clipped: as_measured, largest_ratio: 4, smoothing: 0.3}
 )",
-                                         "folder/s.yaml");
+                         "folder/s.yaml");
     EXPECT_EQ(s.frames.source, "folder/frames");
     EXPECT_EQ(s.camera, "folder/camera.yaml");
     EXPECT_EQ(s.light, "folder/probe.exr");
@@ -45,11 +47,11 @@ composite: {blend: ratio, clipped: as_measured, largest_ratio: 4, smoothing: 0.3
 
 TEST(ArSessions, SayHowPairsAreFinishedAndPosesUsed)
 {
-    ArSession const s =
-        parse_ar_session(kLeastSession + R"(composite: {upsample: false, mattes: true, match_blur: true, noise: false}
+    ArSession const s = parse_ar_session(
+        kLeastSession + R"(composite: {upsample: false, mattes: true, match_blur: true, noise: false}
 pose: {smoothing: {position: {min_cutoff_hz: 2, beta: 3}}, predict_s: 0.4}
 )",
-                         "s.yaml");
+        "s.yaml");
     EXPECT_FALSE(s.finish.upsample);
     EXPECT_TRUE(s.finish.mattes && s.finish.match_blur);
     EXPECT_FALSE(s.match_noise);
@@ -60,13 +62,15 @@ pose: {smoothing: {position: {min_cutoff_hz: 2, beta: 3}}, predict_s: 0.4}
     EXPECT_GE(s.pose.tracker.lost_after_s, 0.8);
     ArSession const still = parse_ar_session(kLeastSession + "pose: {tripod: true}\n", "s.yaml");
     EXPECT_EQ(still.pose.tracker.motion, ar::CameraMotion::tripod);
-    ArSession const averaged = parse_ar_session(kLeastSession + "pose: {tripod: true, smoothing: false}\n", "s.yaml");
+    ArSession const averaged =
+        parse_ar_session(kLeastSession + "pose: {tripod: true, smoothing: false}\n", "s.yaml");
     EXPECT_EQ(averaged.pose.tracker.motion, ar::CameraMotion::tripod);
     EXPECT_TRUE(averaged.pose.filtered);
     ArSession const least = parse_ar_session(kLeastSession, "s.yaml");
     EXPECT_FALSE(least.pose.filtered || least.finish.mattes || least.finish.match_blur);
     EXPECT_TRUE(least.match_noise);
-    EXPECT_NE(session_refusal(kLeastSession + "pose: {tripod: true, smoothing: true}\n").find("averaged"), std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "pose: {tripod: true, smoothing: true}\n").find("averaged"),
+              std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "composite: {mattes: 3}\n").find("s.yaml:5:"), std::string::npos);
 }
 
@@ -82,16 +86,20 @@ TEST(ArSessions, OfDevicesKeepTheirNames)
 
 TEST(ArSessions, ThatAreWrongAreRefusedWithTheirPlace)
 {
-    EXPECT_NE(session_refusal("frames: {source: x}\ncamera: c\nmarkers: m\n").find("schema: ar/1"), std::string::npos);
-    EXPECT_NE(session_refusal("schema: ar/1\nframes: {source: x}\ncamera: c\n").find("no 'markers'"), std::string::npos);
+    EXPECT_NE(session_refusal("frames: {source: x}\ncamera: c\nmarkers: m\n").find("schema: ar/1"),
+              std::string::npos);
+    EXPECT_NE(session_refusal("schema: ar/1\nframes: {source: x}\ncamera: c\n").find("no 'markers'"),
+              std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "lihgt: {map: x}\n").find("s.yaml:5:1"), std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "light: {turn_deg: 3}\n").find("no 'map'"), std::string::npos);
     EXPECT_NE(session_refusal(kLeastSession + "render: {paths: 0}\n").find("s.yaml:5:"), std::string::npos);
-    EXPECT_NE(session_refusal(kLeastSession + "composite: {blend: add}\n").find("difference, ratio"), std::string::npos);
-    EXPECT_NE(session_refusal("schema: ar/1\nframes: {}\ncamera: c\nmarkers: m\n").find("no 'source'"), std::string::npos);
-    EXPECT_NE(
-        session_refusal("schema: ar/1\nframes: {source: x, size: [640]}\ncamera: c\nmarkers: m\n").find("[640, 480]"),
-        std::string::npos);
+    EXPECT_NE(session_refusal(kLeastSession + "composite: {blend: add}\n").find("difference, ratio"),
+              std::string::npos);
+    EXPECT_NE(session_refusal("schema: ar/1\nframes: {}\ncamera: c\nmarkers: m\n").find("no 'source'"),
+              std::string::npos);
+    EXPECT_NE(session_refusal("schema: ar/1\nframes: {source: x, size: [640]}\ncamera: c\nmarkers: m\n")
+                  .find("[640, 480]"),
+              std::string::npos);
     EXPECT_NE(session_refusal("schema: [").find("s.yaml"), std::string::npos);
 }
 

@@ -44,7 +44,8 @@ TEST(TrackedCameras, KeysAreReadAndRefusedWithTheirPlace)
     EXPECT_EQ(s.tracked->camera_from_sensor.rotation, glm::dquat(0, 1, 0, 0)) << "as heads look";
     EXPECT_NEAR(ar::angle_between_deg(s.tracked->world_from_room.rotation, {1, 0, 0, 0}), 90, 1e-9);
     EXPECT_NE(pose_refusal("pose: {trackr: x}\n").find("s.yaml:5:"), std::string::npos);
-    EXPECT_NE(pose_refusal("pose: {camera_from_sensor: {position: [0, 0, 0]}}\n").find("s.yaml:5:"), std::string::npos);
+    EXPECT_NE(pose_refusal("pose: {camera_from_sensor: {position: [0, 0, 0]}}\n").find("s.yaml:5:"),
+              std::string::npos);
     EXPECT_NE(pose_refusal("pose: {offset_s: soon}\n").find("s.yaml:5:"), std::string::npos);
 }
 
@@ -80,10 +81,11 @@ protected:
     }
     ArTracked room(std::string const& tracker) const
     {
-        write_poses(folder_ / "room.yaml",
-              "windows: [{name: w, size_px: [64, 48]}]\nwalls: [{name: w, window: w, lower_left_m: [-1, 0, 0], "
-              "lower_right_m: [1, 0, 0], upper_left_m: [-1, 1, 0]}]\ntrackers: [" +
-                  tracker + "]\nusers: [{name: a, head_position_m: [0, 1.7, 0], head_tracker: sensor}]\n");
+        write_poses(
+            folder_ / "room.yaml",
+            "windows: [{name: w, size_px: [64, 48]}]\nwalls: [{name: w, window: w, lower_left_m: [-1, 0, 0], "
+            "lower_right_m: [1, 0, 0], upper_left_m: [-1, 1, 0]}]\ntrackers: [" +
+                tracker + "]\nusers: [{name: a, head_position_m: [0, 1.7, 0], head_tracker: sensor}]\n");
         ArTracked t;
         t.display = folder_ / "room.yaml";
         return t;

@@ -3,7 +3,6 @@
 
 #include "gi/base/picture_file.h"
 #include "tests/viewer_gl/small_room.h"
-#include "viewer/stereo/compose.h"
 #include "viewer/gl/display_pass.h"
 #include "viewer/gl/picture_texture.h"
 #include "viewer/stereo/compose.h"

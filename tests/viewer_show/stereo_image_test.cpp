@@ -5,7 +5,6 @@
 #include "tests/viewer_show/live_view.h"
 #include "tests/viewer_show/x/x_window.h"
 #include "viewer/stereo/compose.h"
-#include "viewer/stereo/compose.h"
 
 #include <fmt/format.h>
 

@@ -24,7 +24,8 @@ struct SgctContext {
     gi::Report& report;
 };
 
-void lose_others(YamlReader const& map, std::set<std::string> const& known, std::string const& path, SgctContext& c)
+void lose_others(YamlReader const& map, std::set<std::string> const& known, std::string const& path,
+                 SgctContext& c)
 {
     for (std::string const& key : map.keys())
         if (!known.contains(key)) c.report.lose("SGCT " + path + key.substr(0, 64) + ": not imported", 1, c.file);

@@ -96,7 +96,8 @@ std::vector<std::string> names_in(TextNode const& environment, std::string const
     return out;
 }
 
-TextNode const& section_of(TextNode const& environment, std::string const& name, char const* of, VruiContext const& c)
+TextNode const& section_of(TextNode const& environment, std::string const& name, char const* of,
+                           VruiContext const& c)
 {
     TextNode const* const node = environment.find(name);
     if (!node)

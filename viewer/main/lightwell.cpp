@@ -19,7 +19,7 @@ int main(int argc, char** argv)
     std::string const file = self.parent_path() / program;
     if (!failed) execv(file.c_str(), argv);
     std::string const why = failed ? "/proc/self/exe: " + failed.message() : file + ": " + std::strerror(errno);
-    std::fprintf(stderr, "lightwell: '%s' cannot be started (%s) build all programs: scripts/build release\n", argv[1],
-                 why.c_str());
+    std::fprintf(stderr, "lightwell: '%s' cannot be started (%s) build all programs: scripts/build release\n",
+                 argv[1], why.c_str());
     return 2;
 }

@@ -1,5 +1,5 @@
-#include "viewer/study_commands.h"
 #include "viewer/program.h"
+#include "viewer/study_commands.h"
 
 int main(int argc, char** argv)
 {

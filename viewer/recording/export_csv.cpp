@@ -45,14 +45,14 @@ struct Most {
 std::vector<CsvColumn> columns(Most const& most)
 {
     std::vector<CsvColumn> c{{"frame", "number of the frame"},
-                          {"pose_s", "s, when the poses were taken; the clock of the session starts at 0"},
-                          {"display_s", "s, when the frame was expected to be seen"},
-                          {"scene_s", "s, time of the scene's animations"},
-                          {"paths", "paths per pixel"},
-                          {"pixel_hash", "XXH64 of the pixels, hexadecimal; empty = none was kept"},
-                          {"swap_s", "s, when the frame was shown; empty = not measured"},
-                          {"render_ms", "ms of rendering; empty = not measured"},
-                          {"changes", "what was set since the frame before, JSON: [[key, value], ...]"}};
+                             {"pose_s", "s, when the poses were taken; the clock of the session starts at 0"},
+                             {"display_s", "s, when the frame was expected to be seen"},
+                             {"scene_s", "s, time of the scene's animations"},
+                             {"paths", "paths per pixel"},
+                             {"pixel_hash", "XXH64 of the pixels, hexadecimal; empty = none was kept"},
+                             {"swap_s", "s, when the frame was shown; empty = not measured"},
+                             {"render_ms", "ms of rendering; empty = not measured"},
+                             {"changes", "what was set since the frame before, JSON: [[key, value], ...]"}};
     add_place(c, "room_", "the room in the world");
     c.push_back({"room_scale", "m of the world per m of the room"});
     for (char const* body : kBodyNames)

@@ -216,7 +216,7 @@ private:
 } // namespace
 
 ViewRunSummary run_hmd(ViewOptions const& options, HmdOptions const& headset, gi::StopRequest const& stop,
-                    gi::Report& report)
+                       gi::Report& report)
 {
     return HmdLoop(options, headset, report).run(stop);
 }

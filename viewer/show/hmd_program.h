@@ -8,6 +8,6 @@ namespace viewer {
 /// come as fast as they are rendered, and the last one is shown as seen from where the head is now. A lost headset
 /// is waited for. Throws InputError where there is no runtime.
 ViewRunSummary run_hmd(ViewOptions const& options, HmdOptions const& headset, gi::StopRequest const& stop,
-                    gi::Report& report);
+                       gi::Report& report);
 
 } // namespace viewer

@@ -417,7 +417,8 @@ private:
 
 } // namespace
 
-ViewRunSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop, gi::Report& report)
+ViewRunSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop,
+                        gi::Report& report)
 {
     return WindowLoop(options, link, report).run(stop);
 }

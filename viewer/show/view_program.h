@@ -48,6 +48,7 @@ struct ViewRunSummary {
 
 /// Until the user, the remote control, the limit or `stop` ends it. Throws InputError on what cannot be opened.
 /// @param link  to the other ranks; null where there are none
-ViewRunSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop, gi::Report& report);
+ViewRunSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop,
+                        gi::Report& report);
 
 } // namespace viewer

@@ -81,7 +81,7 @@ std::vector<std::shared_ptr<Tracker>> make_sources(std::vector<TrackerSettings> 
 struct BodyTrack {
     BodySettings settings;
     PoseTrack track;
-    OneWayClockOffset clock;     ///< where the sender says the time
+    OneWayClockOffset clock; ///< where the sender says the time
     ArrivalClock arrivals; ///< where it does not
     bool on_sender_clock = false;
     double latency_s = 0;

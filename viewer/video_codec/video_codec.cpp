@@ -10,8 +10,8 @@ class FfmpegStream final : public VideoStream {
 public:
     bool open(std::filesystem::path const& file, char const* code, double fps, cv::Size size)
     {
-        return out_.open(file.string(), cv::CAP_FFMPEG, cv::VideoWriter::fourcc(code[0], code[1], code[2], code[3]),
-                         fps, size);
+        return out_.open(file.string(), cv::CAP_FFMPEG,
+                         cv::VideoWriter::fourcc(code[0], code[1], code[2], code[3]), fps, size);
     }
     void write(cv::Mat const& bgr) override { out_.write(bgr); }
 

@@ -7,7 +7,8 @@
 namespace gi {
 namespace {
 
-constexpr float kHalfWidth = 2.5f, kFront = -1.6f, kBackWall = 3, kHeight = 2.7f; // m; the camera stands at x = z = 0
+constexpr float kHalfWidth = 2.5f, kFront = -1.6f, kBackWall = 3,
+                kHeight = 2.7f; // m; the camera stands at x = z = 0
 
 Material tiles(TexturePool& pool)
 {

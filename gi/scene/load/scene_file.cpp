@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDeepestInclusion = 8;        ///< scene files that include scene files
+constexpr int kDeepestInclusion = 8; ///< scene files that include scene files
 constexpr int kMostModels = 10000; ///< of a file and all that it includes
 
 thread_local int t_depth = 0;  ///< of this file below the first
@@ -165,7 +165,8 @@ private:
                                    strcasecmp(file.extension().c_str(), ".yml") == 0;
         if (is_scene_file && t_depth == kDeepestInclusion)
             throw at.error("'" + file.string() + "' is not read",
-                           fmt::format("scene files include each other {} deep", kDeepestInclusion), "break the loop");
+                           fmt::format("scene files include each other {} deep", kDeepestInclusion),
+                           "break the loop");
         return file;
     }
 

@@ -36,7 +36,8 @@ public:
         }
         std::vector<double> times = times_s();
         double const step = frames_ > 1 ? (times.back() - times.front()) / double(frames_ - 1) : 0;
-        t.period_s = root_.contains("duration_s") ? number("duration_s", 0, kLongestSequence) : times.back() + step;
+        t.period_s =
+            root_.contains("duration_s") ? number("duration_s", 0, kLongestSequence) : times.back() + step;
         for (double const time : times) t.times_s.push_back(float(time));
         for (std::size_t i = 1; i < t.times_s.size(); ++i)
             if (!(t.times_s[i] > t.times_s[i - 1]))
@@ -102,9 +103,9 @@ private:
         for (json const& value : list) {
             double const t = value.is_number() ? value.get<double>() - start : -1;
             if (!(t >= 0) || !(t <= kLongestSequence))
-                throw wrong(
-                    fmt::format("time {} is not a number from t0_s on, below {:g}", times.size(), kLongestSequence),
-                    "give seconds");
+                throw wrong(fmt::format("time {} is not a number from t0_s on, below {:g}", times.size(),
+                                        kLongestSequence),
+                            "give seconds");
             times.push_back(t);
         }
         return times;
