@@ -2,8 +2,8 @@
 
 #include "ar/base/error.h"
 #include "ar/capture/clock.h"
+#include "ar/capture/opencv/opencv_sources.h"
 #include "ar/capture/tally.h"
-#include "ar/capture/video_source.h"
 #include "ar/capture/whole_picture.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@
 #include <opencv2/videoio.hpp>
 #include <thread>
 
-namespace ar {
+namespace ar::opencv {
 namespace {
 
 enum class Kind { device, pipeline };
@@ -298,4 +298,4 @@ std::unique_ptr<FrameSource> open_pipeline(std::string const& pipeline, LiveOpti
     return std::make_unique<LiveSource>(Kind::pipeline, pipeline, capture, as_it_comes);
 }
 
-} // namespace ar
+} // namespace ar::opencv
