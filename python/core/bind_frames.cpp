@@ -12,7 +12,7 @@ namespace {
 
 using viewer::StimulusSettings;
 
-py::dict to_dict(MadeFrame&& made)
+py::dict frame_dict(MadeFrame&& made)
 {
     py::list views;
     for (viewer::ViewPicture& v : made.frame.views) views.append(to_layers(std::move(v.picture)));
@@ -42,7 +42,7 @@ py::dict next(Frames& frames, std::vector<std::tuple<std::string, gi::Camera, in
     run_interruptible([&](gi::StopRequest const& stop) {
         made = frames.render(std::move(orders), {paths, budget_s}, scene_s, stop);
     });
-    return to_dict(std::move(made));
+    return frame_dict(std::move(made));
 }
 
 py::list keys()
