@@ -115,7 +115,7 @@ void add_study(CLI::App& app, int& exit_code)
     example->add_option("--out", o->out, "file to write")->required();
     example->callback([o, &exit_code] { exit_code = run_example(*o); });
 
-    for (Command const& c : commands()) // those of another program, for --help
+    for (CommandRow const& c : commands()) // those of another program, for --help
         if (c.name.starts_with("study ")) add_elsewhere(*study, c);
     add_study_simulate(*study, exit_code);
     add_study_tables(*study, exit_code);

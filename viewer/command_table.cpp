@@ -10,7 +10,7 @@ constexpr std::string_view kRender = "lightwell-render", kView = "lightwell-view
                            kTrials = "lightwell-trials", kAr = "lightwell-ar";
 
 /// As --help lists them. A command of a group comes with the group's own program unless it is named here.
-constexpr Command kCommands[]{
+constexpr CommandRow kCommands[]{
     {"render", kRender, "Render a scene to a picture with its error."},
     {"view", kView, "Walk through a scene: window, stereo, recording, remote control."},
     {"compare", kRender, "Measure how far a picture is from a reference."},
@@ -31,27 +31,27 @@ constexpr Command kCommands[]{
     {"bench", kRender, "Measure methods against each other, and report on it."},
 };
 
-Command const* find(std::string_view name)
+CommandRow const* find(std::string_view name)
 {
-    auto const found =
-        std::find_if(std::begin(kCommands), std::end(kCommands), [&](Command const& c) { return c.name == name; });
+    auto const found = std::find_if(std::begin(kCommands), std::end(kCommands),
+                                    [&](CommandRow const& c) { return c.name == name; });
     return found == std::end(kCommands) ? nullptr : found;
 }
 
 } // namespace
 
-std::span<Command const> commands() { return kCommands; }
+std::span<CommandRow const> commands() { return kCommands; }
 
 std::string about(std::string_view name)
 {
-    Command const* const c = find(name);
+    CommandRow const* const c = find(name);
     if (c == nullptr) throw std::logic_error("no command '" + std::string(name) + "' in the table");
     return std::string(c->about);
 }
 
 std::string_view program_of(std::string_view first, std::string_view second)
 {
-    Command const* c = find(std::string(first) + " " + std::string(second));
+    CommandRow const* c = find(std::string(first) + " " + std::string(second));
     if (c == nullptr) c = find(first);
     return c == nullptr ? std::string_view() : c->program;
 }

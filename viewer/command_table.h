@@ -7,13 +7,13 @@
 
 namespace viewer {
 
-struct Command {
+struct CommandRow {
     std::string_view name;    ///< "render", or "study run" within a group
     std::string_view program; ///< its file, beside `lightwell`
     std::string_view about;   ///< one line of --help
 };
 
-std::span<Command const> commands();
+std::span<CommandRow const> commands();
 /// The line of --help of a command that is in the table.
 std::string about(std::string_view name);
 /// The file that has the command which these first two arguments call; empty = none.

@@ -79,7 +79,7 @@ std::string describe(CLI::ParseError const& e, CLI::App const& app)
 
 } // namespace
 
-void add_elsewhere(CLI::App& parent, Command const& c)
+void add_elsewhere(CLI::App& parent, CommandRow const& c)
 {
     CLI::App* const stub =
         parent.add_subcommand(std::string(c.name.substr(c.name.find(' ') + 1)), std::string(c.about));
@@ -95,7 +95,7 @@ namespace {
 /// All of the table, so that every program knows what there is; those of other programs have no options here.
 void add_commands(CLI::App& app, std::span<AddedCommand const> own, int& exit_code)
 {
-    for (Command const& c : commands()) {
+    for (CommandRow const& c : commands()) {
         std::size_t const space = c.name.find(' ');
         auto const mine =
             std::find_if(own.begin(), own.end(), [&](AddedCommand const& a) { return a.name == c.name; });

@@ -14,9 +14,9 @@ struct AddedCommand {
     void (*add)(CLI::App& parent, int& exit_code);
 };
 
-struct Command;
+struct CommandRow;
 /// A command of another program: for --help; calling it here says where it is (InputError).
-void add_elsewhere(CLI::App& parent, Command const& command);
+void add_elsewhere(CLI::App& parent, CommandRow const& command);
 
 /// The whole command line. @param own  what is done here; of the other commands only --help speaks
 /// Exit codes: 0 done, 1 a comparison failed or something broke inside, 2 the input or the
