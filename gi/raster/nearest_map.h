@@ -24,8 +24,10 @@ void rasterize(TriangleSoup const& soup, std::size_t first, std::size_t last, Pe
                Fragments& out);
 
 void clear(NearestMap& map, std::uint32_t width, std::uint32_t height);
-/// Keeps the nearer of what is there and each fragment; of two as near, the triangle of smaller number. Threads may
-/// resolve into one map at once. @param key_sign -1 where small depths are near
+/// Keeps the nearer of what is there and each fragment; of two as near, the triangle of smaller number.
+/// @param key_sign -1 where small depths are near
 void resolve(Fragments const& fragments, float key_sign, NearestMap& map);
+/// The same; several threads may at once.
+void resolve_shared(Fragments const& fragments, float key_sign, NearestMap& map);
 
 } // namespace gi

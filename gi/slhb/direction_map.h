@@ -71,4 +71,19 @@ inline DirectionMapView view(DirectionMap const& m) { return {m.nearest, m.width
 /// The nearest direction by looking at all of them: what the map is measured against.
 std::uint32_t nearest_direction(DirectionSet const& directions, dvec3 d);
 
+/// The same answers for many questions: only axes are looked at that are the nearest somewhere in the cell of the
+/// octahedral square. The set has to outlive it.
+class NearestDirections {
+public:
+    explicit NearestDirections(DirectionSet const& directions);
+    std::uint32_t operator()(dvec3 d) const;
+
+private:
+    static constexpr std::uint32_t kAcross =
+        32; ///< even, so that the folds of the octahedron are diagonals of cells
+    DirectionSet const& directions_;
+    std::vector<std::uint32_t> first_; ///< of a cell in axes_, and one behind the last
+    std::vector<std::uint32_t> axes_;  ///< ascending within a cell
+};
+
 } // namespace gi

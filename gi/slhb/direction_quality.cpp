@@ -34,8 +34,10 @@ struct Gaps {
     }
 };
 
-Gaps find_gaps(DirectionSet const& directions, std::size_t samples)
+/// @param with_gaps  or else only `nearest_to`
+Gaps find_gaps(DirectionSet const& directions, std::size_t samples, bool with_gaps)
 {
+    NearestDirections const nearest(directions);
     using Range = tbb::blocked_range<std::size_t>;
     Gaps all = tbb::parallel_deterministic_reduce(
         Range(0, samples, 4096), Gaps{},
@@ -43,9 +45,10 @@ Gaps find_gaps(DirectionSet const& directions, std::size_t samples)
             part.nearest_to.resize(directions.axes.size());
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
                 dvec3 const d = lattice_point(i, samples);
-                std::uint32_t const k = nearest_direction(directions, d);
-                double const gap = angle(d, directions.direction(k));
+                std::uint32_t const k = nearest(d);
                 ++part.nearest_to[k / 2];
+                if (!with_gaps) continue;
+                double const gap = angle(d, directions.direction(k));
                 part.largest = std::max(part.largest, gap);
                 part.sum += gap;
             }
@@ -64,14 +67,14 @@ Gaps find_gaps(DirectionSet const& directions, std::size_t samples)
 std::vector<double> solid_angles(DirectionSet const& directions, std::size_t samples)
 {
     std::vector<double> out;
-    for (std::size_t const n : find_gaps(directions, samples).nearest_to)
+    for (std::size_t const n : find_gaps(directions, samples, false).nearest_to)
         out.push_back(kTurn * double(n) / double(samples));
     return out;
 }
 
 DirectionQuality measure(DirectionSet const& directions, std::size_t samples)
 {
-    Gaps const gaps = find_gaps(directions, samples);
+    Gaps const gaps = find_gaps(directions, samples, true);
     DirectionQuality q;
     q.largest_gap_rad = gaps.largest;
     q.mean_gap_rad = gaps.sum / double(samples);

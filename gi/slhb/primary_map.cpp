@@ -67,7 +67,7 @@ void PrimaryMap::draw(PerspectiveGrid const& grid, std::size_t first, std::size_
         fragments.count = 0;
         rasterize(soup_, first + k * kPart, std::min(last, first + (k + 1) * kPart), grid, fragments);
         cut_outs_.remove(fragments, grid, std::uint32_t(mix_bits(seed_) + pass));
-        resolve(fragments, 1, map_);
+        resolve_shared(fragments, 1, map_);
     });
 }
 

@@ -131,6 +131,23 @@ TEST(DirectionMap, ErrorIsThatOfItsTexels)
         EXPECT_LT(view(map).look_up(d), 320u);
 }
 
+TEST(NearestDirections, AnswerAsAllOfThemDo)
+{
+    Pcg32 rng(2, 0);
+    for (std::string const name :
+         {"octahedron:8", "halton:2", "tetrahedron:32", "icosahedron:320", "fibonacci:5000"}) {
+        DirectionSet const set = make_directions(name);
+        NearestDirections const nearest(set);
+        for (int i = 0; i < 50000; ++i) {
+            dvec3 d(direction_from_octahedral(rng.uniform2()));
+            if (i % 4 == 0) d[i / 4 % 3] *= 1e-6; // near the borders of the octants
+            if (i % 5 == 0) d = set.direction(std::size_t(i) % set.size());
+            d = glm::normalize(d);
+            ASSERT_EQ(nearest(d), nearest_direction(set, d)) << name << " " << d.x << " " << d.y << " " << d.z;
+        }
+    }
+}
+
 /// sum over axes of |cos| times solid angle: the table's estimate of it has to be right for every normal, by its
 /// mean.
 TEST(CosineTables, EstimatesAreThoseOfTheDiscreteSet)

@@ -104,7 +104,7 @@ void SurfaceView::rasterise(gi::Camera const& camera, int width, int height, cv:
         fragments.count = 0;
         gi::rasterize(soup_, k * kPart, std::min(soup_.count, (k + 1) * kPart), grid, fragments);
         cut_outs_.remove(fragments, grid, 0);
-        gi::resolve(fragments, 1, into.map);
+        gi::resolve_shared(fragments, 1, into.map);
     });
 }
 
