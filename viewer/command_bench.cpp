@@ -19,7 +19,7 @@ void add_bench(CLI::App& app, int& exit_code)
     add_bench_views(*c, exit_code);
     add_bench_schedules(*c, exit_code);
     c->footer(R"(Examples:
-  lightwell bench sweep --scene cornell --budgets 20ms,80ms --size 48x48 --reference-paths 64 --out sweep
+  lightwell bench sweep --scene cornell --methods slhb,reference --budgets 20ms,80ms --size 48x48 --reference-paths 64 --out sweep
   lightwell bench report sweep)");
 }
 

@@ -114,7 +114,7 @@ void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, ar::
     gi::write_glb(o.folder / "near.glb", generate_desk(DeskPart::near, paper), report);
     gi::write_glb(o.folder / "statue.glb", generate_statue(), report);
     SyntheticQuality fine = o.quality;
-    fine.paths = std::max(4 * fine.paths, 32u);
+    fine.paths = std::max(4 * fine.paths, 8u);
     cv::Mat const probe =
         synthetic_probe(generate_desk(DeskPart::whole, paper), {0, 0.15, 0}, 128, fine, stop, report);
     if (stop.requested()) return; // a probe of few paths must not stay
