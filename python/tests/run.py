@@ -10,10 +10,13 @@ import tempfile
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1]
+TOOLS = PACKAGE.parent / "build" / "python" / "bin" / "python"  # of scripts/setup --tests, perhaps after the build was configured
 
 
 def main() -> int:
     missing = [name for name in ("pip", "numpy", "pandas", "pytest") if importlib.util.find_spec(name) is None]
+    if missing and TOOLS.exists() and Path(sys.prefix) != TOOLS.parents[1]:
+        os.execv(TOOLS, [str(TOOLS), *sys.argv])
     if missing:
         print(f"SKIPPED: {sys.executable} has no {', '.join(missing)}: run scripts/setup --tests")
         return 77

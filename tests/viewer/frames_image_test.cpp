@@ -313,8 +313,8 @@ Outcome interrupt(TemporaryFolder const& folder, int signal)
 
 void expect_whole(TemporaryFolder const& folder)
 {
-    TemporaryFolder const undisturbed;
-    run_well(kLong, undisturbed.path());
+    static TemporaryFolder const undisturbed;
+    if (undisturbed.files().empty()) run_well(kLong, undisturbed.path());
     EXPECT_EQ(folder.files(), undisturbed.files());
     for (std::string const& name : undisturbed.files())
         if (name.ends_with(".exr")) {

@@ -31,11 +31,19 @@ double number_behind(std::string const& text, std::string const& words, int colu
 /// Three frames of the camera, with what they would be with the things there.
 class ArRuns : public testing::Test {
 protected:
-    ArRuns() { run_well("ar synthesize desk --frames 3 --size 240x180 --paths 6", folder_.path()); }
+    static void SetUpTestSuite()
+    {
+        made_ = std::make_unique<TemporaryFolder>();
+        run_well("ar synthesize desk --frames 3 --size 240x180 --paths 6", made_->path());
+    }
+    static void TearDownTestSuite() { made_.reset(); }
+    ArRuns() { fs::copy(*made_ / "desk", desk(), fs::copy_options::recursive); }
+
     fs::path desk() const { return folder_ / "desk"; }
     std::string session() const { return file_text(desk() / "session.yaml"); }
     Outcome run(std::string const& command) const { return viewer::test::run(command, desk()); }
 
+    static inline std::unique_ptr<TemporaryFolder> made_;
     TemporaryFolder folder_;
 };
 

@@ -36,6 +36,9 @@ protected:
     TemporaryFolder folder;
 };
 
+/// Those that measure: they run alone.
+using SessionTimes = Sessions;
+
 #define NEED_KEYS(run)                                                                                            \
     if (!(run).window().key_problem().empty()) GTEST_SKIP() << "SKIPPED: " << (run).window().key_problem()
 
@@ -49,7 +52,7 @@ TEST_F(Sessions, RequiredVsyncIsRefusedWithTheReason)
                  !run.entries<study::TrialDone>().empty());
 }
 
-TEST_F(Sessions, ReactionTimesAreThoseOfTheKeys)
+TEST_F(SessionTimes, ReactionTimesAreThoseOfTheKeys)
 {
     RunningSession run(folder, script("vsync: record, on_bad_trial: keep", "[better]", kPair));
     NEED_KEYS(run);
@@ -91,7 +94,7 @@ TEST_F(Sessions, ReactionTimesAreThoseOfTheKeys)
     EXPECT_GT(std::count(frames.begin(), frames.end(), '\n'), 30);
 }
 
-TEST_F(Sessions, ADroppedFrameIsSeenFlaggedAndRepeated)
+TEST_F(SessionTimes, ADroppedFrameIsSeenFlaggedAndRepeated)
 {
     RunningSession run(folder,
                        script("vsync: record, max_dropped_frames: 2, on_bad_trial: repeat_at_end", "[seen]",
