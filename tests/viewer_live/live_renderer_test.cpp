@@ -6,6 +6,7 @@
 #include "gi/scene/generate.h"
 #include "gi/scene/generate/figure.h"
 
+#include <future>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
@@ -148,6 +149,29 @@ TEST(LiveRenderer, RendersWhatIsLookedAtAndConverges)
     EXPECT_TRUE(live.failures.empty());
     for (std::size_t i = 1; i < live.orders.size(); ++i)
         EXPECT_EQ(live.orders[i].frame, live.orders[i - 1].frame + 1);
+}
+
+TEST(LiveRenderer, AtRestNoFrameComes)
+{
+    Live live;
+    live.renderer->post({"refine", false});
+    auto const rests_soon = [&] {
+        for (int i = 0; i < 2000 && !live.renderer->rests(); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        return live.renderer->rests();
+    };
+    for (double const aside : {0.0, 0.05}) {
+        std::promise<void> go;
+        live.renderer->ask([&](Session&) { go.get_future().wait(); });
+        live.look(aside);
+        EXPECT_FALSE(live.renderer->rests()) << "a frame is due";
+        go.set_value();
+        ASSERT_TRUE(rests_soon());
+        auto const frame = live.renderer->newest();
+        ASSERT_NE(frame, nullptr);
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        EXPECT_EQ(live.renderer->newest(), frame);
+    }
 }
 
 TEST(LiveRenderer, AChangeShowsInTheNextFrameAndErrorsComeBack)

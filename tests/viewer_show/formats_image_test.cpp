@@ -66,14 +66,18 @@ void expect_refused(std::string const& arguments, std::filesystem::path const& f
 TEST_F(FormatsOfView, FrameLogAndRecording)
 {
     LiveView view("cornell --size 160x120 --frame-log frames.csv --record walk.lwr --stats stats.json");
+    auto const frame = [&] { return view.ask({{"do", "stats"}}).value("frame", -1); };
+    auto const wait_for_frames = [&](int count) {
+        int const now = frame();
+        EXPECT_TRUE(is_soon([&] { return frame() >= now + count; }));
+    };
     for (char const* const key : {"w", "s"}) {
         view.ask({{"do", "key"}, {"key", key}, {"action", "press"}});
-        sleep_ms(700);
+        wait_for_frames(5);
         view.ask({{"do", "key"}, {"key", key}, {"action", "release"}});
     }
     view.set("exposure", 0.5);
-    int const frame = view.ask({{"do", "stats"}}).value("frame", -1);
-    while (view.ask({{"do", "stats"}}).value("frame", -1) < frame + 2) sleep_ms(20); // one that has seen it
+    wait_for_frames(2); // one that has seen it
     Outcome const o = view.quit();
 
     Table const log = read_table(view.folder() / "frames.csv");
@@ -225,13 +229,13 @@ TEST_F(FormatsOfView, KilledWhileItRecords)
 {
     LiveView view("cornell --size 160x120 --record walk.lwr --frame-log frames.csv --set rate=10");
     view.ask({{"do", "key"}, {"key", "w"}, {"action", "press"}});
-    sleep_ms(3000);
-    int const a_second_before = view.ask({{"do", "stats"}}).value("frame", -1);
+    auto const frame = [&] { return view.ask({{"do", "stats"}}).value("frame", -1); };
+    EXPECT_TRUE(is_soon([&] { return frame() > 10; }));
+    int const a_second_before = frame();
     sleep_ms(1000);
-    int const last = view.ask({{"do", "stats"}}).value("frame", -1);
+    int const last = frame();
     view.program().send(SIGKILL);
     EXPECT_EQ(view.program().wait().signal, SIGKILL);
-    ASSERT_GT(a_second_before, 10);
     ASSERT_GT(last, a_second_before);
 
     Outcome const o = run_well("recording info walk.lwr --json", view.folder().path());

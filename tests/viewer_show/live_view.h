@@ -29,6 +29,17 @@ protected:
 
 inline void sleep_ms(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 
+/// Waits until it is so; false after 20 seconds, in which a machine with more to do gets there too.
+template <class Condition>
+bool is_soon(Condition const& condition)
+{
+    for (int i = 0; i < 2000; ++i) {
+        if (condition()) return true;
+        sleep_ms(10);
+    }
+    return condition();
+}
+
 /// A picture that depends on nothing but what is set: all of the window's pixels, no panel, no refinement.
 inline std::string const kStill =
     " --set panel=false --set refine=false --set reproject=false --set paths=1 --set scale=1";
@@ -70,7 +81,7 @@ public:
         return a.value("result", Json::object());
     }
     void set(std::string const& key, Json const& value) { ask({{"do", "set"}, {"key", key}, {"value", value}}); }
-    /// Waits until no new frame has come for a while (with refine=false); stats of the last.
+    /// Waits until it has been at rest for a while (with refine=false); stats of the last frame.
     Json settle(int quiet_ms = 400)
     {
         Json stats = ask({{"do", "stats"}});
@@ -80,9 +91,9 @@ public:
             sleep_ms(25);
             Json const now = ask({{"do", "stats"}});
             auto const t = std::chrono::steady_clock::now();
-            if (now.value("frame", -1) != stats.value("frame", -1)) since = t;
+            if (!now.value("at_rest", false) || now.value("frame", -1) != stats.value("frame", -1)) since = t;
             stats = now;
-            if (stats.contains("frame") && t - since > std::chrono::milliseconds(quiet_ms)) return stats;
+            if (t - since > std::chrono::milliseconds(quiet_ms)) return stats;
             if (t > end) {
                 ADD_FAILURE() << "the picture does not come to rest: " << stats;
                 return stats;

@@ -50,7 +50,7 @@ TEST_F(Monado, SessionInAHeadset)
             ASSERT_TRUE(markers.wait_for("stimulus").is_object()) << session.out() << session.err();
         sleep_ms(300);
         press(std::size_t(trial), true);
-        sleep_ms(300);
+        EXPECT_TRUE(markers.wait_for("answer").is_object());
         press(0, false);
     }
     EXPECT_EQ(session.wait(Seconds(90)), 0) << session.out() << session.err();

@@ -112,6 +112,12 @@ std::shared_ptr<LiveFrame const> LiveRenderer::newest() const
     return newest_;
 }
 
+bool LiveRenderer::rests() const
+{
+    std::lock_guard const lock(mutex_);
+    return resting_ && !looked_ && jobs_.empty();
+}
+
 std::shared_ptr<LiveFrame const> LiveRenderer::next_frame(double timeout_s)
 {
     double const asked = clock_.now_s();
@@ -223,6 +229,7 @@ void LiveRenderer::run_leading()
         bool looked = false;
         {
             std::lock_guard const lock(mutex_);
+            resting_ = false;
             now = viewpoint_;
             looked = looked_.exchange(false);
         }
@@ -237,6 +244,7 @@ void LiveRenderer::run_leading()
         if (rests && !looked) {
             if (link_ != nullptr) link_->check();
             std::unique_lock lock(mutex_);
+            resting_ = true;
             wake_.wait_for(lock, std::chrono::milliseconds(100),
                            [&] { return quit_ || !jobs_.empty() || looked_; });
             continue;

@@ -108,6 +108,8 @@ public:
 
     /// Null before the first.
     std::shared_ptr<LiveFrame const> newest() const;
+    /// No frame is being rendered, and none is due: `newest` stays until something changes. Never of a follower.
+    bool rests() const;
     /// Waits for a frame that began after everything that was posted before; null when stopped.
     std::shared_ptr<LiveFrame const> next_frame(double timeout_s);
     bool stopped() const { return stopped_; } ///< a follower whose leader has ended
@@ -139,6 +141,7 @@ private:
     std::atomic<bool> looked_{false}; ///< since the frame at hand began
     std::shared_ptr<gi::StopRequest> refining_;
     std::shared_ptr<LiveFrame const> newest_;
+    bool resting_ = false;
     std::atomic<bool> quit_{false}, stopped_{false};
 
     // Of the rendering thread

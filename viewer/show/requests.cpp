@@ -292,6 +292,7 @@ Json Requests::stats() const
         j["paths"] = f.order.paths;
         j["still_paths"] = f.still_paths;
         j["still_frames"] = f.result.still_frames;
+        j["at_rest"] = !state_.drawing && state_.renderer->rests() && state_.renderer->newest() == state_.frame;
         for (ViewOrder const& v : f.order.views)
             j["views"].push_back({{"name", v.name}, {"width", v.width}, {"height", v.height}});
         j["stages_ms"] = Json::object();

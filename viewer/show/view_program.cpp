@@ -272,6 +272,7 @@ private:
     void present(std::shared_ptr<LiveFrame const> const& newest, bool fresh)
     {
         dirty_ = false;
+        state_.drawing = true;
         auto const p = std::make_shared<Presentation>();
         p->frame = newest;
         p->fresh = fresh;
@@ -346,6 +347,7 @@ private:
     {
         glm::ivec2 const px = shown_.windows.empty() ? glm::ivec2(0) : shown_.windows[0]->shown_px;
         if (p.wants_bytes && std::exchange(state_.own_screenshot, false)) core_.save_screenshot(px, p.bytes);
+        state_.drawing = false;
         core_.requests.presented(p.shown_s, px, p.bytes);
         if (core_.requests.wants_bytes()) state_.wants_screenshot = true;
         ++core_.summary.presented;

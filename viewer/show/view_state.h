@@ -48,6 +48,7 @@ struct ViewState {
     Navigation navigation{gi::dmat4(1), 1, {}};
     std::optional<Selection> selection;
     std::shared_ptr<LiveFrame const> frame; ///< that is shown
+    bool drawing = false;                   ///< it is not in the windows yet
     std::optional<LiveError> live_error;
     double screen_distance_m = 2; ///< where both eyes' pictures coincide
     bool ends = false;
