@@ -72,12 +72,9 @@ if(NOT LIGHTWELL_CUDA)
   lightwell_precompile(lightwell_library_headers
     <glm/glm.hpp> <string> <vector> <map> <memory> <filesystem> <functional> <algorithm> <optional> <span>)
 endif()
-# What tests do themselves is little; their compiling takes half the time that way.
-set(test_options $<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-Og>)
 if(NOT LIGHTWELL_FUZZ)
   add_executable(lightwell_test_headers ${PROJECT_BINARY_DIR}/headers.cpp)
   target_link_libraries(lightwell_test_headers PRIVATE lightwell_options GTest::gtest)
-  target_compile_options(lightwell_test_headers PRIVATE ${test_options})
   lightwell_precompile(lightwell_test_headers
     <gtest/gtest.h> <glm/glm.hpp> <string> <vector> <map> <memory> <filesystem> <functional> <algorithm> <optional> <span>
     <fstream> <sstream>)
@@ -104,7 +101,6 @@ function(lightwell_tests folder)
       set(target test_${folder}_${label})
       add_executable(${target} ${sources})
       target_link_libraries(${target} PRIVATE ${arg_UNPARSED_ARGUMENTS} GTest::gtest GTest::gtest_main)
-      target_compile_options(${target} PRIVATE ${test_options})
       if(label STREQUAL slow)
         set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
         add_dependencies(slow_tests ${target})

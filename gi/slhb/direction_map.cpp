@@ -33,11 +33,12 @@ std::uint32_t nearest_direction(DirectionSet const& directions, dvec3 d)
 NearestDirections::NearestDirections(DirectionSet const& directions) : directions_(directions)
 {
     constexpr double kRounding = 1e-4; // of the cell that is asked for
-    std::vector<double> angles(directions.axes.size());
+    std::vector<double> cosines(directions.axes.size());
     for (std::uint32_t y = 0; y < kAcross; ++y)
         for (std::uint32_t x = 0; x < kAcross; ++x) {
             auto const at = [&](float u, float v) {
-                return dvec3(direction_from_octahedral(vec2{float(x) + u, float(y) + v} / float(kAcross)));
+                return glm::normalize(
+                    dvec3(direction_from_octahedral(vec2{float(x) + u, float(y) + v} / float(kAcross))));
             };
             auto const angle = [](double cosine) { return std::acos(std::min(cosine, 1.0)); };
             // A cell is one or two spherical triangles: nothing in it is farther from its middle than a corner.
@@ -45,12 +46,12 @@ NearestDirections::NearestDirections(DirectionSet const& directions) : direction
             double radius = 0;
             for (vec2 const corner : {vec2{0, 0}, vec2{1, 0}, vec2{0, 1}, vec2{1, 1}})
                 radius = std::max(radius, angle(glm::dot(middle, at(corner.x, corner.y))));
-            for (std::size_t i = 0; i < angles.size(); ++i)
-                angles[i] = angle(std::abs(glm::dot(directions.axes[i], middle)));
-            double const limit = *std::min_element(angles.begin(), angles.end()) + 2 * radius + kRounding;
+            for (std::size_t i = 0; i < cosines.size(); ++i)
+                cosines[i] = std::abs(glm::dot(directions.axes[i], middle));
+            double const limit = angle(*std::max_element(cosines.begin(), cosines.end())) + 2 * radius + kRounding;
             first_.push_back(std::uint32_t(axes_.size()));
-            for (std::size_t i = 0; i < angles.size(); ++i)
-                if (angles[i] <= limit) axes_.push_back(std::uint32_t(i));
+            for (std::size_t i = 0; i < cosines.size(); ++i)
+                if (cosines[i] >= std::cos(limit)) axes_.push_back(std::uint32_t(i));
         }
     first_.push_back(std::uint32_t(axes_.size()));
 }

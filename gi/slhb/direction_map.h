@@ -71,8 +71,8 @@ inline DirectionMapView view(DirectionMap const& m) { return {m.nearest, m.width
 /// The nearest direction by looking at all of them: what the map is measured against.
 std::uint32_t nearest_direction(DirectionSet const& directions, dvec3 d);
 
-/// The same answers for many questions: only axes are looked at that are the nearest somewhere in the cell of the
-/// octahedral square. The set has to outlive it.
+/// The same answers for many questions: only axes are looked at that may be the nearest somewhere in the cell of
+/// the octahedral square. The set has to outlive it.
 class NearestDirections {
 public:
     explicit NearestDirections(DirectionSet const& directions);

@@ -119,7 +119,7 @@ struct Camera {
     }
 };
 
-TEST(Composite, ComesNearTheTruth)
+TEST(CompositeOfFrames, ComesNearTheTruth)
 {
     Camera camera;
     camera.photometry.vignetting = {-0.35, 0.08, 0};

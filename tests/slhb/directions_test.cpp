@@ -145,6 +145,14 @@ TEST(NearestDirections, AnswerAsAllOfThemDo)
             d = glm::normalize(d);
             ASSERT_EQ(nearest(d), nearest_direction(set, d)) << name << " " << d.x << " " << d.y << " " << d.z;
         }
+        // As near to several axes of the regular sets: the first one.
+        for (int x = -1; x <= 1; ++x)
+            for (int y = -1; y <= 1; ++y)
+                for (int z = -1; z <= 1; ++z) {
+                    if (x == 0 && y == 0 && z == 0) continue;
+                    dvec3 const d = glm::normalize(dvec3(x, y, z));
+                    ASSERT_EQ(nearest(d), nearest_direction(set, d)) << name << " " << x << " " << y << " " << z;
+                }
     }
 }
 

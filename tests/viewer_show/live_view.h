@@ -33,11 +33,12 @@ inline void sleep_ms(int ms) { std::this_thread::sleep_for(std::chrono::millisec
 template <class Condition>
 bool is_soon(Condition const& condition)
 {
-    for (int i = 0; i < 2000; ++i) {
-        if (condition()) return true;
+    auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!condition()) {
+        if (std::chrono::steady_clock::now() > end) return false;
         sleep_ms(10);
     }
-    return condition();
+    return true;
 }
 
 /// A picture that depends on nothing but what is set: all of the window's pixels, no panel, no refinement.
@@ -82,7 +83,7 @@ public:
     }
     void set(std::string const& key, Json const& value) { ask({{"do", "set"}, {"key", key}, {"value", value}}); }
     /// Waits until it has been at rest for a while (with refine=false); stats of the last frame.
-    Json settle(int quiet_ms = 400)
+    Json settle(int quiet_ms = 200)
     {
         Json stats = ask({{"do", "stats"}});
         auto since = std::chrono::steady_clock::now();

@@ -135,6 +135,7 @@ void LiveRenderer::do_jobs()
         {
             std::lock_guard const lock(mutex_);
             if (jobs_.empty()) return;
+            resting_ = false;
             job = std::move(jobs_.front());
             jobs_.pop_front();
         }
@@ -229,9 +230,9 @@ void LiveRenderer::run_leading()
         bool looked = false;
         {
             std::lock_guard const lock(mutex_);
-            resting_ = false;
             now = viewpoint_;
             looked = looked_.exchange(false);
+            if (looked || !jobs_.empty()) resting_ = false;
         }
         do_jobs(); // after: so a frame has all that was asked before its viewpoint
         double const begun = clock_.now_s();
@@ -259,6 +260,7 @@ void LiveRenderer::run_leading()
         if (link_ != nullptr) link_->send(order);
         {
             std::lock_guard const lock(mutex_);
+            resting_ = false;
             // Ranks must trace the same number of paths, and a comparison as many with both methods.
             bool const may_end_early = still && link_ == nullptr && s.method == "slhb" && s.compare.empty();
             refining_ = may_end_early ? std::make_shared<gi::StopRequest>() : nullptr;

@@ -10,7 +10,11 @@ std::span<RequestRule const> request_rules()
     using enum Presence;
     static std::vector<RequestRule> const rules{
         {"ping", "does nothing", "`{}`", {}},
-        {"stats", "what --stats knows at this moment", "counts, times and losses by name", {}},
+        {"stats",
+         "what --stats knows at this moment",
+         "counts, times and losses by name; `at_rest`: the window shows the newest frame, and no other is due "
+         "until something changes",
+         {}},
         {"load",
          "shows another scene",
          "`{}`, once its first frame was shown",

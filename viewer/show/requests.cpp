@@ -173,7 +173,7 @@ void Requests::press(RemoteRequest const& r)
 
 void Requests::step()
 {
-    double const now = state_.clock.now_s();
+    double const now = stepped_s_ = state_.clock.now_s();
     // Who waits for a frame gets one, also of a picture that rests.
     bool waits = !keys_.empty() || !loads_.empty();
     for (Shot& s : shots_) waits |= !std::exchange(s.has_frame, true) && !has_seen(s.since_s);
@@ -292,7 +292,8 @@ Json Requests::stats() const
         j["paths"] = f.order.paths;
         j["still_paths"] = f.still_paths;
         j["still_frames"] = f.result.still_frames;
-        j["at_rest"] = !state_.drawing && state_.renderer->rests() && state_.renderer->newest() == state_.frame;
+        j["at_rest"] = changed_s_ < stepped_s_ && !state_.drawing && state_.renderer->rests() &&
+                       state_.renderer->newest() == state_.frame;
         for (ViewOrder const& v : f.order.views)
             j["views"].push_back({{"name", v.name}, {"width", v.width}, {"height", v.height}});
         j["stages_ms"] = Json::object();

@@ -62,6 +62,7 @@ private:
     std::list<Key> keys_;
     std::list<Loaded> loads_;
     double changed_s_ = 0;                         ///< when something was asked last that pictures may show
+    double stepped_s_ = 0;                         ///< what was asked before is on its way to the renderer
     std::vector<std::pair<double, int>> releases_; ///< session time, key code
 };
 
