@@ -17,7 +17,8 @@ if(LIGHTWELL_SANITIZE)
   target_compile_options(lightwell_options INTERFACE -fsanitize=${LIGHTWELL_SANITIZE} -fno-sanitize-recover=undefined -fno-omit-frame-pointer
     # GCC 12 with ASan warns of its own std::regex.
     "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-Wno-maybe-uninitialized>")
-  target_link_options(lightwell_options INTERFACE -fsanitize=${LIGHTWELL_SANITIZE})
+  # The sanitizer calls dlopen for us: only an old-style path holds for its calls too.
+  target_link_options(lightwell_options INTERFACE -fsanitize=${LIGHTWELL_SANITIZE} LINKER:--disable-new-dtags)
 endif()
 
 # lightwell_precompile(TARGET headers...): the precompiled header of a target, as others reuse it.

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kStill_px = 1.5; ///< between frames; more is blur
 constexpr double kAlike = 0.12;   ///< distance of features
+constexpr double kTilted = 0.2;   ///< 17 degrees, as a feature
 constexpr int kColumns = 8, kRows = 6;
 
 /// Mean way of the points that both have; nothing where they share none.
@@ -110,7 +111,7 @@ Offer Collector::offer(BoardView view)
     ++counts_.taken;
     features_.push_back(f);
     views_.push_back(std::move(view));
-    if (views_.size() >= 4) {
+    if (views_.size() >= 4 && tilted()) {
         try {
             live_ = calibrate_lens(views_, size_px_, lens_);
         } catch (InputError const&) {
@@ -118,6 +119,16 @@ Offer Collector::offer(BoardView view)
         }
     }
     return offer;
+}
+
+bool Collector::tilted() const
+{
+    for (std::size_t k : {3u, 4u}) {
+        auto const [least, most] = std::minmax_element(features_.begin(), features_.end(),
+                                                       [k](auto const& a, auto const& b) { return a[k] < b[k]; });
+        if (least != features_.end() && (*most)[k] - (*least)[k] >= kTilted) return true;
+    }
+    return false;
 }
 
 cv::Mat Collector::coverage() const
@@ -158,7 +169,6 @@ std::string Collector::next() const
         small = std::min(small, f[2]);
         large = std::max(large, f[2]);
     }
-    constexpr double kTilted = 0.2; // 17 degrees
     if (left > -kTilted) return "turn the board so that it faces left in the picture, by about 30 degrees";
     if (right < kTilted) return "turn the board so that it faces right in the picture, by about 30 degrees";
     if (up > -kTilted) return "tilt the board so that it faces up, by about 30 degrees";

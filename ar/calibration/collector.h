@@ -26,7 +26,8 @@ public:
     Offer offer(BoardView view);
 
     std::vector<BoardView> const& views() const { return views_; }
-    /// The calibration so far, from four views on; renewed by every view that is taken.
+    /// The calibration so far, from four views on that are not all parallel (those fit any focal length: Zhang
+    /// 2000, section 3.1); renewed by every view that is taken.
     std::optional<LensCalibration> const& live() const { return live_; }
     /// Views with points in each cell: 6 x 8, CV_32S.
     cv::Mat coverage() const;
@@ -43,6 +44,7 @@ private:
     /// Where the board is in the picture, how large and how tilted, each about 0 to 1.
     using Features = std::array<double, 5>;
     Features features_of(BoardView const& view) const;
+    bool tilted() const; ///< two views at least, against each other
 
     glm::ivec2 size_px_;
     ViewSource source_;

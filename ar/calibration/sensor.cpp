@@ -253,7 +253,7 @@ ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f cons
 
 std::vector<cv::Point2d> chart_centres(std::array<cv::Point2d, 4> const& corners_px, CameraModel const& camera)
 {
-    constexpr int kColumns = 6, kRows = 4;
+    constexpr int kPatchColumns = 6, kPatchRows = 4;
     std::array<cv::Point2f, 4> seen;
     double turns = 0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -274,11 +274,11 @@ std::vector<cv::Point2d> chart_centres(std::array<cv::Point2d, 4> const& corners
         turns = turn;
     }
     std::array<cv::Point2f, 4> const chart{
-        cv::Point2f(0, 0), {kColumns - 1, 0}, {kColumns - 1, kRows - 1}, {0, kRows - 1}};
+        cv::Point2f(0, 0), {kPatchColumns - 1, 0}, {kPatchColumns - 1, kPatchRows - 1}, {0, kPatchRows - 1}};
     cv::Matx33d const seen_from_chart = cv::getPerspectiveTransform(chart.data(), seen.data());
     std::vector<cv::Point2d> centres;
-    for (int row = 0; row < kRows; ++row)
-        for (int column = 0; column < kColumns; ++column) {
+    for (int row = 0; row < kPatchRows; ++row)
+        for (int column = 0; column < kPatchColumns; ++column) {
             cv::Vec3d const p = seen_from_chart * cv::Vec3d(column, row, 1);
             auto const px = project(camera, {p[0] / p[2], p[1] / p[2], 1});
             if (!px)

@@ -32,6 +32,7 @@ TEST(Collector, TakesWhatIsNewAndAsksForWhatIsMissing)
     for (glm::dvec3 const at : {glm::dvec3(0.12, -0.1, 0.5), {-0.12, 0.1, 0.5}, {0.12, 0.1, 0.5}, {0, 0, 0.35}})
         EXPECT_TRUE(c.offer(board_at({0, 0, 0.05}, at)).taken);
     EXPECT_EQ(c.next(), "turn the board so that it faces left in the picture, by about 30 degrees");
+    EXPECT_FALSE(c.live()) << "parallel boards fit any focal length";
     Offer const turned = c.offer(board_at({0, -0.5, 0}, {0, 0, 0.5}));
     EXPECT_TRUE(turned.taken) << turned.why;
     EXPECT_NE(c.next(), "turn the board so that it faces left in the picture, by about 30 degrees");
