@@ -128,7 +128,7 @@ TEST(Killed, AtAHundredMomentsLosesNothingAndGoesOnInTheSameOrder)
                 has_ended = !line;
             }
             if (!has_ended) {
-                std::uint32_t const wait_us = lines == 0 ? random.below(250000) : random.below(700);
+                std::uint32_t const wait_us = lines == 0 ? random.below(40000) : random.below(700);
                 std::this_thread::sleep_for(std::chrono::microseconds(wait_us));
                 child.kill_and_wait();
                 ++kills;
