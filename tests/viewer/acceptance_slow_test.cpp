@@ -18,7 +18,7 @@ TEST(Acceptance, CornellBoxAgreesWithTungsten)
     TemporaryFolder const folder;
     run_well("render " + (scene / "cornell_box.glb").string() +
                  " --camera reference_camera --size 256x256 --paths 4096 --out a.exr",
-             folder.path());
+             folder.path(), std::chrono::minutes(10));
     Json const j = Json::parse(
         run_well("compare a.exr " + (scene / "reference_tungsten.exr").string() + " --metrics bias,flip --json",
                  folder.path())

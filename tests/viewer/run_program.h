@@ -80,6 +80,8 @@ struct Outcome {
     std::string out, err;
 };
 
+constexpr std::chrono::seconds kProgramLimit{120}; ///< no test waits longer for a program, unless it says so
+
 /// A running lightwell. Whatever still runs at the end is killed.
 class Program {
 public:
@@ -144,7 +146,7 @@ public:
         }
     }
 
-    Outcome wait(std::chrono::seconds limit = std::chrono::seconds(120))
+    Outcome wait(std::chrono::seconds limit = kProgramLimit)
     {
         auto const end = std::chrono::steady_clock::now() + limit;
         int status = 0;
@@ -183,15 +185,17 @@ private:
 };
 
 /// Runs `lightwell ARGUMENTS` (split at blanks) to its end.
-inline Outcome run(std::string const& arguments, std::filesystem::path const& folder)
+inline Outcome run(std::string const& arguments, std::filesystem::path const& folder,
+                   std::chrono::seconds limit = kProgramLimit)
 {
-    return Program(words(arguments), folder).wait();
+    return Program(words(arguments), folder).wait(limit);
 }
 
 /// As above for calls that have to work.
-inline Outcome run_well(std::string const& arguments, std::filesystem::path const& folder)
+inline Outcome run_well(std::string const& arguments, std::filesystem::path const& folder,
+                        std::chrono::seconds limit = kProgramLimit)
 {
-    Outcome const o = run(arguments, folder);
+    Outcome const o = run(arguments, folder, limit);
     EXPECT_EQ(o.code, 0) << "lightwell " << arguments << "\n" << o.err << "signal " << o.signal;
     return o;
 }
