@@ -115,7 +115,7 @@ TEST(Killed, AtAHundredMomentsLosesNothingAndGoesOnInTheSameOrder)
             std::set<std::string> said;
             bool const will_kill = kills < kKills;
             // Most die between two lines somewhere in a session, some before they have written anything.
-            std::size_t const lines = random.below(8) == 0 ? 0 : random.below(60);
+            std::size_t const lines = random.below(8) == 0 ? 0 : random.below(30);
             bool has_ended = false;
             while (!has_ended && (!will_kill || said.size() < lines)) {
                 auto const line = child.line();
