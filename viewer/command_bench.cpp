@@ -15,6 +15,7 @@ void add_bench(CLI::App& app, int& exit_code)
     add_bench_thesis(*c, exit_code);
     add_bench_dynamic(*c, exit_code);
     add_bench_sweep(*c, exit_code);
+    add_bench_pictures(*c, exit_code);
     add_bench_report(*c, exit_code);
     add_bench_views(*c, exit_code);
     add_bench_schedules(*c, exit_code);

@@ -1,19 +1,17 @@
-#include "gi/base/error.h"
 #include "gi/registry/registry.h"
 #include "viewer/bench_record.h"
 #include "viewer/commands.h"
+#include "viewer/interrupt.h"
 #include "viewer/sweep.h"
+#include "viewer/sweep_methods.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <memory>
 
 namespace viewer {
 namespace {
-
-constexpr int kInterrupted = 130;
 
 int run(SweepOptions const& o)
 {
@@ -25,24 +23,6 @@ int run(SweepOptions const& o)
         "pictures\n",
         stderr);
     return kInterrupted;
-}
-
-void check_methods(CLI::App const& command, SweepOptions const& o)
-{
-    std::vector<NamedMethod> methods;
-    bool shared = false; // --schedule is that of some
-    for (std::string const& name : o.methods) {
-        std::size_t const colon = name.find(':');
-        bool const own = colon != std::string::npos && !name.starts_with("vpl_");
-        shared |= name == "slhb";
-        methods.push_back({name.substr(0, colon), parse_schedule(own ? name.substr(colon + 1) : o.render.schedule),
-                           own ? "--methods " + name : "--schedule " + o.render.schedule});
-    }
-    check_slhb(command, methods);
-    check_virtual_lights(command, methods);
-    if (!shared && command.get_option("--schedule")->count() > 0)
-        throw gi::InputError(fmt::format("--schedule with --methods {}", fmt::join(o.methods, ",")),
-                             "it is that of 'slhb', and the others say their own", "leave one of them out");
 }
 
 } // namespace
@@ -102,7 +82,7 @@ noise of the reference adds to relmse.
 
 Ctrl-C drops the render at hand, saves the rows so far and exits with 130; a second one ends at once.)");
     c->callback([o, c, &exit_code] {
-        check_methods(*c, *o);
+        check_sweep_methods(*c, o->render, o->methods);
         exit_code = run(*o);
     });
 }

@@ -17,24 +17,6 @@
 namespace viewer {
 namespace {
 
-template <class T>
-void refuse_twins(std::string const& option, std::vector<T> const& values, std::vector<std::string> const& texts)
-{
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (std::find(values.begin(), values.begin() + std::ptrdiff_t(i), values[i]) !=
-            values.begin() + std::ptrdiff_t(i))
-            throw gi::InputError(fmt::format("{} names '{}' twice", option, texts[i]),
-                                 "its rows and pictures would be mixed up", "name it once");
-}
-
-/// The time to trace is each budget in turn, and no number of paths stops it before.
-gi::RenderSettings common_settings(RenderOptions options)
-{
-    options.budget = "1s";
-    options.png = "unused";
-    return make_settings(options);
-}
-
 gi::Picture read_reference(std::string const& file, gi::RenderSettings const& s)
 {
     gi::Picture picture = gi::read_picture(file);
@@ -45,30 +27,6 @@ gi::Picture read_reference(std::string const& file, gi::RenderSettings const& s)
                              fmt::format("the pictures to judge are {}x{}", s.width, s.height),
                              fmt::format("add --size {}x{}", picture.width, picture.height));
     return picture;
-}
-
-SweepScene load(std::string const& scene, RenderOptions options, CameraChoice const& choice, gi::Report& report)
-{
-    options.scene = scene;
-    std::string const name = std::filesystem::path(scene).stem().string();
-    gi::World world = load_world(options, report);
-    ChosenCamera const chosen = choose_camera(world, choice);
-    if (!chosen.note.empty()) std::fputs(fmt::format("note: {}: {}\n", name, chosen.note).c_str(), stderr);
-    return {std::move(options), name, std::move(world), chosen.camera};
-}
-
-/// "slhb:streamed" is slhb with that schedule.
-SweepMethod find_method(std::string const& name, std::string const& schedule_of_all)
-{
-    std::size_t const colon = name.find(':');
-    gi::Method const& method = gi::find_method(name.substr(0, colon));
-    if (colon == std::string::npos) return {name, method, parse_schedule(schedule_of_all), ""};
-    for (char const* const graded : {"vpl_slhb", "vpl_imperfect", "vpl_ao", "vpl_dao"})
-        if (method.name == graded) return {name, method, gi::Schedule::automatic, name.substr(colon + 1)};
-    if (method.name != "slhb")
-        throw gi::InputError(fmt::format("--methods {}: '{}' has no schedules", name, method.name),
-                             "slhb alone has axes to schedule", fmt::format("name it '{}'", method.name));
-    return {name, method, parse_schedule(name.substr(colon + 1)), ""};
 }
 
 /// A second sweep may replace what a first one wrote, but not what it reads itself.
@@ -87,6 +45,34 @@ void check_pictures(SweepOptions const& o, std::vector<std::string> const& names
 }
 
 } // namespace
+
+SweepMethod find_sweep_method(std::string const& name, std::string const& schedule_of_all)
+{
+    std::size_t const colon = name.find(':');
+    gi::Method const& method = gi::find_method(name.substr(0, colon));
+    if (colon == std::string::npos) return {name, method, parse_schedule(schedule_of_all), ""};
+    for (char const* const graded : {"vpl_slhb", "vpl_imperfect", "vpl_ao", "vpl_dao"})
+        if (method.name == graded) return {name, method, gi::Schedule::automatic, name.substr(colon + 1)};
+    if (method.name != "slhb")
+        throw gi::InputError(fmt::format("--methods {}: '{}' has no schedules", name, method.name),
+                             "slhb alone has axes to schedule", fmt::format("name it '{}'", method.name));
+    return {name, method, parse_schedule(name.substr(colon + 1)), ""};
+}
+
+gi::RenderSettings sweep_settings(RenderOptions options)
+{
+    options.budget = "1s";
+    options.png = "unused";
+    return make_settings(options);
+}
+
+SweepScene load_sweep_scene(RenderOptions const& options, std::string const& name, gi::Report& report)
+{
+    gi::World world = load_world(options, report);
+    ChosenCamera const chosen = choose_camera(world, camera_choice(options));
+    if (!chosen.note.empty()) std::fputs(fmt::format("note: {}: {}\n", name, chosen.note).c_str(), stderr);
+    return {options, name, std::move(world), chosen.camera};
+}
 
 std::string picture_stem(std::string const& scene, std::string method, std::string const& budget)
 {
@@ -118,17 +104,17 @@ gi::RenderSettings settings_of(SweepMethod const& m, gi::RenderSettings s)
 SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
 {
     SweepPlan plan;
-    for (std::string const& name : o.methods) plan.methods.push_back(find_method(name, o.render.schedule));
+    for (std::string const& name : o.methods) plan.methods.push_back(find_sweep_method(name, o.render.schedule));
     refuse_twins("--methods", o.methods, o.methods);
     for (std::string const& text : o.budgets) plan.budgets_s.push_back(parse_duration("--budgets", text));
     refuse_twins("--budgets", plan.budgets_s, o.budgets);
     std::vector<std::string> names;
     for (std::string const& scene : o.scenes) names.push_back(std::filesystem::path(scene).stem().string());
     refuse_twins("--scene", names, names);
-    plan.settings = common_settings(o.render);
+    plan.settings = sweep_settings(o.render);
     for (SweepMethod const& m : plan.methods) settings_of(m, plan.settings);
     plan.filter = make_denoise_settings(o.render, plan.settings);
-    CameraChoice const choice = camera_choice(o.render);
+    camera_choice(o.render); // throws before anything is loaded
     if (!o.reference.empty() && o.scenes.size() > 1)
         throw gi::InputError("--reference is given for several scenes", "one picture cannot judge them all",
                              "sweep one scene at a time, or drop it");
@@ -137,7 +123,11 @@ SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
     inputs.insert(inputs.end(), {o.reference, o.render.environment});
     check_pictures(o, names, inputs);
     if (!o.reference.empty()) plan.reference = read_reference(o.reference, plan.settings);
-    for (std::string const& scene : o.scenes) plan.scenes.push_back(load(scene, o.render, choice, report));
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        RenderOptions options = o.render;
+        options.scene = o.scenes[i];
+        plan.scenes.push_back(load_sweep_scene(options, names[i], report));
+    }
     for (SweepScene const& scene : plan.scenes) check_pictures(o, names, scene.world.scene->files);
     return plan;
 }

@@ -1,10 +1,13 @@
 #pragma once
 // What a sweep does, checked before it is begun.
 
+#include "gi/base/error.h"
 #include "gi/image/denoise.h"
 #include "gi/registry/registry.h"
 #include "viewer/sweep.h"
 
+#include <algorithm>
+#include <fmt/format.h>
 #include <optional>
 
 namespace viewer {
@@ -22,6 +25,23 @@ struct SweepMethod {
     gi::Schedule schedule = gi::Schedule::automatic; ///< of the method slhb
     std::string quality; ///< of vpl_slhb, vpl_imperfect, vpl_ao, vpl_dao: what stands behind the colon; or empty
 };
+
+/// "slhb:streamed" is slhb with that schedule. Throws InputError naming the known methods.
+SweepMethod find_sweep_method(std::string const& name, std::string const& schedule_of_all);
+/// Throws InputError where a list has a value twice. @param texts  of the values
+template <class T>
+void refuse_twins(std::string const& option, std::vector<T> const& values, std::vector<std::string> const& texts)
+{
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (std::find(values.begin(), values.begin() + std::ptrdiff_t(i), values[i]) !=
+            values.begin() + std::ptrdiff_t(i))
+            throw gi::InputError(fmt::format("{} names '{}' twice", option, texts[i]),
+                                 "its rows and pictures would be mixed up", "name it once");
+}
+/// Those of all methods; no number of paths ends a render before its time.
+gi::RenderSettings sweep_settings(RenderOptions options);
+/// Loads what the options name. @param name  of the scene, in tables
+SweepScene load_sweep_scene(RenderOptions const& options, std::string const& name, gi::Report& report);
 
 /// The common settings with those that the method says itself. Throws InputError.
 gi::RenderSettings settings_of(SweepMethod const& method, gi::RenderSettings common);

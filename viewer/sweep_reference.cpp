@@ -28,12 +28,13 @@ double relative_variance(gi::Picture const& picture)
     return sum / (3 * double(picture.pixels()));
 }
 
-std::string hash(SweepScene const& scene, gi::RenderSettings const& s)
+std::string hash(SweepScene const& scene, gi::RenderSettings const& s, ReferenceOf valid)
 {
     std::uint64_t h = gi::fingerprint(scene.world, scene.camera, s, "reference");
     auto const add = [&](std::uint64_t v) { h = gi::mix_bits(h ^ (v + 0x9e3779b97f4a7c15ULL)); };
     add(s.paths);
-    for (char const c : scene.options.scene + '\n' + git_hash()) add(static_cast<unsigned char>(c));
+    std::string const program = valid == ReferenceOf::any_program ? "L1" : scene.options.scene + '\n' + git_hash();
+    for (char const c : program) add(static_cast<unsigned char>(c));
     return fmt::format("{:016x}", h);
 }
 
@@ -50,12 +51,12 @@ SweepReference keep_reference(gi::Picture picture, std::filesystem::path const& 
 
 std::optional<SweepReference> find_reference(SweepScene const& scene, gi::RenderSettings s, std::uint32_t paths,
                                              std::filesystem::path const& folder, gi::StopRequest const& stop,
-                                             gi::Report& report)
+                                             gi::Report& report, ReferenceOf valid)
 {
     s.paths = paths;
     s.budget_s = 0;
     s.seed = kReferenceSeed;
-    std::string const stem = fmt::format("reference_{}_{}", scene.name, hash(scene, s));
+    std::string const stem = fmt::format("reference_{}_{}", scene.name, hash(scene, s, valid));
     std::filesystem::path const file = folder / (stem + ".exr");
     if (std::filesystem::exists(file)) return keep_reference(gi::read_exr(file), folder, stem);
 
@@ -71,8 +72,10 @@ std::optional<SweepReference> find_reference(SweepScene const& scene, gi::Render
     RenderOptions options = scene.options;
     options.method = "reference";
     result.picture.metadata = make_metadata(options, s, result);
-    std::erase_if(result.picture.layers,
-                  [](gi::Layer const& l) { return l.name != "color" && l.name != "variance" && l.name != "L2"; });
+    std::erase_if(result.picture.layers, [&](gi::Layer const& l) {
+        bool const direct = l.name == "L1" && valid == ReferenceOf::any_program;
+        return !direct && l.name != "color" && l.name != "variance" && l.name != "L2";
+    });
     gi::write_exr(file, result.picture, gi::PixelType::single, report);
     std::filesystem::remove(s.checkpoint);
     return keep_reference(std::move(result.picture), folder, stem);

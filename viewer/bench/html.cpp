@@ -98,6 +98,12 @@ std::string embedded_png(std::filesystem::path const& file, std::string const& d
         word(kSize + 4), escaped(description), base64(bytes));
 }
 
+std::string linked_png(std::filesystem::path const& file, std::string const& description)
+{
+    return fmt::format("<img tabindex=\"0\" loading=\"lazy\" alt=\"{}\" src=\"{}\">", escaped(description),
+                       escaped(file.filename().string()));
+}
+
 std::string embedded_video(std::filesystem::path const& file, std::string const& description)
 {
     std::vector<unsigned char> bytes;

@@ -67,10 +67,10 @@ std::string origin_html(BenchTable const& t)
     return html + "</dl>\n<p>To repeat it:</p>\n<pre><code>" + escaped(t.command) + "</code></pre>\n</details>\n";
 }
 
-std::string section(BenchTable const& t, std::filesystem::path const& folder)
+std::string section(BenchTable const& t, std::filesystem::path const& folder, PagePictures pictures)
 {
     std::string html = fmt::format("<section>\n<h2>{}</h2>\n", escaped(t.title.empty() ? t.name : t.title));
-    std::string const figures = sweep_figures(t, folder);
+    std::string const figures = sweep_figures(t, folder) + picture_grids(t, folder, pictures);
     html +=
         origin_html(t) + figures + (figures.empty() ? "<h3>Rows</h3>\n" : "<details>\n<summary>rows</summary>\n");
     if (has_spread(t))
@@ -92,7 +92,7 @@ std::string make_page(Page const& page)
     if (!page.lead.empty()) html += "<p>" + escaped(page.lead) + "</p>\n";
     for (BenchFolder const& folder : page.folders) html += render_figures(folder);
     for (BenchFolder const& folder : page.folders)
-        for (BenchTable const& table : folder.tables) html += section(table, folder.path);
+        for (BenchTable const& table : folder.tables) html += section(table, folder.path, page.pictures);
     if (!page.next.empty()) {
         html += "<section>\n<h2>Next</h2>\n";
         for (std::string const& command : page.next) html += "<pre><code>" + escaped(command) + "</code></pre>\n";

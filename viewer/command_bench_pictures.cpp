@@ -1,0 +1,103 @@
+#include "gi/registry/registry.h"
+#include "viewer/arguments.h"
+#include "viewer/bench/picture_summary.h"
+#include "viewer/bench/table_file.h"
+#include "viewer/bench_record.h"
+#include "viewer/commands.h"
+#include "viewer/interrupt.h"
+#include "viewer/pictures.h"
+#include "viewer/sweep_methods.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+int run(PicturesOptions const& o)
+{
+    PicturesResult const result = run_pictures(o);
+    if (o.render.json) {
+        fmt::print("{{\"pictures\": {}, \"summary\": {}}}\n", to_json(result.pictures), to_json(result.summary));
+    } else {
+        show(result.pictures, o.out, false);
+        std::fputs("\n", stdout);
+        show(result.summary, o.out, false);
+        for (auto const& [what, value] : result.summary.facts)
+            if (what.starts_with("rows that")) fmt::print("{}: {}\n", what, value);
+        fmt::print("{}\n", (std::filesystem::path(o.out) / "pictures.html").string());
+    }
+    std::fflush(stdout);
+    if (!result.interrupted) return 0;
+    std::fputs("note: interrupted: the rows so far are saved; add --resume to go on\n", stderr);
+    return kInterrupted;
+}
+
+} // namespace
+
+void add_bench_pictures(CLI::App& bench, int& exit_code)
+{
+    auto const o = std::make_shared<PicturesOptions>();
+    RenderOptions& r = o->render;
+    r.size = "256x256";
+    r.bounces = 3;
+    r.seed = 1;
+    CLI::App* const c =
+        bench.add_subcommand("pictures", "Methods judged by their pictures: scenes, budgets, filters.");
+    auto const list = [&](char const* name, std::vector<std::string>& values, std::string const& help) {
+        return c->add_option(name, values, help)->delimiter(',')->capture_default_str()->allow_extra_args(false);
+    };
+    c->add_option("--list", o->list, "YAML file that names the scenes")->capture_default_str();
+    list("--scenes", o->scenes, "of the list, comma-separated (default: all)");
+    list("--budgets", o->budgets, "of a render, comma-separated: times, or paths per pixel (1path, 16paths)");
+    list("--denoise", o->filters, "filters, comma-separated, as lightwell render --denoise knows them");
+    list("--methods", o->methods,
+         "comma-separated, as in lightwell bench sweep; 'reference' is the peer of all others");
+    c->add_option("--repeats", o->repeats, "renders per row, each with its own seed; rows hold medians")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    c->add_option("--seed", r.seed, "of the first repeat")->check(check_seed)->capture_default_str();
+    c->add_option("--size", r.size, "width x height, pixels")->capture_default_str();
+    c->add_option("--bounces", r.bounces, "indirect bounces; 0 = direct light only")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    c->add_option("--reference-paths", o->reference_paths, "paths per pixel of the reference pictures")
+        ->check(CLI::Range(2, 1 << 24))
+        ->capture_default_str();
+    c->add_option(
+        "--references", o->references,
+        "folder that keeps the reference pictures; taken from there where scene and settings are the same\n"
+        "(default: DIR/references)");
+    declare_slhb(*c, r);
+    declare_virtual_lights(*c, r);
+    c->add_option("--threads", r.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
+    c->add_option("--out", o->out, "folder for tables, pictures and pictures.html")->required();
+    c->add_flag("--resume", o->resume, "keep the rows that the folder has from the same program and settings");
+    c->add_flag("--json", r.json, "print both tables as JSON");
+    c->add_flag("--quiet", r.quiet, "no progress bar");
+    c->footer(fmt::format(R"(Examples:
+  lightwell bench pictures --scenes cornell,sponza --budgets 300ms,1s --references references --out pictures
+  lightwell bench pictures --methods reference,slhb,slhb:stored --budgets 1s --denoise none,atrous,wide --resume --out pictures
+
+Every render (scene, budget, method, repeat) goes through every filter. render_s is the whole call, of it structures_s for
+hit buffers, shadow maps and BVHs and paths_s for paths and first surfaces; filter_s is the filter's, total_s both together.
+relmse is what is left after relmse_of_reference, the part that the noise of the reference adds, is taken off;
+relmse_estimated is what the program itself says of the unfiltered picture. bias is mean / mean of the reference, of all
+light, of L1 and of L2, with standard errors over the repeats. neighbour_correlation is that of the errors of
+neighbouring pixels: 0 for independent noise, near 1 for errors that regions share.
+
+The summary compares each method with 'reference', row by row: errors divided by those of the peer (lost: above {}), and how many
+times as long the peer takes to the same error, by its own errors at all budgets, filter included.
+
+Ctrl-C drops the renders of the budget at hand, saves the rows so far and exits with 130.)",
+                          kLostRatio));
+    c->callback([o, c, &exit_code] {
+        check_sweep_methods(*c, o->render, o->methods);
+        exit_code = run(*o);
+    });
+}
+
+} // namespace viewer

@@ -1,0 +1,386 @@
+#include "viewer/pictures.h"
+
+#include "gi/base/error.h"
+#include "gi/base/file.h"
+#include "gi/base/picture_file.h"
+#include "gi/image/compare.h"
+#include "gi/image/tone_map.h"
+#include "viewer/bench/page.h"
+#include "viewer/bench/picture_summary.h"
+#include "viewer/bench/table_file.h"
+#include "viewer/bench_record.h"
+#include "viewer/interrupt.h"
+#include "viewer/pictures_plan.h"
+#include "viewer/pictures_score.h"
+#include "viewer/report_json.h"
+
+#include <cmath>
+#include <cstdio>
+#include <fmt/format.h>
+#include <set>
+
+namespace viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> const kColumns{"scene",
+                                        "budget",
+                                        "method",
+                                        "filter",
+                                        "paths",
+                                        "render_s",
+                                        "structures_s",
+                                        "paths_s",
+                                        "filter_s",
+                                        "total_s",
+                                        "relmse",
+                                        "relmse_estimated",
+                                        "relmse_of_reference",
+                                        "flip",
+                                        "bias",
+                                        "bias_error",
+                                        "bias_direct",
+                                        "bias_direct_error",
+                                        "bias_indirect",
+                                        "bias_indirect_error",
+                                        "neighbour_correlation",
+                                        "repeats",
+                                        "picture_file",
+                                        "flip_file",
+                                        "reference_file"};
+
+/// Of all repeats of a method with a budget.
+struct RenderSamples {
+    std::vector<double> paths, render_s, structures_s, paths_s, estimated;
+};
+/// Of these, through one filter.
+struct FilterSamples {
+    std::vector<double> filter_s, total_s, relmse, flip, correlation;
+    std::array<std::vector<double>, 3> bias;
+    std::string picture, flip_map;
+};
+struct MethodSamples {
+    RenderSamples render;
+    std::vector<FilterSamples> filtered;
+};
+
+/// One scene with its reference.
+struct PictureScene {
+    SweepScene scene;
+    SweepReference reference;
+    std::array<double, 3> bias_errors{};
+};
+
+Cell median_of(std::vector<double> const& values)
+{
+    std::vector<double> finite;
+    for (double const v : values)
+        if (std::isfinite(v)) finite.push_back(v);
+    return finite.empty() ? Cell() : Cell(summarise(finite));
+}
+
+class Pictures {
+public:
+    Pictures(PicturesOptions const& o, PicturesPlan const& plan, gi::StopRequest const& stop, gi::Report& report,
+             BenchTable& table)
+        : o_(o), plan_(plan), stop_(stop), report_(report), table_(table)
+    {
+    }
+
+    /// @return false where it was interrupted
+    bool run(ListedScene const& listed);
+    std::set<std::string> const& notes() const { return notes_; }
+
+private:
+    bool is_done(std::string const& scene, PictureBudget const& budget) const;
+    bool is_done(std::string const& scene) const;
+    gi::RenderSettings settings(SweepMethod const& method, PictureBudget const& budget, int repeat) const;
+    void warm_up(PictureScene const& s);
+    bool measure_budget(PictureScene const& s, PictureBudget const& budget);
+    bool measure(PictureScene const& s, SweepMethod const& method, PictureBudget const& budget, int repeat,
+                 MethodSamples& into);
+    void judge(PictureScene const& s, SweepMethod const& method, PictureBudget const& budget, int repeat,
+               gi::RenderResult const& result, double render_s, MethodSamples& into);
+    void add_rows(PictureScene const& s, PictureBudget const& budget, SweepMethod const& method,
+                  MethodSamples const& samples);
+
+    PicturesOptions const& o_;
+    PicturesPlan const& plan_;
+    gi::StopRequest const& stop_;
+    gi::Report& report_;
+    BenchTable& table_;
+    std::set<std::string> notes_;
+};
+
+bool Pictures::is_done(std::string const& scene, PictureBudget const& budget) const
+{
+    std::size_t rows = 0;
+    for (auto const& row : table_.rows)
+        rows +=
+            to_text(cell(table_, row, "scene")) == scene && to_text(cell(table_, row, "budget")) == budget.name;
+    return rows == plan_.methods.size() * plan_.filters.size();
+}
+
+bool Pictures::is_done(std::string const& scene) const
+{
+    return std::ranges::all_of(plan_.budgets, [&](PictureBudget const& b) { return is_done(scene, b); });
+}
+
+gi::RenderSettings Pictures::settings(SweepMethod const& method, PictureBudget const& budget, int repeat) const
+{
+    gi::RenderSettings s = settings_of(method, plan_.settings);
+    s.budget_s = budget.seconds;
+    if (budget.paths > 0) s.paths = budget.paths;
+    s.seed = plan_.settings.seed + std::uint64_t(repeat);
+    return s;
+}
+
+/// The first render also starts threads and fills caches, the first filter too; that is no method's fault.
+void Pictures::warm_up(PictureScene const& s)
+{
+    gi::Report unused;
+    for (SweepMethod const& m : plan_.methods) {
+        if (stop_.requested()) return;
+        gi::RenderResult result =
+            m.method.render(s.scene.world, s.scene.camera, settings(m, {"", 0, 2}, 0), stop_, {}, unused);
+        for (PictureFilter const& f : plan_.filters) {
+            gi::Picture picture = result.picture;
+            if (f.settings.denoiser != gi::Denoiser::none) gi::denoise(picture, f.settings);
+        }
+    }
+}
+
+bool Pictures::run(ListedScene const& listed)
+{
+    if (is_done(listed.name)) return true;
+    PictureScene s{load_sweep_scene(listed.options, listed.name, report_), {}, {}};
+    fs::path const references = o_.references.empty() ? fs::path(o_.out) / "references" : fs::path(o_.references);
+    make_folder(references.string());
+    std::optional<SweepReference> found = find_reference(s.scene, plan_.settings, o_.reference_paths, references,
+                                                         stop_, report_, ReferenceOf::any_program);
+    if (!found) return false;
+    s.reference = keep_reference(std::move(found->picture), o_.out, "reference_" + listed.name);
+    s.bias_errors = bias_errors(s.reference.picture);
+    warm_up(s);
+    for (PictureBudget const& budget : plan_.budgets) {
+        if (is_done(listed.name, budget)) continue;
+        if (!measure_budget(s, budget)) return false;
+    }
+    return true;
+}
+
+bool Pictures::measure_budget(PictureScene const& s, PictureBudget const& budget)
+{
+    std::size_t const n = plan_.methods.size();
+    std::vector<MethodSamples> samples(n);
+    for (MethodSamples& m : samples) m.filtered.resize(plan_.filters.size());
+    gi::ProgressBar bar("pictures", !o_.render.quiet);
+    // In turns, so that a machine that slows down slows everybody.
+    for (int repeat = 0; repeat < o_.repeats; ++repeat)
+        for (std::size_t i = 0; i < n; ++i) {
+            std::size_t const m = (std::size_t(repeat) + i) % n;
+            if (stop_.requested()) return false;
+            bar.update((repeat + double(i) / double(n)) / o_.repeats,
+                       fmt::format("{}, {}, {}", s.scene.name, budget.name, plan_.methods[m].name));
+            if (!measure(s, plan_.methods[m], budget, repeat, samples[m])) return false;
+        }
+    for (std::size_t m = 0; m < n; ++m) add_rows(s, budget, plan_.methods[m], samples[m]);
+    write(table_, o_.out);
+    return true;
+}
+
+bool Pictures::measure(PictureScene const& s, SweepMethod const& method, PictureBudget const& budget, int repeat,
+                       MethodSamples& into)
+{
+    gi::Report report;
+    gi::RenderSettings const set = settings(method, budget, repeat);
+    gi::RenderResult result;
+    double const render_s =
+        seconds_of([&] { result = method.method.render(s.scene.world, s.scene.camera, set, stop_, {}, report); });
+    for (auto const& [what, loss] : report.losses())
+        report_.lose(what, loss.count, s.scene.name + (loss.first.empty() ? "" : ", " + loss.first));
+    if (result.end == gi::RenderEnd::interrupted) return false;
+    RenderSeconds const parts = seconds_by_part(report);
+    RenderSamples& r = into.render;
+    r.paths.push_back(result.paths);
+    r.render_s.push_back(render_s);
+    r.structures_s.push_back(parts.structures);
+    r.paths_s.push_back(parts.paths);
+    // One path says nothing of its variance.
+    r.estimated.push_back(result.paths > 1 ? result.relmse : std::nan(""));
+    judge(s, method, budget, repeat, result, render_s, into);
+    return true;
+}
+
+void Pictures::judge(PictureScene const& s, SweepMethod const& method, PictureBudget const& budget, int repeat,
+                     gi::RenderResult const& result, double render_s, MethodSamples& into)
+{
+    fs::path const folder = o_.out;
+    for (std::size_t f = 0; f < plan_.filters.size(); ++f) {
+        PictureFilter const& filter = plan_.filters[f];
+        FilterSamples& to = into.filtered[f];
+        gi::Picture picture = result.picture;
+        double filter_s = 0;
+        if (filter.settings.denoiser != gi::Denoiser::none) {
+            gi::DenoiseReport done;
+            filter_s = seconds_of([&] { done = gi::denoise(picture, filter.settings); });
+            if (done.no_variance)
+                notes_.insert(fmt::format("--denoise {} changes nothing with budget {}: no picture has a variance",
+                                          filter.name, budget.name));
+        }
+        PictureScore const judged = score(picture, s.reference);
+        to.filter_s.push_back(filter_s);
+        to.total_s.push_back(render_s + filter_s);
+        to.relmse.push_back(judged.relmse);
+        to.flip.push_back(judged.flip);
+        to.correlation.push_back(judged.neighbour_correlation);
+        for (std::size_t k = 0; k < to.bias.size(); ++k) to.bias[k].push_back(judged.bias[k]);
+        if (repeat > 0) continue;
+        std::string const stem = picture_stem(s.scene.name, method.name, budget.name) + "_" + filter.name;
+        to.picture = stem + ".png";
+        to.flip_map = stem + "_flip.png";
+        int width = 0, height = 0;
+        auto const difference = gi::difference_image(picture, s.reference.picture, "color", width, height);
+        gi::write_png(folder / to.flip_map, width, height, difference);
+        gi::write_png(folder / to.picture, picture.width, picture.height,
+                      gi::tone_map_bytes(*picture.find("color"), {}));
+    }
+}
+
+void Pictures::add_rows(PictureScene const& s, PictureBudget const& budget, SweepMethod const& method,
+                        MethodSamples const& samples)
+{
+    // Rows of an earlier, unfinished run.
+    std::erase_if(table_.rows, [&](auto const& row) {
+        auto const is = [&](char const* column, std::string const& value) {
+            return to_text(cell(table_, row, column)) == value;
+        };
+        return is("scene", s.scene.name) && is("budget", budget.name) && is("method", method.name);
+    });
+    RenderSamples const& r = samples.render;
+    for (std::size_t f = 0; f < plan_.filters.size(); ++f) {
+        FilterSamples const& p = samples.filtered[f];
+        std::array<MeanOf, 3> bias;
+        for (std::size_t k = 0; k < bias.size(); ++k) bias[k] = mean_of(p.bias[k], s.bias_errors[k]);
+        table_.add({s.scene.name,
+                    budget.name,
+                    method.name,
+                    plan_.filters[f].name,
+                    median_of(r.paths),
+                    median_of(r.render_s),
+                    median_of(r.structures_s),
+                    median_of(r.paths_s),
+                    median_of(p.filter_s),
+                    median_of(p.total_s),
+                    median_of(p.relmse),
+                    median_of(r.estimated),
+                    s.reference.relmse,
+                    median_of(p.flip),
+                    bias[0].value,
+                    bias[0].error,
+                    bias[1].value,
+                    bias[1].error,
+                    bias[2].value,
+                    bias[2].error,
+                    median_of(p.correlation),
+                    double(o_.repeats),
+                    p.picture,
+                    p.flip_map,
+                    s.reference.png_file});
+    }
+}
+
+/// Everything that rows of one table have in common; tables that differ in it are not continued.
+std::vector<std::pair<std::string, std::string>> common_facts(PicturesOptions const& o, PicturesPlan const& plan)
+{
+    gi::RenderSettings const& s = plan.settings;
+    return {{"size", fmt::format("{}x{}", s.width, s.height)},
+            {"bounces", std::to_string(s.bounces)},
+            {"threads", s.threads == 0 ? "all" : std::to_string(s.threads)},
+            {"seeds", fmt::format("{} and following, one per repeat", s.seed)},
+            {"repeats", std::to_string(o.repeats)},
+            {"reference", fmt::format("path tracing, {} paths per pixel", o.reference_paths)}};
+}
+
+BenchTable start_pictures(PicturesOptions const& o, PicturesPlan const& plan)
+{
+    BenchTable table = start_table("pictures", "Methods by their pictures", kColumns);
+    table.facts = common_facts(o, plan);
+    fs::path const file = fs::path(o.out) / "pictures.json";
+    if (!o.resume || !fs::exists(file)) return table;
+    constexpr std::size_t kMostBytes = std::size_t(1) << 28;
+    std::vector<unsigned char> const bytes = gi::read_bytes(file, kMostBytes);
+    BenchTable earlier = parse_table(std::string(bytes.begin(), bytes.end()), file.string());
+    auto const refuse = [&](std::string const& why) {
+        return gi::InputError("--resume: '" + file.string() + "' is of another run", why,
+                              "choose another --out, or leave --resume out");
+    };
+    if (earlier.columns != table.columns) throw refuse("it has other columns");
+    if (earlier.program != table.program) throw refuse("it was made by " + earlier.program);
+    for (auto const& fact : table.facts)
+        if (std::ranges::find(earlier.facts, fact) == earlier.facts.end())
+            throw refuse("its " + fact.first + " differs");
+    table.rows = std::move(earlier.rows);
+    return table;
+}
+
+void skip(Skipped const& s, BenchTable& table)
+{
+    std::fputs(fmt::format("note: skipped: {}: {}\n", s.what, s.why).c_str(), stderr);
+    table.facts.emplace_back("skipped: " + s.what, s.why);
+}
+
+/// Pictures stay files beside the page: there may be a thousand.
+void write_page(PicturesOptions const& o, PicturesResult const& result)
+{
+    Page page;
+    page.title = "Lightwell bench pictures";
+    page.pictures = PagePictures::linked;
+    page.folders.push_back({o.out, {result.summary, result.pictures}, {}});
+    gi::write_text(fs::path(o.out) / "pictures.html", make_page(page));
+}
+
+} // namespace
+
+BenchTable summary_of(BenchTable const& pictures)
+{
+    BenchTable summary = start_table("pictures_summary", fmt::format("Against {}, worst first", kPeer),
+                                     picture_summary_columns(kPeer));
+    summary.facts = pictures.facts;
+    fill_picture_summary(contests(pictures, kPeer), kPeer, summary);
+    return summary;
+}
+
+PicturesResult run_pictures(PicturesOptions const& o)
+{
+    PicturesPlan const plan = plan_pictures(o);
+    PicturesResult result{start_pictures(o, plan), {}, false};
+    make_folder(o.out);
+    for (Skipped const& s : plan.skipped) skip(s, result.pictures);
+    gi::Report report;
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    Pictures pictures(o, plan, stop, report, result.pictures);
+    for (ListedScene const& scene : plan.scenes) {
+        try {
+            result.interrupted = !pictures.run(scene);
+        } catch (gi::InputError const& e) {
+            skip({"scene " + scene.name, e.what()}, result.pictures);
+        }
+        if (result.interrupted) break;
+        result.summary = summary_of(result.pictures);
+        write(result.summary, o.out);
+        write_page(o, result);
+    }
+    if (result.interrupted) result.pictures.facts.emplace_back("interrupted", "rows are missing");
+    write(result.pictures, o.out);
+    result.summary = summary_of(result.pictures);
+    write(result.summary, o.out);
+    write_page(o, result);
+    for (std::string const& note : pictures.notes()) std::fputs(("note: " + note + "\n").c_str(), stderr);
+    print_losses(report);
+    return result;
+}
+
+} // namespace viewer

@@ -1,0 +1,39 @@
+#pragma once
+// What `bench pictures` does, checked before it is begun.
+
+#include "viewer/pictures.h"
+#include "viewer/pictures_list.h"
+#include "viewer/sweep_plan.h"
+
+namespace viewer {
+
+struct PictureBudget {
+    std::string name;
+    double seconds = 0;      ///< 0 = none
+    std::uint32_t paths = 0; ///< 0 = as many as the time allows
+};
+/// "1path", "16paths", or a time. Throws InputError.
+PictureBudget parse_picture_budget(std::string const& text);
+
+struct PictureFilter {
+    std::string name; ///< as --denoise has it
+    gi::DenoiseSettings settings;
+};
+
+struct Skipped {
+    std::string what, why; ///< "scene sponza", "no file '...'"
+};
+
+struct PicturesPlan {
+    gi::RenderSettings settings; ///< the same for all, but for budget, paths and seed
+    std::vector<PictureBudget> budgets;
+    std::vector<PictureFilter> filters;
+    std::vector<SweepMethod> methods;
+    std::vector<ListedScene> scenes;
+    std::vector<Skipped> skipped;
+};
+
+/// Loads no scene. Throws InputError on all that is wrong with the call.
+PicturesPlan plan_pictures(PicturesOptions const& options);
+
+} // namespace viewer
