@@ -12,10 +12,10 @@ FrameFollower::FrameFollower(std::shared_ptr<gi::Scene const> scene, double time
       flat_(world_.advance(time_s)),
       reuse_({.most_frames = most_frames})
 {
-    if (method.name != "slhb")
+    if (!method.motion_vectors)
         throw gi::InputError("--reuse with method '" + std::string(method.name) + "'",
                              "it gives no motion vectors, by which the light of earlier frames is found",
-                             "use --method slhb");
+                             "use --method slhb or --method reference");
 }
 
 gi::World const& FrameFollower::go_to(double time_s)

@@ -42,6 +42,8 @@ struct Path {
     int shadow_bucket = 0;
     vec3 shadow_radiance{0}; ///< what arrives if nothing is between; 0 = no shadow ray wanted
     PathSample sample;
+    std::uint32_t first_triangle = kNoTriangle; ///< that the camera sees
+    vec2 first_weights{0};                      ///< there, of corners 1 and 2
 
     vec3& bucket(int scattered) { return sample.radiance[std::size_t(std::min(scattered, 2))]; }
 };
@@ -165,6 +167,8 @@ bool PathTracer<Visibility>::advance(Path& p, Hit const& hit, int vertex, PathCo
     ShadingPoint const at = shading_point(world, hit.triangle, hit.barycentric, p.ray.direction);
     if (vertex == 0) {
         p.sample.hit = true;
+        p.first_triangle = hit.triangle;
+        p.first_weights = hit.barycentric;
         p.sample.albedo = albedo(at.bsdf);
         p.sample.normal = at.frame.normal;
         p.sample.position = at.position;

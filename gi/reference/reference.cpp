@@ -4,16 +4,25 @@
 #include "gi/scene/plan.h"
 #include "gi/transport/fingerprint.h"
 #include "gi/transport/flush_denormals.h"
+#include "gi/transport/motion.h"
 #include "gi/transport/pass_loop.h"
 
+#include <algorithm>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
 namespace gi {
 namespace {
 
+/// What the last path of a pixel met first.
+struct FirstHit {
+    std::uint32_t triangle;
+    vec2 weights; ///< of corners 1 and 2
+};
+
+/// @param first_hits  one per pixel, set by its last path; empty = not wanted
 void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t first_path,
-                std::uint32_t paths)
+                std::uint32_t paths, std::span<FirstHit> first_hits = {})
 {
     tbb::combinable<PathCounts> counts;
     int const columns = (sums.width + kTile - 1) / kTile, rows = (sums.height + kTile - 1) / kTile;
@@ -30,10 +39,13 @@ void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, st
                     batch.push_back(tracer.start(x, y, first_path + sums.paths + i));
             tracer.trace(batch, local);
             auto next = batch.begin();
+            bool const last = i + 1 == paths && !first_hits.empty();
             for (int y = top; y < bottom; ++y)
-                for (int x = left; x < right; ++x)
-                    sums.add(std::size_t(y) * std::size_t(sums.width) + std::size_t(x), (next++)->sample,
-                             sums.paths + i);
+                for (int x = left; x < right; ++x, ++next) {
+                    std::size_t const pixel = std::size_t(y) * std::size_t(sums.width) + std::size_t(x);
+                    sums.add(pixel, next->sample, sums.paths + i);
+                    if (last) first_hits[pixel] = {next->first_triangle, next->first_weights};
+                }
         }
     });
     sums.paths += paths;
@@ -73,12 +85,19 @@ RenderResult trace_all(PassLoop& loop, std::uint64_t print, PassLoop::Pass const
 
 class ReferenceFrames : public FrameRenderer {
 public:
-    ReferenceFrames(MovingWorld const& world, RenderSettings const& settings, Report& report)
-        : world_(world), settings_(settings), report_(report)
+    ReferenceFrames(MovingWorld const& world, Camera const& camera, RenderSettings const& settings, Report& report)
+        : world_(world), settings_(settings), report_(report), now_(corners_of(world.world(), first_moving()))
     {
+        earlier_.first_moving = first_moving();
+        FrameView const whole{camera, settings.width, settings.height};
+        see({&whole, 1});
     }
     void changed(Changes const& changes) override
     {
+        if (changes.geometry) {
+            if (earlier_.corners.empty()) earlier_.corners = std::move(now_);
+            now_ = corners_of(world_.world(), first_moving());
+        }
         if (changes.materials || changes.coverage) structures_.visibility.reset();
         if (!changes.geometry || !structures_.visibility) return;
         StageTimer const timer(report_, "BVH of what moves (Embree)");
@@ -88,8 +107,10 @@ public:
                        Moments const& moments) override
     {
         PassLoop loop(settings_, stop, progress, report_);
+        FrameView const whole{camera, settings_.width, settings_.height};
+        see({&whole, 1});
         auto const pass = [&](Accumulator& sums, std::uint32_t paths) {
-            if (!moments) return trace_pass(tracer(camera), sums, paths_, paths);
+            if (!moments) return trace_pass(tracer(camera), sums, paths_, paths, first_hits_);
             for (std::uint32_t i = 0; i < paths; ++i) {
                 Moment const now = moments(sums.paths);
                 changed(now.changes);
@@ -99,6 +120,8 @@ public:
         tracer(camera); // builds before the passes
         RenderResult result = trace_all(loop, 0, pass, world_.world(), report_);
         paths_ += result.paths;
+        if (!moments) add_motion(seen_.front(), result.picture);
+        end_frame();
         return result;
     }
     std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings,
@@ -106,6 +129,7 @@ public:
     {
         RenderProgress const silent;
         std::vector<RenderResult> results;
+        see(views);
         for (FrameView const& v : views) {
             RenderSettings settings = settings_;
             settings.width = v.width;
@@ -115,15 +139,65 @@ public:
             PassLoop loop(settings, stop, silent, report_);
             PathTracer<ExactVisibility> const through = tracer(v.camera, settings);
             results.push_back(trace_all(
-                loop, 0, [&](Accumulator& sums, std::uint32_t n) { trace_pass(through, sums, paths_, n); },
+                loop, 0,
+                [&](Accumulator& sums, std::uint32_t n) { trace_pass(through, sums, paths_, n, first_hits_); },
                 world_.world(), report_));
+            add_motion(seen_[results.size() - 1], results.back().picture);
             hide_pixels(results.back().picture, v.hidden);
         }
         paths_ += paths;
+        end_frame();
         return results;
     }
 
 private:
+    /// Through the middle of the lens.
+    struct SeenFrom {
+        CameraRays now, earlier;
+        int width, height;
+    };
+
+    std::size_t first_moving() const { return world_.world().static_triangles; }
+
+    /// A view is what the view of the same index was in the frame before.
+    void see(std::span<FrameView const> views)
+    {
+        std::size_t const known = std::min(seen_.size(), views.size());
+        seen_.resize(views.size());
+        std::size_t most_pixels = 0;
+        for (std::size_t k = 0; k < views.size(); ++k) {
+            FrameView const& v = views[k];
+            SeenFrom& s = seen_[k];
+            CameraRays const now = camera_rays(v.camera, v.width, v.height, world_.world().origin);
+            bool const same = k < known && s.width == v.width && s.height == v.height;
+            s = {now, same ? s.earlier : now, v.width, v.height};
+            most_pixels = std::max(most_pixels, std::size_t(v.width) * std::size_t(v.height));
+        }
+        first_hits_.resize(most_pixels);
+    }
+    void end_frame()
+    {
+        earlier_.corners.clear();
+        for (SeenFrom& s : seen_) s.earlier = s.now;
+    }
+    /// Of the view that was traced last.
+    void add_motion(SeenFrom const& from, Picture& picture) const
+    {
+        if (from.now.orthographic) return;
+        World const& world = world_.world();
+        std::size_t const width = std::size_t(from.width);
+        auto const seen = [&](std::size_t y, std::span<SeenPoint> row) {
+            for (std::size_t x = 0; x < width; ++x) {
+                auto const [triangle, weights] = first_hits_[y * width + x];
+                if (triangle == kNoTriangle) continue;
+                uvec3 const v = world.triangles[triangle];
+                Corners const corners{world.positions[v.x], world.positions[v.y], world.positions[v.z]};
+                row[x] = {triangle, weights, point_on(corners, weights)};
+            }
+        };
+        gi::add_motion(seen, from.now, from.earlier, earlier_, picture);
+    }
+
     /// Through the world as it is now.
     PathTracer<ExactVisibility> tracer(Camera const& camera) { return tracer(camera, settings_); }
     PathTracer<ExactVisibility> tracer(Camera const& camera, RenderSettings const& settings)
@@ -138,6 +212,10 @@ private:
     Report& report_;
     Structures structures_;
     std::uint32_t paths_ = 0; ///< so far, of all frames
+    std::vector<SeenFrom> seen_;
+    std::vector<FirstHit> first_hits_; ///< of the view that was traced last
+    std::vector<Corners> now_;         ///< of what may move
+    EarlierCorners earlier_;
 };
 
 } // namespace
@@ -156,10 +234,10 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
     return trace_all(loop, print, pass, world, report);
 }
 
-std::unique_ptr<FrameRenderer> start_reference_frames(MovingWorld const& world, Camera const&,
+std::unique_ptr<FrameRenderer> start_reference_frames(MovingWorld const& world, Camera const& camera,
                                                       RenderSettings const& settings, Report& report)
 {
-    return std::make_unique<ReferenceFrames>(world, settings, report);
+    return std::make_unique<ReferenceFrames>(world, camera, settings, report);
 }
 
 } // namespace gi

@@ -10,7 +10,7 @@ namespace gi {
 RenderResult render_reference(World const& world, Camera const& camera, RenderSettings const& settings,
                               StopRequest const& stop, RenderProgress const& progress, Report& report);
 
-/// See StartFrames. Every frame has paths of its own; BVHs are built anew where something has moved.
+/// See StartFrames. Every frame has paths of its own and the layer "motion"; the BVH of what moves is refitted.
 std::unique_ptr<FrameRenderer> start_reference_frames(MovingWorld const& world, Camera const& camera,
                                                       RenderSettings const& settings, Report& report);
 

@@ -15,14 +15,14 @@ namespace {
 template <VisibilityKind kind>
 constexpr Method virtual_lights(std::string_view name, std::string_view summary)
 {
-    return {name, summary, render_visibility<kind>, start_visibility_frames<kind>};
+    return {name, summary, render_visibility<kind>, start_visibility_frames<kind>, false};
 }
 
 constexpr std::array kMethods{
     Method{"reference", "path tracing with exact rays (Embree): slow, unbiased, judges the others",
-           render_reference, start_reference_frames},
+           render_reference, start_reference_frames, true},
     Method{"slhb", "path tracing through spherical layered hit buffers: look-ups instead of rays", render_slhb,
-           start_slhb_frames},
+           start_slhb_frames, true},
     virtual_lights<VisibilityKind::exact>(
         "vpl_exact",
         "virtual point lights for indirect light, their visibility by exact rays; the vpl_* that follow\n"

@@ -17,6 +17,7 @@ struct Method {
     std::string_view summary; ///< one line for --help
     RenderFunction render;
     StartFrames frames;
+    bool motion_vectors = false; ///< its frames have the layer "motion", which temporal reuse needs
 };
 
 std::span<Method const> methods();

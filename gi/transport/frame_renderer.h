@@ -86,7 +86,7 @@ public:
     /// What that came to in the last frame.
     virtual Following following() const { return {}; }
     /// Renders what the camera sees now, with the budget and paths of the settings for every frame. Layers as
-    /// those of RenderResult and, where the method knows it, "motion" (see gi/slhb/motion.h).
+    /// those of RenderResult and, where the method knows it, "motion" (see gi/transport/motion.h).
     /// @param moments  where given, every path of a pixel is of a moment of its own, so that their mean is blurred
     /// by
     ///                 motion; `camera` is then that of no path, and there is no "motion"
