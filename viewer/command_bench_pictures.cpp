@@ -1,4 +1,4 @@
-#include "gi/registry/registry.h"
+#include "gi/base/error.h"
 #include "viewer/arguments.h"
 #include "viewer/bench/picture_summary.h"
 #include "viewer/bench/table_file.h"
@@ -7,8 +7,10 @@
 #include "viewer/interrupt.h"
 #include "viewer/pictures.h"
 #include "viewer/sweep_methods.h"
+#include "viewer/validators.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
@@ -19,7 +21,7 @@ namespace {
 
 int run(PicturesOptions const& o)
 {
-    PicturesResult const result = run_pictures(o);
+    PicturesResult const result = o.interactive ? run_interactive_pictures(o) : run_pictures(o);
     if (o.render.json) {
         fmt::print("{{\"pictures\": {}, \"summary\": {}}}\n", to_json(result.pictures), to_json(result.summary));
     } else {
@@ -28,12 +30,27 @@ int run(PicturesOptions const& o)
         show(result.summary, o.out, false);
         for (auto const& [what, value] : result.summary.facts)
             if (what.starts_with("rows that")) fmt::print("{}: {}\n", what, value);
-        fmt::print("{}\n", (std::filesystem::path(o.out) / "pictures.html").string());
+        fmt::print("{}\n", (std::filesystem::path(o.out) / (result.pictures.name + ".html")).string());
     }
     std::fflush(stdout);
     if (!result.interrupted) return 0;
-    std::fputs("note: interrupted: the rows so far are saved; add --resume to go on\n", stderr);
+    fmt::print(stderr, "note: interrupted: the rows so far are saved; {}\n",
+               o.interactive ? "the same command starts again, but for the references" : "add --resume to go on");
     return kInterrupted;
+}
+
+/// Methods without motion vectors cannot take part, and sixty frames have sixty references.
+void set_interactive_defaults(CLI::App const& command, PicturesOptions& o)
+{
+    auto const is_given = [&](char const* name) { return command.get_option(name)->count() > 0; };
+    if (!is_given("--methods")) o.methods = {kPeer, "slhb"};
+    if (!is_given("--denoise")) o.filters = {"none", "wide"};
+    if (!is_given("--size")) o.render.size = "512x512";
+    if (!is_given("--reference-paths")) o.reference_paths = 256;
+    if (!is_given("--scored-frames")) std::erase_if(o.scored_frames, [&](int f) { return f > o.frames; });
+    if (o.resume)
+        throw gi::InputError("--resume with --interactive", "a sequence is rendered in one go",
+                             "leave --resume out");
 }
 
 } // namespace
@@ -51,7 +68,8 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
         return c->add_option(name, values, help)->delimiter(',')->capture_default_str()->allow_extra_args(false);
     };
     c->add_option("--list", o->list, "YAML file that names the scenes")->capture_default_str();
-    list("--scenes", o->scenes, "of the list, comma-separated (default: all)");
+    list("--scenes", o->scenes,
+         "names in the list, files or built-in scenes, comma-separated (default: all of the list)");
     list("--budgets", o->budgets, "of a render, comma-separated: times, or paths per pixel (1path, 16paths)");
     list("--denoise", o->filters, "filters, comma-separated, as lightwell render --denoise knows them");
     list("--methods", o->methods,
@@ -71,6 +89,26 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
         "--references", o->references,
         "folder that keeps the reference pictures; taken from there where scene and settings are the same\n"
         "(default: DIR/references)");
+    constexpr char const* kInteractive = "Interactive frames";
+    CLI::Option* const interactive =
+        c->add_flag("--interactive", o->interactive,
+                    "sequences of the list in place of its scenes: frames that follow each other, with reuse")
+            ->excludes("--budgets")
+            ->excludes("--repeats")
+            ->group(kInteractive);
+    auto const of_frames = [&](CLI::Option* option) {
+        return option->needs(interactive)->group(kInteractive)->capture_default_str();
+    };
+    of_frames(c->add_option("--frames", o->frames, "of each sequence"))->check(CLI::Range(1, 100000));
+    of_frames(c->add_option("--frame-budget", o->frame_budget, "time for a render; reuse and filter add to it"));
+    of_frames(c->add_option("--reuse", o->reuse, "frames that a pixel is the mean of at most; 1 = no reuse"))
+        ->check(CLI::Range(1, 1000));
+    of_frames(c->add_option("--fps", o->fps, "frames per second of the animation"))->check(in_range(1e-3, 1e6));
+    of_frames(c->add_option("--scored-frames", o->scored_frames,
+                            "counted from 1, comma-separated; rows are these and\n"
+                            "their mean"))
+        ->delimiter(',')
+        ->allow_extra_args(false);
     declare_slhb(*c, r);
     declare_virtual_lights(*c, r);
     c->add_option("--threads", r.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
@@ -79,8 +117,9 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
     c->add_flag("--json", r.json, "print both tables as JSON");
     c->add_flag("--quiet", r.quiet, "no progress bar");
     c->footer(fmt::format(R"(Examples:
-  lightwell bench pictures --scenes cornell,sponza --budgets 300ms,1s --references references --out pictures
-  lightwell bench pictures --methods reference,slhb,slhb:stored --budgets 1s --denoise none,atrous,wide --resume --out pictures
+  lightwell bench pictures --scenes cornell --methods reference,slhb --budgets 1path,20ms --repeats 1 --size 32x32 --reference-paths 16 --out pictures
+  lightwell bench pictures --scenes cornell --methods reference,slhb --budgets 1path,20ms,40ms --repeats 1 --size 32x32 --reference-paths 16 --resume --out pictures
+  lightwell bench pictures --scenes atrium --interactive --frames 4 --scored-frames 1,4 --size 24x16 --frame-budget 20ms --reference-paths 4 --out frames
 
 Every render (scene, budget, method, repeat) goes through every filter. render_s is the whole call, of it structures_s for
 hit buffers, shadow maps and BVHs and paths_s for paths and first surfaces; filter_s is the filter's, total_s both together.
@@ -92,9 +131,14 @@ neighbouring pixels: 0 for independent noise, near 1 for errors that regions sha
 The summary compares each method with 'reference', row by row: errors divided by those of the peer (lost: above {}), and how many
 times as long the peer takes to the same error, by its own errors at all budgets, filter included.
 
+--interactive renders frames that follow each other, all methods with the same temporal reuse and filters; unless given, --methods are
+reference,slhb, --denoise none,wide, --size 512x512 and --reference-paths 256. frame_s holds the world, the render and the reuse; in
+the row of the mean it is the median of all frames but the first, which builds what lasts.
+
 Ctrl-C drops the renders of the budget at hand, saves the rows so far and exits with 130.)",
                           kLostRatio));
     c->callback([o, c, &exit_code] {
+        if (o->interactive) set_interactive_defaults(*c, *o);
         check_sweep_methods(*c, o->render, o->methods);
         exit_code = run(*o);
     });

@@ -2,15 +2,12 @@
 
 #include "gi/base/error.h"
 #include "gi/base/file.h"
-#include "gi/base/picture_file.h"
-#include "gi/image/compare.h"
-#include "gi/image/tone_map.h"
 #include "viewer/bench/page.h"
 #include "viewer/bench/picture_summary.h"
 #include "viewer/bench/table_file.h"
 #include "viewer/bench_record.h"
 #include "viewer/interrupt.h"
-#include "viewer/pictures_plan.h"
+#include "viewer/pictures_filtered.h"
 #include "viewer/pictures_score.h"
 #include "viewer/report_json.h"
 
@@ -58,7 +55,7 @@ struct RenderSamples {
 struct FilterSamples {
     std::vector<double> filter_s, total_s, relmse, flip, correlation;
     std::array<std::vector<double>, 3> bias;
-    std::string picture, flip_map;
+    PictureFiles files;
 };
 struct MethodSamples {
     RenderSamples render;
@@ -115,11 +112,18 @@ private:
 
 bool Pictures::is_done(std::string const& scene, PictureBudget const& budget) const
 {
-    std::size_t rows = 0;
-    for (auto const& row : table_.rows)
-        rows +=
-            to_text(cell(table_, row, "scene")) == scene && to_text(cell(table_, row, "budget")) == budget.name;
-    return rows == plan_.methods.size() * plan_.filters.size();
+    auto const has_row = [&](std::string const& method, std::string const& filter) {
+        return std::ranges::any_of(table_.rows, [&](auto const& row) {
+            auto const is = [&](char const* column, std::string const& value) {
+                return to_text(cell(table_, row, column)) == value;
+            };
+            return is("scene", scene) && is("budget", budget.name) && is("method", method) && is("filter", filter);
+        });
+    };
+    for (SweepMethod const& m : plan_.methods)
+        for (PictureFilter const& f : plan_.filters)
+            if (!has_row(m.name, f.name)) return false;
+    return true;
 }
 
 bool Pictures::is_done(std::string const& scene) const
@@ -142,21 +146,23 @@ void Pictures::warm_up(PictureScene const& s)
     gi::Report unused;
     for (SweepMethod const& m : plan_.methods) {
         if (stop_.requested()) return;
-        gi::RenderResult result =
+        gi::RenderResult const result =
             m.method.render(s.scene.world, s.scene.camera, settings(m, {"", 0, 2}, 0), stop_, {}, unused);
-        for (PictureFilter const& f : plan_.filters) {
-            gi::Picture picture = result.picture;
-            if (f.settings.denoiser != gi::Denoiser::none) gi::denoise(picture, f.settings);
-        }
+        for (PictureFilter const& f : plan_.filters) filtered(result.picture, f);
     }
 }
 
 bool Pictures::run(ListedScene const& listed)
 {
     if (is_done(listed.name)) return true;
-    PictureScene s{load_sweep_scene(listed.options, listed.name, report_), {}, {}};
-    fs::path const references = o_.references.empty() ? fs::path(o_.out) / "references" : fs::path(o_.references);
-    make_folder(references.string());
+    PictureScene s;
+    try {
+        s.scene = load_sweep_scene(listed.options, listed.name, report_);
+    } catch (gi::InputError const& e) {
+        skip({"scene " + listed.name, e.what()}, table_);
+        return true;
+    }
+    fs::path const references = reference_folder(o_);
     std::optional<SweepReference> found = find_reference(s.scene, plan_.settings, o_.reference_paths, references,
                                                          stop_, report_, ReferenceOf::any_program);
     if (!found) return false;
@@ -216,35 +222,23 @@ bool Pictures::measure(PictureScene const& s, SweepMethod const& method, Picture
 void Pictures::judge(PictureScene const& s, SweepMethod const& method, PictureBudget const& budget, int repeat,
                      gi::RenderResult const& result, double render_s, MethodSamples& into)
 {
-    fs::path const folder = o_.out;
     for (std::size_t f = 0; f < plan_.filters.size(); ++f) {
         PictureFilter const& filter = plan_.filters[f];
         FilterSamples& to = into.filtered[f];
-        gi::Picture picture = result.picture;
-        double filter_s = 0;
-        if (filter.settings.denoiser != gi::Denoiser::none) {
-            gi::DenoiseReport done;
-            filter_s = seconds_of([&] { done = gi::denoise(picture, filter.settings); });
-            if (done.no_variance)
-                notes_.insert(fmt::format("--denoise {} changes nothing with budget {}: no picture has a variance",
-                                          filter.name, budget.name));
-        }
-        PictureScore const judged = score(picture, s.reference);
-        to.filter_s.push_back(filter_s);
-        to.total_s.push_back(render_s + filter_s);
+        FilteredPicture const done = filtered(result.picture, filter);
+        if (done.no_variance)
+            notes_.insert(fmt::format("--denoise {} changes nothing with budget {}: a picture has no variance",
+                                      filter.name, budget.name));
+        PictureScore const judged = score(done.picture, s.reference);
+        to.filter_s.push_back(done.seconds);
+        to.total_s.push_back(render_s + done.seconds);
         to.relmse.push_back(judged.relmse);
         to.flip.push_back(judged.flip);
         to.correlation.push_back(judged.neighbour_correlation);
         for (std::size_t k = 0; k < to.bias.size(); ++k) to.bias[k].push_back(judged.bias[k]);
         if (repeat > 0) continue;
-        std::string const stem = picture_stem(s.scene.name, method.name, budget.name) + "_" + filter.name;
-        to.picture = stem + ".png";
-        to.flip_map = stem + "_flip.png";
-        int width = 0, height = 0;
-        auto const difference = gi::difference_image(picture, s.reference.picture, "color", width, height);
-        gi::write_png(folder / to.flip_map, width, height, difference);
-        gi::write_png(folder / to.picture, picture.width, picture.height,
-                      gi::tone_map_bytes(*picture.find("color"), {}));
+        to.files = save_pictures(done.picture, s.reference, o_.out,
+                                 picture_stem(s.scene.name, method.name, budget.name) + "_" + filter.name);
     }
 }
 
@@ -285,22 +279,10 @@ void Pictures::add_rows(PictureScene const& s, PictureBudget const& budget, Swee
                     bias[2].error,
                     median_of(p.correlation),
                     double(o_.repeats),
-                    p.picture,
-                    p.flip_map,
+                    p.files.picture,
+                    p.files.flip_map,
                     s.reference.png_file});
     }
-}
-
-/// Everything that rows of one table have in common; tables that differ in it are not continued.
-std::vector<std::pair<std::string, std::string>> common_facts(PicturesOptions const& o, PicturesPlan const& plan)
-{
-    gi::RenderSettings const& s = plan.settings;
-    return {{"size", fmt::format("{}x{}", s.width, s.height)},
-            {"bounces", std::to_string(s.bounces)},
-            {"threads", s.threads == 0 ? "all" : std::to_string(s.threads)},
-            {"seeds", fmt::format("{} and following, one per repeat", s.seed)},
-            {"repeats", std::to_string(o.repeats)},
-            {"reference", fmt::format("path tracing, {} paths per pixel", o.reference_paths)}};
 }
 
 BenchTable start_pictures(PicturesOptions const& o, PicturesPlan const& plan)
@@ -323,12 +305,6 @@ BenchTable start_pictures(PicturesOptions const& o, PicturesPlan const& plan)
             throw refuse("its " + fact.first + " differs");
     table.rows = std::move(earlier.rows);
     return table;
-}
-
-void skip(Skipped const& s, BenchTable& table)
-{
-    std::fputs(fmt::format("note: skipped: {}: {}\n", s.what, s.why).c_str(), stderr);
-    table.facts.emplace_back("skipped: " + s.what, s.why);
 }
 
 /// Pictures stay files beside the page: there may be a thousand.
@@ -363,11 +339,7 @@ PicturesResult run_pictures(PicturesOptions const& o)
     InterruptGuard const guard(stop);
     Pictures pictures(o, plan, stop, report, result.pictures);
     for (ListedScene const& scene : plan.scenes) {
-        try {
-            result.interrupted = !pictures.run(scene);
-        } catch (gi::InputError const& e) {
-            skip({"scene " + scene.name, e.what()}, result.pictures);
-        }
+        result.interrupted = !pictures.run(scene);
         if (result.interrupted) break;
         result.summary = summary_of(result.pictures);
         write(result.summary, o.out);

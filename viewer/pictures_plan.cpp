@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cstdio>
 #include <fmt/format.h>
 
 namespace viewer {
@@ -23,16 +24,42 @@ void choose_filter(std::string const& name, RenderOptions& options)
     }
 }
 
+/// Throws InputError where the filter cannot work here, for want of a library or its weights.
+void try_filter(gi::DenoiseSettings const& settings)
+{
+    if (settings.denoiser == gi::Denoiser::none) return;
+    constexpr int kSide = 8;
+    gi::Picture picture{kSide, kSide, {}, {}};
+    for (char const* layer : {"color", "L0", "L1", "L2", "albedo", "normal", "position", "variance"})
+        picture.add(layer, 3);
+    picture.add("depth", 1);
+    gi::denoise(picture, settings);
+}
+
 /// A filter that is known but cannot work here is skipped.
 void add_filter(PicturesOptions const& o, std::string const& name, PicturesPlan& plan)
 {
     RenderOptions options = o.render;
     choose_filter(name, options);
     try {
-        plan.filters.push_back({name, make_denoise_settings(options, plan.settings)});
+        gi::DenoiseSettings const settings = make_denoise_settings(options, plan.settings);
+        try_filter(settings);
+        plan.filters.push_back({name, settings});
     } catch (gi::InputError const& e) {
         plan.skipped.push_back({"filter " + name, e.what()});
     }
+}
+
+Listed kind_of(PicturesOptions const& o) { return o.interactive ? Listed::sequences : Listed::scenes; }
+
+/// Without the list, scenes can still be named one by one.
+std::vector<ListedScene> scene_list(PicturesOptions const& o)
+{
+    std::error_code error;
+    if (std::filesystem::exists(o.list, error)) return read_scene_list(o.list, o.render, kind_of(o));
+    if (!o.scenes.empty() && o.list == PicturesOptions().list) return {};
+    throw gi::InputError("there is no list of scenes '" + o.list + "'", "it says what is to be rendered",
+                         "start in the repository's folder, or name scenes with --scenes or a list with --list");
 }
 
 } // namespace
@@ -54,6 +81,31 @@ PictureBudget parse_picture_budget(std::string const& text)
     return {text, parse_duration("--budgets", text), 0};
 }
 
+std::filesystem::path reference_folder(PicturesOptions const& o)
+{
+    std::filesystem::path const folder =
+        o.references.empty() ? std::filesystem::path(o.out) / "references" : std::filesystem::path(o.references);
+    make_folder(folder.string());
+    return folder;
+}
+
+std::vector<std::pair<std::string, std::string>> common_facts(PicturesOptions const& o, PicturesPlan const& plan)
+{
+    gi::RenderSettings const& s = plan.settings;
+    return {{"size", fmt::format("{}x{}", s.width, s.height)},
+            {"bounces", std::to_string(s.bounces)},
+            {"threads", s.threads == 0 ? "all" : std::to_string(s.threads)},
+            {"seeds", fmt::format("{} and following, one per repeat", s.seed)},
+            {"repeats", std::to_string(o.repeats)},
+            {"reference", fmt::format("path tracing, {} paths per pixel", o.reference_paths)}};
+}
+
+void skip(Skipped const& s, BenchTable& table)
+{
+    std::fputs(fmt::format("note: skipped: {}: {}\n", s.what, s.why).c_str(), stderr);
+    table.facts.emplace_back("skipped: " + s.what, s.why);
+}
+
 PicturesPlan plan_pictures(PicturesOptions const& o)
 {
     PicturesPlan plan;
@@ -68,11 +120,7 @@ PicturesPlan plan_pictures(PicturesOptions const& o)
     for (std::string const& name : o.filters) add_filter(o, name, plan);
     if (plan.filters.empty())
         throw gi::InputError("no filter of --denoise is available", plan.skipped.front().why, "add none");
-    std::error_code error;
-    if (!std::filesystem::exists(o.list, error))
-        throw gi::InputError("there is no list of scenes '" + o.list + "'", "--list names it",
-                             "start in the repository's folder, or name another");
-    for (ListedScene& scene : choose_scenes(read_scene_list(o.list, o.render), o.scenes)) {
+    for (ListedScene& scene : choose_scenes(scene_list(o), o.scenes, o.render)) {
         if (scene.missing.empty())
             plan.scenes.push_back(std::move(scene));
         else

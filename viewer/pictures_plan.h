@@ -21,17 +21,25 @@ struct PictureFilter {
 };
 
 struct Skipped {
-    std::string what, why; ///< "scene sponza", "no file '...'"
+    std::string what, why; ///< "scene sponza", "there is no file '...'"
 };
+/// Says on stderr that something is left out, and notes it in the table.
+void skip(Skipped const& skipped, BenchTable& table);
 
 struct PicturesPlan {
     gi::RenderSettings settings; ///< the same for all, but for budget, paths and seed
     std::vector<PictureBudget> budgets;
     std::vector<PictureFilter> filters;
     std::vector<SweepMethod> methods;
-    std::vector<ListedScene> scenes;
+    std::vector<ListedScene> scenes; ///< or sequences, where `interactive` is asked for
     std::vector<Skipped> skipped;
 };
+
+/// Made where it is not there.
+std::filesystem::path reference_folder(PicturesOptions const& options);
+/// Rows, or pictures of frames: everything that they have in common. Tables that differ in it are not continued.
+std::vector<std::pair<std::string, std::string>> common_facts(PicturesOptions const& options,
+                                                              PicturesPlan const& plan);
 
 /// Loads no scene. Throws InputError on all that is wrong with the call.
 PicturesPlan plan_pictures(PicturesOptions const& options);

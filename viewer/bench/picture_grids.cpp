@@ -19,6 +19,7 @@ std::vector<PictureGroup> picture_groups(BenchTable const& t)
 {
     std::vector<PictureGroup> groups;
     for (auto const& row : t.rows) {
+        if (to_text(cell(t, row, "picture_file")).empty()) continue; // a mean
         std::string const scene = to_text(cell(t, row, "scene")), budget = to_text(cell(t, row, "budget"));
         auto at = std::ranges::find_if(
             groups, [&](PictureGroup const& g) { return g.scene == scene && g.budget == budget; });

@@ -103,11 +103,16 @@ std::vector<std::string> picture_summary_columns(std::string const& peer)
             "flip_reached"};
 }
 
-void fill_picture_summary(std::vector<PictureContest> const& contests, std::string const& peer, BenchTable& table)
+void add_lost_rows(std::vector<PictureContest> const& contests, std::string const& peer, BenchTable& table)
 {
     for (LostRows const& l : lost_rows(contests))
         table.facts.emplace_back("rows that " + l.method + " loses to " + peer,
                                  fmt::format("{} of {} (relMSE {}, FLIP {})", l.either, l.rows, l.relmse, l.flip));
+}
+
+void fill_picture_summary(std::vector<PictureContest> const& contests, std::string const& peer, BenchTable& table)
+{
+    add_lost_rows(contests, peer, table);
     auto const known = [](double v) { return std::isfinite(v) ? Cell(v) : Cell(); };
     for (PictureContest const& c : contests)
         table.add({c.scene, c.budget, c.filter, c.method, known(c.relmse_ratio), known(c.flip_ratio),

@@ -32,6 +32,9 @@ struct LostRows {
 /// One per method, in order of appearance.
 std::vector<LostRows> lost_rows(std::vector<PictureContest> const& contests);
 
+/// As facts of the table.
+void add_lost_rows(std::vector<PictureContest> const& contests, std::string const& peer, BenchTable& table);
+
 /// @param table  empty, with columns of picture_summary_columns(); lost rows become facts
 std::vector<std::string> picture_summary_columns(std::string const& peer);
 void fill_picture_summary(std::vector<PictureContest> const& contests, std::string const& peer, BenchTable& table);
