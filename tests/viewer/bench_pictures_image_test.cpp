@@ -104,6 +104,29 @@ TEST(BenchPictures, JudgesFramesThatFollowEachOther)
     EXPECT_NE(file_text(folder / "d" / "interactive.html").find("walk_slhb_frame4_wide.png"), std::string::npos);
 }
 
+TEST(BenchPictures, ControlCKeepsTheRowsSoFar)
+{
+    TemporaryFolder const folder;
+    std::string const call =
+        "bench pictures --scenes cornell --methods reference --repeats 1 --denoise none --size 16x16 "
+        "--reference-paths 16 --out d --budgets ";
+    Program program(words(call + "20ms,100s"), folder.path());
+    while (!std::filesystem::exists(folder / "d" / "pictures.csv") && program.wait_until_catches(SIGINT, true))
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    program.send(SIGINT);
+    Outcome const o = program.wait(std::chrono::seconds(30));
+    EXPECT_EQ(o.code, 130) << o.err;
+    EXPECT_NE(o.err.find("add --resume to go on"), std::string::npos) << o.err;
+    BenchTable const t = table_of(read_bench_folder(folder / "d"), "pictures");
+    ASSERT_EQ(t.rows.size(), 1u);
+    EXPECT_EQ(to_text(cell(t, t.rows[0], "budget")), "20ms");
+    EXPECT_EQ(t.facts.back().first, "interrupted");
+    run_well(call + "20ms,30ms --resume", folder.path());
+    BenchTable const whole = table_of(read_bench_folder(folder / "d"), "pictures");
+    EXPECT_EQ(whole.rows.size(), 2u);
+    EXPECT_NE(whole.facts.back().first, "interrupted");
+}
+
 TEST(BenchPictures, WrongCallsAreRefused)
 {
     TemporaryFolder const folder;
