@@ -121,21 +121,21 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
   lightwell bench pictures --scenes cornell --methods reference,slhb --budgets 1path,20ms,40ms --repeats 1 --size 32x32 --reference-paths 16 --resume --out pictures
   lightwell bench pictures --scenes atrium --interactive --frames 4 --scored-frames 1,4 --size 24x16 --frame-budget 20ms --reference-paths 4 --out frames
 
-Every render (scene, budget, method, repeat) goes through every filter. render_s is the whole call, of it structures_s for
-hit buffers, shadow maps and BVHs and paths_s for paths and first surfaces; filter_s is the filter's, total_s both together.
-relmse is what is left after relmse_of_reference, the part that the noise of the reference adds, is taken off;
-relmse_estimated is what the program itself says of the unfiltered picture. bias is mean / mean of the reference, of all
-light, of L1 and of L2, with standard errors over the repeats. neighbour_correlation is that of the errors of
-neighbouring pixels: 0 for independent noise, near 1 for errors that regions share.
+Every render (scene, budget, method, repeat) goes through every filter. render_s is the whole call; of this, structures_s is
+for hit buffers, shadow maps and BVHs, and paths_s for paths and first surfaces. filter_s is the filter's time, total_s the sum.
+relmse is given without relmse_of_reference, the part that the noise of the reference picture adds. relmse_estimated is
+what the program itself estimates for the unfiltered picture. bias is mean / mean of the reference: of all light, of direct
+light (L1) and of indirect light (L2), with standard errors over the repeats. neighbour_correlation is the correlation of the
+errors of neighbouring pixels: 0 for independent noise, near 1 for an error that regions share.
 
-The summary compares each method with 'reference', row by row: errors divided by those of the peer (lost: above {}), and how many
-times as long the peer takes to the same error, by its own errors at all budgets, filter included.
+The summary divides the errors of each method by those of 'reference' (lost: above {}), and says how many times longer
+'reference' needs for the same error, filter included, by its errors at all budgets.
 
---interactive renders frames that follow each other, all methods with the same temporal reuse and filters; unless given, --methods are
-reference,slhb, --denoise none,wide, --size 512x512 and --reference-paths 256. frame_s holds the world, the render and the reuse; in
-the row of the mean it is the median of all frames but the first, which builds what lasts.
+--interactive renders frames that follow each other, all methods with the same temporal reuse and filters. Its defaults are
+--methods reference,slhb --denoise none,wide --size 512x512 --reference-paths 256. frame_s is for the world, the render and
+the reuse; in the row 'mean' it is the median of all frames but the first, which builds what lasts.
 
-Ctrl-C drops the renders of the budget at hand, saves the rows so far and exits with 130.)",
+Ctrl-C drops the renders of the current budget, saves the rows so far and exits with 130.)",
                           kLostRatio));
     c->callback([o, c, &exit_code] {
         if (o->interactive) set_interactive_defaults(*c, *o);

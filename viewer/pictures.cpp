@@ -227,8 +227,9 @@ void Pictures::judge(PictureScene const& s, SweepMethod const& method, PictureBu
         FilterSamples& to = into.filtered[f];
         FilteredPicture const done = filtered(result.picture, filter);
         if (done.no_variance)
-            notes_.insert(fmt::format("--denoise {} changes nothing with budget {}: a picture has no variance",
-                                      filter.name, budget.name));
+            notes_.insert(
+                fmt::format("--denoise {} changes nothing of {} with budget {}: the picture has no variance",
+                            filter.name, method.name, budget.name));
         PictureScore const judged = score(done.picture, s.reference);
         to.filter_s.push_back(done.seconds);
         to.total_s.push_back(render_s + done.seconds);
