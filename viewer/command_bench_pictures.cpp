@@ -128,8 +128,9 @@ what the program itself estimates for the unfiltered picture. bias is mean / mea
 light (L1) and of indirect light (L2), with standard errors over the repeats. neighbour_correlation is the correlation of the
 errors of neighbouring pixels: 0 for independent noise, near 1 for an error that regions share.
 
-The summary divides the errors of each method by those of 'reference' (lost: above {}), and says how many times longer
-'reference' needs for the same error, filter included, by its errors at all budgets.
+The summary divides errors and times of each method by those of 'reference' (lost: an error above {}; times differ where one
+path takes longer than the budget), and says how many times longer 'reference' needs for the same error, filter included, by
+its errors at all budgets.
 
 --interactive renders frames that follow each other, all methods with the same temporal reuse and filters. Its defaults are
 --methods reference,slhb --denoise none,wide --size 512x512 --reference-paths 256. frame_s is for the world, the render and

@@ -194,14 +194,14 @@ void check_interactive(PicturesOptions const& o, PicturesPlan const& plan)
 BenchTable frame_summary_of(BenchTable const& frames)
 {
     std::string const peer = kPeer;
-    BenchTable summary =
-        start_table("interactive_summary", "Frames against " + peer + ", worst first",
-                    {"scene", "budget", "filter", "method", "relmse_over_" + peer, "flip_over_" + peer, "lost"});
+    BenchTable summary = start_table("interactive_summary", "Frames against " + peer + ", worst first",
+                                     {"scene", "budget", "filter", "method", "relmse_over_" + peer,
+                                      "flip_over_" + peer, "time_over_" + peer, "lost"});
     summary.facts = frames.facts;
     std::vector<PictureContest> const all = contests(frames, peer);
     add_lost_rows(all, peer, summary);
     for (PictureContest const& c : all)
-        summary.add({c.scene, c.budget, c.filter, c.method, c.relmse_ratio, c.flip_ratio,
+        summary.add({c.scene, c.budget, c.filter, c.method, c.relmse_ratio, c.flip_ratio, c.time_ratio,
                      std::string(c.lost() ? "lost" : "")});
     return summary;
 }

@@ -74,6 +74,7 @@ TEST(PictureSummary, ComparesWithThePeerWorstFirst)
     EXPECT_NEAR(c[0].relmse_ratio, 4, 1e-9);
     EXPECT_EQ(c[0].relmse_reached, Reached::in_first_picture);
     EXPECT_NEAR(c[0].relmse_time_factor, 2, 1e-9);
+    EXPECT_NEAR(c[0].time_ratio, 0.5, 1e-9);
     EXPECT_EQ(c[1].budget, "1s");
     EXPECT_NEAR(c[1].relmse_ratio, 0.5, 1e-9);
     EXPECT_NEAR(c[1].flip_ratio, 2, 1e-9);

@@ -64,6 +64,7 @@ std::vector<PictureContest> contests(BenchTable const& pictures, std::string con
             r.scene, r.budget, r.filter, r.method, share(r.relmse, p->relmse), share(r.flip, p->flip)};
         TimeAtError const relmse = time_at_error(curve_of(rows, r, peer, &PictureRow::relmse), r.relmse),
                           flip = time_at_error(curve_of(rows, r, peer, &PictureRow::flip), r.flip);
+        c.time_ratio = share(r.total_s, p->total_s);
         c.relmse_time_factor = share(relmse.seconds, r.total_s);
         c.relmse_reached = relmse.reached;
         c.flip_time_factor = share(flip.seconds, r.total_s);
@@ -96,6 +97,7 @@ std::vector<std::string> picture_summary_columns(std::string const& peer)
             "method",
             "relmse_over_" + peer,
             "flip_over_" + peer,
+            "time_over_" + peer,
             "lost",
             "time_factor_at_relmse",
             "relmse_reached",
@@ -116,7 +118,7 @@ void fill_picture_summary(std::vector<PictureContest> const& contests, std::stri
     auto const known = [](double v) { return std::isfinite(v) ? Cell(v) : Cell(); };
     for (PictureContest const& c : contests)
         table.add({c.scene, c.budget, c.filter, c.method, known(c.relmse_ratio), known(c.flip_ratio),
-                   std::string(c.lost() ? "lost" : ""), known(c.relmse_time_factor),
+                   known(c.time_ratio), std::string(c.lost() ? "lost" : ""), known(c.relmse_time_factor),
                    std::string(to_text(c.relmse_reached)), known(c.flip_time_factor),
                    std::string(to_text(c.flip_reached))});
 }

@@ -13,6 +13,7 @@ inline constexpr double kLostRatio =
 struct PictureContest {
     std::string scene, budget, filter, method;
     double relmse_ratio = 0, flip_ratio = 0; ///< method / peer
+    double time_ratio = 0;                   ///< of whole times; no method can take less than one path takes
     double relmse_time_factor = 0;           ///< how many times longer the peer needs for the same relMSE
     double flip_time_factor = 0;             ///< and for the same FLIP
     Reached relmse_reached = Reached::never, flip_reached = Reached::never;
