@@ -80,7 +80,7 @@ void smooth_row(Planes const& guides, Planes const& light, int which, Spans span
             float const mean = near.sum / near.count, square_mean = near.squares / near.count; // spread + mean^2
             float const floor = kKnown * mean * mean + kNoVariance;
             float const noise = 1 - kRelativeNoise * mean * mean / (variance + kNoVariance);
-            float const gate = noise > 0 ? noise : 0;
+            float const gate = noise > 0 && variance > kNoVariance ? noise : 0;
             SurfacePoint const here(row.surfaces, x, footprint[x] * plane_scale(1));
             float total = 1 / (variance + floor);
             vec3 sum = total * row.color[x];

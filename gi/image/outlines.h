@@ -13,7 +13,7 @@ namespace gi {
 /// so only those with less than half its variance count. d^2 is how far the surfaces differ, and b^2 how far the
 /// light of another surface may be off: the variance among the neighbours, plus the square of their mean m, plus
 /// what the two pixels differ by beyond noise, max(0, (l_n - l)^2 - v). g = max(0, 1 - m^2 / 5 v): pixels with a
-/// relative error below 45 % stay as they are.
+/// relative error below 45 % stay as they are, and so do those without variance.
 /// @param light  filtered, with luminance and variance   @param out  gets the colours of what is wanted
 void smooth_outlines(Planes const& guides, Planes const& light, RowSpans const& wanted, Planes& out);
 

@@ -1,6 +1,7 @@
 // What the filters leave of the error of a picture, and how long they take.
 //   bench_denoise_error NOISY.exr REFERENCE.exr [FILTER...]      with all layers, such as lightwell render writes
 
+#include "gi/base/error.h"
 #include "gi/base/picture_file.h"
 #include "gi/image/compare.h"
 #include "gi/image/filter_names.h"
@@ -10,12 +11,10 @@
 #include <cmath>
 #include <fmt/format.h>
 
-int main(int argc, char** argv)
+namespace {
+
+void run(int argc, char** argv)
 {
-    if (argc < 3) {
-        fmt::print(stderr, "usage: bench_denoise_error NOISY.exr REFERENCE.exr [FILTER...]\n");
-        return 2;
-    }
     gi::Picture const noisy = gi::read_picture(argv[1]), reference = gi::read_picture(argv[2]);
     std::vector<std::string> names(argv + 3, argv + argc);
     if (names.empty()) names = gi::filter_names();
@@ -35,5 +34,21 @@ int main(int argc, char** argv)
             if (v.name == "relmse" || v.name == "flip" || v.name == "bias")
                 fmt::print(" {} {:.4f}", v.name, v.value);
         fmt::print(" ms {:.1f}\n", best_ms);
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    if (argc < 3) {
+        fmt::print(stderr, "usage: bench_denoise_error NOISY.exr REFERENCE.exr [FILTER...]\n");
+        return 2;
+    }
+    try {
+        run(argc, argv);
+    } catch (gi::InputError const& e) {
+        fmt::print(stderr, "{}\n", e.what());
+        return 2;
     }
 }
