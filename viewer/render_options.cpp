@@ -2,6 +2,7 @@
 
 #include "gi/base/device.h"
 #include "gi/base/error.h"
+#include "gi/image/filter_names.h"
 #include "gi/registry/registry.h"
 #include "gi/scene/camera.h"
 #include "viewer/arguments.h"
@@ -115,11 +116,8 @@ gi::RenderSettings make_settings(RenderOptions& o)
 
 gi::DenoiseSettings make_denoise_settings(RenderOptions const& o, gi::RenderSettings const& s)
 {
-    gi::DenoiseSettings d;
-    d.denoiser = o.denoise == "atrous" ? gi::Denoiser::atrous
-                 : o.denoise == "none" ? gi::Denoiser::none
-                                       : gi::Denoiser::discontinuity;
-    if (o.denoise == "wide") d.reach = 2;
+    gi::DenoiseSettings d = gi::find_filter(o.denoise);
+    gi::check_filter(d);
     d.threads = s.threads;
     if (d.denoiser == gi::Denoiser::atrous && s.paths < 2)
         throw gi::InputError("--denoise atrous with --paths 1",
@@ -174,14 +172,15 @@ void declare_eye_options(CLI::App& c, RenderOptions& o)
 
 void declare_denoise(CLI::App& c, RenderOptions& o)
 {
+    std::string known;
+    for (gi::NamedFilter const& f : gi::named_filters())
+        if (*f.meaning != 0) known += fmt::format("\n  {}: {}", f.name, f.meaning);
     c.add_option(
          "--denoise", o.denoise,
          "filter of the finished picture, which stops at edges; changes color, L1 and L2, while variance and "
-         "the estimated error stay those of the unfiltered picture:"
-         "\n  atrous: wavelet that goes by the variance, 2 paths or more"
-         "\n  discontinuity: mean over 4 x 4 pixels of one surface"
-         "\n  wide: the same, and once more over 20 x 20 for indirect light")
-        ->check(CLI::IsMember({"none", "atrous", "discontinuity", "wide"}))
+         "the estimated error stay those of the unfiltered picture:" +
+             known)
+        ->check(CLI::IsMember(gi::filter_names()))
         ->capture_default_str();
 }
 

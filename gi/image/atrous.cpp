@@ -1,6 +1,8 @@
 #include "gi/image/atrous.h"
 
+#include "gi/image/outlines.h"
 #include "gi/image/split_variance.h"
+#include "gi/image/surface_distance.h"
 
 #include <array>
 #include <tbb/parallel_for.h>
@@ -9,9 +11,9 @@ namespace gi {
 namespace {
 
 constexpr std::array<float, 3> kSpline{3.0f / 8, 1.0f / 4, 1.0f / 16};
-constexpr float kNormal = 12;           // 1 / (1 - cosine) of the angle, 23 degrees, from which on weights are 0
-constexpr float kAlbedo = 3;            // 1 / difference of luminances from which on weights are 0
-constexpr float kLuminance = 10;        // standard deviations from which on weights are 0
+// Standard deviations from which on weights are 0. More in the first iteration, whose variance is the least
+// certain, and more of indirect light, which has fewer edges.
+constexpr float kDirect = 7, kDirectFirst = 10, kIndirect = 10, kIndirectFirst = 14;
 constexpr float kTinyVariance = 1e-12f; // of light without noise
 
 struct Iteration {
@@ -20,6 +22,7 @@ struct Iteration {
     Planes& out; ///< its luminances hold the sums of the weights meanwhile
     int step;    ///< pixels between taps
     float plane_scale;
+    float direct2, indirect2; ///< squared standard deviations from which on weights are 0
 };
 
 /// Adds the taps of row y + dy * step to the sums of row y. The middle row starts the sums with its central tap,
@@ -29,11 +32,9 @@ void add_row(Iteration const& it, Spans spans, int y, int dy)
 {
     Planes const& g = it.guides;
     int const there = y + dy * it.step, step = it.step;
-    auto const normal = g.row3(guide::normal, y), q_normal = g.row3(guide::normal, there);
-    auto const position = g.row3(guide::position, y), q_position = g.row3(guide::position, there);
+    SurfaceRow const surfaces(g, y), q_surfaces(g, there);
     auto const q_direct = it.in.row3(light::direct, there), q_indirect = it.in.row3(light::indirect, there);
     auto const direct = it.out.row3(light::direct, y), indirect = it.out.row3(light::indirect, y);
-    float const *albedo = g.row(guide::albedo, y), *q_albedo = g.row(guide::albedo, there);
     float const* const footprint = g.row(guide::inverse_footprint2, y);
     float const *l1 = it.in.row(light::luminance, y), *q_l1 = it.in.row(light::luminance, there);
     float const *l2 = it.in.row(light::luminance + 1, y), *q_l2 = it.in.row(light::luminance + 1, there);
@@ -42,25 +43,22 @@ void add_row(Iteration const& it, Spans spans, int y, int dy)
     float *weight1 = it.out.row(light::luminance, y), *weight2 = it.out.row(light::luminance + 1, y);
     float *variance1 = it.out.row(light::variance, y), *variance2 = it.out.row(light::variance + 1, y);
     float const share = kSpline[std::size_t(std::abs(dy))], centre = share * kSpline[0];
-    float const plane_scale = it.plane_scale;
+    float const by_reach = it.plane_scale, direct2 = it.direct2, indirect2 = it.indirect2;
 
     for (Span const& span : spans)
 #pragma GCC ivdep
         for (int x = span.first; x < span.end; ++x) {
-            vec3 const n = normal[x];
-            float const plane = glm::dot(n, position[x]), by_plane = footprint[x] * plane_scale;
-            float const by_l1 = 1 / (kLuminance * kLuminance * v1[x] + kTinyVariance);
-            float const by_l2 = 1 / (kLuminance * kLuminance * v2[x] + kTinyVariance);
+            SurfacePoint const here(surfaces, x, footprint[x] * by_reach);
+            float const by_l1 = 1 / (direct2 * v1[x] + kTinyVariance);
+            float const by_l2 = 1 / (indirect2 * v2[x] + kTinyVariance);
             vec3 sum1 = kMiddle ? centre * q_direct[x] : direct[x],
                  sum2 = kMiddle ? centre * q_indirect[x] : indirect[x];
             float w1 = kMiddle ? centre : weight1[x], w2 = kMiddle ? centre : weight2[x];
             float s1 = kMiddle ? centre * centre * v1[x] : variance1[x];
             float s2 = kMiddle ? centre * centre * v2[x] : variance2[x];
             auto const tap = [&](int i, float spline) {
-                float const off_plane = glm::dot(n, q_position[i]) - plane, da = q_albedo[i] - albedo[x];
                 float const d1 = q_l1[i] - l1[x], d2 = q_l2[i] - l2[x];
-                float const like = 1 - kNormal * (1 - glm::dot(n, q_normal[i])) -
-                                   by_plane * off_plane * off_plane - kAlbedo * kAlbedo * da * da;
+                float const like = 1 - here.distance2(q_surfaces, i);
                 float const like1 = like - by_l1 * d1 * d1, like2 = like - by_l2 * d2 * d2;
                 float const some1 = like1 > 0 ? like1 : 0, some2 = like2 > 0 ? like2 : 0;
                 float const a = share * spline * some1 * some1, b = share * spline * some2 * some2;
@@ -144,14 +142,19 @@ Planes filter_atrous(FilterInput& input, int iterations, KnownLight const& known
     lay_in(other);
     for (int i = 0; i < iterations; ++i) {
         int const step = 1 << i;
-        // Pixels of distance from the plane from which on weights are 0: what is far away may curve more.
-        float const reach = 1 + 0.2f * float(step);
-        Iteration const it{input.guides, input.light, other, step, 1 / square(reach)};
+        Iteration const it{input.guides,
+                           input.light,
+                           other,
+                           step,
+                           plane_scale(step),
+                           square(i == 0 ? kDirectFirst : kDirect),
+                           square(i == 0 ? kIndirectFirst : kIndirect)};
         tbb::parallel_for(0, height, [&](int y) { filter_row(it, known.area.wanted[std::size_t(y)], y); });
         if (i == 0) lay_in(input.light); // what it saw first was as it came
         std::swap(input.light, other);
     }
-    return std::move(input.light);
+    smooth_outlines(input.guides, input.light, known.area.wanted, other);
+    return other;
 }
 
 } // namespace gi

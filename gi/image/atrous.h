@@ -6,7 +6,7 @@
 //
 // Instead of products of exponentials, all differences add up as squares to d^2 and the weight is
 // max(0, 1 - d^2)^2: no exponential, and exactly 0 across edges. Direct and indirect light share all but the
-// luminance.
+// luminance. At the end, pixels that stayed noisy on outlines are smoothed (gi/image/outlines.h).
 
 #include "gi/image/known_light.h"
 

@@ -5,6 +5,7 @@
 #include "gi/image/atrous.h"
 #include "gi/image/discontinuity.h"
 #include "gi/image/filtered_layers.h"
+#include "gi/image/oidn.h"
 
 #include <algorithm>
 #include <limits>
@@ -59,6 +60,7 @@ DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, TakenLi
 {
     if (settings.denoiser == Denoiser::none) return {};
     check(picture, settings);
+    if (settings.denoiser == Denoiser::oidn) return filter_oidn(picture, settings.oidn_quality, settings.threads);
     DenoiseReport report;
     on_threads(settings.threads, [&] {
         bool const atrous = settings.denoiser == Denoiser::atrous;

@@ -1,6 +1,7 @@
 #include "python/core/render_keywords.h"
 
 #include "gi/base/error.h"
+#include "gi/image/filter_names.h"
 #include "python/core/errors.h"
 #include "viewer/render_options.h"
 
@@ -113,7 +114,7 @@ gi::DenoiseSettings denoise_of(std::string const& name, gi::RenderSettings const
     py::dict k;
     k["denoise"] = name;
     viewer::RenderOptions o;
-    o.denoise = one_of(k, "denoise", {"none", "atrous", "discontinuity", "wide"});
+    o.denoise = one_of(k, "denoise", gi::filter_names());
     return viewer::make_denoise_settings(o, settings);
 }
 

@@ -14,7 +14,7 @@ namespace py = pybind11;
 /// @param options  of the method, by the names of the command line's options, with _ for -: axes, light_paths, ...
 gi::RenderSettings settings_of(py::dict const& k, py::dict const& options, std::string const& method);
 
-/// "none", "atrous", "discontinuity" or "wide". Throws InputError.
+/// By its name (gi/image/filter_names.h). Throws InputError where it is unknown or not installed.
 gi::DenoiseSettings denoise_of(std::string const& name, gi::RenderSettings const& settings);
 
 } // namespace bindings

@@ -186,7 +186,8 @@ class World:
             bounces: indirect ones; 0 = emitted and direct light only.
             seed: another seed, another noise.
             filter: of pixels: "box" or "tent".
-            denoise: "none", "atrous", "discontinuity" or "wide"; "variance" stays that of the unfiltered picture.
+            denoise: "none", "atrous", "discontinuity", "wide", "oidn" or "oidn-high" (Open Image Denoise, where it
+                is installed); "variance" stays that of the unfiltered picture.
             threads: 0 = all. The picture does not depend on it.
             progress: called a few times a second with the share that is done (0..1), paths per pixel, and the
                 estimated relative error. What it raises ends the render.

@@ -54,14 +54,14 @@ Picture filtered(Picture p, DenoiseSettings const& settings)
     return p;
 }
 
-/// The light of every pixel; the luminance does not stop the filter, as the noise could be larger than any edge.
+/// The light of every pixel; the luminance does not stop the filter, as the noise could be as large as any edge.
 void light_up(Picture& p, auto const& light)
 {
     for (std::size_t i = 0; i < p.pixels(); ++i) {
         vec3 const e = light(int(i % std::size_t(p.width)), int(i / std::size_t(p.width)));
         set(p, "L1", i, e * get(p, "albedo", i));
         set(p, "L2", i, 2.0f * e * get(p, "albedo", i));
-        set(p, "variance", i, vec3{1e4f});
+        set(p, "variance", i, vec3{4});
     }
     add_up(p);
 }

@@ -1,18 +1,10 @@
 #include "viewer/ar/pair_renderer.h"
 
+#include "gi/image/filter_names.h"
 #include "gi/registry/registry.h"
 #include "viewer/ar/bridge.h"
 
 namespace viewer {
-
-namespace {
-
-bool can_filter(gi::DenoiseSettings const& filter, std::uint32_t paths)
-{
-    return filter.denoiser != gi::Denoiser::none && (filter.denoiser != gi::Denoiser::atrous || paths > 1);
-}
-
-} // namespace
 
 PairRenderer::PairRenderer(LocalScene local, gi::RenderSettings const& settings, gi::Report& report)
     : local_(std::move(local)), settings_(settings), report_(report), world_(local_.scene, 0, report)
@@ -58,13 +50,13 @@ PairPictures PairRenderer::render(gi::Camera const& camera, int width, int heigh
         frames_ = gi::find_method("slhb").frames(world_, camera, settings_, report_);
     }
     filter.threads = settings_.threads;
-    bool denoise = can_filter(filter, paths);
+    bool denoise = gi::can_filter(filter, paths);
     gi::PairSettings const pair{
         paths, virtual_lights_.empty() ? gi::PairDifference::vanishing : gi::PairDifference::anything,
         denoise ? gi::PictureLayers::all : gi::PictureLayers::color_and_depth};
     gi::PairResult both = frames_->pair(
         {camera, width, height}, pair, [&](gi::PairSide side) { return turn(side, time_s); }, stop);
-    denoise = denoise && can_filter(filter, both.with.paths);
+    denoise = denoise && gi::can_filter(filter, both.with.paths);
     cv::Mat const raw = denoise ? matrix_of(both.with.picture, "color") : cv::Mat();
     if (denoise)
         for (gi::RenderResult* const r : {&both.with, &both.without})

@@ -2,6 +2,7 @@
 
 #include "gi/base/device.h"
 #include "gi/base/error.h"
+#include "gi/image/filter_names.h"
 #include "gi/scene/animation.h"
 
 #include <algorithm>
@@ -48,6 +49,7 @@ void Session::apply(Change const& change)
     Settings changed = settings_;
     set(changed, change);
     if (change.key == "device") gi::check_device(changed.device == "cuda" ? gi::Space::device : gi::Space::host);
+    if (change.key == "denoise") gi::check_filter(denoise_settings(changed, 0));
     settings_ = std::move(changed);
     if (decides_method(change.key)) restart();
     if (change.key == "compare") compared_.reset();

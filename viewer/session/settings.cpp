@@ -1,6 +1,7 @@
 #include "viewer/session/settings.h"
 
 #include "gi/base/error.h"
+#include "gi/image/filter_names.h"
 #include "gi/registry/registry.h"
 #include "viewer/display/stereo_mode.h"
 
@@ -141,7 +142,7 @@ std::vector<Entry> const& entries()
         count("bounces", "indirect bounces", &Settings::bounces, 0, 1024),
         count("seed", "of the random numbers", &Settings::seed, 0, 1 << 30),
         count("reuse", "frames that light is reused over, 1 = none", &Settings::reuse, 1, 256),
-        word("denoise", "filter", &Settings::denoise, {"none", "discontinuity", "wide", "atrous"}),
+        word("denoise", "filter", &Settings::denoise, gi::filter_names()),
         flag("share_eyes", "an eye may take light that the other one found", &Settings::share_eyes),
         flag("share_endings", "paths that end near each other may share what is sent on there",
              &Settings::share_endings),
@@ -259,11 +260,7 @@ gi::RenderSettings render_settings(Settings const& s, int threads)
 
 gi::DenoiseSettings denoise_settings(Settings const& s, int threads)
 {
-    gi::DenoiseSettings d;
-    d.denoiser = s.denoise == "atrous" ? gi::Denoiser::atrous
-                 : s.denoise == "none" ? gi::Denoiser::none
-                                       : gi::Denoiser::discontinuity;
-    if (s.denoise == "wide") d.reach = 2;
+    gi::DenoiseSettings d = gi::find_filter(s.denoise);
     d.threads = threads;
     return d;
 }

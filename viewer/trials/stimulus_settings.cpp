@@ -1,6 +1,7 @@
 #include "viewer/trials/stimulus_settings.h"
 
 #include "gi/base/error.h"
+#include "gi/image/filter_names.h"
 #include "study/base/sha256.h"
 #include "viewer/session/scene_edits.h"
 
@@ -148,6 +149,7 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
             set(s.settings, {key, fitting(key, json_value_of(text))});
         }
     }
+    gi::check_filter(denoise_settings(s.settings, 0));
     if (s.scene.empty())
         throw gi::InputError("a stimulus without a scene", "there would be nothing to show",
                              "give a factor or defaults.settings the setting `scene`, or `ar` for an AR session");

@@ -1,6 +1,7 @@
 #include "viewer/ar/session/session_file.h"
 
 #include "gi/base/file.h"
+#include "gi/image/filter_names.h"
 #include "gi/slhb/directions.h"
 #include "viewer/ar/session/read_real.h"
 #include "viewer/ar/session/read_values.h"
@@ -109,12 +110,12 @@ private:
     static gi::DenoiseSettings filter(YamlReader const& at)
     {
         using gi::Denoiser;
-        return choice<gi::DenoiseSettings>(at, {{"true", {.denoiser = Denoiser::atrous}},
-                                                {"false", {.denoiser = Denoiser::none}},
-                                                {"none", {.denoiser = Denoiser::none}},
-                                                {"discontinuity", {.denoiser = Denoiser::discontinuity}},
-                                                {"wide", {.denoiser = Denoiser::discontinuity, .reach = 2}},
-                                                {"atrous", {.denoiser = Denoiser::atrous}}});
+        std::vector<std::pair<char const*, gi::DenoiseSettings>> words{{"true", {.denoiser = Denoiser::atrous}},
+                                                                       {"false", {.denoiser = Denoiser::none}}};
+        for (gi::NamedFilter const& f : gi::named_filters()) words.emplace_back(f.name, f.settings);
+        gi::DenoiseSettings const chosen = choice<gi::DenoiseSettings>(at, words);
+        gi::check_filter(chosen);
+        return chosen;
     }
 
     static std::string directions(YamlReader const& at)

@@ -1,0 +1,39 @@
+#pragma once
+// Intel Open Image Denoise 2, loaded at run time where it is installed: the few functions of its C API that the
+// filter calls. The names, types and values are those of the library's public header.
+//
+// Where it is looked for, in this order:
+//   1. $LIGHTWELL_OIDN, a library or the folder that has it; if set, nowhere else
+//   2. beside the program or the Python module
+//   3. in the folders above those: python/lib/python3*/site-packages/pyoidn/oidn/lib (scripts/setup --oidn) and
+//      pyoidn/oidn/lib (pip install pyoidn beside the Python module)
+//   4. libOpenImageDenoise.so.2 of the system
+
+#include <cstddef>
+
+namespace gi {
+
+struct OidnLibrary {
+    enum : int { device_cpu = 1, quality_fast = 4, quality_high = 6, format_float3 = 3 };
+
+    void* (*new_device)(int type);
+    void (*set_device_int)(void* device, char const* name, int value);
+    void (*set_device_bool)(void* device, char const* name, bool value);
+    void (*commit_device)(void* device);
+    int (*device_error)(void* device, char const** message); ///< 0 = none
+    void (*release_device)(void* device);
+    void* (*new_filter)(void* device, char const* type);
+    void (*set_filter_image)(void* filter, char const* name, void* values, int format, std::size_t width,
+                             std::size_t height, std::size_t offset, std::size_t pixel_stride,
+                             std::size_t row_stride); ///< strides of 0: densely packed
+    void (*set_filter_bool)(void* filter, char const* name, bool value);
+    void (*set_filter_int)(void* filter, char const* name, int value);
+    void (*commit_filter)(void* filter);
+    void (*execute_filter)(void* filter);
+    void (*release_filter)(void* filter);
+};
+
+/// Loads the library at the first call; it stays loaded. Throws InputError, each time, where it cannot be used.
+OidnLibrary const& oidn_library();
+
+} // namespace gi
