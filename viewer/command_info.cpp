@@ -7,6 +7,7 @@
 #include "gi/slhb/direction_quality.h"
 #include "gi/slhb/settings.h"
 #include "viewer/command_table.h"
+#include "viewer/choose_camera.h"
 #include "viewer/commands.h"
 #include "viewer/outputs.h"
 #include "viewer/report_json.h"
@@ -90,8 +91,7 @@ int run(InfoOptions const& o)
     gi::World const world = gi::build_world(scene, o.time_s, report);
     gi::SceneSummary const summary = gi::summarise(world);
     gi::ScenePlan const plan = gi::plan_scene(world);
-    bool const orthographic = !world.cameras.empty() && world.cameras.front().orthographic;
-    std::vector<gi::PlanItem> const slhb = gi::explain_settings({}, world, orthographic);
+    std::vector<gi::PlanItem> const slhb = gi::explain_settings({}, world, choose_camera(world, {}).camera);
     if (o.json) {
         nlohmann::ordered_json j;
         j["scene"] = o.scene;

@@ -33,10 +33,11 @@ gi::RenderSettings with_moving_triangles(gi::RenderSettings settings)
 }
 
 /// A budget is that of this one picture, and builds all that it is made of: not that of a frame among others.
-gi::RenderSettings with_budget(gi::RenderSettings settings, gi::Method const& method, gi::World const& world)
+gi::RenderSettings with_budget(gi::RenderSettings settings, gi::Method const& method, gi::World const& world,
+                               gi::Camera const& camera)
 {
     if (method.name == "slhb" && settings.budget_s > 0)
-        settings.slhb = gi::choose_settings(settings, world, gi::make_soup(world));
+        settings.slhb = gi::choose_settings(settings, world, gi::make_soup(world), camera);
     return settings;
 }
 
@@ -49,7 +50,7 @@ gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposu
     gi::Camera const first = exposure.camera(world.world(), 0);
     bool const moves = !exposure.still && world.world().static_triangles < world.world().triangles.size();
     gi::RenderSettings const asked =
-        with_budget(moves ? with_moving_triangles(settings) : settings, method, world.world());
+        with_budget(moves ? with_moving_triangles(settings) : settings, method, world.world(), first);
     auto const renderer = method.frames(world, first, asked, report);
     FlatTriangles flat(exposure.still ? gi::Changes{} : world.advance(exposure.from_s));
     auto const moments = [&](std::uint32_t pass) {

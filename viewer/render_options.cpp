@@ -76,6 +76,22 @@ gi::Schedule parse_schedule(std::string const& name)
                          "choose auto, stored, streamed or temporal");
 }
 
+namespace {
+
+gi::LookUps parse_look_ups(std::string const& name)
+{
+    if (name == "all") return gi::LookUps::all;
+    return name == "none" ? gi::LookUps::none : gi::LookUps::automatic;
+}
+
+gi::Shadows parse_shadows(std::string const& name)
+{
+    if (name == "maps") return gi::Shadows::maps;
+    return name == "rays" ? gi::Shadows::rays : gi::Shadows::automatic;
+}
+
+} // namespace
+
 gi::RenderSettings make_settings(RenderOptions& o)
 {
     if (int(o.paths.has_value()) + int(!o.budget.empty()) + int(!o.until.empty()) > 1)
@@ -106,6 +122,8 @@ gi::RenderSettings make_settings(RenderOptions& o)
     s.vpl = o.vpl;
     if (!o.points.empty()) s.vpl.points = parse_points("--points " + o.points, o.points, o.vpl.point_map);
     s.slhb.schedule = parse_schedule(o.schedule);
+    s.slhb.look_ups = parse_look_ups(o.look_ups);
+    s.slhb.shadows = parse_shadows(o.shadows);
     s.slhb.space = o.device == "cuda" ? gi::Space::device : gi::Space::host;
     check_device(o, s.slhb);
     s.resume = o.resume && !is_sequence; // a sequence resumes by its frames
@@ -286,6 +304,17 @@ void declare_slhb(CLI::App& c, RenderOptions& o)
          "stored: one set of axes; streamed: new ones in every pass; temporal: some new; auto: "
          "streamed,\nstored under a sky; where something moves stored with --reuse, streamed with --shutter")
         ->check(CLI::IsMember({"auto", "stored", "streamed", "temporal"}))
+        ->capture_default_str()
+        ->group(kSlhbGroup);
+    c.add_option("--look-ups", o.look_ups,
+                 "all: paths find surfaces by look-ups in hit buffers; none: by exact rays; auto: by the plan")
+        ->check(CLI::IsMember({"auto", "all", "none"}))
+        ->capture_default_str()
+        ->group(kSlhbGroup);
+    c.add_option("--shadows", o.shadows,
+                 "maps: shadow maps of --lamps light samples, which all paths of a pass share;\nrays: exact rays to "
+                 "light samples of each path's own; auto: by the plan")
+        ->check(CLI::IsMember({"auto", "maps", "rays"}))
         ->capture_default_str()
         ->group(kSlhbGroup);
     c.add_option("--directions", o.slhb.directions, "FAMILY:COUNT of the stored set (default icosahedron:320)")

@@ -24,6 +24,20 @@ enum class Schedule : std::uint8_t {
     temporal, ///< a set of which some axes are replaced in every pass
 };
 
+/// How paths of slhb that leave a broad lobe find what they meet.
+enum class LookUps : std::uint8_t {
+    automatic,
+    all, ///< by look-ups in hit buffers
+    none ///< by exact rays in directions of their own: there are no hit buffers
+};
+
+/// What says whether light samples of slhb are seen.
+enum class Shadows : std::uint8_t {
+    automatic,
+    maps, ///< shadow maps of a few light samples, which all paths of a pass share
+    rays, ///< exact rays to light samples of each path's own
+};
+
 /// What exact rays do in place of an approximation of slhb, to measure its bias: two renders of one seed that
 /// differ in this alone share axes, lamps and random numbers, so that their difference has little noise.
 struct ExactParts {
@@ -46,6 +60,8 @@ struct SlhbSettings {
     int shadow_resolution = 0; ///< texels of a shadow map, squared
     int most_layers = 0;       ///< per texel; 0 = all
     bool packed = false;       ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
+    LookUps look_ups = LookUps::automatic;
+    Shadows shadows = Shadows::automatic;
     float cone = 0;            ///< texels; radius of the disk of columns that a query may ask (Yu 2012, fig. 5.6)
     int interleave = 0;        ///< n: in a pass one pixel of n x n takes indirect light, n^2-fold; 1 = all do
     Space space = Space::host; ///< device: all by CUDA kernels, see gi/slhb/kernel_render.h

@@ -238,7 +238,7 @@ private:
     {
         World const& world = world_.world();
         TriangleSoup soup = make_soup(world);
-        settings_.slhb = choose_frame_settings(asked_, world, soup);
+        settings_.slhb = choose_frame_settings(asked_, world, soup, views[0].camera);
         if (kByKernels) {
             settings_.slhb.interleave = 1; // whatever the budget
             for (FrameView const& v : views) check_kernels_can(v.camera, settings_.slhb);

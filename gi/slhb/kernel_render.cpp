@@ -15,7 +15,7 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
     PassLoop loop(settings, stop, progress, report);
     TriangleSoup soup = make_soup(world);
     RenderSettings chosen = settings;
-    chosen.slhb = choose_settings(settings, world, soup);
+    chosen.slhb = choose_settings(settings, world, soup, camera);
     chosen.slhb.interleave = 1; // whatever the budget
     FrameView const eye{camera, settings.width, settings.height};
     KernelRenderer<S> renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report);

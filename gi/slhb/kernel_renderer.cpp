@@ -1,6 +1,7 @@
 #include "gi/slhb/kernel_renderer.h"
 
 #include "gi/slhb/grid_bounds.h"
+#include "gi/slhb/ray_plan.h"
 #include "gi/transport/pass_samples.h"
 
 #include <algorithm>
@@ -46,9 +47,9 @@ KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const>
 
 /// Also the last surface sends paths along axes.
 template <Space S>
-bool KernelRenderer<S>::sky() const
+bool KernelRenderer<S>::meets_light() const
 {
-    return !view(world_).environment_radiance.empty();
+    return !world_.emitters.empty() || !view(world_).environment_radiance.empty();
 }
 
 template <Space S>
@@ -140,7 +141,7 @@ void KernelRenderer<S>::see(std::span<FrameView const> views)
 template <Space S>
 void KernelRenderer<S>::prepare(std::uint32_t index)
 {
-    axes_.prepare(settings_.bounces + (sky() ? 1 : 0), index);
+    axes_.prepare(settings_.bounces + (meets_light() ? 1 : 0), index);
     {
         StageTimer const timer(report_, "shadow maps");
         lamps_->refresh(index);
@@ -161,6 +162,7 @@ void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, E
 {
     prepare(index);
     StageTimer const timer(report_, "paths");
+    bool const glass = transparent_somewhere(world_);
     scene_.start_pass(axes_.set(), lamps_->fixed() ? lamps_->chances() : AliasTableView{});
     for (std::size_t k = 0; k < views_.size(); ++k) {
         View const& v = views_[k];
@@ -172,7 +174,8 @@ void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, E
         paths.place = place_in_pixel(settings_.filter, settings_.seed, index);
         paths.width = std::uint32_t(v.width);
         paths.bounces = settings_.bounces;
-        paths.seed = std::uint32_t(settings_.seed) ^ std::uint32_t(settings_.seed >> 32);
+        paths.glass = glass;
+        paths.seed = random_key(settings_.seed);
         paths.pass = index;
         std::vector<PathSample> const samples = scene_.trace(paths);
         tbb::parallel_for(std::size_t(0), samples.size(), [&](std::size_t p) { to.add(p, samples[p], to.paths); });

@@ -55,8 +55,8 @@ private:
         std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
     };
 
-    bool sky() const;
-    bool walks() const { return settings_.bounces > 0 || sky(); }
+    bool meets_light() const;
+    bool walks() const { return settings_.bounces > 0 || meets_light(); }
     void make_axes();
     void make_lamps();
     void prepare(std::uint32_t index);

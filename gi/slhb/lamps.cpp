@@ -30,30 +30,6 @@ ShadowView view_from(World const& world, LightChoice const& choice, vec2 u)
     return v;
 }
 
-LightSample distant_light(World const& world, LightChoice const& choice, vec2 u)
-{
-    LightSample const light = sample_light(view(world), choice, vec3{0}, u);
-    return light.distance == kInf ? light : LightSample{};
-}
-
-void add_up(AliasTable const& table, std::vector<double>& sums)
-{
-    sums.clear();
-    double sum = 0;
-    for (AliasEntry const& e : table.entries) sums.push_back(sum += double(e.probability));
-}
-
-/// The entry in whose share u lies; u becomes its place in there.
-std::uint32_t pick(std::vector<double> const& sums, double& u)
-{
-    double const at = u * sums.back();
-    auto const i =
-        std::min(std::size_t(std::upper_bound(sums.begin(), sums.end(), at) - sums.begin()), sums.size() - 1);
-    double const before = i > 0 ? sums[i - 1] : 0.0;
-    u = sums[i] > before ? glm::clamp((at - before) / (sums[i] - before), 0.0, 1 - 0x1p-53) : 0.0;
-    return std::uint32_t(i);
-}
-
 } // namespace
 
 Lamps::Lamps(World const& world, Bounds const& bounds, TriangleSoup const& soup, CutOuts const& cut_outs,
@@ -88,25 +64,13 @@ Lamps::Lamps(World const& world, Bounds const& bounds, TriangleSoup const& soup,
     build(all, 0);
 }
 
-LightChoice Lamps::choose(double u) const
-{
-    LightChoice c;
-    if (light_sums_.empty()) return c;
-    c.light = pick(light_sums_, u);
-    c.probability = world_.light_select.entries[c.light].probability;
-    if (c.light < world_.lights.size() + world_.emitters.size()) return c;
-    c.texel = pick(texel_sums_, u);
-    c.probability *= world_.environment_select.entries[c.texel].probability;
-    return c;
-}
-
 void Lamps::take_point(Lamp& lamp, std::uint64_t number)
 {
     // Stratified over the points of all passes.
     RqmcStream const stream{std::uint32_t(mix_bits(settings_.seed ^ 0x1a395)), std::uint32_t(number)};
     vec4 const u = stream.sample_together(0);
     lamp.number = number;
-    lamp.choice = choose(double(u.x) + double(stream.sample(4)) * 0x1p-24);
+    lamp.choice = order_.choose(double(u.x) + double(stream.sample(4)) * 0x1p-24);
     lamp.u = {u.y, u.z};
     lamp.view = view_from(world_, lamp.choice, lamp.u);
     lamp.light = distant_light(world_, lamp.choice, lamp.u);
@@ -119,12 +83,7 @@ void Lamps::refresh(std::uint32_t pass)
         if (moved_) build({}, pass);
         return;
     }
-    add_up(world_.light_select, light_sums_); // the world may have moved
-    AliasTable const& texels = world_.environment_select;
-    if (texels.entries.size() != texel_sums_.size() || texels.total != texel_total_) {
-        add_up(texels, texel_sums_);
-        texel_total_ = texels.total;
-    }
+    order_.update(world_); // which may have moved
     // The points in use are successive ones.
     std::vector<Lamp*> fresh;
     std::uint64_t const first = std::uint64_t(pass) * settings_.fresh;

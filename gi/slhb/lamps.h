@@ -4,6 +4,7 @@
 // pixels take different ones (interleaved sampling), other passes others. Where frames follow each other, some of
 // the points stay for a while, and only what moves is drawn anew into their maps.
 
+#include "gi/slhb/light_pool.h"
 #include "gi/slhb/shadow_map.h"
 
 #include <functional>
@@ -59,7 +60,6 @@ public:
 private:
     void take_point(Lamp& lamp, std::uint64_t number);
     void build(std::span<Lamp* const> fresh, std::uint32_t pass);
-    LightChoice choose(double u) const;
 
     World const& world_;
     LampSettings settings_;
@@ -69,10 +69,7 @@ private:
     bool fixed_ = false, moved_ = false;
     std::vector<Lamp> lamps_;
     AliasTable chances_; ///< where they are fixed
-    /// Sums of probabilities, where they are not fixed. Neighbouring numbers find neighbouring lights and texels,
-    /// so that every pass has its share of a small sun; an alias table would leave that to chance.
-    std::vector<double> light_sums_, texel_sums_;
-    double texel_total_ = 0; ///< of the table that they belong to
+    LightOrder order_;   ///< else
     std::uint64_t built_ = 0;
 };
 

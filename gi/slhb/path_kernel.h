@@ -46,6 +46,7 @@ struct TracePaths {
     View<LampView const> lamps;
     AliasTableView chances; ///< of the lamps; empty = equal
     int bounces;
+    bool glass; ///< something in the world is transparent
     std::uint32_t seed, pass;
     View<PathSample> samples;      ///< per pixel
     View<PathKernelCounts> counts; ///< one
@@ -53,9 +54,6 @@ struct TracePaths {
     GI_FN void operator()(std::size_t i) const;
 
 private:
-    /// Dimension::d of vertex v is v * kPerVertex + 2 + d, as in tracer.cpp.
-    enum Dimension : std::uint32_t { axis, lobe, lobe_u, lobe_v, roulette, lamp, shadow, cone, kPerVertex };
-
     /// One path on its way. Every surface scatters once, so that scatterings also count surfaces.
     struct State {
         RqmcStream random;
@@ -64,20 +62,28 @@ private:
         vec3 position{0};  ///< read after the first surface
         vec3 direction{0}; ///< of arrival
         vec3 throughput{1};
-        float arrival_pdf = 0; ///< of the direction, for the sky; 0 = camera
+        float arrival_pdf = 0; ///< of the direction, 1/sr; 0 = camera
+        float distance = 0;    ///< that the last walk went, m
+        bool meets_lamps = false; ///< lamps that the last walk met count
         int scatterings = 0;
 
-        GI_FN std::uint32_t dimension(Dimension d) const
+        GI_FN std::uint32_t dimension(PathDimension d) const
         {
-            return std::uint32_t(scatterings) * kPerVertex + 2 + d;
+            return dimension_of(std::uint32_t(scatterings), d);
         }
     };
 
     GI_FN State start(std::size_t pixel) const;
     GI_FN vec3 sky(State const& s) const;
+    GI_FN vec3 emission(State const& s, ShadingPoint const& at) const;
     GI_FN vec3 direct(State const& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
     /// False where the path ends.
     GI_FN bool leave(State& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
+    /// Light samples find all light that the last surface gets, see SlhbTracer.
+    GI_FN bool lit_alone(State const& s, bool narrow) const
+    {
+        return s.scatterings == bounces && !narrow && !glass;
+    }
     GI_FN static void add(PathSample& out, int scattered, vec3 radiance)
     {
         vec3& to = scattered == 0 ? out.radiance[0] : scattered == 1 ? out.radiance[1] : out.radiance[2];

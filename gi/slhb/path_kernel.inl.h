@@ -29,15 +29,25 @@ GI_FN inline vec3 TracePaths::sky(State const& s) const
     return s.throughput * light;
 }
 
+/// Of a lamp that the camera or a walk has met.
+GI_FN inline vec3 TracePaths::emission(State const& s, ShadingPoint const& at) const
+{
+    if (s.scatterings == 0) return at.emission;
+    if (!s.meets_lamps || !(max_component(at.emission) > 0)) return vec3{0};
+    float const cos_light = std::abs(glm::dot(s.direction, at.geometric_normal));
+    float const pdf = emitter_direction_pdf(world, s.triangle, s.distance, cos_light);
+    return s.throughput * at.emission * power_heuristic(s.arrival_pdf, pdf);
+}
+
 GI_FN inline vec3 TracePaths::direct(State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
                                      PathKernelCounts& local) const
 {
     std::size_t k = 0;
     if (!chances.empty()) {
-        double u = double(s.random.sample(s.dimension(lamp)));
+        double u = double(s.random.sample(s.dimension(PathDimension::lamp)));
         k = chances.sample(u);
     } else {
-        k = s.random.turn(s.dimension(lamp)) % lamps.size();
+        k = s.random.turn(s.dimension(PathDimension::lamp)) % lamps.size();
     }
     LampView const& l = lamps[k];
     LightSample const light = sample_light(world, l.choice, at.position, l.u);
@@ -48,9 +58,10 @@ GI_FN inline vec3 TracePaths::direct(State const& s, ShadingPoint const& at, vec
     BsdfValue const bsdf = evaluate(at.bsdf, wo, wi);
     vec3 value = bsdf.f * light.radiance * (std::abs(wi.z) / light.pdf);
     if (!(max_component(value) > 0)) return vec3{0};
-    if (!light.delta && light.distance == kInf)
-        value *= power_heuristic(light.pdf, narrow ? bsdf.pdf : std::abs(wi.z) * kInvPi);
-    vec2 const u = s.random.noise2(s.dimension(shadow));
+    // No walk finds a lamp from a narrow lobe.
+    if (!light.delta && !lit_alone(s, narrow) && (light.distance == kInf || !narrow))
+        value *= power_heuristic(light.pdf, narrow ? bsdf.pdf : glm::max(wi.z, 0.0f) * kInvPi);
+    vec2 const u = s.random.noise2(s.dimension(PathDimension::shadow));
     ShadowPlace const at_lamp = shadow_detail::look(l.shadow, at.position, at.geometric_normal, u);
     ++local.shadow_lookups;
     bool const reached = shadow_detail::lit(l.shadow, at_lamp, world.surfaces, at.position, s.triangle);
@@ -61,15 +72,17 @@ GI_FN inline bool TracePaths::leave(State& s, ShadingPoint const& at, vec3 wo, b
                                     PathKernelCounts& local) const
 {
     static_assert(kNoLayerHit == kNoPrimitive);
-    if (narrow && takes_narrow_lobe(at.bsdf, wo, s.random.sample(s.dimension(lobe)))) {
+    if (narrow && takes_narrow_lobe(at.bsdf, wo, s.random.sample(s.dimension(PathDimension::lobe)))) {
         ++local.narrow_ends;
         return false;
     }
     if (!(wo.z > 0)) return false;
-    // The last surface would only bring light of the sky.
-    if (s.scatterings == bounces && world.environment_radiance.empty()) return false;
+    // The last surface would only bring light that walks can meet.
+    if (s.scatterings == bounces &&
+        (lit_alone(s, narrow) || (world.environment_radiance.empty() && world.emitter_pdf.empty())))
+        return false;
     AxisSample const a =
-        choice.sample(std::uint32_t(s.scatterings), at.frame.normal, s.random.sample(s.dimension(axis)));
+        choice.sample(std::uint32_t(s.scatterings), at.frame.normal, s.random.sample(s.dimension(PathDimension::axis)));
     vec3 const wi = at.frame.to_local(a.direction);
     float const side = glm::dot(a.direction, at.geometric_normal);
     if (!(wi.z > 0) || !(side > 0)) return false;
@@ -80,9 +93,10 @@ GI_FN inline bool TracePaths::leave(State& s, ShadingPoint const& at, vec3 wo, b
     s.arrival_pdf = pdf;
     float const survival = max_component(s.throughput);
     if (!(survival > 0)) return false;
-    if (s.scatterings >= 3 && survival < 0.95f) {
-        if (s.random.sample(s.dimension(roulette)) >= survival) return false;
-        s.throughput /= survival;
+    float const keep = kRoulette * survival;
+    if (keep < 1) {
+        if (s.random.sample(s.dimension(PathDimension::roulette)) >= keep) return false;
+        s.throughput /= keep;
     }
     AxisView const& along = axes[a.axis];
     Surface const& surface = world.surfaces[s.triangle];
@@ -93,6 +107,8 @@ GI_FN inline bool TracePaths::leave(State& s, ShadingPoint const& at, vec3 wo, b
     LayerHit const hit = nearest_layer(along, world.surfaces, origin);
     ++local.queries;
     s.triangle = hit.triangle;
+    s.distance = glm::length(hit.position - at.position);
+    s.meets_lamps = !narrow;
     s.position = hit.position;
     s.barycentric = vec2{1.0f / 3};
     s.direction = a.direction;
@@ -138,10 +154,10 @@ GI_FN inline void TracePaths::operator()(std::size_t i) const
             out.normal = at.frame.normal;
             out.position = at.position;
             out.depth = glm::dot(at.position - camera.origin, camera.forward);
-            add(out, 0, at.emission); // after a query lamps do not count
         } else {
             at.position = s.position;
         }
+        add(out, s.scatterings, emission(s, at));
         if (s.scatterings > bounces) break;
         if (s.scatterings == kLongestPath) {
             ++local.cut_paths;

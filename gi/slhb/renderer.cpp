@@ -2,6 +2,7 @@
 
 #include "gi/scene/plan.h"
 #include "gi/slhb/grid_bounds.h"
+#include "gi/slhb/ray_plan.h"
 #include "gi/slhb/settings.h"
 #include "gi/transport/pass_samples.h"
 
@@ -17,10 +18,12 @@ std::uint32_t texels(bool unused, int n) { return std::uint32_t(unused ? 2 : n);
 } // namespace
 
 SlhbRenderer::SlhbRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
-                           TriangleSoup soup, std::size_t first_moving, Report& report)
+                           TriangleSoup soup, std::size_t first_moving, Report& report,
+                           FirstSurfaces first_surfaces)
     : world_(world),
       settings_(settings),
       first_moving_(first_moving),
+      first_surfaces_(first_surfaces),
       report_(report),
       soup_(std::move(soup)),
       cut_outs_(world),
@@ -28,6 +31,7 @@ SlhbRenderer::SlhbRenderer(World const& world, std::span<FrameView const> views,
       axes_(slhb_, report),
       paths_(world, settings_, report)
 {
+    shadow_maps_ = slhb_.shadows != Shadows::rays;
     see(views);
     build_exact();
     end_frame();
@@ -42,21 +46,22 @@ bool SlhbRenderer::orthographic() const
 
 void SlhbRenderer::build_exact()
 {
-    bool const alpha_tests = plan_scene(world_).alpha_tests;
-    auto const build = [&] {
-        return std::make_unique<ExactVisibility>(world_, alpha_tests, settings_.threads, first_moving_);
-    };
-    if (!exact_ && needs_exact_rays(world_, orthographic())) {
-        StageTimer const timer(report_, "build (Embree BVH)");
-        exact_ = build();
-    }
-    if (!judge_ && slhb_.exact.any()) judge_ = build();
+    if (exact_ || !needs_exact_rays(world_, orthographic(), slhb_)) return;
+    StageTimer const timer(report_, "build (Embree BVH)");
+    exact_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, settings_.threads,
+                                               first_moving_);
 }
 
-/// Also the last surface sends paths along axes: only where the sky or exact rays count there.
-bool SlhbRenderer::to_the_end() const { return exact_ != nullptr || !view(world_).environment_radiance.empty(); }
+/// Also the last surface sends paths along axes: only where they can meet light there.
+bool SlhbRenderer::to_the_end() const
+{
+    return !world_.emitters.empty() || !view(world_).environment_radiance.empty();
+}
 
-bool SlhbRenderer::walks() const { return settings_.bounces > 0 || to_the_end(); }
+bool SlhbRenderer::walks() const
+{
+    return slhb_.look_ups != LookUps::none && (settings_.bounces > 0 || to_the_end());
+}
 
 void SlhbRenderer::make_axes()
 {
@@ -75,7 +80,7 @@ void SlhbRenderer::make_lamps()
 {
     if (lamps_) earlier_maps_ += lamps_->maps_built();
     lamps_.emplace(world_, grid_bounds_, soup_, cut_outs_,
-                   LampSettings{.count = std::uint32_t(slhb_.lamps),
+                   LampSettings{.count = std::uint32_t(shadow_maps_ ? slhb_.lamps : 0),
                                 .fresh = std::uint32_t(slhb_.fresh_lamps),
                                 .resolution = texels(slhb_.exact.shadows, slhb_.shadow_resolution),
                                 .seed = settings_.seed,
@@ -100,7 +105,6 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
         {
             StageTimer const timer(report_, "BVH of what moves (Embree)");
             if (exact_) exact_->moved(world_);
-            if (judge_) judge_->moved(world_);
         }
         if (!grow(grid_bounds_, world_.bounds)) {
             axes_.set().moved();
@@ -117,7 +121,7 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
 
 void SlhbRenderer::materials_changed()
 {
-    if ((exact_ != nullptr) != needs_exact_rays(world_, orthographic())) {
+    if ((exact_ != nullptr) != needs_exact_rays(world_, orthographic(), slhb_)) {
         exact_.reset();
         build_exact();
     }
@@ -155,7 +159,7 @@ void SlhbRenderer::see(std::span<FrameView const> views)
         v.first = first;
         first += v.pixels();
         if (!known) v.earlier = v.rays;
-        if (v.rays.orthographic)
+        if (v.rays.orthographic || first_surfaces_ == FirstSurfaces::by_rays)
             v.primary.reset();
         else if (!known || !v.primary)
             v.primary.emplace(soup_, cut_outs_, settings_, v.width, v.height);
@@ -189,6 +193,11 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index)
                                        ? index / std::uint32_t(slhb_.interleave * slhb_.interleave) %
                                              std::uint32_t(axes_.set().first_bounce_axes())
                                        : kNoPrimitive;
+    if (!shadow_maps_) {
+        constexpr std::uint32_t kGroups = 256; // so that a second-level cache holds all
+        light_order_.update(world_);
+        lights_.fill(light_order_, world_, kGroups, settings_.seed, index);
+    }
     sky_.clear();
     if (walks && !slhb_.exact.directions) sky_ = sky_along(axes_.set(), world_);
     return {.axes = axes_.set(),
@@ -196,8 +205,10 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index)
             .exact = exact_.get(),
             .index = index,
             .gather_axis = gathered,
-            .judge = judge_.get(),
-            .sky = sky_};
+            .sky = sky_,
+            .lights = shadow_maps_ ? nullptr : &lights_,
+            .glass = transparent_somewhere(world_),
+            .look_ups = !slhb_.exact.queries && slhb_.look_ups != LookUps::none};
 }
 
 void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings)
@@ -210,6 +221,7 @@ void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Ending
 
 void SlhbRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& counts)
 {
+    if (!std::exchange(shadow_maps_, true)) make_lamps(); // they tell what moves may count in
     prepare(index, Sides::pair);
     StageTimer const timer(report_, "paths");
     SlhbTracer::Pass now = tracing(index);

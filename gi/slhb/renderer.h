@@ -11,12 +11,19 @@
 
 namespace gi {
 
+/// How first surfaces are found.
+enum class FirstSurfaces : std::uint8_t {
+    by_raster, ///< a G-buffer for each pass; motion vectors and partner views are of that
+    by_rays,   ///< each path through a point of its own of its pixel
+};
+
 class SlhbRenderer {
 public:
     /// Builds what lasts. `world` and `report` outlive this; the arrays of the world stay where they are.
     /// @param views  at least one  @param settings  with those of slhb chosen  @param soup  of the world
     SlhbRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
-                 TriangleSoup soup, std::size_t first_moving, Report& report);
+                 TriangleSoup soup, std::size_t first_moving, Report& report,
+                 FirstSurfaces first_surfaces = FirstSurfaces::by_raster);
 
     /// A frame ends here: motion vectors lead to what is seen now.
     void end_frame();
@@ -70,13 +77,17 @@ private:
     RenderSettings settings_;
     SlhbSettings const& slhb_ = settings_.slhb;
     std::size_t first_moving_; ///< triangle
+    FirstSurfaces first_surfaces_;
     Report& report_;
     SeenViews views_;
     TriangleSoup soup_;
     CutOuts cut_outs_;
-    std::unique_ptr<ExactVisibility> exact_, judge_;
+    std::unique_ptr<ExactVisibility> exact_;
     Bounds grid_bounds_; ///< of the hit buffers
     FrameAxes axes_;
+    LightOrder light_order_;
+    LightPool lights_; ///< of a pass; empty where there are shadow maps
+    bool shadow_maps_ = true; ///< else paths send shadow rays of their own
     std::optional<Lamps> lamps_;
     EarlierCorners earlier_;
     std::vector<SkyAlong> sky_; ///< in a pass

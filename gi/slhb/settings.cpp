@@ -4,7 +4,7 @@
 #include "gi/slhb/axis_set.h"
 #include "gi/slhb/directions.h"
 #include "gi/slhb/hit_buffer.h"
-#include "gi/slhb/narrow_lobes.h"
+#include "gi/slhb/ray_plan.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -28,22 +28,6 @@ double layers_per_texel(World const& world, TriangleSoup const& soup)
     return covered > 0 ? double(b.layers.size()) / double(covered) : 0;
 }
 
-/// What things cost, s on one core: rough, from the machine and scenes of docs/results.
-struct Costs {
-    double triangles, layers; ///< layers: per texel
-    double direct, bounce;    ///< per pixel
-
-    explicit Costs(World const& world, double layers_each)
-        : triangles(double(world.triangles.size())), layers(std::max(1.0, layers_each))
-    {
-        double const shading = view(world).textures.textures.empty() ? 1 : 3;
-        direct = 0.15e-6 * shading;
-        bounce = 0.13e-6 * shading;
-    }
-    double axis(int texels) const { return 2e-9 * triangles + 2e-8 * layers * texels * texels; }
-    double map(int texels) const { return 5e-9 * triangles + 5e-8 * layers * texels * texels; }
-};
-
 /// Where the first pass would not end within the budget: the primary surfaces and direct light of all pixels, and
 /// indirect light for as many as there is time for. @param axes  built before, for a bounce
 int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, int axes, Costs const& costs)
@@ -57,27 +41,18 @@ int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, int ax
     return 4;
 }
 
-bool narrow_somewhere(World const& world)
-{
-    std::vector<bool> used(world.materials.size(), false);
-    for (std::uint32_t const m : world.triangle_material) used[m] = true;
-    for (std::size_t m = 0; m < used.size(); ++m) {
-        if (!used[m]) continue;
-        Material const& material = world.materials[m];
-        if (has_narrow_lobe(world.bsdfs[m])) return true;
-        bool const textured = material.metallic_roughness_map.texture >= 0 ||
-                              material.transmission_map.texture >= 0 || material.specular_map.texture >= 0;
-        // A roughness map can make any roughness smaller.
-        if (textured && (material.specular > 0 || material.metallic > 0 || material.transmission > 0)) return true;
-    }
-    return false;
-}
-
 } // namespace
 
-bool needs_exact_rays(World const& world, bool orthographic) { return orthographic || narrow_somewhere(world); }
+bool needs_exact_rays(World const& world, bool orthographic, SlhbSettings const& s)
+{
+    return s.shadows == Shadows::rays || s.look_ups == LookUps::none ||
+           s.exact.any() || orthographic || narrow_somewhere(world);
+}
 
-SlhbSettings choose_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup)
+namespace {
+
+/// All but what plan_rays decides.
+SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Costs const& costs)
 {
     SlhbSettings s = asked.slhb;
     // Light that comes through few openings is found by few axes: a pass needs many at once.
@@ -88,8 +63,7 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
                      : sky && asked.slhb.axes == 0 ? Schedule::stored
                                                    : Schedule::streamed;
     if (s.directions.empty()) s.directions = "icosahedron:320";
-    double const layers = layers_per_texel(world, soup), pixels = double(asked.width) * asked.height;
-    Costs const costs(world, layers);
+    double const pixels = double(asked.width) * asked.height;
     // What a pass builds should cost a share of what its paths cost, or be shared by too few of them; and of the
     // budget.
     constexpr double kPath = 0.5e-6, kShare = 0.5, kShareOfBudget = 0.2;
@@ -109,7 +83,7 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
     double const unless_few = few_passes ? worth : double(kInf);
     constexpr double kCluttered = 3; // layers
     if (s.resolution == 0) {
-        int const wanted = layers < kCluttered ? 128 : 256;
+        int const wanted = costs.layers < kCluttered ? 128 : 256;
         s.resolution = s.schedule == Schedule::stored
                            ? texels_for(wanted, double(make_directions(s.directions).axes.size()),
                                         kShareOfBudget * budget, axis)
@@ -137,8 +111,28 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
     return s;
 }
 
-SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup)
+SlhbSettings with_rays(RenderSettings const& asked, SlhbSettings s, World const& world, TriangleSoup const& soup,
+                       Camera const& camera, Costs const& costs, bool lasting)
 {
+    RayPlan const plan = plan_rays(asked, s, world, soup, camera, costs, lasting);
+    s.look_ups = plan.look_ups;
+    s.shadows = plan.shadows;
+    return s;
+}
+
+} // namespace
+
+SlhbSettings choose_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup,
+                             Camera const& camera)
+{
+    Costs const costs(world, layers_per_texel(world, soup));
+    return with_rays(asked, choose_look_ups(asked, world, costs), world, soup, camera, costs, false);
+}
+
+SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup,
+                                   Camera const& camera)
+{
+    Costs const costs(world, layers_per_texel(world, soup));
     RenderSettings lasting = asked;
     lasting.budget_s = 0;
     SlhbSettings& wanted = lasting.slhb;
@@ -146,7 +140,7 @@ SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& wor
     // Many axes for every frame, and what moves is all that they cost.
     if (moves && wanted.schedule == Schedule::automatic && wanted.axes == 0 && wanted.fresh_axes == 0)
         wanted.schedule = Schedule::stored;
-    SlhbSettings s = choose_settings(lasting, world, soup);
+    SlhbSettings s = choose_look_ups(lasting, world, costs);
     // Few points on lamps are exchanged from pass to pass: each has the light of as many as a window of the
     // discontinuity filter has pixels.
     constexpr int kLamps = 16, kPasses = 4; // in which what choose_settings takes in one is exchanged
@@ -154,9 +148,8 @@ SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& wor
     if (asked.slhb.lamps == 0) s.lamps = std::max(s.lamps, kLamps);
     s.fresh_lamps = std::min(fresh, s.lamps);
     if (asked.slhb.interleave == 0)
-        s.interleave = choose_interleave(asked, s, s.schedule == Schedule::stored ? 0 : s.fresh_axes,
-                                         Costs(world, layers_per_texel(world, soup)));
-    return s;
+        s.interleave = choose_interleave(asked, s, s.schedule == Schedule::stored ? 0 : s.fresh_axes, costs);
+    return with_rays(asked, s, world, soup, camera, costs, true);
 }
 
 std::string as_options(SlhbSettings const& s)
@@ -172,6 +165,8 @@ std::string as_options(SlhbSettings const& s)
     if (s.schedule == Schedule::temporal) text += fmt::format(" --fresh-axes {}", s.fresh_axes);
     if (s.fresh_lamps < s.lamps) text += fmt::format(" --fresh-lamps {}", s.fresh_lamps);
     if (s.most_layers > 0) text += fmt::format(" --max-layers {}", s.most_layers);
+    text += fmt::format(" --look-ups {} --shadows {}", s.look_ups == LookUps::none ? "none" : "all",
+                        s.shadows == Shadows::rays ? "rays" : "maps");
     if (s.cone > 0) text += fmt::format(" --cone {}", s.cone);
     if (s.packed) text += " --packed";
     if (s.gather) text += " --gather";
@@ -179,33 +174,44 @@ std::string as_options(SlhbSettings const& s)
     return text;
 }
 
-std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, bool orthographic)
+std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, Camera const& camera)
 {
     TriangleSoup const soup = make_soup(world);
-    SlhbSettings const s = choose_settings(asked, world, soup);
+    Costs const costs(world, layers_per_texel(world, soup));
+    SlhbSettings const s = choose_look_ups(asked, world, costs);
+    RayPlan const plan = plan_rays(asked, s, world, soup, camera, costs, false);
     std::vector<PlanItem> items;
-    char const* const names[] = {"automatic", "stored", "streamed", "temporal"};
-    items.push_back({fmt::format("schedule {}", names[int(s.schedule)]), true,
-                     s.schedule == Schedule::streamed ? "no set of directions limits how far the error falls"
-                                                      : "a sky shines, or it was asked for"});
-    if (s.schedule == Schedule::stored)
-        items.push_back(
-            {"directions " + s.directions, true,
-             world.environment_select.empty() ? "asked for" : "a sky shines, and many axes must look for it"});
-    else
-        items.push_back({fmt::format("{} axes for each bounce of a pass", s.axes), true,
-                         fmt::format("for {} triangles and {} x {} pixels", world.triangles.size(), asked.width,
-                                     asked.height)});
-    items.push_back({fmt::format("hit buffers of {0} x {0} texels", s.resolution), true,
-                     fmt::format("{:.1f} surfaces behind each other", layers_per_texel(world, soup))});
-    bool const lit = !world.light_select.empty();
-    items.push_back({fmt::format("{} shadow maps of {} x {}", s.lamps, s.shadow_resolution, s.shadow_resolution),
-                     lit, lit ? "points on lights that light a pass" : "nothing shines"});
-    bool const exact = needs_exact_rays(world, orthographic);
-    items.push_back({"exact rays (Embree) beside look-ups", exact,
-                     orthographic ? "the camera is orthographic"
-                     : exact      ? "mirrors, glass or narrow lobes cannot live on a set of axes"
-                                  : "every lobe is broad"});
+    bool const walks = plan.look_ups == LookUps::all;
+    items.push_back({"look-ups in hit buffers", walks, plan.why_look_ups});
+    if (walks) {
+        char const* const names[] = {"automatic", "stored", "streamed", "temporal"};
+        items.push_back({fmt::format("schedule {}", names[int(s.schedule)]), true,
+                         s.schedule == Schedule::streamed ? "no set of directions limits how far the error falls"
+                                                          : "a sky shines, or it was asked for"});
+        if (s.schedule == Schedule::stored)
+            items.push_back(
+                {"directions " + s.directions, true,
+                 world.environment_select.empty() ? "asked for" : "a sky shines, and many axes must look for it"});
+        else
+            items.push_back({fmt::format("{} axes for each bounce of a pass", s.axes), true,
+                             fmt::format("for {} triangles and {} x {} pixels", world.triangles.size(), asked.width,
+                                         asked.height)});
+        items.push_back({fmt::format("hit buffers of {0} x {0} texels", s.resolution), true,
+                         fmt::format("{:.1f} surfaces behind each other, texels of {:.2g} m", costs.layers,
+                                     2 * world.bounds.radius() / s.resolution)});
+    }
+    bool const lit = !world.light_select.empty(), rays = plan.shadows == Shadows::rays;
+    items.push_back({rays ? "shadow rays"
+                          : fmt::format("{} shadow maps of {} x {}", s.lamps, s.shadow_resolution,
+                                        s.shadow_resolution),
+                     lit, lit ? plan.why_shadows : "nothing shines"});
+    bool const narrow = narrow_somewhere(world);
+    items.push_back({"exact rays (Embree)", !walks || rays || narrow || camera.orthographic,
+                     !walks                ? "in place of look-ups"
+                     : rays                ? "for shadows"
+                     : camera.orthographic ? "the camera is orthographic"
+                     : narrow              ? "mirrors, glass or narrow lobes cannot live on a set of axes"
+                                           : "every lobe is broad"});
     return items;
 }
 

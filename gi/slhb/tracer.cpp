@@ -8,15 +8,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace gi {
-namespace {
-
-/// Random numbers of one path: dimensions of vertex v start at v * kPerVertex + 2 (the camera has two).
-enum Dimension : std::uint32_t { axis, lobe, lobe_u, lobe_v, roulette, lamp, shadow, cone, kPerVertex };
-
-} // namespace
-
 /// One path on its way: how it arrived at a surface.
 struct SlhbTracer::State {
     RqmcStream random;
@@ -26,13 +20,15 @@ struct SlhbTracer::State {
     bool has_position = false;
     vec3 direction; ///< of arrival
     vec3 throughput{1};
-    float arrival_pdf = 0; ///< of the direction, for the sky; 0 = camera or delta lobe
-    float exact_pdf = 0;   ///< of the direction among exact rays, for lamps; 0 as above
-    bool by_axis = false;  ///< came by a query: lamps do not count
+    float arrival_pdf = 0; ///< of the direction, 1/sr; 0 = camera or delta lobe
+    bool along_axis = false; ///< so the direction is one of those of pass.sky
+    bool emitted = false;    ///< what its surface emits has been added
     int scatterings = 0, vertex = 0;
     PathSample* sample;
 
-    std::uint32_t dimension(Dimension d) const { return std::uint32_t(vertex) * kPerVertex + 2 + d; }
+    VertexNumbers* u = nullptr; ///< of its vertex
+
+    std::uint32_t dimension(PathDimension d) const { return dimension_of(std::uint32_t(vertex), d); }
     vec3& bucket(int scattered) const { return sample->radiance[std::size_t(std::min(scattered, 2))]; }
 };
 
@@ -45,7 +41,14 @@ struct SlhbTracer::Vertex {
     std::uint32_t axis;
     LayerHit hit; ///< answer of a query
     std::uint32_t layer;
-    bool near_moving = false; ///< see QueryBatch
+    bool near_moving; ///< see QueryBatch
+};
+
+/// Direct light that waits for its shadow ray.
+struct SlhbTracer::ShadowRay {
+    RayQuery query;
+    vec3 radiance;
+    vec3* to;
 };
 
 /// Direct light that waits for its shadow map.
@@ -57,6 +60,14 @@ struct SlhbTracer::Unshadowed {
     vec3 radiance;
     vec3* to;
     PathSample* sample;
+};
+
+/// Direct light of a block of paths that waits for what is in its way.
+struct SlhbTracer::Direct {
+    std::vector<Unshadowed> maps;
+    std::vector<ShadowRay> rays;
+    std::vector<RayQuery> queries; ///< of the rays
+    std::vector<std::uint8_t> blocked;
 };
 
 namespace {
@@ -86,40 +97,97 @@ void SlhbTracer::add_sky(Pass const& pass, State& s, Vertex const& last) const
         return;
     }
     if (world_.environment_radiance.empty()) return;
-    SkyAlong const sky = s.by_axis && !pass.sky.empty() ? pass.sky[2 * last.axis + (last.origin.up ? 1 : 0)]
+    SkyAlong const sky = s.along_axis && !pass.sky.empty() ? pass.sky[2 * last.axis + (last.origin.up ? 1 : 0)]
                                                         : look_at_sky(world_, s.direction);
     vec3 light = sky.radiance;
     if (s.arrival_pdf > 0) light *= power_heuristic(s.arrival_pdf, sky.pdf);
     s.bucket(s.scatterings) += s.throughput * light;
 }
 
-void SlhbTracer::add_direct(Pass const& pass, State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
+namespace {
+
+/// From a surface to just before a lamp; its reach is not positive where that lies on the surface.
+RayQuery shadow_ray(vec3 position, vec3 normal, float clearance, LightSample const& light, std::uint32_t seed)
+{
+    float const side = glm::dot(light.direction, normal) > 0 ? clearance : -clearance;
+    RayQuery q{.ray = {position + side * normal, light.direction}, .reach = light.distance, .seed = seed};
+    if (light.distance == kInf) return q;
+    // As the reference aims: from where the ray starts to short of the lamp by more than the rounding of both ends.
+    vec3 const way = position + light.distance * light.direction - q.ray.origin;
+    float const length = glm::length(way);
+    q.ray.direction = way / length;
+    q.reach = length * (1 - 2e-5f) - clearance;
+    return q;
+}
+
+} // namespace
+
+/// A surface that a path leaves.
+struct SlhbTracer::Leaving {
+    ShadingPoint const& at;
+    vec3 wo;     ///< local
+    bool narrow; ///< some lobe is for exact rays
+    bool alone;  ///< light samples have to find all light: no path goes on to meet it
+
+    /// Density with which paths leave along wi, 1/sr. @param bsdf  of wi, see evaluate
+    float pdf(BsdfValue const& bsdf, vec3 wi) const
+    {
+        return narrow ? bsdf.pdf : std::max(wi.z, 0.0f) * kInvPi;
+    }
+};
+
+vec3 SlhbTracer::unshadowed(Leaving const& from, LightSample const& light) const
+{
+    if (!(light.pdf > 0)) return vec3{0};
+    ShadingPoint const& at = from.at;
+    vec3 const wi = at.frame.to_local(light.direction);
+    if ((wi.z > 0) != (glm::dot(light.direction, at.geometric_normal) > 0)) return vec3{0};
+    BsdfValue const bsdf = evaluate(at.bsdf, from.wo, wi);
+    vec3 value = bsdf.f * light.radiance * (std::abs(wi.z) / light.pdf);
+    if (!(max_component(value) > 0)) return vec3{0};
+    if (!light.delta && !from.alone) value *= power_heuristic(light.pdf, from.pdf(bsdf, wi));
+    return value;
+}
+
+void SlhbTracer::aim_at_light(Pass const& pass, State const& s, Leaving const& from,
+                              std::vector<ShadowRay>& rays) const
+{
+    VertexNumbers const& u = *s.u;
+    vec3 const normal = from.at.frame.normal;
+    ChosenLight const chosen = pass.lights->choose(from.at.position, normal, u[PathDimension::lamp],
+                                                   u[PathDimension::lamp_pick]);
+    if (chosen.light == nullptr) return;
+    LightSample const light = chosen.light->seen_from(world_, from.at.position);
+    vec3 const value = chosen.weight * unshadowed(from, light);
+    if (!(max_component(value) > 0)) return;
+    vec3* const to = &s.bucket(s.scatterings + 1);
+    RayQuery const query = shadow_ray(from.at.position, from.at.geometric_normal, from.at.clearance, light,
+                                      hash_words(s.random.own_seed() + std::uint32_t(s.vertex), ~s.random.index));
+    if (query.reach > 0)
+        rays.push_back({query, s.throughput * value, to});
+    else // the lamp lies on the surface
+        *to += s.throughput * value;
+}
+
+void SlhbTracer::add_direct(Pass const& pass, State const& s, Leaving const& from,
                             std::vector<Unshadowed>& direct) const
 {
+    ShadingPoint const& at = from.at;
     std::vector<Lamp> const& lamps = pass.lamps.lamps();
     std::size_t k = 0;
     if (pass.lamps.fixed()) {
-        double u = double(s.random.sample(s.dimension(lamp)));
+        double u = double((*s.u)[PathDimension::lamp]);
         k = pass.lamps.chances().sample(u);
     } else {
         // Lamps of successive numbers are spread well, and those that a strided choice would find are not.
-        k = s.random.turn(s.dimension(lamp)) % lamps.size();
+        k = s.random.turn(s.dimension(PathDimension::lamp)) % lamps.size();
     }
     Lamp const& l = lamps[k];
     LightSample const light = l.light.pdf > 0 ? l.light : sample_light(world_, l.choice, at.position, l.u);
-    if (!(light.pdf > 0)) return;
-    vec3 const wi = at.frame.to_local(light.direction);
-    float const side = glm::dot(light.direction, at.geometric_normal);
-    if ((wi.z > 0) != (side > 0)) return;
-    BsdfValue const bsdf = evaluate(at.bsdf, wo, wi);
-    vec3 value = bsdf.f * light.radiance * (std::abs(wi.z) / light.pdf);
+    vec3 const value = unshadowed(from, light);
     if (!(max_component(value) > 0)) return;
-    if (!light.delta && light.distance == kInf)
-        value *= power_heuristic(light.pdf, narrow ? bsdf.pdf : std::abs(wi.z) * kInvPi);
-    else if (!light.delta && narrow)
-        value *= power_heuristic(light.pdf, narrow_pdf(at.bsdf, wo, wi, bsdf.pdf));
     ShadowMap::Place const place =
-        l.shadow.look(at.position, at.geometric_normal, s.random.noise2(s.dimension(shadow)));
+        l.shadow.look(at.position, at.geometric_normal, s.random.noise2(s.dimension(PathDimension::shadow)));
     __builtin_prefetch(place.texel);
     direct.push_back(
         {&l, place, at.position, s.triangle, s.throughput * value, &s.bucket(s.scatterings + 1), s.sample});
@@ -128,10 +196,10 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, ShadingPoint const
 void SlhbTracer::add_emission(State const& s, Vertex const& last, ShadingPoint const& at) const
 {
     vec3 light = at.emission;
-    if (s.exact_pdf > 0) {
+    if (s.arrival_pdf > 0) {
         float const cos_light = std::abs(glm::dot(s.direction, at.geometric_normal));
-        float const distance = glm::length(at.position - last.ray.origin);
-        light *= power_heuristic(s.exact_pdf, emitter_direction_pdf(world_, s.triangle, distance, cos_light));
+        float const distance = glm::length(at.position - (last.exact ? last.ray.origin : last.origin.position));
+        light *= power_heuristic(s.arrival_pdf, emitter_direction_pdf(world_, s.triangle, distance, cos_light));
     }
     s.bucket(s.scatterings) += s.throughput * light;
 }
@@ -145,17 +213,45 @@ std::uint32_t SlhbTracer::indirect_share(std::uint32_t pixel, std::uint32_t pass
 }
 
 /// By a mirror, glass or a narrow lobe.
-SlhbTracer::Scattered SlhbTracer::scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe,
-                                                 bool last) const
+SlhbTracer::Scattered SlhbTracer::scatter_by_ray(State& s, Leaving const& from, float u_lobe, bool last) const
 {
-    BsdfSample const sampled = gi::sample(at.bsdf, wo, at.front, u_lobe, s.random.sample2(s.dimension(lobe_u)));
+    ShadingPoint const& at = from.at;
+    BsdfSample const sampled =
+        gi::sample(at.bsdf, from.wo, at.front, u_lobe, s.u->pair(PathDimension::lobe_u));
     if (last && !sampled.delta) return Scattered::not_at_all;
-    s.throughput *= sampled.weight;
     s.direction = at.frame.to_world(sampled.wi);
     if ((glm::dot(s.direction, at.geometric_normal) > 0) != (sampled.wi.z > 0)) return Scattered::not_at_all;
+    s.throughput *= sampled.weight;
     s.arrival_pdf = sampled.delta ? 0 : sampled.pdf;
-    s.exact_pdf = sampled.delta ? 0 : narrow_pdf(at.bsdf, wo, sampled.wi, sampled.pdf);
     return sampled.delta ? Scattered::by_delta_lobe : Scattered::widely;
+}
+
+/// In a direction of its own, by the cosine. False where the path ends.
+bool SlhbTracer::scatter_freely(State& s, Leaving const& from, Vertex& next) const
+{
+    ShadingPoint const& at = from.at;
+    vec2 const u = s.u->pair(PathDimension::lobe_u);
+    s.direction = at.frame.to_world(square_to_cosine_hemisphere(u));
+    vec3 const wi = at.frame.to_local(s.direction);
+    if (!(wi.z > 0) || !(glm::dot(s.direction, at.geometric_normal) > 0)) return false;
+    BsdfValue const value = evaluate(at.bsdf, from.wo, wi);
+    s.arrival_pdf = from.pdf(value, wi);
+    if (!(s.arrival_pdf > 0)) return false;
+    s.throughput *= value.f * (wi.z / s.arrival_pdf);
+    next.origin = {.position = at.position, .triangle = s.triangle, .along = false, .up = false};
+    return true;
+}
+
+/// Whether its pixel takes indirect light in this pass.
+bool SlhbTracer::starts_indirect(Pass const& pass, State& s) const
+{
+    if (s.vertex > 0 || interleave_ == 1) return true;
+    std::uint32_t const share = indirect_share(s.pixel, pass.index);
+    if (share == 0) return false;
+    s.throughput *= float(share);
+    s.random.index = pass.index / share;
+    *s.u = VertexNumbers(s.random, std::uint32_t(s.vertex));
+    return true;
 }
 
 AxisSample SlhbTracer::choose_axis(Pass const& pass, State const& s, ShadingPoint const& at) const
@@ -167,28 +263,20 @@ AxisSample SlhbTracer::choose_axis(Pass const& pass, State const& s, ShadingPoin
                 std::abs(cosine) * pass.axes.solid_angle(pass.gather_axis) * float(pass.axes.first_bounce_axes()) *
                     kInvPi};
     }
-    if (parts_.directions)
-        return {0, at.frame.to_world(square_to_cosine_hemisphere(s.random.sample2(s.dimension(lobe_u)))), 1};
-    return pass.axes.sample(std::uint32_t(s.scatterings), at.frame.normal, s.random.sample(s.dimension(axis)));
+    return pass.axes.sample(std::uint32_t(s.scatterings), at.frame.normal, (*s.u)[PathDimension::axis]);
 }
 
 /// False where the path ends.
-bool SlhbTracer::scatter_along_axis(Pass const& pass, State& s, ShadingPoint const& at, vec3 wo, bool narrow,
-                                    Vertex& next) const
+bool SlhbTracer::scatter_along_axis(Pass const& pass, State& s, Leaving const& from, Vertex& next) const
 {
-    if (s.vertex == 0 && interleave_ > 1) {
-        std::uint32_t const share = indirect_share(s.pixel, pass.index);
-        if (share == 0) return false;
-        s.throughput *= float(share);
-        s.random.index = pass.index / share;
-    }
+    ShadingPoint const& at = from.at;
     AxisSample const a = choose_axis(pass, s, at);
     s.direction = a.direction;
     vec3 const wi = at.frame.to_local(s.direction);
     float const side = glm::dot(s.direction, at.geometric_normal);
     if (!(wi.z > 0) || !(side > 0)) return false;
-    BsdfValue const value = evaluate(at.bsdf, wo, wi);
-    float const pdf = narrow ? value.pdf : wi.z * kInvPi;
+    BsdfValue const value = evaluate(at.bsdf, from.wo, wi);
+    float const pdf = from.pdf(value, wi);
     if (!(pdf > 0)) return false;
     s.throughput *= value.f * (wi.z * a.weight / pdf);
     s.arrival_pdf = pdf;
@@ -200,7 +288,7 @@ bool SlhbTracer::scatter_along_axis(Pass const& pass, State& s, ShadingPoint con
                    glm::dot(s.direction, along_axis) > 0, std::sqrt(std::max(0.0f, 1 - side * side)) / side};
     if (cone_ > 0) {
         RasterGrid const& grid = pass.axes.pool().grids[a.axis];
-        vec2 const off = cone_ * grid.texel * square_to_disk(s.random.noise2(s.dimension(cone)));
+        vec2 const off = cone_ * grid.texel * square_to_disk(s.random.noise2(s.dimension(PathDimension::cone)));
         vec3 const shift = off.x * grid.right + off.y * grid.up;
         // Along the axis as the surface goes.
         next.origin.position += shift - (glm::dot(at.geometric_normal, shift) / side) * s.direction;
@@ -209,8 +297,7 @@ bool SlhbTracer::scatter_along_axis(Pass const& pass, State& s, ShadingPoint con
 }
 
 /// False where the path ends.
-bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Unshadowed>& direct,
-                       PathCounts& paths) const
+bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct, PathCounts& paths) const
 {
     if (s.triangle == kNoPrimitive) {
         add_sky(pass, s, next);
@@ -218,6 +305,10 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
     }
     if (s.triangle >= pass.first_watched) s.sample->near_moving = true;
     Surface const& surface = world_.surfaces[s.triangle];
+    bool const last = s.scatterings > bounces_; // mirrors and glass do not count
+    if (last && bsdf_detail::is_matt(world_.bsdfs[surface.material]) &&
+        (world_.emitter_pdf.empty() || !(world_.emitter_pdf[s.triangle] > 0)))
+        return false;
     if (s.has_position && (surface.is(Surface::kSmooth) || surface.is(Surface::kVaries)))
         s.barycentric = barycentric_at(surface, s.position);
     ShadingPoint at = shading_point(world_, s.triangle, s.barycentric, s.direction);
@@ -229,48 +320,57 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, std::vector<Uns
         s.sample->position = at.position;
         s.sample->depth = glm::dot(at.position - camera_.origin, camera_.forward);
     }
-    if (!s.by_axis && max_component(at.emission) > 0) add_emission(s, next, at);
+    if (!std::exchange(s.emitted, false) && max_component(at.emission) > 0) add_emission(s, next, at);
     if (s.vertex == kLongestPath) {
         ++paths.cut_paths;
         return false;
     }
 
     vec3 const wo = at.frame.to_local(-s.direction);
-    bool const last = s.scatterings > bounces_; // mirrors and glass do not count
-    bool const narrow = pass.exact != nullptr && has_narrow_lobe(at.bsdf);
-    if (!last && !pass.lamps.none() && !only_delta(at.bsdf)) add_direct(pass, s, at, wo, narrow, direct);
+    // A set of axes carries broad lobes; rays carry any.
+    bool const narrow = free_ ? !bsdf_detail::is_matt(at.bsdf)
+                              : pass.exact != nullptr && has_narrow_lobe(at.bsdf);
+    // Light samples find all light that the last surface gets, but through glass, and but for narrow lobes.
+    Leaving const from{at, wo, narrow, s.scatterings == bounces_ && !narrow && !pass.glass};
+    if (!last && !world_.light_select.empty() && !only_delta(at.bsdf)) {
+        if (pass.lights != nullptr)
+            aim_at_light(pass, s, from, direct.rays);
+        else
+            add_direct(pass, s, from, direct.maps);
+    }
 
-    float const u_lobe = narrow ? s.random.sample(s.dimension(lobe)) : 1;
+    float const u_lobe = narrow ? (*s.u)[PathDimension::lobe] : 1;
     Scattered scattered = Scattered::widely;
     next.exact = narrow && takes_narrow_lobe(at.bsdf, wo, u_lobe);
     if (next.exact) {
-        scattered = scatter_by_ray(s, at, wo, u_lobe, last);
+        scattered = scatter_by_ray(s, from, u_lobe, last);
         if (scattered == Scattered::not_at_all) return false;
     } else {
         if (last || !(wo.z > 0)) return false;
-        // The last surface would only bring light that exact rays or the sky can bring.
-        if (s.scatterings == bounces_ && pass.exact == nullptr && world_.environment_radiance.empty())
-            return false;
-        if (!scatter_along_axis(pass, s, at, wo, narrow, next)) return false;
+        // The last surface would only bring light that a path can meet.
+        if (s.scatterings == bounces_ && (!meets_light_ || from.alone)) return false;
+        if (!starts_indirect(pass, s)) return false;
+        if (!(free_ ? scatter_freely(s, from, next) : scatter_along_axis(pass, s, from, next))) return false;
     }
     float const survival = max_component(s.throughput);
     if (!(survival > 0)) return false;
-    if (s.scatterings >= 3 && survival < 0.95f) {
-        if (s.random.sample(s.dimension(roulette)) >= survival) return false;
-        s.throughput /= survival;
+    float const keep = kRoulette * survival;
+    if (keep < 1) {
+        if ((*s.u)[PathDimension::roulette] >= keep) return false;
+        s.throughput /= keep;
     }
     if (next.exact) {
         float const offset = glm::dot(s.direction, at.geometric_normal) > 0 ? at.clearance : -at.clearance;
         next.ray = {at.position + offset * at.geometric_normal, s.direction};
     }
-    s.by_axis = !next.exact;
+    s.along_axis = !next.exact;
     if (scattered == Scattered::widely) ++s.scatterings;
     ++s.vertex;
     return true;
 }
 
 /// Axis after axis, so that the buffers of one stay in the cache.
-void SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
+std::size_t SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
 {
     thread_local std::vector<std::uint32_t> first, order;
     thread_local QueryBatch batch;
@@ -278,11 +378,13 @@ void SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
     batch.watched = pass.first_watched != kNoPrimitive;
     first.assign(pool.size() + 1, 0);
     std::size_t n = 0;
-    for (Vertex const& v : vertices)
-        if (!v.exact) {
-            ++first[v.axis + 1];
-            ++n;
-        }
+    for (Vertex& v : vertices) {
+        v.near_moving = false;
+        if (v.exact) continue;
+        ++first[v.axis + 1];
+        ++n;
+    }
+    if (n == 0) return 0;
     for (std::size_t a = 0; a < pool.size(); ++a) first[a + 1] += first[a];
     order.resize(n);
     for (std::uint32_t k = 0; k < vertices.size(); ++k)
@@ -315,6 +417,7 @@ void SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
     } else {
         answer(0, n, [&] { nearest_layers(pool, world_.surfaces, batch); });
     }
+    return n;
 }
 
 namespace {
@@ -335,39 +438,21 @@ void SlhbTracer::add_exactly(Pass const& pass, std::span<Unshadowed const> direc
     for (Unshadowed const& d : direct) {
         LightSample const light = sample_light(world_, d.lamp->choice, d.position, d.lamp->u);
         Surface const& surface = world_.surfaces[d.triangle];
-        RayQuery q{.ray = {off_surface(surface, d.position, light.direction), light.direction},
-                   .reach = light.distance,
-                   .seed = hash_words(hash_words(pass.index, d.triangle), std::uint32_t(rays.size()))};
-        if (light.distance != kInf) {
-            // As the reference aims: from where the ray starts to just before the lamp.
-            vec3 const way = d.position + light.distance * light.direction - q.ray.origin;
-            float const length = glm::length(way);
-            q.ray.direction = way / length;
-            q.reach = length * (1 - 2e-5f) - surface.clearance;
-        }
-        rays.push_back(q);
+        rays.push_back(shadow_ray(d.position, shading_detail::triangle_normal(surface), surface.clearance, light,
+                                  hash_words(hash_words(pass.index, d.triangle), std::uint32_t(rays.size()))));
     }
     blocked.resize(rays.size());
-    pass.judge->occluded(rays, blocked);
+    pass.exact->occluded(rays, blocked);
     for (std::size_t k = 0; k < direct.size(); ++k)
         if (blocked[k] == 0 || !(rays[k].reach > 0)) *direct[k].to += direct[k].radiance;
 }
 
-void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
-                       std::span<Ending> endings, PathCounts& paths, SlhbCounts& counts) const
+void SlhbTracer::start_paths(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
+                             std::vector<State>& states, std::vector<Vertex>& vertices) const
 {
-    using Clock = std::chrono::steady_clock;
-    auto const begun = Clock::now();
-    auto turned = begun; // from direct to indirect light
-    bool const from_camera = starts.empty() || !starts[0].on_layer;
-    thread_local std::vector<State> states;
-    thread_local std::vector<Vertex> vertices;
-    thread_local std::vector<RayQuery> rays;
-    thread_local std::vector<Hit> ray_hits;
-    thread_local std::vector<Unshadowed> direct;
     states.resize(starts.size());
     vertices.resize(starts.size());
-    std::uint32_t const key = std::uint32_t(seed_) ^ std::uint32_t(seed_ >> 32);
+    std::uint32_t const key = random_key(seed_);
     for (std::size_t k = 0; k < starts.size(); ++k) {
         PathStart const& start = starts[k];
         State s;
@@ -380,7 +465,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
         s.direction = start.ray.direction;
         if (start.on_layer) {
             s.position = start.ray.origin;
-            s.has_position = s.by_axis = true;
+            s.has_position = s.along_axis = s.emitted = true;
             s.scatterings = s.vertex = 1;
         } else if (start.triangle != kNoPrimitive) {
             // The raster says which triangle; the ray says where on its plane.
@@ -389,69 +474,142 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
         states[k] = s;
         vertices[k].path = std::uint32_t(k);
     }
+}
+
+/// Random numbers of all, and what shading will read: in loops of their own, so that they are vectors and
+/// cache misses overlap.
+void SlhbTracer::prepare_vertices(std::span<Vertex const> vertices, std::vector<State>& states) const
+{
+    for (Vertex const& v : vertices) {
+        State& s = states[v.path];
+        if (s.triangle == kNoPrimitive) continue;
+        *s.u = VertexNumbers(s.random, std::uint32_t(s.vertex));
+        Surface const& surface = world_.surfaces[s.triangle];
+        for (int k = 0; k < 3; ++k) {
+            if (surface.is(Surface::kSmooth)) __builtin_prefetch(&world_.normals[surface.vertex[k]]);
+            if (surface.is(Surface::kVaries) && !world_.uv0.empty())
+                __builtin_prefetch(&world_.uv0[surface.vertex[k]]);
+        }
+    }
+}
+
+void SlhbTracer::add_lit(Pass const& pass, Direct& direct, SlhbCounts& counts) const
+{
+    counts.shadow_lookups += direct.maps.size();
+    counts.shadow_rays += direct.rays.size();
+    if (!direct.rays.empty()) {
+        direct.queries.clear();
+        for (ShadowRay const& r : direct.rays) direct.queries.push_back(r.query);
+        direct.blocked.resize(direct.rays.size());
+        pass.exact->occluded(direct.queries, direct.blocked, pass.exact_world);
+        for (std::size_t k = 0; k < direct.rays.size(); ++k)
+            if (direct.blocked[k] == 0) *direct.rays[k].to += direct.rays[k].radiance;
+    }
+    if (parts_.shadows) {
+        add_exactly(pass, direct.maps);
+    } else {
+        for (Unshadowed const& d : direct.maps) {
+            if (d.lamp->shadow.lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
+            std::uint32_t const caster = d.place.texel != nullptr ? d.place.texel->primitive : kNoPrimitive;
+            if (caster != kNoPrimitive && caster >= pass.first_watched) d.sample->near_moving = true;
+        }
+    }
+    direct.maps.clear();
+    direct.rays.clear();
+}
+
+/// Finds where all of them go, by look-ups and exact rays.
+void SlhbTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::vector<State>& states,
+                           SlhbCounts& counts) const
+{
+    thread_local std::vector<RayQuery> rays;
+    thread_local std::vector<Hit> hits;
+    if (!pass.look_ups)
+        for (Vertex& v : vertices)
+            if (!v.exact) {
+                v.exact = true;
+                vec3 const direction = states[v.path].direction;
+                v.ray = {off_surface(world_.surfaces[v.origin.triangle], v.origin.position, direction), direction};
+            }
+    counts.queries += ask_axes(pass, vertices);
+    rays.clear();
+    for (Vertex const& v : vertices)
+        if (v.exact)
+            rays.push_back({.ray = v.ray,
+                            .seed = hash_words(states[v.path].random.own_seed() +
+                                                   std::uint32_t(states[v.path].vertex),
+                                               pass.index)});
+    hits.resize(rays.size());
+    if (!rays.empty()) pass.exact->nearest(rays, hits, pass.exact_world);
+    counts.exact_rays += rays.size();
+    std::size_t ray = 0;
+    for (Vertex const& v : vertices) {
+        State& s = states[v.path];
+        s.has_position = !v.exact;
+        if (v.exact) {
+            s.triangle = hits[ray].triangle;
+            if (s.triangle != kNoPrimitive) __builtin_prefetch(&world_.surfaces[s.triangle]);
+            s.barycentric = hits[ray++].barycentric;
+        } else {
+            s.triangle = v.hit.triangle;
+            s.position = v.hit.position;
+            s.barycentric = vec2{1.0f / 3};
+            if (v.near_moving) s.sample->near_moving = true;
+        }
+    }
+}
+
+/// Whether it ends here, to share what is sent on from its layer.
+bool SlhbTracer::ends_on_layer(State const& s, Vertex const& v, Ending& ending) const
+{
+    if (v.exact || s.vertex != 1 || s.triangle == kNoPrimitive ||
+        !bsdf_detail::is_matt(world_.bsdfs[world_.surfaces[s.triangle].material]))
+        return false;
+    if (!world_.emitter_pdf.empty() && world_.emitter_pdf[s.triangle] > 0) { // which differs from path to path
+        ShadingPoint at = shading_point(world_, s.triangle, barycentric_at(world_.surfaces[s.triangle], s.position),
+                                        s.direction);
+        at.position = s.position;
+        add_emission(s, v, at);
+    }
+    ending = {v.layer, v.axis, s.triangle, v.origin.up, s.position, s.throughput};
+    return true;
+}
+
+void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
+                       std::span<Ending> endings, PathCounts& paths, SlhbCounts& counts) const
+{
+    using Clock = std::chrono::steady_clock;
+    auto const begun = Clock::now();
+    auto turned = begun; // from direct to indirect light
+    bool const from_camera = starts.empty() || !starts[0].on_layer;
+    thread_local std::vector<State> states;
+    thread_local std::vector<Vertex> vertices;
+    thread_local Direct direct;
+    thread_local std::vector<VertexNumbers> numbers;
+    numbers.resize(starts.size());
+    start_paths(pass, starts, samples, states, vertices);
+    for (std::size_t k = 0; k < states.size(); ++k) states[k].u = &numbers[k];
     for (Ending& e : endings) e.layer = kNoLayerHit;
     std::size_t active = starts.size();
     while (active > 0) {
         std::size_t going = 0;
+        prepare_vertices(std::span(vertices).first(active), states);
         for (std::size_t k = 0; k < active; ++k) {
-            Vertex v = vertices[k];
-            if (shade(pass, states[v.path], v, direct, paths)) vertices[going++] = v;
+            Vertex& v = vertices[k];
+            if (!shade(pass, states[v.path], v, direct, paths)) continue;
+            if (going != k) vertices[going] = v;
+            ++going;
         }
-        counts.shadow_lookups += direct.size();
-        if (parts_.shadows) {
-            add_exactly(pass, direct);
-        } else {
-            for (Unshadowed const& d : direct) {
-                if (d.lamp->shadow.lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
-                std::uint32_t const caster = d.place.texel != nullptr ? d.place.texel->primitive : kNoPrimitive;
-                if (caster != kNoPrimitive && caster >= pass.first_watched) d.sample->near_moving = true;
-            }
-        }
-        direct.clear();
+        add_lit(pass, direct, counts);
         if (from_camera && turned == begun) turned = Clock::now();
+        find_hits(pass, std::span(vertices).first(going), states, counts);
         active = going;
-        std::span<Vertex> const now(vertices.data(), active);
-        if (parts_.queries)
-            for (Vertex& v : now)
-                if (!v.exact) {
-                    v.exact = true;
-                    vec3 const direction = states[v.path].direction;
-                    v.ray = {off_surface(world_.surfaces[v.origin.triangle], v.origin.position, direction),
-                             direction};
-                }
-        rays.clear();
-        for (Vertex const& v : now)
-            if (v.exact)
-                rays.push_back(
-                    {.ray = v.ray,
-                     .seed = hash_words(states[v.path].random.own_seed() + std::uint32_t(states[v.path].vertex),
-                                        pass.index)});
-        if (rays.size() < active) ask_axes(pass, now);
-        ray_hits.resize(rays.size());
-        if (!rays.empty()) (parts_.queries ? pass.judge : pass.exact)->nearest(rays, ray_hits, pass.exact_world);
-        counts.exact_rays += rays.size();
-        counts.queries += active - rays.size();
-        std::size_t ray = 0, left = 0;
-        for (Vertex const& v : now) {
-            State& s = states[v.path];
-            s.has_position = !v.exact;
-            if (v.near_moving && !v.exact) s.sample->near_moving = true;
-            if (!endings.empty() && !v.exact && s.vertex == 1 && v.hit.triangle != kNoLayerHit &&
-                bsdf_detail::is_matt(world_.bsdfs[world_.surfaces[v.hit.triangle].material])) {
-                endings[v.path] = {v.layer, v.axis, v.hit.triangle, v.origin.up, v.hit.position, s.throughput};
-                continue;
-            }
-            vertices[left++] = v;
-            if (v.exact) {
-                s.triangle = ray_hits[ray].triangle;
-                s.barycentric = ray_hits[ray++].barycentric;
-            } else {
-                s.triangle = v.hit.triangle;
-                s.position = v.hit.position;
-                s.barycentric = vec2{1.0f / 3};
-            }
+        if (endings.empty()) continue;
+        active = 0;
+        for (std::size_t k = 0; k < going; ++k) {
+            Vertex const& v = vertices[k];
+            if (!ends_on_layer(states[v.path], v, endings[v.path])) vertices[active++] = v;
         }
-        active = left;
     }
     counts.direct_s += std::chrono::duration<double>(turned - begun).count();
     counts.indirect_s += std::chrono::duration<double>(Clock::now() - turned).count();

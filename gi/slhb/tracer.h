@@ -22,7 +22,7 @@ namespace gi {
 
 /// Work done, for --stats.
 struct SlhbCounts {
-    std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0;
+    std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0, shadow_rays = 0;
     double direct_s = 0, indirect_s = 0; ///< of all threads: first surfaces with their direct light; what follows
 };
 
@@ -63,18 +63,20 @@ std::vector<SkyAlong> sky_along(AxisSet const& axes, World const& world);
 
 class SlhbTracer {
 public:
-    /// What stays the same over a pass. `exact` may be null where nothing needs exact rays.
+    /// What stays the same over a pass. `exact` may be null where needs_exact_rays says that nothing asks it.
     struct Pass {
         AxisSet const& axes;
         Lamps const& lamps;
         ExactVisibility const* exact;
         std::uint32_t index;                    ///< of the path of each pixel
         std::uint32_t gather_axis;              ///< taken by every first bounce; kNoPrimitive = by chance
-        ExactVisibility const* judge = nullptr; ///< answers for SlhbSettings::exact; null = nothing is asked there
         /// Triangle: samples say whether one from here on may count in them. As many as there are: not asked.
         std::uint32_t first_watched = kNoPrimitive;
         RayWorld exact_world = RayWorld::all;
         std::span<SkyAlong const> sky = {}; ///< along the axes; may be empty
+        LightPool const* lights = nullptr;  ///< paths send exact rays to these; null = they have `lamps`
+        bool glass = false;                 ///< something in the world is transparent
+        bool look_ups = true;               ///< else exact rays in their place
     };
 
     /// @param width  of the picture, pixels
@@ -87,7 +89,9 @@ public:
           width_(width),
           cone_(slhb.cone),
           interleave_(std::uint32_t(slhb.interleave)),
-          parts_(slhb.exact)
+          parts_{slhb.exact},
+          free_(slhb.look_ups == LookUps::none || slhb.exact.directions),
+          meets_light_(!world_.environment_radiance.empty() || !world_.emitter_pdf.empty())
     {
     }
 
@@ -100,23 +104,36 @@ private:
     struct State;
     struct Vertex;
     struct Unshadowed;
+    struct ShadowRay;
+    struct Direct;
+    struct Leaving;
 
     /// All in one function, so that vectors stay in registers.
-    [[gnu::flatten]] bool shade(Pass const& pass, State& s, Vertex& next, std::vector<Unshadowed>& direct,
-                                PathCounts& paths) const;
-    void add_direct(Pass const& pass, State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
-                    std::vector<Unshadowed>& direct) const;
+    [[gnu::flatten]] bool shade(Pass const& pass, State& s, Vertex& next, Direct& direct, PathCounts& paths) const;
+    /// What a light sample brings where nothing is in the way, against the directions of paths.
+    vec3 unshadowed(Leaving const& from, LightSample const& light) const;
+    void aim_at_light(Pass const& pass, State const& s, Leaving const& from, std::vector<ShadowRay>& rays) const;
+    void add_direct(Pass const& pass, State const& s, Leaving const& from, std::vector<Unshadowed>& direct) const;
     void add_sky(Pass const& pass, State& s, Vertex const& last) const;
     void add_emission(State const& s, Vertex const& last, ShadingPoint const& at) const;
     enum class Scattered : std::uint8_t { not_at_all, widely, by_delta_lobe };
-    Scattered scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe, bool last) const;
-    bool scatter_along_axis(Pass const& pass, State& s, ShadingPoint const& at, vec3 wo, bool narrow,
-                            Vertex& next) const;
+    Scattered scatter_by_ray(State& s, Leaving const& from, float u_lobe, bool last) const;
+    bool scatter_along_axis(Pass const& pass, State& s, Leaving const& from, Vertex& next) const;
+    bool scatter_freely(State& s, Leaving const& from, Vertex& next) const;
+    bool starts_indirect(Pass const& pass, State& s) const;
     AxisSample choose_axis(Pass const& pass, State const& s, ShadingPoint const& at) const;
     /// How many pixels this one takes indirect light for in this pass: 0, or the square of the interleaving.
     std::uint32_t indirect_share(std::uint32_t pixel, std::uint32_t pass) const;
-    void ask_axes(Pass const& pass, std::span<Vertex> vertices) const;
-    /// Asks the judge in place of shadow maps.
+    /// @return look-ups
+    std::size_t ask_axes(Pass const& pass, std::span<Vertex> vertices) const;
+    void start_paths(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
+                     std::vector<State>& states, std::vector<Vertex>& vertices) const;
+    void prepare_vertices(std::span<Vertex const> vertices, std::vector<State>& states) const;
+    void add_lit(Pass const& pass, Direct& direct, SlhbCounts& counts) const;
+    void find_hits(Pass const& pass, std::span<Vertex> vertices, std::vector<State>& states,
+                   SlhbCounts& counts) const;
+    bool ends_on_layer(State const& s, Vertex const& v, Ending& ending) const;
+    /// By exact rays in place of shadow maps, see ExactParts.
     void add_exactly(Pass const& pass, std::span<Unshadowed const> direct) const;
 
     WorldView world_;
@@ -127,6 +144,8 @@ private:
     float cone_;
     std::uint32_t interleave_;
     ExactParts parts_;
+    bool free_; ///< paths leave in directions of their own, not along axes
+    bool meets_light_; ///< there is light that a path can meet: a sky, or surfaces that emit
 };
 
 } // namespace gi

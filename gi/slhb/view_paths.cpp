@@ -1,5 +1,7 @@
 #include "gi/slhb/view_paths.h"
 
+#include "gi/scene/warp.h"
+#include "gi/slhb/path_random.h"
 #include "gi/transport/flush_denormals.h"
 #include "gi/transport/pass_samples.h"
 #include "gi/transport/sampling.h"
@@ -13,24 +15,31 @@ namespace {
 
 /// Pixels whose paths advance together on one thread.
 constexpr std::size_t kBlock = 4096;
-/// Where they are few: something for every thread.
-constexpr std::size_t kSmallBlock = 512;
+/// Where they are few, and where no buffers are to stay in the cache but paths.
+constexpr std::size_t kSmallBlock = 256;
 
-/// Primary hits through exact rays, for the cameras that have no raster.
+/// First surfaces of pixels first..last - 1 by exact rays, each path through a point of its own of pixel and lens.
 void exact_hits(SlhbTracer::Pass const& pass, SeenView const& view, RenderSettings const& s, std::size_t first,
                 std::size_t last, std::vector<PathStart>& out)
 {
-    std::size_t const width = std::size_t(view.width);
-    std::vector<RayQuery> rays;
+    constexpr std::uint32_t kLens = 0x1e450000; // of dimensions, beyond those of vertices
+    std::uint32_t const width = std::uint32_t(view.width);
+    thread_local std::vector<RayQuery> rays;
+    thread_local std::vector<Hit> hits;
+    rays.clear();
     out.clear();
     for (std::size_t p = first; p < last; ++p) {
-        RqmcStream const stream{std::uint32_t(mix_bits(s.seed + p)), pass.index};
-        vec2 const place{float(p % width) + 0.5f, float(p / width) + 0.5f};
-        Ray const ray = view.rays.through(place + filter_offset(s.filter, stream.sample2(0)));
+        RqmcStream const stream = pixel_stream(random_key(s.seed), std::uint32_t(p), width, pass.index);
+        vec2 const place = vec2{float(p % width) + 0.5f, float(p / width) + 0.5f} +
+                           filter_offset(s.filter, stream.sample2(0));
+        Ray const ray = view.rays.has_lens()
+                            ? view.rays.at_lens(square_to_disk(stream.sample2(kLens))).through(place)
+                            : view.rays.through(place);
         out.push_back({std::uint32_t(p), kNoPrimitive, ray});
-        rays.push_back({.ray = ray, .seed = stream.seed + pass.index, .start = camera_clearance(ray.origin)});
+        rays.push_back(
+            {.ray = ray, .seed = stream.own_seed() + pass.index, .start = camera_clearance(ray.origin)});
     }
-    std::vector<Hit> hits(rays.size());
+    hits.resize(rays.size());
     pass.exact->nearest(rays, hits);
     for (std::size_t k = 0; k < hits.size(); ++k) out[k].triangle = hits[k].triangle;
 }
@@ -58,7 +67,10 @@ struct ViewPaths::Work {
 };
 
 ViewPaths::ViewPaths(World const& world, RenderSettings const& settings, Report& report)
-    : world_(world), settings_(settings), report_(report)
+    : world_(world),
+      settings_(settings),
+      report_(report),
+      block_(settings.slhb.look_ups == LookUps::none ? kSmallBlock : kBlock)
 {
 }
 
@@ -135,11 +147,11 @@ void ViewPaths::trace_view(SlhbTracer::Pass const& pass, SeenViews const& views,
         else
             trace_all(pass, tracer, view.first + first, sharing, starts, local);
         if (pass.first_watched == kNoPrimitive) return;
-        std::vector<std::uint32_t>& near = near_moving_[first / kBlock];
+        std::vector<std::uint32_t>& near = near_moving_[first / block_];
         near.clear();
         for (std::size_t p = first; p < last; ++p)
             if (samples_[p].near_moving) near.push_back(std::uint32_t(p));
-    });
+    }, block_);
 }
 
 /// Whether paths of this pass end on the first matt layer and share what is sent on there.
@@ -225,7 +237,7 @@ void ViewPaths::trace_pair(SlhbTracer::Pass const& pass, SeenViews const& views,
 {
     SeenView const& view = views[0];
     samples_.resize(view.pixels());
-    near_moving_.resize((view.pixels() + kBlock - 1) / kBlock);
+    near_moving_.resize((view.pixels() + block_ - 1) / block_);
     Work work;
     trace_view(pass, views, view, false, work);
     without_pixels_.clear();
@@ -260,19 +272,21 @@ void ViewPaths::add_work(Work& work, PathCounts& paths)
         done_.queries += c.slhb.queries;
         done_.exact_rays += c.slhb.exact_rays;
         done_.shadow_lookups += c.slhb.shadow_lookups;
+        done_.shadow_rays += c.slhb.shadow_rays;
         taken_ += c.taken;
     });
     report_.add_time("direct light, thread seconds", direct_s);
     report_.add_time("indirect light, thread seconds", indirect_s);
 }
 
-double ViewPaths::rays() const { return double(done_.queries + done_.shadow_lookups + done_.exact_rays); }
+double ViewPaths::rays() const { return double(done_.queries + done_.shadow_lookups + done_.exact_rays + done_.shadow_rays); }
 
 void ViewPaths::report_work() const
 {
     report_.count("hit-buffer queries", double(done_.queries));
     report_.count("shadow-map look-ups", double(done_.shadow_lookups));
     report_.count("exact rays", double(done_.exact_rays));
+    report_.count("shadow rays", double(done_.shadow_rays));
     report_.count("endings shaded for several paths", double(shared_.shaded()));
     if (taking_ > 0) report_.count("share of pixels lit by a partner view", double(taken_) / double(taking_));
     if (hidden_ > 0) {

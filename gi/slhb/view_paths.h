@@ -62,6 +62,7 @@ private:
     World const& world_;
     RenderSettings const& settings_;
     Report& report_;
+    std::size_t block_; ///< pixels whose paths advance together on one thread
     SharedEndings shared_;
     std::vector<PathSample> samples_;       ///< of the pixels of all views
     std::vector<Ending> endings_;           ///< the same

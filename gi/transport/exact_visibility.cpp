@@ -82,14 +82,16 @@ void ExactVisibility::nearest(std::span<RayQuery const> queries, std::span<Hit> 
     }
 }
 
-void ExactVisibility::occluded(std::span<RayQuery const> queries, std::span<std::uint8_t> blocked) const
+void ExactVisibility::occluded(std::span<RayQuery const> queries, std::span<std::uint8_t> blocked,
+                               RayWorld met) const
 {
+    RTCScene const scene = met == RayWorld::what_stays && still_ ? still_.get() : scene_.get();
     Context context(*this);
     for (std::size_t first = 0; first < queries.size(); first += kPacket) {
         auto const some = queries.subspan(first, std::min(kPacket, queries.size() - first));
         RTCRay16 packet;
         PacketMask const mask = fill(packet, some);
-        rtcOccluded16(mask.valid, scene_.get(), &context.rtc, &packet);
+        rtcOccluded16(mask.valid, scene, &context.rtc, &packet);
         for (std::size_t k = 0; k < some.size(); ++k) blocked[first + k] = packet.tfar[k] < 0;
     }
 }

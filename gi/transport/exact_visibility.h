@@ -49,7 +49,8 @@ public:
     /// Nearest triangle beyond each origin. hits.size() == queries.size()
     void nearest(std::span<RayQuery const> queries, std::span<Hit> hits, RayWorld met = RayWorld::all) const;
     /// Is anything between origin and origin + reach * direction? blocked.size() == queries.size(); 1 = yes
-    void occluded(std::span<RayQuery const> queries, std::span<std::uint8_t> blocked) const;
+    void occluded(std::span<RayQuery const> queries, std::span<std::uint8_t> blocked,
+                  RayWorld met = RayWorld::all) const;
 
     /// What a query needs to know for the filter; `rtc` first, so that the filter finds the rest behind it.
     struct Context {

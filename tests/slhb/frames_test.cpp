@@ -52,7 +52,7 @@ TEST_P(Frames, AreThoseOfAWorldBuiltAnew)
 
     MovingWorld const anew(scene, 0.5, report);
     TriangleSoup soup = make_soup(anew.world());
-    settings.slhb = choose_frame_settings(settings, anew.world(), soup);
+    settings.slhb = choose_frame_settings(settings, anew.world(), soup, camera);
     FrameView const eye{camera, settings.width, settings.height};
     SlhbRenderer renderer(anew.world(), {&eye, 1}, settings, std::move(soup), anew.world().triangles.size(),
                           report);

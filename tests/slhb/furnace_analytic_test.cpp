@@ -42,7 +42,7 @@ TEST(SlhbFurnace, ClosedSphereThatGlows)
         add_sphere(scene, vec3{0}, 1, 3, add_material(scene, wall), false);
         World const world = world_of(scene);
         for (int const bounces : {0, 3, 32}) {
-            RenderSettings s = small_settings(8, 512, bounces);
+            RenderSettings s = small_settings(8, 1024, bounces);
             s.slhb.shadow_resolution = 128;
             s.slhb.resolution = 64;
             s.slhb.axes = 8;
