@@ -3,8 +3,10 @@
 #include "ar/base/error.h"
 #include "gi/base/edit_distance.h"
 #include "gi/base/error.h"
+#include "gi/base/progress.h"
 #include "study/base/script_error.h"
 #include "viewer/command_table.h"
+#include "viewer/interrupt.h"
 #include "viewer/version.h"
 
 #include <CLI/CLI.hpp>
@@ -151,6 +153,9 @@ Who ends view by Ctrl-C leaves it in order: 0.)");
     } catch (ar::InputError const& e) {
         std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
         return 2;
+    } catch (gi::Interrupted const&) {
+        std::fputs("lightwell: interrupted before there was a picture\n", stderr);
+        return kInterrupted;
     } catch (std::bad_alloc const&) {
         std::fputs("lightwell: out of memory (the scene or the picture is too large for this machine) choose a "
                    "smaller one\n",

@@ -220,7 +220,15 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
     slhb_number(c, "--shadow-map", s.shadow_resolution, 2, 8192, "texels of a shadow map on a side");
     slhb_number(c, "--interleave", s.interleave, 1, 16,
                 "n: one pixel of n x n takes indirect light in a pass (default: by the budget)");
+    slhb_number(c, "--memory", s.memory_mib, 1, 1 << 24,
+                "MiB that hit buffers may take, and shadow maps; they get fewer texels where it does not suffice\n"
+                "(default: a quarter of the machine's)");
     slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "kept per texel, others are counted; 0 = all");
+    c.add_option("--roulette", s.roulette,
+                 "paths go on with a chance of that times their throughput; 0: all do up to the fourth scattering\n"
+                 "(default: 2 with --budget, --until and frames, else 0)")
+        ->check(in_range(0, 1000))
+        ->group(kSlhbGroup);
     c.add_option("--cone", s.cone, "texels, radius of the cone approximation")
         ->check(in_range(0, 64))
         ->group(kSlhbGroup);

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <string>
 
 namespace gi {
@@ -15,6 +16,12 @@ public:
 
 private:
     std::atomic<bool> flag_{false};
+};
+
+/// Thrown by work that was asked to stop before it had anything to keep.
+class Interrupted : public std::exception {
+public:
+    char const* what() const noexcept override { return "interrupted"; }
 };
 
 /// A bar on stderr when that is a terminal, else nothing. Redraws at most ten times a second.

@@ -59,9 +59,12 @@ struct SlhbSettings {
     int fresh_lamps = 0;       ///< of these, replaced in a pass
     int shadow_resolution = 0; ///< texels of a shadow map, squared
     int most_layers = 0;       ///< per texel; 0 = all
+    int memory_mib = 0;        ///< that hit buffers and shadow maps may take
     bool packed = false;       ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
     LookUps look_ups = LookUps::automatic;
     Shadows shadows = Shadows::automatic;
+    float roulette = -1; ///< paths go on with a chance of that times their throughput; 0 = all do up to the fourth
+                         ///< scattering, then as in the reference; -1 = as the plan says
     float cone = 0;            ///< texels; radius of the disk of columns that a query may ask (Yu 2012, fig. 5.6)
     int interleave = 0;        ///< n: in a pass one pixel of n x n takes indirect light, n^2-fold; 1 = all do
     Space space = Space::host; ///< device: all by CUDA kernels, see gi/slhb/kernel_render.h

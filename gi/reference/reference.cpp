@@ -57,11 +57,13 @@ struct Structures {
     std::unique_ptr<ExactVisibility> visibility;
 
     /// @param first_moving  triangle
-    void build(World const& world, int threads, Report& report, std::size_t first_moving)
+    /// @param stop  see ExactVisibility
+    void build(World const& world, int threads, Report& report, std::size_t first_moving,
+               StopRequest const* stop = nullptr)
     {
         StageTimer const timer(report, "build (Embree BVH)");
         visibility =
-            std::make_unique<ExactVisibility>(world, plan_scene(world).alpha_tests, threads, first_moving);
+            std::make_unique<ExactVisibility>(world, plan_scene(world).alpha_tests, threads, first_moving, stop);
     }
     PathTracer<ExactVisibility> tracer(World const& world, Camera const& camera, RenderSettings const& s) const
     {
@@ -225,7 +227,7 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
 {
     PassLoop loop(settings, stop, progress, report);
     Structures structures;
-    structures.build(world, settings.threads, report, world.triangles.size());
+    structures.build(world, settings.threads, report, world.triangles.size(), &stop);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, "reference") : 0;
     PathTracer<ExactVisibility> const tracer = structures.tracer(world, camera, settings);
     auto const pass = [&](Accumulator& sums, std::uint32_t paths) {

@@ -3,6 +3,7 @@
 #include "gi/base/rqmc.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <tbb/parallel_for.h>
 
@@ -11,6 +12,12 @@ namespace {
 
 /// Bins of normals across the octahedral square.
 constexpr std::uint32_t kNormalBins = 64;
+
+/// Twice, as they are copied into the pool.
+std::size_t bytes_of(HitBuffer const& b)
+{
+    return 2 * (b.offset.size() * sizeof(b.offset[0]) + b.layers.size() * sizeof(HitLayer));
+}
 
 /// Uniform over the half sphere. @param u in [0, 1)^2
 vec3 half_sphere(vec2 u)
@@ -41,7 +48,10 @@ void AxisSet::build_elsewhere(std::size_t axis)
 
 void AxisSet::build(std::vector<NewAxis> const& axes)
 {
+    std::atomic<std::size_t> bytes = 0;
+    for (HitBuffer const& b : buffers_) bytes += bytes_of(b);
     auto const build_one = [&](std::size_t k) {
+        if (bytes > source_.most_bytes || (source_.stop != nullptr && source_.stop->requested())) return;
         thread_local Fragments fragments;
         NewAxis const& axis = axes[k];
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(axis.slot), axis.number);
@@ -54,11 +64,13 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
             build_elsewhere(axis.slot);
             return;
         }
+        bytes -= bytes_of(buffers_[axis.slot]);
         fragments.count = 0;
         rasterize(source_.soup, 0, std::min(source_.first_moving, source_.soup.count), grid, MacroPath::edge_table,
                   fragments);
         source_.cut_outs.remove(fragments, grid, cut_seeds_[axis.slot]);
         fill_hit_buffer(fragments, grid, source_.most_layers, buffers_[axis.slot]);
+        bytes += bytes_of(buffers_[axis.slot]);
     };
     cut_seeds_.resize(buffers_.size());
     if (source_.elsewhere) {
@@ -69,6 +81,8 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
         return;
     }
     tbb::parallel_for(std::size_t(0), axes.size(), build_one);
+    if (source_.stop != nullptr && source_.stop->requested()) throw Interrupted();
+    if (bytes > source_.most_bytes) throw HitBuffersTooLarge();
     for (NewAxis const& axis : axes) {
         lost_ += buffers_[axis.slot].lost;
         layers_ += buffers_[axis.slot].layers.size();

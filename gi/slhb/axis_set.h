@@ -2,6 +2,7 @@
 // The axes that the paths of a pass may take, with their buffers, and the choice among them by the cosine with a
 // normal.
 
+#include "gi/base/progress.h"
 #include "gi/slhb/cosine_tables.h"
 #include "gi/slhb/cut_outs.h"
 #include "gi/slhb/moving_layers.h"
@@ -63,6 +64,9 @@ struct AxisChoice {
     }
 };
 
+/// Hit buffers would take more memory than they may.
+struct HitBuffersTooLarge {};
+
 class AxisSet {
 public:
     struct BuiltAxis {
@@ -81,6 +85,10 @@ public:
         /// moves is elsewhere: index of the axis, its grid, a seed for the cut-outs. Axes come one after the
         /// other.
         std::function<BuiltAxis(std::size_t, RasterGrid const&, std::uint32_t)> elsewhere = {};
+        /// Of all buffers together, while they are made; more throw HitBuffersTooLarge.
+        std::size_t most_bytes = ~std::size_t(0);
+        /// store() throws Interrupted where it is asked to stop; null = it cannot be.
+        StopRequest const* stop = nullptr;
         /// Triangles from here on move: they are left to follow(). As many as there are: none does.
         std::size_t first_moving = ~std::size_t(0);
     };

@@ -33,11 +33,11 @@ EndingCells::EndingCells(World const& world, vec3 eye, std::uint32_t pass)
     for (int c = 0; c < 3; ++c) shift_[c] = float(std::fmod(kStep[c] * pass, 1.0));
 }
 
-std::uint64_t EndingCells::key(Ending const& e, vec3 arrival) const
+std::uint64_t EndingCells::key(Ending const& e) const
 {
     Surface const& s = world_.surfaces[e.triangle];
     vec3 normal = glm::cross(s.edge1, s.edge2);
-    if (glm::dot(normal, arrival) > 0) normal = -normal;
+    if (glm::dot(normal, e.arrival) > 0) normal = -normal;
     float const distance = std::max(near_, glm::length(e.position - eye_));
     int const level = std::ilogb(kWidth * distance);
     vec3 const place = glm::floor(e.position * std::ldexp(1.0f, -level) + shift_);

@@ -12,9 +12,8 @@ public:
     /// @param eye  m, in the coordinates of the world  @param pass  decides where borders are
     EndingCells(World const& world, vec3 eye, std::uint32_t pass);
 
-    /// The same for endings on the same material, facing the same way, in the same cell. @param arrival of the
-    /// path
-    std::uint64_t key(Ending const& e, vec3 arrival) const;
+    /// The same for endings on the same material, facing the same way, in the same cell.
+    std::uint64_t key(Ending const& e) const;
 
 private:
     WorldView world_;

@@ -1,9 +1,11 @@
 #include "gi/slhb/frame_axes.h"
 
-#include "gi/slhb/settings.h"
+#include "gi/base/error.h"
+#include "gi/slhb/directions.h"
 
 #include <algorithm>
 #include <chrono>
+#include <fmt/format.h>
 #include <utility>
 
 namespace gi {
@@ -16,10 +18,30 @@ void FrameAxes::make(AxisSet::Source source, bool walks)
     moves_ = source.first_moving < source.soup.count;
     // Streamed axes are built in every pass anyway, of all that there is.
     if (slhb_.schedule == Schedule::streamed) source.first_moving = source.soup.count;
-    set_.emplace(source);
+    source_.emplace(std::move(source));
+    set_.emplace(*source_);
     if (!stored() || !walks_) return;
     StageTimer const timer(report_, "build (hit buffers)");
-    set_->store(make_directions(slhb_.directions));
+    DirectionSet const directions = make_directions(slhb_.directions);
+    for (;;) try {
+            return set_->store(directions);
+        } catch (HitBuffersTooLarge const&) {
+            make_smaller();
+        }
+}
+
+void FrameAxes::make_smaller()
+{
+    constexpr std::uint32_t kLeast = 8;
+    if (source_->resolution < 2 * kLeast)
+        throw InputError("hit buffers of few texels take more memory than they may",
+                         fmt::format("they have {} texels on a side, and may take {} MiB", source_->resolution,
+                                     source_->most_bytes >> 20),
+                         "give them more by --memory, or choose --look-ups none");
+    source_->resolution /= 2;
+    report_.lose("times that hit buffers got half as many texels on a side, to stay within --memory", 1,
+                 fmt::format("now {}", source_->resolution));
+    set_.emplace(*source_);
 }
 
 void FrameAxes::prepare(int surfaces, std::uint32_t index)
@@ -28,7 +50,12 @@ void FrameAxes::prepare(int surfaces, std::uint32_t index)
     auto const sequences = std::uint32_t(std::clamp(surfaces, 1, int(AxisSet::kSequences)));
     StageTimer const timer(report_, stored() ? "layers that moved" : "hit buffers of a pass");
     if (!stored()) {
-        set_->refresh(sequences, std::uint32_t(slhb_.axes), std::uint32_t(slhb_.fresh_axes), index);
+        for (;;) try {
+                set_->refresh(sequences, std::uint32_t(slhb_.axes), std::uint32_t(slhb_.fresh_axes), index);
+                break;
+            } catch (HitBuffersTooLarge const&) {
+                make_smaller();
+            }
         set_->follow();
         return;
     }
@@ -48,7 +75,7 @@ void FrameAxes::end_frame()
 void FrameAxes::report_work() const
 {
     double const axes = double(earlier_.built + set_->built()), layers = double(earlier_.layers + set_->layers());
-    double const texels = double(slhb_.resolution) * slhb_.resolution;
+    double const texels = double(source_->resolution) * source_->resolution;
     report_.count("axes built", axes);
     report_.count("layers per texel, mean", axes > 0 ? layers / axes / texels : 0);
 }

@@ -39,6 +39,10 @@ private:
 
     SlhbSettings const& slhb_;
     Report& report_;
+    /// With fewer texels, where the buffers would take too much memory.
+    void make_smaller();
+
+    std::optional<AxisSet::Source> source_;
     std::optional<AxisSet> set_;
     bool walks_ = false, moves_ = false;      ///< something may move
     std::uint32_t followed_ = 0, frames_ = 0; ///< axes of a bounce, 0 = all; so far

@@ -175,6 +175,7 @@ void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, E
         paths.width = std::uint32_t(v.width);
         paths.bounces = settings_.bounces;
         paths.glass = glass;
+        paths.roulette = settings_.slhb.roulette;
         paths.seed = random_key(settings_.seed);
         paths.pass = index;
         std::vector<PathSample> const samples = scene_.trace(paths);

@@ -46,6 +46,7 @@ struct TracePaths {
     View<LampView const> lamps;
     AliasTableView chances; ///< of the lamps; empty = equal
     int bounces;
+    float roulette; ///< see SlhbSettings
     bool glass; ///< something in the world is transparent
     std::uint32_t seed, pass;
     View<PathSample> samples;      ///< per pixel

@@ -93,7 +93,7 @@ GI_FN inline bool TracePaths::leave(State& s, ShadingPoint const& at, vec3 wo, b
     s.arrival_pdf = pdf;
     float const survival = max_component(s.throughput);
     if (!(survival > 0)) return false;
-    float const keep = kRoulette * survival;
+    float const keep = chance_to_go_on(survival, s.scatterings, roulette);
     if (keep < 1) {
         if (s.random.sample(s.dimension(PathDimension::roulette)) >= keep) return false;
         s.throughput /= keep;

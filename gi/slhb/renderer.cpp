@@ -19,11 +19,12 @@ std::uint32_t texels(bool unused, int n) { return std::uint32_t(unused ? 2 : n);
 
 SlhbRenderer::SlhbRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
                            TriangleSoup soup, std::size_t first_moving, Report& report,
-                           FirstSurfaces first_surfaces)
+                           FirstSurfaces first_surfaces, StopRequest const* stop)
     : world_(world),
       settings_(settings),
       first_moving_(first_moving),
       first_surfaces_(first_surfaces),
+      stop_(stop),
       report_(report),
       soup_(std::move(soup)),
       cut_outs_(world),
@@ -49,7 +50,7 @@ void SlhbRenderer::build_exact()
     if (exact_ || !needs_exact_rays(world_, orthographic(), slhb_)) return;
     StageTimer const timer(report_, "build (Embree BVH)");
     exact_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, settings_.threads,
-                                               first_moving_);
+                                               first_moving_, stop_);
 }
 
 /// Also the last surface sends paths along axes: only where they can meet light there.
@@ -72,6 +73,8 @@ void SlhbRenderer::make_axes()
                 .most_layers = std::uint32_t(slhb_.most_layers),
                 .packed = slhb_.packed,
                 .seed = settings_.seed,
+                .most_bytes = std::size_t(slhb_.memory_mib) << 20,
+                .stop = stop_,
                 .first_moving = first_moving_},
                walks());
 }

@@ -19,11 +19,11 @@ enum class FirstSurfaces : std::uint8_t {
 
 class SlhbRenderer {
 public:
-    /// Builds what lasts. `world` and `report` outlive this; the arrays of the world stay where they are.
+    /// Builds what lasts; throws Interrupted where `stop` asks for it meanwhile. `world` and `report` outlive this; the arrays of the world stay where they are.
     /// @param views  at least one  @param settings  with those of slhb chosen  @param soup  of the world
     SlhbRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
                  TriangleSoup soup, std::size_t first_moving, Report& report,
-                 FirstSurfaces first_surfaces = FirstSurfaces::by_raster);
+                 FirstSurfaces first_surfaces = FirstSurfaces::by_raster, StopRequest const* stop = nullptr);
 
     /// A frame ends here: motion vectors lead to what is seen now.
     void end_frame();
@@ -78,6 +78,7 @@ private:
     SlhbSettings const& slhb_ = settings_.slhb;
     std::size_t first_moving_; ///< triangle
     FirstSurfaces first_surfaces_;
+    StopRequest const* stop_; ///< of building; may be null
     Report& report_;
     SeenViews views_;
     TriangleSoup soup_;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
+#include <unistd.h>
 
 namespace gi {
 namespace {
@@ -17,6 +18,8 @@ double cores_of(RenderSettings const& s)
 {
     return s.threads > 0 ? s.threads : tbb::this_task_arena::max_concurrency();
 }
+
+std::size_t physical_bytes() { return std::size_t(sysconf(_SC_PHYS_PAGES)) * std::size_t(sysconf(_SC_PAGE_SIZE)); }
 
 /// How cluttered a scene is: the mean over texels that have any, in a coarse look from a slanted direction.
 double layers_per_texel(World const& world, TriangleSoup const& soup)
@@ -105,6 +108,11 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
                         : texels_for(sky && budget == double(kInf) ? 512 : 256, most_lamps, unless_few, map);
     if (s.lamps == 0)
         s.lamps = from_points ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), sky ? 8 : 1, most_lamps);
+    if (s.memory_mib == 0) s.memory_mib = int((physical_bytes() >> 20) / 4);
+    auto const map_bytes = [&] { // cubes, which take the most
+        return 6.0 * s.lamps * s.shadow_resolution * s.shadow_resolution * sizeof(NearestTexel);
+    };
+    while (s.shadow_resolution > kLeast && map_bytes() > double(s.memory_mib) * (1 << 20)) s.shadow_resolution /= 2;
     if (s.fresh_lamps == 0) s.fresh_lamps = s.lamps;
     s.fresh_lamps = std::min(s.fresh_lamps, s.lamps);
     if (s.interleave == 0) s.interleave = choose_interleave(asked, s, s.fresh_axes, costs);
@@ -116,6 +124,10 @@ SlhbSettings with_rays(RenderSettings const& asked, SlhbSettings s, World const&
 {
     RayPlan const plan = plan_rays(asked, s, world, soup, camera, costs, lasting);
     s.look_ups = plan.look_ups;
+    // Where time decides, weak paths are worth less than others. A number of paths is asked for to have them.
+    constexpr float kRoulette = 2; // measured: docs/results/2026-11-25-pictures.md
+    bool const by_time = lasting || asked.budget_s > 0 || asked.until_relmse > 0;
+    if (s.roulette < 0) s.roulette = by_time ? kRoulette : 0;
     s.shadows = plan.shadows;
     return s;
 }
@@ -167,6 +179,7 @@ std::string as_options(SlhbSettings const& s)
     if (s.most_layers > 0) text += fmt::format(" --max-layers {}", s.most_layers);
     text += fmt::format(" --look-ups {} --shadows {}", s.look_ups == LookUps::none ? "none" : "all",
                         s.shadows == Shadows::rays ? "rays" : "maps");
+    text += fmt::format(" --roulette {}", s.roulette);
     if (s.cone > 0) text += fmt::format(" --cone {}", s.cone);
     if (s.packed) text += " --packed";
     if (s.gather) text += " --gather";
@@ -199,6 +212,8 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
         items.push_back({fmt::format("hit buffers of {0} x {0} texels", s.resolution), true,
                          fmt::format("{:.1f} surfaces behind each other, texels of {:.2g} m", costs.layers,
                                      2 * world.bounds.radius() / s.resolution)});
+        items.push_back({fmt::format("at most {} MiB of hit buffers", s.memory_mib), true,
+                         "else they get fewer texels (--memory)"});
     }
     bool const lit = !world.light_select.empty(), rays = plan.shadows == Shadows::rays;
     items.push_back({rays ? "shadow rays"

@@ -25,12 +25,6 @@ std::uint32_t path_of(std::uint32_t rank, std::uint32_t key) { return (rank * in
 
 } // namespace
 
-vec3 SharedEndings::arrival(Ending const& e, AxisPool const& pool)
-{
-    vec3 const along = pool.grids[e.axis].axis;
-    return e.up ? along : -along;
-}
-
 void SharedEndings::start(std::size_t paths, std::size_t slots, std::uint32_t pass)
 {
     order_key_ = std::uint32_t(mix_bits(pass)) & 0x7fffffff; // no path has the rank kNone
@@ -52,13 +46,15 @@ void SharedEndings::start_cells(std::size_t paths, EndingCells const& cells, std
     start(paths, kCellSlots, pass);
 }
 
-void SharedEndings::note(std::uint32_t path, Ending const& e, AxisPool const& pool)
+void SharedEndings::note(std::uint32_t path, Ending const& e)
 {
-    if (e.layer == kNoLayerHit) return note_none(path);
-    std::size_t at = 2 * std::size_t(e.layer) + (e.up ? 1 : 0);
+    if (e.triangle == kNoLayerHit) return note_none(path);
+    std::size_t at = 0;
     if (cells_) {
-        keys_[path] = cells_->key(e, arrival(e, pool));
+        keys_[path] = cells_->key(e);
         at = keys_[path] % kCellSlots;
+    } else {
+        at = 2 * std::size_t(e.layer) + (e.up ? 1 : 0);
     }
     start_of_[path] = std::uint32_t(at);
     std::atomic_ref<std::uint32_t> const slot(slots_[at]);
@@ -68,12 +64,12 @@ void SharedEndings::note(std::uint32_t path, Ending const& e, AxisPool const& po
     }
 }
 
-void SharedEndings::collect(std::vector<Ending> const& endings, AxisPool const& pool)
+void SharedEndings::collect(std::vector<Ending> const& endings)
 {
     if (slots_.empty()) return;
     auto const add = [&](std::uint32_t path) {
         Ending const& e = endings[path];
-        starts_.push_back({0x80000000u | path, e.triangle, {e.position, arrival(e, pool)}, true});
+        starts_.push_back({0x80000000u | path, e.triangle, {e.position, e.arrival}, true});
         return std::uint32_t(starts_.size() - 1);
     };
     for (std::uint32_t& slot : slots_)

@@ -16,12 +16,12 @@ public:
     void start_layers(std::size_t paths, std::size_t layers, std::uint32_t pass);
     void start_cells(std::size_t paths, EndingCells const& cells, std::uint32_t pass);
     /// From several threads, once for every path.
-    void note(std::uint32_t path, Ending const& ending, AxisPool const& pool);
+    void note(std::uint32_t path, Ending const& ending);
     /// For paths that have no ending to share.
     void note_none(std::uint32_t path) { start_of_[path] = kNone; }
     /// After all are noted: makes the starts, in an order that does not depend on threads.
     /// @param endings  of all paths; those of paths without one are not looked at
-    void collect(std::vector<Ending> const& endings, AxisPool const& pool);
+    void collect(std::vector<Ending> const& endings);
 
     std::vector<PathStart> const& starts() const { return starts_; }
     /// What starts first.. have brought.
@@ -33,7 +33,6 @@ public:
 
 private:
     static constexpr std::uint32_t kNone = 0xffffffff;
-    static vec3 arrival(Ending const& e, AxisPool const& pool);
     void start(std::size_t paths, std::size_t slots, std::uint32_t pass);
 
     std::optional<EndingCells> cells_;

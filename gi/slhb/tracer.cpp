@@ -21,7 +21,7 @@ struct SlhbTracer::State {
     vec3 direction; ///< of arrival
     vec3 throughput{1};
     float arrival_pdf = 0; ///< of the direction, 1/sr; 0 = camera or delta lobe
-    bool along_axis = false; ///< so the direction is one of those of pass.sky
+    bool along_axis = false; ///< came by a broad lobe: along an axis, where there are look-ups
     bool emitted = false;    ///< what its surface emits has been added
     int scatterings = 0, vertex = 0;
     PathSample* sample;
@@ -354,7 +354,7 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
     }
     float const survival = max_component(s.throughput);
     if (!(survival > 0)) return false;
-    float const keep = kRoulette * survival;
+    float const keep = chance_to_go_on(survival, s.scatterings, roulette_);
     if (keep < 1) {
         if ((*s.u)[PathDimension::roulette] >= keep) return false;
         s.throughput /= keep;
@@ -559,19 +559,20 @@ void SlhbTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::ve
     }
 }
 
-/// Whether it ends here, to share what is sent on from its layer.
-bool SlhbTracer::ends_on_layer(State const& s, Vertex const& v, Ending& ending) const
+/// Whether it ends here, to share what is sent on from there.
+bool SlhbTracer::ends_shared(State& s, Vertex const& v, Ending& ending) const
 {
-    if (v.exact || s.vertex != 1 || s.triangle == kNoPrimitive ||
+    if (s.vertex != 1 || s.triangle == kNoPrimitive || !s.along_axis ||
         !bsdf_detail::is_matt(world_.bsdfs[world_.surfaces[s.triangle].material]))
         return false;
+    Surface const& surface = world_.surfaces[s.triangle];
+    if (!s.has_position) s.position = shading_detail::SurfacePoint{surface, s.barycentric}.position();
     if (!world_.emitter_pdf.empty() && world_.emitter_pdf[s.triangle] > 0) { // which differs from path to path
-        ShadingPoint at = shading_point(world_, s.triangle, barycentric_at(world_.surfaces[s.triangle], s.position),
-                                        s.direction);
+        ShadingPoint at = shading_point(world_, s.triangle, barycentric_at(surface, s.position), s.direction);
         at.position = s.position;
         add_emission(s, v, at);
     }
-    ending = {v.layer, v.axis, s.triangle, v.origin.up, s.position, s.throughput};
+    ending = {s.triangle, v.exact ? kNoLayerHit : v.layer, v.origin.up, s.position, s.direction, s.throughput};
     return true;
 }
 
@@ -589,7 +590,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
     numbers.resize(starts.size());
     start_paths(pass, starts, samples, states, vertices);
     for (std::size_t k = 0; k < states.size(); ++k) states[k].u = &numbers[k];
-    for (Ending& e : endings) e.layer = kNoLayerHit;
+    for (Ending& e : endings) e.triangle = kNoLayerHit;
     std::size_t active = starts.size();
     while (active > 0) {
         std::size_t going = 0;
@@ -608,7 +609,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
         active = 0;
         for (std::size_t k = 0; k < going; ++k) {
             Vertex const& v = vertices[k];
-            if (!ends_on_layer(states[v.path], v, endings[v.path])) vertices[active++] = v;
+            if (!ends_shared(states[v.path], v, endings[v.path])) vertices[active++] = v;
         }
     }
     counts.direct_s += std::chrono::duration<double>(turned - begun).count();

@@ -34,15 +34,15 @@ struct PathStart {
     bool on_layer = false;  ///< the first scattering has been
 };
 
-/// The rest of a path that ends on a matt layer: what the layer sends back is the same for all paths that met its
-/// side.
+/// The rest of a path that ends on a matt surface: what is sent back from there is the same for all paths that met the
+/// same side of a layer.
 struct Ending {
-    std::uint32_t layer = kNoLayerHit; ///< of the pool; kNoLayerHit = none
-    std::uint32_t axis;
-    std::uint32_t triangle;
-    bool up; ///< the walk that met it
-    vec3 position;
-    vec3 throughput;
+    std::uint32_t triangle = kNoLayerHit; ///< kNoLayerHit = the path does not end so
+    std::uint32_t layer = kNoLayerHit;    ///< of the pool; kNoLayerHit = found by an exact ray
+    bool up = false;                      ///< the walk that met the layer
+    vec3 position{0};
+    vec3 arrival{0}; ///< direction of the path
+    vec3 throughput{0};
 };
 
 /// Where the ray of a start from the camera meets the plane of its triangle.
@@ -90,6 +90,7 @@ public:
           cone_(slhb.cone),
           interleave_(std::uint32_t(slhb.interleave)),
           parts_{slhb.exact},
+          roulette_(slhb.roulette),
           free_(slhb.look_ups == LookUps::none || slhb.exact.directions),
           meets_light_(!world_.environment_radiance.empty() || !world_.emitter_pdf.empty())
     {
@@ -132,7 +133,7 @@ private:
     void add_lit(Pass const& pass, Direct& direct, SlhbCounts& counts) const;
     void find_hits(Pass const& pass, std::span<Vertex> vertices, std::vector<State>& states,
                    SlhbCounts& counts) const;
-    bool ends_on_layer(State const& s, Vertex const& v, Ending& ending) const;
+    bool ends_shared(State& s, Vertex const& v, Ending& ending) const;
     /// By exact rays in place of shadow maps, see ExactParts.
     void add_exactly(Pass const& pass, std::span<Unshadowed const> direct) const;
 
@@ -144,6 +145,7 @@ private:
     float cone_;
     std::uint32_t interleave_;
     ExactParts parts_;
+    float roulette_;
     bool free_; ///< paths leave in directions of their own, not along axes
     bool meets_light_; ///< there is light that a path can meet: a sky, or surfaces that emit
 };

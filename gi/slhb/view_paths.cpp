@@ -87,7 +87,7 @@ void ViewPaths::trace_all(SlhbTracer::Pass const& pass, SlhbTracer const& tracer
     std::span const ends = sharing ? std::span(&endings_[first], starts.size()) : std::span<Ending>();
     tracer.trace(pass, starts, samples, ends, counts.paths, counts.slhb);
     for (std::size_t k = 0; k < ends.size(); ++k)
-        shared_.note(std::uint32_t(first + k), ends[k], pass.axes.pool());
+        shared_.note(std::uint32_t(first + k), ends[k]);
 }
 
 /// The same, but for pixels that are hidden and those that take their light from a partner.
@@ -123,7 +123,7 @@ void ViewPaths::trace_some(SlhbTracer::Pass const& pass, SlhbTracer const& trace
         samples_[at] = samples[k];
         if (!sharing) continue;
         endings_[at] = ends[k];
-        shared_.note(std::uint32_t(at), ends[k], pass.axes.pool());
+        shared_.note(std::uint32_t(at), ends[k]);
     }
 }
 
@@ -163,7 +163,7 @@ bool ViewPaths::start_sharing(SlhbTracer::Pass const& pass, SeenViews const& vie
         endings != Endings::own && settings_.bounces > 0 && slhb.cone == 0 && !slhb.exact.queries;
     bool const orthographic = std::ranges::any_of(views, [](SeenView const& v) { return v.rays.orthographic; });
     bool const in_cells = possible && endings == Endings::in_cells && !orthographic,
-               on_layers = possible && layers > 0 && layers < pixels;
+               on_layers = possible && pass.look_ups && layers > 0 && layers < pixels;
     if (in_cells)
         shared_.start_cells(pixels, EndingCells(world_, views[0].rays.origin, pass.index), pass.index);
     else
@@ -175,7 +175,7 @@ bool ViewPaths::start_sharing(SlhbTracer::Pass const& pass, SeenViews const& vie
 /// From where paths ended that share their endings.
 void ViewPaths::send_on(SlhbTracer::Pass const& pass, SeenView const& view, Work& work)
 {
-    shared_.collect(endings_, pass.axes.pool());
+    shared_.collect(endings_);
     SlhbTracer const tracer = tracer_of(view);
     work.in_blocks(shared_.starts().size(), [&](std::size_t first, std::size_t last, Counts& local) {
         thread_local std::vector<PathSample> sent;

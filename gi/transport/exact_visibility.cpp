@@ -168,17 +168,26 @@ void ExactVisibility::build(World const& world, bool moves, Part& part)
         if (cut_outs) add_triangles(world, positions, kCutOut, moves, part);
         rtcReleaseBuffer(positions);
     }
+    if (stop_ != nullptr)
+        rtcSetSceneProgressMonitorFunction(
+            part.scene.get(), [](void* stop, double) { return !static_cast<StopRequest*>(stop)->requested(); },
+            const_cast<StopRequest*>(stop_));
     rtcCommitScene(part.scene.get());
+    rtcSetSceneProgressMonitorFunction(part.scene.get(), nullptr, nullptr);
 }
 
 void ExactVisibility::check() const
 {
-    if (RTCError const e = rtcGetDeviceError(device_.get()); e != RTC_ERROR_NONE)
+    RTCError const e = rtcGetDeviceError(device_.get());
+    if (e == RTC_ERROR_CANCELLED) throw Interrupted();
+    if (e != RTC_ERROR_NONE)
         throw std::runtime_error(fmt::format("Embree could not build the scene (error {})", int(e)));
 }
 
-ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threads, std::size_t first_moving)
+ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threads, std::size_t first_moving,
+                                 StopRequest const* stop)
     : device_(rtcNewDevice(threads > 0 ? fmt::format("threads={}", threads).c_str() : nullptr)),
+      stop_(stop),
       world_(view(world)),
       alpha_tests_(alpha_tests)
 {
@@ -187,6 +196,7 @@ ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threa
     parts_[0].last = parts_[1].first = std::uint32_t(std::min<std::size_t>(first_moving, triangles));
     parts_[1].last = triangles;
     build(world, false, parts_[0]);
+    check();
     if (parts_[1].first == triangles)
         scene_ = std::move(parts_[0].scene);
     else

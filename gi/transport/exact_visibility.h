@@ -5,6 +5,7 @@
 // Where something moves, it has a BVH of its own beside that of what stays, and only that one follows: its boxes
 // are refitted. Measured against building it anew: docs/results/2026-11-21-moving.md.
 
+#include "gi/base/progress.h"
 #include "gi/scene/camera.h"
 #include "gi/scene/world.h"
 
@@ -42,7 +43,9 @@ class ExactVisibility {
 public:
     /// Copies the vertices; `world` must outlive this where alpha tests are on. threads 0 = all.
     /// @param first_moving  triangle; all from there on may move
-    ExactVisibility(World const& world, bool alpha_tests, int threads, std::size_t first_moving = ~std::size_t(0));
+    /// @param stop  throws Interrupted where it asks for it while the BVH is built; null = it cannot be
+    ExactVisibility(World const& world, bool alpha_tests, int threads, std::size_t first_moving = ~std::size_t(0),
+                    StopRequest const* stop = nullptr);
     /// The vertices of triangles that may move are elsewhere now. Materials are as they were.
     void moved(World const& world);
 
@@ -100,6 +103,7 @@ private:
     Part parts_[2];      ///< the second one is empty where nothing moves
     ScenePointer scene_; ///< that rays go through: the first part's own, or one with instances of both
     ScenePointer still_; ///< with an instance of the first part alone; null where nothing moves
+    StopRequest const* stop_;
     WorldView world_;
     bool alpha_tests_;
 };

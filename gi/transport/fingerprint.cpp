@@ -117,6 +117,7 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
                             int(o.look_ups), int(o.shadows), int(o.exact.queries), int(o.exact.shadows), int(o.exact.directions)})
             h.add(std::uint64_t(v));
         h.add(o.cone);
+        h.add(o.roulette);
     }
     if (method.starts_with("vpl_")) {
         VirtualLightSettings const& o = s.vpl;

@@ -1,0 +1,106 @@
+// What the plan of slhb chooses between look-ups and exact rays, and that its choice is right where look-ups were not.
+
+#include "gi/slhb/look_up_trust.h"
+#include "gi/slhb/settings.h"
+#include "gi/reference/reference.h"
+#include "tests/slhb/slhb_render.h"
+
+namespace gi::test {
+namespace {
+
+/// A room of 4 m with an open side, on a plane of `reach` m to each side, under a sky.
+Scene room_on_a_plane(float reach)
+{
+    Scene scene;
+    int const wall = add_material(scene, lambert(vec3{0.6f}));
+    add_quad(scene, {-reach, -0.01f, reach}, {2 * reach, 0, 0}, {0, 0, -2 * reach}, wall);
+    add_quad(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, wall);   // floor
+    add_quad(scene, {-2, 3, -2}, {4, 0, 0}, {0, 0, 4}, wall);   // ceiling
+    add_quad(scene, {-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, wall);   // back
+    add_quad(scene, {-2, 0, 2}, {0, 0, -4}, {0, 3, 0}, wall);   // left
+    add_quad(scene, {2, 0, -2}, {0, 0, 4}, {0, 3, 0}, wall);    // right
+    add_box(scene, {-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}, wall, false);
+    set_environment(scene, vec3{1});
+    return scene;
+}
+Camera const kInRoom = look_at({0.5, 1.6, 1.5}, {-0.3, 0.8, -1}, 70);
+
+double agreement(World const& world, Camera const& camera, std::uint32_t resolution)
+{
+    return look_up_agreement(world, make_soup(world), camera_rays(camera, 48, 48, world.origin), resolution);
+}
+
+TEST(RayPlan, LookUpsAreNotTrustedInARoomOfALargeWorld)
+{
+    EXPECT_LT(agreement(world_of(room_on_a_plane(5000)), kInRoom, 256), 0.5);
+    Scene closed;
+    add_box(closed, {-1, -1, -1}, {1, 1, 1}, add_material(closed, lambert(vec3{0.6f})), true);
+    EXPECT_GT(agreement(world_of(std::move(closed)), look_at({0, 0, 0}, {1, 0.2, 0.1}, 70), 256), 0.9);
+}
+
+/// Means of direct and indirect light are those of the reference, with a plane of any size around the room.
+TEST(RayPlan, RoomOnAWidePlane)
+{
+    for (float const reach : {10.0f, 5000.0f}) {
+        World const world = world_of(room_on_a_plane(reach));
+        RenderSettings s = small_settings(48, 256, 3);
+        StopRequest stop;
+        Report report;
+        Picture const truth = render_reference(world, kInRoom, s, stop, {}, report).picture;
+        Picture const seen = render_with_slhb(world, kInRoom, s).result.picture;
+        for (char const* const layer : {"L1", "L2"}) {
+            double const t = mean_of(truth, layer).mean;
+            EXPECT_NEAR(mean_of(seen, layer).mean, t, 0.01 * t) << layer << ", plane of " << reach << " m";
+        }
+    }
+}
+
+TEST(RayPlan, DoesWhatIsAskedFor)
+{
+    World const world = world_of(room_on_a_plane(5000));
+    TriangleSoup const soup = make_soup(world);
+    RenderSettings asked = small_settings(64, 16, 3);
+    SlhbSettings s = choose_settings(asked, world, soup, kInRoom);
+    EXPECT_EQ(s.look_ups, LookUps::none);
+    EXPECT_EQ(s.shadows, Shadows::rays);
+    EXPECT_EQ(s.roulette, 0);
+    asked.budget_s = 1;
+    EXPECT_GT(choose_settings(asked, world, soup, kInRoom).roulette, 0);
+    asked.slhb.schedule = Schedule::streamed;
+    s = choose_settings(asked, world, soup, kInRoom);
+    EXPECT_EQ(s.look_ups, LookUps::all);
+    EXPECT_EQ(s.shadows, Shadows::maps);
+    asked.slhb.shadows = Shadows::rays;
+    EXPECT_EQ(choose_settings(asked, world, soup, kInRoom).shadows, Shadows::rays);
+}
+
+TEST(RayPlan, BuffersStayWithinTheirMemory)
+{
+    World const world = world_of(box_with_block_and_lamp());
+    RenderSettings s = small_settings(8, 4, 2);
+    s.slhb.schedule = Schedule::stored;
+    s.slhb.resolution = 256;
+    s.slhb.memory_mib = 64; // 160 axes of 256 x 256 take about 500
+    SlhbRun const run = render_with_slhb(world, look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70), s);
+    std::string const what = "times that hit buffers got half as many texels on a side, to stay within --memory";
+    ASSERT_EQ(run.losses.count(what), 1u);
+    EXPECT_GE(run.losses.at(what).count, 1u);
+}
+
+TEST(RayPlan, BuildingCanBeInterrupted)
+{
+    World const world = world_of(box_with_block_and_lamp());
+    Camera const camera = look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70);
+    StopRequest stop;
+    stop.request();
+    Report report;
+    for (LookUps const l : {LookUps::all, LookUps::none}) {
+        RenderSettings s = small_settings(8, 4, 2);
+        s.slhb.look_ups = l;
+        s.slhb.schedule = Schedule::stored;
+        EXPECT_THROW(render_slhb(world, camera, s, stop, {}, report), Interrupted) << int(l);
+    }
+}
+
+} // namespace
+} // namespace gi::test
