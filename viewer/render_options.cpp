@@ -224,9 +224,10 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
                 "MiB that hit buffers may take, and shadow maps; they get fewer texels where it does not suffice\n"
                 "(default: a quarter of the machine's)");
     slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "kept per texel, others are counted; 0 = all");
-    c.add_option("--roulette", s.roulette,
-                 "paths go on with a chance of that times their throughput; 0: all do up to the fourth scattering\n"
-                 "(default: 2 with --budget, --until and frames, else 0)")
+    c.add_option(
+         "--roulette", s.roulette,
+         "paths go on with a chance of that times their throughput; 0: all do up to the fourth scattering\n"
+         "(default: 2 with --budget, --until and frames, else 0)")
         ->check(in_range(0, 1000))
         ->group(kSlhbGroup);
     c.add_option("--cone", s.cone, "texels, radius of the cone approximation")
@@ -319,9 +320,10 @@ void declare_slhb(CLI::App& c, RenderOptions& o)
         ->check(CLI::IsMember({"auto", "all", "none"}))
         ->capture_default_str()
         ->group(kSlhbGroup);
-    c.add_option("--shadows", o.shadows,
-                 "maps: shadow maps of --lamps light samples, which all paths of a pass share;\nrays: exact rays to "
-                 "light samples of each path's own; auto: by the plan")
+    c.add_option(
+         "--shadows", o.shadows,
+         "maps: shadow maps of --lamps light samples, which all paths of a pass share;\nrays: exact rays to "
+         "light samples of each path's own; auto: by the plan")
         ->check(CLI::IsMember({"auto", "maps", "rays"}))
         ->capture_default_str()
         ->group(kSlhbGroup);

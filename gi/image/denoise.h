@@ -22,9 +22,9 @@ inline constexpr int kMaxIterations = 5, kMaxWindow = 32, kMaxReach = 32; ///< p
 struct DenoiseSettings {
     Denoiser denoiser = Denoiser::atrous;
     int iterations = 4; ///< of a-trous: 1 to 5; the last one reaches 2^iterations pixels to each side
-    int window = 4;                  ///< of discontinuity: pixels across, 1 to 32
-    int reach = 0;   ///< of discontinuity: windows to each side for indirect light; window * reach <= kMaxReach
-    int threads = 0; ///< 0 = all
+    int window = 4;     ///< of discontinuity: pixels across, 1 to 32
+    int reach = 0;      ///< of discontinuity: windows to each side for indirect light; window * reach <= kMaxReach
+    int threads = 0;    ///< 0 = all
     OidnQuality oidn_quality = OidnQuality::fast;
 };
 

@@ -65,8 +65,8 @@ struct SlhbSettings {
     Shadows shadows = Shadows::automatic;
     float roulette = -1; ///< paths go on with a chance of that times their throughput; 0 = all do up to the fourth
                          ///< scattering, then as in the reference; -1 = as the plan says
-    float cone = 0;            ///< texels; radius of the disk of columns that a query may ask (Yu 2012, fig. 5.6)
-    int interleave = 0;        ///< n: in a pass one pixel of n x n takes indirect light, n^2-fold; 1 = all do
+    float cone = 0;      ///< texels; radius of the disk of columns that a query may ask (Yu 2012, fig. 5.6)
+    int interleave = 0;  ///< n: in a pass one pixel of n x n takes indirect light, n^2-fold; 1 = all do
     Space space = Space::host; ///< device: all by CUDA kernels, see gi/slhb/kernel_render.h
     bool gather = false;       ///< first bounce over all axes in turn instead of at random
     ExactParts exact;          ///< on the host; for bench accuracy

@@ -10,11 +10,11 @@
 namespace gi {
 
 struct Costs {
-    double triangles, layers;         ///< layers: per texel
-    double direct, bounce;            ///< per pixel, with what is looked up
-    double look_up = 5e-8;            ///< in a hit buffer or shadow map, in turns over many
-    double ray, shadow_ray;           ///< exact, incoherent
-    double bvh;                       ///< to build
+    double triangles, layers; ///< layers: per texel
+    double direct, bounce;    ///< per pixel, with what is looked up
+    double look_up = 5e-8;    ///< in a hit buffer or shadow map, in turns over many
+    double ray, shadow_ray;   ///< exact, incoherent
+    double bvh;               ///< to build
 
     /// @param layers_each  see HitBuffer; per texel that has any
     Costs(World const& world, double layers_each)

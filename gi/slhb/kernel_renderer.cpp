@@ -162,7 +162,7 @@ void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, E
 {
     prepare(index);
     StageTimer const timer(report_, "paths");
-    bool const glass = transparent_somewhere(world_);
+    bool const smooth = smooth_somewhere(world_);
     scene_.start_pass(axes_.set(), lamps_->fixed() ? lamps_->chances() : AliasTableView{});
     for (std::size_t k = 0; k < views_.size(); ++k) {
         View const& v = views_[k];
@@ -174,7 +174,7 @@ void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, E
         paths.place = place_in_pixel(settings_.filter, settings_.seed, index);
         paths.width = std::uint32_t(v.width);
         paths.bounces = settings_.bounces;
-        paths.glass = glass;
+        paths.smooth = smooth;
         paths.roulette = settings_.slhb.roulette;
         paths.seed = random_key(settings_.seed);
         paths.pass = index;

@@ -1,6 +1,6 @@
 #pragma once
-// Light samples that are drawn once for a pass, from which every path chooses its own: tables of a sky of millions of
-// texels are read once for each sample, not once for each path.
+// Light samples that are drawn once for a pass, from which every path chooses its own: tables of a sky of millions
+// of texels are read once for each sample, not once for each path.
 
 #include "gi/scene/light_sampling.h"
 
@@ -9,7 +9,8 @@
 namespace gi {
 
 /// All lights of a world in one order, neighbours beside each other, so that numbers that are spread well choose
-/// lights (and texels of a sky) that are: every pass has its share of a small sun. Alias tables leave that to chance.
+/// lights (and texels of a sky) that are: every pass has its share of a small sun. Alias tables leave that to
+/// chance.
 class LightOrder {
 public:
     /// As the world is now. It outlives this.
@@ -81,9 +82,9 @@ private:
     struct Group {
         using Row = std::array<float, kCandidates>;
         alignas(32) Row x, y, z, near;
-        alignas(32) Row power;               ///< luminance over the density, of area, direction or choice
+        alignas(32) Row power;                        ///< luminance over the density, of area, direction or choice
         alignas(32) Row facing_x, facing_y, facing_z; ///< normal of the light; 0 = it shines to all sides alike
-        alignas(32) Row everywhere, back;    ///< cosine where it has no normal; of what its back sends
+        alignas(32) Row everywhere, back;             ///< cosine where it has no normal; of what its back sends
     };
     std::vector<Group> groups_;
     std::vector<PooledLight> lights_;

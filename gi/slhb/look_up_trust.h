@@ -1,14 +1,16 @@
 #pragma once
-// Whether look-ups in hit buffers of some resolution can be trusted where a camera looks. A look-up sees the column
-// under a texel's centre in place of that under its origin; where the four columns around the origin answer alike,
-// both see the same. Texels that are too large for a place (a room in a large world, windows, furniture) disagree.
+// Whether look-ups in hit buffers of some resolution can be trusted where a camera looks. A look-up sees the
+// column under a texel's centre in place of that under its origin; where the four columns around the origin answer
+// alike, both see the same. Texels that are too large for a place (a room in a large world, windows, furniture)
+// disagree.
 
 #include "gi/raster/triangle_soup.h"
 #include "gi/scene/camera.h"
 
 namespace gi {
 
-/// @return  share of look-ups whose four columns agree, of points that the camera sees and of what is met from there
+/// @return  share of look-ups whose four columns agree, of points that the camera sees and of what is met from
+/// there
 ///          along two axes; 1 where it sees nothing
 /// @param camera  not orthographic  @param resolution  texels of a hit buffer on a side
 double look_up_agreement(World const& world, TriangleSoup const& soup, CameraRays const& camera,

@@ -47,7 +47,7 @@ struct TracePaths {
     AliasTableView chances; ///< of the lamps; empty = equal
     int bounces;
     float roulette; ///< see SlhbSettings
-    bool glass; ///< something in the world is transparent
+    bool smooth;    ///< something in the world is a mirror or glass
     std::uint32_t seed, pass;
     View<PathSample> samples;      ///< per pixel
     View<PathKernelCounts> counts; ///< one
@@ -63,8 +63,8 @@ private:
         vec3 position{0};  ///< read after the first surface
         vec3 direction{0}; ///< of arrival
         vec3 throughput{1};
-        float arrival_pdf = 0; ///< of the direction, 1/sr; 0 = camera
-        float distance = 0;    ///< that the last walk went, m
+        float arrival_pdf = 0;    ///< of the direction, 1/sr; 0 = camera
+        float distance = 0;       ///< that the last walk went, m
         bool meets_lamps = false; ///< lamps that the last walk met count
         int scatterings = 0;
 
@@ -83,7 +83,7 @@ private:
     /// Light samples find all light that the last surface gets, see SlhbTracer.
     GI_FN bool lit_alone(State const& s, bool narrow) const
     {
-        return s.scatterings == bounces && !narrow && !glass;
+        return s.scatterings == bounces && !narrow && !smooth;
     }
     GI_FN static void add(PathSample& out, int scattered, vec3 radiance)
     {

@@ -81,8 +81,8 @@ GI_FN inline bool TracePaths::leave(State& s, ShadingPoint const& at, vec3 wo, b
     if (s.scatterings == bounces &&
         (lit_alone(s, narrow) || (world.environment_radiance.empty() && world.emitter_pdf.empty())))
         return false;
-    AxisSample const a =
-        choice.sample(std::uint32_t(s.scatterings), at.frame.normal, s.random.sample(s.dimension(PathDimension::axis)));
+    AxisSample const a = choice.sample(std::uint32_t(s.scatterings), at.frame.normal,
+                                       s.random.sample(s.dimension(PathDimension::axis)));
     vec3 const wi = at.frame.to_local(a.direction);
     float const side = glm::dot(a.direction, at.geometric_normal);
     if (!(wi.z > 0) || !(side > 0)) return false;

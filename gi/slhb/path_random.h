@@ -8,7 +8,10 @@
 namespace gi {
 
 /// Of a picture.
-GI_FN inline std::uint32_t random_key(std::uint64_t seed) { return std::uint32_t(seed) ^ std::uint32_t(seed >> 32); }
+GI_FN inline std::uint32_t random_key(std::uint64_t seed)
+{
+    return std::uint32_t(seed) ^ std::uint32_t(seed >> 32);
+}
 
 /// Of pixel `id` = y * width + x. Neighbours take different strata, so that means over windows of them have less
 /// noise. @param key of the picture  @param index of the path

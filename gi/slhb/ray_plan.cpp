@@ -16,16 +16,6 @@ constexpr double kTrusted = 0.87;
 constexpr double kShareForShadows = 0.2;
 constexpr double kMostPasses = 4096;
 
-template <class Holds>
-bool some_material(World const& world, Holds const& holds)
-{
-    std::vector<bool> used(world.materials.size(), false);
-    for (std::uint32_t const m : world.triangle_material) used[m] = true;
-    for (std::size_t m = 0; m < used.size(); ++m)
-        if (used[m] && holds(world.materials[m], world.bsdfs[m])) return true;
-    return false;
-}
-
 bool says_look_ups(SlhbSettings const& s)
 {
     return s.schedule != Schedule::automatic || !s.directions.empty() || s.resolution > 0 || s.axes > 0 ||
@@ -77,20 +67,30 @@ Totals totals(RenderSettings const& asked, SlhbSettings const& s, Costs const& c
 
 bool narrow_somewhere(World const& world)
 {
-    return some_material(world, [](Material const& material, Bsdf const& bsdf) {
-        if (has_narrow_lobe(bsdf)) return true;
+    std::vector<bool> used(world.materials.size(), false);
+    for (std::uint32_t const m : world.triangle_material) used[m] = true;
+    for (std::size_t m = 0; m < used.size(); ++m) {
+        if (!used[m]) continue;
+        Material const& material = world.materials[m];
+        if (has_narrow_lobe(world.bsdfs[m])) return true;
         bool const textured = material.metallic_roughness_map.texture >= 0 ||
                               material.transmission_map.texture >= 0 || material.specular_map.texture >= 0;
         // A roughness map can make any roughness smaller.
-        return textured && (material.specular > 0 || material.metallic > 0 || material.transmission > 0);
-    });
+        if (textured && (material.specular > 0 || material.metallic > 0 || material.transmission > 0)) return true;
+    }
+    return false;
 }
 
-bool transparent_somewhere(World const& world)
+bool smooth_somewhere(World const& world)
 {
-    return some_material(world, [](Material const& m, Bsdf const& bsdf) {
-        return bsdf.clear > 0 || (m.transmission_map.texture >= 0 && m.transmission > 0);
-    });
+    for (std::size_t k = 0; k < world.materials.size(); ++k) {
+        Material const& m = world.materials[k];
+        Bsdf const& b = world.bsdfs[k];
+        bool const mirror = b.model == MaterialModel::metal_rough && b.f90.x > 0 &&
+                            (b.alpha < kSmoothAlpha || m.metallic_roughness_map.texture >= 0);
+        if (mirror || b.clear > 0 || (m.transmission_map.texture >= 0 && m.transmission > 0)) return true;
+    }
+    return false;
 }
 
 RayPlan plan_rays(RenderSettings const& asked, SlhbSettings const& chosen, World const& world,
@@ -108,16 +108,17 @@ RayPlan plan_rays(RenderSettings const& asked, SlhbSettings const& chosen, World
     } else {
         Totals const t = totals(asked, chosen, costs, narrow, lasting);
         plan.look_ups = t.look_ups < t.rays ? LookUps::all : LookUps::none;
-        plan.why_look_ups = fmt::format("{:.2g} s of one core by look-ups, {:.2g} s by exact rays", t.look_ups, t.rays);
+        plan.why_look_ups =
+            fmt::format("{:.2g} s of one core by look-ups, {:.2g} s by exact rays", t.look_ups, t.rays);
         if (plan.look_ups == LookUps::all) {
-            double const agreement = look_up_agreement(
-                world, soup, camera_rays(camera, asked.width, asked.height, world.origin),
-                std::uint32_t(chosen.resolution));
+            double const agreement =
+                look_up_agreement(world, soup, camera_rays(camera, asked.width, asked.height, world.origin),
+                                  std::uint32_t(chosen.resolution));
             if (agreement < kTrusted) plan.look_ups = LookUps::none;
-            plan.why_look_ups += fmt::format("; {:.0f} % of look-ups agree with those beside them (at least {:.0f} % "
-                                             "are asked for): texels of {:.2g} m",
-                                             100 * agreement, 100 * kTrusted,
-                                             2 * world.bounds.radius() / chosen.resolution);
+            plan.why_look_ups +=
+                fmt::format("; {:.0f} % of look-ups agree with those beside them (at least {:.0f} % "
+                            "are asked for): texels of {:.2g} m",
+                            100 * agreement, 100 * kTrusted, 2 * world.bounds.radius() / chosen.resolution);
         }
     }
     bool const bvh = narrow || camera.orthographic || plan.look_ups == LookUps::none;
@@ -128,8 +129,9 @@ RayPlan plan_rays(RenderSettings const& asked, SlhbSettings const& chosen, World
         plan.why_shadows = "as look-ups are asked for";
     } else if (bvh) {
         plan.shadows = Shadows::rays;
-        plan.why_shadows = "a BVH is there, and rays to light samples of each path's own leave no error that pixels "
-                           "share";
+        plan.why_shadows =
+            "a BVH is there, and rays to light samples of each path's own leave no error that pixels "
+            "share";
     } else {
         double const budget = budget_of(asked);
         bool const worth = lasting || budget == 0 || costs.bvh < kShareForShadows * budget;

@@ -23,7 +23,7 @@ RayPlan plan_rays(RenderSettings const& asked, SlhbSettings const& chosen, World
 
 /// Whether some path of the scene has to continue with an exact ray: some lobe is narrow, a mirror or glass.
 bool narrow_somewhere(World const& world);
-/// Whether light passes through some surface.
-bool transparent_somewhere(World const& world);
+/// Whether some surface is a mirror or glass, which do not count as bounces: paths find lamps through them.
+bool smooth_somewhere(World const& world);
 
 } // namespace gi

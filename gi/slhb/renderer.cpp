@@ -210,7 +210,7 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index)
             .gather_axis = gathered,
             .sky = sky_,
             .lights = shadow_maps_ ? nullptr : &lights_,
-            .glass = transparent_somewhere(world_),
+            .smooth = smooth_somewhere(world_),
             .look_ups = !slhb_.exact.queries && slhb_.look_ups != LookUps::none};
 }
 

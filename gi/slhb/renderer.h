@@ -19,7 +19,8 @@ enum class FirstSurfaces : std::uint8_t {
 
 class SlhbRenderer {
 public:
-    /// Builds what lasts; throws Interrupted where `stop` asks for it meanwhile. `world` and `report` outlive this; the arrays of the world stay where they are.
+    /// Builds what lasts; throws Interrupted where `stop` asks for it meanwhile. `world` and `report` outlive
+    /// this; the arrays of the world stay where they are.
     /// @param views  at least one  @param settings  with those of slhb chosen  @param soup  of the world
     SlhbRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
                  TriangleSoup soup, std::size_t first_moving, Report& report,
@@ -87,7 +88,7 @@ private:
     Bounds grid_bounds_; ///< of the hit buffers
     FrameAxes axes_;
     LightOrder light_order_;
-    LightPool lights_; ///< of a pass; empty where there are shadow maps
+    LightPool lights_;        ///< of a pass; empty where there are shadow maps
     bool shadow_maps_ = true; ///< else paths send shadow rays of their own
     std::optional<Lamps> lamps_;
     EarlierCorners earlier_;

@@ -48,8 +48,8 @@ int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, int ax
 
 bool needs_exact_rays(World const& world, bool orthographic, SlhbSettings const& s)
 {
-    return s.shadows == Shadows::rays || s.look_ups == LookUps::none ||
-           s.exact.any() || orthographic || narrow_somewhere(world);
+    return s.shadows == Shadows::rays || s.look_ups == LookUps::none || s.exact.any() || orthographic ||
+           narrow_somewhere(world);
 }
 
 namespace {
@@ -112,7 +112,8 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
     auto const map_bytes = [&] { // cubes, which take the most
         return 6.0 * s.lamps * s.shadow_resolution * s.shadow_resolution * sizeof(NearestTexel);
     };
-    while (s.shadow_resolution > kLeast && map_bytes() > double(s.memory_mib) * (1 << 20)) s.shadow_resolution /= 2;
+    while (s.shadow_resolution > kLeast && map_bytes() > double(s.memory_mib) * (1 << 20))
+        s.shadow_resolution /= 2;
     if (s.fresh_lamps == 0) s.fresh_lamps = s.lamps;
     s.fresh_lamps = std::min(s.fresh_lamps, s.lamps);
     if (s.interleave == 0) s.interleave = choose_interleave(asked, s, s.fresh_axes, costs);
@@ -207,8 +208,8 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
                  world.environment_select.empty() ? "asked for" : "a sky shines, and many axes must look for it"});
         else
             items.push_back({fmt::format("{} axes for each bounce of a pass", s.axes), true,
-                             fmt::format("for {} triangles and {} x {} pixels", world.triangles.size(), asked.width,
-                                         asked.height)});
+                             fmt::format("for {} triangles and {} x {} pixels", world.triangles.size(),
+                                         asked.width, asked.height)});
         items.push_back({fmt::format("hit buffers of {0} x {0} texels", s.resolution), true,
                          fmt::format("{:.1f} surfaces behind each other, texels of {:.2g} m", costs.layers,
                                      2 * world.bounds.radius() / s.resolution)});
@@ -216,10 +217,10 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
                          "else they get fewer texels (--memory)"});
     }
     bool const lit = !world.light_select.empty(), rays = plan.shadows == Shadows::rays;
-    items.push_back({rays ? "shadow rays"
-                          : fmt::format("{} shadow maps of {} x {}", s.lamps, s.shadow_resolution,
-                                        s.shadow_resolution),
-                     lit, lit ? plan.why_shadows : "nothing shines"});
+    items.push_back(
+        {rays ? "shadow rays"
+              : fmt::format("{} shadow maps of {} x {}", s.lamps, s.shadow_resolution, s.shadow_resolution),
+         lit, lit ? plan.why_shadows : "nothing shines"});
     bool const narrow = narrow_somewhere(world);
     items.push_back({"exact rays (Embree)", !walks || rays || narrow || camera.orthographic,
                      !walks                ? "in place of look-ups"

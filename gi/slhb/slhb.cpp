@@ -27,9 +27,9 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     RenderSettings chosen = settings;
     chosen.slhb = choose_settings(settings, world, soup, camera);
     FrameView const eye{camera, settings.width, settings.height};
-    SlhbRenderer renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report,
-                          chosen.slhb.look_ups == LookUps::none ? FirstSurfaces::by_rays : FirstSurfaces::by_raster,
-                          &stop);
+    SlhbRenderer renderer(
+        world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report,
+        chosen.slhb.look_ups == LookUps::none ? FirstSurfaces::by_rays : FirstSurfaces::by_raster, &stop);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb") : 0;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
         for (std::uint32_t i = 0; i < paths; ++i) renderer.pass(loop.first_path() + sums.paths, {&sums, 1});

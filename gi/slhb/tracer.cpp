@@ -11,6 +11,7 @@
 #include <utility>
 
 namespace gi {
+
 /// One path on its way: how it arrived at a surface.
 struct SlhbTracer::State {
     RqmcStream random;
@@ -20,7 +21,7 @@ struct SlhbTracer::State {
     bool has_position = false;
     vec3 direction; ///< of arrival
     vec3 throughput{1};
-    float arrival_pdf = 0; ///< of the direction, 1/sr; 0 = camera or delta lobe
+    float arrival_pdf = 0;   ///< of the direction, 1/sr; 0 = camera or delta lobe
     bool along_axis = false; ///< came by a broad lobe: along an axis, where there are look-ups
     bool emitted = false;    ///< what its surface emits has been added
     int scatterings = 0, vertex = 0;
@@ -98,7 +99,7 @@ void SlhbTracer::add_sky(Pass const& pass, State& s, Vertex const& last) const
     }
     if (world_.environment_radiance.empty()) return;
     SkyAlong const sky = s.along_axis && !pass.sky.empty() ? pass.sky[2 * last.axis + (last.origin.up ? 1 : 0)]
-                                                        : look_at_sky(world_, s.direction);
+                                                           : look_at_sky(world_, s.direction);
     vec3 light = sky.radiance;
     if (s.arrival_pdf > 0) light *= power_heuristic(s.arrival_pdf, sky.pdf);
     s.bucket(s.scatterings) += s.throughput * light;
@@ -112,7 +113,8 @@ RayQuery shadow_ray(vec3 position, vec3 normal, float clearance, LightSample con
     float const side = glm::dot(light.direction, normal) > 0 ? clearance : -clearance;
     RayQuery q{.ray = {position + side * normal, light.direction}, .reach = light.distance, .seed = seed};
     if (light.distance == kInf) return q;
-    // As the reference aims: from where the ray starts to short of the lamp by more than the rounding of both ends.
+    // As the reference aims: from where the ray starts to short of the lamp by more than the rounding of both
+    // ends.
     vec3 const way = position + light.distance * light.direction - q.ray.origin;
     float const length = glm::length(way);
     q.ray.direction = way / length;
@@ -130,10 +132,7 @@ struct SlhbTracer::Leaving {
     bool alone;  ///< light samples have to find all light: no path goes on to meet it
 
     /// Density with which paths leave along wi, 1/sr. @param bsdf  of wi, see evaluate
-    float pdf(BsdfValue const& bsdf, vec3 wi) const
-    {
-        return narrow ? bsdf.pdf : std::max(wi.z, 0.0f) * kInvPi;
-    }
+    float pdf(BsdfValue const& bsdf, vec3 wi) const { return narrow ? bsdf.pdf : std::max(wi.z, 0.0f) * kInvPi; }
 };
 
 vec3 SlhbTracer::unshadowed(Leaving const& from, LightSample const& light) const
@@ -154,8 +153,8 @@ void SlhbTracer::aim_at_light(Pass const& pass, State const& s, Leaving const& f
 {
     VertexNumbers const& u = *s.u;
     vec3 const normal = from.at.frame.normal;
-    ChosenLight const chosen = pass.lights->choose(from.at.position, normal, u[PathDimension::lamp],
-                                                   u[PathDimension::lamp_pick]);
+    ChosenLight const chosen =
+        pass.lights->choose(from.at.position, normal, u[PathDimension::lamp], u[PathDimension::lamp_pick]);
     if (chosen.light == nullptr) return;
     LightSample const light = chosen.light->seen_from(world_, from.at.position);
     vec3 const value = chosen.weight * unshadowed(from, light);
@@ -216,8 +215,7 @@ std::uint32_t SlhbTracer::indirect_share(std::uint32_t pixel, std::uint32_t pass
 SlhbTracer::Scattered SlhbTracer::scatter_by_ray(State& s, Leaving const& from, float u_lobe, bool last) const
 {
     ShadingPoint const& at = from.at;
-    BsdfSample const sampled =
-        gi::sample(at.bsdf, from.wo, at.front, u_lobe, s.u->pair(PathDimension::lobe_u));
+    BsdfSample const sampled = gi::sample(at.bsdf, from.wo, at.front, u_lobe, s.u->pair(PathDimension::lobe_u));
     if (last && !sampled.delta) return Scattered::not_at_all;
     s.direction = at.frame.to_world(sampled.wi);
     if ((glm::dot(s.direction, at.geometric_normal) > 0) != (sampled.wi.z > 0)) return Scattered::not_at_all;
@@ -328,10 +326,9 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
 
     vec3 const wo = at.frame.to_local(-s.direction);
     // A set of axes carries broad lobes; rays carry any.
-    bool const narrow = free_ ? !bsdf_detail::is_matt(at.bsdf)
-                              : pass.exact != nullptr && has_narrow_lobe(at.bsdf);
-    // Light samples find all light that the last surface gets, but through glass, and but for narrow lobes.
-    Leaving const from{at, wo, narrow, s.scatterings == bounces_ && !narrow && !pass.glass};
+    bool const narrow = free_ ? !bsdf_detail::is_matt(at.bsdf) : pass.exact != nullptr && has_narrow_lobe(at.bsdf);
+    // Light samples find all light that the last surface gets, but for narrow lobes, and by mirrors and glass.
+    Leaving const from{at, wo, narrow, s.scatterings == bounces_ && !narrow && !pass.smooth};
     if (!last && !world_.light_select.empty() && !only_delta(at.bsdf)) {
         if (pass.lights != nullptr)
             aim_at_light(pass, s, from, direct.rays);
@@ -535,10 +532,10 @@ void SlhbTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::ve
     rays.clear();
     for (Vertex const& v : vertices)
         if (v.exact)
-            rays.push_back({.ray = v.ray,
-                            .seed = hash_words(states[v.path].random.own_seed() +
-                                                   std::uint32_t(states[v.path].vertex),
-                                               pass.index)});
+            rays.push_back(
+                {.ray = v.ray,
+                 .seed = hash_words(states[v.path].random.own_seed() + std::uint32_t(states[v.path].vertex),
+                                    pass.index)});
     hits.resize(rays.size());
     if (!rays.empty()) pass.exact->nearest(rays, hits, pass.exact_world);
     counts.exact_rays += rays.size();

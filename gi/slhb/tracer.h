@@ -34,8 +34,8 @@ struct PathStart {
     bool on_layer = false;  ///< the first scattering has been
 };
 
-/// The rest of a path that ends on a matt surface: what is sent back from there is the same for all paths that met the
-/// same side of a layer.
+/// The rest of a path that ends on a matt surface: what is sent back from there is the same for all paths that met
+/// the same side of a layer.
 struct Ending {
     std::uint32_t triangle = kNoLayerHit; ///< kNoLayerHit = the path does not end so
     std::uint32_t layer = kNoLayerHit;    ///< of the pool; kNoLayerHit = found by an exact ray
@@ -68,14 +68,14 @@ public:
         AxisSet const& axes;
         Lamps const& lamps;
         ExactVisibility const* exact;
-        std::uint32_t index;                    ///< of the path of each pixel
-        std::uint32_t gather_axis;              ///< taken by every first bounce; kNoPrimitive = by chance
+        std::uint32_t index;       ///< of the path of each pixel
+        std::uint32_t gather_axis; ///< taken by every first bounce; kNoPrimitive = by chance
         /// Triangle: samples say whether one from here on may count in them. As many as there are: not asked.
         std::uint32_t first_watched = kNoPrimitive;
         RayWorld exact_world = RayWorld::all;
         std::span<SkyAlong const> sky = {}; ///< along the axes; may be empty
         LightPool const* lights = nullptr;  ///< paths send exact rays to these; null = they have `lamps`
-        bool glass = false;                 ///< something in the world is transparent
+        bool smooth = false;                ///< something in the world is a mirror or glass
         bool look_ups = true;               ///< else exact rays in their place
     };
 
@@ -146,7 +146,7 @@ private:
     std::uint32_t interleave_;
     ExactParts parts_;
     float roulette_;
-    bool free_; ///< paths leave in directions of their own, not along axes
+    bool free_;        ///< paths leave in directions of their own, not along axes
     bool meets_light_; ///< there is light that a path can meet: a sky, or surfaces that emit
 };
 

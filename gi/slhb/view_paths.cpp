@@ -30,8 +30,8 @@ void exact_hits(SlhbTracer::Pass const& pass, SeenView const& view, RenderSettin
     out.clear();
     for (std::size_t p = first; p < last; ++p) {
         RqmcStream const stream = pixel_stream(random_key(s.seed), std::uint32_t(p), width, pass.index);
-        vec2 const place = vec2{float(p % width) + 0.5f, float(p / width) + 0.5f} +
-                           filter_offset(s.filter, stream.sample2(0));
+        vec2 const place =
+            vec2{float(p % width) + 0.5f, float(p / width) + 0.5f} + filter_offset(s.filter, stream.sample2(0));
         Ray const ray = view.rays.has_lens()
                             ? view.rays.at_lens(square_to_disk(stream.sample2(kLens))).through(place)
                             : view.rays.through(place);
@@ -86,8 +86,7 @@ void ViewPaths::trace_all(SlhbTracer::Pass const& pass, SlhbTracer const& tracer
     std::span const samples(&samples_[first], starts.size());
     std::span const ends = sharing ? std::span(&endings_[first], starts.size()) : std::span<Ending>();
     tracer.trace(pass, starts, samples, ends, counts.paths, counts.slhb);
-    for (std::size_t k = 0; k < ends.size(); ++k)
-        shared_.note(std::uint32_t(first + k), ends[k]);
+    for (std::size_t k = 0; k < ends.size(); ++k) shared_.note(std::uint32_t(first + k), ends[k]);
 }
 
 /// The same, but for pixels that are hidden and those that take their light from a partner.
@@ -136,22 +135,25 @@ void ViewPaths::trace_view(SlhbTracer::Pass const& pass, SeenViews const& views,
         SeenView const& other = views[std::size_t(view.partner)];
         partner.emplace(world_, *other.primary, samples(other), other.rays, view.rays);
     }
-    work.in_blocks(view.pixels(), [&](std::size_t first, std::size_t last, Counts& local) {
-        thread_local std::vector<PathStart> starts;
-        if (view.primary)
-            view.primary->hits(first, last, starts);
-        else
-            exact_hits(pass, view, settings_, first, last, starts);
-        if (partner || !view.hidden.empty())
-            trace_some(pass, tracer, view, partner ? &*partner : nullptr, sharing, starts, local);
-        else
-            trace_all(pass, tracer, view.first + first, sharing, starts, local);
-        if (pass.first_watched == kNoPrimitive) return;
-        std::vector<std::uint32_t>& near = near_moving_[first / block_];
-        near.clear();
-        for (std::size_t p = first; p < last; ++p)
-            if (samples_[p].near_moving) near.push_back(std::uint32_t(p));
-    }, block_);
+    work.in_blocks(
+        view.pixels(),
+        [&](std::size_t first, std::size_t last, Counts& local) {
+            thread_local std::vector<PathStart> starts;
+            if (view.primary)
+                view.primary->hits(first, last, starts);
+            else
+                exact_hits(pass, view, settings_, first, last, starts);
+            if (partner || !view.hidden.empty())
+                trace_some(pass, tracer, view, partner ? &*partner : nullptr, sharing, starts, local);
+            else
+                trace_all(pass, tracer, view.first + first, sharing, starts, local);
+            if (pass.first_watched == kNoPrimitive) return;
+            std::vector<std::uint32_t>& near = near_moving_[first / block_];
+            near.clear();
+            for (std::size_t p = first; p < last; ++p)
+                if (samples_[p].near_moving) near.push_back(std::uint32_t(p));
+        },
+        block_);
 }
 
 /// Whether paths of this pass end on the first matt layer and share what is sent on there.
@@ -279,7 +281,10 @@ void ViewPaths::add_work(Work& work, PathCounts& paths)
     report_.add_time("indirect light, thread seconds", indirect_s);
 }
 
-double ViewPaths::rays() const { return double(done_.queries + done_.shadow_lookups + done_.exact_rays + done_.shadow_rays); }
+double ViewPaths::rays() const
+{
+    return double(done_.queries + done_.shadow_lookups + done_.exact_rays + done_.shadow_rays);
+}
 
 void ViewPaths::report_work() const
 {

@@ -1,8 +1,9 @@
-// What the plan of slhb chooses between look-ups and exact rays, and that its choice is right where look-ups were not.
+// What the plan of slhb chooses between look-ups and exact rays, and that its choice is right where look-ups were
+// not.
 
+#include "gi/reference/reference.h"
 #include "gi/slhb/look_up_trust.h"
 #include "gi/slhb/settings.h"
-#include "gi/reference/reference.h"
 #include "tests/slhb/slhb_render.h"
 
 namespace gi::test {
@@ -14,11 +15,11 @@ Scene room_on_a_plane(float reach)
     Scene scene;
     int const wall = add_material(scene, lambert(vec3{0.6f}));
     add_quad(scene, {-reach, -0.01f, reach}, {2 * reach, 0, 0}, {0, 0, -2 * reach}, wall);
-    add_quad(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, wall);   // floor
-    add_quad(scene, {-2, 3, -2}, {4, 0, 0}, {0, 0, 4}, wall);   // ceiling
-    add_quad(scene, {-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, wall);   // back
-    add_quad(scene, {-2, 0, 2}, {0, 0, -4}, {0, 3, 0}, wall);   // left
-    add_quad(scene, {2, 0, -2}, {0, 0, 4}, {0, 3, 0}, wall);    // right
+    add_quad(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, wall); // floor
+    add_quad(scene, {-2, 3, -2}, {4, 0, 0}, {0, 0, 4}, wall); // ceiling
+    add_quad(scene, {-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, wall); // back
+    add_quad(scene, {-2, 0, 2}, {0, 0, -4}, {0, 3, 0}, wall); // left
+    add_quad(scene, {2, 0, -2}, {0, 0, 4}, {0, 3, 0}, wall);  // right
     add_box(scene, {-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}, wall, false);
     set_environment(scene, vec3{1});
     return scene;
@@ -51,6 +52,28 @@ TEST(RayPlan, RoomOnAWidePlane)
         for (char const* const layer : {"L1", "L2"}) {
             double const t = mean_of(truth, layer).mean;
             EXPECT_NEAR(mean_of(seen, layer).mean, t, 0.01 * t) << layer << ", plane of " << reach << " m";
+        }
+    }
+}
+
+/// The last matt surface still finds the lamp by the mirror.
+TEST(RayPlan, LampsInMirrors)
+{
+    Scene scene;
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, lambert(vec3{0.6f})), true);
+    add_quad(scene, {-0.99f, -1, 1}, {0, 0, -2}, {0, 2, 0}, add_material(scene, mirror(vec3{0.9f})));
+    add_quad(scene, {-0.3f, 0.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{10})));
+    World const world = world_of(std::move(scene));
+    Camera const camera = look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70);
+    for (int const bounces : {0, 1}) {
+        RenderSettings s = small_settings(32, 1024, bounces);
+        StopRequest stop;
+        Report report;
+        double const truth = mean_of(render_reference(world, camera, s, stop, {}, report).picture).mean;
+        for (LookUps const l : {LookUps::all, LookUps::none}) {
+            s.slhb.look_ups = l;
+            EXPECT_NEAR(mean_of(render_with_slhb(world, camera, s).result.picture).mean, truth, 0.01 * truth)
+                << bounces << " bounces, look-ups " << int(l);
         }
     }
 }
