@@ -12,7 +12,6 @@ namespace gi {
 struct Costs {
     double triangles, layers; ///< layers: per texel
     double direct, bounce;    ///< per pixel, with what is looked up
-    double look_up = 5e-8;    ///< in a hit buffer or shadow map, in turns over many
     double ray, shadow_ray;   ///< exact, incoherent
     double bvh;               ///< to build
 
@@ -25,7 +24,7 @@ struct Costs {
         bounce = 0.13e-6 * shading;
         ray = 1e-9 * (60 + 14 * std::log2(triangles + 1));
         shadow_ray = 0.7 * ray;
-        bvh = 6e-7 * triangles;
+        bvh = 4e-7 * triangles;
     }
     double axis(int texels) const { return 2e-9 * triangles + 2e-8 * layers * texels * texels; }
     double map(int texels) const { return 5e-9 * triangles + 5e-8 * layers * texels * texels; }

@@ -5,6 +5,7 @@
 #include "gi/slhb/primary_map.h"
 #include "gi/slhb/query.h"
 
+#include <algorithm>
 #include <tbb/parallel_for.h>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace {
 
 /// How far a surface may leave its own plane from column to column, texels.
 constexpr float kSameSurface = 0.25f;
-constexpr int kPixels = 48; ///< that the camera looks through, on a side
+constexpr float kLargeTexel = 1.0f / 16; ///< of the median distance
+constexpr int kPixels = 48;              ///< that the camera looks through, on a side
 
 struct Start {
     vec3 position;
@@ -44,6 +46,16 @@ std::vector<Start> seen_by(CameraRays const& camera, TriangleSoup const& soup, f
     return starts;
 }
 
+/// Whether two triangles lie in one plane, as far as texels tell.
+bool same_surface(Surface const& a, Surface const& b, float texel)
+{
+    constexpr float kAlike = 0.5f; // cosine
+    vec3 const normal = shading_detail::triangle_normal(a);
+    vec3 const middle = b.corner + (b.edge1 + b.edge2) / 3.0f;
+    return glm::dot(normal, shading_detail::triangle_normal(b)) > kAlike &&
+           std::abs(glm::dot(normal, middle - a.corner)) <= 0.5f * texel;
+}
+
 /// Of what all four columns around the origin answer: whether it is one surface, or nothing.
 bool columns_agree(AxisView const& axis, View<Surface const> surfaces, WalkOrigin const& o, LayerHit const& found)
 {
@@ -54,12 +66,14 @@ bool columns_agree(AxisView const& axis, View<Surface const> surfaces, WalkOrigi
     auto const held = [](float v, std::uint32_t count) {
         return v > 0 ? glm::min(std::uint32_t(v), count - 1) : 0u;
     };
+    Surface const& own = surfaces[o.triangle];
     bool const none = found.triangle == kNoLayerHit;
     vec3 const normal = none ? vec3{0} : shading_detail::triangle_normal(surfaces[found.triangle]);
     for (int k = 0; k < 4; ++k) {
         std::uint32_t const i = held(x + float(k & 1), grid.width), j = held(y + float(k >> 1), grid.height);
         Column const c = look_into(axis, std::size_t(j) * grid.width + i, o);
         if (!c.own || (c.hit == kNoLayerHit) != none) return false;
+        if (!same_surface(surfaces[c.own_triangle], own, grid.texel)) return false;
         if (none || (c.hit & kPrimitiveMask) == found.triangle) continue;
         vec3 const off = grid.point(i, j, c.depth) - found.position;
         if (std::abs(glm::dot(normal, off)) > kSameSurface * grid.texel) return false;
@@ -104,6 +118,13 @@ double look_up_agreement(World const& world, TriangleSoup const& soup, CameraRay
     });
     Agreed sums;
     std::vector<Start> const seen = seen_by(camera, soup, near_plane(world.bounds));
+    std::vector<float> distances;
+    for (Start const& s : seen) distances.push_back(glm::length(s.position - camera.origin));
+    if (!distances.empty()) {
+        auto const middle = distances.begin() + std::ptrdiff_t(distances.size() / 2);
+        std::ranges::nth_element(distances, middle);
+        if (buffers[0].grid.texel > kLargeTexel * *middle) return 0;
+    }
     std::vector<Start> const met = follow(seen, buffers[0], view(world).surfaces, sums);
     follow(met, buffers[1], view(world).surfaces, sums);
     return sums.asked > 0 ? double(sums.agreed) / double(sums.asked) : 1;

@@ -62,6 +62,7 @@ namespace query_detail {
 /// What one column of layers answers. Depths are along the walk, from the origin on, m.
 struct Column {
     bool own = false;
+    std::uint32_t own_triangle = 0;
     float own_depth = 0;
     std::uint32_t hit = kNoLayerHit; ///< primitive with its facing bit
     float depth = 0;                 ///< of the hit, along the axis
@@ -108,7 +109,7 @@ GI_FN inline Column look_into(AxisView const& axis, std::size_t texel, WalkOrigi
         bool const along = (layer.primitive & kAlongAxis) != 0;
         bool const same = (layer.primitive & kPrimitiveMask) == o.triangle;
         if (same || (along == o.along && std::abs(z) <= best)) {
-            with_own = {true, z, kNoLayerHit, 0, 0};
+            with_own = {true, layer.primitive & kPrimitiveMask, z, kNoLayerHit, 0, 0};
             best = same ? -1.0f : std::abs(z);
             continue;
         }

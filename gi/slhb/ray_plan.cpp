@@ -1,6 +1,5 @@
 #include "gi/slhb/ray_plan.h"
 
-#include "gi/slhb/directions.h"
 #include "gi/slhb/look_up_trust.h"
 #include "gi/slhb/narrow_lobes.h"
 
@@ -10,11 +9,10 @@
 namespace gi {
 namespace {
 
-/// Of look-ups of a pilot, how many have to agree with those beside them.
+/// Of look-ups of a pilot, how many have to be right as far as columns tell.
 constexpr double kTrusted = 0.87;
-/// A BVH for shadow rays alone is worth that share of the budget.
-constexpr double kShareForShadows = 0.2;
-constexpr double kMostPasses = 4096;
+/// Of the budget, that a BVH may take.
+constexpr double kMostForBvh = 0.8;
 
 bool says_look_ups(SlhbSettings const& s)
 {
@@ -35,35 +33,17 @@ double budget_of(RenderSettings const& s)
     return s.budget_s * (s.threads > 0 ? s.threads : tbb::this_task_arena::max_concurrency());
 }
 
-/// What differs between a picture with look-ups and one with exact rays, s.
-struct Totals {
-    double look_ups, rays;
-};
-
-Totals totals(RenderSettings const& asked, SlhbSettings const& s, Costs const& c, bool narrow, bool lasting)
-{
-    double const pixels = double(asked.width) * asked.height;
-    // Of a path, after roulette.
-    double const bounces = std::min(double(asked.bounces), 1.5), surfaces = 1 + bounces;
-    double const by_ray = bounces * c.ray + surfaces * c.shadow_ray, by_look_up = (bounces + surfaces) * c.look_up;
-    double passes = std::min(kMostPasses, double(asked.paths));
-    if (asked.budget_s > 0)
-        passes = std::clamp(budget_of(asked) / (pixels * (c.direct + bounces * c.bounce + by_ray)), 1.0, passes);
-    double const sequences = std::min(asked.bounces + 1, 3), axis = c.axis(s.resolution),
-                 map = c.map(s.shadow_resolution);
-    Totals t{passes * (pixels * by_look_up + s.fresh_lamps * map), passes * pixels * by_ray};
-    if (s.schedule == Schedule::stored)
-        t.look_ups += lasting ? 0 : axis * double(make_directions(s.directions).axes.size());
-    else
-        t.look_ups += passes * sequences * s.fresh_axes * axis;
-    if (!lasting) {
-        t.rays += c.bvh;
-        if (narrow) t.look_ups += c.bvh;
-    }
-    return t;
-}
-
 } // namespace
+
+double expected_passes(RenderSettings const& asked, Costs const& c)
+{
+    double const most = double(asked.paths);
+    if (!(asked.budget_s > 0)) return most;
+    double const pixels = double(asked.width) * asked.height;
+    double const bounces = std::min(double(asked.bounces), 1.5), surfaces = 1 + bounces; // after roulette
+    double const path = c.direct + bounces * (c.bounce + c.ray) + surfaces * c.shadow_ray;
+    return std::clamp((budget_of(asked) - c.bvh) / (pixels * path), 1.0, most);
+}
 
 bool narrow_somewhere(World const& world)
 {
@@ -93,51 +73,34 @@ bool smooth_somewhere(World const& world)
     return false;
 }
 
-RayPlan plan_rays(RenderSettings const& asked, SlhbSettings const& chosen, World const& world,
-                  TriangleSoup const& soup, Camera const& camera, Costs const& costs, bool lasting)
+RayPlan plan_rays(RenderSettings const& asked, int resolution, World const& world, TriangleSoup const& soup,
+                  Camera const& camera, Costs const& costs, bool lasting)
 {
     RayPlan plan;
-    bool const narrow = narrow_somewhere(world);
-    bool const free = asked.slhb.look_ups == LookUps::automatic;
-    if (!free || says_look_ups(asked.slhb)) {
-        plan.look_ups = free ? LookUps::all : asked.slhb.look_ups;
+    SlhbSettings const& s = asked.slhb;
+    bool const no_time = !lasting && asked.budget_s > 0 && costs.bvh > kMostForBvh * budget_of(asked);
+    if (s.look_ups != LookUps::automatic || says_look_ups(s)) {
+        plan.look_ups = s.look_ups != LookUps::automatic ? s.look_ups : LookUps::all;
         plan.why_look_ups = "asked for";
-    } else if (camera.orthographic) {
-        plan.look_ups = LookUps::none;
-        plan.why_look_ups = "the camera is orthographic, and needs exact rays anyway";
+    } else if (!no_time || camera.orthographic) {
+        plan.why_look_ups = "pixels would share their error, which no filter removes; --look-ups all";
     } else {
-        Totals const t = totals(asked, chosen, costs, narrow, lasting);
-        plan.look_ups = t.look_ups < t.rays ? LookUps::all : LookUps::none;
+        double const trusted = look_up_agreement(
+            world, soup, camera_rays(camera, asked.width, asked.height, world.origin), std::uint32_t(resolution));
+        plan.look_ups = trusted < kTrusted ? LookUps::none : LookUps::all;
         plan.why_look_ups =
-            fmt::format("{:.2g} s of one core by look-ups, {:.2g} s by exact rays", t.look_ups, t.rays);
-        if (plan.look_ups == LookUps::all) {
-            double const agreement =
-                look_up_agreement(world, soup, camera_rays(camera, asked.width, asked.height, world.origin),
-                                  std::uint32_t(chosen.resolution));
-            if (agreement < kTrusted) plan.look_ups = LookUps::none;
-            plan.why_look_ups +=
-                fmt::format("; {:.0f} % of look-ups agree with those beside them (at least {:.0f} % "
-                            "are asked for): texels of {:.2g} m",
-                            100 * agreement, 100 * kTrusted, 2 * world.bounds.radius() / chosen.resolution);
-        }
+            fmt::format("a BVH takes about {:.2g} s of one core, and {:.0f} % of look-ups can be trusted",
+                        costs.bvh, 100 * trusted);
     }
-    bool const bvh = narrow || camera.orthographic || plan.look_ups == LookUps::none;
-    if (asked.slhb.shadows != Shadows::automatic || says_maps(asked.slhb)) {
-        plan.shadows = asked.slhb.shadows != Shadows::automatic ? asked.slhb.shadows : Shadows::maps;
+    bool const bvh = narrow_somewhere(world) || plan.look_ups == LookUps::none;
+    if (s.shadows != Shadows::automatic) {
+        plan.shadows = s.shadows;
         plan.why_shadows = "asked for";
-    } else if (plan.look_ups == LookUps::all && says_look_ups(asked.slhb)) {
-        plan.why_shadows = "as look-ups are asked for";
-    } else if (bvh) {
-        plan.shadows = Shadows::rays;
-        plan.why_shadows =
-            "a BVH is there, and rays to light samples of each path's own leave no error that pixels "
-            "share";
+    } else if (says_maps(s) || says_look_ups(s) || !bvh) {
+        plan.shadows = Shadows::maps;
+        plan.why_shadows = bvh ? "asked for" : "there is no BVH";
     } else {
-        double const budget = budget_of(asked);
-        bool const worth = lasting || budget == 0 || costs.bvh < kShareForShadows * budget;
-        plan.shadows = worth ? Shadows::rays : Shadows::maps;
-        plan.why_shadows = worth ? "a BVH takes little of the time, and pixels share no error then"
-                                 : "a BVH would take too much of the budget";
+        plan.why_shadows = "each path has light samples of its own, so that pixels share no error";
     }
     return plan;
 }

@@ -123,11 +123,13 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
 SlhbSettings with_rays(RenderSettings const& asked, SlhbSettings s, World const& world, TriangleSoup const& soup,
                        Camera const& camera, Costs const& costs, bool lasting)
 {
-    RayPlan const plan = plan_rays(asked, s, world, soup, camera, costs, lasting);
+    RayPlan const plan = plan_rays(asked, s.resolution, world, soup, camera, costs, lasting);
     s.look_ups = plan.look_ups;
-    // Where time decides, weak paths are worth less than others. A number of paths is asked for to have them.
+    // Where time decides, weak paths are worth less than others, as long as what they leave makes room for more.
     constexpr float kRoulette = 2; // measured: docs/results/2026-11-25-pictures.md
-    bool const by_time = lasting || asked.budget_s > 0 || asked.until_relmse > 0;
+    constexpr double kFewPasses = 3;
+    bool const by_time =
+        lasting || asked.until_relmse > 0 || (asked.budget_s > 0 && expected_passes(asked, costs) >= kFewPasses);
     if (s.roulette < 0) s.roulette = by_time ? kRoulette : 0;
     s.shadows = plan.shadows;
     return s;
@@ -193,7 +195,7 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
     TriangleSoup const soup = make_soup(world);
     Costs const costs(world, layers_per_texel(world, soup));
     SlhbSettings const s = choose_look_ups(asked, world, costs);
-    RayPlan const plan = plan_rays(asked, s, world, soup, camera, costs, false);
+    RayPlan const plan = plan_rays(asked, s.resolution, world, soup, camera, costs, false);
     std::vector<PlanItem> items;
     bool const walks = plan.look_ups == LookUps::all;
     items.push_back({"look-ups in hit buffers", walks, plan.why_look_ups});
