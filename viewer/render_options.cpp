@@ -227,7 +227,7 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
     c.add_option(
          "--roulette", s.roulette,
          "paths go on with a chance of that times their throughput; 0: all do up to the fourth scattering\n"
-         "(default: 2 with --until, frames, or a --budget for several paths; else 0)")
+         "(default: 2 with --until, frames, or a --budget for more than one path; else 0)")
         ->check(in_range(0, 1000))
         ->group(kSlhbGroup);
     c.add_option("--cone", s.cone, "texels, radius of the cone approximation")
