@@ -24,6 +24,23 @@ public:
     char const* what() const noexcept override { return "interrupted"; }
 };
 
+/// Building of what a picture needs: given up where a stop was asked for and the picture is far off. What takes no
+/// time is ended, so that there is a first picture to keep.
+class BuildStop {
+public:
+    /// @param stop  outlives this; null = nothing is given up
+    explicit BuildStop(StopRequest const* stop) : stop_(stop) {}
+    bool given_up() const
+    {
+        constexpr auto kLong = std::chrono::milliseconds(150);
+        return stop_ != nullptr && stop_->requested() && std::chrono::steady_clock::now() - start_ > kLong;
+    }
+
+private:
+    StopRequest const* stop_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 /// A bar on stderr when that is a terminal, else nothing. Redraws at most ten times a second.
 class ProgressBar {
 public:

@@ -48,10 +48,11 @@ void AxisSet::build_elsewhere(std::size_t axis)
 
 void AxisSet::build(std::vector<NewAxis> const& axes)
 {
+    BuildStop const building(source_.stop);
     std::atomic<std::size_t> bytes = 0;
     for (HitBuffer const& b : buffers_) bytes += bytes_of(b);
     auto const build_one = [&](std::size_t k) {
-        if (bytes > source_.most_bytes || (source_.stop != nullptr && source_.stop->requested())) return;
+        if (bytes > source_.most_bytes || building.given_up()) return;
         thread_local Fragments fragments;
         NewAxis const& axis = axes[k];
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(axis.slot), axis.number);
@@ -81,7 +82,7 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
         return;
     }
     tbb::parallel_for(std::size_t(0), axes.size(), build_one);
-    if (source_.stop != nullptr && source_.stop->requested()) throw Interrupted();
+    if (building.given_up()) throw Interrupted();
     if (bytes > source_.most_bytes) throw HitBuffersTooLarge();
     for (NewAxis const& axis : axes) {
         lost_ += buffers_[axis.slot].lost;

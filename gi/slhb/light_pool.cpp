@@ -4,6 +4,7 @@
 #include "gi/scene/warp.h"
 
 #include <algorithm>
+#include <tbb/parallel_for.h>
 
 namespace gi {
 namespace {
@@ -65,8 +66,9 @@ void LightPool::fill(LightOrder const& order, World const& world, std::uint32_t 
     WorldView const w = view(world);
     std::uint32_t const count = groups * kCandidates;
     lights_.resize(count);
+    rounds_ = world.light_select.entries.size() > kManyLights ? std::min(kMostRounds, groups) : 1;
     groups_.resize(groups);
-    for (std::uint32_t k = 0; k < count; ++k) {
+    auto const draw = [&](std::uint32_t k) {
         std::uint32_t const part = k % kCandidates, g = k / kCandidates;
         RqmcStream const stream{std::uint32_t(mix_bits(seed ^ 0x9001)), pass * count + k};
         vec4 const u = stream.sample_together(0);
@@ -110,14 +112,14 @@ void LightPool::fill(LightOrder const& order, World const& world, std::uint32_t 
         to.facing_z[part] = facing.z;
         to.everywhere[part] = facing == vec3{0} ? 1 : 0;
         to.back[part] = back;
-    }
+    };
+    tbb::parallel_for(std::uint32_t(0), groups, [&](std::uint32_t g) {
+        for (std::uint32_t k = 0; k < kCandidates; ++k) draw(g * kCandidates + k);
+    });
 }
 
-ChosenLight LightPool::choose(vec3 position, vec3 normal, float u, float pick) const
+void LightPool::weigh(Group const& from, vec3 position, vec3 normal, float* weight)
 {
-    std::size_t const g = std::min(std::size_t(u * float(groups_.size())), groups_.size() - 1);
-    Group const& from = groups_[g];
-    alignas(32) std::array<float, kCandidates> weight;
     for (std::uint32_t k = 0; k < kCandidates; ++k) {
         float const near = from.near[k];
         float const x = from.x[k] - near * position.x, y = from.y[k] - near * position.y,
@@ -130,19 +132,32 @@ ChosenLight LightPool::choose(vec3 position, vec3 normal, float u, float pick) c
                         (near * inverse * inverse + (1 - near));
         weight[k] = w < 1e30f ? w : 0;
     }
+}
+
+ChosenLight LightPool::choose(vec3 position, vec3 normal, float u, float pick) const
+{
+    alignas(32) std::array<float, kMostRounds * kCandidates> weight;
+    std::array<std::size_t, kMostRounds> group;
+    std::size_t const groups = groups_.size();
+    for (std::uint32_t r = 0; r < rounds_; ++r) {
+        group[r] = (std::min(std::size_t(u * float(groups)), groups - 1) + r * groups / rounds_) % groups;
+        weigh(groups_[group[r]], position, normal, &weight[r * kCandidates]);
+    }
+    std::uint32_t const count = rounds_ * kCandidates;
     float sum = 0;
-    for (float const w : weight) sum += w;
+    for (std::uint32_t k = 0; k < count; ++k) sum += weight[k];
     if (!(sum > 0)) return {};
     float const wanted = pick * sum;
     float up_to = 0;
     std::uint32_t chosen = 0;
-    for (std::uint32_t k = 0; k + 1 < kCandidates; ++k) {
+    for (std::uint32_t k = 0; k + 1 < count; ++k) {
         up_to += weight[k];
         chosen += up_to <= wanted ? 1 : 0;
     }
     while (chosen > 0 && !(weight[chosen] > 0)) --chosen; // by rounding alone
     if (!(weight[chosen] > 0)) return {};
-    return {&lights_[g * kCandidates + chosen], sum / (weight[chosen] * float(kCandidates))};
+    return {&lights_[group[chosen / kCandidates] * kCandidates + chosen % kCandidates],
+            sum / (weight[chosen] * float(count))};
 }
 
 } // namespace gi

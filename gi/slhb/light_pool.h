@@ -66,14 +66,16 @@ struct ChosenLight {
 class LightPool {
 public:
     static constexpr std::uint32_t kCandidates = 8;
+    /// Where there are more lights, a choice is made among kMostRounds groups.
+    static constexpr std::uint32_t kManyLights = 64, kMostRounds = 4;
 
     /// @param groups  > 0  @param pass  decides which samples
     void fill(LightOrder const& order, World const& world, std::uint32_t groups, std::uint64_t seed,
               std::uint32_t pass);
     bool empty() const { return lights_.empty(); }
 
-    /// Of one group one sample, with chance in proportion to about what it would bring to a matt surface where
-    /// nothing is in the way: its luminance times the cosines over the squared distance.
+    /// Of one group, or several, one sample, with chance in proportion to about what it would bring to a matt
+    /// surface where nothing is in the way: its luminance times the cosines over the squared distance.
     /// @param normal  unit, on the side of the viewer  @param u  which group, pick  which sample of it; in [0, 1)
     ChosenLight choose(vec3 position, vec3 normal, float u, float pick) const;
 
@@ -86,7 +88,10 @@ private:
         alignas(32) Row facing_x, facing_y, facing_z; ///< normal of the light; 0 = it shines to all sides alike
         alignas(32) Row everywhere, back;             ///< cosine where it has no normal; of what its back sends
     };
+    static void weigh(Group const& from, vec3 position, vec3 normal, float* weight);
+
     std::vector<Group> groups_;
+    std::uint32_t rounds_ = 1; ///< groups that a choice is made among
     std::vector<PooledLight> lights_;
 };
 

@@ -12,6 +12,16 @@
 namespace gi {
 namespace {
 
+/// Groups of light samples of a pass: few paths share each, a second-level cache holds all where lights are few,
+/// and every light has about two samples where they are many.
+std::uint32_t light_groups(std::size_t pixels, World const& world)
+{
+    constexpr std::size_t kPixelsOfGroup = 32, kLeast = 64, kUsual = 256, kMost = 4096;
+    std::size_t const for_pixels = std::clamp(pixels / kPixelsOfGroup, kLeast, kUsual),
+                      for_lights = 2 * world.light_select.entries.size() / LightPool::kCandidates;
+    return std::uint32_t(std::min(std::max(for_pixels, for_lights), kMost));
+}
+
 /// Choosing among axes and lamps takes their grids alone.
 std::uint32_t texels(bool unused, int n) { return std::uint32_t(unused ? 2 : n); }
 
@@ -197,9 +207,9 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index)
                                              std::uint32_t(axes_.set().first_bounce_axes())
                                        : kNoPrimitive;
     if (!shadow_maps_) {
-        constexpr std::uint32_t kGroups = 256; // so that a second-level cache holds all
         light_order_.update(world_);
-        lights_.fill(light_order_, world_, kGroups, settings_.seed, index);
+        lights_.fill(light_order_, world_, light_groups(views_.back().first + views_.back().pixels(), world_),
+                     settings_.seed, index);
     }
     sky_.clear();
     if (walks && !slhb_.exact.directions) sky_ = sky_along(axes_.set(), world_);

@@ -168,10 +168,9 @@ void ExactVisibility::build(World const& world, bool moves, Part& part)
         if (cut_outs) add_triangles(world, positions, kCutOut, moves, part);
         rtcReleaseBuffer(positions);
     }
-    if (stop_ != nullptr)
-        rtcSetSceneProgressMonitorFunction(
-            part.scene.get(), [](void* stop, double) { return !static_cast<StopRequest*>(stop)->requested(); },
-            const_cast<StopRequest*>(stop_));
+    BuildStop building(stop_);
+    rtcSetSceneProgressMonitorFunction(
+        part.scene.get(), [](void* b, double) { return !static_cast<BuildStop*>(b)->given_up(); }, &building);
     rtcCommitScene(part.scene.get());
     rtcSetSceneProgressMonitorFunction(part.scene.get(), nullptr, nullptr);
 }

@@ -119,7 +119,7 @@ TEST(LightPool, ManyLampsOfOnePlace)
         vec3 const way = l.position; // from the origin
         truth += double(luminance(l.intensity) * way.y) / std::pow(double(glm::length(way)), 3);
     }
-    RenderSettings s = small_settings(8, 1024, 0);
+    RenderSettings s = small_settings(16, 4096, 0);
     double const seen =
         mean_of(render_with_slhb(world, orthographic({0, 1, 0}, {0, 0, 0}, 0.02), s).result.picture).mean;
     EXPECT_NEAR(seen, 0.5 / M_PI * truth, 0.01 * truth * 0.5 / M_PI);
