@@ -127,7 +127,7 @@ SlhbSettings with_rays(RenderSettings const& asked, SlhbSettings s, World const&
     s.look_ups = plan.look_ups;
     // Where time decides, weak paths are worth less than others, as long as what they leave makes room for more.
     constexpr float kRoulette = 2; // measured: docs/results/2026-11-25-pictures.md
-    constexpr double kFewPasses = 1.5;
+    constexpr double kFewPasses = 1.4;
     bool const by_time =
         lasting || asked.until_relmse > 0 || (asked.budget_s > 0 && expected_passes(asked, costs) >= kFewPasses);
     if (s.roulette < 0) s.roulette = by_time ? kRoulette : 0;

@@ -139,6 +139,13 @@ vec3 SlhbTracer::unshadowed(Leaving const& from, LightSample const& light) const
 {
     if (!(light.pdf > 0)) return vec3{0};
     ShadingPoint const& at = from.at;
+    if (bsdf_detail::is_matt(at.bsdf)) { // the same in fewer steps
+        float const cosine = glm::dot(light.direction, at.frame.normal);
+        if (!(cosine > 0) || !(from.wo.z > 0) || !(glm::dot(light.direction, at.geometric_normal) > 0))
+            return vec3{0};
+        vec3 const value = at.bsdf.diffuse * kInvPi * light.radiance * (cosine / light.pdf);
+        return light.delta || from.alone ? value : value * power_heuristic(light.pdf, cosine * kInvPi);
+    }
     vec3 const wi = at.frame.to_local(light.direction);
     if ((wi.z > 0) != (glm::dot(light.direction, at.geometric_normal) > 0)) return vec3{0};
     BsdfValue const bsdf = evaluate(at.bsdf, from.wo, wi);
@@ -228,14 +235,18 @@ SlhbTracer::Scattered SlhbTracer::scatter_by_ray(State& s, Leaving const& from, 
 bool SlhbTracer::scatter_freely(State& s, Leaving const& from, Vertex& next) const
 {
     ShadingPoint const& at = from.at;
-    vec2 const u = s.u->pair(PathDimension::lobe_u);
-    s.direction = at.frame.to_world(square_to_cosine_hemisphere(u));
-    vec3 const wi = at.frame.to_local(s.direction);
+    vec3 const wi = square_to_cosine_hemisphere(s.u->pair(PathDimension::lobe_u));
+    s.direction = at.frame.to_world(wi);
     if (!(wi.z > 0) || !(glm::dot(s.direction, at.geometric_normal) > 0)) return false;
-    BsdfValue const value = evaluate(at.bsdf, from.wo, wi);
-    s.arrival_pdf = from.pdf(value, wi);
-    if (!(s.arrival_pdf > 0)) return false;
-    s.throughput *= value.f * (wi.z / s.arrival_pdf);
+    if (bsdf_detail::is_matt(at.bsdf)) {
+        s.arrival_pdf = wi.z * kInvPi;
+        s.throughput *= at.bsdf.diffuse;
+    } else {
+        BsdfValue const value = evaluate(at.bsdf, from.wo, wi);
+        s.arrival_pdf = from.pdf(value, wi);
+        if (!(s.arrival_pdf > 0)) return false;
+        s.throughput *= value.f * (wi.z / s.arrival_pdf);
+    }
     next.origin = {.position = at.position, .triangle = s.triangle, .along = false, .up = false};
     return true;
 }
