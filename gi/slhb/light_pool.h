@@ -67,7 +67,7 @@ class LightPool {
 public:
     static constexpr std::uint32_t kCandidates = 8;
     /// Where there are more lights, a choice is made among kMostRounds groups.
-    static constexpr std::uint32_t kManyLights = 64, kMostRounds = 4;
+    static constexpr std::uint32_t kManyLights = 512, kMostRounds = 4;
 
     /// @param groups  > 0  @param pass  decides which samples
     void fill(LightOrder const& order, World const& world, std::uint32_t groups, std::uint64_t seed,
