@@ -25,10 +25,4 @@ GI_FN inline bool takes_narrow_lobe(Bsdf const& b, vec3 wo, float u_lobe)
     return u_lobe < chance.clear + chance.specular;
 }
 
-/// The part of the density of gi::sample that comes through them.
-GI_FN inline float narrow_pdf(Bsdf const& b, vec3 wo, vec3 wi, float pdf)
-{
-    return glm::max(0.0f, pdf - bsdf_detail::lobe_chances(b, wo.z).diffuse * wi.z * kInvPi);
-}
-
 } // namespace gi

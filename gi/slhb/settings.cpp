@@ -126,7 +126,7 @@ SlhbSettings with_rays(RenderSettings const& asked, SlhbSettings s, World const&
     RayPlan const plan = plan_rays(asked, s.resolution, world, soup, camera, costs, lasting);
     s.look_ups = plan.look_ups;
     // Where time decides, weak paths are worth less than others, as long as what they leave makes room for more.
-    constexpr float kRoulette = 2; // measured: docs/results/2026-11-25-pictures.md
+    constexpr float kRoulette = 2; // measured: docs/methods.md
     constexpr double kFewPasses = 1.4;
     bool const by_time =
         lasting || asked.until_relmse > 0 || (asked.budget_s > 0 && expected_passes(asked, costs) >= kFewPasses);
