@@ -90,6 +90,12 @@ gi::Shadows parse_shadows(std::string const& name)
     return name == "rays" ? gi::Shadows::rays : gi::Shadows::automatic;
 }
 
+gi::RadianceCaching parse_cache(std::string const& name)
+{
+    if (name == "on") return gi::RadianceCaching::on;
+    return name == "off" ? gi::RadianceCaching::off : gi::RadianceCaching::automatic;
+}
+
 } // namespace
 
 gi::RenderSettings make_settings(RenderOptions& o)
@@ -123,6 +129,7 @@ gi::RenderSettings make_settings(RenderOptions& o)
     if (!o.points.empty()) s.vpl.points = parse_points("--points " + o.points, o.points, o.vpl.point_map);
     s.slhb.schedule = parse_schedule(o.schedule);
     s.slhb.look_ups = parse_look_ups(o.look_ups);
+    s.slhb.cache = parse_cache(o.radiance_cache);
     s.slhb.shadows = parse_shadows(o.shadows);
     s.slhb.space = o.device == "cuda" ? gi::Space::device : gi::Space::host;
     check_device(o, s.slhb);
@@ -227,7 +234,8 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
     c.add_option(
          "--roulette", s.roulette,
          "paths go on with a chance of that times their throughput; 0: all do up to the fourth scattering\n"
-         "(default: 2 with --until, frames, or a --budget for more than one path; else 0)")
+         "(default: 2 with --until, frames, or a --budget for more than one path, 3 where paths end in a cache; "
+         "else 0)")
         ->check(in_range(0, 1000))
         ->group(kSlhbGroup);
     c.add_option("--cone", s.cone, "texels, radius of the cone approximation")
@@ -325,6 +333,13 @@ void declare_slhb(CLI::App& c, RenderOptions& o)
          "maps: shadow maps of --lamps light samples, which all paths of a pass share;\nrays: exact rays to "
          "light samples of each path's own; auto: by the plan")
         ->check(CLI::IsMember({"auto", "maps", "rays"}))
+        ->capture_default_str()
+        ->group(kSlhbGroup);
+    c.add_option(
+         "--radiance-cache", o.radiance_cache,
+         "paths may end in cells of light that earlier ones found: far less noise in the same time, a little\n"
+         "blur of indirect light; auto: on with --budget, and in viewers while something moves")
+        ->check(CLI::IsMember({"auto", "on", "off"}))
         ->capture_default_str()
         ->group(kSlhbGroup);
     c.add_option("--directions", o.slhb.directions, "FAMILY:COUNT of the stored set (default icosahedron:320)")

@@ -26,7 +26,7 @@ struct RenderOptions {
     std::optional<std::uint32_t> paths;
     std::uint64_t seed = 0;
     int bounces = 64, threads = 0;
-    std::string schedule = "auto", device = "cpu", look_ups = "auto", shadows = "auto";
+    std::string schedule = "auto", device = "cpu", look_ups = "auto", shadows = "auto", radiance_cache = "auto";
     gi::SlhbSettings slhb;
     gi::VirtualLightSettings vpl;
     std::string points; ///< "4096" or "30%"; empty = the default of vpl

@@ -38,6 +38,13 @@ enum class Shadows : std::uint8_t {
     rays, ///< exact rays to light samples of each path's own
 };
 
+/// Whether paths of slhb may end in cells of a cache, see gi/slhb/radiance_cache.h.
+enum class RadianceCaching : std::uint8_t {
+    automatic, ///< in pictures that time decides, and where who looks at frames asks for it
+    on,
+    off
+};
+
 /// What exact rays do in place of an approximation of slhb, to measure its bias: two renders of one seed that
 /// differ in this alone share axes, lamps and random numbers, so that their difference has little noise.
 struct ExactParts {
@@ -63,6 +70,7 @@ struct SlhbSettings {
     bool packed = false;       ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
     LookUps look_ups = LookUps::automatic;
     Shadows shadows = Shadows::automatic;
+    RadianceCaching cache = RadianceCaching::automatic;
     float roulette = -1; ///< paths go on with a chance of that times their throughput; 0 = all do up to the fourth
                          ///< scattering, then as in the reference; -1 = as the plan says
     float cone = 0;      ///< texels; radius of the disk of columns that a query may ask (Yu 2012, fig. 5.6)

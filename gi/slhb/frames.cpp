@@ -58,6 +58,8 @@ public:
         PassLoop loop(settings_, stop, progress, report_, moments ? std::exchange(start_s_, 0) : 0);
         see(full_size(camera));
         double const earlier = renderer_->rays();
+        if constexpr (!kByKernels) renderer_->forget(); // a frame is the same by itself
+        Endings const endings = settings_.slhb.cache == RadianceCaching::on ? Endings::cached : Endings::exact;
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
             for (std::uint32_t i = 0; i < paths; ++i) {
                 if (moments) {
@@ -65,7 +67,7 @@ public:
                     changed(now.changes);
                     see(full_size(now.camera));
                 }
-                renderer_->pass(passes_++, {&sums, 1});
+                renderer_->pass(passes_++, {&sums, 1}, endings);
             }
         });
         finish(result, earlier);
@@ -232,6 +234,10 @@ private:
         renderer_->end_frame();
         report_.lose("layers beyond the limit of a texel", renderer_->lost_layers() - lost_);
         lost_ = renderer_->lost_layers();
+        if constexpr (!kByKernels) {
+            report_.lose("notes that the radiance cache had no room for", renderer_->refused_notes() - refused_);
+            refused_ = renderer_->refused_notes();
+        }
     }
 
     void start(std::span<FrameView const> views)
@@ -246,7 +252,7 @@ private:
         renderer_.emplace(world, views, settings_, std::move(soup), world.static_triangles, report_);
         renderer_->follow(followed_);
         restart_ = false;
-        lost_ = 0;
+        lost_ = refused_ = 0;
     }
 
     MovingWorld const& world_;
@@ -257,7 +263,7 @@ private:
     std::vector<Accumulator> sums_; ///< of the views
     PairSums pair_sums_;
     std::uint32_t passes_ = 0, followed_ = 0;
-    std::uint64_t lost_ = 0; ///< layers that were reported
+    std::uint64_t lost_ = 0, refused_ = 0; ///< layers, and notes of the cache, that were reported
     bool restart_ = false;
     double start_s_ = 0; ///< that the first start took
 };

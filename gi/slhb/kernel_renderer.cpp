@@ -22,6 +22,9 @@ void check_kernels_can(Camera const& camera, SlhbSettings const& s)
     if (s.interleave > 1)
         throw InputError("--device cuda with --interleave", "its kernels take indirect light in every pixel",
                          suggestion);
+    if (s.cache == RadianceCaching::on)
+        throw InputError("--device cuda with --radiance-cache on", "its kernels follow paths to their end",
+                         suggestion);
     if (s.gather) throw InputError("--device cuda with --gather", "its kernels choose axes by chance", suggestion);
 }
 

@@ -35,6 +35,7 @@ enum class PathDimension : std::uint32_t {
     lamp_pick,
     shadow, ///< this and what follows are noise, without any order
     cone,
+    cache,
     count
 };
 /// The camera has the first two.

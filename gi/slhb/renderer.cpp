@@ -48,6 +48,8 @@ SlhbRenderer::SlhbRenderer(World const& world, std::span<FrameView const> views,
     end_frame();
     make_axes();
     make_lamps();
+    if (slhb_.cache != RadianceCaching::off && settings_.bounces > 0)
+        cache_.emplace(world.bounds.radius(), std::size_t(slhb_.memory_mib) << 20);
 }
 
 bool SlhbRenderer::orthographic() const
@@ -102,6 +104,8 @@ void SlhbRenderer::make_lamps()
 
 void SlhbRenderer::changed(Changes const& c)
 {
+    if (c.geometry || c.materials || c.coverage || c.lights || c.emitters || c.environment || c.light_select)
+        forget();
     if (c.materials || c.environment) materials_changed();
     bool const lights = changes_lamps(c);
     if (c.geometry || lights) world_moved(c.geometry, lights);
@@ -199,7 +203,7 @@ void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
     }
 }
 
-SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index)
+SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached)
 {
     bool const walks = axes_.walks();
     std::uint32_t const gathered = slhb_.gather && walks
@@ -221,14 +225,16 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index)
             .sky = sky_,
             .lights = shadow_maps_ ? nullptr : &lights_,
             .smooth = smooth_somewhere(world_),
-            .look_ups = !slhb_.exact.queries && slhb_.look_ups != LookUps::none};
+            .look_ups = !slhb_.exact.queries && slhb_.look_ups != LookUps::none,
+            .cache = cached && cache_ ? &*cache_ : nullptr};
 }
 
 void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings)
 {
     prepare(index, Sides::one);
     StageTimer const timer(report_, "paths");
-    paths_.trace(tracing(index), views_, endings, sums);
+    paths_.trace(tracing(index, endings == Endings::cached), views_, endings, sums);
+    if (cache_) cache_->end_pass();
     for (Accumulator& s : sums) ++s.paths;
 }
 
@@ -237,7 +243,7 @@ void SlhbRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& co
     if (!std::exchange(shadow_maps_, true)) make_lamps(); // they tell what moves may count in
     prepare(index, Sides::pair);
     StageTimer const timer(report_, "paths");
-    SlhbTracer::Pass now = tracing(index);
+    SlhbTracer::Pass now = tracing(index, false);
     now.first_watched = std::uint32_t(first_moving_);
     // The world stays as it is: look-ups pass by what moves.
     auto const show_moving = [&](bool shown) {
@@ -273,6 +279,9 @@ void SlhbRenderer::report_work() const
 {
     paths_.report_work();
     axes_.report_work();
+    if (!cache_) return;
+    report_.count("cells of the radiance cache", double(cache_->cells()));
+    report_.count("bytes of the radiance cache", double(cache_->bytes()));
     report_.count("shadow maps built", double(earlier_maps_ + lamps_->maps_built()));
 }
 

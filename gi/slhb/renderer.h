@@ -56,6 +56,13 @@ public:
     double rays() const { return paths_.rays(); } ///< look-ups and exact rays, so far
     /// Beyond the limit of a texel, so far.
     std::uint64_t lost_layers() const { return axes_.lost(); }
+    /// Notes that the radiance cache had no room for, so far.
+    std::uint64_t refused_notes() const { return cache_ ? cache_->refused() : 0; }
+    /// What follows owes nothing to what was rendered before.
+    void forget()
+    {
+        if (cache_) cache_->clear();
+    }
     /// What has been done so far.
     void report_work() const;
 
@@ -72,7 +79,7 @@ private:
     bool to_the_end() const;
     enum class Sides : std::uint8_t { one, pair };
     void prepare(std::uint32_t index, Sides sides);
-    SlhbTracer::Pass tracing(std::uint32_t index);
+    SlhbTracer::Pass tracing(std::uint32_t index, bool cached);
 
     World const& world_;
     RenderSettings settings_;
@@ -92,7 +99,8 @@ private:
     bool shadow_maps_ = true; ///< else paths send shadow rays of their own
     std::optional<Lamps> lamps_;
     EarlierCorners earlier_;
-    std::vector<SkyAlong> sky_; ///< in a pass
+    std::vector<SkyAlong> sky_;          ///< in a pass
+    std::optional<RadianceCache> cache_; ///< none where it was declined
     ViewPaths paths_;
     std::uint64_t earlier_maps_ = 0; ///< of lamps that are no more
 };

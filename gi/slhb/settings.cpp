@@ -120,17 +120,28 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
     return s;
 }
 
+/// Automatic: for frames, who looks at them says so.
+RadianceCaching choose_cache(RenderSettings const& asked, bool lasting)
+{
+    SlhbSettings const& s = asked.slhb;
+    if (asked.bounces == 0 || s.exact.any() || s.space == Space::device) return RadianceCaching::off;
+    if (s.cache != RadianceCaching::automatic) return s.cache;
+    if (asked.budget_s > 0 && !(asked.until_relmse > 0)) return RadianceCaching::on;
+    return lasting ? RadianceCaching::automatic : RadianceCaching::off;
+}
+
 SlhbSettings with_rays(RenderSettings const& asked, SlhbSettings s, World const& world, TriangleSoup const& soup,
                        Camera const& camera, Costs const& costs, bool lasting)
 {
     RayPlan const plan = plan_rays(asked, s.resolution, world, soup, camera, costs, lasting);
     s.look_ups = plan.look_ups;
     // Where time decides, weak paths are worth less than others, as long as what they leave makes room for more.
-    constexpr float kRoulette = 2; // measured: docs/methods.md
+    constexpr float kRoulette = 2, kRouletteToCells = 3; // measured: docs/methods.md
     constexpr double kFewPasses = 1.4;
     bool const by_time =
         lasting || asked.until_relmse > 0 || (asked.budget_s > 0 && expected_passes(asked, costs) >= kFewPasses);
-    if (s.roulette < 0) s.roulette = by_time ? kRoulette : 0;
+    s.cache = choose_cache(asked, lasting);
+    if (s.roulette < 0) s.roulette = !by_time ? 0 : s.cache == RadianceCaching::on ? kRouletteToCells : kRoulette;
     s.shadows = plan.shadows;
     return s;
 }
@@ -183,6 +194,8 @@ std::string as_options(SlhbSettings const& s)
     text += fmt::format(" --look-ups {} --shadows {}", s.look_ups == LookUps::none ? "none" : "all",
                         s.shadows == Shadows::rays ? "rays" : "maps");
     text += fmt::format(" --roulette {}", s.roulette);
+    if (s.cache != RadianceCaching::automatic)
+        text += fmt::format(" --radiance-cache {}", s.cache == RadianceCaching::on ? "on" : "off");
     if (s.cone > 0) text += fmt::format(" --cone {}", s.cone);
     if (s.packed) text += " --packed";
     if (s.gather) text += " --gather";
@@ -218,6 +231,11 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
         items.push_back({fmt::format("at most {} MiB of hit buffers", s.memory_mib), true,
                          "else they get fewer texels (--memory)"});
     }
+    bool const cached = choose_cache(asked, false) == RadianceCaching::on;
+    items.push_back({"radiance cache", cached,
+                     asked.slhb.cache != RadianceCaching::automatic ? "asked for"
+                     : cached ? "time decides; it takes noise for a little blur"
+                              : "it would leave a small error however long the render is; --radiance-cache on"});
     bool const lit = !world.light_select.empty(), rays = plan.shadows == Shadows::rays;
     items.push_back(
         {rays ? "shadow rays"

@@ -1,20 +1,15 @@
 #pragma once
 // Paths of one pass whose rest is computed once, by one of them that goes on, and added to all: those that end on
-// the same side of the same layer, or, where that is asked for, in the same cell (gi/slhb/ending_cells.h). On a
-// layer each pixel's estimate is what it would be alone; in a cell it is of what the cell sends back on average.
-// Either way pixels share noise.
+// the same side of the same layer. Each pixel's estimate is what it would be alone, but pixels share noise.
 
-#include "gi/slhb/ending_cells.h"
-
-#include <optional>
+#include "gi/slhb/tracer.h"
 
 namespace gi {
 
 class SharedEndings {
 public:
     /// @param paths  of the pass  @param layers  that they may end on; 0 = nothing is shared in this pass
-    void start_layers(std::size_t paths, std::size_t layers, std::uint32_t pass);
-    void start_cells(std::size_t paths, EndingCells const& cells, std::uint32_t pass);
+    void start(std::size_t paths, std::size_t layers, std::uint32_t pass);
     /// From several threads, once for every path.
     void note(std::uint32_t path, Ending const& ending);
     /// For paths that have no ending to share.
@@ -33,13 +28,9 @@ public:
 
 private:
     static constexpr std::uint32_t kNone = 0xffffffff;
-    void start(std::size_t paths, std::size_t slots, std::uint32_t pass);
-
-    std::optional<EndingCells> cells_;
     std::uint32_t order_key_ = 0;
     std::vector<std::uint32_t> slots_;    ///< the first path that ends there, in an order of the pass
     std::vector<std::uint32_t> start_of_; ///< of each path: its slot, later its start
-    std::vector<std::uint64_t> keys_;     ///< of each path, with cells: several cells may have one slot
     std::vector<PathStart> starts_;
     std::vector<vec3> radiance_;
     std::uint64_t shaded_ = 0;

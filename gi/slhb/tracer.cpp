@@ -181,17 +181,19 @@ void SlhbTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::ve
     if (!rays.empty()) pass.exact->nearest(rays, hits, pass.exact_world);
     counts.exact_rays += rays.size();
     std::size_t ray = 0;
-    for (Vertex const& v : vertices) {
+    for (Vertex& v : vertices) {
         State& s = states[v.path];
         s.has_position = !v.exact;
         if (v.exact) {
             s.triangle = hits[ray].triangle;
             if (s.triangle != kNoPrimitive) __builtin_prefetch(&world_.surfaces[s.triangle]);
+            v.distance = hits[ray].distance;
             s.barycentric = hits[ray++].barycentric;
         } else {
             s.triangle = v.hit.triangle;
             s.position = v.hit.position;
             s.barycentric = vec2{1.0f / 3};
+            v.distance = glm::length(s.position - v.origin.position);
             if (v.near_moving) s.sample->near_moving = true;
         }
     }
@@ -210,12 +212,13 @@ bool SlhbTracer::ends_shared(State& s, Vertex const& v, Ending& ending) const
         at.position = s.position;
         add_emission(s, v, at);
     }
-    ending = {s.triangle, v.exact ? kNoLayerHit : v.layer, v.origin.up, s.position, s.direction, s.throughput};
+    ending = {s.triangle, v.layer, v.origin.up, s.position, s.direction, s.throughput};
     return true;
 }
 
 void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
-                       std::span<Ending> endings, PathCounts& paths, SlhbCounts& counts) const
+                       std::span<Ending> endings, std::vector<CacheNote>& notes, PathCounts& paths,
+                       SlhbCounts& counts) const
 {
     using Clock = std::chrono::steady_clock;
     auto const begun = Clock::now();
@@ -225,8 +228,10 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
     thread_local std::vector<Vertex> vertices;
     thread_local Direct direct;
     thread_local std::vector<VertexNumbers> numbers;
-    numbers.resize(starts.size());
+    thread_local std::vector<Open> open;
+    open.clear();
     start_paths(pass, starts, samples, states, vertices);
+    numbers.resize(starts.size());
     for (std::size_t k = 0; k < states.size(); ++k) states[k].u = &numbers[k];
     for (Ending& e : endings) e.triangle = kNoLayerHit;
     std::size_t active = starts.size();
@@ -235,7 +240,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
         prepare_vertices(std::span(vertices).first(active), states);
         for (std::size_t k = 0; k < active; ++k) {
             Vertex& v = vertices[k];
-            if (!shade(pass, states[v.path], v, direct, paths)) continue;
+            if (!shade(pass, states[v.path], v, direct, open, paths)) continue;
             if (going != k) vertices[going] = v;
             ++going;
         }
@@ -243,6 +248,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
         if (from_camera && turned == begun) turned = Clock::now();
         find_hits(pass, std::span(vertices).first(going), states, counts);
         active = going;
+        if (pass.cache != nullptr) end_in_cells(pass, states, vertices, active, open, counts);
         if (endings.empty()) continue;
         active = 0;
         for (std::size_t k = 0; k < going; ++k) {
@@ -250,6 +256,8 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
             if (!ends_shared(states[v.path], v, endings[v.path])) vertices[active++] = v;
         }
     }
+    for (Open const& o : open)
+        notes.push_back({o.keys, (states[o.path].bucket(2) - o.before) / o.throughput, o.weight, o.directional});
     counts.direct_s += std::chrono::duration<double>(turned - begun).count();
     counts.indirect_s += std::chrono::duration<double>(Clock::now() - turned).count();
     for (PathSample& s : samples)

@@ -13,6 +13,7 @@
 #include "gi/image/render_settings.h"
 #include "gi/slhb/axis_set.h"
 #include "gi/slhb/lamps.h"
+#include "gi/slhb/radiance_cache.h"
 #include "gi/transport/exact_visibility.h"
 #include "gi/transport/path_sample.h"
 
@@ -22,7 +23,7 @@ namespace gi {
 
 /// Work done, for --stats.
 struct SlhbCounts {
-    std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0, shadow_rays = 0;
+    std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0, shadow_rays = 0, cache_reads = 0;
     double direct_s = 0, indirect_s = 0; ///< of all threads: first surfaces with their direct light; what follows
 };
 
@@ -38,7 +39,7 @@ struct PathStart {
 /// the same side of a layer.
 struct Ending {
     std::uint32_t triangle = kNoLayerHit; ///< kNoLayerHit = the path does not end so
-    std::uint32_t layer = kNoLayerHit;    ///< of the pool; kNoLayerHit = found by an exact ray
+    std::uint32_t layer = kNoLayerHit;    ///< of the pool
     bool up = false;                      ///< the walk that met the layer
     vec3 position{0};
     vec3 arrival{0}; ///< direction of the path
@@ -77,6 +78,7 @@ public:
         LightPool const* lights = nullptr;  ///< paths send exact rays to these; null = they have `lamps`
         bool smooth = false;                ///< something in the world is a mirror or glass
         bool look_ups = true;               ///< else exact rays in their place
+        RadianceCache* cache = nullptr;     ///< paths may end in its cells; null = all go on to their end
     };
 
     /// @param width  of the picture, pixels
@@ -98,8 +100,10 @@ public:
 
     /// @param samples one per start, overwritten
     /// @param endings empty, or one per start: paths end on the first matt layer and say so here
+    /// @param notes   for the cache of the pass, appended
     void trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
-               std::span<Ending> endings, PathCounts& paths, SlhbCounts& counts) const;
+               std::span<Ending> endings, std::vector<CacheNote>& notes, PathCounts& paths,
+               SlhbCounts& counts) const;
 
 private:
     struct State;
@@ -108,9 +112,11 @@ private:
     struct ShadowRay;
     struct Direct;
     struct Leaving;
+    struct Open;
 
     /// All in one function, so that vectors stay in registers.
-    [[gnu::flatten]] bool shade(Pass const& pass, State& s, Vertex& next, Direct& direct, PathCounts& paths) const;
+    [[gnu::flatten]] bool shade(Pass const& pass, State& s, Vertex& next, Direct& direct, std::span<Open> open,
+                                PathCounts& paths) const;
     /// What a light sample brings where nothing is in the way, against the directions of paths.
     vec3 unshadowed(Leaving const& from, LightSample const& light) const;
     void aim_at_light(Pass const& pass, State const& s, Leaving const& from, std::vector<ShadowRay>& rays) const;
@@ -133,6 +139,10 @@ private:
     void add_lit(Pass const& pass, Direct& direct, SlhbCounts& counts) const;
     void find_hits(Pass const& pass, std::span<Vertex> vertices, std::vector<State>& states,
                    SlhbCounts& counts) const;
+    /// Paths whose cell is known end there, but for some that teach it.
+    void end_in_cells(Pass const& pass, std::span<State> states, std::vector<Vertex>& vertices,
+                      std::size_t& active, std::vector<Open>& open, SlhbCounts& counts) const;
+    CacheKeys cache_keys(Pass const& pass, State const& s) const;
     bool ends_shared(State& s, Vertex const& v, Ending& ending) const;
     /// By exact rays in place of shadow maps, see ExactParts.
     void add_exactly(Pass const& pass, std::span<Unshadowed const> direct) const;

@@ -212,7 +212,8 @@ bool SlhbTracer::scatter_along_axis(Pass const& pass, State& s, Leaving const& f
 }
 
 /// False where the path ends.
-bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct, PathCounts& paths) const
+bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct, std::span<Open> open,
+                       PathCounts& paths) const
 {
     if (s.triangle == kNoPrimitive) {
         add_sky(pass, s, next);
@@ -228,6 +229,7 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
         s.barycentric = barycentric_at(surface, s.position);
     ShadingPoint at = shading_point(world_, s.triangle, s.barycentric, s.direction);
     if (s.has_position) at.position = s.position;
+    if (s.open >= 0) open[std::size_t(s.open)].directional = is_directional(at.bsdf);
     if (s.vertex == 0) {
         s.sample->hit = true;
         s.sample->albedo = albedo(at.bsdf);

@@ -23,6 +23,8 @@ struct SlhbTracer::State {
     bool along_axis = false; ///< came by a broad lobe: along an axis, where there are look-ups
     bool emitted = false;    ///< what its surface emits has been added
     int scatterings = 0, vertex = 0;
+    float footprint = 0; ///< m across, of the bundle of paths that this one stands for, about
+    int open = -1;       ///< index of the note that its surface gets
     PathSample* sample;
 
     VertexNumbers* u = nullptr; ///< of its vertex
@@ -41,6 +43,16 @@ struct SlhbTracer::Vertex {
     LayerHit hit; ///< answer of a query
     std::uint32_t layer;
     bool near_moving; ///< see QueryBatch
+    float distance;   ///< m, to what it met
+};
+
+/// A note for the radiance cache whose path is under way.
+struct SlhbTracer::Open {
+    std::uint32_t path;
+    CacheKeys keys;
+    vec3 throughput, before; ///< of the path when it arrived; what it had brought by then
+    float weight;
+    bool directional = false;
 };
 
 /// Direct light that waits for its shadow ray.

@@ -7,6 +7,7 @@
 #include "gi/transport/sampling.h"
 
 #include <algorithm>
+#include <bit>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
@@ -43,6 +44,9 @@ void exact_hits(SlhbTracer::Pass const& pass, SeenView const& view, RenderSettin
     pass.exact->nearest(rays, hits);
     for (std::size_t k = 0; k < hits.size(); ++k) out[k].triangle = hits[k].triangle;
 }
+
+/// Which of five turns a block of pixels has: 1, 1, 2, 4 and 8 of sixteen.
+std::uint32_t turn_of(std::size_t block) { return std::uint32_t(std::bit_width((block * 7) & 15)); }
 
 } // namespace
 
@@ -81,18 +85,18 @@ SlhbTracer ViewPaths::tracer_of(SeenView const& view) const
 
 /// The paths of a block of pixels.
 void ViewPaths::trace_all(SlhbTracer::Pass const& pass, SlhbTracer const& tracer, std::size_t first, bool sharing,
-                          std::span<PathStart const> starts, Counts& counts)
+                          std::span<PathStart const> starts, std::vector<CacheNote>& notes, Counts& counts)
 {
     std::span const samples(&samples_[first], starts.size());
     std::span const ends = sharing ? std::span(&endings_[first], starts.size()) : std::span<Ending>();
-    tracer.trace(pass, starts, samples, ends, counts.paths, counts.slhb);
+    tracer.trace(pass, starts, samples, ends, notes, counts.paths, counts.slhb);
     for (std::size_t k = 0; k < ends.size(); ++k) shared_.note(std::uint32_t(first + k), ends[k]);
 }
 
 /// The same, but for pixels that are hidden and those that take their light from a partner.
 void ViewPaths::trace_some(SlhbTracer::Pass const& pass, SlhbTracer const& tracer, SeenView const& view,
                            PartnerLight const* partner, bool sharing, std::vector<PathStart>& starts,
-                           Counts& counts)
+                           std::vector<CacheNote>& notes, Counts& counts)
 {
     std::size_t left = 0;
     for (PathStart const& start : starts) {
@@ -116,7 +120,7 @@ void ViewPaths::trace_some(SlhbTracer::Pass const& pass, SlhbTracer const& trace
     thread_local std::vector<Ending> ends;
     samples.resize(left);
     ends.resize(sharing ? left : 0);
-    tracer.trace(pass, starts, samples, ends, counts.paths, counts.slhb);
+    tracer.trace(pass, starts, samples, ends, notes, counts.paths, counts.slhb);
     for (std::size_t k = 0; k < left; ++k) {
         std::size_t const at = view.first + starts[k].stream;
         samples_[at] = samples[k];
@@ -135,43 +139,50 @@ void ViewPaths::trace_view(SlhbTracer::Pass const& pass, SeenViews const& views,
         SeenView const& other = views[std::size_t(view.partner)];
         partner.emplace(world_, *other.primary, samples(other), other.rays, view.rays);
     }
-    work.in_blocks(
-        view.pixels(),
-        [&](std::size_t first, std::size_t last, Counts& local) {
-            thread_local std::vector<PathStart> starts;
-            if (view.primary)
-                view.primary->hits(first, last, starts);
-            else
-                exact_hits(pass, view, settings_, first, last, starts);
-            if (partner || !view.hidden.empty())
-                trace_some(pass, tracer, view, partner ? &*partner : nullptr, sharing, starts, local);
-            else
-                trace_all(pass, tracer, view.first + first, sharing, starts, local);
-            if (pass.first_watched == kNoPrimitive) return;
-            std::vector<std::uint32_t>& near = near_moving_[first / block_];
-            near.clear();
-            for (std::size_t p = first; p < last; ++p)
-                if (samples_[p].near_moving) near.push_back(std::uint32_t(p));
-        },
-        block_);
+    auto const trace_block = [&](std::size_t first, std::size_t last, Counts& local) {
+        thread_local std::vector<PathStart> starts;
+        std::vector<CacheNote>& notes = notes_[first / block_];
+        if (view.primary)
+            view.primary->hits(first, last, starts);
+        else
+            exact_hits(pass, view, settings_, first, last, starts);
+        if (partner || !view.hidden.empty())
+            trace_some(pass, tracer, view, partner ? &*partner : nullptr, sharing, starts, notes, local);
+        else
+            trace_all(pass, tracer, view.first + first, sharing, starts, notes, local);
+        if (pass.first_watched == kNoPrimitive) return;
+        std::vector<std::uint32_t>& near = near_moving_[first / block_];
+        near.clear();
+        for (std::size_t p = first; p < last; ++p)
+            if (samples_[p].near_moving) near.push_back(std::uint32_t(p));
+    };
+    notes_.resize(view.pixels() / block_ + 1);
+    // Of a cache that knows nothing: some blocks first, so that others can read what they taught.
+    constexpr std::uint32_t kTurns = 5;
+    bool const in_turns = pass.cache != nullptr && pass.cache->empty();
+    for (std::uint32_t turn = 0; turn < (in_turns ? kTurns : 1); ++turn) {
+        work.in_blocks(
+            view.pixels(),
+            [&](std::size_t first, std::size_t last, Counts& local) {
+                if (!in_turns || turn_of(first / block_) == turn) trace_block(first, last, local);
+            },
+            block_);
+        if (pass.cache == nullptr) continue;
+        pass.cache->learn(notes_);
+        for (std::vector<CacheNote>& notes : notes_) notes.clear();
+    }
 }
 
 /// Whether paths of this pass end on the first matt layer and share what is sent on there.
-bool ViewPaths::start_sharing(SlhbTracer::Pass const& pass, SeenViews const& views, Endings endings)
+bool ViewPaths::start_sharing(SlhbTracer::Pass const& pass, Endings endings)
 {
     SlhbSettings const& slhb = settings_.slhb;
-    std::size_t const pixels = samples_.size(), layers = pass.axes.first_bounce_layers();
-    bool const possible =
-        endings != Endings::own && settings_.bounces > 0 && slhb.cone == 0 && !slhb.exact.queries;
-    bool const orthographic = std::ranges::any_of(views, [](SeenView const& v) { return v.rays.orthographic; });
-    bool const in_cells = possible && endings == Endings::in_cells && !orthographic,
-               on_layers = possible && pass.look_ups && layers > 0 && layers < pixels;
-    if (in_cells)
-        shared_.start_cells(pixels, EndingCells(world_, views[0].rays.origin, pass.index), pass.index);
-    else
-        shared_.start_layers(pixels, on_layers ? layers : 0, pass.index);
-    endings_.resize(in_cells || on_layers ? pixels : 0);
-    return in_cells || on_layers;
+    std::size_t const paths = samples_.size(), layers = pass.axes.first_bounce_layers();
+    bool const sharing = endings != Endings::own && pass.cache == nullptr && pass.look_ups && layers > 0 &&
+                         layers < paths && settings_.bounces > 0 && slhb.cone == 0;
+    shared_.start(paths, sharing ? layers : 0, pass.index);
+    endings_.resize(sharing ? paths : 0);
+    return sharing;
 }
 
 /// From where paths ended that share their endings.
@@ -182,7 +193,8 @@ void ViewPaths::send_on(SlhbTracer::Pass const& pass, SeenView const& view, Work
     work.in_blocks(shared_.starts().size(), [&](std::size_t first, std::size_t last, Counts& local) {
         thread_local std::vector<PathSample> sent;
         sent.resize(last - first);
-        tracer.trace(pass, std::span(shared_.starts()).subspan(first, last - first), sent, {}, local.paths,
+        std::vector<CacheNote> none;
+        tracer.trace(pass, std::span(shared_.starts()).subspan(first, last - first), sent, {}, none, local.paths,
                      local.slhb);
         shared_.keep(first, sent);
     });
@@ -226,7 +238,7 @@ void ViewPaths::trace(SlhbTracer::Pass const& pass, SeenViews const& views, Endi
     samples_.resize(pixels);
     taken_from_.assign(views.size() > 1 ? pixels : 0, kOwnLight);
     light_from_.resize(taken_from_.size());
-    bool const sharing = start_sharing(pass, views, endings);
+    bool const sharing = start_sharing(pass, endings);
     Work work;
     for (SeenView const& v : views) trace_view(pass, views, v, sharing, work);
     send_on(pass, views[0], work);
@@ -253,7 +265,8 @@ void ViewPaths::trace_pair(SlhbTracer::Pass const& pass, SeenViews const& views,
     auto const trace_some = [&](std::size_t first, std::size_t last, Counts& local) {
         thread_local std::vector<PathStart> starts;
         view.primary->hits_behind(std::span(without_pixels_).subspan(first, last - first), starts);
-        tracer.trace(without, starts, std::span(without_).subspan(first, last - first), {}, local.paths,
+        std::vector<CacheNote> none;
+        tracer.trace(without, starts, std::span(without_).subspan(first, last - first), {}, none, local.paths,
                      local.slhb);
     };
     work.in_blocks(without_.size(), trace_some, kSmallBlock);
@@ -275,6 +288,7 @@ void ViewPaths::add_work(Work& work, PathCounts& paths)
         done_.exact_rays += c.slhb.exact_rays;
         done_.shadow_lookups += c.slhb.shadow_lookups;
         done_.shadow_rays += c.slhb.shadow_rays;
+        done_.cache_reads += c.slhb.cache_reads;
         taken_ += c.taken;
     });
     report_.add_time("direct light, thread seconds", direct_s);
@@ -292,6 +306,7 @@ void ViewPaths::report_work() const
     report_.count("shadow-map look-ups", double(done_.shadow_lookups));
     report_.count("exact rays", double(done_.exact_rays));
     report_.count("shadow rays", double(done_.shadow_rays));
+    report_.count("paths that ended in the radiance cache", double(done_.cache_reads));
     report_.count("endings shaded for several paths", double(shared_.shaded()));
     if (taking_ > 0) report_.count("share of pixels lit by a partner view", double(taken_) / double(taking_));
     if (hidden_ > 0) {

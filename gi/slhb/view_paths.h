@@ -48,13 +48,14 @@ private:
     struct Counts;
     struct Work;
     SlhbTracer tracer_of(SeenView const& view) const;
-    bool start_sharing(SlhbTracer::Pass const& pass, SeenViews const& views, Endings endings);
+    bool start_sharing(SlhbTracer::Pass const& pass, Endings endings);
     void trace_view(SlhbTracer::Pass const& pass, SeenViews const& views, SeenView const& view, bool sharing,
                     Work& work);
     void trace_all(SlhbTracer::Pass const& pass, SlhbTracer const& tracer, std::size_t first, bool sharing,
-                   std::span<PathStart const> starts, Counts& counts);
+                   std::span<PathStart const> starts, std::vector<CacheNote>& notes, Counts& counts);
     void trace_some(SlhbTracer::Pass const& pass, SlhbTracer const& tracer, SeenView const& view,
-                    PartnerLight const* partner, bool sharing, std::vector<PathStart>& starts, Counts& counts);
+                    PartnerLight const* partner, bool sharing, std::vector<PathStart>& starts,
+                    std::vector<CacheNote>& notes, Counts& counts);
     void send_on(SlhbTracer::Pass const& pass, SeenView const& view, Work& work);
     void add(SeenViews const& views, std::size_t index, bool sharing, std::span<Accumulator> sums, Work& work);
     void add_work(Work& work, PathCounts& counts);
@@ -64,10 +65,11 @@ private:
     Report& report_;
     std::size_t block_; ///< pixels whose paths advance together on one thread
     SharedEndings shared_;
-    std::vector<PathSample> samples_;       ///< of the pixels of all views
-    std::vector<Ending> endings_;           ///< the same
-    std::vector<std::uint32_t> taken_from_; ///< the same: pixel of the partner's view
-    std::vector<std::uint32_t> light_from_; ///< the same, of all passes of a frame
+    std::vector<std::vector<CacheNote>> notes_; ///< per block of pixels of a view
+    std::vector<PathSample> samples_;           ///< of the pixels of all views
+    std::vector<Ending> endings_;               ///< the same
+    std::vector<std::uint32_t> taken_from_;     ///< the same: pixel of the partner's view
+    std::vector<std::uint32_t> light_from_;     ///< the same, of all passes of a frame
     std::vector<std::vector<std::uint32_t>>
         near_moving_;                           ///< per block of pixels: those that what moves may count in
     std::vector<std::uint32_t> without_pixels_; ///< all of those

@@ -32,10 +32,10 @@ struct FrameView {
 
 /// What is found of the light that surfaces send on to others.
 enum class Endings : std::uint8_t {
-    own,     ///< each path finds it by itself: one that meets nothing new stays as it was, whatever others meet
-    exact,   ///< paths that end on one layer share it
-    in_cells ///< paths that end near each other may share what is sent on there: much less work, a little blur of
-             ///< it
+    own,   ///< each path finds it by itself: one that meets nothing new stays as it was, whatever others meet
+    exact, ///< paths that end on one layer share it
+    cached ///< paths may end in cells of a cache that is kept while light and geometry stay: much less work, a
+           ///< little blur
 };
 
 /// The two pictures of a PairResult.

@@ -280,7 +280,7 @@ void check_views()
     views[2].partner = 0;
     auto const partners =
         start_kernel_frames(S, alone.world, frame_eye(), settings_of(Schedule::stored), alone.report)
-            ->views(views, 2, Endings::in_cells, {});
+            ->views(views, 2, Endings::cached, {});
     EXPECT_EQ(layer(partners[2], "color"), layer(whole[2], "color"));
     EXPECT_TRUE(partners[2].light_from.empty());
     views[0].hidden = views[2].hidden = hidden;

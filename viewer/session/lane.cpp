@@ -72,7 +72,7 @@ std::vector<gi::RenderResult> Lane::render(FrameOrder const& order, std::span<Hi
         if (hidden[k]) views.back().hidden = *hidden[k];
     }
     // Their blur would stay in the mean of a picture at rest.
-    auto const endings = settings.share_endings && anything_moved ? gi::Endings::in_cells : gi::Endings::exact;
+    auto const endings = settings.share_endings && anything_moved ? gi::Endings::cached : gi::Endings::exact;
     renderer_->follow(settings.schedule == "auto" ? settings.followed : 0);
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(order.paths), endings, stop);
     for (std::size_t k = 0; k < results.size(); ++k)

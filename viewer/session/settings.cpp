@@ -144,7 +144,7 @@ std::vector<Entry> const& entries()
         count("reuse", "frames that light is reused over, 1 = none", &Settings::reuse, 1, 256),
         word("denoise", "filter", &Settings::denoise, gi::filter_names()),
         flag("share_eyes", "an eye may take light that the other one found", &Settings::share_eyes),
-        flag("share_endings", "paths that end near each other may share what is sent on there",
+        flag("share_endings", "while anything moves, paths may end in cells of light that others found",
              &Settings::share_endings),
         real("exposure", "stops", &Settings::exposure_ev, -32, 32),
         word("tone", "curve", &Settings::tone, {"srgb", "filmic"}),

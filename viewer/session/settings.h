@@ -26,7 +26,7 @@ struct Settings {
     int reuse = 16; ///< frames of temporal reuse; 1 = none
     std::string denoise = "wide";
     bool share_eyes = true;    ///< an eye may take light that the other one found
-    bool share_endings = true; ///< paths that end near each other may share what is sent on there
+    bool share_endings = true; ///< while anything moves, paths may end in the radiance cache
     double exposure_ev = 0;
     std::string tone = "srgb";
     // Of the interactive loop
