@@ -31,19 +31,6 @@ double layers_per_texel(World const& world, TriangleSoup const& soup)
     return covered > 0 ? double(b.layers.size()) / double(covered) : 0;
 }
 
-/// Where the first pass would not end within the budget: the primary surfaces and direct light of all pixels, and
-/// indirect light for as many as there is time for. @param axes  built before, for a bounce
-int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, int axes, Costs const& costs)
-{
-    if (!(asked.budget_s > 0) || asked.bounces == 0) return 1;
-    double const pixels = double(asked.width) * asked.height, bounces = std::min(asked.bounces, 3);
-    double const fixed = bounces * axes * costs.axis(s.resolution) +
-                         s.fresh_lamps * costs.map(s.shadow_resolution) + pixels * costs.direct;
-    for (int const n : {1, 2, 4})
-        if ((fixed + pixels * bounces * costs.bounce / (n * n)) / cores_of(asked) < asked.budget_s) return n;
-    return 4;
-}
-
 } // namespace
 
 bool needs_exact_rays(World const& world, bool orthographic, SlhbSettings const& s)
@@ -116,7 +103,6 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
         s.shadow_resolution /= 2;
     if (s.fresh_lamps == 0) s.fresh_lamps = s.lamps;
     s.fresh_lamps = std::min(s.fresh_lamps, s.lamps);
-    if (s.interleave == 0) s.interleave = choose_interleave(asked, s, s.fresh_axes, costs);
     return s;
 }
 
@@ -128,6 +114,27 @@ RadianceCaching choose_cache(RenderSettings const& asked, bool lasting)
     if (s.cache != RadianceCaching::automatic) return s.cache;
     if (asked.budget_s > 0 && !(asked.until_relmse > 0)) return RadianceCaching::on;
     return lasting ? RadianceCaching::automatic : RadianceCaching::off;
+}
+
+/// Where the first pass would not end within the budget: the primary surfaces and direct light of all pixels, and
+/// indirect light for as many as there is time for. @param axes  built in a pass, for a bounce
+int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, int axes, Costs const& costs)
+{
+    if (!(asked.budget_s > 0) || asked.bounces == 0) return 1;
+    bool const rays = s.look_ups == LookUps::none, shadow_rays = s.shadows == Shadows::rays;
+    // Surfaces after the first one: many paths end by roulette, most in the cache.
+    double const pixels = double(asked.width) * asked.height, bounces = std::min(asked.bounces, 3),
+                 after = s.cache == RadianceCaching::on ? 1.3
+                         : s.roulette > 0               ? std::min(bounces, 1.5)
+                                                        : bounces;
+    double const shadow = shadow_rays ? costs.shadow_ray : 0;
+    double const fixed = (rays ? 0 : bounces * axes * costs.axis(s.resolution)) +
+                         (shadow_rays ? 0 : s.fresh_lamps * costs.map(s.shadow_resolution)) +
+                         pixels * (costs.direct + shadow),
+                 indirect = pixels * after * (costs.bounce + (rays ? costs.ray : 0) + shadow);
+    for (int const n : {1, 2, 4})
+        if ((fixed + indirect / (n * n)) / cores_of(asked) < asked.budget_s) return n;
+    return 4;
 }
 
 SlhbSettings with_rays(RenderSettings const& asked, SlhbSettings s, World const& world, TriangleSoup const& soup,
@@ -143,6 +150,9 @@ SlhbSettings with_rays(RenderSettings const& asked, SlhbSettings s, World const&
     s.cache = choose_cache(asked, lasting);
     if (s.roulette < 0) s.roulette = !by_time ? 0 : s.cache == RadianceCaching::on ? kRouletteToCells : kRoulette;
     s.shadows = plan.shadows;
+    if (s.interleave == 0)
+        s.interleave =
+            choose_interleave(asked, s, lasting && s.schedule == Schedule::stored ? 0 : s.fresh_axes, costs);
     return s;
 }
 
@@ -173,8 +183,6 @@ SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& wor
     int const fresh = asked.slhb.fresh_lamps > 0 ? asked.slhb.fresh_lamps : std::max(1, s.lamps / kPasses);
     if (asked.slhb.lamps == 0) s.lamps = std::max(s.lamps, kLamps);
     s.fresh_lamps = std::min(fresh, s.lamps);
-    if (asked.slhb.interleave == 0)
-        s.interleave = choose_interleave(asked, s, s.schedule == Schedule::stored ? 0 : s.fresh_axes, costs);
     return with_rays(asked, s, world, soup, camera, costs, true);
 }
 
