@@ -126,7 +126,7 @@ struct RenderSettings {
 struct RenderStatus {
     double fraction = 0;
     std::uint32_t paths = 0; ///< per pixel so far
-    double relmse = 0; ///< estimated from the variance: mean of var(mean) / (mean^2 + 0.01); 0 = not known yet
+    double relmse = 0; ///< estimated from the variance: see Accumulator::relative_mse; 0 = not known yet
 };
 
 /// Called between passes.

@@ -34,12 +34,42 @@ dvec3 Accumulator::variance_of_mean(PixelSums const& p) const
     return glm::max(dvec3{0}, (p.color_squared / n - m * m) / (n - 1));
 }
 
+namespace {
+
+/// Means over windows of (2 r + 1)^2 values, fewer at the rim.
+std::vector<vec3> window_means(std::vector<vec3> values, int width, int height, int r)
+{
+    std::vector<vec3> rows(values.size());
+    auto const along = [](std::vector<vec3> const& from, std::vector<vec3>& to, int lines, int n, int step,
+                          int line_step, int reach) {
+        tbb::parallel_for(0, lines, [&](int line) {
+            for (int k = 0; k < n; ++k) {
+                int const first = std::max(0, k - reach), last = std::min(n - 1, k + reach);
+                vec3 sum{0};
+                for (int j = first; j <= last; ++j) sum += from[std::size_t(line * line_step + j * step)];
+                to[std::size_t(line * line_step + k * step)] = sum / float(last - first + 1);
+            }
+        });
+    };
+    along(values, rows, height, width, 1, width, r);
+    along(rows, values, width, height, width, 1, r);
+    return values;
+}
+
+} // namespace
+
 double Accumulator::relative_mse() const
 {
     if (paths < 2) return 0;
+    std::vector<vec3> means(pixels.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 4096), [&](auto const& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) means[i] = vec3(mean(pixels[i]));
+    });
+    constexpr int kReach = 2;
+    means = window_means(std::move(means), width, height, kReach);
     auto const sum_of = [&](tbb::blocked_range<std::size_t> const& range, double sum) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            dvec3 const m = mean(pixels[i]), v = variance_of_mean(pixels[i]) / (m * m + 0.01);
+            dvec3 const m(means[i]), v = variance_of_mean(pixels[i]) / (m * m + 0.01);
             sum += v.x + v.y + v.z;
         }
         return sum;

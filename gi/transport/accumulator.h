@@ -101,7 +101,8 @@ struct Accumulator {
     }
     /// Variance of the mean per channel; 0 with fewer than two paths.
     dvec3 variance_of_mean(PixelSums const& p) const;
-    /// Estimated relMSE of the picture: mean over pixels and channels of var(mean) / (mean^2 + 0.01).
+    /// Estimated relMSE of the picture: mean over pixels and channels of var(mean) / (m^2 + 0.01), where m is the mean
+    /// of 5 x 5 pixels: that of a noisy pixel alone would be large where its variance is.
     double relative_mse() const;
     /// Of the world that was rendered: positions are absolute; where its background is transparent, "alpha" is the
     /// share of paths that met a surface, and the colours are multiplied by it as they are.
