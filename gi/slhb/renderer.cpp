@@ -279,10 +279,10 @@ void SlhbRenderer::report_work() const
 {
     paths_.report_work();
     axes_.report_work();
+    report_.count("shadow maps built", double(earlier_maps_ + lamps_->maps_built()));
     if (!cache_) return;
     report_.count("cells of the radiance cache", double(cache_->cells()));
     report_.count("bytes of the radiance cache", double(cache_->bytes()));
-    report_.count("shadow maps built", double(earlier_maps_ + lamps_->maps_built()));
 }
 
 } // namespace gi

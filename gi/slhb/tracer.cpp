@@ -230,8 +230,8 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
     thread_local std::vector<VertexNumbers> numbers;
     thread_local std::vector<Open> open;
     open.clear();
-    start_paths(pass, starts, samples, states, vertices);
     numbers.resize(starts.size());
+    start_paths(pass, starts, samples, states, vertices);
     for (std::size_t k = 0; k < states.size(); ++k) states[k].u = &numbers[k];
     for (Ending& e : endings) e.triangle = kNoLayerHit;
     std::size_t active = starts.size();
