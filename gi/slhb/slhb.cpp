@@ -33,7 +33,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb") : 0;
     Endings const endings = chosen.slhb.cache == RadianceCaching::on ? Endings::cached : Endings::exact;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
-        for (std::uint32_t i = 0; i < paths; ++i)
+        for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
             renderer.pass(loop.first_path() + sums.paths, {&sums, 1}, endings);
     });
     renderer.report_work();
