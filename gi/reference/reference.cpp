@@ -8,6 +8,7 @@
 #include "gi/transport/pass_loop.h"
 
 #include <algorithm>
+#include <chrono>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
@@ -21,10 +22,12 @@ struct FirstHit {
 };
 
 /// @param first_hits  one per pixel, set by its last path; empty = not wanted
+/// Of an interleaved pass, pixels take indirect light from those whose turn it is.
 void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t first_path,
                 std::uint32_t paths, std::span<FirstHit> first_hits = {})
 {
     tbb::combinable<PathCounts> counts;
+    std::vector<PathSample> waiting(tracer.interleaving.n > 1 ? sums.pixels.size() : 0);
     int const columns = (sums.width + kTile - 1) / kTile, rows = (sums.height + kTile - 1) / kTile;
     tbb::parallel_for(0, columns * rows, [&](int tile) {
         FlushDenormals const guard;
@@ -43,11 +46,19 @@ void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, st
             for (int y = top; y < bottom; ++y)
                 for (int x = left; x < right; ++x, ++next) {
                     std::size_t const pixel = std::size_t(y) * std::size_t(sums.width) + std::size_t(x);
-                    sums.add(pixel, next->sample, sums.paths + i);
+                    if (waiting.empty())
+                        sums.add(pixel, next->sample, sums.paths + i);
+                    else
+                        waiting[pixel] = next->sample;
                     if (last) first_hits[pixel] = {next->first_triangle, next->first_weights};
                 }
         }
     });
+    if (!waiting.empty()) {
+        spread_indirect(waiting, sums.width, tracer.interleaving, first_path + sums.paths);
+        tbb::parallel_for(std::size_t(0), waiting.size(),
+                          [&](std::size_t p) { sums.add(p, waiting[p], sums.paths); });
+    }
     sums.paths += paths;
     sums.counts += counts.combine([](PathCounts a, PathCounts const& b) { return a += b; });
 }
@@ -108,11 +119,12 @@ public:
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                        Moments const& moments) override
     {
+        auto const begun = std::chrono::steady_clock::now();
         PassLoop loop(settings_, stop, progress, report_);
         FrameView const whole{camera, settings_.width, settings_.height};
         see({&whole, 1});
         auto const pass = [&](Accumulator& sums, std::uint32_t paths) {
-            if (!moments) return trace_pass(tracer(camera), sums, paths_, paths, first_hits_);
+            if (!moments) return trace_frame(camera, sums, paths);
             for (std::uint32_t i = 0; i < paths; ++i) {
                 Moment const now = moments(sums.paths);
                 changed(now.changes);
@@ -124,6 +136,8 @@ public:
         paths_ += result.paths;
         if (!moments) add_motion(seen_.front(), result.picture);
         end_frame();
+        double const frame_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        choose_interleaving(frame_s / result.paths, result.rays / result.paths);
         return result;
     }
     std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings,
@@ -158,6 +172,22 @@ private:
         CameraRays now, earlier;
         int width, height;
     };
+
+    /// In passes of one path, where pixels wait for indirect light.
+    void trace_frame(Camera const& camera, Accumulator& sums, std::uint32_t paths)
+    {
+        PathTracer<ExactVisibility> through = tracer(camera);
+        through.interleaving.n = std::uint32_t(interleave_);
+        std::uint32_t const each = interleave_ > 1 ? 1 : paths;
+        for (std::uint32_t i = 0; i < paths; i += each) trace_pass(through, sums, paths_, each, first_hits_);
+    }
+    /// Of the next frame. @param rays  of a path of every pixel: two of each are for first surfaces
+    void choose_interleaving(double path_s, double rays)
+    {
+        if (!(settings_.budget_s > 0)) return;
+        double const first = 2.0 * settings_.width * settings_.height, later = std::max(0.0, rays - first);
+        interleave_ = next_interleaving(interleave_, settings_.budget_s, path_s, path_s * later / (first + later));
+    }
 
     std::size_t first_moving() const { return world_.world().static_triangles; }
 
@@ -214,6 +244,7 @@ private:
     Report& report_;
     Structures structures_;
     std::uint32_t paths_ = 0; ///< so far, of all frames
+    int interleave_ = 1;      ///< of the next frame
     std::vector<SeenFrom> seen_;
     std::vector<FirstHit> first_hits_; ///< of the view that was traced last
     std::vector<Corners> now_;         ///< of what may move

@@ -55,12 +55,15 @@ public:
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                        Moments const& moments) override
     {
+        auto const begun = std::chrono::steady_clock::now();
         PassLoop loop(settings_, stop, progress, report_, moments ? std::exchange(start_s_, 0) : 0);
         see(full_size(camera));
         double const earlier = renderer_->rays();
-        if constexpr (!kByKernels)
+        if constexpr (!kByKernels) {
             if (!(settings_.budget_s > 0))
                 renderer_->forget(); // else a frame of so many paths is the same by itself
+            renderer_->interleave(settings_.slhb.interleave);
+        }
         Endings const endings = settings_.slhb.cache == RadianceCaching::on ? Endings::cached : Endings::exact;
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
             for (std::uint32_t i = 0; i < paths; ++i) {
@@ -76,6 +79,13 @@ public:
         result.picture = loop.sums().picture(world_.world());
         if (!moments) renderer_->add_motion(0, result.picture);
         end_frame();
+        if constexpr (!kByKernels)
+            if (settings_.budget_s > 0 && asked_.slhb.interleave == 0) {
+                double const frame_s =
+                    std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+                settings_.slhb.interleave = next_interleaving(settings_.slhb.interleave, settings_.budget_s,
+                                                              frame_s / result.paths, renderer_->indirect_s());
+            }
         return result;
     }
 

@@ -1,7 +1,7 @@
 #include "gi/slhb/partner_light.h"
 
+#include "gi/scene/narrow_lobes.h"
 #include "gi/scene/shading_point.h"
-#include "gi/slhb/narrow_lobes.h"
 
 namespace gi {
 namespace {

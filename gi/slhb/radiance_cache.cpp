@@ -22,7 +22,7 @@ constexpr float kSplit = 64;
 /// Notes of a cell count as many as what the wider one says.
 constexpr float kPrior = 8;
 /// After so many passes the widest cells are not read any more, after kSlower times as many the next ones.
-constexpr std::uint32_t kPassesOfWidest = 32, kSlower = 8;
+constexpr std::uint32_t kPassesOfWidest = 16, kSlower = 8;
 /// Where more scatterings may follow, all share their cells.
 constexpr int kMostFurther = 16;
 constexpr std::size_t kFirstCells = std::size_t(1) << 10;

@@ -9,8 +9,8 @@
 // blurred over a cell, which can lie on both sides of a thin wall; and pixels share the noise of a cell. So it is
 // for pictures that time decides. Cells that may be read get narrower with the passes.
 
+#include "gi/scene/narrow_lobes.h"
 #include "gi/scene/world.h"
-#include "gi/slhb/narrow_lobes.h"
 
 #include <array>
 #include <span>

@@ -1,7 +1,7 @@
 #include "gi/slhb/ray_plan.h"
 
+#include "gi/scene/narrow_lobes.h"
 #include "gi/slhb/look_up_trust.h"
-#include "gi/slhb/narrow_lobes.h"
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>

@@ -226,7 +226,8 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached)
             .lights = shadow_maps_ ? nullptr : &lights_,
             .smooth = smooth_somewhere(world_),
             .look_ups = !slhb_.exact.queries && slhb_.look_ups != LookUps::none,
-            .cache = cached && cache_ ? &*cache_ : nullptr};
+            .cache = cached && cache_ ? &*cache_ : nullptr,
+            .spread = spread_};
 }
 
 void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings)

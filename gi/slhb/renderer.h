@@ -53,7 +53,14 @@ public:
     void add_coverage(std::size_t view, std::span<float> counts, std::span<vec3> radiance) const;
     /// RenderResult::light_from of the passes since the sums were empty.
     std::span<std::uint32_t const> light_from(std::size_t view) const;
-    double rays() const { return paths_.rays(); } ///< look-ups and exact rays, so far
+    /// From the next pass on: indirect light in one of n x n pixels, which others take from there.
+    void interleave(int n)
+    {
+        settings_.slhb.interleave = n;
+        spread_ = n > 1;
+    }
+    double indirect_s() const { return paths_.indirect_s(); } ///< that the last pass took for it
+    double rays() const { return paths_.rays(); }             ///< look-ups and exact rays, so far
     /// Beyond the limit of a texel, so far.
     std::uint64_t lost_layers() const { return axes_.lost(); }
     /// Notes that the radiance cache had no room for, so far.
@@ -102,6 +109,7 @@ private:
     std::vector<SkyAlong> sky_;          ///< in a pass
     std::optional<RadianceCache> cache_; ///< none where it was declined
     ViewPaths paths_;
+    bool spread_ = false;            ///< see Pass::spread
     std::uint64_t earlier_maps_ = 0; ///< of lamps that are no more
 };
 

@@ -15,6 +15,7 @@
 #include "gi/slhb/lamps.h"
 #include "gi/slhb/radiance_cache.h"
 #include "gi/transport/exact_visibility.h"
+#include "gi/transport/interleaving.h"
 #include "gi/transport/path_sample.h"
 
 #include <span>
@@ -79,6 +80,7 @@ public:
         bool smooth = false;                ///< something in the world is a mirror or glass
         bool look_ups = true;               ///< else exact rays in their place
         RadianceCache* cache = nullptr;     ///< paths may end in its cells; null = all go on to their end
+        bool spread = false;                ///< pixels that wait for indirect light will get that of others
     };
 
     /// @param width  of the picture, pixels
@@ -90,7 +92,7 @@ public:
           seed_(settings.seed),
           width_(width),
           cone_(slhb.cone),
-          interleave_(std::uint32_t(slhb.interleave)),
+          interleaving_{std::uint32_t(slhb.interleave)},
           parts_{slhb.exact},
           roulette_(slhb.roulette),
           free_(slhb.look_ups == LookUps::none || slhb.exact.directions),
@@ -129,8 +131,6 @@ private:
     bool scatter_freely(State& s, Leaving const& from, Vertex& next) const;
     bool starts_indirect(Pass const& pass, State& s) const;
     AxisSample choose_axis(Pass const& pass, State const& s, ShadingPoint const& at) const;
-    /// How many pixels this one takes indirect light for in this pass: 0, or the square of the interleaving.
-    std::uint32_t indirect_share(std::uint32_t pixel, std::uint32_t pass) const;
     /// @return look-ups
     std::size_t ask_axes(Pass const& pass, std::span<Vertex> vertices) const;
     void start_paths(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
@@ -153,7 +153,7 @@ private:
     std::uint64_t seed_;
     int width_;
     float cone_;
-    std::uint32_t interleave_;
+    Interleaving interleaving_;
     ExactParts parts_;
     float roulette_;
     bool free_;        ///< paths leave in directions of their own, not along axes

@@ -33,7 +33,7 @@ void SlhbTracer::add_sky(Pass const& pass, State& s, Vertex const& last) const
         s.sample->radiance[0] = background_radiance(world_, s.direction);
         return;
     }
-    if (world_.environment_radiance.empty()) return;
+    if (world_.environment_radiance.empty() || s.emitted) return;
     SkyAlong const sky = s.along_axis && !pass.sky.empty() ? pass.sky[2 * last.axis + (last.origin.up ? 1 : 0)]
                                                            : look_at_sky(world_, s.direction);
     vec3 light = sky.radiance;
@@ -116,14 +116,6 @@ void SlhbTracer::add_emission(State const& s, Vertex const& last, ShadingPoint c
     s.bucket(s.scatterings) += s.throughput * light;
 }
 
-std::uint32_t SlhbTracer::indirect_share(std::uint32_t pixel, std::uint32_t pass) const
-{
-    std::uint32_t const all = interleave_ * interleave_, width = std::uint32_t(width_);
-    std::uint32_t const own = pixel % width % interleave_ + pixel / width % interleave_ * interleave_;
-    constexpr std::uint32_t kStride = 17; // a prime above every interleaving: all turns come
-    return (own + pass * kStride) % all == 0 ? all : 0;
-}
-
 /// By a mirror, glass or a narrow lobe.
 SlhbTracer::Scattered SlhbTracer::scatter_by_ray(State& s, Leaving const& from, float u_lobe, bool last) const
 {
@@ -160,8 +152,9 @@ bool SlhbTracer::scatter_freely(State& s, Leaving const& from, Vertex& next) con
 /// Whether its pixel takes indirect light in this pass.
 bool SlhbTracer::starts_indirect(Pass const& pass, State& s) const
 {
-    if (s.vertex > 0 || interleave_ == 1) return true;
-    std::uint32_t const share = indirect_share(s.pixel, pass.index);
+    if (s.vertex > 0 || interleaving_.n == 1) return true;
+    std::uint32_t const share = interleaving_.share(s.pixel, std::uint32_t(width_), pass.index);
+    s.sample->turn = share > 0 ? IndirectTurn::taken : IndirectTurn::waits;
     if (share == 0) return false;
     s.throughput *= float(share);
     s.random.index = pass.index / share;
@@ -246,8 +239,10 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
     vec3 const wo = at.frame.to_local(-s.direction);
     // A set of axes carries broad lobes; rays carry any.
     bool const narrow = free_ ? !bsdf_detail::is_matt(at.bsdf) : pass.exact != nullptr && has_narrow_lobe(at.bsdf);
-    // Light samples find all light that the last surface gets, but for narrow lobes, and by mirrors and glass.
-    Leaving const from{at, wo, narrow, s.scatterings == bounces_ && !narrow && !pass.smooth};
+    // Light samples find all light that the last surface gets, but for narrow lobes, and by mirrors and glass; and
+    // that of first surfaces whose pixels wait for what paths find.
+    bool const waits = s.vertex == 0 && pass.spread && interleaving_.n > 1 && bounces_ > 0;
+    Leaving const from{at, wo, narrow, !narrow && (waits || (s.scatterings == bounces_ && !pass.smooth))};
     if (!last && !world_.light_select.empty() && !only_delta(at.bsdf)) {
         if (pass.lights != nullptr)
             aim_at_light(pass, s, from, direct.rays);
@@ -266,6 +261,7 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
         // The last surface would only bring light that a path can meet.
         if (s.scatterings == bounces_ && (!meets_light_ || from.alone)) return false;
         if (!starts_indirect(pass, s)) return false;
+        s.emitted = from.alone;
         if (!(free_ ? scatter_freely(s, from, next) : scatter_along_axis(pass, s, from, next))) return false;
     }
     float const survival = max_component(s.throughput);

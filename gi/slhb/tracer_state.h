@@ -1,8 +1,8 @@
 #pragma once
 // What SlhbTracer keeps of its paths while they advance. For tracer.cpp and tracer_shading.cpp alone.
 
+#include "gi/scene/narrow_lobes.h"
 #include "gi/scene/shading_point.h"
-#include "gi/slhb/narrow_lobes.h"
 #include "gi/slhb/path_random.h"
 #include "gi/slhb/tracer.h"
 

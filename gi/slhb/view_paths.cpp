@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
@@ -58,7 +59,11 @@ struct ViewPaths::Counts {
 };
 
 struct ViewPaths::Work {
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point begun = Clock::now();
     tbb::combinable<Counts> counts;
+
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - begun).count(); }
 
     template <class F>
     void in_blocks(std::size_t n, F const& work, std::size_t block = kBlock)
@@ -71,11 +76,15 @@ struct ViewPaths::Work {
 };
 
 ViewPaths::ViewPaths(World const& world, RenderSettings const& settings, Report& report)
-    : world_(world),
-      settings_(settings),
-      report_(report),
-      block_(settings.slhb.look_ups == LookUps::none ? kSmallBlock : kBlock)
+    : world_(world), settings_(settings), report_(report)
 {
+}
+
+/// As many paths of indirect light in each, whatever the interleaving.
+void ViewPaths::choose_block()
+{
+    std::size_t const n = std::size_t(std::max(1, settings_.slhb.interleave));
+    block_ = settings_.slhb.look_ups == LookUps::none ? std::min(kBlock, kSmallBlock * n * n) : kBlock;
 }
 
 SlhbTracer ViewPaths::tracer_of(SeenView const& view) const
@@ -239,9 +248,14 @@ void ViewPaths::trace(SlhbTracer::Pass const& pass, SeenViews const& views, Endi
     taken_from_.assign(views.size() > 1 ? pixels : 0, kOwnLight);
     light_from_.resize(taken_from_.size());
     bool const sharing = start_sharing(pass, endings);
+    choose_block();
     Work work;
     for (SeenView const& v : views) trace_view(pass, views, v, sharing, work);
     send_on(pass, views[0], work);
+    if (pass.spread && !sharing && settings_.slhb.interleave > 1)
+        for (SeenView const& v : views)
+            spread_indirect(std::span(samples_).subspan(v.first, v.pixels()), v.width,
+                            {std::uint32_t(settings_.slhb.interleave)}, pass.index);
     for (std::size_t k = 0; k < views.size(); ++k) add(views, k, sharing, sums, work);
     add_work(work, sums[0].counts);
 }
@@ -251,6 +265,7 @@ void ViewPaths::trace_pair(SlhbTracer::Pass const& pass, SeenViews const& views,
 {
     SeenView const& view = views[0];
     samples_.resize(view.pixels());
+    choose_block();
     near_moving_.resize((view.pixels() + block_ - 1) / block_);
     Work work;
     trace_view(pass, views, view, false, work);
@@ -291,6 +306,7 @@ void ViewPaths::add_work(Work& work, PathCounts& paths)
         done_.cache_reads += c.slhb.cache_reads;
         taken_ += c.taken;
     });
+    indirect_s_ = direct_s + indirect_s > 0 ? work.seconds() * indirect_s / (direct_s + indirect_s) : 0;
     report_.add_time("direct light, thread seconds", direct_s);
     report_.add_time("indirect light, thread seconds", indirect_s);
 }

@@ -40,6 +40,8 @@ public:
     {
         return std::span(light_from_).subspan(view.first, view.pixels());
     }
+    /// That of the last pass went into what follows first surfaces.
+    double indirect_s() const { return indirect_s_; }
     double rays() const; ///< look-ups and exact rays, so far
     /// What has been done so far.
     void report_work() const;
@@ -47,6 +49,7 @@ public:
 private:
     struct Counts;
     struct Work;
+    void choose_block();
     SlhbTracer tracer_of(SeenView const& view) const;
     bool start_sharing(SlhbTracer::Pass const& pass, Endings endings);
     void trace_view(SlhbTracer::Pass const& pass, SeenViews const& views, SeenView const& view, bool sharing,
@@ -63,7 +66,7 @@ private:
     World const& world_;
     RenderSettings const& settings_;
     Report& report_;
-    std::size_t block_; ///< pixels whose paths advance together on one thread
+    std::size_t block_ = 0; ///< pixels whose paths advance together on one thread
     SharedEndings shared_;
     std::vector<std::vector<CacheNote>> notes_; ///< per block of pixels of a view
     std::vector<PathSample> samples_;           ///< of the pixels of all views
@@ -75,6 +78,7 @@ private:
     std::vector<std::uint32_t> without_pixels_; ///< all of those
     std::vector<PathSample> without_;           ///< and their paths without it
     SlhbCounts done_;
+    double indirect_s_ = 0;
     std::uint64_t taken_ = 0, taking_ = 0;  ///< pixels that took light from a partner; of those that could
     std::uint64_t hidden_ = 0, pixels_ = 0; ///< not traced, as nobody sees them; all, in all passes
     std::uint64_t pair_paths_ = 0, without_paths_ = 0; ///< of pairs with what moves; of these, traced again
