@@ -8,12 +8,13 @@
 #include "gi/transport/pass_loop.h"
 
 #include <algorithm>
-#include <chrono>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
 namespace gi {
 namespace {
+
+double rays_of(PathCounts const& c) { return double(c.nearest_rays + c.shadow_rays); }
 
 /// What the last path of a pixel met first.
 struct FirstHit {
@@ -91,7 +92,7 @@ RenderResult trace_all(PassLoop& loop, std::uint64_t print, PassLoop::Pass const
     PathCounts const& total = loop.sums().counts;
     report.count("closest-hit rays", double(total.nearest_rays));
     report.count("shadow rays", double(total.shadow_rays));
-    result.rays = double(total.nearest_rays + total.shadow_rays);
+    result.rays = rays_of(total);
     result.picture = loop.sums().picture(world);
     return result;
 }
@@ -99,7 +100,11 @@ RenderResult trace_all(PassLoop& loop, std::uint64_t print, PassLoop::Pass const
 class ReferenceFrames : public FrameRenderer {
 public:
     ReferenceFrames(MovingWorld const& world, Camera const& camera, RenderSettings const& settings, Report& report)
-        : world_(world), settings_(settings), report_(report), now_(corners_of(world.world(), first_moving()))
+        : world_(world),
+          settings_(settings),
+          report_(report),
+          interleaving_(settings.budget_s > 0 ? kMostInterleaving : 1, settings.budget_s),
+          now_(corners_of(world.world(), first_moving()))
     {
         earlier_.first_moving = first_moving();
         FrameView const whole{camera, settings.width, settings.height};
@@ -119,7 +124,7 @@ public:
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                        Moments const& moments) override
     {
-        auto const begun = std::chrono::steady_clock::now();
+        interleaving_.frame_begins();
         PassLoop loop(settings_, stop, progress, report_);
         FrameView const whole{camera, settings_.width, settings_.height};
         see({&whole, 1});
@@ -136,8 +141,7 @@ public:
         paths_ += result.paths;
         if (!moments) add_motion(seen_.front(), result.picture);
         end_frame();
-        double const frame_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-        choose_interleaving(frame_s / result.paths, result.rays / result.paths);
+        interleaving_.frame_ended();
         return result;
     }
     std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings,
@@ -173,20 +177,20 @@ private:
         int width, height;
     };
 
-    /// In passes of one path, where pixels wait for indirect light.
+    /// With a budget in passes of one path, where pixels may wait for indirect light.
     void trace_frame(Camera const& camera, Accumulator& sums, std::uint32_t paths)
     {
         PathTracer<ExactVisibility> through = tracer(camera);
-        through.interleaving.n = std::uint32_t(interleave_);
-        std::uint32_t const each = interleave_ > 1 ? 1 : paths;
-        for (std::uint32_t i = 0; i < paths; i += each) trace_pass(through, sums, paths_, each, first_hits_);
-    }
-    /// Of the next frame. @param rays  of a path of every pixel: two of each are for first surfaces
-    void choose_interleaving(double path_s, double rays)
-    {
-        if (!(settings_.budget_s > 0)) return;
-        double const first = 2.0 * settings_.width * settings_.height, later = std::max(0.0, rays - first);
-        interleave_ = next_interleaving(interleave_, settings_.budget_s, path_s, path_s * later / (first + later));
+        if (!(settings_.budget_s > 0)) return trace_pass(through, sums, paths_, paths, first_hits_);
+        for (std::uint32_t i = 0; i < paths; ++i) {
+            double const earlier = rays_of(sums.counts);
+            through.interleaving.n = std::uint32_t(interleaving_.n());
+            trace_pass(through, sums, paths_, 1, first_hits_);
+            // Two rays of each pixel are for its first surface.
+            double const first = 2.0 * sums.width * sums.height,
+                         later = std::max(0.0, rays_of(sums.counts) - earlier - first);
+            interleaving_.pass_ended(later / (first + later));
+        }
     }
 
     std::size_t first_moving() const { return world_.world().static_triangles; }
@@ -244,7 +248,7 @@ private:
     Report& report_;
     Structures structures_;
     std::uint32_t paths_ = 0; ///< so far, of all frames
-    int interleave_ = 1;      ///< of the next frame
+    FrameInterleaving interleaving_;
     std::vector<SeenFrom> seen_;
     std::vector<FirstHit> first_hits_; ///< of the view that was traced last
     std::vector<Corners> now_;         ///< of what may move

@@ -55,7 +55,7 @@ public:
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                        Moments const& moments) override
     {
-        auto const begun = std::chrono::steady_clock::now();
+        if (interleaving_) interleaving_->frame_begins();
         PassLoop loop(settings_, stop, progress, report_, moments ? std::exchange(start_s_, 0) : 0);
         see(full_size(camera));
         double const earlier = renderer_->rays();
@@ -72,20 +72,14 @@ public:
                     changed(now.changes);
                     see(full_size(now.camera));
                 }
-                renderer_->pass(passes_++, {&sums, 1}, endings);
+                one_pass({&sums, 1}, endings);
             }
         });
         finish(result, earlier);
         result.picture = loop.sums().picture(world_.world());
         if (!moments) renderer_->add_motion(0, result.picture);
         end_frame();
-        if constexpr (!kByKernels)
-            if (settings_.budget_s > 0 && asked_.slhb.interleave == 0) {
-                double const frame_s =
-                    std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-                settings_.slhb.interleave = next_interleaving(settings_.slhb.interleave, settings_.budget_s,
-                                                              frame_s / result.paths, renderer_->indirect_s());
-            }
+        if (interleaving_) interleaving_->frame_ended();
         return result;
     }
 
@@ -130,6 +124,18 @@ public:
     }
 
 private:
+    void one_pass(std::span<Accumulator> sums, Endings endings)
+    {
+        if constexpr (kByKernels) {
+            renderer_->pass(passes_++, sums, endings);
+        } else {
+            settings_.slhb.interleave = interleaving_->n();
+            renderer_->interleave(settings_.slhb.interleave);
+            renderer_->pass(passes_++, sums, endings);
+            interleaving_->pass_ended(renderer_->indirect_share());
+        }
+    }
+
     FrameView full_size(Camera const& camera) const { return {camera, settings_.width, settings_.height}; }
 
     PairResult traced_pair(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
@@ -261,6 +267,8 @@ private:
             settings_.slhb.interleave = 1; // whatever the budget
             for (FrameView const& v : views) check_kernels_can(v.camera, settings_.slhb);
         }
+        if constexpr (!kByKernels)
+            interleaving_.emplace(settings_.slhb.interleave, asked_.slhb.interleave == 0 ? settings_.budget_s : 0);
         renderer_.emplace(world, views, settings_, std::move(soup), world.static_triangles, report_);
         renderer_->follow(followed_);
         restart_ = false;
@@ -272,7 +280,8 @@ private:
     Report& report_;
     std::optional<tbb::global_control> threads_;
     std::optional<Renderer> renderer_;
-    std::vector<Accumulator> sums_; ///< of the views
+    std::optional<FrameInterleaving> interleaving_; ///< none by kernels
+    std::vector<Accumulator> sums_;                 ///< of the views
     PairSums pair_sums_;
     std::uint32_t passes_ = 0, followed_ = 0;
     std::uint64_t lost_ = 0, refused_ = 0; ///< layers, and notes of the cache, that were reported

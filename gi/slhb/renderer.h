@@ -59,8 +59,8 @@ public:
         settings_.slhb.interleave = n;
         spread_ = n > 1;
     }
-    double indirect_s() const { return paths_.indirect_s(); } ///< that the last pass took for it
-    double rays() const { return paths_.rays(); }             ///< look-ups and exact rays, so far
+    double indirect_share() const { return paths_.indirect_share(); } ///< of the time of the last pass' paths
+    double rays() const { return paths_.rays(); }                     ///< look-ups and exact rays, so far
     /// Beyond the limit of a texel, so far.
     std::uint64_t lost_layers() const { return axes_.lost(); }
     /// Notes that the radiance cache had no room for, so far.

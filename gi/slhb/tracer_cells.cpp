@@ -25,8 +25,6 @@ CacheKeys SlhbTracer::cache_keys(Pass const& pass, State const& s) const
 void SlhbTracer::end_in_cells(Pass const& pass, std::span<State> states, std::vector<Vertex>& vertices,
                               std::size_t& active, std::vector<Open>& open, SlhbCounts& counts) const
 {
-    // A path that stands for n x n pixels is a bundle n times as wide.
-    float const wider = pass.spread ? float(interleaving_.n) : 1;
     thread_local std::vector<CacheKeys> keys;
     keys.resize(active);
     for (std::size_t k = 0; k < active; ++k) {
@@ -34,7 +32,7 @@ void SlhbTracer::end_in_cells(Pass const& pass, std::span<State> states, std::ve
         s.open = -1;
         // A lobe of the cosine is as wide as its distance.
         if (s.arrival_pdf > 0)
-            s.footprint += wider * vertices[k].distance * std::min(1.0f, 1 / std::sqrt(kPi * s.arrival_pdf));
+            s.footprint += vertices[k].distance * std::min(1.0f, 1 / std::sqrt(kPi * s.arrival_pdf));
         keys[k] = cache_keys(pass, s);
         if (keys[k].any()) pass.cache->prefetch(keys[k]);
     }

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
@@ -59,11 +58,7 @@ struct ViewPaths::Counts {
 };
 
 struct ViewPaths::Work {
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point begun = Clock::now();
     tbb::combinable<Counts> counts;
-
-    double seconds() const { return std::chrono::duration<double>(Clock::now() - begun).count(); }
 
     template <class F>
     void in_blocks(std::size_t n, F const& work, std::size_t block = kBlock)
@@ -80,11 +75,11 @@ ViewPaths::ViewPaths(World const& world, RenderSettings const& settings, Report&
 {
 }
 
-/// As many paths of indirect light in each, whatever the interleaving.
+/// Larger ones where few of their paths go on.
 void ViewPaths::choose_block()
 {
     std::size_t const n = std::size_t(std::max(1, settings_.slhb.interleave));
-    block_ = settings_.slhb.look_ups == LookUps::none ? std::min(kBlock, kSmallBlock * n * n) : kBlock;
+    block_ = settings_.slhb.look_ups == LookUps::none ? kSmallBlock * std::min(n * n, std::size_t(4)) : kBlock;
 }
 
 SlhbTracer ViewPaths::tracer_of(SeenView const& view) const
@@ -306,7 +301,7 @@ void ViewPaths::add_work(Work& work, PathCounts& paths)
         done_.cache_reads += c.slhb.cache_reads;
         taken_ += c.taken;
     });
-    indirect_s_ = direct_s + indirect_s > 0 ? work.seconds() * indirect_s / (direct_s + indirect_s) : 0;
+    indirect_share_ = direct_s + indirect_s > 0 ? indirect_s / (direct_s + indirect_s) : 0;
     report_.add_time("direct light, thread seconds", direct_s);
     report_.add_time("indirect light, thread seconds", indirect_s);
 }

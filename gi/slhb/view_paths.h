@@ -40,8 +40,8 @@ public:
     {
         return std::span(light_from_).subspan(view.first, view.pixels());
     }
-    /// That of the last pass went into what follows first surfaces.
-    double indirect_s() const { return indirect_s_; }
+    /// Of the time of the last pass, what follows first surfaces.
+    double indirect_share() const { return indirect_share_; }
     double rays() const; ///< look-ups and exact rays, so far
     /// What has been done so far.
     void report_work() const;
@@ -78,7 +78,7 @@ private:
     std::vector<std::uint32_t> without_pixels_; ///< all of those
     std::vector<PathSample> without_;           ///< and their paths without it
     SlhbCounts done_;
-    double indirect_s_ = 0;
+    double indirect_share_ = 0;
     std::uint64_t taken_ = 0, taking_ = 0;  ///< pixels that took light from a partner; of those that could
     std::uint64_t hidden_ = 0, pixels_ = 0; ///< not traced, as nobody sees them; all, in all passes
     std::uint64_t pair_paths_ = 0, without_paths_ = 0; ///< of pairs with what moves; of these, traced again

@@ -73,4 +73,20 @@ int next_interleaving(int n, double budget_s, double frame_s, double indirect_s)
     return n > 1 && at(n - 1) < kMargin * budget_s ? n - 1 : n;
 }
 
+void FrameInterleaving::frame_begins()
+{
+    frame_ = pass_ = Clock::now();
+    passes_s_ = 0;
+}
+
+void FrameInterleaving::pass_ended(double indirect)
+{
+    double const pass_s = seconds_since(pass_);
+    passes_s_ += pass_s;
+    pass_ = Clock::now();
+    if (budget_s_ > 0) n_ = next_interleaving(n_, budget_s_, besides_s_ + pass_s, indirect * pass_s);
+}
+
+void FrameInterleaving::frame_ended() { besides_s_ = seconds_since(frame_) - passes_s_; }
+
 } // namespace gi

@@ -5,6 +5,7 @@
 
 #include "gi/transport/path_sample.h"
 
+#include <chrono>
 #include <span>
 
 namespace gi {
@@ -37,7 +38,33 @@ void spread_indirect(std::span<PathSample> samples, int width, Interleaving cons
                      std::uint32_t pass);
 
 /// n for the next frame, from what the last one took. Costs of a path rise as they are fewer: a step at a time.
-/// @param frame_s, indirect_s  of the last frame, and what of it went into indirect light
+/// @param frame_s, indirect_s  of the last frame, had it had one pass, and what of it went into indirect light
 int next_interleaving(int n, double budget_s, double frame_s, double indirect_s);
+
+/// Chooses n pass by pass, so that frames hold their time. Where that is long, the first passes of the first frame
+/// are the ones that step down to n = 1.
+class FrameInterleaving {
+public:
+    /// @param n  of the first pass  @param budget_s  of a frame; 0 = n is for all
+    FrameInterleaving(int n, double budget_s) : n_(n), budget_s_(budget_s) {}
+
+    int n() const { return n_; }
+    void frame_begins();
+    /// @param indirect  share of its time that indirect light took, 0..1
+    void pass_ended(double indirect);
+    void frame_ended();
+
+private:
+    using Clock = std::chrono::steady_clock;
+    double seconds_since(Clock::time_point t) const
+    {
+        return std::chrono::duration<double>(Clock::now() - t).count();
+    }
+
+    int n_;
+    double budget_s_, besides_s_ = 0; ///< of the last frame, beside its passes
+    double passes_s_ = 0;             ///< of this frame
+    Clock::time_point frame_{}, pass_{};
+};
 
 } // namespace gi
