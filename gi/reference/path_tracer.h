@@ -71,7 +71,7 @@ struct PathTracer {
         Path p;
         std::uint32_t const pixel = std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x);
         p.rng = Pcg32::for_path(seed, pixel, index);
-        p.share = interleaving.share(pixel, std::uint32_t(width), index);
+        if (interleaving.n > 1) p.share = interleaving.share(pixel, std::uint32_t(width), index);
         vec2 const place = vec2{float(x) + 0.5f, float(y) + 0.5f} + filter_offset(filter, p.rng.uniform2());
         p.ray = camera.through(place);
         if (camera.has_lens()) look_through_lens(place, p);
@@ -191,8 +191,8 @@ bool PathTracer<Visibility>::advance(Path& p, Hit const& hit, int vertex, PathCo
 
     vec3 const wo = at.frame.to_local(-p.ray.direction);
     bool const last = p.scatterings > bounces; // mirrors and glass do not count
-    bool const in_turn = vertex == 0 && interleaving.n > 1 && bounces > 0, narrow = has_narrow_lobe(at.bsdf);
-    bool const alone = in_turn && !narrow;
+    bool const in_turn = vertex == 0 && interleaving.n > 1 && bounces > 0;
+    bool const narrow = in_turn && has_narrow_lobe(at.bsdf), alone = in_turn && !narrow;
     if (!last && !world.light_select.empty() && !only_delta(at.bsdf)) aim_at_light(p, at, wo, alone);
 
     float const u_lobe = p.rng.uniform();

@@ -227,7 +227,7 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached)
             .smooth = smooth_somewhere(world_),
             .look_ups = !slhb_.exact.queries && slhb_.look_ups != LookUps::none,
             .cache = cached && cache_ ? &*cache_ : nullptr,
-            .spread = spread_};
+            .spread = spread_ && slhb_.look_ups == LookUps::none};
 }
 
 void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings)

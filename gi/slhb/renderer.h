@@ -53,7 +53,8 @@ public:
     void add_coverage(std::size_t view, std::span<float> counts, std::span<vec3> radiance) const;
     /// RenderResult::light_from of the passes since the sums were empty.
     std::span<std::uint32_t const> light_from(std::size_t view) const;
-    /// From the next pass on: indirect light in one of n x n pixels, which others take from there.
+    /// From the next pass on: indirect light in one of n x n pixels, which others take from there where paths send
+    /// exact rays; where they share endings on layers, it counts n^2-fold.
     void interleave(int n)
     {
         settings_.slhb.interleave = n;

@@ -247,7 +247,7 @@ void ViewPaths::trace(SlhbTracer::Pass const& pass, SeenViews const& views, Endi
     Work work;
     for (SeenView const& v : views) trace_view(pass, views, v, sharing, work);
     send_on(pass, views[0], work);
-    if (pass.spread && !sharing && settings_.slhb.interleave > 1)
+    if (pass.spread && settings_.slhb.interleave > 1)
         for (SeenView const& v : views)
             spread_indirect(std::span(samples_).subspan(v.first, v.pixels()), v.width,
                             {std::uint32_t(settings_.slhb.interleave)}, pass.index);

@@ -1,11 +1,13 @@
 #include "gi/image/temporal.h"
+#include "gi/reference/reference.h"
 #include "gi/scene/generate.h"
 #include "gi/scene/generate/figure.h"
 #include "gi/slhb/frames.h"
 #include "gi/slhb/renderer.h"
 #include "gi/slhb/settings.h"
-#include "tests/support/scenes.h"
+#include "tests/slhb/slhb_render.h"
 
+#include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
@@ -163,6 +165,46 @@ TEST(TemporalFrames, AStillPictureIsTheRenderOfAllItsPaths)
     Picture const q = all->frame(camera, {}, {}).picture;
     for (std::size_t k = 0; k < p.find("color")->data.size(); ++k)
         ASSERT_NEAR(p.find("color")->data[k], q.find("color")->data[k], 1e-4f * (1 + q.find("color")->data[k]));
+}
+
+/// Means of L1 and L2 over frames of one pass.
+std::array<double, 2> light_of_frames(StartFrames start, RenderSettings const& settings, int frames)
+{
+    Report report;
+    MovingWorld const world(std::make_shared<Scene const>(box_with_block_and_lamp()), 0, report);
+    Camera const camera = look_at({-0.6, 0.1, 0.9}, {0.1, -0.4, 0}, 60);
+    auto const renderer = start(world, camera, settings, report);
+    std::array<double, 2> sum{};
+    for (int k = 0; k < frames; ++k) {
+        Picture const p = renderer->frame(camera, {}, {}).picture;
+        sum[0] += mean_of(p, "L1").mean / frames;
+        sum[1] += mean_of(p, "L2").mean / frames;
+    }
+    return sum;
+}
+
+TEST(InterleavedFrames, HaveTheLightOfAllPixels)
+{
+    constexpr int kFrames = 192;
+    constexpr double kNoTime = 1e-9, kWithin = 0.01; // of which the surfaces' edges have a part
+    RenderSettings s;
+    s.width = s.height = 48;
+    s.bounces = 3;
+    s.paths = 1;
+    s.slhb.look_ups = LookUps::none;
+    auto const [direct, indirect] = light_of_frames(start_slhb_frames, s, kFrames);
+    auto const expect_same = [&](std::array<double, 2> const& light, std::string const& what) {
+        EXPECT_NEAR(light[0], direct, kWithin * direct) << what;
+        EXPECT_NEAR(light[1], indirect, kWithin * indirect) << what;
+    };
+    for (int const n : {2, 3, 4}) {
+        s.slhb.interleave = n;
+        expect_same(light_of_frames(start_slhb_frames, s, kFrames), fmt::format("slhb, {}", n));
+    }
+    s.slhb.interleave = 0;
+    s.budget_s = kNoTime; // one pass a frame, one of 4 x 4 pixels
+    expect_same(light_of_frames(start_slhb_frames, s, kFrames), "slhb, by time");
+    expect_same(light_of_frames(start_reference_frames, s, kFrames), "reference, by time");
 }
 
 } // namespace
