@@ -59,11 +59,9 @@ public:
         PassLoop loop(settings_, stop, progress, report_, moments ? std::exchange(start_s_, 0) : 0);
         see(full_size(camera));
         double const earlier = renderer_->rays();
-        if constexpr (!kByKernels) {
+        if constexpr (!kByKernels)
             if (!(settings_.budget_s > 0))
                 renderer_->forget(); // else a frame of so many paths is the same by itself
-            renderer_->interleave(settings_.slhb.interleave);
-        }
         Endings const endings = settings_.slhb.cache == RadianceCaching::on ? Endings::cached : Endings::exact;
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
             for (std::uint32_t i = 0; i < paths; ++i) {
