@@ -90,7 +90,7 @@ TEST(BenchPictures, JudgesFramesThatFollowEachOther)
 {
     TemporaryFolder const folder;
     run_well("bench pictures --list " LIGHTWELL_SOURCE_DIR
-             "/data/pictures.yaml --interactive --frames 4 --scored-frames "
+             "/data/pictures.yaml --interactive --scenes walk,flight --frames 4 --scored-frames "
              "1,4 --size 24x16 --frame-budget 20ms --reference-paths 4 --denoise none,wide --out d",
              folder.path());
     BenchFolder const found = read_bench_folder(folder / "d");
