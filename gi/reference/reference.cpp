@@ -23,12 +23,18 @@ struct FirstHit {
 };
 
 /// @param first_hits  one per pixel, set by its last path; empty = not wanted
-/// Of an interleaved pass, pixels take indirect light from those whose turn it is.
+/// @param memory  of an interleaved pass, in which pixels take indirect light from those whose turn it is
 void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t first_path,
-                std::uint32_t paths, std::span<FirstHit> first_hits = {})
+                std::uint32_t paths, std::span<FirstHit> first_hits = {},
+                std::vector<PathSample>* memory = nullptr)
 {
     tbb::combinable<PathCounts> counts;
-    std::vector<PathSample> waiting(tracer.interleaving.n > 1 ? sums.pixels.size() : 0);
+    bool const interleaved = tracer.interleaving.n > 1;
+    std::span<PathSample> waiting;
+    if (interleaved) {
+        memory->resize(sums.pixels.size());
+        waiting = *memory;
+    }
     int const columns = (sums.width + kTile - 1) / kTile, rows = (sums.height + kTile - 1) / kTile;
     tbb::parallel_for(0, columns * rows, [&](int tile) {
         FlushDenormals const guard;
@@ -47,15 +53,15 @@ void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, st
             for (int y = top; y < bottom; ++y)
                 for (int x = left; x < right; ++x, ++next) {
                     std::size_t const pixel = std::size_t(y) * std::size_t(sums.width) + std::size_t(x);
-                    if (waiting.empty())
-                        sums.add(pixel, next->sample, sums.paths + i);
-                    else
+                    if (interleaved)
                         waiting[pixel] = next->sample;
+                    else
+                        sums.add(pixel, next->sample, sums.paths + i);
                     if (last) first_hits[pixel] = {next->first_triangle, next->first_weights};
                 }
         }
     });
-    if (!waiting.empty()) {
+    if (interleaved) {
         spread_indirect(waiting, sums.width, tracer.interleaving, first_path + sums.paths);
         tbb::parallel_for(std::size_t(0), waiting.size(),
                           [&](std::size_t p) { sums.add(p, waiting[p], sums.paths); });
@@ -185,7 +191,7 @@ private:
         for (std::uint32_t i = 0; i < paths; ++i) {
             double const earlier = rays_of(sums.counts);
             through.interleaving.n = std::uint32_t(interleaving_.n());
-            trace_pass(through, sums, paths_, 1, first_hits_);
+            trace_pass(through, sums, paths_, 1, first_hits_, &waiting_);
             // Two rays of each pixel are for its first surface.
             double const first = 2.0 * sums.width * sums.height,
                          later = std::max(0.0, rays_of(sums.counts) - earlier - first);
@@ -249,6 +255,7 @@ private:
     Structures structures_;
     std::uint32_t paths_ = 0; ///< so far, of all frames
     FrameInterleaving interleaving_;
+    std::vector<PathSample> waiting_; ///< memory of interleaved passes
     std::vector<SeenFrom> seen_;
     std::vector<FirstHit> first_hits_; ///< of the view that was traced last
     std::vector<Corners> now_;         ///< of what may move
