@@ -15,8 +15,8 @@ namespace {
 constexpr float kWidth = 0.6f;
 /// Notes that a place needs before paths end there; with more, the chance to go on falls in proportion.
 constexpr float kEnough = 3;
-/// But not below this.
-constexpr float kLeastTeaching = 0.01f;
+/// But not below this: what cells get wrong all pixels share, and no filter removes it.
+constexpr float kLeastTeaching = 0.2f;
 /// Notes from which on cells of half the width are taught, too.
 constexpr float kSplit = 64;
 /// Notes of a cell count as many as what the wider one says.
@@ -54,9 +54,12 @@ CacheKeys RadianceCache::keys(Surface const& surface, vec3 position, vec3 arriva
     vec3 const scaled = (position + shift_) * std::ldexp(1.0f, kFinest - widest);
     if (!(max_component(glm::abs(scaled)) < 0x1p20f)) return keys;
     vec3 normal = glm::cross(surface.edge1, surface.edge2);
-    if (glm::dot(normal, arrival) > 0) normal = -normal;
+    // A shade is bright within and dark without, and both may face the same way.
+    bool const back = glm::dot(normal, arrival) > 0;
+    if (back) normal = -normal;
     std::uint64_t const what = std::uint64_t(surface.material) << 32 |
-                               std::uint64_t(std::clamp(further, 0, kMostFurther)) << 3 | side_of(normal);
+                               std::uint64_t(std::clamp(further, 0, kMostFurther)) << 4 |
+                               std::uint64_t(back) << 3 | side_of(normal);
     float scale = 0x1p-3f;
     static_assert(kFinest == 3);
     for (std::size_t l = 0; l < CacheKeys::kLevels; ++l, scale *= 2) {

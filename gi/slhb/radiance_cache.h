@@ -48,8 +48,8 @@ public:
     /// @param radius  of the world, m  @param most_bytes  cells beyond are not kept, and counted
     RadianceCache(float radius, std::size_t most_bytes);
 
-    /// The same for places on the same material, facing the same way, in the same cell. None where floats are too
-    /// coarse for cells so narrow.
+    /// The same for places on the same material and side of triangles, facing the same way, in the same cell. None
+    /// where floats are too coarse for cells so narrow.
     /// @param footprint  m across, of the bundle that the path stands for  @param arrival  direction of the path
     /// @param further  scatterings that may follow, >= 0
     CacheKeys keys(Surface const& surface, vec3 position, vec3 arrival, float footprint, int further) const;
