@@ -15,8 +15,9 @@ namespace {
 constexpr float kWidth = 0.6f;
 /// Notes that a place needs before paths end there; with more, the chance to go on falls in proportion.
 constexpr float kEnough = 3;
-/// But not below this: what cells get wrong all pixels share, and no filter removes it.
-constexpr float kLeastTeaching = 0.2f;
+/// But not below this, times the relative deviation of its notes: what cells get wrong all pixels share, and no
+/// filter removes it. For a mean of readers and teachers, teachers are worth their time in that proportion.
+constexpr float kTeaching = 0.05f, kLeastTeaching = 0.03f, kMostTeaching = 0.3f;
 /// Notes from which on cells of half the width are taught, too.
 constexpr float kSplit = 64;
 /// Notes of a cell count as many as what the wider one says.
@@ -102,13 +103,23 @@ RadianceCache::Known RadianceCache::find(CacheKeys const& keys) const
             known.radiance = own * (c->sum / c->weight) + (1 - own) * known.radiance;
         }
         if (l > least)
-            known.go_on = std::max(kLeastTeaching, kEnough / (notes + kEnough));
+            known.go_on = kEnough / (notes + kEnough);
         else if (l == least && notes >= kEnough)
-            known.go_on = std::max(kLeastTeaching, kEnough / notes);
+            known.go_on = kEnough / notes;
+        if (l >= least && notes > 0)
+            known.go_on =
+                std::max(known.go_on, glm::clamp(kTeaching * c->deviation(), kLeastTeaching, kMostTeaching));
         if (notes < kSplit) break;
         known.to_teach = std::min(l + 2, CacheKeys::kLevels);
     }
     return known;
+}
+
+float RadianceCache::Cell::deviation() const
+{
+    float const mean = luminance(sum) / notes;
+    float const squared = mean > 0 ? squares / (notes * mean * mean) - 1 : 0;
+    return squared < kInf ? std::sqrt(std::max(0.0f, squared)) : 0;
 }
 
 RadianceCache::Cell const* RadianceCache::Shard::find(std::uint64_t key) const
@@ -159,6 +170,8 @@ void RadianceCache::learn(std::span<std::vector<CacheNote> const> blocks)
             c->sum += note.weight * note.radiance;
             c->weight += note.weight;
             c->notes += 1;
+            float const brought = note.weight * luminance(note.radiance);
+            c->squares += brought * brought;
         }
     };
     tbb::parallel_for(std::size_t(0), kShards, [&](std::size_t k) {

@@ -79,6 +79,9 @@ private:
         std::uint64_t key = 0;
         vec3 sum{0};                 ///< of weight times radiance
         float weight = 0, notes = 0; ///< notes < 0: nothing ends here
+        float squares = 0;           ///< of weight times luminance
+
+        float deviation() const; ///< standard, of weight times luminance, over their mean
     };
     /// Of keys with the same first bits: open addressing, a power of two.
     struct Shard {

@@ -123,6 +123,23 @@ TEST(RadianceCache, SaysTheWeightedMeanOfItsNotes)
     EXPECT_EQ(cache.find(keys).go_on, 1);
 }
 
+TEST(RadianceCache, MorePathsTeachWhereNotesScatter)
+{
+    RadianceCache cache(1, 1 << 20);
+    auto const go_on = [&](float x, float bright) { // with the same mean
+        CacheKeys const keys = cache.keys(floor_surface(), {x, 0, 0.3f}, {0, -1, 0}, 1, 2);
+        std::vector<std::vector<CacheNote>> notes(1);
+        for (int k = 0; k < 1000; ++k) notes[0].push_back({keys, vec3{k % 100 < 100 / bright ? bright : 0}, 1});
+        cache.learn(notes);
+        return cache.find(keys).go_on;
+    };
+    float const even = go_on(0.3f, 1), uneven = go_on(10.3f, 10);
+    EXPECT_LT(even, 0.1f);
+    EXPECT_GT(uneven, 1.5f * even);
+    EXPECT_LT(uneven, 0.5f);
+    EXPECT_EQ(go_on(20.3f, 1e30f), go_on(30.3f, 0)) << "where squares overflow, or there is no light, as if even";
+}
+
 TEST(RadianceCache, StaysWithinItsMemoryAndCountsWhatItRefuses)
 {
     RadianceCache cache(1, 1 << 21);
