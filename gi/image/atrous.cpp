@@ -132,7 +132,7 @@ void lay(KnownLight const& known, Planes const& from, int y, Planes& out)
 
 Planes filter_atrous(FilterInput& input, int iterations, KnownLight const& known)
 {
-    split_variance(input);
+    find_variances(input);
     int const height = input.light.height();
     Planes other(light::count, input.light.width(), height);
     Planes const& where_known = known.light ? *known.light : input.light;

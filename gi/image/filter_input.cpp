@@ -2,6 +2,7 @@
 
 #include "gi/base/error.h"
 
+#include <array>
 #include <atomic>
 #include <tbb/parallel_for.h>
 #include <utility>
@@ -11,6 +12,7 @@ namespace {
 
 struct Layers {
     Layer const *l1, *l2, *albedo, *normal, *position, *variance;
+    std::array<Layer const*, 2> measured; ///< variances of direct and indirect light; null = they were not
 };
 
 /// Apart by more than 1 where other channels are dark.
@@ -54,7 +56,11 @@ void fill(Layers const& layers, vec3 origin, Span span, int y, FilterInput& in, 
         bool const known = finite && n != vec3{0} && max_component(a) >= kDarkest;
         report.not_finite += !finite;
         report.without_surface += finite && !known;
-        report.no_variance &= !(known && v > 0);
+        report.no_variance &= !(known && (v > 0 || in.measured));
+        for (int k = 0; k < 2 && in.measured; ++k) {
+            float const m = layers.measured[std::size_t(k)]->data[i];
+            in.light.row(light::variance + k, y)[x] = known && m < kLargest ? m : -1;
+        }
         normal.set(x, known ? n / std::max(1.0f, glm::length(n)) : vec3{0});
         position.set(x, known ? p - origin : vec3{0});
         direct.set(x, known ? e1 : vec3{0});
@@ -117,12 +123,19 @@ Layer& needed_layer(Picture& picture, char const* name)
 
 FilterInput make_filter_input(Picture const& picture, bool with_variance, FilterArea const& area)
 {
-    Layers const layers{
-        &needed_layer(picture, "L1"),       &needed_layer(picture, "L2"),
-        &needed_layer(picture, "albedo"),   &needed_layer(picture, "normal"),
-        &needed_layer(picture, "position"), with_variance ? &needed_layer(picture, "variance") : nullptr};
-    FilterInput in{
-        {guide::count, picture.width, picture.height}, {light::count, picture.width, picture.height}, {}};
+    std::array<Layer const*, 2> const measured{picture.find("variance_direct"), picture.find("variance_indirect")};
+    bool const is_measured = with_variance && measured[0] != nullptr && measured[1] != nullptr;
+    Layers const layers{&needed_layer(picture, "L1"),
+                        &needed_layer(picture, "L2"),
+                        &needed_layer(picture, "albedo"),
+                        &needed_layer(picture, "normal"),
+                        &needed_layer(picture, "position"),
+                        with_variance && !is_measured ? &needed_layer(picture, "variance") : nullptr,
+                        measured};
+    FilterInput in{{guide::count, picture.width, picture.height},
+                   {light::count, picture.width, picture.height},
+                   is_measured,
+                   {}};
     vec3 const origin = first_position(layers, picture.pixels());
     std::atomic<std::size_t> without_surface = 0, not_finite = 0;
     std::atomic<bool> no_variance = true;

@@ -32,7 +32,8 @@ enum : int {
 } // namespace light
 
 struct FilterInput {
-    Planes guides, light; ///< the variance of the light is not filled in
+    Planes guides, light;  ///< the variance of the light is not filled in, but where it was measured
+    bool measured = false; ///< by temporal reuse: light::variance has that of each pixel, negative = not known
     DenoiseReport report;
 };
 

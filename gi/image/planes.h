@@ -53,6 +53,7 @@ public:
         else // touches much memory for the first time
             tbb::parallel_for(0, (height + kRows - 1) / kRows, clear_margins);
     }
+    int count() const { return count_; }
     int width() const { return width_; }
     int height() const { return height_; }
     float* row(int plane, int y) { return values_.get() + offset(plane, y); }

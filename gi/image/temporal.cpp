@@ -133,10 +133,12 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                 light.direct = there.direct;
                 light.indirect = there.indirect;
                 light.frames = there.frames;
+                light.variance = there.variance;
             } else {
                 light.direct = over(rgb(l1, i), a);
                 light.indirect = over(rgb(l2, i), a);
                 light.frames = 1;
+                light.variance = vec2{0};
             }
             light.l0 = rgb(l0, i);
             light.albedo = a;
@@ -199,6 +201,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                     before.direct += w * l.direct;
                     before.indirect += w * l.indirect;
                     before.frames += w * l.frames;
+                    before.variance += w * l.variance;
                     weight += w;
                 }
             }
@@ -217,9 +220,13 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             if (taken) continue;
             vec3 const held = neighbourhoods.clamped(before.direct / weight, x, y);
             local.held += held != before.direct / weight;
+            vec3 const indirect = before.indirect / weight;
             now.frames = std::min(before.frames / weight + 1, float(settings_.most_frames));
-            now.direct = glm::mix(held, now.direct, 1 / now.frames);
-            now.indirect = glm::mix(before.indirect / weight, now.indirect, 1 / now.frames);
+            float const share = 1 / now.frames;
+            vec2 const step{luminance(now.direct - held), luminance(now.indirect - indirect)};
+            now.variance = (1 - share) * (before.variance / weight + share * step * step);
+            now.direct = glm::mix(held, now.direct, share);
+            now.indirect = glm::mix(indirect, now.indirect, share);
         }
     });
     counts.combine_each([&](TemporalCounts const& c) {
@@ -232,8 +239,11 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
 /// Adds one more picture of a scene in which nothing moves, and replaces it by both means.
 void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
 {
+    for (char const* const name : {"variance_direct", "variance_indirect"})
+        if (frame.find(name) == nullptr) frame.add(name, 1);
     Layer &albedo = *frame.find("albedo"), &l0 = *frame.find("L0"), &l1 = *frame.find("L1"),
-          &l2 = *frame.find("L2"), &color = *frame.find("color");
+          &l2 = *frame.find("L2"), &color = *frame.find("color"),
+          &direct_variance = *frame.find("variance_direct"), &indirect_variance = *frame.find("variance_indirect");
     bool const first = still_++ == 0;
     float const n = float(still_);
     mean_.resize(frame.pixels());
@@ -258,6 +268,10 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
                 l2.data[k] = e2[c];
                 color.data[k] = e0[c] + e1[c] + e2[c];
             }
+            // Of one frame, without the bias of a mean that the frame is in; then of all of them.
+            float const of_mean = light.frames > 1 ? light.frames / ((light.frames - 1) * (earlier + n)) : -1;
+            direct_variance.data[i] = of_mean > 0 ? of_mean * light.variance.x : -1;
+            indirect_variance.data[i] = of_mean > 0 ? of_mean * light.variance.y : -1;
             sum += double(earlier + n);
         }
     });

@@ -39,7 +39,9 @@ class TemporalReuse {
 public:
     explicit TemporalReuse(TemporalSettings const& settings) : settings_(settings) {}
 
-    /// Replaces L0, L1, L2, color and albedo by means over frames. Needs color, L0, L1, L2, albedo, normal, depth
+    /// Replaces L0, L1, L2, color and albedo by means over frames, and adds the layers variance_direct and
+    /// variance_indirect: of the luminance of L1 and of L2 over the albedo, of these means, measured over frames;
+    /// negative where there was one alone. Needs color, L0, L1, L2, albedo, normal, depth
     /// and motion (throws InputError where one is missing): x, y: pixels from here to where the surface was; z:
     /// its depth then, m; NaN where it was not. All frames have one size.
     /// @param partner, from  the reuse of a partner, to which this frame has been added already, and which of its
@@ -55,6 +57,7 @@ private:
     struct Light {
         vec3 direct, indirect; ///< L1 and L2 over the albedo
         float frames;          ///< that they are means of
+        vec2 variance;         ///< over those frames, of their luminances
         vec3 l0, albedo;
         float still_frames; ///< that these are means of
         bool still;         ///< its surface stood still in the picture

@@ -242,7 +242,8 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
     // Light samples find all light that the last surface gets, but for narrow lobes, and by mirrors and glass; and
     // that of first surfaces whose pixels wait for what paths find.
     bool const waits = s.vertex == 0 && pass.spread && interleaving_.n > 1 && bounces_ > 0;
-    Leaving const from{at, wo, narrow, !narrow && (waits || (s.scatterings == bounces_ && !pass.smooth))};
+    bool const alone = waits ? !has_narrow_lobe(at.bsdf) : !narrow && s.scatterings == bounces_ && !pass.smooth;
+    Leaving const from{at, wo, narrow, alone};
     if (!last && !world_.light_select.empty() && !only_delta(at.bsdf)) {
         if (pass.lights != nullptr)
             aim_at_light(pass, s, from, direct.rays);
@@ -254,6 +255,8 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
     Scattered scattered = Scattered::widely;
     next.exact = narrow && takes_narrow_lobe(at.bsdf, wo, u_lobe);
     if (next.exact) {
+        if (waits && alone && !starts_indirect(pass, s)) return false;
+        s.emitted = waits && alone;
         scattered = scatter_by_ray(s, from, u_lobe, last);
         if (scattered == Scattered::not_at_all) return false;
     } else {
