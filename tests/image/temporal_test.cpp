@@ -84,6 +84,26 @@ TEST(Temporal, AStillPictureIsTheMeanOfItsFrames)
 
 /// A wall that the camera passes, by whole or broken pixels a frame: the mean has the noise of many frames, but
 /// where it came into view.
+TEST(Temporal, VariancesAreThoseOfTheMeans)
+{
+    TemporalReuse reuse({});
+    Pcg32 rng(5, 5);
+    for (int frame = 1; frame <= 12; ++frame) {
+        Picture p = picture([&](int, int) { return Values{.l1 = vec3{0.5f}, .l2 = vec3{rng.uniform()}}; });
+        reuse.add(p, SceneChange::nothing);
+        Layer const &direct = *p.find("variance_direct"), &indirect = *p.find("variance_indirect");
+        double mean = 0;
+        for (std::size_t i = 0; i < p.pixels(); ++i) {
+            mean += double(indirect.data[i]) / double(p.pixels());
+            EXPECT_NEAR(direct.data[i], frame == 1 ? -1 : 0, 1e-6f) << frame;
+        }
+        if (frame == 1)
+            EXPECT_NEAR(mean, -1, 1e-9) << "one frame tells nothing";
+        else // over an albedo of a half
+            EXPECT_NEAR(mean / (4 * noise(p, "L2", 0.5f)), 1, 0.15) << frame;
+    }
+}
+
 TEST(Temporal, LightFollowsItsSurface)
 {
     for (vec3 const motion : {vec3{3, -2, 2}, vec3{0.5f, 0.25f, 2}}) {
