@@ -37,8 +37,9 @@ struct DenoiseReport {
 };
 
 /// Replaces L1, L2 and color = L0 + L1 + L2. Needs the layers color, L0, L1, L2, albedo, normal and position, and
-/// a-trous variance too (oidn neither position nor variance); throws InputError where one is missing. `variance`
-/// stays that of the unfiltered picture. The result does not depend on the number of threads.
+/// a-trous variance too, or those that temporal reuse measured (oidn neither position nor variance); throws
+/// InputError where one is missing. `variance` stays that of the unfiltered picture. The result does not depend on
+/// the number of threads.
 /// @param taken  of a partner that has been filtered: its light over its albedo is taken as it is, and only where
 ///               the picture takes none is filtered. oidn filters all of the picture instead
 DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, TakenLight const& taken = {});
