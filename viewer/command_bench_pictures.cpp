@@ -44,7 +44,7 @@ void set_interactive_defaults(CLI::App const& command, PicturesOptions& o)
 {
     auto const is_given = [&](char const* name) { return command.get_option(name)->count() > 0; };
     if (!is_given("--methods")) o.methods = {kPeer, "slhb"};
-    if (!is_given("--denoise")) o.filters = {"none", "wide"};
+    if (!is_given("--denoise")) o.filters = {"none", "atrous"};
     if (!is_given("--size")) o.render.size = "512x512";
     if (!is_given("--reference-paths")) o.reference_paths = 256;
     if (!is_given("--scored-frames")) std::erase_if(o.scored_frames, [&](int f) { return f > o.frames; });
@@ -133,7 +133,7 @@ path takes longer than the budget), and says how many times longer 'reference' n
 its errors at all budgets.
 
 --interactive renders frames that follow each other, all methods with the same temporal reuse and filters. Its defaults are
---methods reference,slhb --denoise none,wide --size 512x512 --reference-paths 256. frame_s is for the world, the render and
+--methods reference,slhb --denoise none,atrous --size 512x512 --reference-paths 256. frame_s is for the world, the render and
 the reuse; in the row 'mean' it is the median of all frames but the first, which builds what lasts.
 
 Ctrl-C drops the renders of the current budget, saves the rows so far and exits with 130.)",

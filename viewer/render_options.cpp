@@ -144,10 +144,10 @@ gi::DenoiseSettings make_denoise_settings(RenderOptions const& o, gi::RenderSett
     gi::DenoiseSettings d = gi::find_filter(o.denoise);
     gi::check_filter(d);
     d.threads = s.threads;
-    if (d.denoiser == gi::Denoiser::atrous && s.paths < 2)
+    if (d.denoiser != gi::Denoiser::none && !gi::can_filter(d, s.paths, o.reuse > 1))
         throw gi::InputError("--denoise atrous with --paths 1",
                              "it goes by the variance, which one path does not tell",
-                             "trace two paths or more, or choose --denoise discontinuity");
+                             "trace two paths or more, add --reuse to frames, or choose --denoise discontinuity");
     return d;
 }
 

@@ -1,7 +1,7 @@
 #include "gi/image/atrous.h"
 
 #include "gi/image/outlines.h"
-#include "gi/image/split_variance.h"
+#include "gi/image/light_variance.h"
 #include "gi/image/surface_distance.h"
 
 #include <array>

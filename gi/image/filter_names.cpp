@@ -47,9 +47,9 @@ void check_filter(DenoiseSettings const& settings)
     if (settings.denoiser == Denoiser::oidn) check_oidn();
 }
 
-bool can_filter(DenoiseSettings const& settings, std::uint32_t paths)
+bool can_filter(DenoiseSettings const& settings, std::uint32_t paths, bool has_reuse)
 {
-    return settings.denoiser != Denoiser::none && (settings.denoiser != Denoiser::atrous || paths > 1);
+    return settings.denoiser != Denoiser::none && (settings.denoiser != Denoiser::atrous || paths > 1 || has_reuse);
 }
 
 } // namespace gi

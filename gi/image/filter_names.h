@@ -23,7 +23,7 @@ DenoiseSettings find_filter(std::string_view name);
 
 /// Throws InputError where the filter is not installed; call it before rendering starts.
 void check_filter(DenoiseSettings const& settings);
-/// False of atrous with fewer than two paths, which have no variance.
-bool can_filter(DenoiseSettings const& settings, std::uint32_t paths);
+/// False of atrous where nothing tells the variance: with fewer than two paths and no temporal reuse.
+bool can_filter(DenoiseSettings const& settings, std::uint32_t paths, bool has_reuse = false);
 
 } // namespace gi

@@ -96,7 +96,7 @@ void Lane::finish(std::size_t view, std::vector<gi::RenderResult>& results, int 
         seen_[view].reuse->add(result.picture, change, past, taken.from);
     }
     gi::DenoiseSettings const filter = denoise_settings(settings, threads_);
-    if (!gi::can_filter(filter, result.paths) || still_ > kFilteredFrames) return;
+    if (!gi::can_filter(filter, result.paths, settings.reuse > 1) || still_ > kFilteredFrames) return;
     gi::StageTimer const timer(report_, "denoise");
     gi::DenoiseReport const done = gi::denoise(result.picture, filter, taken);
     if (done.not_finite > 0) report_.lose("pixels not filtered, as a value is not finite", done.not_finite);

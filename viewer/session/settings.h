@@ -24,7 +24,7 @@ struct Settings {
     int bounces = 3;
     int seed = 0;
     int reuse = 16; ///< frames of temporal reuse; 1 = none
-    std::string denoise = "wide";
+    std::string denoise = "atrous";
     bool share_eyes = true;    ///< an eye may take light that the other one found
     bool share_endings = true; ///< while anything moves, paths may end in the radiance cache
     double exposure_ev = 0;

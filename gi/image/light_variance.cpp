@@ -1,4 +1,4 @@
-#include "gi/image/split_variance.h"
+#include "gi/image/light_variance.h"
 
 #include "gi/image/surface_distance.h"
 
