@@ -33,7 +33,7 @@ endfunction()
 
 option(LIGHTWELL_UNITY "Compile all sources of a folder as one unit: a build from nothing takes a third of the time" ON)
 
-# lightwell_unity(TARGET): one unit per folder, which CMake writes. Names of a folder's anonymous namespaces differ.
+# lightwell_unity(TARGET): one unit of all sources, which CMake writes. Names of its anonymous namespaces differ.
 function(lightwell_unity target)
   if(LIGHTWELL_UNITY) # GCC takes sources that the unit includes for headers
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
@@ -41,28 +41,52 @@ function(lightwell_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${LIGHTWELL_UNITY} UNITY_BUILD_BATCH_SIZE 0)
 endfunction()
 
-# lightwell_library(NAME [SEPARATE] [MATCHING regex] [BUT regex] [PUBLIC targets...] [PRIVATE targets...])
-# All .cpp files of the current folder whose names fit, as one unit unless SEPARATE. What PUBLIC names is what its headers may include.
+# lightwell_sources(TARGET units...): adds the .cpp files (and with CUDA the .cu files) of folders. Each unit is a folder, or several joined
+# by "+", that are compiled as one; "FOLDER:regex" takes the files whose names fit, "FOLDER:!regex" the others.
+function(lightwell_sources target)
+  lightwell_unity(${target})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  foreach(unit ${ARGN})
+    string(MAKE_C_IDENTIFIER "${unit}" group)
+    string(REPLACE "+" ";" folders "${unit}")
+    foreach(folder ${folders})
+      set(regex ".")
+      if(folder MATCHES "^([^:]+):(.+)$")
+        set(folder ${CMAKE_MATCH_1})
+        set(regex "${CMAKE_MATCH_2}")
+      endif()
+      set(kind INCLUDE)
+      if(regex MATCHES "^!(.+)$")
+        set(kind EXCLUDE)
+        set(regex "${CMAKE_MATCH_1}")
+      endif()
+      file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/${folder} ${folder}/*.cpp)
+      list(FILTER sources ${kind} REGEX "^(${regex})")
+      list(TRANSFORM sources PREPEND "${folder}/")
+      set_source_files_properties(${sources} PROPERTIES UNITY_GROUP "${group}")
+      if(LIGHTWELL_CUDA)
+        file(GLOB cuda_sources CONFIGURE_DEPENDS ${folder}/*.cu)
+      endif()
+      target_sources(${target} PRIVATE ${sources} ${cuda_sources})
+    endforeach()
+  endforeach()
+endfunction()
+
+# lightwell_library(NAME units... [PUBLIC targets...] [PRIVATE targets...]): units as of lightwell_sources. What PUBLIC names is what its
+# headers may include.
 function(lightwell_library name)
-  cmake_parse_arguments(arg "SEPARATE" "MATCHING;BUT" "PUBLIC;PRIVATE" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
-  if(arg_MATCHING)
-    list(FILTER sources INCLUDE REGEX "${arg_MATCHING}")
-  endif()
-  if(arg_BUT)
-    list(FILTER sources EXCLUDE REGEX "${arg_BUT}")
-  endif()
-  if(LIGHTWELL_CUDA AND NOT arg_MATCHING)
-    file(GLOB cuda_sources CONFIGURE_DEPENDS *.cu)
-  endif()
-  add_library(${name} STATIC ${sources} ${cuda_sources})
+  cmake_parse_arguments(arg "" "" "PUBLIC;PRIVATE" ${ARGN})
+  add_library(${name} STATIC)
+  lightwell_sources(${name} ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(${name} PUBLIC lightwell_options ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
-  if(NOT arg_SEPARATE)
-    lightwell_unity(${name})
-  endif()
   if(NOT LIGHTWELL_CUDA)
     lightwell_reuse_precompiled(${name} lightwell_library_headers)
   endif()
+endfunction()
+
+# lightwell_separate(files...): sources that are compiled by themselves.
+function(lightwell_separate)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 # One precompiled header for all libraries and one for all tests; GCC wants the same kind of code in what reuses it.

@@ -1,5 +1,5 @@
 # cmake -DFILES="a;b" -DOUT=shader_sources.cpp -P embed_shaders.cmake: shaders become string constants of the program.
-set(code "#include \"viewer/gl/shader_source.h\"\n\nnamespace viewer {\n\nstd::string_view shader_source(std::string_view file)\n{\n")
+set(code "#include \"viewer/devices/gl/shader_source.h\"\n\nnamespace viewer {\n\nstd::string_view shader_source(std::string_view file)\n{\n")
 foreach(file ${FILES})
   get_filename_component(name ${file} NAME)
   file(READ ${file} text)

@@ -1,4 +1,4 @@
-// See viewer/gl/ar_composite_pass.h and ar/composite/composite.cpp, whose arithmetic this is, step by step. Pixels
+// See viewer/devices/gl/ar_composite_pass.h and ar/composite/composite.cpp, whose arithmetic this is, step by step. Pixels
 // count from the top left of the target. RATIO, CLIPPED and NOISE are defines.
 
 layout(binding = 0) uniform sampler2D camera_picture; // RGB8: bytes

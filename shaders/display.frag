@@ -1,4 +1,4 @@
-// See viewer/gl/display_pass.h. Pixels count from the top left of the target. MODE, COMPARISON, CURVE, STRETCHED and
+// See viewer/devices/gl/display_pass.h. Pixels count from the top left of the target. MODE, COMPARISON, CURVE, STRETCHED and
 // ENCODED are defines, so that only what is asked for is computed.
 
 layout(binding = 0) uniform sampler2D left_picture;

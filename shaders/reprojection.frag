@@ -1,4 +1,4 @@
-// See viewer/gl/reprojection.h. All positions are pixels of picture A from its top left; w = 1 / depth. SEARCHES is a
+// See viewer/devices/gl/reprojection.h. All positions are pixels of picture A from its top left; w = 1 / depth. SEARCHES is a
 // define, 0 where B stands where A stood.
 
 layout(binding = 0) uniform sampler2D picture;

@@ -1,4 +1,4 @@
-// Which eye a pixel belongs to, and colours of both in one: viewer/stereo/compose.cpp for the GPU. MODE is the
+// Which eye a pixel belongs to, and colours of both in one: viewer/displays/compose.cpp for the GPU. MODE is the
 // StereoMode, whose names are defines.
 
 uniform mat3 dubois_left, dubois_right;

@@ -1,4 +1,4 @@
-// gi/image/tone_map.h, for three channels at once. Values come back as whole bytes / 255, as the CPU makes them.
+// gi/filter/tone_map.h, for three channels at once. Values come back as whole bytes / 255, as the CPU makes them.
 
 vec3 encode_srgb(vec3 v)
 {

@@ -1,4 +1,4 @@
-// See viewer/gl/wall_pass.h. Places are 0..1 from the lower left; textures have their top row first.
+// See viewer/devices/gl/wall_pass.h. Places are 0..1 from the lower left; textures have their top row first.
 
 layout(binding = 0) uniform sampler2D picture;
 layout(binding = 1) uniform sampler2D weights;

@@ -1,4 +1,4 @@
-// See viewer/gl/wall_pass.h.
+// See viewer/devices/gl/wall_pass.h.
 layout(location = 0) in vec2 position;
 layout(location = 1) in vec2 picture_place;
 layout(location = 2) in float weight;

@@ -1,9 +1,9 @@
 #pragma once
 // One picture of a flat board for calibration: points of the board and where they are seen.
 
-#include "ar/base/camera_model.h"
-#include "ar/base/pose.h"
-#include "ar/base/sighting.h"
+#include "ar/camera/camera_model.h"
+#include "ar/camera/pose.h"
+#include "ar/camera/sighting.h"
 #include "ar/markers/marker_map.h"
 
 #include <optional>

@@ -1,6 +1,6 @@
 #include "ar/calibration/calibration_file.h"
 
-#include "ar/base/yaml.h"
+#include "ar/camera/yaml.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 // All that is known of a camera as one YAML file that cv::FileStorage reads, too: camera_matrix,
 // distortion_coefficients, image_width and image_height are where OpenCV's own programs have them.
 
-#include "ar/base/camera_model.h"
-#include "ar/base/photometry.h"
 #include "ar/calibration/sensor.h"
+#include "ar/camera/camera_model.h"
+#include "ar/camera/photometry.h"
 
 #include <filesystem>
 #include <optional>

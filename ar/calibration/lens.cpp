@@ -1,6 +1,6 @@
 #include "ar/calibration/lens.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "gi/core/quantile.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "ar/calibration/lens_choice.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "ar/calibration/report.h"
 
-#include "ar/base/yaml.h"
 #include "ar/calibration/page.h"
+#include "ar/camera/yaml.h"
 
 #include <algorithm>
 #include <cmath>

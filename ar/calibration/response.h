@@ -43,8 +43,8 @@ struct MergedRadiance {
 };
 
 struct MergeOptions {
-    NoiseModel noise{1e-5, 1e-4};       ///< of the sensor
-    double moved_sigmas = 5;            ///< how many sigmas apart exposures may be
+    NoiseModel noise{1e-5, 1e-4}; ///< of the sensor
+    double moved_sigmas = 5;      ///< how many sigmas apart exposures may be
 };
 
 /// Light of a bracket with a known response: the mean of what the exposures say, weighted by the inverse of their

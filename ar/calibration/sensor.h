@@ -2,8 +2,8 @@
 // Vignetting, noise and colour of a camera, each from pictures made for it. Bytes become light by a response that
 // is known (response.h).
 
-#include "ar/base/camera_model.h"
-#include "ar/base/photometry.h"
+#include "ar/camera/camera_model.h"
+#include "ar/camera/photometry.h"
 
 #include <span>
 #include <vector>

@@ -3,7 +3,7 @@
 // letters, drm_fourcc.h), which libcamera uses: components from the highest bits of a little-endian word to the
 // lowest, so that RGB888 is B, G, R in memory.
 
-#include "ar/base/frame.h"
+#include "ar/camera/frame.h"
 
 #include <optional>
 #include <span>

@@ -1,7 +1,7 @@
 #pragma once
 // Times of cameras on the one clock of the program: std::chrono::steady_clock, which is CLOCK_MONOTONIC on Linux.
 
-#include "ar/base/frame.h"
+#include "ar/camera/frame.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "ar/capture/frame_source.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // Where frames come from: cameras, videos, pictures, recorded sessions. A source is used by one thread at a time;
 // frames may be handed to others, and may outlive their source.
 
-#include "ar/base/frame.h"
+#include "ar/camera/frame.h"
 
 #include <chrono>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 // For libcamera_source.cpp only, the one place that knows libcamera.
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/buffer_memory.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "ar/capture/libcamera_source.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/buffer_memory.h"
 #include "ar/capture/camera_pixels.h"
 #include "ar/capture/clock.h"

@@ -1,6 +1,6 @@
 #include "ar/capture/open_source.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/counter_source.h"
 #include "ar/capture/libcamera_source.h"
 #include "ar/capture/picture_source.h"

@@ -1,6 +1,6 @@
 #include "ar/capture/picture_source.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/whole_picture.h"
 
 #include <cstdio>

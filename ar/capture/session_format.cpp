@@ -1,6 +1,6 @@
 #include "ar/capture/session_format.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 
 #include <array>
 #include <charconv>

@@ -1,6 +1,6 @@
 #include "ar/capture/session_reader.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 
 #include <fmt/format.h>
 #include <fstream>

@@ -1,6 +1,6 @@
 #include "ar/capture/session_writer.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 
 #include <cerrno>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "ar/capture/video_source.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/opencv/opencv_sources.h"
 
 #include <dlfcn.h>
@@ -11,7 +11,8 @@ namespace {
 /// Of the module, which the first source loads.
 OpenCvSources const& sources()
 {
-    void* const module = dlopen("liblightwell_capture.so", RTLD_NOW | RTLD_LOCAL); // counted: loaded once, and stays
+    void* const module =
+        dlopen("liblightwell_capture.so", RTLD_NOW | RTLD_LOCAL); // counted: loaded once, and stays
     auto* const find = module != nullptr
                            ? reinterpret_cast<decltype(&lightwell_capture)>(dlsym(module, "lightwell_capture"))
                            : nullptr;

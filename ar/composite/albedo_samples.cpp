@@ -1,6 +1,6 @@
 #include "ar/composite/albedo_samples.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "gi/core/quantile.h"
 
 #include <algorithm>

@@ -4,8 +4,8 @@
 // already. The point spread acts on light, so all is linear. Where nothing virtual is within reach the result is
 // nothing, exactly.
 
-#include "ar/base/camera_model.h"
-#include "ar/base/pose.h"
+#include "ar/camera/camera_model.h"
+#include "ar/camera/pose.h"
 #include "ar/composite/rendered_pair.h"
 
 namespace ar {

@@ -4,11 +4,11 @@
 // a: part of the pixel that virtual objects cover. Where with = a object + (1 - a) place, as antialiased pictures
 // are, this is a object + (1 - a)(camera + change of the place): exact at borders, too.
 //
-// All is computed in units of the camera's bytes (ar/base/photometry.h): with and without go through exposure,
+// All is computed in units of the camera's bytes (ar/camera/photometry.h): with and without go through exposure,
 // colour matrix and vignetting, then through the response to the nearest byte. Bytes of pixels that nothing covers
 // and where with equals without are copied. docs/methods.md has the equations of the options.
 
-#include "ar/base/photometry.h"
+#include "ar/camera/photometry.h"
 #include "ar/composite/rendered_pair.h"
 #include "ar/composite/response_table.h"
 #include "ar/composite/sensor_noise.h"
@@ -68,7 +68,7 @@ public:
     CompositeCounts operator()(cv::Mat const& rgb, RenderedPair const& pair, Exposure const& exposure,
                                cv::Mat& out, std::uint64_t frame = 0);
 
-    /// For the same work elsewhere (viewer/gl).
+    /// For the same work elsewhere (viewer/devices/gl).
     Photometry const& photometry() const { return photometry_; }
     CompositeSettings const& settings() const { return settings_; }
     ResponseTable const& response(int channel) const { return response_[std::size_t(channel)]; }

@@ -1,6 +1,6 @@
 #include "ar/composite/occlusion_matte.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 
 #include <algorithm>
 #include <cmath>

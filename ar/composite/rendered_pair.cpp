@@ -1,6 +1,6 @@
 #include "ar/composite/rendered_pair.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 
 #include <fmt/format.h>
 

@@ -9,8 +9,8 @@
 // change of light is followed to 63 % in about 1 / weight frames. Where nothing is added the result is nothing,
 // exactly.
 
-#include "ar/base/camera_model.h"
-#include "ar/base/pose.h"
+#include "ar/camera/camera_model.h"
+#include "ar/camera/pose.h"
 #include "ar/composite/rendered_pair.h"
 
 namespace ar {

@@ -2,7 +2,7 @@
 // Renderers make pictures of pinhole cameras; the camera has a lens. What was rendered is brought into the
 // camera's own picture, whose bytes are never resampled.
 
-#include "ar/base/camera_model.h"
+#include "ar/camera/camera_model.h"
 #include "ar/composite/rendered_pair.h"
 
 namespace ar {

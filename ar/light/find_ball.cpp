@@ -1,4 +1,4 @@
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/light/mirror_ball.h"
 #include "gi/core/quantile.h"
 

@@ -3,7 +3,7 @@
 //   u = 0.5 + atan2(x, -z) / 2 pi,  v = acos(y) / pi   (y up; v = 0 is the top row's upper edge; -z in the middle)
 // The texel (column i, row j) spans u from i / width to (i + 1) / width, and v likewise.
 
-#include "ar/base/pose.h"
+#include "ar/camera/pose.h"
 
 #include <opencv2/core.hpp>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "ar/light/live_probe.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/light/lamps.h"
 #include "gi/core/quantile.h"
 

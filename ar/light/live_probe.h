@@ -10,7 +10,7 @@
 // The map: c L + (1 - c) k prior, with c fading with forget_s since the texel was seen, and k, channel by channel,
 // the median of L / prior over what was seen, by the prior's light.
 
-#include "ar/base/camera_model.h"
+#include "ar/camera/camera_model.h"
 #include "ar/light/lat_long.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "ar/light/map_file.h"
 
-#include "ar/base/error.h"
-#include "ar/base/photometry.h"
+#include "ar/camera/error.h"
+#include "ar/camera/photometry.h"
 #include "ar/light/lat_long.h"
 
 #include <ImfChannelList.h>

@@ -1,6 +1,6 @@
 #include "ar/light/mirror_ball.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/light/picture_sampling.h"
 
 #include <cmath>

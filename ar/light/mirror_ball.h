@@ -7,8 +7,8 @@
 //   d.m = 1,   m = axis / cos a,
 // three unknowns, linear. What the ball reflects depends on a alone while the surround is far away.
 
-#include "ar/base/camera_model.h"
-#include "ar/base/pose.h"
+#include "ar/camera/camera_model.h"
+#include "ar/camera/pose.h"
 #include "ar/light/lat_long.h"
 
 #include <optional>

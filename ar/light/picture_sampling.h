@@ -1,7 +1,7 @@
 #pragma once
 // From a picture to the directions it shows: what mirror balls and lenses share.
 
-#include "ar/base/camera_model.h"
+#include "ar/camera/camera_model.h"
 #include "ar/light/lat_long.h"
 
 #include <functional>

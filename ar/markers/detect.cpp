@@ -1,6 +1,6 @@
 #include "ar/markers/detect.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/markers/refine.h"
 
 #include <algorithm>

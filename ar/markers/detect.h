@@ -1,7 +1,7 @@
 #pragma once
 // Pictures to sightings: which markers of a map are seen, and where their points are.
 
-#include "ar/base/sighting.h"
+#include "ar/camera/sighting.h"
 #include "ar/markers/aruco.h"
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "ar/markers/marker_map.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -6,7 +6,7 @@
 //   of a board or a grid  its lower left corner: of the squares (board), of the markers' black squares (grid).
 // Lying flat on a table, printed top away from the viewer, is rotation_deg: [-90, 0, 0].
 
-#include "ar/base/pose.h"
+#include "ar/camera/pose.h"
 
 #include <array>
 #include <string>

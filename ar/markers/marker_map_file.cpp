@@ -1,6 +1,6 @@
 #include "ar/markers/marker_map_file.h"
 
-#include "ar/base/yaml.h"
+#include "ar/camera/yaml.h"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 #pragma once
 // First guesses of a pose, from rays alone.
 
-#include "ar/base/camera_model.h"
-#include "ar/base/pose.h"
-#include "ar/base/sighting.h"
+#include "ar/camera/camera_model.h"
+#include "ar/camera/pose.h"
+#include "ar/camera/sighting.h"
 
 #include <span>
 #include <vector>

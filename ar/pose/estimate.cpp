@@ -1,6 +1,6 @@
 #include "ar/pose/estimate.h"
 
-#include "ar/base/rotation_vector.h"
+#include "ar/camera/rotation_vector.h"
 #include "ar/pose/candidates.h"
 #include "ar/pose/refine.h"
 #include "gi/core/quantile.h"

@@ -1,9 +1,9 @@
 #pragma once
 // Where the camera is, from one picture's sighting.
 
-#include "ar/base/camera_model.h"
-#include "ar/base/pose.h"
-#include "ar/base/sighting.h"
+#include "ar/camera/camera_model.h"
+#include "ar/camera/pose.h"
+#include "ar/camera/sighting.h"
 
 #include <optional>
 #include <string>

@@ -1,6 +1,6 @@
 #include "ar/pose/one_euro.h"
 
-#include "ar/base/rotation_vector.h"
+#include "ar/camera/rotation_vector.h"
 
 #include <numbers>
 

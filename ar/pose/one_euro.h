@@ -2,9 +2,9 @@
 // The one-euro filter (Casiez, Roussel, Vogel 2012, "1 Euro Filter: A Simple Speed-based Low-pass Filter for Noisy
 // Input in Interactive Systems", CHI) of a pose: a low-pass of first order whose cutoff rises with speed,
 //   fc = min_cutoff + beta |v|,  tau = 1 / (2 pi fc),  share = dt / (dt + tau),  value += share (input - value).
-// v comes from successive inputs, as in viewer/tracking: it is that of the motion and serves to predict.
+// v comes from successive inputs, as in viewer/devices/tracking: it is that of the motion and serves to predict.
 
-#include "ar/base/pose.h"
+#include "ar/camera/pose.h"
 
 namespace ar {
 

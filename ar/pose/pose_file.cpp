@@ -1,7 +1,7 @@
 #include "ar/pose/pose_file.h"
 
-#include "ar/base/error.h"
-#include "ar/base/rotation_vector.h"
+#include "ar/camera/error.h"
+#include "ar/camera/rotation_vector.h"
 
 #include <algorithm>
 #include <array>

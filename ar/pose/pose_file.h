@@ -4,7 +4,7 @@
 //   TUM  time x y z qx qy qz qw, by blanks, no header (the format of the TUM RGB-D benchmark, Sturm et al. 2012)
 // Which it is, the first line that is neither empty nor begins with # says: CSV has commas. Times rise.
 
-#include "ar/base/pose.h"
+#include "ar/camera/pose.h"
 
 #include <filesystem>
 #include <optional>

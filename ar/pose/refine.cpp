@@ -1,6 +1,6 @@
 #include "ar/pose/refine.h"
 
-#include "ar/base/rotation_vector.h"
+#include "ar/camera/rotation_vector.h"
 
 #include <cmath>
 

@@ -2,9 +2,9 @@
 // Poses by least squares on what the picture shows: the reprojection error through the whole lens model, in pixels
 // of the picture as it came, each point in units of its sigma_px.
 
-#include "ar/base/camera_model.h"
-#include "ar/base/pose.h"
-#include "ar/base/sighting.h"
+#include "ar/camera/camera_model.h"
+#include "ar/camera/pose.h"
+#include "ar/camera/sighting.h"
 
 #include <optional>
 #include <span>

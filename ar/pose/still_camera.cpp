@@ -1,6 +1,6 @@
 #include "ar/pose/still_camera.h"
 
-#include "ar/base/rotation_vector.h"
+#include "ar/camera/rotation_vector.h"
 #include "gi/core/quantile.h"
 
 #include <algorithm>

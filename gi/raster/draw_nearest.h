@@ -1,7 +1,7 @@
 #pragma once
 // A NearestMap drawn by kernels, in either space.
 
-#include "gi/base/launch.h"
+#include "gi/kernel/launch.h"
 #include "gi/raster/raster_kernels.h"
 
 namespace gi {

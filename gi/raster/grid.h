@@ -6,7 +6,7 @@
 // After snapping every decision is exact, so that triangles which share an edge or a vertex cover a sample exactly
 // once between them, and a closed mesh has as many entering as leaving layers in every texel.
 
-#include "gi/scene/world.h"
+#include "gi/scene/model/world.h"
 
 namespace gi {
 

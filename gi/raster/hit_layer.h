@@ -1,7 +1,7 @@
 #pragma once
 // One surface under one texel centre.
 
-#include "gi/base/platform.h"
+#include "gi/core/platform.h"
 
 #include <cstdint>
 

@@ -5,7 +5,7 @@
 // are exact on snapped vertices as in grid.h.
 
 #include "gi/raster/grid.h"
-#include "gi/scene/camera.h"
+#include "gi/scene/model/camera.h"
 
 namespace gi {
 

@@ -1,6 +1,6 @@
 #include "gi/raster/raster_kernels.h"
 
-#include "gi/base/launch.cuh"
+#include "gi/kernel/launch.cuh"
 
 namespace gi {
 

@@ -6,7 +6,7 @@
 // A launch has triangles * shares items. The rows of a large triangle are divided among its shares, since a scene
 // may have few triangles that fill the view; see shares_for.
 
-#include "gi/base/atomics.h"
+#include "gi/kernel/atomics.h"
 #include "gi/raster/clip.h"
 #include "gi/raster/hit_layer.h"
 #include "gi/raster/nearest_map.h"

@@ -1,7 +1,7 @@
 #pragma once
 // A TriangleSoup as kernels see it, and one that lies on a device.
 
-#include "gi/base/buffer.h"
+#include "gi/kernel/buffer.h"
 #include "gi/raster/triangle_soup.h"
 
 namespace gi {

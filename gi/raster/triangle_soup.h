@@ -3,7 +3,7 @@
 // are those of the world's triangles. Followed by one vector of points, so that any triangle can be the first of a
 // vector.
 
-#include "gi/scene/world.h"
+#include "gi/scene/model/world.h"
 
 #include <array>
 

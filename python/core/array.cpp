@@ -1,6 +1,6 @@
 #include "python/core/array.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <numeric>

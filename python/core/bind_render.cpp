@@ -1,12 +1,12 @@
 #include "python/core/bind_render.h"
 
-#include "gi/registry/registry.h"
+#include "gi/methods/registry.h"
 #include "python/core/bind_scene.h"
 #include "python/core/convert.h"
 #include "python/core/interruptible.h"
 #include "python/core/render_keywords.h"
-#include "viewer/choose_camera.h"
-#include "viewer/render_picture.h"
+#include "viewer/offline/choose_camera.h"
+#include "viewer/offline/render_picture.h"
 
 #include <mutex>
 #include <pybind11/stl.h>

@@ -1,10 +1,10 @@
 #include "python/core/bind_scene.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "python/core/array.h"
 #include "python/core/convert.h"
 #include "python/core/errors.h"
-#include "viewer/load_world.h"
+#include "viewer/offline/load_world.h"
 
 #include <pybind11/stl.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "gi/scene/world.h"
+#include "gi/scene/model/world.h"
 
 #include <pybind11/pybind11.h>
 

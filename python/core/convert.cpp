@@ -1,6 +1,6 @@
 #include "python/core/convert.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "python/core/array.h"
 
 #include <pybind11/stl.h>

@@ -1,9 +1,9 @@
 #pragma once
 // Small things between Python and the program.
 
-#include "gi/base/picture.h"
-#include "gi/base/report.h"
-#include "gi/scene/camera.h"
+#include "gi/core/report.h"
+#include "gi/image_io/picture.h"
+#include "gi/scene/model/camera.h"
 
 #include <array>
 #include <nlohmann/json.hpp>

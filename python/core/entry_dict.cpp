@@ -1,6 +1,6 @@
 #include "python/core/entry_dict.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>

@@ -1,7 +1,7 @@
 #pragma once
 // Entries of journals as dicts of Python, with the names that they have in a journal.
 
-#include "study/record/entry_fields.h"
+#include "study/journal/entry_fields.h"
 
 #include <pybind11/pybind11.h>
 

@@ -1,7 +1,7 @@
 #include "python/core/errors.h"
 
-#include "gi/base/error.h"
-#include "study/base/script_error.h"
+#include "gi/core/error.h"
+#include "study/script/script_error.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include "python/core/frames.h"
 
-#include "gi/base/error.h"
-#include "viewer/session/scene_edits.h"
-#include "viewer/study_stimuli.h"
+#include "gi/core/error.h"
+#include "viewer/engine/scene_edits.h"
+#include "viewer/experiment/study_stimuli.h"
 
 #include <chrono>
 

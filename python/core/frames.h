@@ -2,9 +2,9 @@
 // Frames that follow each other, each made when it is asked for: a viewer::Session with its views, and the
 // settings of a stimulus of an experiment.
 
-#include "viewer/session/governor.h"
-#include "viewer/session/session.h"
-#include "viewer/trials/stimulus_place.h"
+#include "viewer/engine/governor.h"
+#include "viewer/engine/session.h"
+#include "viewer/experiment/stimulus_place.h"
 
 #include <mutex>
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "gi/base/progress.h"
+#include "gi/core/progress.h"
 
 #include <functional>
 

@@ -7,7 +7,7 @@
 #include "python/core/bind_scene.h"
 #include "python/core/bind_study.h"
 #include "python/core/errors.h"
-#include "viewer/version.h"
+#include "viewer/base/version.h"
 
 PYBIND11_MODULE(_core, m)
 {

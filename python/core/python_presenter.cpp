@@ -1,6 +1,6 @@
 #include "python/core/python_presenter.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "python/core/entry_dict.h"
 
 #include <pybind11/stl.h>

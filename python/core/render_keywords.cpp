@@ -1,9 +1,9 @@
 #include "python/core/render_keywords.h"
 
-#include "gi/base/error.h"
-#include "gi/image/filter_names.h"
+#include "gi/core/error.h"
+#include "gi/filter/filter_names.h"
 #include "python/core/errors.h"
-#include "viewer/render_options.h"
+#include "viewer/offline/render_options.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
-#include "gi/image/denoise.h"
-#include "gi/image/render_settings.h"
+#include "gi/filter/denoise.h"
+#include "gi/render/render_settings.h"
 
 #include <pybind11/pybind11.h>
 
@@ -14,7 +14,7 @@ namespace py = pybind11;
 /// @param options  of the method, by the names of the command line's options, with _ for -: axes, light_paths, ...
 gi::RenderSettings settings_of(py::dict const& k, py::dict const& options, std::string const& method);
 
-/// By its name (gi/image/filter_names.h). Throws InputError where it is unknown or not installed.
+/// By its name (gi/filter/filter_names.h). Throws InputError where it is unknown or not installed.
 gi::DenoiseSettings denoise_of(std::string const& name, gi::RenderSettings const& settings);
 
 } // namespace bindings

@@ -1,6 +1,6 @@
 #include "study/analysis/threshold_run.h"
 
-#include "study/design/procedure_settings.h"
+#include "study/script/procedure_settings.h"
 #include "study/stats/root.h"
 #include "study/stats/special.h"
 #include "study/stats/summary.h"

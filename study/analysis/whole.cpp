@@ -1,7 +1,7 @@
 #include "study/analysis/whole.h"
 
 #include "gi/core/quantile.h"
-#include "study/design/transitions.h"
+#include "study/plan/transitions.h"
 #include "study/stats/summary.h"
 #include "study/tables/events.h"
 

@@ -7,7 +7,7 @@
 
 namespace study {
 
-/// What a simulation says of its observers (study/simulate writes it).
+/// What a simulation says of its observers (study/observers writes it).
 struct Truth {
     std::map<std::string, std::map<std::string, double>> quality_jod; ///< by factor and level
     struct Varied {

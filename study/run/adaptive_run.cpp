@@ -1,7 +1,7 @@
 #include "study/run/adaptive_run.h"
 
-#include "study/design/condition.h"
-#include "study/design/procedure_settings.h"
+#include "study/script/condition.h"
+#include "study/script/procedure_settings.h"
 
 #include <algorithm>
 #include <charconv>

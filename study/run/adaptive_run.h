@@ -1,5 +1,5 @@
 #pragma once
-#include "study/design/script.h"
+#include "study/script/script.h"
 #include "study/stats/questplus.h"
 #include "study/stats/staircase.h"
 

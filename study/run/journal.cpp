@@ -1,8 +1,8 @@
 #include "study/run/journal.h"
 
-#include "study/base/script_error.h"
-#include "study/record/durable_file.h"
-#include "study/record/entry_line.h"
+#include "study/journal/durable_file.h"
+#include "study/journal/entry_line.h"
+#include "study/script/script_error.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -4,7 +4,7 @@
 // change need not wait for the file system's own journal, nor for what others write. Without room (a full disk) it
 // grows line by line.
 
-#include "study/record/journal_file.h"
+#include "study/journal/journal_file.h"
 
 namespace study {
 

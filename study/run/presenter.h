@@ -5,8 +5,8 @@
 // is written to a disk while a call is under way. An exception out of a call ends the session, and what was under
 // way counts as not done: Aborted, or any other (the display was lost, ...).
 
-#include "study/design/plan.h"
-#include "study/record/entries.h"
+#include "study/journal/entries.h"
+#include "study/plan/plan.h"
 
 #include <stdexcept>
 namespace study {

@@ -2,8 +2,8 @@
 // What is due next in a session: the plan, and what its journal says of it so far. A session that runs and one
 // that goes on later ask the same object; its state follows from plan and entries alone.
 
-#include "study/design/plan.h"
-#include "study/record/entries.h"
+#include "study/journal/entries.h"
+#include "study/plan/plan.h"
 #include "study/run/adaptive_run.h"
 
 #include <deque>

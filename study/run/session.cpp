@@ -1,12 +1,12 @@
 #include "study/run/session.h"
 
-#include "study/base/sha256.h"
-#include "study/record/durable_file.h"
-#include "study/record/moments.h"
-#include "study/record/session_summary.h"
+#include "study/journal/durable_file.h"
+#include "study/journal/moments.h"
+#include "study/journal/session_summary.h"
 #include "study/run/session_files.h"
 #include "study/run/stopwatch.h"
 #include "study/run/trial.h"
+#include "study/script/sha256.h"
 
 #include <chrono>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 // One participant's session: a plan, run through a presenter, kept in a journal.
 
-#include "study/record/journal_folders.h"
+#include "study/journal/journal_folders.h"
 #include "study/run/presenter.h"
 
 #include <filesystem>

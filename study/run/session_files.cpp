@@ -1,8 +1,8 @@
 #include "study/run/session_files.h"
 
-#include "study/base/script_error.h"
-#include "study/base/sha256.h"
-#include "study/record/durable_file.h"
+#include "study/journal/durable_file.h"
+#include "study/script/script_error.h"
+#include "study/script/sha256.h"
 
 #include <fmt/format.h>
 #include <fstream>

@@ -1,6 +1,6 @@
 #pragma once
-#include "study/base/sha256.h"
-#include "study/design/condition.h"
+#include "study/script/condition.h"
+#include "study/script/sha256.h"
 
 namespace study {
 

@@ -1,8 +1,8 @@
 #include "study/stats/bootstrap.h"
 
 #include "gi/core/quantile.h"
-#include "study/base/random.h"
 #include "study/stats/error.h"
+#include "study/stats/random.h"
 #include "study/stats/special.h"
 #include "study/stats/summary.h"
 

@@ -2,9 +2,9 @@
 // Power by simulation: how often would an experiment of this size find what is there? The experiment and its test
 // are whatever the caller says.
 
-#include "study/base/random.h"
 #include "study/stats/binomial.h"
 #include "study/stats/error.h"
+#include "study/stats/random.h"
 
 #include <optional>
 #include <span>

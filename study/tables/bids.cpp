@@ -1,6 +1,6 @@
 #include "study/tables/bids.h"
 
-#include "study/record/session_summary.h"
+#include "study/journal/session_summary.h"
 #include "study/tables/events.h"
 
 #include <algorithm>

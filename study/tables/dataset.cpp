@@ -1,10 +1,10 @@
 #include "study/tables/dataset.h"
 
-#include "study/base/sha256.h"
-#include "study/design/script_file.h"
-#include "study/record/durable_file.h"
-#include "study/record/journal_file.h"
-#include "study/record/journal_folders.h"
+#include "study/journal/durable_file.h"
+#include "study/journal/journal_file.h"
+#include "study/journal/journal_folders.h"
+#include "study/script/script_file.h"
+#include "study/script/sha256.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "study/tables/recorded_session.h"
 
-#include "study/record/moments.h"
+#include "study/journal/moments.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #pragma once
 // A session as it was planned and as its journal says that it went.
 
-#include "study/design/plan.h"
-#include "study/record/entries.h"
+#include "study/journal/entries.h"
+#include "study/plan/plan.h"
 
 #include <span>
 

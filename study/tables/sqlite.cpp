@@ -1,6 +1,6 @@
 #include "study/tables/export.h"
 
-#include "study/base/script_error.h"
+#include "study/script/script_error.h"
 
 #include <cstdlib>
 #include <fmt/format.h>

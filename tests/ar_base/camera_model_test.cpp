@@ -1,7 +1,7 @@
-#include "ar/base/camera_model.h"
+#include "ar/camera/camera_model.h"
 
-#include "ar/base/error.h"
-#include "ar/base/pose.h"
+#include "ar/camera/error.h"
+#include "ar/camera/pose.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

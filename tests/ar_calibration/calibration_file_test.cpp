@@ -1,6 +1,6 @@
 #include "ar/calibration/calibration_file.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "tests/ar_calibration/synthetic_camera.h"
 
 #include <filesystem>

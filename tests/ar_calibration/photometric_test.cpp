@@ -1,7 +1,7 @@
 #include "ar/calibration/response.h"
 #include "ar/calibration/sensor.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "tests/ar_calibration/synthetic_camera.h"
 
 #include <fmt/format.h>

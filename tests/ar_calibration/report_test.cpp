@@ -1,6 +1,6 @@
 #include "ar/calibration/report.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "tests/ar_calibration/synthetic_camera.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #pragma once
 // A camera with a known response (an S-shaped film curve on a gamma), vignetting, colours and noise.
 
-#include "ar/base/photometry.h"
+#include "ar/camera/photometry.h"
 
 #include <algorithm>
 #include <cmath>

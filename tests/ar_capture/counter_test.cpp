@@ -1,4 +1,4 @@
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/clock.h"
 #include "ar/capture/counter_source.h"
 #include "tests/ar_capture/temporary_folder.h"

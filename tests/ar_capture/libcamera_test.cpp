@@ -1,5 +1,5 @@
 // The libcamera that this program was built with, on whatever machine this is.
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/libcamera_source.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/picture_source.h"
 #include "ar/capture/whole_picture.h"
 #include "tests/ar_capture/temporary_folder.h"

@@ -1,4 +1,4 @@
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/counter_source.h"
 #include "ar/capture/session_reader.h"
 #include "ar/capture/session_writer.h"

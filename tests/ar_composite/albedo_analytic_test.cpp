@@ -1,7 +1,7 @@
 #include "ar/composite/albedo.h"
 
-#include "ar/base/error.h"
-#include "ar/base/photometry.h"
+#include "ar/camera/error.h"
+#include "ar/camera/photometry.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // What virtual pixels share with the camera: spread of edges, motion, noise; measured as a camera's is.
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/composite/blur.h"
 #include "ar/composite/composite.h"
 #include "ar/composite/edge_spread.h"

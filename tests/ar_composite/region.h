@@ -1,7 +1,7 @@
 #pragma once
 // Where virtual objects changed a picture, and errors there and elsewhere.
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/composite/rendered_pair.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "ar/composite/temporal.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "tests/ar_composite/test_pictures.h"
 
 #include <cmath>

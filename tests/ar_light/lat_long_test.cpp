@@ -1,7 +1,7 @@
 #include "ar/light/lat_long.h"
 
-#include "ar/base/error.h"
-#include "ar/base/rotation_vector.h"
+#include "ar/camera/error.h"
+#include "ar/camera/rotation_vector.h"
 #include "tests/ar_light/environments.h"
 
 #include <gtest/gtest.h>

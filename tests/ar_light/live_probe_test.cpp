@@ -1,8 +1,8 @@
 #include "ar/light/live_probe.h"
 
-#include "ar/base/error.h"
-#include "ar/base/photometry.h"
-#include "ar/base/rotation_vector.h"
+#include "ar/camera/error.h"
+#include "ar/camera/photometry.h"
+#include "ar/camera/rotation_vector.h"
 #include "tests/ar_light/environments.h"
 #include "tests/ar_light/irradiance_maps.h"
 

@@ -1,6 +1,6 @@
 #include "ar/light/map_file.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "tests/ar_light/environments.h"
 
 #include <filesystem>

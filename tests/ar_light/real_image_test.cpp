@@ -1,7 +1,7 @@
 // Light of a real place: a captured map, pictures made from it by others, and what this room makes of them.
 
-#include "ar/base/photometry.h"
-#include "ar/base/rotation_vector.h"
+#include "ar/camera/photometry.h"
+#include "ar/camera/rotation_vector.h"
 #include "ar/light/lamps.h"
 #include "ar/light/live_probe.h"
 #include "ar/light/map_file.h"

@@ -1,6 +1,6 @@
 #include "ar/markers/detect.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "tests/ar_markers/drawn_view.h"
 #include "tests/ar_markers/refinement_name.h"
 

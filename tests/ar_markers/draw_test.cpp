@@ -1,6 +1,6 @@
 #include "ar/markers/draw.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 
 #include <filesystem>
 #include <fstream>

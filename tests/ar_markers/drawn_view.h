@@ -2,9 +2,9 @@
 // Pictures of markers with known truth: drawings at high resolution, seen through a CameraModel with several rays
 // per pixel, blurred, noisy, in sRGB bytes.
 
-#include "ar/base/camera_model.h"
-#include "ar/base/pose.h"
-#include "ar/base/sighting.h"
+#include "ar/camera/camera_model.h"
+#include "ar/camera/pose.h"
+#include "ar/camera/sighting.h"
 #include "ar/markers/draw.h"
 
 #include <cmath>

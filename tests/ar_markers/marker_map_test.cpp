@@ -1,6 +1,6 @@
 #include "ar/markers/marker_map_file.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 
 #include <gtest/gtest.h>
 

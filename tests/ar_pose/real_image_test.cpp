@@ -1,6 +1,6 @@
 // Poses from corners that others found in photographs, beside the poses that OpenCV gives.
 
-#include "ar/base/rotation_vector.h"
+#include "ar/camera/rotation_vector.h"
 #include "ar/pose/estimate.h"
 #include "gi/core/quantile.h"
 

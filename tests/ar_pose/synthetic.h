@@ -1,10 +1,10 @@
 #pragma once
 // Cameras that look at a 3 x 3 grid of markers (or a marker, or a board) from where the test knows.
 
-#include "ar/base/camera_model.h"
-#include "ar/base/pose.h"
-#include "ar/base/rotation_vector.h"
-#include "ar/base/sighting.h"
+#include "ar/camera/camera_model.h"
+#include "ar/camera/pose.h"
+#include "ar/camera/rotation_vector.h"
+#include "ar/camera/sighting.h"
 
 #include <cmath>
 #include <random>

@@ -1,7 +1,7 @@
 #include "ar/pose/tracker.h"
 
-#include "ar/base/error.h"
-#include "ar/base/rotation_vector.h"
+#include "ar/camera/error.h"
+#include "ar/camera/rotation_vector.h"
 #include "tests/ar_pose/synthetic.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-#include "gi/base/alias_table.h"
-#include "gi/base/rng.h"
+#include "gi/core/alias_table.h"
+#include "gi/core/rng.h"
 #include "tests/support/statistics.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 
 #include <gtest/gtest.h>
 

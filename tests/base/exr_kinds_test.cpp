@@ -1,8 +1,8 @@
 // OpenEXR files as other programs write them: tiles, offset data windows, every compression, and what is refused.
 
-#include "gi/base/error.h"
-#include "gi/base/file.h"
-#include "gi/base/picture_file.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "gi/image_io/picture_file.h"
 
 #include <ImfChannelList.h>
 #include <ImfDeepFrameBuffer.h>

@@ -1,5 +1,5 @@
-#include "gi/base/buffer.h"
-#include "gi/base/launch.h"
+#include "gi/kernel/buffer.h"
+#include "gi/kernel/launch.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

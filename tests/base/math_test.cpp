@@ -1,4 +1,4 @@
-#include "gi/base/rng.h"
+#include "gi/core/rng.h"
 
 #include <gtest/gtest.h>
 

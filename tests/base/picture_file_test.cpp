@@ -1,7 +1,7 @@
-#include "gi/base/error.h"
-#include "gi/base/file.h"
-#include "gi/base/picture_file.h"
-#include "gi/base/rng.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "gi/core/rng.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/support/data.h"
 
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "gi/base/progress.h"
+#include "gi/core/progress.h"
 
 #include <gtest/gtest.h>
 #include <pty.h>

@@ -1,4 +1,4 @@
-#include "gi/base/rqmc.h"
+#include "gi/core/rqmc.h"
 
 #include <gtest/gtest.h>
 #include <set>

@@ -1,6 +1,6 @@
 // The judges judged: known values, and samplers that are wrong must be caught.
 
-#include "gi/base/rng.h"
+#include "gi/core/rng.h"
 #include "tests/support/sphere_chi2.h"
 #include "tests/support/statistics.h"
 

@@ -1,4 +1,4 @@
-#include "gi/base/threads.h"
+#include "gi/core/threads.h"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

@@ -1,10 +1,10 @@
 // What the filters leave of the error of a picture, and how long they take.
 //   bench_denoise_error NOISY.exr REFERENCE.exr [FILTER...]      with all layers, such as lightwell render writes
 
-#include "gi/base/error.h"
-#include "gi/base/picture_file.h"
-#include "gi/image/compare.h"
-#include "gi/image/filter_names.h"
+#include "gi/core/error.h"
+#include "gi/filter/filter_names.h"
+#include "gi/image_io/picture_file.h"
+#include "gi/metrics/compare.h"
 
 #include <algorithm>
 #include <chrono>

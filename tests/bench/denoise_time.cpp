@@ -1,8 +1,8 @@
 // How long the filters take: a rendered picture, one thread, the best of 20 calls.
 //   bench_denoise_time PICTURE.exr      with all layers, such as lightwell render writes
 
-#include "gi/base/picture_file.h"
-#include "gi/image/denoise.h"
+#include "gi/filter/denoise.h"
+#include "gi/image_io/picture_file.h"
 
 #include <algorithm>
 #include <chrono>

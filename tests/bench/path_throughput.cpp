@@ -3,12 +3,12 @@
 // one thread. Prints medians over the rounds and their ratios.
 //   bench_path_throughput [SCENE...]      default: boxes of 1M triangles, atrium, cornell
 
-#include "gi/base/report.h"
 #include "gi/core/quantile.h"
-#include "gi/reference/path_tracer.h"
-#include "gi/scene/generate.h"
-#include "gi/scene/load.h"
-#include "gi/scene/plan.h"
+#include "gi/core/report.h"
+#include "gi/methods/reference/path_tracer.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/model/plan.h"
 
 #include <algorithm>
 #include <chrono>

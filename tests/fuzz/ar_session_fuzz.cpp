@@ -1,8 +1,8 @@
 // Any text as an AR session or as a file of albedos: what it says, or an InputError.
 
-#include "gi/base/error.h"
-#include "viewer/ar/session/albedo_file.h"
-#include "viewer/ar/session/session_file.h"
+#include "ar/scene/albedo_file.h"
+#include "ar/scene/session_file.h"
+#include "gi/core/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
 {

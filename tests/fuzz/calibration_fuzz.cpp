@@ -1,7 +1,7 @@
 // Any text as a calibration: one whose camera has rays and that comes back as it was, or an InputError.
 
-#include "ar/base/error.h"
 #include "ar/calibration/calibration_file.h"
+#include "ar/camera/error.h"
 
 #include <cmath>
 

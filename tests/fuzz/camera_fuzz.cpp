@@ -1,7 +1,7 @@
 // Any bytes as what a camera wrote into its buffer, of any format it has, of a size and a stride that the first
 // bytes say: planes that lie within the buffer, or a reason why not.
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/camera_pixels.h"
 #include "ar/capture/whole_picture.h"
 

@@ -1,10 +1,10 @@
 // Any text as a display, ours or another program's (the first byte says whose): a sound display or an InputError,
 // never anything else. What is sound has views, and comes back as it was.
 
-#include "gi/base/error.h"
-#include "viewer/display/display_file.h"
-#include "viewer/display/import.h"
-#include "viewer/display/view_summary.h"
+#include "gi/core/error.h"
+#include "viewer/displays/display_file.h"
+#include "viewer/displays/import.h"
+#include "viewer/displays/view_summary.h"
 
 #include <algorithm>
 #include <cstdlib>

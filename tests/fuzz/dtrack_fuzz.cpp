@@ -1,6 +1,6 @@
 // Any bytes as a packet of ART DTrack: samples that are finite rotations and places, never anything else.
 
-#include "viewer/tracking/dtrack.h"
+#include "viewer/devices/tracking/dtrack.h"
 
 #include "tests/fuzz/expect_samples.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 // What every parser of tracker packets promises of its samples.
 
-#include "viewer/tracking/pose_math.h"
-#include "viewer/tracking/tracker_sample.h"
+#include "viewer/devices/tracking/pose_math.h"
+#include "viewer/devices/tracking/tracker_sample.h"
 
 namespace viewer {
 

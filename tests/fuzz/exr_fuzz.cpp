@@ -1,7 +1,7 @@
 // Any bytes as OpenEXR: a picture or an InputError, never anything else.
 
-#include "gi/base/error.h"
-#include "gi/base/picture_file.h"
+#include "gi/core/error.h"
+#include "gi/image_io/picture_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
 {

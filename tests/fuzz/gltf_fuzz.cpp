@@ -1,8 +1,8 @@
 // Any bytes as glTF: a scene or an InputError, never anything else.
 
-#include "gi/base/error.h"
-#include "gi/scene/load.h"
-#include "gi/scene/world.h"
+#include "gi/core/error.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/model/world.h"
 
 extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
 {

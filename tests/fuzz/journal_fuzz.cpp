@@ -2,14 +2,14 @@
 // nothing would pass it. What was read is written as the same entries, and a session takes them up or says why it
 // cannot.
 
-#include "study/base/script_error.h"
-#include "study/design/script_file.h"
-#include "study/record/crc32.h"
-#include "study/record/entry_line.h"
-#include "study/record/journal_file.h"
-#include "study/record/moments.h"
-#include "study/record/session_summary.h"
+#include "study/journal/crc32.h"
+#include "study/journal/entry_line.h"
+#include "study/journal/journal_file.h"
+#include "study/journal/moments.h"
+#include "study/journal/session_summary.h"
 #include "study/run/progress.h"
+#include "study/script/script_error.h"
+#include "study/script/script_file.h"
 
 #include <cstdio>
 #include <cstdlib>

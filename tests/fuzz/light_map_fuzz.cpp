@@ -1,6 +1,6 @@
 // Any bytes as an environment map, the first says which format: a map or an InputError, never anything else.
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/light/lat_long.h"
 #include "ar/light/map_file.h"
 

@@ -1,9 +1,9 @@
 // Any bytes as a recording: frames and an end, or an InputError. Checksums are made right, since chance never
 // would.
 
-#include "gi/base/error.h"
-#include "viewer/recording/crc32.h"
-#include "viewer/recording/recording.h"
+#include "gi/core/error.h"
+#include "viewer/protocol/recording/crc32.h"
+#include "viewer/protocol/recording/recording.h"
 
 #include <algorithm>
 #include <cstring>

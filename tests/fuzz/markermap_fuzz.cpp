@@ -1,6 +1,6 @@
 // Any text as a map of markers: a map that comes back as it was, or an InputError.
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/markers/marker_map_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)

@@ -1,7 +1,7 @@
 // Any bytes as a frame order: an order that comes back the same, or an InputError.
 
-#include "gi/base/error.h"
-#include "viewer/order/frame_order.h"
+#include "gi/core/error.h"
+#include "viewer/protocol/frame_order.h"
 
 #include <cstdlib>
 

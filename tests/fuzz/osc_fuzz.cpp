@@ -1,7 +1,7 @@
 // Any bytes as an OSC packet: samples that are finite rotations and places, never anything else.
 
 #include "tests/fuzz/expect_samples.h"
-#include "viewer/tracking/osc.h"
+#include "viewer/devices/tracking/osc.h"
 
 extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
 {

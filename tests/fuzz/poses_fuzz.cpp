@@ -1,6 +1,6 @@
 // Any text as poses of a camera: poses or an InputError, never anything else.
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/pose/pose_file.h"
 
 #include <cmath>

@@ -1,9 +1,9 @@
 // Any bytes from a client of the remote protocol, in pieces: every line gets an answer that is JSON, nothing else
 // happens. The first byte says how the pieces are cut.
 
-#include "viewer/remote/remote_server.h"
+#include "viewer/protocol/remote/remote_server.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -2,7 +2,7 @@
 // that are as large as they say, or an InputError. Lines get the checksum that fits them, or nothing would pass
 // it.
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/session_reader.h"
 
 #include <cstdlib>

@@ -1,8 +1,8 @@
 // Any text as an experiment: a script or a ScriptError, never anything else. What is a script has a plan, which is
 // the same when made again, or is refused with the reason.
 
-#include "study/design/plan.h"
-#include "study/design/script_file.h"
+#include "study/plan/plan.h"
+#include "study/script/script_file.h"
 
 #include <cstdlib>
 

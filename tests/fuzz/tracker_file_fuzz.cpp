@@ -1,8 +1,8 @@
 // Any text as recorded poses: poses or an InputError, never anything else.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/fuzz/expect_samples.h"
-#include "viewer/tracking/tracker_file.h"
+#include "viewer/devices/tracking/tracker_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
 {

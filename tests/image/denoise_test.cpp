@@ -1,9 +1,9 @@
-#include "gi/base/error.h"
-#include "gi/base/rng.h"
-#include "gi/image/denoise.h"
-#include "gi/image/metrics.h"
-#include "gi/reference/reference.h"
-#include "gi/scene/load.h"
+#include "gi/core/error.h"
+#include "gi/core/rng.h"
+#include "gi/filter/denoise.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/metrics/metrics.h"
+#include "gi/scene/load/load.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Our FLIP against NVIDIA's own evaluator (flip-evaluator from PyPI, installed by scripts/setup --tests).
 
-#include "gi/base/rng.h"
-#include "gi/image/flip.h"
+#include "gi/core/rng.h"
+#include "gi/metrics/flip.h"
 
 #include <cstdio>
 #include <filesystem>

@@ -1,6 +1,6 @@
-#include "gi/image/neighbour_correlation.h"
+#include "gi/metrics/neighbour_correlation.h"
 
-#include "gi/base/rng.h"
+#include "gi/core/rng.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // The filter oidn. All but the first test are skipped, visibly, where Open Image Denoise is not installed.
 
-#include "gi/base/error.h"
-#include "gi/image/filter_names.h"
-#include "gi/image/metrics.h"
-#include "gi/reference/reference.h"
-#include "gi/scene/load.h"
+#include "gi/core/error.h"
+#include "gi/filter/filter_names.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/metrics/metrics.h"
+#include "gi/scene/load/load.h"
 
 #include <cstdlib>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "gi/base/rng.h"
-#include "gi/image/filter_area.h"
+#include "gi/core/rng.h"
+#include "gi/filter/filter_area.h"
 
 #include <gtest/gtest.h>
 

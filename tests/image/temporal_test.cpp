@@ -1,7 +1,7 @@
-#include "gi/image/temporal.h"
+#include "gi/filter/temporal.h"
 
-#include "gi/base/error.h"
-#include "gi/base/rng.h"
+#include "gi/core/error.h"
+#include "gi/core/rng.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-#include "gi/base/buffer.h"
-#include "gi/base/launch.h"
-#include "gi/image/tone_map.h"
+#include "gi/filter/tone_map.h"
+#include "gi/kernel/buffer.h"
+#include "gi/kernel/launch.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The rasteriser's kernels, on the host and on the device, against the vector form of the CPU.
 
-#include "gi/base/scan.h"
+#include "gi/kernel/scan.h"
 #include "gi/raster/deep_raster.h"
 #include "gi/raster/draw_nearest.h"
 #include "tests/raster/plain_raster.h"

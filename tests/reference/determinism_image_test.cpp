@@ -1,8 +1,8 @@
 // The same seed gives the same bits, however the work is divided; another seed gives another sample of the same
 // mean.
 
-#include "gi/base/error.h"
-#include "gi/reference/reference.h"
+#include "gi/core/error.h"
+#include "gi/methods/reference/reference.h"
 #include "tests/support/scenes.h"
 
 #include <cstdlib>

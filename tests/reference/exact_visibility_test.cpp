@@ -1,5 +1,5 @@
-#include "gi/base/rng.h"
-#include "gi/transport/exact_visibility.h"
+#include "gi/core/rng.h"
+#include "gi/render/exact_visibility.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // White furnace: in a uniform field of light whatever absorbs nothing cannot be seen.
 
-#include "gi/reference/reference.h"
+#include "gi/methods/reference/reference.h"
 #include "tests/support/scenes.h"
 
 #include <fmt/format.h>
@@ -35,14 +35,10 @@ std::vector<Case> cases()
     Material phong;
     phong.model = MaterialModel::phong;
     phong.base_color = vec3{0.4f};
-    return {{"lambert white", lambert(vec3{1}), 1},
-            {"lambert grey", lambert(vec3{0.5f}), 0.5},
-            {"black", rough_plastic_black, 0},
-            {"mirror", mirror(vec3{1}), 1},
-            {"solid glass", glass(1.5f, false), 1},
-            {"diamond", glass(2.42f, false), 1},
-            {"no glass", glass(1.0f, false), 1},
-            {"thin sheet", glass(1.5f, true), 1},
+    return {{"lambert white", lambert(vec3{1}), 1}, {"lambert grey", lambert(vec3{0.5f}), 0.5},
+            {"black", rough_plastic_black, 0},      {"mirror", mirror(vec3{1}), 1},
+            {"solid glass", glass(1.5f, false), 1}, {"diamond", glass(2.42f, false), 1},
+            {"no glass", glass(1.0f, false), 1},    {"thin sheet", glass(1.5f, true), 1},
             {"phong without lobe", phong, 0.4}};
 }
 
@@ -69,14 +65,16 @@ TEST(Furnace, RoomOfGlowingWalls)
         Material wall = lambert(vec3{rho});
         wall.emission = vec3{0.5f};
         add_box(scene, {-1, -1, -1}, {1, 1, 1}, add_material(scene, wall), true);
-        RenderResult const r = render(world_of(scene), look_at({0.3, 0.1, 0.2}, {-1, -0.5, -0.7}, 70), 24, 512, 1000);
+        RenderResult const r =
+            render(world_of(scene), look_at({0.3, 0.1, 0.2}, {-1, -0.5, -0.7}, 70), 24, 512, 1000);
         Estimate e = mean_of(r.picture);
         e.sigma = std::max(e.sigma, 1e-6);
         expect_estimate(e, 0.5 / (1 - double(rho)), fmt::format("room with albedo {}", rho));
         if (rho > 0) {
             EXPECT_NEAR(mean_of(r.picture, "L0").mean, 0.5, 1e-5);
             EXPECT_NEAR(mean_of(r.picture, "L1").mean, 0.5 * rho, 0.005 * 0.5 * rho);
-            EXPECT_NEAR(mean_of(r.picture, "L2").mean, 0.5 * rho * rho / (1 - rho), 0.01 * 0.5 * rho * rho / (1 - rho));
+            EXPECT_NEAR(mean_of(r.picture, "L2").mean, 0.5 * rho * rho / (1 - rho),
+                        0.01 * 0.5 * rho * rho / (1 - rho));
         }
     }
 }
@@ -97,7 +95,8 @@ TEST(Furnace, LobesWithClosedForms)
 {
     for (double const degrees : {0.0, 30.0, 60.0, 80.0}) {
         double const schlick = 0.5 + 0.5 * std::pow(1 - std::cos(glm::radians(degrees)), 5);
-        expect_estimate(plane_under_sky(mirror(vec3{0.5f}), degrees), schlick, fmt::format("mirror at {}", degrees));
+        expect_estimate(plane_under_sky(mirror(vec3{0.5f}), degrees), schlick,
+                        fmt::format("mirror at {}", degrees));
     }
     Material metal = mirror(vec3{1});
     metal.roughness = 1; // GGX with alpha 1 loses ln 2 to masking where it is looked at along its normal

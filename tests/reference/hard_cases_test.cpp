@@ -1,6 +1,6 @@
 // Geometry that breaks naive ray tracers: empty, tiny, huge, far away, grazing, thin, coplanar, closed.
 
-#include "gi/reference/reference.h"
+#include "gi/methods/reference/reference.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
-// Files that broke other programs: each becomes a picture or is refused with an InputError, soon, and never anything
-// else.
+// Files that broke other programs: each becomes a picture or is refused with an InputError, soon, and never
+// anything else.
 
-#include "gi/base/error.h"
-#include "gi/reference/reference.h"
-#include "gi/scene/load.h"
+#include "gi/core/error.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/scene/load/load.h"
 #include "tests/support/data.h"
 #include "tests/support/scenes.h"
 

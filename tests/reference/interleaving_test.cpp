@@ -1,9 +1,9 @@
 // Interleaved indirect light: turns, what pixels that wait are given, and the time of frames.
 
-#include "gi/transport/interleaving.h"
+#include "gi/render/interleaving.h"
 
-#include "gi/reference/reference.h"
-#include "gi/scene/moving_world.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/scene/motion/moving_world.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

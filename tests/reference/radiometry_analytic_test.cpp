@@ -1,6 +1,6 @@
 // Closed forms of radiometry: lamps over planes, form factors, energy balance of closed rooms.
 
-#include "gi/reference/reference.h"
+#include "gi/methods/reference/reference.h"
 #include "tests/support/scenes.h"
 
 #include <fmt/format.h>
@@ -22,8 +22,8 @@ RenderResult render_square(World const& world, Camera const& camera, int size, s
     return render_reference(world, camera, s, stop, {}, report);
 }
 
-/// Irradiance at `point` with normal `n` from a polygon of radiance L (Lambert 1760): L / 2 * sum of the angles that
-/// the edges subtend times the cosine between n and their planes.
+/// Irradiance at `point` with normal `n` from a polygon of radiance L (Lambert 1760): L / 2 * sum of the angles
+/// that the edges subtend times the cosine between n and their planes.
 double polygon_irradiance(std::vector<dvec3> const& corners, dvec3 point, dvec3 n, double radiance)
 {
     double sum = 0;
@@ -167,8 +167,8 @@ TEST(Radiometry, FormFactorOfPerpendicularSquares)
 
 TEST(Radiometry, EnergyBalanceOfAClosedRoom)
 {
-    // All that a lamp of power P emits is absorbed in the end: the flux that leaves the walls after n reflections is
-    // P rho^n, whatever the shape of the room. Each wall is seen whole from the opposite one.
+    // All that a lamp of power P emits is absorbed in the end: the flux that leaves the walls after n reflections
+    // is P rho^n, whatever the shape of the room. Each wall is seen whole from the opposite one.
     constexpr double kPower = 3;
     for (float const rho : {0.5f, 0.9f}) {
         Scene scene;

@@ -1,6 +1,6 @@
 // Several clips at once: means by weight, each part of a node for itself.
 
-#include "gi/scene/animation.h"
+#include "gi/scene/motion/animation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Keys by hand, time wrapping, poses through a chain of nodes.
 
-#include "gi/scene/animation.h"
+#include "gi/scene/motion/animation.h"
 
 #include <gtest/gtest.h>
 

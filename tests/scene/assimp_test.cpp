@@ -1,9 +1,9 @@
 // OBJ, PLY, STL, ... through Assimp: what becomes of their materials, textures, bones and units.
 
-#include "gi/base/error.h"
-#include "gi/scene/animation.h"
-#include "gi/scene/load.h"
-#include "gi/scene/world.h"
+#include "gi/core/error.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/model/world.h"
+#include "gi/scene/motion/animation.h"
 
 #include <fstream>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // The atrium: its size, its soundness, and a figure that walks.
 
-#include "gi/base/error.h"
-#include "gi/scene/animation.h"
-#include "gi/scene/generate.h"
-#include "gi/scene/world.h"
+#include "gi/core/error.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/model/world.h"
+#include "gi/scene/motion/animation.h"
 #include "tests/scene/scene_checks.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 // Figures whose joints are known, driven as avatars by trackers.
 
-#include "gi/scene/avatar.h"
+#include "gi/scene/motion/avatar.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Joints of avatars, found by their names.
 
-#include "gi/base/error.h"
-#include "gi/scene/load.h"
+#include "gi/core/error.h"
+#include "gi/scene/load/load.h"
 #include "tests/scene/avatar_figure.h"
 #include "tests/support/data.h"
 

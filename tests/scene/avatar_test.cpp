@@ -1,6 +1,6 @@
 // Avatars driven by trackers: heads and hands where they are told; real ones with their feet too.
 
-#include "gi/scene/load.h"
+#include "gi/scene/load/load.h"
 #include "tests/scene/avatar_figure.h"
 #include "tests/support/data.h"
 

@@ -1,8 +1,8 @@
 // The avatars of the test data move: every clip of every file, blended clips, mesh sequences against the clips
 // that they were baked from, and synthetic files with what is hard about skins.
 
-#include "gi/scene/load.h"
-#include "gi/scene/skinning.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/motion/skinning.h"
 #include "tests/scene/gltf_builder.h"
 #include "tests/support/data.h"
 #include "tests/support/scenes.h"

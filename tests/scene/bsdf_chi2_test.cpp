@@ -1,6 +1,6 @@
 // Samplers of scattering against their densities.
 
-#include "gi/base/rng.h"
+#include "gi/core/rng.h"
 #include "tests/support/bsdf_cases.h"
 #include "tests/support/sphere_chi2.h"
 #include "tests/support/statistics.h"

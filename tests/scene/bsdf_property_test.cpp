@@ -1,6 +1,6 @@
 // Whatever the material and the directions: finite, not negative, no more light than there was.
 
-#include "gi/base/rng.h"
+#include "gi/core/rng.h"
 #include "tests/support/bsdf_cases.h"
 
 #include <fmt/format.h>

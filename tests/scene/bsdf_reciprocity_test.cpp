@@ -1,6 +1,6 @@
 // Helmholtz reciprocity, and the value of f against the equations of the papers.
 
-#include "gi/base/rng.h"
+#include "gi/core/rng.h"
 #include "tests/support/bsdf_cases.h"
 #include "tests/support/scenes.h"
 

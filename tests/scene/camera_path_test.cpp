@@ -1,9 +1,9 @@
 // Moving cameras: through their keys, smoothly, and exactly where the curve is known.
 
-#include "gi/scene/camera_path.h"
+#include "gi/scene/model/camera_path.h"
 
-#include "gi/base/error.h"
-#include "gi/scene/load.h"
+#include "gi/core/error.h"
+#include "gi/scene/load/load.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Rays and their inverse, from telescopes to fish eyes, near and far from zero.
 
-#include "gi/base/error.h"
-#include "gi/scene/camera.h"
-#include "gi/scene/projection.h"
+#include "gi/core/error.h"
+#include "gi/scene/model/camera.h"
+#include "gi/scene/model/projection.h"
 
 #include <gtest/gtest.h>
 

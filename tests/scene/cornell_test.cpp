@@ -1,8 +1,8 @@
 // The Cornell box against its published numbers.
 
-#include "gi/scene/generate.h"
-#include "gi/scene/projection.h"
-#include "gi/scene/spectrum.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/model/projection.h"
+#include "gi/scene/model/spectrum.h"
 #include "tests/scene/scene_checks.h"
 
 #include <array>

@@ -1,11 +1,11 @@
 // Morphing and skinning as kernels, on the host and on the device: against a plain form in doubles, and by what is
 // known of the two kinds of skinning.
 
-#include "gi/base/buffer.h"
-#include "gi/base/launch.h"
-#include "gi/base/rng.h"
-#include "gi/scene/skinning.h"
-#include "gi/scene/stretch.h"
+#include "gi/core/rng.h"
+#include "gi/kernel/buffer.h"
+#include "gi/kernel/launch.h"
+#include "gi/scene/motion/skinning.h"
+#include "gi/scene/motion/stretch.h"
 #include "tests/support/on_device.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // KHR_draco_mesh_compression: what Draco encodes comes back, damaged data are refused.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/scene/gltf_builder.h"
 
 #pragma GCC diagnostic push

@@ -1,8 +1,8 @@
 // Environment maps in spherical harmonics: known functions, irradiance in closed form and against integration.
 
-#include "gi/scene/environment_harmonics.h"
-#include "gi/scene/light_sampling.h"
-#include "gi/scene/load.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/shading/environment_harmonics.h"
+#include "gi/scene/shading/light_sampling.h"
 #include "tests/support/data.h"
 #include "tests/support/scenes.h"
 

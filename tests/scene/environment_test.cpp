@@ -1,8 +1,8 @@
 // Environment maps from files: orientation, damaged texels, wrong shapes.
 
-#include "gi/base/error.h"
-#include "gi/base/picture_file.h"
-#include "gi/scene/load.h"
+#include "gi/core/error.h"
+#include "gi/image_io/picture_file.h"
+#include "gi/scene/load/load.h"
 #include "tests/support/data.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 #pragma once
 // Small glTF files for tests: JSON that a test fills in, and one binary chunk.
 
-#include "gi/base/report.h"
-#include "gi/scene/load.h"
+#include "gi/core/report.h"
+#include "gi/scene/load/load.h"
 
 #include <cstring>
 #include <nlohmann/json.hpp>

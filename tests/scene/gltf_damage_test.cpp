@@ -1,6 +1,6 @@
 // Damaged and hostile glTF: an InputError that says what is wrong, in bounded time and memory.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/scene/gltf_builder.h"
 
 #include <fstream>

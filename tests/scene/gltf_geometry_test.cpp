@@ -1,6 +1,6 @@
 // Vertices and triangles out of glTF: every way in which the format can store them.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/scene/gltf_builder.h"
 
 #include <gtest/gtest.h>

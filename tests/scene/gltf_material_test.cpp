@@ -1,7 +1,7 @@
 // Materials and textures of glTF: every extension that is read, and what is counted where something is not.
 
-#include "gi/base/error.h"
-#include "gi/scene/bsdf.h"
+#include "gi/core/error.h"
+#include "gi/scene/shading/bsdf.h"
 #include "tests/scene/gltf_builder.h"
 
 #include <gtest/gtest.h>

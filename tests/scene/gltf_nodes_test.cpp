@@ -1,7 +1,7 @@
 // The node graph of glTF: transforms, instances, skins, cameras, lights and clips.
 
-#include "gi/base/error.h"
-#include "gi/scene/animation.h"
+#include "gi/core/error.h"
+#include "gi/scene/motion/animation.h"
 #include "tests/scene/gltf_builder.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Two bones: targets reached, bones kept, bent towards the pole, no NaN anywhere, no jumps.
 
-#include "gi/scene/inverse_kinematics.h"
+#include "gi/scene/motion/inverse_kinematics.h"
 
 #include <gtest/gtest.h>
 #include <random>

@@ -1,7 +1,7 @@
 // Irradiance by light sampling against closed forms, and every density against its twin.
 
-#include "gi/base/rng.h"
-#include "gi/scene/light_sampling.h"
+#include "gi/core/rng.h"
+#include "gi/scene/shading/light_sampling.h"
 #include "tests/support/scenes.h"
 #include "tests/support/sphere_chi2.h"
 #include "tests/support/statistics.h"

@@ -1,6 +1,6 @@
 // Which light is chosen how often.
 
-#include "gi/scene/light_sampling.h"
+#include "gi/scene/shading/light_sampling.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
 // Folders of frames: what moves, when, and what is refused.
 
-#include "gi/base/error.h"
-#include "gi/base/file.h"
-#include "gi/scene/animation.h"
-#include "gi/scene/load.h"
-#include "gi/scene/summary.h"
-#include "gi/scene/vertex_normals.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/model/summary.h"
+#include "gi/scene/motion/animation.h"
+#include "gi/scene/motion/vertex_normals.h"
 #include "tests/support/scenes.h"
 
 #include <fmt/format.h>

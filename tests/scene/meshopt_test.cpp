@@ -1,6 +1,6 @@
 // EXT_meshopt_compression: what meshoptimizer encodes comes back, damaged data are refused.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/scene/gltf_builder.h"
 
 #include <gtest/gtest.h>

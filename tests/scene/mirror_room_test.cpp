@@ -1,8 +1,8 @@
 // The room with the mirror and the avatar that the project makes itself.
 
-#include "gi/scene/avatar_joints.h"
-#include "gi/scene/generate.h"
-#include "gi/scene/load.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/motion/avatar_joints.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

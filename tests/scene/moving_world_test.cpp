@@ -1,9 +1,9 @@
 // A world taken from moment to moment is the world built afresh, bit for bit, and what cannot move is not touched.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "gi/scene/generate/figure.h"
-#include "gi/scene/load.h"
-#include "gi/scene/moving_world.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/motion/moving_world.h"
 #include "tests/support/data.h"
 #include "tests/support/scenes.h"
 

@@ -1,6 +1,6 @@
 // What a scene needs is built, what it does not need is left out, and the reasons say why.
 
-#include "gi/scene/plan.h"
+#include "gi/scene/model/plan.h"
 #include "tests/support/scenes.h"
 
 #include <algorithm>

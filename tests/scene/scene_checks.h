@@ -1,8 +1,8 @@
 #pragma once
 // What must hold for every scene that the project makes itself.
 
-#include "gi/base/rng.h"
-#include "gi/scene/scene.h"
+#include "gi/core/rng.h"
+#include "gi/scene/model/scene.h"
 
 #include <bit>
 #include <gtest/gtest.h>

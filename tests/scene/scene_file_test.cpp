@@ -1,10 +1,10 @@
 // Scene files: what they build, what they refuse and how they say so, and that the schema knows the same keys.
 
-#include "gi/base/error.h"
-#include "gi/base/file.h"
-#include "gi/scene/load.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "gi/scene/load/load.h"
 #include "gi/scene/load/scene_file_keys.h"
-#include "gi/scene/sky.h"
+#include "gi/scene/model/sky.h"
 #include "tests/support/scenes.h"
 
 #include <chrono>

@@ -1,6 +1,6 @@
 // From hits to surfaces: attributes, sides, normals, emission.
 
-#include "gi/scene/shading_point.h"
+#include "gi/scene/shading/shading_point.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

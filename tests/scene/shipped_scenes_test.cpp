@@ -1,6 +1,6 @@
 // Real scenes and avatars: what is in the files arrives, nothing is lost on the way.
 
-#include "gi/scene/load.h"
+#include "gi/scene/load/load.h"
 #include "tests/support/data.h"
 
 #include <fstream>

@@ -1,7 +1,7 @@
 // Morph targets and linear blend skinning: by hand, and against poses that other programs baked.
 
-#include "gi/scene/load.h"
-#include "gi/scene/skinning.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/motion/skinning.h"
 #include "tests/support/data.h"
 #include "tests/support/scenes.h"
 

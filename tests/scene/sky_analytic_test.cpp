@@ -1,9 +1,9 @@
 // The sky of Preetham et al. against its published polynomials (numbers of another program), and the map against
 // the model.
 
-#include "gi/base/error.h"
-#include "gi/scene/light_sampling.h"
-#include "gi/scene/sky.h"
+#include "gi/core/error.h"
+#include "gi/scene/model/sky.h"
+#include "gi/scene/shading/light_sampling.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

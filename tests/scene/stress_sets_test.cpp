@@ -1,7 +1,7 @@
 // Scenes of any size: counts, sameness, refusal.
 
-#include "gi/base/error.h"
-#include "gi/scene/generate.h"
+#include "gi/core/error.h"
+#include "gi/scene/generate/generate.h"
 #include "tests/scene/scene_checks.h"
 
 namespace gi::test {

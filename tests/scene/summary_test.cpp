@@ -1,6 +1,6 @@
 // The summary says what is in the scene.
 
-#include "gi/scene/summary.h"
+#include "gi/scene/model/summary.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Textures: decoding, interpolation, wrapping, transforms.
 
-#include "gi/scene/texture_lookup.h"
+#include "gi/scene/shading/texture_lookup.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

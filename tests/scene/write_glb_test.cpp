@@ -1,10 +1,10 @@
 // What is written comes back: through a GLB every part of a scene survives.
 
-#include "gi/base/file.h"
-#include "gi/scene/generate.h"
-#include "gi/scene/load.h"
-#include "gi/scene/world.h"
-#include "gi/scene/write_glb.h"
+#include "gi/core/file.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/generate/write_glb.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/model/world.h"
 #include "tests/scene/scene_checks.h"
 #include "tests/support/scenes.h"
 

@@ -1,9 +1,9 @@
 #pragma once
 // The shape that a luminous square leaves when it is out of focus or moves.
 
-#include "gi/base/math.h"
-#include "gi/base/picture.h"
-#include "gi/image/render_settings.h"
+#include "gi/core/math.h"
+#include "gi/image_io/picture.h"
+#include "gi/render/render_settings.h"
 
 #include <cmath>
 

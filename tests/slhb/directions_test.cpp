@@ -1,10 +1,10 @@
 // Direction sets: how many, how even, each with its opposite; the map against brute force; axes by cosine.
 
-#include "gi/base/error.h"
-#include "gi/base/rng.h"
-#include "gi/slhb/cosine_tables.h"
-#include "gi/slhb/direction_picture.h"
-#include "gi/slhb/direction_quality.h"
+#include "gi/core/error.h"
+#include "gi/core/rng.h"
+#include "gi/methods/slhb/directions/cosine_tables.h"
+#include "gi/methods/slhb/directions/direction_picture.h"
+#include "gi/methods/slhb/directions/direction_quality.h"
 
 #include <gtest/gtest.h>
 

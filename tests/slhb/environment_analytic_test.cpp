@@ -1,10 +1,10 @@
 // Light from environment maps, in both methods: one bright texel against a parallel light, turned maps against
 // turned scenes, and a sun that must neither vanish nor leave single bright pixels.
 
-#include "gi/image/ztest.h"
-#include "gi/reference/reference.h"
-#include "gi/scene/sky.h"
-#include "gi/slhb/kernel_render.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/methods/slhb/kernels/kernel_render.h"
+#include "gi/metrics/ztest.h"
+#include "gi/scene/model/sky.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/statistics.h"
 

@@ -1,7 +1,7 @@
 // Bias of slhb against the reference under real panoramas, on a diffuse and a glossy object.
 
-#include "gi/reference/reference.h"
-#include "gi/scene/load.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/scene/load/load.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/data.h"
 #include "tests/support/statistics.h"

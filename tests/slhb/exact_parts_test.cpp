@@ -1,6 +1,6 @@
 // slhb with exact rays in place of look-ups: what bench accuracy measures biases against has none itself.
 
-#include "gi/reference/reference.h"
+#include "gi/methods/reference/reference.h"
 #include "tests/slhb/slhb_render.h"
 
 namespace gi::test {

@@ -1,10 +1,10 @@
-#include "gi/image/temporal.h"
-#include "gi/reference/reference.h"
-#include "gi/scene/generate.h"
+#include "gi/filter/temporal.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/methods/slhb/frames.h"
+#include "gi/methods/slhb/renderer.h"
+#include "gi/methods/slhb/settings.h"
 #include "gi/scene/generate/figure.h"
-#include "gi/slhb/frames.h"
-#include "gi/slhb/renderer.h"
-#include "gi/slhb/settings.h"
+#include "gi/scene/generate/generate.h"
 #include "tests/slhb/slhb_render.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Pixels that nobody sees cost nothing, and what is seen is what it would be without them.
 
-#include "gi/image/metrics.h"
-#include "gi/slhb/frames.h"
+#include "gi/methods/slhb/frames.h"
+#include "gi/metrics/metrics.h"
 #include "tests/slhb/slhb_render.h"
 
 #include <glm/gtc/matrix_transform.hpp>

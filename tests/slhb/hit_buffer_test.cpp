@@ -1,5 +1,5 @@
-#include "gi/base/rng.h"
-#include "gi/slhb/query_batch.h"
+#include "gi/core/rng.h"
+#include "gi/methods/slhb/hit_buffer/query_batch.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -146,7 +146,8 @@ TEST(Query, PackedLayersAnswerNearlyTheSame)
     Pcg32 rng(7, 7);
     std::vector<HitBuffer> buffers;
     for (int a = 0; a < 3; ++a)
-        buffers.push_back(make_hit_buffer(soup, make_grid(world.bounds, glm::normalize(vec3{1, float(a), 0.4f}), 64, {0.3f, 0.1f}, 1)));
+        buffers.push_back(make_hit_buffer(
+            soup, make_grid(world.bounds, glm::normalize(vec3{1, float(a), 0.4f}), 64, {0.3f, 0.1f}, 1)));
     AxisPool exact, packed;
     fill_pool(buffers, exact);
     fill_pool(buffers, packed, true);
@@ -166,7 +167,9 @@ TEST(Query, PackedLayersAnswerNearlyTheSame)
     for (std::size_t k = 0; k < a.size(); ++k) {
         differ += a.hit[k] != b.hit[k];
         if (a.hit[k] != b.hit[k] || a.hit[k] == kNoLayerHit) continue;
-        farthest = std::max(farthest, glm::length(vec3{a.hit_x[k] - b.hit_x[k], a.hit_y[k] - b.hit_y[k], a.hit_z[k] - b.hit_z[k]}));
+        farthest =
+            std::max(farthest,
+                     glm::length(vec3{a.hit_x[k] - b.hit_x[k], a.hit_y[k] - b.hit_y[k], a.hit_z[k] - b.hit_z[k]}));
     }
     EXPECT_LT(differ, a.size() / 100);
     EXPECT_LE(farthest, 7.0f / 4095); // half a step, of depths 7 m apart at most

@@ -1,8 +1,8 @@
 // Frames by kernels on the analytic ladder: where everything glows and reflects alike, light is the same
 // everywhere, whatever moves.
 
-#include "gi/scene/animation.h"
-#include "gi/slhb/frames.h"
+#include "gi/methods/slhb/frames.h"
+#include "gi/scene/motion/animation.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/on_device.h"
 

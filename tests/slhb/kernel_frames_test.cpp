@@ -1,9 +1,9 @@
 // Frames by kernels, on the host and on the device, against those of the CPU's own form: with the same random
 // numbers they trace the same paths but for rounding, whatever moves or changes between them.
 
-#include "gi/base/error.h"
-#include "gi/scene/animation.h"
-#include "gi/slhb/frames.h"
+#include "gi/core/error.h"
+#include "gi/methods/slhb/frames.h"
+#include "gi/scene/motion/animation.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/on_device.h"
 

@@ -1,6 +1,6 @@
+#include "gi/methods/slhb/lights/lamps.h"
 #include "gi/scene/generate/figure.h"
-#include "gi/scene/moving_world.h"
-#include "gi/slhb/lamps.h"
+#include "gi/scene/motion/moving_world.h"
 #include "tests/support/scenes.h"
 
 #include <glm/gtc/matrix_transform.hpp>

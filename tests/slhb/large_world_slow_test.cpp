@@ -1,8 +1,8 @@
 // Rooms in a world of 10 km: their light is right whatever surrounds them, while the camera walks out of the door.
 
-#include "gi/image/ztest.h"
-#include "gi/reference/reference.h"
-#include "gi/scene/sky.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/metrics/ztest.h"
+#include "gi/scene/model/sky.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/statistics.h"
 

@@ -1,6 +1,6 @@
 // Depth of field, by both methods: the circle of confusion of the thin lens, its energy, and what is in focus.
 
-#include "gi/reference/reference.h"
+#include "gi/methods/reference/reference.h"
 #include "tests/slhb/blur_shapes.h"
 #include "tests/slhb/slhb_render.h"
 

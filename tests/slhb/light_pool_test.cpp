@@ -1,8 +1,8 @@
 // Light samples from a pool: what they bring in the mean is what light sampling brings.
 
-#include "gi/slhb/light_pool.h"
+#include "gi/methods/slhb/lights/light_pool.h"
 
-#include "gi/base/rng.h"
+#include "gi/core/rng.h"
 #include "tests/slhb/slhb_render.h"
 
 namespace gi::test {

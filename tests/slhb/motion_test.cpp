@@ -1,10 +1,10 @@
 // Motion vectors of the reference path tracer against those of slhb.
 
-#include "gi/reference/reference.h"
-#include "gi/scene/generate.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/methods/slhb/frames.h"
+#include "gi/methods/slhb/hit_buffer/motion.h"
 #include "gi/scene/generate/figure.h"
-#include "gi/slhb/frames.h"
-#include "gi/slhb/motion.h"
+#include "gi/scene/generate/generate.h"
 #include "tests/support/scenes.h"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,6 +1,6 @@
-#include "gi/base/rng.h"
-#include "gi/slhb/axis_set.h"
-#include "gi/slhb/directions.h"
+#include "gi/core/rng.h"
+#include "gi/methods/slhb/directions/axis_set.h"
+#include "gi/methods/slhb/directions/directions.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

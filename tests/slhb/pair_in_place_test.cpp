@@ -1,8 +1,8 @@
 // Where things only vanish, the picture without them is that of all its paths in its own world, in every bit and
 // layer, though only those are traced that what moves may count in.
 
-#include "gi/scene/generate.h"
-#include "gi/slhb/frames.h"
+#include "gi/methods/slhb/frames.h"
+#include "gi/scene/generate/generate.h"
 #include "tests/slhb/slhb_render.h"
 
 #include <cstring>

@@ -1,9 +1,9 @@
 // A view with and without what moves: each picture is that of its world, and paths that see no difference are
 // equal in every bit.
 
-#include "gi/base/error.h"
-#include "gi/reference/reference.h"
-#include "gi/slhb/frames.h"
+#include "gi/core/error.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/methods/slhb/frames.h"
 #include "tests/slhb/slhb_render.h"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,7 +1,7 @@
 // What a query makes of surfaces that its columns meet from behind: insides of what is solid, and sheets.
 
-#include "gi/base/rng.h"
-#include "gi/slhb/query_batch.h"
+#include "gi/core/rng.h"
+#include "gi/methods/slhb/hit_buffer/query_batch.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,8 @@ struct Walks {
     double hits = 0, count = 0, farthest_false_hit = 0; ///< texels from what they hit to where they start
 };
 
-/// Straight up from everywhere on the floor, in many grids; what they may meet lies over a square about the middle.
+/// Straight up from everywhere on the floor, in many grids; what they may meet lies over a square about the
+/// middle.
 Walks walk_up(Scene scene, float half_width, std::uint32_t resolution)
 {
     World const world = world_of(std::move(scene));
@@ -26,8 +27,9 @@ Walks walk_up(Scene scene, float half_width, std::uint32_t resolution)
     for (int k = 0; k < 50; ++k) {
         vec2 const jitter = rng.uniform2();
         AxisPool pool;
-        fill_pool({make_hit_buffer(soup, make_grid(world.bounds, {0, 1, 0}, resolution, jitter, 6 * rng.uniform()))},
-                  pool);
+        fill_pool(
+            {make_hit_buffer(soup, make_grid(world.bounds, {0, 1, 0}, resolution, jitter, 6 * rng.uniform()))},
+            pool);
         QueryBatch batch;
         batch.resize(2000);
         for (std::size_t i = 0; i < batch.size(); ++i) {

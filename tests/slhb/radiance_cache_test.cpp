@@ -1,13 +1,13 @@
 // The radiance cache: cells know what they were taught, and pictures of many passes keep their light but for a
 // little blur, whatever moves, on any number of threads and at any size of the world.
 
-#include "gi/slhb/radiance_cache.h"
+#include "gi/methods/slhb/tracer/radiance_cache.h"
 
-#include "gi/scene/generate.h"
-#include "gi/slhb/frames.h"
-#include "gi/slhb/settings.h"
-#include "gi/slhb/slhb.h"
-#include "gi/transport/accumulator.h"
+#include "gi/methods/slhb/frames.h"
+#include "gi/methods/slhb/settings.h"
+#include "gi/methods/slhb/slhb.h"
+#include "gi/render/accumulator.h"
+#include "gi/scene/generate/generate.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/scenes.h"
 

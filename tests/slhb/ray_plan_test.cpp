@@ -1,9 +1,9 @@
 // What the plan of slhb chooses between look-ups and exact rays, and that its choice is right where look-ups were
 // not.
 
-#include "gi/reference/reference.h"
-#include "gi/slhb/look_up_trust.h"
-#include "gi/slhb/settings.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/methods/slhb/hit_buffer/look_up_trust.h"
+#include "gi/methods/slhb/settings.h"
 #include "tests/slhb/slhb_render.h"
 
 namespace gi::test {

@@ -1,8 +1,8 @@
 // Motion blur, by both methods: while the shutter is open, every path sees a moment of its own.
 
-#include "gi/reference/reference.h"
-#include "gi/slhb/frames.h"
-#include "gi/transport/pass_samples.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/methods/slhb/frames.h"
+#include "gi/render/pass_samples.h"
 #include "tests/slhb/blur_shapes.h"
 #include "tests/slhb/slhb_render.h"
 

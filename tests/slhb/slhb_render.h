@@ -1,7 +1,7 @@
 #pragma once
 // Rendering small scenes with the method slhb.
 
-#include "gi/slhb/slhb.h"
+#include "gi/methods/slhb/slhb.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Hard inputs: the right picture or a message, and never a value that is not finite (render_with_slhb checks).
 
-#include "gi/base/error.h"
-#include "gi/reference/reference.h"
+#include "gi/core/error.h"
+#include "gi/methods/reference/reference.h"
 #include "tests/slhb/slhb_render.h"
 
 #include <fmt/format.h>
@@ -196,8 +196,7 @@ TEST(SlhbStability, ThreadsAndInterruptionsDoNotChangeThePicture)
     StopRequest stop;
     Report report;
     auto const after_the_first_pass = [&](RenderStatus const&) { stop.request(); };
-    RenderResult const part =
-        render_slhb(world, room_camera(1, dvec3{0}), s, stop, after_the_first_pass, report);
+    RenderResult const part = render_slhb(world, room_camera(1, dvec3{0}), s, stop, after_the_first_pass, report);
     ASSERT_EQ(part.end, RenderEnd::interrupted);
     s.resume = true;
     EXPECT_EQ(render_with_slhb(world, room_camera(1, dvec3{0}), s).result.picture.find("color")->data,

@@ -1,11 +1,11 @@
 // Several pictures of one moment: each is what it would be alone, and an eye that takes light from the other one
 // has the same error for less work.
 
-#include "gi/image/metrics.h"
-#include "gi/image/taken_light.h"
-#include "gi/scene/generate.h"
-#include "gi/slhb/frames.h"
-#include "gi/transport/accumulator.h"
+#include "gi/filter/taken_light.h"
+#include "gi/methods/slhb/frames.h"
+#include "gi/metrics/metrics.h"
+#include "gi/render/accumulator.h"
+#include "gi/scene/generate/generate.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/scenes.h"
 

@@ -1,6 +1,6 @@
 #include "study/analysis/groups.h"
 #include "study/analysis/result_tables.h"
-#include "study/base/random.h"
+#include "study/stats/random.h"
 #include "study/stats/staircase.h"
 #include "tests/study_analysis/made_sessions.h"
 

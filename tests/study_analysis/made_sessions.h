@@ -2,7 +2,7 @@
 // Sessions whose trials are given one by one, without a planner.
 
 #include "study/analysis/analysis.h"
-#include "study/design/script_file.h"
+#include "study/script/script_file.h"
 #include "tests/study_tables/recorded.h"
 
 #include <gtest/gtest.h>

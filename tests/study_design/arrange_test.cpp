@@ -1,6 +1,6 @@
 // Orders that keep rules: by chance, exactly, or not at all.
 
-#include "study/design/arrange.h"
+#include "study/plan/arrange.h"
 
 #include <gtest/gtest.h>
 #include <map>

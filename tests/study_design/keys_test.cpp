@@ -1,7 +1,7 @@
 // data/study.schema.json, docs/study.md and the program know the same keys.
 
-#include "study/design/examples.h"
-#include "study/design/keys.h"
+#include "study/script/examples.h"
+#include "study/script/keys.h"
 #include "tests/study_design/samples.h"
 
 #include <filesystem>

@@ -1,8 +1,8 @@
 // Plans: the same from the same seed, balanced, counted, timed.
 
-#include "study/design/counterbalance.h"
-#include "study/design/doubts.h"
-#include "study/design/transitions.h"
+#include "study/plan/counterbalance.h"
+#include "study/plan/doubts.h"
+#include "study/plan/transitions.h"
 #include "tests/study_design/samples.h"
 
 #include <cmath>

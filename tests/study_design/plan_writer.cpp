@@ -1,7 +1,7 @@
 // Prints the plan of a participant as a table: built with every compiler there is, it has to print the same.
 
-#include "study/design/plan.h"
-#include "study/design/script_file.h"
+#include "study/plan/plan.h"
+#include "study/script/script_file.h"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,8 +1,8 @@
 #pragma once
 // Small scripts and shipped ones.
 
-#include "study/design/plan.h"
-#include "study/design/script_file.h"
+#include "study/plan/plan.h"
+#include "study/script/script_file.h"
 
 #include <algorithm>
 #include <fstream>

@@ -1,6 +1,6 @@
 // Latin and Williams squares.
 
-#include "study/design/squares.h"
+#include "study/plan/squares.h"
 
 #include <map>
 #include <set>

@@ -1,8 +1,8 @@
-#include "study/base/script_error.h"
-#include "study/base/sha256.h"
-#include "study/record/crc32.h"
-#include "study/record/durable_file.h"
-#include "study/record/moments.h"
+#include "study/journal/crc32.h"
+#include "study/journal/durable_file.h"
+#include "study/journal/moments.h"
+#include "study/script/script_error.h"
+#include "study/script/sha256.h"
 #include "tests/study_record/samples.h"
 #include "tests/viewer/run_program.h"
 

@@ -1,9 +1,9 @@
-#include "study/record/journal_file.h"
+#include "study/journal/journal_file.h"
 
-#include "study/base/script_error.h"
-#include "study/record/crc32.h"
-#include "study/record/entry_fields.h"
-#include "study/record/entry_line.h"
+#include "study/journal/crc32.h"
+#include "study/journal/entry_fields.h"
+#include "study/journal/entry_line.h"
+#include "study/script/script_error.h"
 #include "tests/study_record/samples.h"
 
 #include <bit>

@@ -1,6 +1,6 @@
 #pragma once
-#include "study/base/random.h"
-#include "study/record/entries.h"
+#include "study/journal/entries.h"
+#include "study/stats/random.h"
 
 namespace study::test {
 

@@ -1,8 +1,8 @@
 // The shipped experiment with model observers from end to end: what the analysis finds is what they were given.
 
-#include "study/design/script_file.h"
+#include "study/observers/simulate.h"
 #include "study/report/page.h"
-#include "study/simulate/simulate.h"
+#include "study/script/script_file.h"
 #include "study/tables/dataset.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Disks that are full, read-only, or must be left in peace.
 
-#include "study/record/durable_file.h"
+#include "study/journal/durable_file.h"
 #include "tests/study_run/support.h"
 
 #include <fcntl.h>

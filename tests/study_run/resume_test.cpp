@@ -1,6 +1,6 @@
 // Sessions that were cut off, and what they must not go on with.
 
-#include "study/record/durable_file.h"
+#include "study/journal/durable_file.h"
 #include "tests/study_run/support.h"
 
 namespace study::test {

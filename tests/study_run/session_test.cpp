@@ -1,5 +1,5 @@
-#include "study/base/sha256.h"
-#include "study/record/durable_file.h"
+#include "study/journal/durable_file.h"
+#include "study/script/sha256.h"
 #include "tests/study_run/support.h"
 
 #include <nlohmann/json.hpp>

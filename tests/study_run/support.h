@@ -1,9 +1,9 @@
 #pragma once
 // Small scripts, and a presenter that does what a test says.
 
-#include "study/design/script_file.h"
-#include "study/record/journal_file.h"
+#include "study/journal/journal_file.h"
 #include "study/run/session.h"
+#include "study/script/script_file.h"
 #include "tests/viewer/run_program.h"
 
 #include <functional>

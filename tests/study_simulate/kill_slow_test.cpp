@@ -2,7 +2,7 @@
 
 #include "tests/study_simulate/support.h"
 
-#include "study/record/journal_file.h"
+#include "study/journal/journal_file.h"
 
 #include <chrono>
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-#include "study/base/script_error.h"
+#include "study/script/script_error.h"
 #include "study/stats/binomial.h"
 #include "tests/study_simulate/support.h"
 

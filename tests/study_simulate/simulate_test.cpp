@@ -1,6 +1,6 @@
-#include "study/base/script_error.h"
-#include "study/record/journal_file.h"
-#include "study/record/moments.h"
+#include "study/journal/journal_file.h"
+#include "study/journal/moments.h"
+#include "study/script/script_error.h"
 #include "tests/study_simulate/support.h"
 
 namespace study::test {

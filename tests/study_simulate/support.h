@@ -1,9 +1,9 @@
 #pragma once
-#include "study/design/script_file.h"
+#include "study/observers/answer.h"
+#include "study/observers/simulate.h"
 #include "study/run/progress.h"
 #include "study/run/trial.h"
-#include "study/simulate/answer.h"
-#include "study/simulate/simulate.h"
+#include "study/script/script_file.h"
 #include "tests/viewer/run_program.h"
 
 namespace study::test {

@@ -3,7 +3,7 @@
 #include "study/stats/questplus.h"
 #include "study/stats/staircase.h"
 
-#include "study/base/random.h"
+#include "study/stats/random.h"
 #include "tests/study_stats/support/study_data.h"
 
 #include <cmath>

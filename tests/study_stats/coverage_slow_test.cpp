@@ -3,7 +3,7 @@
 #include "study/stats/bootstrap.h"
 #include "study/stats/psychometric.h"
 
-#include "study/base/random.h"
+#include "study/stats/random.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include "study/stats/dprime.h"
 
-#include "study/base/random.h"
+#include "study/stats/random.h"
 #include "study/stats/special.h"
 #include "tests/study_stats/support/study_data.h"
 

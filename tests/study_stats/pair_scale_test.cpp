@@ -4,7 +4,7 @@
 #include "study/stats/pair_scale.h"
 #include "study/stats/special.h"
 
-#include "study/base/random.h"
+#include "study/stats/random.h"
 #include "tests/study_stats/support/study_data.h"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "study/stats/psychometric.h"
 
-#include "study/base/random.h"
+#include "study/stats/random.h"
 #include "tests/study_stats/support/study_data.h"
 
 #include <cmath>

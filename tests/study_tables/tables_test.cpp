@@ -1,4 +1,4 @@
-#include "study/design/script_file.h"
+#include "study/script/script_file.h"
 #include "study/tables/bids.h"
 #include "study/tables/events.h"
 #include "study/tables/export.h"

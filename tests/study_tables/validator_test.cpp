@@ -1,8 +1,8 @@
 // Our records against the validator of the standard (bids-validator-deno from PyPI, installed by scripts/setup
 // --tests).
 
-#include "study/design/examples.h"
-#include "study/design/script_file.h"
+#include "study/script/examples.h"
+#include "study/script/script_file.h"
 #include "study/tables/bids.h"
 #include "tests/study_tables/recorded.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 // The materials that every test of scattering goes through, and directions to look at them from.
 
-#include "gi/scene/bsdf.h"
+#include "gi/scene/shading/bsdf.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 // Random closed meshes and views of them.
 
-#include "gi/base/rng.h"
+#include "gi/core/rng.h"
 #include "gi/raster/grid.h"
 #include "tests/support/scenes.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 // One test body, run on the host and on the device. The device instance says visibly where it cannot run.
 
-#include "gi/base/device.h"
+#include "gi/kernel/device.h"
 
 #include <gtest/gtest.h>
 

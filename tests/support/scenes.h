@@ -1,9 +1,9 @@
 #pragma once
 // Small scenes for tests, written in code, and the one way to judge a rendered mean against a closed form.
 
-#include "gi/base/picture.h"
-#include "gi/base/report.h"
-#include "gi/scene/world.h"
+#include "gi/core/report.h"
+#include "gi/image_io/picture.h"
+#include "gi/scene/model/world.h"
 
 #include <string>
 

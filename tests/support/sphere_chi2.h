@@ -2,7 +2,7 @@
 // Bins over the sphere of directions: integrals of a density over each, and the chi-square test of a sampler
 // against its density (after Mitsuba's chi2.py).
 
-#include "gi/base/math.h"
+#include "gi/core/math.h"
 
 #include <functional>
 #include <optional>

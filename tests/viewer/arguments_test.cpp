@@ -1,6 +1,6 @@
-#include "viewer/arguments.h"
+#include "viewer/base/arguments.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // `lightwell bench sweep` and `lightwell bench report`: rows, pictures, the page, wrong calls, Ctrl-C.
 
-#include "gi/base/picture_file.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/bench/folder.h"
-#include "viewer/bench/table_file.h"
+#include "viewer/report/folder.h"
+#include "viewer/report/table_file.h"
 
 #include <set>
 

@@ -1,8 +1,8 @@
 // `lightwell bench pictures`: tables, pictures, the page, reuse of references and rows, wrong calls.
 
-#include "gi/base/picture_file.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/bench/folder.h"
+#include "viewer/report/folder.h"
 
 #include <cmath>
 

@@ -1,12 +1,12 @@
 // Tables of measurements: medians, files, the page.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/bench/chart.h"
-#include "viewer/bench/html.h"
-#include "viewer/bench/log_axis.h"
-#include "viewer/bench/page.h"
-#include "viewer/bench/table_file.h"
+#include "viewer/report/chart.h"
+#include "viewer/report/html.h"
+#include "viewer/report/log_axis.h"
+#include "viewer/report/page.h"
+#include "viewer/report/table_file.h"
 
 #include <cmath>
 #include <limits>

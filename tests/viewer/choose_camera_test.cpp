@@ -1,8 +1,8 @@
-#include "viewer/choose_camera.h"
+#include "viewer/offline/choose_camera.h"
 
-#include "gi/base/error.h"
-#include "gi/scene/camera.h"
-#include "gi/scene/projection.h"
+#include "gi/core/error.h"
+#include "gi/scene/model/camera.h"
+#include "gi/scene/model/projection.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

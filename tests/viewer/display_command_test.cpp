@@ -1,6 +1,6 @@
 // lightwell display: what it prints, writes and refuses.
 
-#include "gi/base/picture_file.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/viewer/run_program.h"
 
 #include <nlohmann/json.hpp>

@@ -1,9 +1,9 @@
 // The turntable.
 
-#include "viewer/frame_camera.h"
+#include "viewer/offline/frame_camera.h"
 
-#include "gi/base/error.h"
-#include "gi/scene/projection.h"
+#include "gi/core/error.h"
+#include "gi/scene/model/projection.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

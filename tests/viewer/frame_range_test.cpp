@@ -1,7 +1,7 @@
-#include "viewer/frame_range.h"
+#include "viewer/offline/frame_range.h"
 
-#include "gi/base/error.h"
-#include "viewer/frame_record.h"
+#include "gi/core/error.h"
+#include "viewer/offline/frame_record.h"
 
 #include <gtest/gtest.h>
 #include <set>

@@ -1,7 +1,7 @@
 // `lightwell render --frames`: every frame is the picture that --time gives alone, whatever interrupts them.
 
-#include "gi/base/picture_file.h"
-#include "gi/image/compare.h"
+#include "gi/image_io/picture_file.h"
+#include "gi/metrics/compare.h"
 #include "tests/viewer/run_program.h"
 
 #include <nlohmann/json.hpp>

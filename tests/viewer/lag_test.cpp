@@ -1,5 +1,5 @@
-#include "gi/base/rng.h"
-#include "viewer/lag.h"
+#include "gi/core/rng.h"
+#include "viewer/bench/lag.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

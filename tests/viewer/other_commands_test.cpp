@@ -1,6 +1,6 @@
 // info, generate, --version, --help.
 
-#include "gi/base/picture_file.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/viewer/run_program.h"
 
 #include <nlohmann/json.hpp>

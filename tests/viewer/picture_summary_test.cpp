@@ -1,11 +1,11 @@
 // How methods are compared: times at equal error, ratios, lost rows; the list of scenes.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/bench/picture_summary.h"
-#include "viewer/pictures_list.h"
-#include "viewer/pictures_plan.h"
-#include "viewer/pictures_score.h"
+#include "viewer/bench/pictures_list.h"
+#include "viewer/bench/pictures_plan.h"
+#include "viewer/bench/pictures_score.h"
+#include "viewer/report/picture_summary.h"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 
 #include "tests/viewer/run_program.h"
 #include "tests/viewer_recording/walk.h"
-#include "viewer/remote/remote_server.h"
+#include "viewer/protocol/remote/remote_server.h"
 
 #include <stop_token>
 

@@ -1,8 +1,8 @@
 // Who has which avatar: by options, by display files, by recordings of now and of before further users had any.
 
-#include "viewer/user_avatars.h"
+#include "viewer/offline/user_avatars.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "viewer/video_writer.h"
+#include "viewer/offline/video_writer.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
 
 #include <opencv2/videoio.hpp>

@@ -1,6 +1,6 @@
 // A wrong call or input: exit code 2, one clear message, and no file left behind.
 
-#include "gi/base/device.h"
+#include "gi/kernel/device.h"
 #include "tests/viewer/run_program.h"
 
 namespace viewer::test {

@@ -1,10 +1,10 @@
 // Albedos found again in pictures of a place lit from far away, where they are known.
 
-#include "gi/base/error.h"
-#include "viewer/ar/bridge.h"
-#include "viewer/ar/estimate_albedo.h"
-#include "viewer/ar/run/frames_apart.h"
-#include "viewer/ar/synthetic.h"
+#include "ar/pipeline/bridge.h"
+#include "ar/pipeline/estimate_albedo.h"
+#include "ar/pipeline/synthetic.h"
+#include "ar/runtime/frames_apart.h"
+#include "gi/core/error.h"
 
 #include <opencv2/imgproc.hpp>
 

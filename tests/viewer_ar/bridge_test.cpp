@@ -1,6 +1,6 @@
-#include "viewer/ar/bridge.h"
+#include "ar/pipeline/bridge.h"
 
-#include "viewer/ar/synthetic.h"
+#include "ar/pipeline/synthetic.h"
 
 #include <limits>
 

@@ -1,10 +1,10 @@
 // What real proxies catch of virtual things beside shadows: mirror images and caustics.
 
+#include "ar/pipeline/bridge.h"
+#include "ar/pipeline/pair_renderer.h"
+#include "ar/pipeline/synthetic.h"
+#include "ar/scene/proxy_mesh.h"
 #include "gi/scene/generate/builder.h"
-#include "viewer/ar/bridge.h"
-#include "viewer/ar/pair_renderer.h"
-#include "viewer/ar/session/proxy_mesh.h"
-#include "viewer/ar/synthetic.h"
 
 #include <opencv2/imgproc.hpp>
 

@@ -1,9 +1,9 @@
 // The check of the chain has to notice what it is there for.
 
-#include "viewer/ar/run/counter_check.h"
+#include "ar/runtime/counter_check.h"
 
 #include "ar/capture/counter_source.h"
-#include "gi/scene/scene.h"
+#include "gi/scene/model/scene.h"
 #include "tests/viewer/run_program.h"
 
 #include <opencv2/imgproc.hpp>

@@ -1,10 +1,10 @@
 // Pass-through in the headset of a real runtime; what both eyes were given is looked at.
 
 #include "ar/pose/pose_file.h"
+#include "ar/runtime/runner.h"
 #include "tests/viewer_xr/monado.h"
 #include "tests/viewer_xr/remote_driver.h"
-#include "viewer/ar/run/runner.h"
-#include "viewer/gl/pass_through_pass.h"
+#include "viewer/devices/gl/pass_through_pass.h"
 
 #include "ar/composite/warp.h"
 #include <opencv2/imgcodecs.hpp>

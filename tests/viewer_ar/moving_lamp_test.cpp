@@ -1,12 +1,12 @@
 // A lamp that is switched on, carried to the other side and switched off while a session runs.
 
 #include "ar/light/map_file.h"
+#include "ar/pipeline/bridge.h"
+#include "ar/pipeline/pipeline.h"
+#include "ar/pipeline/synthetic.h"
 #include "gi/scene/generate/builder.h"
-#include "gi/scene/write_glb.h"
+#include "gi/scene/generate/write_glb.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/ar/bridge.h"
-#include "viewer/ar/pipeline.h"
-#include "viewer/ar/synthetic.h"
 
 #include <opencv2/imgproc.hpp>
 

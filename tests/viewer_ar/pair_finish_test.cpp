@@ -1,10 +1,10 @@
 // Pairs rendered at half size: borders of virtual things as sharp as at full size, and hidden ones known.
 
+#include "ar/pipeline/bridge.h"
+#include "ar/pipeline/pair_finish.h"
+#include "ar/pipeline/synthetic.h"
+#include "ar/scene/proxy_mesh.h"
 #include "gi/scene/generate/builder.h"
-#include "viewer/ar/bridge.h"
-#include "viewer/ar/pair_finish.h"
-#include "viewer/ar/session/proxy_mesh.h"
-#include "viewer/ar/synthetic.h"
 
 #include <opencv2/imgproc.hpp>
 

@@ -1,12 +1,12 @@
 // What a compositor needs of a renderer: nothing there, nothing changed, in every bit.
 
-#include "viewer/ar/pair_renderer.h"
+#include "ar/pipeline/pair_renderer.h"
 
-#include "gi/base/error.h"
-#include "gi/scene/generate.h"
-#include "gi/scene/skinning.h"
-#include "viewer/ar/bridge.h"
-#include "viewer/ar/synthetic.h"
+#include "ar/pipeline/bridge.h"
+#include "ar/pipeline/synthetic.h"
+#include "gi/core/error.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/motion/skinning.h"
 
 #include <opencv2/imgproc.hpp>
 

@@ -1,10 +1,10 @@
 // Composites for two eyes: of each camera from where it is, at the same moment.
 
-#include "viewer/ar/run/hmd_run.h"
+#include "ar/runtime/hmd_run.h"
 
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map_file.h"
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
 
 #include <glm/gtc/quaternion.hpp>

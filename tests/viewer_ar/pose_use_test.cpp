@@ -1,6 +1,6 @@
 // The poses that frames are shown with.
 
-#include "viewer/ar/pose_use.h"
+#include "ar/pipeline/pose_use.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // The threads of a run: what comes out, what is counted, how it ends.
 
-#include "viewer/ar/run/runner.h"
+#include "ar/runtime/runner.h"
 
 #include "ar/capture/clock.h"
 #include "ar/markers/marker_map_file.h"
+#include "ar/pipeline/synthesize.h"
+#include "ar/runtime/loop_source.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/ar/run/loop_source.h"
-#include "viewer/ar/synthesize.h"
 
 #include <atomic>
 #include <map>

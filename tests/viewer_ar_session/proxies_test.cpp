@@ -1,13 +1,13 @@
 // Proxies from session files to triangles in the world.
 
 #include "ar/calibration/calibration_file.h"
-#include "gi/base/error.h"
-#include "gi/base/file.h"
-#include "gi/base/picture_file.h"
-#include "gi/scene/world.h"
+#include "ar/scene/proxy_mesh.h"
+#include "ar/scene/real_scene.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "gi/image_io/picture_file.h"
+#include "gi/scene/model/world.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/ar/session/proxy_mesh.h"
-#include "viewer/ar/session/real_scene.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>

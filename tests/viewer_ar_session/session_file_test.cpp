@@ -1,6 +1,6 @@
-#include "viewer/ar/session/session_file.h"
+#include "ar/scene/session_file.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 
 namespace viewer::test {
 namespace {

@@ -1,6 +1,6 @@
 // What a session reads, and that nothing of it is written over.
 
-#include "viewer/ar/session/session_inputs.h"
+#include "ar/scene/session_inputs.h"
 
 #include "tests/viewer/run_program.h"
 

@@ -1,13 +1,13 @@
 // Cameras by trackers: what recorded and live ones say of a motion that is known.
 
-#include "viewer/ar/session/tracked_pose.h"
+#include "ar/scene/tracked_pose.h"
 
-#include "gi/base/error.h"
+#include "ar/scene/hmd_cameras.h"
+#include "ar/scene/session_file.h"
+#include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
 #include "tests/viewer_tracking/pose_checks.h"
-#include "viewer/ar/session/hmd_cameras.h"
-#include "viewer/ar/session/session_file.h"
-#include "viewer/tracking/tracker_hub.h"
+#include "viewer/devices/tracking/tracker_hub.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 // Without mpirun a cluster of one does nothing.
 
-#include "gi/base/error.h"
-#include "viewer/cluster/cluster.h"
-#include "viewer/cluster/process_watch.h"
-#include "viewer/cluster/wire.h"
+#include "gi/core/error.h"
+#include "viewer/protocol/cluster/cluster.h"
+#include "viewer/protocol/cluster/process_watch.h"
+#include "viewer/protocol/cluster/wire.h"
 
 #include <csignal>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "viewer/cluster/clock_offset.h"
-#include "viewer/cluster/swap_log.h"
+#include "viewer/protocol/cluster/clock_offset.h"
+#include "viewer/protocol/cluster/swap_log.h"
 
 #include <gtest/gtest.h>
 #include <random>

@@ -1,6 +1,6 @@
 // `mpirun -n N lightwell render` makes what one process makes.
 
-#include "gi/base/picture_file.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/viewer_cluster/mpirun.h"
 
 #include <cmath>

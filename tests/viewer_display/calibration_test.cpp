@@ -1,8 +1,8 @@
 // Pictures for setting up: their size, their colours where they matter, and the two eyes' difference.
 
 #include "tests/viewer_display/display_samples.h"
-#include "viewer/display/blend.h"
-#include "viewer/display/calibration.h"
+#include "viewer/displays/blend.h"
+#include "viewer/displays/calibration.h"
 
 #include <array>
 

@@ -2,8 +2,8 @@
 
 #include "tests/viewer_display/display_samples.h"
 #include "tests/viewer_display/mesh_samples.h"
-#include "viewer/display/check.h"
-#include "viewer/display/display_keys.h"
+#include "viewer/displays/check.h"
+#include "viewer/displays/display_keys.h"
 
 #include <filesystem>
 #include <fmt/format.h>

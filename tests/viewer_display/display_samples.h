@@ -1,8 +1,8 @@
 #pragma once
 // Displays that several tests use.
 
-#include "gi/base/file.h"
-#include "viewer/display/display_file.h"
+#include "gi/core/file.h"
+#include "viewer/displays/display_file.h"
 
 #include <gtest/gtest.h>
 #include <random>

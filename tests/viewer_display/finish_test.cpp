@@ -2,7 +2,7 @@
 
 #include "tests/viewer_display/display_samples.h"
 #include "tests/viewer_display/mesh_samples.h"
-#include "viewer/display/blend.h"
+#include "viewer/displays/blend.h"
 
 #include <limits>
 

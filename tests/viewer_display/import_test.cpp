@@ -1,8 +1,8 @@
 // Configurations of other programs: corners, frames, units, and that nothing is dropped in silence.
 
 #include "tests/viewer_display/display_samples.h"
-#include "viewer/display/import.h"
-#include "viewer/display/views.h"
+#include "viewer/displays/import.h"
+#include "viewer/displays/views.h"
 
 namespace viewer::test {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
-// Warp meshes as their definition says (viewer/display/warp_mesh.h): where a point of the viewport is in the
+// Warp meshes as their definition says (viewer/displays/warp_mesh.h): where a point of the viewport is in the
 // picture.
 
-#include "viewer/display/warp_mesh.h"
+#include "viewer/displays/warp_mesh.h"
 
 namespace viewer::test {
 

@@ -1,8 +1,8 @@
 // The frusta: what the eye sees of a wall is exactly the wall.
 
-#include "gi/scene/projection.h"
+#include "gi/scene/model/projection.h"
 #include "tests/viewer_display/display_samples.h"
-#include "viewer/display/views.h"
+#include "viewer/displays/views.h"
 
 #include <limits>
 

@@ -2,9 +2,9 @@
 
 #include "tests/viewer_display/display_samples.h"
 #include "tests/viewer_display/mesh_samples.h"
-#include "viewer/display/examples.h"
-#include "viewer/display/import.h"
-#include "viewer/display/views.h"
+#include "viewer/displays/examples.h"
+#include "viewer/displays/import.h"
+#include "viewer/displays/views.h"
 
 #include <filesystem>
 #include <set>

@@ -1,8 +1,8 @@
 // Eyes of users, views of walls, and what of them is ordered.
 
 #include "tests/viewer_display/display_samples.h"
-#include "viewer/display/view_summary.h"
-#include "viewer/display/views.h"
+#include "viewer/displays/view_summary.h"
+#include "viewer/displays/views.h"
 
 namespace viewer::test {
 namespace {

@@ -1,7 +1,7 @@
 #include "tests/viewer_gl/surfaceless.h"
-#include "viewer/gl/ar_composite_pass.h"
+#include "viewer/devices/gl/ar_composite_pass.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 
 #include <chrono>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "viewer/gl/gamepads.h"
+#include "viewer/devices/gl/gamepads.h"
 
 #include <gtest/gtest.h>
 

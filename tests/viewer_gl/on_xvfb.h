@@ -1,9 +1,9 @@
 #pragma once
 // An X server for the tests of one suite, or a visible skip where there is none.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/support/xvfb.h"
-#include "viewer/gl/window.h"
+#include "viewer/devices/gl/window.h"
 
 #include <gtest/gtest.h>
 #include <memory>

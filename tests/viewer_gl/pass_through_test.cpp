@@ -1,6 +1,6 @@
 // What a headset's eye sees of a plane that a camera sees too.
 
-#include "viewer/gl/pass_through_pass.h"
+#include "viewer/devices/gl/pass_through_pass.h"
 
 #include <gtest/gtest.h>
 #include <random>

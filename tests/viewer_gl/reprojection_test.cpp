@@ -1,7 +1,7 @@
-#include "gi/scene/projection.h"
+#include "gi/scene/model/projection.h"
 #include "tests/viewer_gl/stereo_check.h"
 #include "tests/viewer_gl/surfaceless.h"
-#include "viewer/gl/reprojection.h"
+#include "viewer/devices/gl/reprojection.h"
 
 #include <chrono>
 #include <cstring>

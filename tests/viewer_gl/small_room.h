@@ -1,7 +1,7 @@
 #pragma once
 // A room that needs no renderer: a floor, a back wall and two balls, with soft patterns. Seen through any camera.
 
-#include "gi/scene/camera.h"
+#include "gi/scene/model/camera.h"
 
 #include <glm/vec2.hpp>
 #include <vector>

@@ -1,11 +1,11 @@
 #pragma once
 // One body for every kind of target: what the GPU composes is what the CPU composes of the same eyes.
 
-#include "gi/base/picture_file.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/viewer_gl/small_room.h"
-#include "viewer/gl/display_pass.h"
-#include "viewer/gl/picture_texture.h"
-#include "viewer/stereo/compose.h"
+#include "viewer/devices/gl/display_pass.h"
+#include "viewer/devices/gl/picture_texture.h"
+#include "viewer/displays/compose.h"
 
 #include <cstdlib>
 #include <gtest/gtest.h>

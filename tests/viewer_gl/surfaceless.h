@@ -1,8 +1,8 @@
 #pragma once
 // A context without a window for tests, or a visible skip where EGL has none.
 
-#include "gi/base/error.h"
-#include "viewer/gl/context.h"
+#include "gi/core/error.h"
+#include "viewer/devices/gl/context.h"
 
 #include <gtest/gtest.h>
 #include <optional>

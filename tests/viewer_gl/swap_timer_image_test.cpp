@@ -1,8 +1,8 @@
 // Swaps are timed on a real window; the method depends on the server and says itself.
 
 #include "tests/viewer_gl/on_xvfb.h"
-#include "viewer/gl/swap_timer.h"
-#include "viewer/gl/sync_control.h"
+#include "viewer/devices/gl/swap_timer.h"
+#include "viewer/devices/gl/sync_control.h"
 
 #include <algorithm>
 #include <epoxy/gl.h>

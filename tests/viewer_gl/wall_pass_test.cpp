@@ -1,7 +1,7 @@
 #include "tests/viewer_gl/stereo_check.h"
 #include "tests/viewer_gl/surfaceless.h"
-#include "viewer/gl/wall_pass.h"
-#include "viewer/stereo/compose.h"
+#include "viewer/devices/gl/wall_pass.h"
+#include "viewer/displays/compose.h"
 
 #include <epoxy/gl.h>
 

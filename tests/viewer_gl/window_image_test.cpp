@@ -2,8 +2,8 @@
 
 #include "tests/viewer_gl/on_xvfb.h"
 #include "tests/viewer_gl/stereo_check.h"
-#include "viewer/gl/glfw_library.h"
-#include "viewer/gl/panel.h"
+#include "viewer/devices/gl/glfw_library.h"
+#include "viewer/devices/gl/panel.h"
 
 #include <GLFW/glfw3.h>
 #include <epoxy/gl.h>

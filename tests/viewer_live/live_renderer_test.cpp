@@ -1,10 +1,10 @@
 // The rendering thread: frames come, changes show in the next, nothing blocks who asks.
 
-#include "viewer/live/live_renderer.h"
+#include "viewer/engine/live/live_renderer.h"
 
-#include "gi/base/error.h"
-#include "gi/scene/generate.h"
+#include "gi/core/error.h"
 #include "gi/scene/generate/figure.h"
+#include "gi/scene/generate/generate.h"
 
 #include <future>
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,6 +1,6 @@
-#include "gi/scene/projection.h"
-#include "viewer/live/desktop_views.h"
-#include "viewer/live/navigation.h"
+#include "gi/scene/model/projection.h"
+#include "viewer/engine/live/desktop_views.h"
+#include "viewer/engine/live/navigation.h"
 
 #include <gtest/gtest.h>
 

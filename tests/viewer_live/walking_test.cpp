@@ -1,7 +1,7 @@
 // On foot: eyes at their height above the floor, steps climbed, falls and walls not walked into.
 
 #include "tests/support/scenes.h"
-#include "viewer/live/navigation.h"
+#include "viewer/engine/live/navigation.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>

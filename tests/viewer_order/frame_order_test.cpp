@@ -1,6 +1,6 @@
-#include "viewer/order/frame_order.h"
+#include "viewer/protocol/frame_order.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 
 #include <gtest/gtest.h>
 #include <limits>

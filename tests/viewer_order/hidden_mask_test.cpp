@@ -1,8 +1,8 @@
 // What a lens hides, as pixels and as a change of the session.
 
-#include "viewer/order/hidden_mask.h"
+#include "viewer/protocol/hidden_mask.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "viewer/recording/export_csv.h"
+#include "viewer/protocol/recording/export_csv.h"
 
 #include "tests/viewer/run_program.h"
 #include "tests/viewer_recording/walk.h"

@@ -1,7 +1,7 @@
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
 #include "tests/viewer_recording/walk.h"
-#include "viewer/recording/frame_log.h"
+#include "viewer/protocol/recording/frame_log.h"
 
 namespace viewer::test {
 namespace {

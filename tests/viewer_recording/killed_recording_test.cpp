@@ -2,7 +2,7 @@
 
 #include "tests/viewer/run_program.h"
 #include "tests/viewer_recording/walk.h"
-#include "viewer/recording/frame_log.h"
+#include "viewer/protocol/recording/frame_log.h"
 
 #include <atomic>
 #include <random>

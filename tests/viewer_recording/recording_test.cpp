@@ -1,8 +1,8 @@
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
 #include "tests/viewer_recording/walk.h"
-#include "viewer/recording/crc32.h"
-#include "viewer/recording/pixel_hash.h"
+#include "viewer/protocol/recording/crc32.h"
+#include "viewer/protocol/recording/pixel_hash.h"
 
 #include <sys/resource.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Recordings for tests.
 
-#include "viewer/recording/recording.h"
+#include "viewer/protocol/recording/recording.h"
 
 #include <filesystem>
 #include <fstream>

@@ -1,8 +1,8 @@
-#include "viewer/remote/remote_server.h"
+#include "viewer/protocol/remote/remote_server.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/remote/remote_client.h"
+#include "viewer/protocol/remote/remote_client.h"
 
 #include <atomic>
 #include <random>

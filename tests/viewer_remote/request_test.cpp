@@ -1,6 +1,6 @@
-#include "viewer/remote/request.h"
+#include "viewer/protocol/remote/request.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
 
 #include <fmt/format.h>

@@ -1,14 +1,14 @@
 // An avatar in the room with the mirror: seen there, never before its user's eyes, the same bits from the same
 // orders.
 
-#include "gi/scene/generate.h"
-#include "gi/scene/load.h"
-#include "gi/scene/projection.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/model/projection.h"
 #include "tests/support/data.h"
-#include "viewer/session/session.h"
-#include "viewer/tracking/footsteps.h"
-#include "viewer/tracking/key_hands.h"
-#include "viewer/tracking/own_avatar.h"
+#include "viewer/devices/tracking/footsteps.h"
+#include "viewer/devices/tracking/key_hands.h"
+#include "viewer/devices/tracking/own_avatar.h"
+#include "viewer/engine/session.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>

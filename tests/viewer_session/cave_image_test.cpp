@@ -1,10 +1,10 @@
 // The walls of a CAVE are one picture: rendered to convergence, neighbours agree along their common edge.
 
-#include "gi/image/tone_map.h"
+#include "gi/filter/tone_map.h"
 #include "tests/support/scenes.h"
-#include "viewer/display/display_file.h"
-#include "viewer/display/views.h"
-#include "viewer/session/session.h"
+#include "viewer/displays/display_file.h"
+#include "viewer/displays/views.h"
+#include "viewer/engine/session.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // How many directions follow what moves, by frames of a machine whose times are made up.
 
-#include "viewer/session/follow_governor.h"
+#include "viewer/engine/follow_governor.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

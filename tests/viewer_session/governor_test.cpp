@@ -1,4 +1,4 @@
-#include "viewer/session/governor.h"
+#include "viewer/engine/governor.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // What a headset's lenses hide is a change like any other: black, not rendered, kept out of what is seen.
 
-#include "gi/base/error.h"
-#include "gi/image/metrics.h"
-#include "gi/scene/generate.h"
+#include "gi/core/error.h"
+#include "gi/metrics/metrics.h"
+#include "gi/scene/generate/generate.h"
 #include "tests/support/scenes.h"
-#include "viewer/session/session.h"
+#include "viewer/engine/session.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>

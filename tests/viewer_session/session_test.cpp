@@ -1,13 +1,13 @@
 // The same changes and orders give the same pixels; what is set is set; what cannot be leaves all as it was.
 
-#include "viewer/session/session.h"
+#include "viewer/engine/session.h"
 
-#include "gi/base/device.h"
-#include "gi/base/error.h"
-#include "gi/image/metrics.h"
-#include "gi/scene/generate.h"
+#include "gi/core/error.h"
+#include "gi/kernel/device.h"
+#include "gi/metrics/metrics.h"
+#include "gi/scene/generate/generate.h"
 #include "tests/support/scenes.h"
-#include "viewer/session/picking.h"
+#include "viewer/engine/picking.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>

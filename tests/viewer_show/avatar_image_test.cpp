@@ -1,7 +1,7 @@
 // An avatar in the running viewer: keys raise its hand in the mirror, a recording with it replays bit by bit; and
 // who walks there stays on the floor and out of the walls.
 
-#include "gi/base/picture_file.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/support/data.h"
 #include "tests/viewer_show/live_view.h"
 

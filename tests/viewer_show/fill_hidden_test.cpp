@@ -1,4 +1,4 @@
-#include "viewer/show/fill_hidden.h"
+#include "viewer/app/fill_hidden.h"
 
 #include <gtest/gtest.h>
 #include <string>

@@ -1,10 +1,10 @@
 // Real keys, mouse and window sizes, and how long they take to be seen.
 
-#include "gi/base/picture_file.h"
 #include "gi/core/quantile.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/viewer_show/live_view.h"
 #include "tests/viewer_show/x/x_window.h"
-#include "viewer/recording/recording.h"
+#include "viewer/protocol/recording/recording.h"
 
 #include <atomic>
 #include <fmt/format.h>

@@ -1,10 +1,10 @@
 #pragma once
 // A running `lightwell view`: its process, its remote control and a folder for its files.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/support/xvfb.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/remote/remote_client.h"
+#include "viewer/protocol/remote/remote_client.h"
 
 #include <memory>
 #include <optional>

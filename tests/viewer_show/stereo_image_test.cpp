@@ -1,10 +1,10 @@
 // What stands in the window, in every stereo mode, held to the pictures of the two eyes.
 
-#include "gi/base/picture_file.h"
-#include "gi/image/tone_map.h"
+#include "gi/filter/tone_map.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/viewer_show/live_view.h"
 #include "tests/viewer_show/x/x_window.h"
-#include "viewer/stereo/compose.h"
+#include "viewer/displays/compose.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // What orders have of users with avatars: their trackers' bodies, and what stands in for what is not tracked.
 
-#include "viewer/show/user_body.h"
+#include "viewer/app/user_body.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "gi/base/error.h"
-#include "viewer/stereo/compose.h"
+#include "gi/core/error.h"
+#include "viewer/displays/compose.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "viewer/tracking/display_tracker.h"
+#include "viewer/devices/tracking/display_tracker.h"
 
 #include <gtest/gtest.h>
 

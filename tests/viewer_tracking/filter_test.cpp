@@ -1,11 +1,11 @@
 // One-euro filter, rotations as vectors, clock, latency.
 
 #include "tests/viewer_tracking/pose_checks.h"
-#include "viewer/tracking/arrival_clock.h"
-#include "viewer/tracking/clock_offset.h"
-#include "viewer/tracking/latency.h"
-#include "viewer/tracking/one_euro.h"
-#include "viewer/tracking/pose_math.h"
+#include "viewer/devices/tracking/arrival_clock.h"
+#include "viewer/devices/tracking/clock_offset.h"
+#include "viewer/devices/tracking/latency.h"
+#include "viewer/devices/tracking/one_euro.h"
+#include "viewer/devices/tracking/pose_math.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // Poses in OSC packets.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/viewer_tracking/pose_checks.h"
-#include "viewer/tracking/osc.h"
-#include "viewer/tracking/pose_math.h"
+#include "viewer/devices/tracking/osc.h"
+#include "viewer/devices/tracking/pose_math.h"
 
 #include <gtest/gtest.h>
 #include <limits>

@@ -1,18 +1,18 @@
 // A user's avatar in a scene: its head and hands are where the trackers are, and it never stands in its user's
 // view.
 
-#include "viewer/tracking/own_avatar.h"
+#include "viewer/devices/tracking/own_avatar.h"
 
-#include "gi/base/error.h"
-#include "gi/scene/generate.h"
-#include "gi/scene/load.h"
-#include "gi/scene/skinning.h"
+#include "gi/core/error.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/motion/skinning.h"
 #include "tests/support/data.h"
 #include "tests/viewer_tracking/pose_checks.h"
-#include "viewer/tracking/footsteps.h"
-#include "viewer/tracking/key_hands.h"
-#include "viewer/tracking/known_walk.h"
-#include "viewer/tracking/pose_math.h"
+#include "viewer/devices/tracking/footsteps.h"
+#include "viewer/devices/tracking/key_hands.h"
+#include "viewer/devices/tracking/known_walk.h"
+#include "viewer/devices/tracking/pose_math.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 #pragma once
-#include "viewer/tracking/pose_math.h"
+#include "viewer/devices/tracking/pose_math.h"
 
 #include <glm/glm.hpp>
 

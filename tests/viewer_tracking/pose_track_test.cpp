@@ -1,9 +1,9 @@
 // One body: prediction, order, dropouts, recovery.
 
 #include "tests/viewer_tracking/pose_checks.h"
-#include "viewer/tracking/known_walk.h"
-#include "viewer/tracking/pose_math.h"
-#include "viewer/tracking/pose_track.h"
+#include "viewer/devices/tracking/known_walk.h"
+#include "viewer/devices/tracking/pose_math.h"
+#include "viewer/devices/tracking/pose_track.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

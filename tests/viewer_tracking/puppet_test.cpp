@@ -1,11 +1,11 @@
 // Avatars as puppets: joints go where the trackers are.
 
-#include "gi/base/error.h"
-#include "gi/scene/load.h"
+#include "gi/core/error.h"
+#include "gi/scene/load/load.h"
 #include "tests/support/data.h"
-#include "viewer/tracking/known_walk.h"
-#include "viewer/tracking/pose_math.h"
-#include "viewer/tracking/puppet.h"
+#include "viewer/devices/tracking/known_walk.h"
+#include "viewer/devices/tracking/pose_math.h"
+#include "viewer/devices/tracking/puppet.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Loss and order from a sender's counter.
 
-#include "viewer/tracking/sequence.h"
+#include "viewer/devices/tracking/sequence.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 // within bounds that were measured (docs/results/2026-11-22-trackers.md).
 
 #include "tests/viewer_tracking/lossy_walk.h"
-#include "viewer/tracking/dtrack.h"
-#include "viewer/tracking/tracker_hub.h"
+#include "viewer/devices/tracking/dtrack.h"
+#include "viewer/devices/tracking/tracker_hub.h"
 
 #include <cstdio>
 #include <cstdlib>

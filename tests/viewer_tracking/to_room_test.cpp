@@ -1,8 +1,8 @@
 // Axes, units and the tracker's place in the room.
 
-#include "viewer/tracking/fake_tracker.h"
-#include "viewer/tracking/pose_math.h"
-#include "viewer/tracking/tracker_to_room.h"
+#include "viewer/devices/tracking/fake_tracker.h"
+#include "viewer/devices/tracking/pose_math.h"
+#include "viewer/devices/tracking/tracker_to_room.h"
 
 #include <gtest/gtest.h>
 

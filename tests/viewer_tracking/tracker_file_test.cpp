@@ -1,8 +1,8 @@
 // Recorded poses.
 
-#include "gi/base/error.h"
-#include "viewer/tracking/known_walk.h"
-#include "viewer/tracking/tracker_file.h"
+#include "gi/core/error.h"
+#include "viewer/devices/tracking/known_walk.h"
+#include "viewer/devices/tracking/tracker_file.h"
 
 #include <gtest/gtest.h>
 

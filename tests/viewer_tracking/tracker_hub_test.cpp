@@ -1,13 +1,13 @@
 // Trackers put together.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/viewer_tracking/pose_checks.h"
-#include "viewer/display/display_file.h"
-#include "viewer/tracking/display_tracker.h"
-#include "viewer/tracking/dtrack.h"
-#include "viewer/tracking/known_walk.h"
-#include "viewer/tracking/pose_math.h"
-#include "viewer/tracking/tracker_hub.h"
+#include "viewer/devices/tracking/display_tracker.h"
+#include "viewer/devices/tracking/dtrack.h"
+#include "viewer/devices/tracking/known_walk.h"
+#include "viewer/devices/tracking/pose_math.h"
+#include "viewer/devices/tracking/tracker_hub.h"
+#include "viewer/displays/display_file.h"
 
 #include <gtest/gtest.h>
 #include <map>

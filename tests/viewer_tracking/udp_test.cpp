@@ -1,7 +1,7 @@
 // Sockets: what is bound, and what arrives.
 
-#include "gi/base/error.h"
-#include "viewer/tracking/udp_tracker.h"
+#include "gi/core/error.h"
+#include "viewer/devices/tracking/udp_tracker.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
 // Stimuli from AR sessions, without a window: what is shown is known byte by byte.
 
-#include "ar/base/error.h"
-#include "study/design/script_file.h"
-#include "study/design/setting_place.h"
+#include "ar/camera/error.h"
+#include "study/script/script_file.h"
+#include "study/script/setting_place.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/trials/ar_source.h"
-#include "viewer/trials/prepared_list.h"
+#include "viewer/experiment/ar_source.h"
+#include "viewer/experiment/prepared_list.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>

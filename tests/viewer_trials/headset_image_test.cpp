@@ -1,6 +1,6 @@
 // A session in a headset of a real runtime: stimuli one after the other, answers by controllers.
 
-#include "study/record/journal_file.h"
+#include "study/journal/journal_file.h"
 #include "tests/viewer_trials/running_session.h"
 #include "tests/viewer_xr/monado.h"
 #include "tests/viewer_xr/remote_driver.h"

@@ -1,7 +1,7 @@
-#include "viewer/trials/prepared_files.h"
+#include "viewer/experiment/prepared_files.h"
 
-#include "gi/base/error.h"
-#include "gi/base/picture_file.h"
+#include "gi/core/error.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/viewer/run_program.h"
 
 namespace viewer::test {

@@ -1,7 +1,7 @@
 #pragma once
 // `lightwell study run` as it runs: its process, its window, its markers and the experimenter's socket.
 
-#include "study/record/journal_file.h"
+#include "study/journal/journal_file.h"
 #include "tests/viewer_show/live_view.h"
 #include "tests/viewer_show/x/x_window.h"
 

@@ -1,20 +1,20 @@
 // The parts that need no window.
 
-#include "gi/base/error.h"
-#include "study/base/random.h"
-#include "study/design/examples.h"
-#include "study/design/script_file.h"
+#include "gi/core/error.h"
 #include "study/run/adaptive_run.h"
+#include "study/script/examples.h"
+#include "study/script/script_file.h"
+#include "study/stats/random.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/remote/remote_client.h"
-#include "viewer/trials/answer_keys.h"
-#include "viewer/trials/experimenter.h"
-#include "viewer/trials/page.h"
-#include "viewer/trials/prepared_list.h"
-#include "viewer/trials/refresh.h"
-#include "viewer/trials/response.h"
-#include "viewer/trials/stimulus_settings.h"
-#include "viewer/trials/trial.h"
+#include "viewer/experiment/answer_keys.h"
+#include "viewer/experiment/experimenter.h"
+#include "viewer/experiment/page.h"
+#include "viewer/experiment/prepared_list.h"
+#include "viewer/experiment/refresh.h"
+#include "viewer/experiment/response.h"
+#include "viewer/experiment/stimulus_settings.h"
+#include "viewer/experiment/trial.h"
+#include "viewer/protocol/remote/remote_client.h"
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // What a runtime with a real compositor shows of the pictures of both eyes: its window under Xvfb, photographed.
 
-#include "gi/base/picture_file.h"
+#include "gi/image_io/picture_file.h"
 #include "tests/viewer_xr/monado.h"
 #include "tests/viewer_xr/remote_driver.h"
 

@@ -1,7 +1,7 @@
 // The pass into the runtime's images, where a context without a window can be had.
 
 #include "tests/viewer_gl/surfaceless.h"
-#include "viewer/xr/eye_pass.h"
+#include "viewer/devices/xr/eye_pass.h"
 
 #include <epoxy/gl.h>
 

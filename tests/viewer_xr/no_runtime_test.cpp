@@ -1,8 +1,8 @@
 // A machine without a runtime: one clear message, nothing on stderr from the loader, nothing that ends the
 // program.
 
-#include "gi/base/error.h"
-#include "viewer/xr/session.h"
+#include "gi/core/error.h"
+#include "viewer/devices/xr/session.h"
 
 #include <cstdlib>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "gi/scene/projection.h"
-#include "viewer/xr/pose_math.h"
+#include "gi/scene/model/projection.h"
+#include "viewer/devices/xr/pose_math.h"
 
 #include <gtest/gtest.h>
 #include <random>

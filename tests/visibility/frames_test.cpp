@@ -1,8 +1,8 @@
 // The methods vpl_* live: frames follow what moves.
 
-#include "gi/scene/generate.h"
 #include "gi/scene/generate/figure.h"
-#include "gi/scene/moving_world.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/motion/moving_world.h"
 #include "tests/visibility/visibility_render.h"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,6 +1,6 @@
 // Inputs that have broken renderers: every method vpl_* ends, with finite pictures and with what it lost counted.
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "tests/visibility/visibility_render.h"
 
 #include <numeric>

@@ -1,6 +1,6 @@
-#include "gi/visibility/imperfect_map.h"
+#include "gi/methods/vpl/imperfect_map.h"
 
-#include "gi/base/rng.h"
+#include "gi/core/rng.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 #pragma once
 // Rendering small scenes with the methods vpl_*.
 
-#include "gi/reference/reference.h"
-#include "gi/visibility/visibility.h"
+#include "gi/methods/reference/reference.h"
+#include "gi/methods/vpl/visibility.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 

@@ -1,6 +1,6 @@
 // Devices and pipelines, which do not wait: a thread takes their frames as they come.
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/clock.h"
 #include "ar/capture/opencv/opencv_sources.h"
 #include "ar/capture/tally.h"

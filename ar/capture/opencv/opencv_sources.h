@@ -1,6 +1,6 @@
 #pragma once
-// What the module liblightwell_capture.so has: sources of frames that need OpenCV's videoio, whose 240 libraries take
-// 0.2 s to load. The functions of ar/capture/video_source.h load it.
+// What the module liblightwell_capture.so has: sources of frames that need OpenCV's videoio, whose 240 libraries
+// take 0.2 s to load. The functions of ar/capture/video_source.h load it.
 
 #include "ar/capture/video_source.h"
 

@@ -1,6 +1,6 @@
 #include "ar/capture/opencv/opencv_sources.h"
 
-#include "ar/base/error.h"
+#include "ar/camera/error.h"
 #include "ar/capture/player.h"
 #include "ar/capture/tally.h"
 

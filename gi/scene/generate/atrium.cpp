@@ -1,9 +1,9 @@
 // The scene that the program shows first: a vaulted gallery behind an arcade, beside a court under sun and sky.
 // Most of what one sees is lit indirectly.
 
-#include "gi/base/error.h"
-#include "gi/scene/generate.h"
+#include "gi/core/error.h"
 #include "gi/scene/generate/figure.h"
+#include "gi/scene/generate/generate.h"
 #include "gi/scene/generate/masonry.h"
 #include "gi/scene/generate/procedural_texture.h"
 #include "gi/scene/generate/sky.h"

@@ -1,7 +1,7 @@
 // The mannequin with a face, so that one sees where it looks.
 
-#include "gi/scene/generate.h"
 #include "gi/scene/generate/figure.h"
+#include "gi/scene/generate/generate.h"
 
 #include <algorithm>
 

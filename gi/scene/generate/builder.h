@@ -1,7 +1,7 @@
 #pragma once
 // Shapes into a scene: one mesh per material, in world coordinates, under one node each.
 
-#include "gi/scene/scene.h"
+#include "gi/scene/model/scene.h"
 
 #include <functional>
 

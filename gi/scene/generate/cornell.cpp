@@ -1,8 +1,8 @@
 // The Cornell box as measured (Cornell University Program of Computer Graphics, 1998): corners in its own units of
 // about a millimetre, here as metres; spectra from 400 to 700 nm.
 
-#include "gi/scene/generate.h"
-#include "gi/scene/spectrum.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/model/spectrum.h"
 
 #include <array>
 

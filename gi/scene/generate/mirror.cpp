@@ -1,7 +1,7 @@
 // A room with a mirror on the wall before its camera, for who wants to see himself: see `lightwell view --avatar`.
 
-#include "gi/scene/generate.h"
 #include "gi/scene/generate/builder.h"
+#include "gi/scene/generate/generate.h"
 #include "gi/scene/generate/procedural_texture.h"
 
 namespace gi {

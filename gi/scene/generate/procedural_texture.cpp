@@ -1,6 +1,6 @@
 #include "gi/scene/generate/procedural_texture.h"
 
-#include "gi/base/rng.h"
+#include "gi/core/rng.h"
 
 namespace gi {
 namespace {

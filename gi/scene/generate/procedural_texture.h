@@ -1,7 +1,7 @@
 #pragma once
 // Small tileable pictures, the same on every machine.
 
-#include "gi/scene/texture.h"
+#include "gi/scene/model/texture.h"
 
 #include <functional>
 

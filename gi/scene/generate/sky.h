@@ -1,5 +1,5 @@
 #pragma once
-#include "gi/scene/scene.h"
+#include "gi/scene/model/scene.h"
 
 namespace gi {
 

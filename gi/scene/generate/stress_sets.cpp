@@ -1,9 +1,9 @@
 // Scenes of any size for robustness and speed: a closed room with a lamp and many triangles in it.
 
-#include "gi/base/error.h"
-#include "gi/base/rng.h"
-#include "gi/scene/generate.h"
+#include "gi/core/error.h"
+#include "gi/core/rng.h"
 #include "gi/scene/generate/builder.h"
+#include "gi/scene/generate/generate.h"
 
 #include <algorithm>
 #include <array>

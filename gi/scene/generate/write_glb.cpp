@@ -1,9 +1,9 @@
-#include "gi/scene/write_glb.h"
+#include "gi/scene/generate/write_glb.h"
 
-#include "gi/base/error.h"
-#include "gi/base/file.h"
-#include "gi/base/picture_file.h"
-#include "gi/scene/animation.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "gi/image_io/picture_file.h"
+#include "gi/scene/motion/animation.h"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
 // OBJ, PLY, STL, FBX, COLLADA, ... through Assimp. Some damaged files make Assimp itself crash or hang, so every
 // file is first imported by a child process with limits; only if that ends well does this process read it.
 
-#include "gi/base/error.h"
-#include "gi/base/file.h"
-#include "gi/scene/load.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
 #include "gi/scene/load/assimp_convert.h"
 #include "gi/scene/load/assimp_import.h"
 #include "gi/scene/load/child_process.h"
+#include "gi/scene/load/load.h"
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>

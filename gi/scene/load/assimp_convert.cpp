@@ -1,6 +1,6 @@
 #include "gi/scene/load/assimp_convert.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "gi/scene/load/assimp_animation.h"
 #include "gi/scene/load/assimp_material.h"
 

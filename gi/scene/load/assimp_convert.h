@@ -1,6 +1,6 @@
 #pragma once
-#include "gi/base/report.h"
-#include "gi/scene/scene.h"
+#include "gi/core/report.h"
+#include "gi/scene/model/scene.h"
 
 #include <filesystem>
 

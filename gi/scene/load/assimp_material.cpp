@@ -1,8 +1,8 @@
 #include "gi/scene/load/assimp_material.h"
 
-#include "gi/base/error.h"
-#include "gi/base/file.h"
-#include "gi/scene/load.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "gi/scene/load/load.h"
 
 #include <algorithm>
 #include <assimp/material.h>

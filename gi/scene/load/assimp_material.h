@@ -1,7 +1,7 @@
 #pragma once
-#include "gi/base/report.h"
+#include "gi/core/report.h"
 #include "gi/scene/load/assimp_types.h"
-#include "gi/scene/scene.h"
+#include "gi/scene/model/scene.h"
 
 #include <filesystem>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Assimp's small types as ours.
 
-#include "gi/base/math.h"
+#include "gi/core/math.h"
 
 #include <assimp/scene.h>
 #include <map>

@@ -1,7 +1,7 @@
 // Camera paths in YAML: data/camera_path.yaml is the example.
 
-#include "gi/base/file.h"
-#include "gi/scene/load.h"
+#include "gi/core/file.h"
+#include "gi/scene/load/load.h"
 #include "gi/scene/load/rotation_value.h"
 #include "gi/scene/load/yaml_reader.h"
 

@@ -1,6 +1,6 @@
 #include "gi/scene/load/child_process.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 
 #include <cerrno>
 #include <csignal>

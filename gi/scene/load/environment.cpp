@@ -1,7 +1,7 @@
-#include "gi/base/error.h"
-#include "gi/base/huge_pages.h"
-#include "gi/base/picture_file.h"
-#include "gi/scene/load.h"
+#include "gi/core/error.h"
+#include "gi/core/huge_pages.h"
+#include "gi/image_io/picture_file.h"
+#include "gi/scene/load/load.h"
 
 #include <fmt/format.h>
 

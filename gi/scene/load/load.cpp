@@ -1,7 +1,7 @@
-#include "gi/scene/load.h"
+#include "gi/scene/load/load.h"
 
-#include "gi/base/error.h"
-#include "gi/scene/generate.h"
+#include "gi/core/error.h"
+#include "gi/scene/generate/generate.h"
 
 #include <algorithm>
 

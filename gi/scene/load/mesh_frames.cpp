@@ -1,6 +1,6 @@
 #include "gi/scene/load/mesh_frames.h"
 
-#include "gi/base/error.h"
+#include "gi/core/error.h"
 #include "gi/scene/load/assimp_import.h"
 #include "gi/scene/load/assimp_types.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 // The frames of a mesh sequence as they are read, before they become a scene.
 
-#include "gi/base/math.h"
+#include "gi/core/math.h"
 
 #include <filesystem>
 #include <string>

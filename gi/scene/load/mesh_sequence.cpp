@@ -2,13 +2,13 @@
 // morph target (its difference to the first), and one channel of frame numbers goes through them. Memory: 24 bytes
 // per vertex and frame.
 
-#include "gi/base/error.h"
-#include "gi/scene/load.h"
+#include "gi/core/error.h"
 #include "gi/scene/load/assimp_convert.h"
 #include "gi/scene/load/assimp_import.h"
+#include "gi/scene/load/load.h"
 #include "gi/scene/load/mesh_frames.h"
 #include "gi/scene/load/sequence_timing.h"
-#include "gi/scene/vertex_normals.h"
+#include "gi/scene/motion/vertex_normals.h"
 
 #include <algorithm>
 #include <cstring>

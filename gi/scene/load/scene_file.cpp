@@ -1,16 +1,16 @@
 // The YAML scene file: models, environment, background, lights, cameras, overrides of materials. Schema:
 // data/scene.schema.json.
 
-#include "gi/base/file.h"
-#include "gi/scene/generate.h"
-#include "gi/scene/load.h"
+#include "gi/core/file.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/load/load.h"
 #include "gi/scene/load/rotation_value.h"
 #include "gi/scene/load/scene_file_animation.h"
 #include "gi/scene/load/scene_file_keys.h"
 #include "gi/scene/load/scene_file_light.h"
 #include "gi/scene/load/scene_file_material.h"
 #include "gi/scene/load/yaml_reader.h"
-#include "gi/scene/sky.h"
+#include "gi/scene/model/sky.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kDeepestInclusion = 8; ///< scene files that include scene files
-constexpr int kMostModels = 10000; ///< of a file and all that it includes
+constexpr int kMostModels = 10000;   ///< of a file and all that it includes
 
 thread_local int t_depth = 0;  ///< of this file below the first
 thread_local int t_models = 0; ///< since the first file began

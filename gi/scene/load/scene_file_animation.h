@@ -1,6 +1,6 @@
 #pragma once
 #include "gi/scene/load/yaml_reader.h"
-#include "gi/scene/scene.h"
+#include "gi/scene/model/scene.h"
 
 namespace gi {
 

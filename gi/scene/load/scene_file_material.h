@@ -1,6 +1,6 @@
 #pragma once
 #include "gi/scene/load/yaml_reader.h"
-#include "gi/scene/material.h"
+#include "gi/scene/model/material.h"
 
 namespace gi {
 

@@ -1,7 +1,7 @@
 #include "gi/scene/load/sequence_timing.h"
 
-#include "gi/base/error.h"
-#include "gi/base/file.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
 
 #include <algorithm>
 #include <cmath>

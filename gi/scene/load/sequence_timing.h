@@ -1,5 +1,5 @@
 #pragma once
-#include "gi/base/report.h"
+#include "gi/core/report.h"
 
 #include <filesystem>
 #include <string>

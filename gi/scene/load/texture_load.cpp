@@ -1,7 +1,7 @@
-#include "gi/base/claimed_size.h"
-#include "gi/base/huge_pages.h"
-#include "gi/base/error.h"
-#include "gi/scene/load.h"
+#include "gi/core/claimed_size.h"
+#include "gi/core/error.h"
+#include "gi/core/huge_pages.h"
+#include "gi/scene/load/load.h"
 
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>

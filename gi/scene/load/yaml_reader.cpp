@@ -1,6 +1,6 @@
 #include "gi/scene/load/yaml_reader.h"
 
-#include "gi/base/edit_distance.h"
+#include "gi/core/edit_distance.h"
 
 #include <algorithm>
 #include <charconv>

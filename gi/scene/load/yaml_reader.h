@@ -1,8 +1,8 @@
 #pragma once
 // YAML with places: every value knows its line and column, every key that nobody asked for is an error.
 
-#include "gi/base/error.h"
-#include "gi/base/math.h"
+#include "gi/core/error.h"
+#include "gi/core/math.h"
 
 #include <optional>
 #include <set>

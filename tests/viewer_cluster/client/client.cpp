@@ -3,9 +3,9 @@
 // Options: --other-version R 0, --other-scene R 0, --astray R FRAME, --slow-start R SECONDS, --busy R SECONDS
 // FOLDER/rank.R: "pid N", a line "frame scene_s hash" per frame, "said TEXT", at the end "left CODE".
 
-#include "gi/base/error.h"
-#include "gi/base/rng.h"
-#include "viewer/cluster/cluster.h"
+#include "gi/core/error.h"
+#include "gi/core/rng.h"
+#include "viewer/protocol/cluster/cluster.h"
 
 #include <fmt/format.h>
 #include <fstream>

@@ -4,10 +4,10 @@
 //   hmd_client --graphics egl|glx|none --frames N [--log FILE] [--every N] [--keep] [--recentre] [--seated]
 // Prints a line per change of phase and, last, counts and facts as JSON.
 
-#include "gi/base/error.h"
-#include "gi/scene/camera.h"
-#include "viewer/gl/context.h"
-#include "viewer/xr/keeper.h"
+#include "gi/core/error.h"
+#include "gi/scene/model/camera.h"
+#include "viewer/devices/gl/context.h"
+#include "viewer/devices/xr/keeper.h"
 
 #include <CLI/CLI.hpp>
 #include <GLFW/glfw3.h>

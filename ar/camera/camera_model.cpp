@@ -1,0 +1,184 @@
+#include "ar/camera/camera_model.h"
+
+#include "ar/camera/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+namespace ar {
+namespace {
+
+constexpr std::array<char const*, 4> kNames{"pinhole", "radial_tangential", "rational", "fisheye"};
+
+/// What the lens does on the plane z = 1.
+glm::dvec2 distorted(CameraModel const& c, glm::dvec2 p)
+{
+    auto const& d = c.distortion;
+    double const k1 = d[0], k2 = d[1], p1 = d[2], p2 = d[3], k3 = d[4], k4 = d[5], k5 = d[6], k6 = d[7];
+    double const r2 = glm::dot(p, p);
+    double const radial = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)));
+    return radial * p + glm::dvec2(2 * p1 * p.x * p.y + p2 * (r2 + 2 * p.x * p.x),
+                                   p1 * (r2 + 2 * p.y * p.y) + 2 * p2 * p.x * p.y);
+}
+
+double fisheye_radius(CameraModel const& c, double angle)
+{
+    auto const& d = c.distortion;
+    double const a2 = angle * angle;
+    return angle * (1 + a2 * (d[0] + a2 * (d[1] + a2 * (d[2] + a2 * d[3]))));
+}
+
+glm::dvec2 on_plane(CameraModel const& c, glm::dvec2 pixel)
+{
+    return {(pixel.x - c.cx) / c.fx, (pixel.y - c.cy) / c.fy};
+}
+
+/// Newton's method in two dimensions, differences for derivatives.
+std::optional<glm::dvec2> undistorted(CameraModel const& c, glm::dvec2 target)
+{
+    glm::dvec2 p = target;
+    for (int i = 0; i < 60; ++i) {
+        glm::dvec2 const miss = distorted(c, p) - target;
+        if (!std::isfinite(miss.x) || !std::isfinite(miss.y)) return std::nullopt;
+        if (std::max(std::abs(miss.x), std::abs(miss.y)) < 1e-13) break;
+        double const h = 1e-7 * std::max(1.0, glm::length(p));
+        glm::dvec2 const by_x =
+            (distorted(c, p + glm::dvec2(h, 0)) - distorted(c, p - glm::dvec2(h, 0))) / (2 * h);
+        glm::dvec2 const by_y =
+            (distorted(c, p + glm::dvec2(0, h)) - distorted(c, p - glm::dvec2(0, h))) / (2 * h);
+        double const det = by_x.x * by_y.y - by_x.y * by_y.x;
+        if (!(std::abs(det) > 1e-12)) return std::nullopt;
+        glm::dvec2 step = glm::dvec2(by_y.y * miss.x - by_y.x * miss.y, by_x.x * miss.y - by_x.y * miss.x) / det;
+        double const limit = 0.5 * (1 + glm::length(p)); // far steps leave the branch that lenses have
+        if (glm::length(step) > limit) step *= limit / glm::length(step);
+        p -= step;
+    }
+    glm::dvec2 const miss = distorted(c, p) - target;
+    if (!(std::max(std::abs(miss.x), std::abs(miss.y)) < 1e-10)) return std::nullopt;
+    // Beyond the fold the pixel is that of a nearer ray, too: outward must stay outward.
+    double const r = glm::length(p);
+    if (r > 0 && glm::dot(distorted(c, p * (1 + 1e-6)) - distorted(c, p), p) <= 0) return std::nullopt;
+    return p;
+}
+
+} // namespace
+
+int coefficient_count(LensModel lens)
+{
+    constexpr std::array<int, 4> counts{0, 5, 8, 4};
+    return counts[std::size_t(lens)];
+}
+
+std::string name_of(LensModel lens) { return kNames[std::size_t(lens)]; }
+
+std::optional<LensModel> lens_named(std::string const& name)
+{
+    for (std::size_t i = 0; i < kNames.size(); ++i)
+        if (name == kNames[i]) return LensModel(i);
+    return std::nullopt;
+}
+
+cv::Matx33d camera_matrix(CameraModel const& c) { return {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1}; }
+
+cv::Mat distortion_of(CameraModel const& c)
+{
+    cv::Mat all(1, coefficient_count(c.lens), CV_64F);
+    for (int i = 0; i < all.cols; ++i) all.at<double>(i) = c.distortion[std::size_t(i)];
+    return all;
+}
+
+std::optional<glm::dvec2> project(CameraModel const& c, glm::dvec3 point)
+{
+    glm::dvec2 p;
+    if (c.lens == LensModel::fisheye) {
+        double const across = std::hypot(point.x, point.y);
+        if (!(across > 0 || point.z > 0)) return std::nullopt;
+        double const r = fisheye_radius(c, std::atan2(across, point.z));
+        p = across > 0 ? r / across * glm::dvec2(point) : glm::dvec2(0);
+    } else {
+        if (!(point.z > 0)) return std::nullopt;
+        p = distorted(c, glm::dvec2(point) / point.z);
+    }
+    return glm::dvec2(c.fx * p.x + c.cx, c.fy * p.y + c.cy);
+}
+
+std::optional<glm::dvec3> direction_of(CameraModel const& c, glm::dvec2 pixel)
+{
+    glm::dvec2 const target = on_plane(c, pixel);
+    if (c.lens != LensModel::fisheye) {
+        auto const p = c.lens == LensModel::pinhole ? target : undistorted(c, target);
+        if (!p) return std::nullopt;
+        return glm::normalize(glm::dvec3(*p, 1));
+    }
+    double const r = glm::length(target);
+    if (!(r > 0)) return glm::dvec3(0, 0, 1);
+    double low = 0, high = std::numbers::pi; // the radius grows with the angle where the model holds
+    if (!(fisheye_radius(c, high) >= r)) {   // k4 < 0 bends back before pi: look for the top
+        double best = 0;
+        for (int i = 1; i <= 256; ++i)
+            if (double const a = std::numbers::pi * i / 256; fisheye_radius(c, a) > fisheye_radius(c, best))
+                best = a;
+        high = best;
+        if (!(fisheye_radius(c, high) >= r)) return std::nullopt;
+    }
+    for (int i = 0; i < 80; ++i) {
+        double const middle = 0.5 * (low + high);
+        (fisheye_radius(c, middle) < r ? low : high) = middle;
+    }
+    double const angle = 0.5 * (low + high);
+    return glm::dvec3(std::sin(angle) / r * target, std::cos(angle));
+}
+
+CameraModel scaled(CameraModel const& c, glm::ivec2 size_px)
+{
+    CameraModel s = c;
+    glm::dvec2 const by = glm::dvec2(size_px) / glm::dvec2(c.size_px);
+    s.size_px = size_px;
+    s.fx = c.fx * by.x;
+    s.fy = c.fy * by.y;
+    s.cx = (c.cx + 0.5) * by.x - 0.5;
+    s.cy = (c.cy + 0.5) * by.y - 0.5;
+    return s;
+}
+
+cv::Mat remap_table(CameraModel const& to, CameraModel const& from)
+{
+    cv::Mat table(to.size_px.y, to.size_px.x, CV_32FC2);
+    cv::parallel_for_({0, to.size_px.y}, [&](cv::Range const& rows) {
+        for (int y = rows.start; y < rows.end; ++y)
+            for (int x = 0; x < to.size_px.x; ++x) {
+                auto const d = direction_of(to, {x, y});
+                auto const p = d ? project(from, *d) : std::nullopt;
+                table.at<cv::Vec2f>(y, x) = p ? cv::Vec2f(float(p->x), float(p->y)) : cv::Vec2f(-1e4f, -1e4f);
+            }
+    });
+    return table;
+}
+
+void check(CameraModel const& c, std::string const& where)
+{
+    auto const refuse = [&](std::string const& problem, std::string const& why) {
+        throw InputError(where + ": " + problem, why, "calibrate the camera again");
+    };
+    for (double v : {c.fx, c.fy, c.cx, c.cy})
+        if (!std::isfinite(v)) refuse("a number of the camera's matrix is not finite", "no ray has a pixel");
+    for (double v : c.distortion)
+        if (!std::isfinite(v)) refuse("a distortion coefficient is not finite", "no ray has a pixel");
+    if (c.size_px.x < 1 || c.size_px.y < 1 || c.size_px.x > 65536 || c.size_px.y > 65536)
+        refuse(fmt::format("pictures of {} x {} pixels", c.size_px.x, c.size_px.y),
+               "1 to 65536 each way are possible");
+    if (!(c.fx > 0) || !(c.fy > 0))
+        refuse(fmt::format("focal lengths {} and {}", c.fx, c.fy), "both must be positive");
+    if (std::abs(c.cx - 0.5 * c.size_px.x) > c.size_px.x || std::abs(c.cy - 0.5 * c.size_px.y) > c.size_px.y)
+        refuse(fmt::format("the principal point ({}, {}) is far outside the picture", c.cx, c.cy),
+               "the numbers are of another picture size or of a failed calibration");
+    glm::dvec2 const corner(c.size_px.x - 1, c.size_px.y - 1);
+    for (glm::dvec2 const p : {glm::dvec2(0, 0), glm::dvec2(corner.x, 0), glm::dvec2(0, corner.y), corner})
+        if (!direction_of(c, p))
+            refuse(fmt::format("the lens model has no ray for the corner ({:g}, {:g})", p.x, p.y),
+                   "its distortion folds back within the picture");
+}
+
+} // namespace ar

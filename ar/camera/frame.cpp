@@ -1,0 +1,90 @@
+#include "ar/camera/frame.h"
+
+#include "ar/camera/error.h"
+
+#include <fmt/format.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace ar {
+namespace {
+
+cv::Mat decoded(Frame const& f, int mode)
+{
+    // Anything else would be offered to every decoder there is, and that of DICOM ends the process over bad bytes.
+    cv::Mat const& bytes = f.planes[0];
+    bool const is_jpeg = bytes.type() == CV_8UC1 && bytes.isContinuous() && bytes.total() > 3 &&
+                         bytes.data[0] == 0xff && bytes.data[1] == 0xd8 && bytes.data[2] == 0xff;
+    cv::Mat const picture = is_jpeg ? cv::imdecode(bytes, mode) : cv::Mat();
+    if (picture.empty())
+        throw InputError(fmt::format("frame {} is no JPEG that can be decoded", f.sequence), "it has no pixels",
+                         "count it as lost");
+    if (picture.cols != f.size_px.x || picture.rows != f.size_px.y)
+        throw InputError(fmt::format("frame {} has {} x {} pixels in place of {} x {}", f.sequence, picture.cols,
+                                     picture.rows, f.size_px.x, f.size_px.y),
+                         "its rays are those of another calibration", "count it as lost");
+    return picture;
+}
+
+} // namespace
+
+std::string name_of(PixelFormat format)
+{
+    constexpr std::array<char const*, 6> names{"rgb8", "bgr8", "gray8", "nv12", "yuyv", "mjpeg"};
+    return names[std::size_t(format)];
+}
+
+std::string name_of(TimestampOrigin origin)
+{
+    constexpr std::array<char const*, 4> names{"sensor", "driver", "file", "arrival"};
+    return names[std::size_t(origin)];
+}
+
+cv::Mat rgb_of(Frame const& f)
+{
+    cv::Mat rgb;
+    switch (f.format) {
+    case PixelFormat::rgb8:
+        return f.planes[0];
+    case PixelFormat::bgr8:
+        cv::cvtColor(f.planes[0], rgb, cv::COLOR_BGR2RGB);
+        return rgb;
+    case PixelFormat::gray8:
+        cv::cvtColor(f.planes[0], rgb, cv::COLOR_GRAY2RGB);
+        return rgb;
+    case PixelFormat::nv12:
+        cv::cvtColorTwoPlane(f.planes[0], f.planes[1], rgb, cv::COLOR_YUV2RGB_NV12);
+        return rgb;
+    case PixelFormat::yuyv:
+        cv::cvtColor(f.planes[0], rgb, cv::COLOR_YUV2RGB_YUYV);
+        return rgb;
+    case PixelFormat::mjpeg:
+        cv::cvtColor(decoded(f, cv::IMREAD_COLOR), rgb, cv::COLOR_BGR2RGB);
+        return rgb;
+    }
+    throw std::logic_error("a pixel format without a way to RGB");
+}
+
+cv::Mat gray_of(Frame const& f)
+{
+    cv::Mat gray;
+    switch (f.format) {
+    case PixelFormat::rgb8:
+        cv::cvtColor(f.planes[0], gray, cv::COLOR_RGB2GRAY);
+        return gray;
+    case PixelFormat::bgr8:
+        cv::cvtColor(f.planes[0], gray, cv::COLOR_BGR2GRAY);
+        return gray;
+    case PixelFormat::gray8:
+    case PixelFormat::nv12:
+        return f.planes[0];
+    case PixelFormat::yuyv:
+        cv::cvtColor(f.planes[0], gray, cv::COLOR_YUV2GRAY_YUYV);
+        return gray;
+    case PixelFormat::mjpeg:
+        return decoded(f, cv::IMREAD_GRAYSCALE);
+    }
+    throw std::logic_error("a pixel format without luma");
+}
+
+} // namespace ar

@@ -1,0 +1,24 @@
+#pragma once
+// Between what ar and gi call the same things: cameras, pictures, maps of light.
+
+#include "ar/camera/camera_model.h"
+#include "ar/camera/pose.h"
+#include "gi/image_io/picture.h"
+#include "gi/scene/model/camera.h"
+#include "gi/scene/model/scene.h"
+
+#include <opencv2/core.hpp>
+
+namespace viewer {
+
+/// A pinhole (its distortion is not read) that sees what a camera at this place does. gi's cameras look along -z
+/// with y up; ar's along z with y down. Pictures must have the camera's size.
+gi::Camera gi_camera(ar::CameraModel const& pinhole, ar::Pose const& world_from_camera);
+
+/// A copy of a layer: CV_32FC3 or CV_32FC1. @throws std::invalid_argument no such layer
+cv::Mat matrix_of(gi::Picture const& picture, std::string const& layer);
+
+/// Of CV_32FC3, RGB, lat-long as both rooms have it. Values below 0 and not finite ones become 0.
+gi::EnvironmentMap environment_of(cv::Mat const& lat_long);
+
+} // namespace viewer

@@ -1,0 +1,86 @@
+#include "ar/pipeline/camera_blur.h"
+
+#include <array>
+#include <opencv2/imgproc.hpp>
+
+namespace viewer {
+namespace {
+
+constexpr double kNewest = 0.1;     ///< weight of a frame's blur among those before
+constexpr double kShortest_px = 14; ///< sides of markers: shorter ones have too little black beside them
+constexpr double kStill_px = 0.5;   ///< of motion: frames that move more tell nothing of the lens
+constexpr int kFewestEdges = 4;
+
+} // namespace
+
+CameraBlur::CameraBlur(ar::MarkerMap const& map, ar::CameraModel const& camera) : camera_(camera)
+{
+    for (ar::PlacedMarker const& m : ar::placed_markers(map)) {
+        ar::Pose const world_from_thing = ar::world_from_thing(map, m.thing);
+        std::array<glm::dvec3, 4> corners;
+        for (std::size_t k = 0; k < 4; ++k) corners[k] = world_from_thing * m.corners_m[k];
+        markers_.push_back(corners);
+    }
+}
+
+std::vector<ar::EdgeSegment> CameraBlur::edges(ar::Pose const& world_from_camera, double& shortest_px) const
+{
+    ar::Pose const camera_from_world = ar::inverse(world_from_camera);
+    std::vector<ar::EdgeSegment> found;
+    for (auto const& corners : markers_) {
+        glm::dvec3 const normal = glm::cross(corners[1] - corners[0], corners[3] - corners[0]);
+        if (glm::dot(normal, world_from_camera.position_m - corners[0]) > 0) continue; // seen from behind
+        for (std::size_t k = 0; k < 4; ++k) {
+            auto const a = ar::project(camera_, camera_from_world * corners[k]);
+            auto const b = ar::project(camera_, camera_from_world * corners[(k + 1) % 4]);
+            if (!a || !b) continue;
+            double const length = glm::distance(*a, *b);
+            if (length < kShortest_px) continue;
+            shortest_px = std::min(shortest_px, length);
+            found.push_back({*a, *b});
+        }
+    }
+    return found;
+}
+
+void CameraBlur::follow(cv::Mat const& radiance, ar::Pose const& world_from_camera, double time_s,
+                        double exposure_s)
+{
+    opened_.reset();
+    counts_.no_exposure += !(exposure_s > 0);
+    double moved_px = 0;
+    if (before_ && time_s > before_->time_s) {
+        // Constant motion since the frame before; of the picture, by what turning does and a metre away.
+        double const share = exposure_s / (time_s - before_->time_s);
+        ar::Pose const& b = before_->world_from_camera;
+        double const turned = glm::radians(ar::angle_between_deg(b.rotation, world_from_camera.rotation));
+        double const shifted = glm::distance(b.position_m, world_from_camera.position_m);
+        moved_px = share * camera_.fx * (turned + shifted);
+        if (exposure_s > 0 && moved_px >= 1) {
+            ++counts_.moved;
+            opened_ = ar::Pose{glm::slerp(world_from_camera.rotation, b.rotation, share),
+                               glm::mix(world_from_camera.position_m, b.position_m, share)};
+        }
+    }
+    before_ = Before{world_from_camera, time_s};
+    if (moved_px > kStill_px) return;
+    double shortest_px = 1e9;
+    std::vector<ar::EdgeSegment> const sides = edges(world_from_camera, shortest_px);
+    // The border of a marker is a sixth of its side or less, and what lies beyond has another brightness.
+    ar::SpreadSettings settings;
+    settings.reach_px = std::min(settings.reach_px, shortest_px / 7);
+    std::optional<ar::Sharpness> sharpness;
+    if (!sides.empty()) {
+        cv::Mat light;
+        cv::cvtColor(radiance, light, cv::COLOR_RGB2GRAY);
+        sharpness = ar::estimate_sharpness(light, sides, settings);
+    }
+    if (!sharpness || sharpness->edges < kFewestEdges) {
+        ++counts_.unmeasured;
+        return;
+    }
+    ++counts_.measured;
+    sigma_px_ = sigma_px_ ? *sigma_px_ + kNewest * (sharpness->sigma_px - *sigma_px_) : sharpness->sigma_px;
+}
+
+} // namespace viewer

@@ -1,0 +1,60 @@
+#pragma once
+// From what was rendered to what the camera would have seen of it: at the camera's size, in its lens, as sharp as
+// its pictures, and behind what stands before. Steps that a session does not ask for cost nothing.
+
+#include "ar/composite/occlusion_matte.h"
+#include "ar/composite/temporal.h"
+#include "ar/composite/upsample.h"
+#include "ar/composite/warp.h"
+#include "ar/pipeline/camera_blur.h"
+#include "ar/pipeline/virtual_surfaces.h"
+#include "ar/scene/session_file.h"
+
+namespace viewer {
+
+/// The frame that a pair is for.
+struct FinishFrame {
+    cv::Mat radiance; ///< CV_32FC3, the camera's; only read for mattes and blur
+    ar::Pose world_from_camera;
+    double time_s = 0, exposure_s = 0;
+};
+
+struct FinishCounts {
+    ar::UpsampleCounts upsample; ///< of all frames
+    ar::MatteCounts matte;       ///< of all frames
+    std::size_t unlit = 0;       ///< SharpSurfaces::unlit, of all frames
+    CameraBlurCounts blur;
+    double camera_sigma_px = 0, added_sigma_px = 0; ///< of the last frame
+};
+
+class PairFinish {
+public:
+    PairFinish(ArSession const& session, ar::CameraModel const& camera, ar::MarkerMap const& markers);
+
+    /// What is to be rendered.
+    ar::CameraModel const& pinhole() const { return pinhole_; }
+    bool needs_radiance() const { return session_.finish.mattes || blur_; }
+    bool needs_world() const { return session_.finish.upsample || session_.finish.mattes; }
+    /// @param world  with everything virtual in its place, the same in every call; read only if it is needed
+    ar::RenderedPair operator()(PairPictures const& rendered, FinishFrame const& frame, gi::World const& world);
+    /// The camera is lost: there is no history.
+    void forget();
+    FinishCounts const& counts() const { return counts_; }
+
+private:
+    ar::RenderedPair smoothed(PairPictures const& p, ar::Pose const& world_from_camera);
+    ar::RenderedPair upsampled(ar::RenderedPair const& low, SharpSurfaces const& sharp, gi::Camera const& camera);
+    ar::RenderedPair blurred(ar::RenderedPair pair, FinishFrame const& frame, cv::Mat const& depth_m);
+
+    ArSession session_;
+    ar::CameraModel camera_, pinhole_; ///< rendered
+    ar::Warp warp_;                    ///< from the size that pairs have in the end
+    std::optional<ar::TemporalFilter> filter_;
+    std::optional<CameraBlur> blur_;
+    std::optional<VirtualSurfaces> virtual_;
+    std::optional<RealSurfaces> real_;
+    cv::Mat wanted_, wanted_coverage_; ///< memory of the last frame
+    FinishCounts counts_;
+};
+
+} // namespace viewer

@@ -1,0 +1,185 @@
+#include "ar/pipeline/pipeline.h"
+
+#include "ar/camera/error.h"
+#include "ar/capture/clock.h"
+#include "ar/pipeline/bridge.h"
+#include "ar/pipeline/pose_use.h"
+#include "ar/scene/real_scene.h"
+#include "gi/core/error.h"
+#include "gi/scene/load/load.h"
+
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+/// Milliseconds since the last call; no time is between two of them.
+class Lap {
+public:
+    explicit Lap(double begun_s) : last_s_(begun_s) {}
+    double operator()()
+    {
+        double const now_s = ar::steady_now_s();
+        return 1e3 * (now_s - std::exchange(last_s_, now_s));
+    }
+    double last_s() const { return last_s_; }
+
+private:
+    double last_s_;
+};
+
+LocalScene local_scene(ArSession const& s, gi::Report& report)
+{
+    ArPlaced const& v = s.virtual_things;
+    return join_scenes(real_scene(s.real, report),
+                       v.scene.empty() ? gi::Scene{} : gi::load_scene(v.scene.string(), report), placement(v));
+}
+
+gi::RenderSettings render_settings(ArRender const& r)
+{
+    gi::RenderSettings settings;
+    settings.bounces = r.bounces;
+    settings.seed = r.seed;
+    settings.slhb = r.slhb;
+    return settings;
+}
+
+ar::CompositeSettings with_noise(ar::CompositeSettings settings, ar::SensorNoise const& noise)
+{
+    settings.noise = noise;
+    return settings;
+}
+
+} // namespace
+
+void check_size(glm::ivec2 frames_px, ArCamera const& camera)
+{
+    glm::ivec2 const calibrated_px = camera.model.size_px;
+    if (frames_px == calibrated_px) return;
+    throw gi::InputError(fmt::format("frames of {} x {} pixels", frames_px.x, frames_px.y),
+                         fmt::format("the calibration is of {} x {}", calibrated_px.x, calibrated_px.y),
+                         "set the camera to that size, or calibrate it at this one");
+}
+
+ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers,
+                       gi::Report& report, std::string prefix)
+    : session_(session),
+      camera_(camera),
+      detector_(markers),
+      renderer_(local_scene(session, report), render_settings(session.render), report),
+      light_(session),
+      finish_(session, camera.model, markers),
+      compositor_(camera.photometry,
+                  with_noise(session.composite, session.match_noise ? camera.noise : ar::SensorNoise{})),
+      tracker_(session.pose.tracker),
+      report_(report),
+      prefix_(std::move(prefix))
+{
+    renderer_.set_environment(light_.begin());
+    light_picture_ = picture_of_light(light_.map());
+}
+
+ar::RenderedPair ArPipeline::rendered(ArResult const& found, ar::Exposure const& exposure, double time_s,
+                                      gi::StopRequest const& stop)
+{
+    ar::CameraModel const& pinhole = finish_.pinhole();
+    ar::Pose const& world_from_camera = found.pose.world_from_camera;
+    PairPictures const p =
+        renderer_.render(gi_camera(pinhole, world_from_camera), pinhole.size_px.x, pinhole.size_px.y,
+                         session_.render.paths, time_s, session_.render.denoise, stop);
+    FinishFrame frame{{}, world_from_camera, time_s, exposure.time_s};
+    if (finish_.needs_radiance()) frame.radiance = ar::radiance_of(found.camera, camera_.photometry, exposure);
+    return finish_(p, frame, finish_.needs_world() ? renderer_.world_with(time_s) : renderer_.world());
+}
+
+void ArPipeline::count_some(char const* what, std::size_t n)
+{
+    if (n > 0) report_.count(prefix_ + what, double(n));
+}
+
+void ArPipeline::report_poses()
+{
+    ar::TrackerCounts const& t = tracker_.counts();
+    count_some("poses taken", t.taken);
+    count_some("poses missed", t.missed);
+    count_some("poses refused as jumps", t.jumps_refused);
+    count_some("jumps believed", t.jumps_believed);
+    count_some("moves of the tripod", t.moves);
+    count_some("poses predicted", predicted_);
+}
+
+void ArPipeline::report_finish()
+{
+    FinishCounts const& f = finish_.counts();
+    count_some("enlarged pixels whose surface no rendered one shows", f.upsample.without_guide);
+    count_some("enlarged pixels among virtual things alone", f.upsample.no_sample);
+    count_some("points of virtual things without light", f.unlit);
+    count_some("pixels at borders of real occluders", f.matte.band);
+    count_some("pixels at borders of real occluders, refined", f.matte.refined);
+    count_some("frames whose sharpness was measured", f.blur.measured);
+    count_some("frames without an edge to measure", f.blur.unmeasured);
+    count_some("frames blurred by motion", f.blur.moved);
+    count_some("frames of unknown exposure time", session_.finish.match_blur ? f.blur.no_exposure : 0);
+    if (f.camera_sigma_px > 0) report_.count("blur of the camera (px)", f.camera_sigma_px);
+    if (f.added_sigma_px > 0) report_.count("blur that was added (px)", f.added_sigma_px);
+}
+
+ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known,
+                          std::optional<double> begun_s)
+{
+    if (frame.size_px != camera_.model.size_px)
+        throw ar::InputError(
+            fmt::format("frame {} has {} x {} pixels", frame.sequence, frame.size_px.x, frame.size_px.y),
+            fmt::format("the calibration is of {} x {}", camera_.model.size_px.x, camera_.model.size_px.y),
+            "set the camera to that size, or calibrate it at this one");
+    ArResult r;
+    Lap lap(begun_s ? *begun_s : ar::steady_now_s());
+    r.camera = ar::rgb_of(frame);
+    cv::Mat const gray = ar::gray_of(frame);
+    r.times.decode_ms = lap();
+    if (known) {
+        r.pose.failure = ar::PoseFailure::none;
+        r.pose.world_from_camera = *known;
+        r.pose.confidence = 1;
+    } else {
+        r.sighting = detector_.next(gray);
+        r.times.detect_ms = lap();
+        r.pose = ar::estimate_pose(r.sighting, camera_.model, tracker_.expected(time_s));
+        tracker_.add(time_s, r.pose);
+        if (use_pose(session_.pose, tracker_, time_s, r.pose)) ++predicted_;
+        report_poses();
+        r.times.pose_ms = lap();
+    }
+    r.rgb = r.camera;
+    r.done_s = lap.last_s();
+    return r;
+}
+
+void ArPipeline::add(ArResult& r, ar::Frame const& frame, double time_s, gi::StopRequest const& stop,
+                     CompositeBy composite)
+{
+    Lap lap(r.done_s);
+    r.times.wait_ms = lap();
+    if (r.pose.found()) {
+        if (auto map = light_.follow(r.camera, camera_.photometry, frame.exposure, camera_.model,
+                                     r.pose.world_from_camera.rotation, time_s)) {
+            renderer_.set_environment(std::move(map));
+            light_picture_ = picture_of_light(light_.map());
+        }
+        r.times.light_ms = lap();
+        r.pair = rendered(r, frame.exposure, time_s, stop);
+        r.times.render_ms = lap();
+        if (composite == CompositeBy::pipeline) {
+            r.rgb = cv::Mat(); // the camera's stays as it is
+            r.counts = compositor_(r.camera, *r.pair, frame.exposure, r.rgb, frame.sequence);
+        }
+        r.times.composite_ms = lap();
+        report_finish();
+    } else {
+        finish_.forget();
+    }
+    r.light = light_picture_;
+    r.done_s = lap.last_s();
+}
+
+} // namespace viewer

@@ -1,0 +1,52 @@
+#include "ar/pipeline/place_light.h"
+
+#include "ar/light/lat_long.h"
+#include "ar/light/map_file.h"
+#include "ar/pipeline/bridge.h"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace viewer {
+
+PlaceLight::PlaceLight(ArSession const& session) : every_(session.live_light)
+{
+    if (!session.light.empty()) {
+        captured_ = ar::read_map(session.light) * session.light_scale;
+        if (session.light_turn_deg != 0)
+            captured_ = ar::resampled(captured_, captured_.size(),
+                                      glm::angleAxis(glm::radians(session.light_turn_deg), glm::dvec3(0, 1, 0)));
+    }
+    if (every_ > 0) probe_.emplace(captured_);
+}
+
+std::shared_ptr<gi::EnvironmentMap const> PlaceLight::begin() const
+{
+    if (captured_.empty()) return nullptr;
+    return std::make_shared<gi::EnvironmentMap const>(environment_of(captured_));
+}
+
+std::shared_ptr<gi::EnvironmentMap const> PlaceLight::follow(cv::Mat const& rgb, ar::Photometry const& photometry,
+                                                             ar::Exposure const& exposure,
+                                                             ar::CameraModel const& camera,
+                                                             glm::dquat const& world_from_camera, double time_s)
+{
+    if (!probe_) return nullptr;
+    ar::ProbeUpdate const update = probe_->update(ar::radiance_of(rgb, photometry, exposure), ar::is_clipped(rgb),
+                                                  camera, world_from_camera, time_s);
+    if (frames_++ % every_ != 0 && !update.lamp_changed) return nullptr;
+    return std::make_shared<gi::EnvironmentMap const>(environment_of(probe_->map()));
+}
+
+cv::Mat picture_of_light(cv::Mat const& map)
+{
+    if (map.empty()) return {};
+    cv::Mat small, log_luminance;
+    cv::resize(map, small, {128, 64}, 0, 0, cv::INTER_AREA);
+    cv::transform(small, log_luminance, cv::Matx13f(0.2126f, 0.7152f, 0.0722f));
+    cv::log(cv::max(log_luminance, 1e-6), log_luminance);
+    double const middle = std::exp(cv::mean(log_luminance)[0]);
+    return ar::bytes_of(small * (0.18 / middle), ar::srgb_photometry());
+}
+
+} // namespace viewer

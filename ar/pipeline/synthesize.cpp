@@ -1,0 +1,165 @@
+#include "ar/pipeline/synthesize.h"
+
+#include "ar/calibration/calibration_file.h"
+#include "ar/markers/draw.h"
+#include "ar/markers/marker_map_file.h"
+#include "ar/pose/pose_file.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "gi/core/progress.h"
+#include "gi/image_io/picture_file.h"
+#include "gi/scene/generate/write_glb.h"
+
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Squares are 25 pixels wide at 1 m in pictures of 640 x 480.
+ar::MarkerMap synthetic_markers()
+{
+    ar::CharucoBoard board;
+    board.squares_x = 7;
+    board.squares_y = 5;
+    board.square_m = 0.045;
+    board.marker_m = 0.034;
+    board.dictionary = "DICT_4X4_50";
+    // Flat on the table, its top away from the camera.
+    board.world_from_board = {glm::angleAxis(glm::radians(-90.0), glm::dvec3(1, 0, 0)), {-0.1575, 0.0005, 0.32}};
+    return {{}, {board}, {}};
+}
+
+PaperOnTable paper_of(ar::MarkerMap const& map)
+{
+    constexpr double dots_per_m = 4000;
+    ar::Sheet const sheet = ar::sheet_of(map, 0);
+    PaperOnTable paper;
+    paper.print = ar::draw(sheet, dots_per_m);
+    paper.width_m = paper.print.cols / dots_per_m;
+    paper.depth_m = paper.print.rows / dots_per_m;
+    glm::dvec3 const corner = map.boards[0].world_from_board * glm::dvec3(-sheet.origin_m, 0);
+    paper.near_left_m = {corner.x, corner.z};
+    return paper;
+}
+
+void write_png(fs::path const& file, cv::Mat const& rgb)
+{
+    gi::write_png(file, rgb.cols, rgb.rows, {rgb.ptr(), rgb.total() * 3});
+}
+
+void write_probe(fs::path const& file, cv::Mat const& probe, gi::Report& report)
+{
+    gi::Picture picture;
+    picture.width = probe.cols;
+    picture.height = probe.rows;
+    gi::Layer& layer = picture.add("color", 3);
+    std::copy_n(probe.ptr<float>(), layer.data.size(), layer.data.begin());
+    gi::write_exr(file, picture, gi::PixelType::single, report);
+}
+
+std::string options_text(SynthesizeOptions const& o)
+{
+    return fmt::format(
+        "# Made by lightwell ar synthesize: {} x {} px, {} frames at {} Hz, {} paths, {} of the camera's "
+        "pixels{}\n",
+        o.size_px.x, o.size_px.y, o.frames, o.rate_hz, o.quality.paths, o.quality.resolution,
+        o.quality.denoise ? ", denoised" : "");
+}
+
+std::string session_text(SynthesizeOptions const& o)
+{
+    return options_text(o) + fmt::format(R"(schema: ar/1
+frames: {{source: frames, rate_hz: {}}}
+camera: camera.yaml
+markers: markers.yaml
+light: {{map: probe.exr}}
+real: {{scene: near.glb}}
+virtual: {{scene: statue.glb, at: [-0.02, 0, -0.1]}}
+render: {{paths: 4, resolution: 1}}
+)",
+                                         o.rate_hz);
+}
+
+/// Frames begun with other options must not be mixed with these.
+void check_folder(SynthesizeOptions const& o)
+{
+    fs::path const session = o.folder / "session.yaml";
+    if (!fs::exists(session)) return;
+    std::vector<unsigned char> const bytes = gi::read_bytes(session, std::size_t(1) << 20);
+    if (std::string(bytes.begin(), bytes.end()) != session_text(o))
+        throw gi::InputError("'" + o.folder.string() + "' holds another session",
+                             "its frames and those made now would not belong together", "name another folder");
+}
+
+void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, ar::MarkerMap const& markers,
+                 PaperOnTable const& paper, std::vector<ar::TimedPose> const& poses, gi::StopRequest const& stop,
+                 gi::Report& report)
+{
+    ar::Calibration calibration;
+    calibration.camera = camera.model;
+    calibration.photometry = camera.photometry;
+    ar::NoiseModel noise;
+    noise.read = camera.read_noise * camera.read_noise;
+    noise.photon = camera.photon_noise;
+    calibration.noise = noise;
+    calibration.provenance = {{"made_by", "lightwell_ar_synthesize"}};
+    ar::write_calibration(o.folder / "camera.yaml", calibration);
+    ar::write_marker_map(o.folder / "markers.yaml", markers);
+    gi::write_text(o.folder / "poses.csv", ar::format_poses(poses));
+    gi::write_glb(o.folder / "near.glb", generate_desk(DeskPart::near, paper), report);
+    gi::write_glb(o.folder / "statue.glb", generate_statue(), report);
+    SyntheticQuality fine = o.quality;
+    fine.paths = std::max(4 * fine.paths, 8u);
+    cv::Mat const probe =
+        synthetic_probe(generate_desk(DeskPart::whole, paper), {0, 0.15, 0}, 128, fine, stop, report);
+    if (stop.requested()) return; // a probe of few paths must not stay
+    write_probe(o.folder / "probe.exr", probe, report);
+    gi::write_text(o.folder / "session.yaml", session_text(o));
+}
+
+} // namespace
+
+int synthesize(SynthesizeOptions const& o, gi::StopRequest const& stop, gi::Report& report)
+{
+    check_folder(o);
+    std::error_code problem;
+    fs::create_directories(o.folder / "frames", problem);
+    if (o.truth && !problem) fs::create_directories(o.folder / "truth", problem);
+    if (problem)
+        throw gi::InputError("'" + o.folder.string() + "' cannot be made", problem.message(),
+                             "choose another folder");
+    SyntheticCamera const camera = synthetic_camera(o.size_px);
+    ar::MarkerMap const markers = synthetic_markers();
+    PaperOnTable const paper = paper_of(markers);
+    std::vector<ar::TimedPose> poses;
+    for (int f = 0; f < o.frames; ++f)
+        poses.push_back({f / o.rate_hz, synthetic_pose(o.frames > 1 ? double(f) / (o.frames - 1) : 0)});
+    if (!fs::exists(o.folder / "session.yaml")) write_setup(o, camera, markers, paper, poses, stop, report);
+
+    gi::Scene const empty = generate_desk(DeskPart::whole, paper);
+    gi::Scene full = empty;
+    gi::append(full, generate_statue(), "virtual", glm::translate(gi::dmat4(1), gi::dvec3(-0.02, 0, -0.1)));
+    gi::ProgressBar bar("synthesize");
+    int done = 0;
+    for (std::size_t f = 0; f < poses.size() && !stop.requested(); ++f) {
+        bar.update(double(f) / double(poses.size()));
+        auto const picture = [&](char const* folder, gi::Scene const& scene) {
+            fs::path const file = o.folder / folder / fmt::format("{:06}.png", f);
+            if (fs::exists(file)) return;
+            cv::Mat const radiance = synthetic_radiance(scene, poses[f].time_s, camera.model,
+                                                        poses[f].world_from_camera, o.quality, f, stop, report);
+            if (!stop.requested()) write_png(file, synthetic_frame(radiance, camera, f));
+        };
+        picture("frames", empty);
+        if (o.truth) picture("truth", full);
+        done += stop.requested() ? 0 : 1;
+    }
+    return done;
+}
+
+} // namespace viewer

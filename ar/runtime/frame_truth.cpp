@@ -1,0 +1,63 @@
+#include "ar/runtime/frame_truth.h"
+
+#include "ar/runtime/truth.h"
+#include "gi/core/error.h"
+
+#include <fmt/format.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace viewer {
+
+FrameTruth::FrameTruth(std::filesystem::path pictures, std::filesystem::path const& poses)
+    : pictures_(std::move(pictures))
+{
+    if (!pictures_.empty() && !std::filesystem::is_directory(pictures_))
+        throw gi::InputError("there is no folder '" + pictures_.string() + "'", "its pictures are the truth",
+                             "name the folder truth that `ar synthesize` made");
+    if (!poses.empty()) poses_ = ar::read_poses(poses);
+}
+
+void FrameTruth::add(ArFrameRecord const& f, ArResult const& r)
+{
+    if (auto const truth = ar::pose_at(poses_, f.captured_s); truth && f.world_from_camera) {
+        errors_.position_mm.push_back(1e3 * glm::length(f.world_from_camera->position_m - truth->position_m));
+        errors_.rotation_deg.push_back(ar::angle_between_deg(f.world_from_camera->rotation, truth->rotation));
+    }
+    if (pictures_.empty()) return;
+    cv::Mat truth = cv::imread((pictures_ / fmt::format("{:06}.png", f.sequence)).string(), cv::IMREAD_COLOR);
+    if (truth.empty() || truth.size() != r.rgb.size()) {
+        ++errors_.missing;
+        return;
+    }
+    cv::cvtColor(truth, truth, cv::COLOR_BGR2RGB);
+    TruthErrors const e = errors_against_truth(r.rgb, r.camera, truth);
+    errors_.flip_affected.push_back(e.flip_affected);
+    errors_.flip_elsewhere.push_back(e.flip_elsewhere);
+    errors_.camera_affected.push_back(e.camera_affected);
+    errors_.camera_elsewhere.push_back(e.camera_elsewhere);
+    errors_.affected_percent.push_back(100 * e.affected);
+}
+
+std::string describe(FrameErrors const& e)
+{
+    std::string t;
+    auto const line = [&](char const* name, std::vector<double> const& values) {
+        if (values.empty()) return;
+        Spread const s = spread_of(values);
+        t += fmt::format("{:<30} {:>9.4f} {:>9.4f} {:>9.4f}\n", name, s.median, s.p95, s.most);
+    };
+    line("position error (mm)", e.position_mm);
+    line("rotation error (deg)", e.rotation_deg);
+    line("FLIP where it is affected", e.flip_affected);
+    line("  of adding nothing", e.camera_affected);
+    line("  share of the picture (%)", e.affected_percent);
+    line("FLIP elsewhere", e.flip_elsewhere);
+    line("  of adding nothing", e.camera_elsewhere);
+    if (e.missing > 0) t += fmt::format("no truth of that size: {} frames\n", e.missing);
+    return t.empty()
+               ? t
+               : fmt::format("{:<30} {:>9} {:>9} {:>9}\n", "against the truth", "median", "95 %", "most") + t;
+}
+
+} // namespace viewer

@@ -1,0 +1,104 @@
+#include "ar/runtime/measured_run.h"
+
+#include "ar/capture/clock.h"
+#include "ar/runtime/frame_clock.h"
+#include "ar/runtime/loop_source.h"
+#include "ar/runtime/source_losses.h"
+
+namespace viewer {
+namespace {
+
+/// Without the first.
+std::vector<ArFrameRecord> settled(std::vector<ArFrameRecord> frames)
+{
+    if (!frames.empty()) frames.erase(frames.begin());
+    return frames;
+}
+
+ar::OpenOptions files_at_once(ArSession const& session)
+{
+    ar::OpenOptions open = session.frames.options;
+    open.pace = ar::Pace::fastest;
+    return open;
+}
+
+/// Seconds since the first, as the run that takes them as fast as possible has them.
+std::vector<double> times_of(std::vector<ar::Frame> const& frames, FrameClock clock)
+{
+    std::vector<double> times_s;
+    for (ar::Frame const& f : frames) times_s.push_back(clock(f));
+    return times_s;
+}
+
+} // namespace
+
+MeasuredRun measure_run(ArSession const& session, MeasureSettings const& settings, gi::StopRequest& stop,
+                        gi::Report& report)
+{
+    MeasuredRun m;
+    ArRunOptions o;
+    o.pace = ar::Pace::fastest;
+    o.frames = settings.frames;
+    if (session.tracked) o.poses = recorded_poses(*session.tracked, report);
+    o.opened = [&](ar::SourceDescription const&, ArPipeline const& p) { m.compositor = p.compositor(); };
+    std::vector<ArResult> results; // judged afterwards: that takes longer than a frame
+    std::vector<double> shown_s;
+    ArSummary fast;
+    run_ar(
+        session, o,
+        [&](ArFrameRecord&, ArResult const& r) {
+            shown_s.push_back(ar::steady_now_s());
+            if (r.pair || !m.last.pair) m.last = r;
+            results.emplace_back();
+            results.back().rgb = r.rgb;
+            results.back().camera = r.camera;
+        },
+        stop, report, fast);
+    tell_losses(fast.source, fast.end, report);
+    if (shown_s.size() > 1) m.frames_per_s = double(shown_s.size() - 1) / (shown_s.back() - shown_s.front());
+    FrameTruth truth(settings.truth, settings.true_poses);
+    for (std::size_t k = 0; k < results.size() && !stop.requested(); ++k) truth.add(fast.frames[k], results[k]);
+    m.errors = truth.errors();
+    m.refused = fast.refused + fast.source.refused;
+    m.fast = settled(std::move(fast.frames));
+    if (stop.requested()) return m;
+
+    o.pace = ar::Pace::own;
+    std::optional<ArWindow> window;
+    o.opened = [&](ar::SourceDescription const& source, ArPipeline const&) {
+        if (settings.in_window) window.emplace(ArWindowSettings{.size_px = source.size_px}, report);
+    };
+    o.idle = [&] {
+        if (window) window->idle();
+        if (window && window->wants_close()) stop.request();
+    };
+    o.frames = settings.frames + 1;
+    std::unique_ptr<ar::FrameSource> camera = ar::open_source(session.frames.source, files_at_once(session));
+    if (!camera->description().is_live) {
+        double const own_hz = camera->description().frames_per_s;
+        std::vector<ar::Frame> frames = read_frames(*camera, settings.frames);
+        tell_losses({}, camera->state(), report); // what was refused is counted already
+        if (frames.empty()) return m;
+        std::vector<double> times_s = times_of(frames, {session.frames.source, camera->description(), false});
+        auto loop = std::make_unique<LoopSource>(std::move(frames),
+                                                 own_hz > 0 ? own_hz : session.frames.options.frames_per_s);
+        if (!o.poses.empty()) // they come back with their frames
+            o.tracked = [poses = o.poses, times_s = std::move(times_s), l = loop.get()](ar::Frame const& f) {
+                return told_pose(poses, times_s[l->index_of(f.sequence)]);
+            };
+        camera = std::move(loop);
+    }
+    ArSummary own;
+    run_ar(
+        session, *camera, o,
+        [&](ArFrameRecord& f, ArResult const& r) {
+            if (window) window->show(f, r);
+        },
+        stop, report, own);
+    tell_losses(own.source, own.end, report);
+    m.overtaken = own.overtaken;
+    m.own = settled(std::move(own.frames));
+    return m;
+}
+
+} // namespace viewer

@@ -1,0 +1,57 @@
+// What a session came to, in words.
+
+#include "ar/runtime/runner.h"
+#include "gi/core/quantile.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace viewer {
+
+Spread spread_of(std::vector<double> values)
+{
+    values = gi::sorted_values(std::move(values));
+    if (values.empty()) return {};
+    return {gi::quantile_of_sorted(values, 0.5), gi::quantile_of_sorted(values, 0.95), values.back()};
+}
+
+std::string describe(ArSummary const& s)
+{
+    std::size_t const n = s.frames.size();
+    std::size_t const found = std::size_t(
+        std::count_if(s.frames.begin(), s.frames.end(), [](auto const& f) { return bool(f.world_from_camera); }));
+    std::string text =
+        fmt::format("{} frames in {:.2f} s: {:.1f} frames/s; camera found in {} ({:.1f} %)\n", n, s.seconds,
+                    n / std::max(s.seconds, 1e-9), found, n > 0 ? 100.0 * double(found) / double(n) : 0);
+    text += fmt::format("source: {}{}\n", describe(s.source),
+                        s.end.kind == ar::SourceState::Kind::lost ? "; lost: " + s.end.reason : "");
+    if (s.overtaken > 0)
+        text +=
+            fmt::format("overtaken: {} frames (a newer one was there before they were rendered)\n", s.overtaken);
+    if (s.unfinished > 0) text += fmt::format("unfinished at the end: {} frames\n", s.unfinished);
+    if (s.refused > 0) text += fmt::format("refused: {} frames\n", s.refused);
+    text += fmt::format("{:<24} {:>9} {:>9} {:>9}\n", "", "median", "95 %", "most");
+    auto const line = [&](char const* name, auto const& value) {
+        std::vector<double> values;
+        for (ArFrameRecord const& f : s.frames) values.push_back(value(f));
+        Spread const d = spread_of(std::move(values));
+        if (d.most > 0) text += fmt::format("{:<24} {:>9.2f} {:>9.2f} {:>9.2f}\n", name, d.median, d.p95, d.most);
+    };
+    line("read (ms)", [](auto const& f) { return f.read_ms; });
+    line("frame's age (ms)", [](auto const& f) { return f.age_ms; });
+    line("decode (ms)", [](auto const& f) { return f.times.decode_ms; });
+    line("detect (ms)", [](auto const& f) { return f.times.detect_ms; });
+    line("pose (ms)", [](auto const& f) { return f.times.pose_ms; });
+    line("waits for rendering (ms)", [](auto const& f) { return f.times.wait_ms; });
+    line("light (ms)", [](auto const& f) { return f.times.light_ms; });
+    line("render (ms)", [](auto const& f) { return f.times.render_ms; });
+    line("composite (ms)", [](auto const& f) { return f.times.composite_ms; });
+    line("capture to result (ms)", [](auto const& f) { return f.latency_ms; });
+    line("waits to be shown (ms)", [](auto const& f) { return f.show_wait_ms; });
+    line("present (ms)", [](auto const& f) { return f.present_ms; });
+    line("capture to swap (ms)", [](auto const& f) { return f.swapped_ms; });
+    line("reprojection RMS (px)", [](auto const& f) { return f.rms_px; });
+    return text;
+}
+
+} // namespace viewer

@@ -1,0 +1,153 @@
+#include "ar/runtime/run_threads.h"
+
+#include "ar/capture/clock.h"
+
+#include <algorithm>
+
+namespace viewer {
+namespace {
+
+/// Cameras have few buffers: what is on its way keeps none of them.
+void give_back(OnItsWay& w)
+{
+    if (!w.frame.owner) return;
+    ArResult& r = w.result;
+    if (r.camera.data == w.frame.planes[0].data) r.rgb = r.camera = r.camera.clone();
+    w.frame.planes = {};
+    w.frame.owner.reset();
+}
+
+} // namespace
+
+RunThreads::RunThreads(ar::FrameSource& source, ArPipeline& pipeline, ArRunOptions const& options, bool is_timed,
+                       FrameClock const& clock, gi::Report& report)
+    : source_(source), pipeline_(pipeline), options_(options), is_timed_(is_timed), clock_(clock), report_(report)
+{
+    finder_ = std::thread([this] { guarded([this] { find_all(); }, found_); });
+    adder_ = std::thread([this] { guarded([this] { add_all(); }, done_); });
+}
+
+void RunThreads::end()
+{
+    ending_.request();
+    found_.abandon();
+    done_.abandon();
+    if (finder_.joinable()) finder_.join();
+    if (adder_.joinable()) adder_.join();
+}
+
+void RunThreads::tell(ArSummary& s) const
+{
+    std::lock_guard const lock(mutex_);
+    s.source = counts_;
+    s.end = state_;
+    s.refused = refused_;
+    s.overtaken = overtaken_;
+}
+
+void RunThreads::rethrow() const
+{
+    if (problem_) std::rethrow_exception(problem_);
+}
+
+/// What `work` handed over before it threw is still taken.
+void RunThreads::guarded(std::function<void()> const& work, HandOver<OnItsWay>& filled)
+{
+    try {
+        work();
+    } catch (...) {
+        std::lock_guard const lock(mutex_);
+        if (!problem_) problem_ = std::current_exception();
+    }
+    filled.close();
+}
+
+void RunThreads::hand_over(OnItsWay w, HandOver<OnItsWay>& to)
+{
+    if (!is_timed_) {
+        to.put(std::move(w));
+        return;
+    }
+    to.replace(std::move(w), [this](OnItsWay const& older, OnItsWay& newer) {
+        newer.overtaken += older.overtaken + 1;
+        std::lock_guard const lock(mutex_);
+        ++overtaken_;
+    });
+}
+
+void RunThreads::find_all()
+{
+    constexpr std::chrono::milliseconds kWait{20}; // then it looks whether it is to end
+    int found = 0;
+    while (!ending_.requested()) {
+        // At their own pace the caller counts what is shown.
+        if (!is_timed_ && options_.frames > 0 && found == options_.frames) break;
+        double const asked_s = ar::steady_now_s();
+        std::optional<ar::Frame> frame = source_.next(kWait);
+        {
+            std::lock_guard const lock(mutex_);
+            counts_ = source_.counts();
+            state_ = source_.state();
+            if (!frame && state_.kind != ar::SourceState::Kind::running) break;
+        }
+        if (!frame) continue;
+        OnItsWay w;
+        w.time_s = clock_(*frame);
+        w.read_ms = 1e3 * (ar::steady_now_s() - asked_s);
+        w.frame = std::move(*frame);
+        try {
+            if (options_.taken) options_.taken(w.frame);
+            w.result = found_in(w);
+        } catch (ar::InputError const& e) {
+            refuse(e);
+            continue;
+        }
+        ++found;
+        give_back(w);
+        hand_over(std::move(w), found_);
+    }
+}
+
+ArResult RunThreads::found_in(OnItsWay const& w)
+{
+    std::optional<double> const begun_s = is_timed_ ? std::optional(w.frame.arrived_s) : std::nullopt;
+    if (options_.poses.empty() && !options_.tracked) return pipeline_.find(w.frame, w.time_s, {}, begun_s);
+    if (auto const known = options_.tracked ? options_.tracked(w.frame) : told_pose(options_.poses, w.time_s))
+        return pipeline_.find(w.frame, w.time_s, known, begun_s);
+    ArResult r; // nobody knows
+    double const from_s = begun_s ? *begun_s : ar::steady_now_s();
+    r.rgb = r.camera = ar::rgb_of(w.frame);
+    r.done_s = ar::steady_now_s();
+    r.times.decode_ms = 1e3 * (r.done_s - from_s);
+    return r;
+}
+
+void RunThreads::add_all()
+{
+    try {
+        while (std::optional<OnItsWay> w = found_.take()) {
+            try {
+                if (!options_.find_poses_only)
+                    pipeline_.add(w->result, w->frame, w->time_s, ending_, options_.composite);
+            } catch (ar::InputError const& e) {
+                refuse(e);
+                continue;
+            }
+            if (ending_.requested()) break; // the picture may be half of one
+            hand_over(std::move(*w), done_);
+        }
+    } catch (...) {
+        ending_.request();
+        found_.abandon();
+        throw;
+    }
+}
+
+void RunThreads::refuse(ar::InputError const& e)
+{
+    report_.lose("frames that could not be used", 1, e.what());
+    std::lock_guard const lock(mutex_);
+    ++refused_;
+}
+
+} // namespace viewer

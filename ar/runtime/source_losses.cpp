@@ -1,0 +1,16 @@
+#include "ar/runtime/source_losses.h"
+
+#include "gi/core/error.h"
+
+namespace viewer {
+
+void tell_losses(ar::SourceCounts const& counts, ar::SourceState const& state, gi::Report& report)
+{
+    if (counts.refused > 0)
+        report.lose("frames that could not be read", std::size_t(counts.refused), counts.last_refusal);
+    if (state.kind == ar::SourceState::Kind::lost)
+        throw gi::InputError("the source was lost: " + state.reason, describe(counts),
+                             "look at the file, or at the camera's cable");
+}
+
+} // namespace viewer

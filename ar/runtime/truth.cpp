@@ -1,0 +1,50 @@
+#include "ar/runtime/truth.h"
+
+#include "ar/camera/photometry.h"
+#include "gi/metrics/flip.h"
+
+#include <opencv2/imgproc.hpp>
+
+namespace viewer {
+namespace {
+
+std::vector<float> linear(cv::Mat const& rgb)
+{
+    cv::Mat const radiance = ar::radiance_of(rgb, ar::srgb_photometry());
+    return {radiance.ptr<float>(), radiance.ptr<float>() + radiance.total() * 3};
+}
+
+cv::Mat flip_of(cv::Mat const& a, cv::Mat const& b)
+{
+    std::vector<float> const values = gi::flip(linear(a), linear(b), a.cols, a.rows);
+    return cv::Mat(a.rows, a.cols, CV_32FC1, const_cast<float*>(values.data())).clone();
+}
+
+} // namespace
+
+cv::Mat affected_by_truth(cv::Mat const& camera, cv::Mat const& truth)
+{
+    cv::Mat difference, most, region;
+    cv::absdiff(camera, truth, difference);
+    std::array<cv::Mat, 3> channels;
+    cv::split(difference, channels.data());
+    most = cv::max(channels[0], cv::max(channels[1], channels[2]));
+    cv::dilate(most > 1, region, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
+    return region;
+}
+
+TruthErrors errors_against_truth(cv::Mat const& composite, cv::Mat const& camera, cv::Mat const& truth)
+{
+    cv::Mat const region = affected_by_truth(camera, truth);
+    cv::Mat const flip = flip_of(composite, truth);
+    TruthErrors e;
+    e.affected = double(cv::countNonZero(region)) / double(region.total());
+    e.flip_affected = cv::mean(flip, region)[0];
+    e.flip_elsewhere = cv::mean(flip, ~region)[0];
+    cv::Mat const nothing = flip_of(camera, truth);
+    e.camera_affected = cv::mean(nothing, region)[0];
+    e.camera_elsewhere = cv::mean(nothing, ~region)[0];
+    return e;
+}
+
+} // namespace viewer

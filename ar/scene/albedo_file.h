@@ -1,0 +1,30 @@
+#pragma once
+// Albedos that were estimated, as a file:
+//   schema: ar-albedo/1
+//   albedos:
+//     - {name: table, albedo: [0.41, 0.3, 0.19], spread: [0.05, 0.04, 0.03], samples: 20000}
+//     - {name: rug, albedo: [0.2, 0.1, 0.1], spread: [0.1, 0.1, 0.1], samples: 8000, texture: albedo-rug.png}
+
+#include "gi/core/math.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace viewer {
+
+struct AlbedoEntry {
+    std::string name;              ///< of the proxy, or "scene:" and the material's
+    gi::dvec3 albedo{0};           ///< linear, 0 to 1
+    gi::dvec3 spread{0};           ///< robust standard deviation of single pixels
+    std::uint64_t samples = 0;     ///< pixels; 0 = never seen
+    std::filesystem::path texture; ///< sRGB, over texture coordinates 0 to 1; empty = none
+};
+
+/// The picture beside the file. Paths within are relative to it. @throws gi::InputError with file:line:column
+std::vector<AlbedoEntry> read_albedos(std::filesystem::path const& file);
+std::vector<AlbedoEntry> parse_albedos(std::string const& text, std::filesystem::path const& file);
+/// Textures are named relative to the file's folder, where they must lie.
+std::string format_albedos(std::vector<AlbedoEntry> const& entries);
+
+} // namespace viewer

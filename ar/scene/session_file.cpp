@@ -1,0 +1,222 @@
+#include "ar/scene/session_file.h"
+
+#include "ar/scene/read_real.h"
+#include "ar/scene/read_values.h"
+#include "gi/core/file.h"
+#include "gi/filter/filter_names.h"
+#include "gi/methods/slhb/directions/directions.h"
+
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+namespace fs = std::filesystem;
+using gi::YamlReader;
+
+class Reader {
+public:
+    Reader(YamlReader const& root, fs::path const& file) : root_(root), folder_(file.parent_path())
+    {
+        session_.file = file;
+    }
+
+    ArSession read()
+    {
+        root_.only_keys({"schema", "frames", "camera", "markers", "light", "real", "virtual", "render",
+                         "composite", "pose", "hmd"});
+        if (!root_.has("schema") || root_.at("schema").text() != "ar/1")
+            throw root_.error("no 'schema: ar/1'", "this may be a file of another kind", "begin the file with it");
+        for (char const* needed : {"frames", "camera", "markers"})
+            if (!root_.has(needed))
+                throw root_.error(fmt::format("no '{}'", needed), "a session cannot begin without it", "add it");
+        read_frames(root_.at("frames"));
+        session_.camera = path(root_.at("camera"));
+        session_.markers = path(root_.at("markers"));
+        if (root_.has("light")) read_light(root_.at("light"));
+        if (root_.has("real")) session_.real = read_real(root_.at("real"), folder_);
+        if (root_.has("virtual")) session_.virtual_things = virtual_things(root_.at("virtual"));
+        if (root_.has("render")) read_render(root_.at("render"));
+        if (root_.has("hmd")) session_.hmd = read_hmd(root_.at("hmd"), folder_);
+        if (root_.has("composite")) read_composite(root_.at("composite"));
+        if (root_.has("pose")) read_pose(root_.at("pose"));
+        return std::move(session_);
+    }
+
+private:
+    fs::path path(YamlReader const& at) const { return folder_ / at.text(); }
+
+    void read_frames(YamlReader const& f)
+    {
+        f.only_keys({"source", "rate_hz", "size", "format"});
+        if (!f.has("source"))
+            throw f.error("no 'source'", "there is nothing to see",
+                          "name a camera, a video or a folder of pictures");
+        std::string const name = f.at("source").text();
+        session_.frames.source = is_device(name) ? name : (folder_ / name).string();
+        ar::OpenOptions& o = session_.frames.options;
+        if (f.has("rate_hz")) o.frames_per_s = f.at("rate_hz").number(0.01, 1000);
+        if (f.has("size")) {
+            auto const size = f.at("size").items();
+            if (size.size() != 2)
+                throw f.at("size").error("not two numbers", "it is a width and a height", "write [640, 480]");
+            o.size_px = {int(size[0].integer(16, 16384)), int(size[1].integer(16, 16384))};
+        }
+        if (f.has("format")) {
+            using ar::PixelFormat;
+            std::vector<std::pair<char const*, PixelFormat>> const formats{
+                {"rgb8", PixelFormat::rgb8}, {"bgr8", PixelFormat::bgr8}, {"gray8", PixelFormat::gray8},
+                {"nv12", PixelFormat::nv12}, {"yuyv", PixelFormat::yuyv}, {"mjpeg", PixelFormat::mjpeg}};
+            o.format = choice<PixelFormat>(f.at("format"), formats);
+        }
+    }
+
+    void read_light(YamlReader const& l)
+    {
+        l.only_keys({"map", "turn_deg", "scale", "live"});
+        if (l.has("live")) session_.live_light = int(l.at("live").integer(0, 100000));
+        if (l.has("map"))
+            session_.light = path(l.at("map"));
+        else if (session_.live_light == 0)
+            throw l.error("no 'map'", "there is no light to take", "give a lat-long EXR or HDR file, or live: 10");
+        if (l.has("turn_deg")) session_.light_turn_deg = l.at("turn_deg").number(-360, 360);
+        if (l.has("scale")) session_.light_scale = l.at("scale").number(0, 1e9);
+    }
+
+    ArPlaced virtual_things(YamlReader const& v) const
+    {
+        v.only_keys({"scene", "at", "turn_deg", "scale"});
+        if (!v.has("scene")) throw v.error("no 'scene'", "there is nothing to place", "give a file of a scene");
+        return read_placed(v, "scene", folder_);
+    }
+
+    void read_render(YamlReader const& r)
+    {
+        r.only_keys({"paths", "resolution", "bounces", "denoise", "seed", "directions", "hit_buffer", "lamps",
+                     "fresh_lamps", "shadow_map"});
+        gi::SlhbSettings& slhb = session_.render.slhb;
+        if (r.has("directions")) slhb.directions = directions(r.at("directions"));
+        if (r.has("hit_buffer")) slhb.resolution = int(r.at("hit_buffer").integer(8, 4096));
+        if (r.has("lamps")) slhb.lamps = int(r.at("lamps").integer(1, 1024));
+        if (r.has("fresh_lamps")) slhb.fresh_lamps = int(r.at("fresh_lamps").integer(1, 1024));
+        if (r.has("shadow_map")) slhb.shadow_resolution = int(r.at("shadow_map").integer(8, 4096));
+        if (r.has("denoise")) session_.render.denoise = filter(r.at("denoise"));
+        if (r.has("paths")) session_.render.paths = std::uint32_t(r.at("paths").integer(1, 65536));
+        if (r.has("resolution")) session_.render.resolution = r.at("resolution").number(0.1, 4);
+        if (r.has("bounces")) session_.render.bounces = int(r.at("bounces").integer(0, 64));
+        if (r.has("seed")) session_.render.seed = std::uint64_t(r.at("seed").integer(0, INT64_MAX));
+    }
+
+    static gi::DenoiseSettings filter(YamlReader const& at)
+    {
+        using gi::Denoiser;
+        std::vector<std::pair<char const*, gi::DenoiseSettings>> words{{"true", {.denoiser = Denoiser::atrous}},
+                                                                       {"false", {.denoiser = Denoiser::none}}};
+        for (gi::NamedFilter const& f : gi::named_filters()) words.emplace_back(f.name, f.settings);
+        gi::DenoiseSettings const chosen = choice<gi::DenoiseSettings>(at, words);
+        gi::check_filter(chosen);
+        return chosen;
+    }
+
+    static std::string directions(YamlReader const& at)
+    {
+        std::string const name = at.text();
+        try {
+            gi::make_directions(name);
+        } catch (gi::InputError const& e) {
+            throw at.error("'" + name + "' is no set of directions", e.what(),
+                           "write icosahedron:80 or icosahedron:320");
+        }
+        return name;
+    }
+
+    void read_composite(YamlReader const& c)
+    {
+        c.only_keys(
+            {"blend", "clipped", "largest_ratio", "smoothing", "upsample", "mattes", "match_blur", "noise"});
+        if (c.has("upsample")) session_.finish.upsample = c.at("upsample").boolean();
+        if (c.has("mattes")) session_.finish.mattes = c.at("mattes").boolean();
+        if (c.has("match_blur")) session_.finish.match_blur = c.at("match_blur").boolean();
+        if (c.has("noise")) session_.match_noise = c.at("noise").boolean();
+        if (c.has("smoothing")) session_.smoothing = c.at("smoothing").number(0.01, 1);
+        if (c.has("blend"))
+            session_.composite.blend = choice<ar::Blend>(
+                c.at("blend"), {{"difference", ar::Blend::difference}, {"ratio", ar::Blend::ratio}});
+        if (c.has("clipped"))
+            session_.composite.clipped =
+                choice<ar::ClippedBytes>(c.at("clipped"), {{"as_measured", ar::ClippedBytes::as_measured},
+                                                           {"ratio", ar::ClippedBytes::ratio},
+                                                           {"model", ar::ClippedBytes::model}});
+        if (c.has("largest_ratio")) session_.composite.largest_ratio = float(c.at("largest_ratio").number(1, 1e6));
+    }
+
+    /// Of markers, or of a tracker in their place.
+    void read_pose(YamlReader const& p)
+    {
+        p.only_keys({"tripod", "smoothing", "predict_s", "display", "tracker", "camera_from_sensor",
+                     "world_from_room", "offset_s"});
+        bool is_tracked = false;
+        for (char const* key : {"display", "tracker", "camera_from_sensor", "world_from_room", "offset_s"})
+            is_tracked |= p.has(key);
+        if (!is_tracked) return read_pose_use(p);
+        for (char const* key : {"tripod", "smoothing", "predict_s"})
+            if (p.has(key))
+                throw p.at(key).error(fmt::format("'{}' beside a tracker", key),
+                                      "trackers have their filter and prediction in the display's file",
+                                      "remove one of the two");
+        session_.tracked = read_tracked(p, folder_);
+    }
+
+    void read_pose_use(YamlReader const& p)
+    {
+        ArPoseUse& use = session_.pose;
+        if (p.has("tripod") && p.at("tripod").boolean()) {
+            use.tracker.motion = ar::CameraMotion::tripod;
+            use.filtered = true;
+        }
+        if (p.has("smoothing")) {
+            YamlReader const s = p.at("smoothing");
+            bool const is_on = s.is_map() || s.boolean();
+            bool const stands = use.tracker.motion == ar::CameraMotion::tripod;
+            if (is_on && stands)
+                throw s.error("smoothing of a camera on a tripod", "its poses are averaged",
+                              "remove one of the two");
+            use.filtered = is_on || stands;
+            if (s.is_map()) {
+                s.only_keys({"position", "rotation"});
+                if (s.has("position")) read_one_euro(s.at("position"), use.tracker.position);
+                if (s.has("rotation")) read_one_euro(s.at("rotation"), use.tracker.rotation);
+            }
+        }
+        if (p.has("predict_s")) use.predict_s = p.at("predict_s").number(0, 10);
+        use.tracker.predict_s = std::max(use.tracker.predict_s, use.predict_s);
+        use.tracker.lost_after_s = std::max(use.tracker.lost_after_s, 2 * use.predict_s);
+    }
+
+    static void read_one_euro(YamlReader const& y, ar::OneEuroSettings& s)
+    {
+        y.only_keys({"min_cutoff_hz", "beta"});
+        if (y.has("min_cutoff_hz")) s.min_cutoff_hz = y.at("min_cutoff_hz").number(1e-3, 1e3);
+        if (y.has("beta")) s.beta = y.at("beta").number(0, 1e4);
+    }
+
+    YamlReader const& root_;
+    fs::path folder_;
+    ArSession session_;
+};
+
+} // namespace
+
+ArSession parse_ar_session(std::string const& text, fs::path const& file)
+{
+    YamlReader const root = YamlReader::parse(text, file.string(), "session");
+    return Reader(root, file).read();
+}
+
+ArSession read_ar_session(fs::path const& file)
+{
+    std::vector<unsigned char> const bytes = gi::read_bytes(file, std::size_t(1) << 20);
+    return parse_ar_session({bytes.begin(), bytes.end()}, file);
+}
+
+} // namespace viewer

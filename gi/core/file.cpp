@@ -1,0 +1,95 @@
+#include "gi/core/file.h"
+
+#include "gi/core/error.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+#include <system_error>
+#include <unistd.h>
+
+namespace gi {
+
+namespace fs = std::filesystem;
+
+void write_by_rename(fs::path const& file, std::function<void(fs::path const&)> const& write)
+{
+    fs::path const folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    auto const cannot = [&](std::string const& why, std::string const& suggestion) {
+        return InputError("cannot write '" + file.string() + "'", why, suggestion);
+    };
+    std::error_code error;
+    if (!fs::is_directory(folder, error))
+        throw cannot("there is no folder '" + folder.string() + "'", "create it first");
+    if (fs::exists(file, error) && !fs::is_regular_file(file, error))
+        throw cannot("it is a folder or a device", "name a file");
+    if (access(folder.c_str(), W_OK) != 0)
+        throw cannot("the folder '" + folder.string() + "' is read-only", "choose another folder");
+
+    fs::path const temporary = folder / fmt::format(".{}.tmp-{}", file.filename().string(), getpid());
+    struct Cleanup {
+        fs::path const& path;
+        ~Cleanup()
+        {
+            std::error_code ignored;
+            fs::remove(path, ignored);
+        }
+    } const cleanup{temporary};
+    errno = 0;
+    try {
+        write(temporary);
+        fs::rename(temporary, file);
+    } catch (InputError const&) {
+        throw;
+    } catch (std::exception const& e) {
+        if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EACCES || errno == EIO ||
+            errno == EROFS || errno == ENAMETOOLONG)
+            throw cannot(std::strerror(errno), "free some space or choose another folder");
+        throw cannot(e.what(), "choose another folder");
+    }
+}
+
+void write_text(fs::path const& file, std::string_view text)
+{
+    write_by_rename(file, [&](fs::path const& temporary) {
+        std::ofstream out(temporary, std::ios::binary);
+        out.exceptions(std::ios::failbit | std::ios::badbit);
+        out.write(text.data(), std::streamsize(text.size()));
+        out.flush();
+    });
+}
+
+std::vector<unsigned char> read_bytes(fs::path const& file, std::size_t max_bytes)
+{
+    auto const cannot = [&](std::string const& why, std::string const& suggestion) {
+        return InputError("cannot read '" + file.string() + "'", why, suggestion);
+    };
+    std::error_code error;
+    fs::file_status const status = fs::status(file, error);
+    if (!fs::exists(status)) throw cannot("there is no such file", "check the path");
+    if (fs::is_directory(status)) throw cannot("it is a folder", "name a file in it");
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw cannot(std::strerror(errno), "check its permissions");
+    std::vector<unsigned char> bytes;
+    auto const too_large = [&] {
+        return cannot(fmt::format("it is larger than {} bytes", max_bytes), "use a smaller file");
+    };
+    if (fs::is_regular_file(status)) {
+        std::uintmax_t const size = fs::file_size(file, error);
+        if (error) throw cannot(error.message(), "check the file");
+        if (size > max_bytes) throw too_large();
+        bytes.resize(size);
+        in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
+        bytes.resize(std::size_t(in.gcount()));
+        return bytes;
+    }
+    char chunk[65536]; // a pipe or device: its size is not known beforehand
+    while (in.read(chunk, sizeof chunk) || in.gcount() > 0) {
+        bytes.insert(bytes.end(), chunk, chunk + in.gcount());
+        if (bytes.size() > max_bytes) throw too_large();
+    }
+    return bytes;
+}
+
+} // namespace gi

@@ -1,0 +1,22 @@
+#include "gi/core/threads.h"
+
+#include <map>
+#include <mutex>
+#include <tbb/task_arena.h>
+
+namespace gi {
+
+void on_threads(int threads, std::function<void()> const& work)
+{
+    if (threads <= 0) return work();
+    static std::mutex mutex;
+    static std::map<int, tbb::task_arena> arenas;
+    tbb::task_arena* arena = nullptr;
+    {
+        std::scoped_lock const lock(mutex);
+        arena = &arenas.try_emplace(threads, threads).first->second;
+    }
+    arena->execute(work);
+}
+
+} // namespace gi

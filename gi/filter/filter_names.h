@@ -1,0 +1,29 @@
+#pragma once
+// The filters by name: the one table for the command line, the viewer's settings, studies, AR sessions and Python.
+
+#include "gi/filter/denoise.h"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gi {
+
+struct NamedFilter {
+    char const* name;
+    char const* meaning; ///< one line of --help; empty for "none"
+    DenoiseSettings settings;
+};
+
+std::span<NamedFilter const> named_filters();
+std::vector<std::string> filter_names();
+/// Throws InputError naming those that there are.
+DenoiseSettings find_filter(std::string_view name);
+
+/// Throws InputError where the filter is not installed; call it before rendering starts.
+void check_filter(DenoiseSettings const& settings);
+/// False of atrous where nothing tells the variance: with fewer than two paths and no temporal reuse.
+bool can_filter(DenoiseSettings const& settings, std::uint32_t paths, bool has_reuse = false);
+
+} // namespace gi

@@ -1,0 +1,297 @@
+#include "gi/filter/temporal.h"
+
+#include "gi/core/error.h"
+#include "gi/filter/filter_input.h"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+// A texel of the frame before shows the same surface: cosine of normals, and difference of depths per depth,
+// beside what the surface's slope explains.
+constexpr float kCosine = 0.8f, kDepth = 0.02f;
+// What moves by less than that, pixels, stands still in the picture.
+constexpr float kStill = 1e-3f;
+// L1 is held to mean +- kSpread standard deviations of a window of kWindow pixels.
+constexpr int kWindow = 5;
+constexpr float kSpread = 1;
+
+Layer const& layer_of(Picture const& picture, char const* name)
+{
+    if (Layer const* const layer = picture.find(name)) return *layer;
+    throw InputError(std::string("the picture has no layer '") + name + "'", "temporal reuse goes by it",
+                     "render frames with a method that gives it");
+}
+
+/// Light over albedo, where that is not too dark to tell.
+vec3 over(vec3 light, vec3 albedo)
+{
+    for (int c = 0; c < 3; ++c)
+        if (albedo[c] >= kDarkest) light[c] /= albedo[c];
+    return light;
+}
+
+vec3 times(vec3 light, vec3 albedo)
+{
+    for (int c = 0; c < 3; ++c)
+        if (albedo[c] >= kDarkest) light[c] *= albedo[c];
+    return light;
+}
+
+/// Light over these albedos is meant alike, channel by channel.
+bool same_dark(vec3 a, vec3 b)
+{
+    return (a.x < kDarkest) == (b.x < kDarkest) && (a.y < kDarkest) == (b.y < kDarkest) &&
+           (a.z < kDarkest) == (b.z < kDarkest);
+}
+
+bool finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// Of direct light over the albedo, in windows around pixels: of all pixels at once, or of one after the other
+/// where few are asked for.
+class Neighbourhoods {
+public:
+    Neighbourhoods(Layer const& l1, Layer const& albedo, int width, int height, bool few)
+        : l1_(l1), albedo_(albedo), width_(width), height_(height), few_(few)
+    {
+        if (few) return;
+        cv::Mat direct(height, width, CV_32FC3);
+        tbb::parallel_for(0, height, [&](int y) {
+            for (int x = 0; x < width; ++x) direct.ptr<vec3>(y)[x] = direct_at(x, y);
+        });
+        cv::Size const size(kWindow, kWindow);
+        cv::boxFilter(direct, mean_, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
+        cv::sqrBoxFilter(direct, squares_, CV_32F, size, {-1, -1}, true, cv::BORDER_REPLICATE);
+    }
+    vec3 clamped(vec3 v, int x, int y) const
+    {
+        if (few_) return clamped_here(v, x, y);
+        auto const m = mean_.at<cv::Vec3f>(y, x), s = squares_.at<cv::Vec3f>(y, x);
+        for (int c = 0; c < 3; ++c) v[c] = clamped(v[c], m[c], s[c]);
+        return v;
+    }
+
+private:
+    static float clamped(float v, float mean, float squares)
+    {
+        float const spread = kSpread * std::sqrt(std::max(0.0f, squares - mean * mean));
+        return glm::clamp(v, mean - spread, mean + spread);
+    }
+    vec3 clamped_here(vec3 v, int x, int y) const
+    {
+        vec3 mean{0}, squares{0};
+        for (int j = -kWindow / 2; j <= kWindow / 2; ++j)
+            for (int i = -kWindow / 2; i <= kWindow / 2; ++i) {
+                vec3 const d = direct_at(std::clamp(x + i, 0, width_ - 1), std::clamp(y + j, 0, height_ - 1));
+                mean += d;
+                squares += d * d;
+            }
+        constexpr float kPixels = kWindow * kWindow;
+        for (int c = 0; c < 3; ++c) v[c] = clamped(v[c], mean[c] / kPixels, squares[c] / kPixels);
+        return v;
+    }
+    vec3 direct_at(int x, int y) const
+    {
+        std::size_t const i = std::size_t(y) * std::size_t(width_) + std::size_t(x);
+        return over(rgb(l1_, i), rgb(albedo_, i));
+    }
+
+    Layer const &l1_, &albedo_;
+    int width_, height_;
+    bool few_;
+    cv::Mat mean_, squares_; ///< 3 channels
+};
+
+} // namespace
+
+/// Light of this frame, averaged with that of the surface before.
+void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, std::span<std::uint32_t const> from,
+                           TemporalCounts& total)
+{
+    Layer const &l0 = layer_of(frame, "L0"), &l1 = layer_of(frame, "L1"), &l2 = layer_of(frame, "L2"),
+                &albedo = layer_of(frame, "albedo"), &normal = layer_of(frame, "normal"),
+                &depth = layer_of(frame, "depth"), &motion = layer_of(frame, "motion");
+    int const width = frame.width, height = frame.height;
+    std::size_t const pixels = frame.pixels();
+    std::swap(surfaces_, last_surfaces_);
+    std::swap(lights_, last_lights_);
+    surfaces_.resize(pixels);
+    lights_.resize(pixels);
+    std::vector<std::uint8_t> takes(partner ? pixels : 0);
+    tbb::parallel_for(std::size_t(0), std::size_t(height), [&](std::size_t y) {
+        for (std::size_t i = y * std::size_t(width); i < (y + 1) * std::size_t(width); ++i) {
+            vec3 const a = rgb(albedo, i);
+            surfaces_[i] = {rgb(normal, i), depth.data[i]};
+            Light& light = lights_[i];
+            if (partner && from[i] != kOwnLight) takes[i] = same_dark(a, partner->lights_[from[i]].albedo);
+            if (partner && takes[i]) {
+                Light const& there = partner->lights_[from[i]];
+                light.direct = there.direct;
+                light.indirect = there.indirect;
+                light.frames = there.frames;
+                light.variance = there.variance;
+            } else {
+                light.direct = over(rgb(l1, i), a);
+                light.indirect = over(rgb(l2, i), a);
+                light.frames = 1;
+                light.variance = vec2{0};
+            }
+            light.l0 = rgb(l0, i);
+            light.albedo = a;
+            light.still_frames = 1;
+            light.still = false;
+        }
+    });
+    if (frames_ == 0) {
+        total.surfaces = total.started =
+            std::size_t(std::ranges::count_if(surfaces_, [](Surface const& s) { return s.depth > 0; }));
+        return;
+    }
+    bool const few = std::size_t(std::ranges::count(takes, 1)) > 3 * pixels / 4;
+    Neighbourhoods const neighbourhoods(l1, albedo, width, height, few);
+    // Whether a surface is still there now, in a pixel next to this one.
+    auto const is_beside = [&](Surface const& s, int x, int y) {
+        for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)
+            for (int k = std::max(0, x - 1); k <= std::min(width - 1, x + 1); ++k) {
+                Surface const& n = surfaces_[std::size_t(j) * std::size_t(width) + std::size_t(k)];
+                if (std::abs(n.depth - s.depth) <= kDepth * s.depth && glm::dot(n.normal, s.normal) >= kCosine)
+                    return true;
+            }
+        return false;
+    };
+    tbb::combinable<TemporalCounts> counts;
+    tbb::parallel_for(0, height, [&](int y) {
+        TemporalCounts& local = counts.local();
+        for (int x = 0; x < width; ++x) {
+            std::size_t const i = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            Surface const& here = surfaces_[i];
+            if (!(here.depth > 0)) continue;
+            ++local.surfaces;
+            vec3 const was = rgb(motion, i);
+            // Neither what is seen here now nor what was seen moves: an edge, perhaps, seen through another point.
+            bool const still = glm::length(vec2(was)) < kStill, taken = partner && takes[i];
+            lights_[i].still = still;
+            if (taken && !still) continue;
+            bool const resting = still && last_lights_[i].still;
+            // What the depth changes by over a pixel; frames look through different points of it.
+            auto const change = [&](bool there, std::ptrdiff_t step) {
+                return there ? std::abs(surfaces_[std::size_t(std::ptrdiff_t(i) + step)].depth - here.depth)
+                             : kInf;
+            };
+            float const slope = std::min(change(x > 0, -1), change(x + 1 < width, 1)) +
+                                std::min(change(y > 0, -width), change(y + 1 < height, width));
+            Light before{};
+            float weight = 0;
+            if (finite(was) && std::abs(was.x) < 1e6f && std::abs(was.y) < 1e6f) {
+                float const u = float(x) + was.x, v = float(y) + was.y, left = std::floor(u), top = std::floor(v);
+                for (int k = 0; k < 4; ++k) {
+                    int const tx = int(left) + (k & 1), ty = int(top) + (k >> 1);
+                    float const w = (1 - std::abs(u - float(tx))) * (1 - std::abs(v - float(ty)));
+                    if (tx < 0 || ty < 0 || tx >= width || ty >= height || !(w > 0)) continue;
+                    std::size_t const t = std::size_t(ty) * std::size_t(width) + std::size_t(tx);
+                    Surface const& there = last_surfaces_[t];
+                    bool const same = std::abs(there.depth - was.z) < kDepth * was.z + slope &&
+                                      glm::dot(there.normal, here.normal) >= kCosine;
+                    if (!same && !(resting && is_beside(there, x, y))) continue;
+                    Light const& l = last_lights_[t];
+                    before.direct += w * l.direct;
+                    before.indirect += w * l.indirect;
+                    before.frames += w * l.frames;
+                    before.variance += w * l.variance;
+                    weight += w;
+                }
+            }
+            // Less than that is as good as nothing, and noisy.
+            constexpr float kLeast = 0.05f;
+            if (!(weight > kLeast)) {
+                local.started += !taken;
+                continue;
+            }
+            Light& now = lights_[i];
+            if (Light const& last = last_lights_[i]; still && weight > 1 - kStill) {
+                now.still_frames = std::min(last.still_frames + 1, float(settings_.most_frames));
+                now.l0 = glm::mix(last.l0, now.l0, 1 / now.still_frames);
+                now.albedo = glm::mix(last.albedo, now.albedo, 1 / now.still_frames);
+            }
+            if (taken) continue;
+            vec3 const held = neighbourhoods.clamped(before.direct / weight, x, y);
+            local.held += held != before.direct / weight;
+            vec3 const indirect = before.indirect / weight;
+            now.frames = std::min(before.frames / weight + 1, float(settings_.most_frames));
+            float const share = 1 / now.frames;
+            vec2 const step{luminance(now.direct - held), luminance(now.indirect - indirect)};
+            now.variance = (1 - share) * (before.variance / weight + share * step * step);
+            now.direct = glm::mix(held, now.direct, share);
+            now.indirect = glm::mix(indirect, now.indirect, share);
+        }
+    });
+    counts.combine_each([&](TemporalCounts const& c) {
+        total.surfaces += c.surfaces;
+        total.started += c.started;
+        total.held += c.held;
+    });
+}
+
+/// Adds one more picture of a scene in which nothing moves, and replaces it by both means.
+void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
+{
+    for (char const* const name : {"variance_direct", "variance_indirect"})
+        if (frame.find(name) == nullptr) frame.add(name, 1);
+    Layer &albedo = *frame.find("albedo"), &l0 = *frame.find("L0"), &l1 = *frame.find("L1"),
+          &l2 = *frame.find("L2"), &color = *frame.find("color"),
+          &direct_variance = *frame.find("variance_direct"), &indirect_variance = *frame.find("variance_indirect");
+    bool const first = still_++ == 0;
+    float const n = float(still_);
+    mean_.resize(frame.pixels());
+    tbb::combinable<double> frames;
+    tbb::parallel_for(std::size_t(0), std::size_t(frame.height), [&](std::size_t y) {
+        double& sum = frames.local();
+        for (std::size_t i = y * std::size_t(frame.width); i < (y + 1) * std::size_t(frame.width); ++i) {
+            std::array<vec3, 3> const now{rgb(l0, i), rgb(l1, i), rgb(l2, i)};
+            std::array<vec3, 3>& mean = mean_[i];
+            for (std::size_t k = 0; k < 3; ++k) mean[k] = first ? now[k] : glm::mix(mean[k], now[k], 1 / n);
+            Light const& light = lights_[i];
+            // The frames since are in both means; those before count as long as they are many beside them.
+            float const earlier = std::max(0.0f, light.frames - n), share = first ? 1 : earlier / (earlier + n);
+            vec3 const e0 = glm::mix(mean[0], light.l0, share),
+                       e1 = glm::mix(mean[1], times(light.direct, light.albedo), share),
+                       e2 = glm::mix(mean[2], times(light.indirect, light.albedo), share);
+            for (int c = 0; c < 3; ++c) {
+                std::size_t const k = 3 * i + std::size_t(c);
+                l0.data[k] = e0[c];
+                albedo.data[k] = light.albedo[c];
+                l1.data[k] = e1[c];
+                l2.data[k] = e2[c];
+                color.data[k] = e0[c] + e1[c] + e2[c];
+            }
+            // Of one frame, without the bias of a mean that the frame is in; then of all of them.
+            float const of_mean = light.frames > 1 ? light.frames / ((light.frames - 1) * (earlier + n)) : -1;
+            direct_variance.data[i] = of_mean > 0 ? of_mean * light.variance.x : -1;
+            indirect_variance.data[i] = of_mean > 0 ? of_mean * light.variance.y : -1;
+            sum += double(earlier + n);
+        }
+    });
+    counts.frames = frames.combine(std::plus<>()) / double(frame.pixels());
+}
+
+TemporalCounts TemporalReuse::add(Picture& frame, SceneChange change, TemporalReuse const* partner,
+                                  std::span<std::uint32_t const> from)
+{
+    if (frames_ > 0 && surfaces_.size() != frame.pixels())
+        throw InputError("frames of different sizes", "temporal reuse goes pixel by pixel", "start afresh");
+    layer_of(frame, "color");
+    if (change == SceneChange::light) frames_ = 0;
+    if (change != SceneChange::nothing || frames_ == 0) still_ = 0;
+    TemporalCounts counts;
+    follow(frame, partner, from, counts);
+    rest(frame, counts);
+    ++frames_;
+    counts.still_frames = still_;
+    return counts;
+}
+
+} // namespace gi

@@ -1,9 +1,0 @@
-#include "gi/image/tone_map.h"
-
-#include "gi/base/launch.cuh"
-
-namespace gi {
-
-template void launch_device(char const* name, std::size_t n, ToneMap const& kernel);
-
-} // namespace gi

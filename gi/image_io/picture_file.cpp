@@ -1,0 +1,96 @@
+#include "gi/image_io/picture_file.h"
+
+#include "gi/core/claimed_size.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace gi {
+namespace {
+
+constexpr std::size_t kMostPixels = std::size_t(1) << 29, kMostBytes = std::size_t(1) << 31;
+constexpr std::size_t kMostPixelsPerByte = 8 * 1032; ///< a one-bit PNG, deflated as far as that goes
+
+bool starts_with(std::span<unsigned char const> bytes, std::string_view magic)
+{
+    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
+
+/// The formats that go to OpenCV; it would try its many other decoders on unknown bytes.
+bool is_known(std::span<unsigned char const> bytes)
+{
+    using namespace std::string_view_literals;
+    for (std::string_view const magic : {"\x89PNG\r\n\x1a\n"sv, "\xff\xd8\xff"sv, "II*\0"sv, "MM\0*"sv, "BM"sv})
+        if (starts_with(bytes, magic)) return true;
+    return starts_with(bytes, "RIFF") && bytes.size() > 12 && starts_with(bytes.subspan(8), "WEBP");
+}
+
+float decode_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
+
+} // namespace
+
+Picture decode_picture(std::span<unsigned char const> bytes, std::string const& name)
+{
+    if (starts_with(bytes, "\x76\x2f\x31\x01")) return decode_exr(bytes, name);
+    if (starts_with(bytes, "#?")) return decode_hdr(bytes, name);
+    auto const bad = [&](std::string const& why) {
+        return InputError("cannot read '" + name + "' as a picture", why,
+                          "give OpenEXR, Radiance HDR, PNG, JPEG, TIFF, BMP or WebP");
+    };
+    if (bytes.empty()) throw bad("it is empty");
+    if (!is_known(bytes)) throw bad("its first bytes are of no format that is read here");
+    if (bytes.size() >= kMostBytes) throw bad("it is larger than 2 GiB");
+    std::size_t const claimed = claimed_pixels(bytes);
+    if (claimed > kMostPixels || claimed / kMostPixelsPerByte > bytes.size())
+        throw bad("it announces " + std::to_string(claimed) + " pixels");
+    cv::Mat image;
+    try {
+        cv::Mat const raw(1, int(bytes.size()), CV_8U, const_cast<unsigned char*>(bytes.data()));
+        image = cv::imdecode(raw, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH);
+    } catch (cv::Exception const& e) {
+        throw bad(e.what());
+    }
+    if (image.empty()) throw bad("it is damaged");
+    if (image.total() > kMostPixels) throw bad("it has more than 2^29 pixels");
+
+    bool const encoded = image.depth() == CV_8U || image.depth() == CV_16U;
+    double const scale = image.depth() == CV_8U ? 1.0 / 255 : image.depth() == CV_16U ? 1.0 / 65535 : 1.0;
+    cv::Mat linear;
+    image.convertTo(linear, CV_32FC3, scale);
+    cv::cvtColor(linear, linear, cv::COLOR_BGR2RGB);
+    Picture picture;
+    picture.width = linear.cols;
+    picture.height = linear.rows;
+    Layer& layer = picture.add("color", 3);
+    for (int y = 0; y < linear.rows; ++y)
+        std::memcpy(layer.data.data() + std::size_t(y) * std::size_t(linear.cols) * 3, linear.ptr<float>(y),
+                    std::size_t(linear.cols) * 3 * sizeof(float));
+    if (encoded)
+        for (float& v : layer.data) v = decode_srgb(v);
+    return picture;
+}
+
+Picture read_picture(std::filesystem::path const& file) { return decode_picture(read_bytes(file), file.string()); }
+
+void write_png(std::filesystem::path const& file, int width, int height, std::span<unsigned char const> bytes)
+{
+    bool const alpha = bytes.size() == 4 * std::size_t(width) * std::size_t(height);
+    cv::Mat const rgb(height, width, alpha ? CV_8UC4 : CV_8UC3, const_cast<unsigned char*>(bytes.data()));
+    cv::Mat bgr;
+    cv::cvtColor(rgb, bgr, alpha ? cv::COLOR_RGBA2BGRA : cv::COLOR_RGB2BGR);
+    std::vector<unsigned char> encoded;
+    cv::imencode(".png", bgr, encoded);
+    write_by_rename(file, [&](std::filesystem::path const& temporary) {
+        std::ofstream out(temporary, std::ios::binary);
+        out.exceptions(std::ios::failbit | std::ios::badbit);
+        out.write(reinterpret_cast<char const*>(encoded.data()), std::streamsize(encoded.size()));
+        out.flush();
+    });
+}
+
+} // namespace gi

@@ -1,0 +1,45 @@
+#pragma once
+// Atomic steps of kernels, relaxed: kernels only count and claim slots with them; a launch ends before anybody
+// reads.
+
+#include "gi/core/platform.h"
+
+#include <cstdint>
+#if !defined(__CUDA_ARCH__)
+#include <atomic>
+#endif
+
+namespace gi {
+
+/// Returns what was there before.
+GI_FN inline std::uint32_t atomic_add(std::uint32_t& at, std::uint32_t value)
+{
+#if defined(__CUDA_ARCH__)
+    return atomicAdd(&at, value);
+#else
+    return std::atomic_ref<std::uint32_t>(at).fetch_add(value, std::memory_order_relaxed);
+#endif
+}
+
+GI_FN inline std::uint64_t atomic_add(std::uint64_t& at, std::uint64_t value)
+{
+#if defined(__CUDA_ARCH__)
+    return atomicAdd(reinterpret_cast<unsigned long long*>(&at), static_cast<unsigned long long>(value));
+#else
+    return std::atomic_ref<std::uint64_t>(at).fetch_add(value, std::memory_order_relaxed);
+#endif
+}
+
+GI_FN inline void atomic_max(std::uint64_t& at, std::uint64_t value)
+{
+#if defined(__CUDA_ARCH__)
+    atomicMax(reinterpret_cast<unsigned long long*>(&at), static_cast<unsigned long long>(value));
+#else
+    std::atomic_ref<std::uint64_t> const there(at);
+    std::uint64_t old = there.load(std::memory_order_relaxed);
+    while (old < value && !there.compare_exchange_weak(old, value, std::memory_order_relaxed)) {
+    }
+#endif
+}
+
+} // namespace gi

@@ -1,0 +1,38 @@
+#pragma once
+// Running a kernel over n items. A kernel is a trivially copyable struct with operator()(std::size_t i) const,
+// written once in a header; which space runs it is decided by the caller. Its views lie in that space.
+
+#include "gi/kernel/space.h"
+
+#include <cstddef>
+#include <tbb/parallel_for.h>
+#include <type_traits>
+
+namespace gi {
+
+/// Defined in launch.cuh; instantiated for each kernel in a .cu file of its own. Ends when the device is done.
+template <class Kernel>
+void launch_device(char const* name, std::size_t n, Kernel const& kernel);
+
+template <class Kernel>
+void launch_host(std::size_t n, Kernel const& kernel)
+{
+    static_assert(std::is_trivially_copyable_v<Kernel>);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n), [&](auto const& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) kernel(i);
+    });
+}
+
+/// @param name appears in errors and timings
+template <class Kernel>
+void launch(Space space, char const* name, std::size_t n, Kernel const& kernel)
+{
+    if (space == Space::host)
+        launch_host(n, kernel);
+    else if constexpr (kCudaBuild)
+        launch_device(name, n, kernel);
+    else
+        throw_no_cuda(name);
+}
+
+} // namespace gi

@@ -1,0 +1,27 @@
+#pragma once
+// Every light-transport method by name. One line here gives a method its place on the command line, in the
+// benchmarks, in studies and in --help.
+
+#include "gi/render/frame_renderer.h"
+
+#include <span>
+#include <string_view>
+
+namespace gi {
+
+using RenderFunction = RenderResult (*)(World const&, Camera const&, RenderSettings const&, StopRequest const&,
+                                        RenderProgress const&, Report&);
+
+struct Method {
+    std::string_view name;
+    std::string_view summary; ///< one line for --help
+    RenderFunction render;
+    StartFrames frames;
+    bool motion_vectors = false; ///< its frames have the layer "motion", which temporal reuse needs
+};
+
+std::span<Method const> methods();
+/// Throws InputError naming the known methods.
+Method const& find_method(std::string_view name);
+
+} // namespace gi

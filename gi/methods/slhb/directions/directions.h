@@ -1,0 +1,29 @@
+#pragma once
+// Sets of directions that stand for all of the sphere (Yu 2012, sec. 3.3). Opposite directions belong together:
+// they see the same surfaces in opposite order, so both are one *axis*. Every set is its own mirror image.
+
+#include "gi/core/math.h"
+
+#include <string>
+#include <vector>
+
+namespace gi {
+
+struct DirectionSet {
+    std::string name;        ///< as it was asked for, "icosahedron:320"
+    std::vector<dvec3> axes; ///< unit vectors
+    /// Directions: 2 k is axes[k], 2 k + 1 its opposite.
+    std::size_t size() const { return 2 * axes.size(); }
+    dvec3 direction(std::size_t i) const { return i % 2 == 0 ? axes[i / 2] : -axes[i / 2]; }
+};
+
+/// "FAMILY:COUNT", COUNT directions in all (opposites included):
+///   icosahedron, octahedron   centres of the faces after L subdivisions, 20 * 4^L and 8 * 4^L
+///   tetrahedron               those of the tetrahedron and their opposites, 8 * 4^L
+///   uv_grid                   centres of the thesis's spherical triangles (fig. 3.4), 8 * L^2
+///   halton, fibonacci         any even count: Halton points (bases 2, 3) or a spherical Fibonacci lattice on the
+///                             half sphere z > 0, and their opposites
+/// Throws InputError on other names and counts, and names the nearest count that there is.
+DirectionSet make_directions(std::string const& name);
+
+} // namespace gi

@@ -1,0 +1,309 @@
+#include "gi/methods/slhb/frames.h"
+
+#include "gi/core/error.h"
+#include "gi/core/threads.h"
+#include "gi/kernel/device.h"
+#include "gi/methods/slhb/kernels/kernel_renderer.h"
+#include "gi/methods/slhb/renderer.h"
+#include "gi/methods/slhb/settings.h"
+#include "gi/render/pass_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+/// @tparam Renderer  SlhbRenderer, or KernelRenderer of a space
+template <class Renderer>
+class SlhbFrames : public FrameRenderer {
+    static constexpr bool kByKernels = !std::is_same_v<Renderer, SlhbRenderer>;
+
+public:
+    SlhbFrames(MovingWorld const& world, Camera const& camera, RenderSettings const& settings, Report& report)
+        : world_(world), asked_(settings), settings_(settings), report_(report)
+    {
+        if constexpr (kByKernels) check_kernels_can(camera, settings.slhb);
+        if (settings.threads > 0)
+            threads_.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(settings.threads));
+        if (settings.slhb.packed && world.world().static_triangles < world.world().triangles.size())
+            throw InputError("--packed with something that moves",
+                             "the range of packed depths is that of what stays", "leave out --packed");
+        auto const begun = std::chrono::steady_clock::now();
+        FrameView const eye = full_size(camera);
+        start({&eye, 1});
+        start_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    }
+
+    void changed(Changes const& changes) override
+    {
+        if (changes.coverage) restart_ = true; // hit buffers leave out what lets rays through
+        if (!restart_) renderer_->changed(changes);
+    }
+
+    void follow(int axes) override
+    {
+        followed_ = std::uint32_t(axes);
+        if (renderer_) renderer_->follow(followed_); // else one that starts will
+    }
+
+    Following following() const override { return renderer_ ? renderer_->following() : Following{}; }
+
+    RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
+                       Moments const& moments) override
+    {
+        if (interleaving_) interleaving_->frame_begins();
+        PassLoop loop(settings_, stop, progress, report_, moments ? std::exchange(start_s_, 0) : 0);
+        see(full_size(camera));
+        double const earlier = renderer_->rays();
+        if constexpr (!kByKernels)
+            if (!(settings_.budget_s > 0))
+                renderer_->forget(); // else a frame of so many paths is the same by itself
+        Endings const endings = settings_.slhb.cache == RadianceCaching::on ? Endings::cached : Endings::exact;
+        RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
+            for (std::uint32_t i = 0; i < paths; ++i) {
+                if (moments) {
+                    Moment const now = moments(sums.paths);
+                    changed(now.changes);
+                    see(full_size(now.camera));
+                }
+                one_pass({&sums, 1}, endings);
+            }
+        });
+        finish(result, earlier);
+        result.picture = loop.sums().picture(world_.world());
+        if (!moments) renderer_->add_motion(0, result.picture);
+        end_frame();
+        if (interleaving_) interleaving_->frame_ended();
+        return result;
+    }
+
+    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings endings,
+                                    StopRequest const& stop) override
+    {
+        auto const begun = std::chrono::steady_clock::now();
+        see_all(views);
+        double const earlier = renderer_->rays();
+        sums_.resize(views.size());
+        for (std::size_t k = 0; k < views.size(); ++k) sums_[k].start(views[k].width, views[k].height);
+        for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
+            on_threads(settings_.threads, [&] { renderer_->pass(passes_++, sums_, endings); });
+        std::vector<RenderResult> results(views.size());
+        PathCounts lost;
+        for (std::size_t k = 0; k < views.size(); ++k) {
+            RenderResult& r = results[k];
+            r.paths = sums_[k].paths;
+            r.end = r.paths < paths ? RenderEnd::interrupted : RenderEnd::paths;
+            r.picture = sums_[k].picture(world_.world());
+            renderer_->add_motion(k, r.picture);
+            auto const from = renderer_->light_from(k);
+            r.light_from.assign(from.begin(), from.end());
+            lost += sums_[k].counts;
+        }
+        report_.lose("paths cut at 1024 surfaces", lost.cut_paths);
+        report_.lose("path terms that were not finite, dropped", lost.invalid_paths);
+        finish(results[0], earlier);
+        results[0].seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        end_frame();
+        return results;
+    }
+
+    PairResult pair(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
+                    StopRequest const& stop) override
+    {
+        if constexpr (kByKernels)
+            throw InputError("--device cuda with pictures with and without what moves",
+                             "its kernels trace no such pairs", "render with --device cpu");
+        else
+            return traced_pair(view, settings, turn, stop);
+    }
+
+private:
+    void one_pass(std::span<Accumulator> sums, Endings endings)
+    {
+        if constexpr (kByKernels) {
+            renderer_->pass(passes_++, sums, endings);
+        } else {
+            settings_.slhb.interleave = interleaving_->n();
+            renderer_->interleave(settings_.slhb.interleave);
+            renderer_->pass(passes_++, sums, endings);
+            interleaving_->pass_ended(renderer_->indirect_share());
+        }
+    }
+
+    FrameView full_size(Camera const& camera) const { return {camera, settings_.width, settings_.height}; }
+
+    PairResult traced_pair(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
+                           StopRequest const& stop)
+    {
+        if (view.camera.orthographic)
+            throw InputError("pictures with and without what moves, of an orthographic camera",
+                             "its first surfaces are not rasterised", "use a perspective camera");
+        auto const begun = std::chrono::steady_clock::now();
+        // Streamed axes have what moves built into them, and are kept for both sides: the same axes with it apart.
+        if (settings_.slhb.schedule == Schedule::streamed) {
+            asked_.slhb.schedule = Schedule::temporal;
+            asked_.slhb.axes = asked_.slhb.fresh_axes = settings_.slhb.axes;
+            restart_ = true;
+        }
+        PairResult both;
+        both.coverage.assign(std::size_t(view.width) * std::size_t(view.height), 0.0f);
+        both.covered.assign(both.coverage.size(), vec3{0});
+        changed(turn(PairSide::with));
+        see(view);
+        double const earlier = renderer_->rays();
+        PathCounts const lost = settings.difference == PairDifference::vanishing && can_leave_out()
+                                    ? trace_in_place(view, settings, stop, both)
+                                    : trace_in_turns(view, settings, turn, stop, both);
+        for (RenderResult* const r : {&both.with, &both.without})
+            r->end = r->paths < settings.paths ? RenderEnd::interrupted : RenderEnd::paths;
+        tbb::parallel_for(std::size_t(0), both.coverage.size(), [&](std::size_t p) {
+            both.coverage[p] /= float(both.with.paths);
+            both.covered[p] /= float(both.with.paths);
+        });
+        report_.lose("paths cut at 1024 surfaces", lost.cut_paths);
+        report_.lose("path terms that were not finite, dropped", lost.invalid_paths);
+        finish(both.with, earlier);
+        both.with.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        end_frame();
+        return both;
+    }
+
+    /// Whether the world without what moves can be seen in that with it: lamps are the same.
+    bool can_leave_out() const
+    {
+        World const& world = world_.world();
+        return !settings_.slhb.exact.any() &&
+               std::ranges::none_of(world.emitters, [&](std::uint32_t t) { return t >= world.static_triangles; });
+    }
+
+    PathCounts trace_in_place(FrameView const& view, PairSettings const& settings, StopRequest const& stop,
+                              PairResult& both)
+    {
+        PathCounts lost;
+        pair_sums_.start(view.width, view.height);
+        for (std::uint32_t i = 0; i < settings.paths && !(i > 0 && stop.requested()); ++i) {
+            on_threads(settings_.threads, [&] { renderer_->pair_pass(passes_++, pair_sums_, lost); });
+            renderer_->add_coverage(0, both.coverage, both.covered);
+        }
+        both.with.paths = both.without.paths = pair_sums_.paths();
+        both.with.picture = pair_sums_.first(world_.world(), settings.layers);
+        both.without.picture = both.with.picture;
+        pair_sums_.make_second(world_.world(), both.without.picture);
+        return lost;
+    }
+
+    PathCounts trace_in_turns(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
+                              StopRequest const& stop, PairResult& both)
+    {
+        sums_.resize(2);
+        for (Accumulator& s : sums_) s.start(view.width, view.height);
+        // Every other pass begins with the side that the one before it ended with: the world changes but once.
+        PairSide now = PairSide::with;
+        for (std::uint32_t i = 0; i < settings.paths && !(i > 0 && stop.requested()); ++i, ++passes_)
+            for (int half = 0; half < 2; ++half) {
+                if (half == 1) {
+                    now = now == PairSide::with ? PairSide::without : PairSide::with;
+                    changed(turn(now));
+                    see(view);
+                }
+                on_threads(settings_.threads, [&] {
+                    renderer_->pass(passes_, {&sums_[std::size_t(now)], 1}, Endings::own);
+                });
+                if (now == PairSide::with) renderer_->add_coverage(0, both.coverage, both.covered);
+            }
+        PathCounts lost;
+        for (Accumulator const& s : sums_) {
+            RenderResult& r = &s == sums_.data() ? both.with : both.without;
+            r.paths = s.paths;
+            r.picture = s.picture(world_.world(), settings.layers);
+            lost += s.counts;
+        }
+        return lost;
+    }
+
+    void see(FrameView const& view)
+    {
+        FrameView whole = view;
+        whole.hidden = {};
+        see_all({&whole, 1});
+    }
+
+    void see_all(std::span<FrameView const> views)
+    {
+        if (restart_) start(views);
+        renderer_->see(views);
+    }
+
+    void finish(RenderResult& result, double rays_before)
+    {
+        renderer_->report_work();
+        result.rays = renderer_->rays() - rays_before;
+        result.options = as_options(settings_.slhb);
+    }
+
+    void end_frame()
+    {
+        renderer_->end_frame();
+        report_.lose("layers beyond the limit of a texel", renderer_->lost_layers() - lost_);
+        lost_ = renderer_->lost_layers();
+        if constexpr (!kByKernels) {
+            report_.lose("notes that the radiance cache had no room for", renderer_->refused_notes() - refused_);
+            refused_ = renderer_->refused_notes();
+        }
+    }
+
+    void start(std::span<FrameView const> views)
+    {
+        World const& world = world_.world();
+        TriangleSoup soup = make_soup(world);
+        settings_.slhb = choose_frame_settings(asked_, world, soup, views[0].camera);
+        if (kByKernels) {
+            settings_.slhb.interleave = 1; // whatever the budget
+            for (FrameView const& v : views) check_kernels_can(v.camera, settings_.slhb);
+        }
+        if constexpr (!kByKernels)
+            interleaving_.emplace(settings_.slhb.interleave, asked_.slhb.interleave == 0 ? settings_.budget_s : 0);
+        renderer_.emplace(world, views, settings_, std::move(soup), world.static_triangles, report_);
+        renderer_->follow(followed_);
+        restart_ = false;
+        lost_ = refused_ = 0;
+    }
+
+    MovingWorld const& world_;
+    RenderSettings asked_, settings_; ///< the second with those of slhb chosen
+    Report& report_;
+    std::optional<tbb::global_control> threads_;
+    std::optional<Renderer> renderer_;
+    std::optional<FrameInterleaving> interleaving_; ///< none by kernels
+    std::vector<Accumulator> sums_;                 ///< of the views
+    PairSums pair_sums_;
+    std::uint32_t passes_ = 0, followed_ = 0;
+    std::uint64_t lost_ = 0, refused_ = 0; ///< layers, and notes of the cache, that were reported
+    bool restart_ = false;
+    double start_s_ = 0; ///< that the first start took
+};
+
+} // namespace
+
+std::unique_ptr<FrameRenderer> start_slhb_frames(MovingWorld const& world, Camera const& camera,
+                                                 RenderSettings const& settings, Report& report)
+{
+    if (settings.slhb.space == Space::host)
+        return std::make_unique<SlhbFrames<SlhbRenderer>>(world, camera, settings, report);
+    check_device(Space::device);
+    return start_kernel_frames(Space::device, world, camera, settings, report);
+}
+
+std::unique_ptr<FrameRenderer> start_kernel_frames(Space space, MovingWorld const& world, Camera const& camera,
+                                                   RenderSettings const& settings, Report& report)
+{
+    if (space == Space::host)
+        return std::make_unique<SlhbFrames<KernelRenderer<Space::host>>>(world, camera, settings, report);
+    return std::make_unique<SlhbFrames<KernelRenderer<Space::device>>>(world, camera, settings, report);
+}
+
+} // namespace gi

@@ -1,0 +1,68 @@
+#pragma once
+// What is cut out of surfaces (alpha masks, blending) is taken out of the buffers when they are built, so that no
+// query has to ask. Partial coverage is a random decision per fragment.
+
+#include "gi/core/rng.h"
+#include "gi/raster/nearest_map.h"
+#include "gi/scene/shading/shading_point.h"
+
+namespace gi {
+
+/// Weights of vertices 1 and 2 at a point on (or near) a triangle, within the triangle.
+GI_FN inline vec2 barycentric_at(Surface const& s, vec3 position)
+{
+    vec3 const p = position - s.corner;
+    float const a = glm::dot(s.edge1, s.edge1), b = glm::dot(s.edge1, s.edge2), c = glm::dot(s.edge2, s.edge2);
+    float const p1 = glm::dot(p, s.edge1), p2 = glm::dot(p, s.edge2), determinant = a * c - b * b;
+    if (!(determinant > 0)) return vec2{1.0f / 3};
+    vec2 w{(c * p1 - b * p2) / determinant, (a * p2 - b * p1) / determinant};
+    if (!(w.x == w.x) || !(w.y == w.y)) return vec2{1.0f / 3};
+    w = glm::clamp(w, 0.0f, 1.0f);
+    float const sum = w.x + w.y;
+    return sum > 1 ? w / sum : w;
+}
+
+/// Whether the surface of a triangle with an alpha is there, at a position in a texel.
+GI_FN inline bool is_there(WorldView const& world, std::uint32_t triangle, std::uint32_t texel, vec3 position,
+                           std::uint32_t seed)
+{
+    float const covered = coverage(world, triangle, barycentric_at(world.surfaces[triangle], position));
+    std::uint64_t const key = (std::uint64_t(seed) << 32) ^ (std::uint64_t(triangle) * 0x9e3779b1u + texel);
+    return float(mix_bits(key) >> 40) * 0x1p-24f < covered;
+}
+
+/// For kernels: which fragments there are, see DrawNearest and TrimLayers.
+struct KeepUncut {
+    WorldView world;
+    View<std::uint8_t const> marked; ///< per triangle
+    std::uint32_t seed;
+
+    template <class Grid>
+    GI_FN bool operator()(Grid const& grid, std::uint32_t triangle, std::uint32_t texel, float depth) const
+    {
+        return marked[triangle] == 0 ||
+               is_there(world, triangle, texel, grid.point(texel % grid.width, texel / grid.width, depth), seed);
+    }
+};
+
+class CutOuts {
+public:
+    /// Empty where every material is opaque.
+    explicit CutOuts(World const& world);
+
+    bool none() const { return marked_.empty(); }
+    std::vector<std::uint8_t> const& marked() const { return marked_; }
+    /// Drops fragments where the surface is not. @param seed another one, another decision where coverage is
+    /// partial
+    void remove(Fragments& fragments, RasterGrid const& grid, std::uint32_t seed) const;
+    void remove(Fragments& fragments, PerspectiveGrid const& grid, std::uint32_t seed) const;
+
+private:
+    template <class Position>
+    void remove_where(Fragments& fragments, std::uint32_t seed, Position const& position) const;
+
+    WorldView world_;
+    std::vector<std::uint8_t> marked_; ///< per triangle: 1 = it has an alpha
+};
+
+} // namespace gi

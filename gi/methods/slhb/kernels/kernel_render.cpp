@@ -1,0 +1,45 @@
+#include "gi/methods/slhb/kernels/kernel_render.h"
+
+#include "gi/methods/slhb/kernels/kernel_renderer.h"
+#include "gi/methods/slhb/settings.h"
+#include "gi/render/fingerprint.h"
+#include "gi/render/pass_loop.h"
+
+namespace gi {
+namespace {
+
+template <Space S>
+RenderResult render(World const& world, Camera const& camera, RenderSettings const& settings,
+                    StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    PassLoop loop(settings, stop, progress, report);
+    TriangleSoup soup = make_soup(world);
+    RenderSettings chosen = settings;
+    chosen.slhb = choose_settings(settings, world, soup, camera);
+    chosen.slhb.interleave = 1; // whatever the budget
+    FrameView const eye{camera, settings.width, settings.height};
+    KernelRenderer<S> renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report);
+    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb by kernels") : 0;
+    RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
+        for (std::uint32_t i = 0; i < paths; ++i) renderer.pass(loop.first_path() + sums.paths, {&sums, 1});
+    });
+    renderer.report_work();
+    report.lose("layers beyond the limit of a texel", renderer.lost_layers());
+    result.rays = renderer.rays();
+    result.options = as_options(chosen.slhb);
+    result.picture = loop.sums().picture(world);
+    return result;
+}
+
+} // namespace
+
+RenderResult render_by_kernels(Space space, World const& world, Camera const& camera,
+                               RenderSettings const& settings, StopRequest const& stop,
+                               RenderProgress const& progress, Report& report)
+{
+    check_kernels_can(camera, settings.slhb);
+    auto const& run = space == Space::host ? render<Space::host> : render<Space::device>;
+    return run(world, camera, settings, stop, progress, report);
+}
+
+} // namespace gi

@@ -1,0 +1,224 @@
+#include "gi/methods/slhb/kernels/kernel_renderer.h"
+
+#include "gi/methods/slhb/directions/grid_bounds.h"
+#include "gi/methods/slhb/ray_plan.h"
+#include "gi/render/pass_samples.h"
+
+#include <algorithm>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+
+void check_kernels_can(Camera const& camera, SlhbSettings const& s)
+{
+    char const* const suggestion = "leave it out, or render with --device cpu";
+    if (camera.orthographic)
+        throw InputError("--device cuda with an orthographic camera",
+                         "what it sees first takes exact rays, which the device lacks",
+                         "choose a perspective camera, or --device cpu");
+    if (s.cone > 0) throw InputError("--device cuda with --cone", "its kernels know one column only", suggestion);
+    if (s.packed)
+        throw InputError("--device cuda with --packed", "its kernels read plain layers only", suggestion);
+    if (s.interleave > 1)
+        throw InputError("--device cuda with --interleave", "its kernels take indirect light in every pixel",
+                         suggestion);
+    if (s.cache == RadianceCaching::on)
+        throw InputError("--device cuda with --radiance-cache on", "its kernels follow paths to their end",
+                         suggestion);
+    if (s.gather) throw InputError("--device cuda with --gather", "its kernels choose axes by chance", suggestion);
+}
+
+template <Space S>
+KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const> views,
+                                  RenderSettings const& settings, TriangleSoup soup, std::size_t first_moving,
+                                  Report& report)
+    : world_(world),
+      settings_(settings),
+      first_moving_(first_moving),
+      report_(report),
+      soup_(std::move(soup)),
+      cut_outs_(world),
+      scene_(world, soup_, cut_outs_, std::uint32_t(slhb_.most_layers)),
+      grid_bounds_(grid_bounds(world, soup_, first_moving)),
+      axes_(slhb_, report)
+{
+    see(views);
+    end_frame();
+    make_axes();
+    make_lamps();
+}
+
+/// Also the last surface sends paths along axes.
+template <Space S>
+bool KernelRenderer<S>::meets_light() const
+{
+    return !world_.emitters.empty() || !view(world_).environment_radiance.empty();
+}
+
+template <Space S>
+void KernelRenderer<S>::make_axes()
+{
+    auto const build = [this](std::size_t a, RasterGrid const& grid, std::uint32_t seed) {
+        return scene_.build_axis(a, grid, seed);
+    };
+    axes_.make({.bounds = grid_bounds_,
+                .soup = soup_,
+                .cut_outs = cut_outs_,
+                .resolution = std::uint32_t(slhb_.resolution),
+                .most_layers = std::uint32_t(slhb_.most_layers),
+                .packed = false,
+                .seed = settings_.seed,
+                .elsewhere = build,
+                .first_moving = first_moving_},
+               walks());
+}
+
+template <Space S>
+void KernelRenderer<S>::make_lamps()
+{
+    if (lamps_) earlier_maps_ += lamps_->maps_built();
+    scene_.forget_lamps();
+    lamps_.emplace(world_, grid_bounds_, soup_, cut_outs_,
+                   LampSettings{.count = std::uint32_t(slhb_.lamps),
+                                .fresh = std::uint32_t(slhb_.fresh_lamps),
+                                .resolution = std::uint32_t(slhb_.shadow_resolution),
+                                .seed = settings_.seed,
+                                .first_moving = first_moving_},
+                   [this](Lamps::Elsewhere const& now) { scene_.draw_lamps(now); });
+}
+
+template <Space S>
+void KernelRenderer<S>::changed(Changes const& c)
+{
+    {
+        StageTimer const timer(report_, "triangles that moved");
+        if (c.geometry) {
+            if (earlier_.corners.empty()) earlier_.corners = corners_of(soup_, first_moving_);
+            update_soup(world_, first_moving_, soup_);
+        }
+        scene_.update(world_, soup_, c);
+    }
+    bool axes = axes_.walks() != walks(), lamps = changes_lamps(c);
+    if (c.geometry) {
+        if (grow(grid_bounds_, world_.bounds)) {
+            if (slhb_.schedule != Schedule::streamed) // which is built anew in every pass
+                report_.lose("frames that left the bounds of the hit buffers, which were built anew");
+            axes = lamps = true; // the maps of parallel light hold the same bounds
+        }
+        axes_.set().moved();
+        lamps_->moved();
+    }
+    if (axes) make_axes();
+    if (lamps) make_lamps();
+}
+
+template <Space S>
+void KernelRenderer<S>::end_frame()
+{
+    axes_.end_frame();
+    earlier_ = {first_moving_, {}};
+    for (View& v : views_) v.earlier = v.rays;
+}
+
+template <Space S>
+void KernelRenderer<S>::see(std::span<FrameView const> views)
+{
+    for (FrameView const& v : views) check_kernels_can(v.camera, slhb_);
+    std::size_t const known_views = views_.size();
+    views_.resize(views.size());
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        FrameView const& now = views[k];
+        View& v = views_[k];
+        bool const known = k < known_views && v.width == now.width && v.height == now.height;
+        v.width = now.width;
+        v.height = now.height;
+        v.rays = camera_rays(now.camera, now.width, now.height, world_.origin);
+        if (!known) v.earlier = v.rays;
+        if (std::ranges::equal(v.hides, now.hidden)) continue;
+        v.hides.assign(now.hidden.begin(), now.hidden.end());
+        v.hidden = upload<S>(v.hides);
+        v.hidden_pixels = v.hides.size() - std::size_t(std::ranges::count(v.hides, 0));
+    }
+}
+
+template <Space S>
+void KernelRenderer<S>::prepare(std::uint32_t index)
+{
+    axes_.prepare(settings_.bounces + (meets_light() ? 1 : 0), index);
+    {
+        StageTimer const timer(report_, "shadow maps");
+        lamps_->refresh(index);
+    }
+    StageTimer const timer(report_, "G-buffer");
+    for (View& v : views_) {
+        v.eye = eye_of_pass(v.rays, settings_.seed, index);
+        v.index = index;
+        PerspectiveGrid const grid =
+            camera_grid(v.eye, v.width, v.height, place_in_pixel(settings_.filter, settings_.seed, index),
+                        near_plane(world_.bounds));
+        v.primary = scene_.draw(grid, std::uint32_t(mix_bits(settings_.seed) + index));
+    }
+}
+
+template <Space S>
+void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, Endings)
+{
+    prepare(index);
+    StageTimer const timer(report_, "paths");
+    bool const smooth = smooth_somewhere(world_);
+    scene_.start_pass(axes_.set(), lamps_->fixed() ? lamps_->chances() : AliasTableView{});
+    for (std::size_t k = 0; k < views_.size(); ++k) {
+        View const& v = views_[k];
+        Accumulator& to = sums[k];
+        TracePaths paths{};
+        paths.camera = v.eye;
+        paths.primary = v.primary.view();
+        paths.hidden = v.hidden.view();
+        paths.place = place_in_pixel(settings_.filter, settings_.seed, index);
+        paths.width = std::uint32_t(v.width);
+        paths.bounces = settings_.bounces;
+        paths.smooth = smooth;
+        paths.roulette = settings_.slhb.roulette;
+        paths.seed = random_key(settings_.seed);
+        paths.pass = index;
+        std::vector<PathSample> const samples = scene_.trace(paths);
+        tbb::parallel_for(std::size_t(0), samples.size(), [&](std::size_t p) { to.add(p, samples[p], to.paths); });
+        ++to.paths;
+        PathKernelCounts const& done = scene_.counts();
+        to.counts.cut_paths += done.cut_paths;
+        to.counts.invalid_paths += done.invalid_paths;
+        queries_ += done.queries;
+        shadow_lookups_ += done.shadow_lookups;
+        hidden_ += v.hidden_pixels;
+        pixels_ += v.pixels();
+        report_.lose("paths that ended at a mirror, glass or narrow lobe, as the kernels have no exact rays",
+                     done.narrow_ends);
+    }
+}
+
+template <Space S>
+void KernelRenderer<S>::add_motion(std::size_t view, Picture& picture) const
+{
+    View const& v = views_[view];
+    PrimaryMap map(soup_, cut_outs_, settings_, v.width, v.height);
+    map.take(v.eye, v.index, download(v.primary));
+    gi::add_motion(map, soup_, v.rays, v.earlier, earlier_, picture);
+}
+
+template <Space S>
+void KernelRenderer<S>::report_work() const
+{
+    report_.count("hit-buffer queries", double(queries_));
+    report_.count("shadow-map look-ups", double(shadow_lookups_));
+    if (hidden_ > 0) {
+        report_.count("pixels not rendered, as nobody sees them", double(hidden_));
+        report_.count("share of pixels not rendered", double(hidden_) / double(pixels_));
+    }
+    axes_.report_work();
+    report_.count("shadow maps built", double(earlier_maps_ + lamps_->maps_built()));
+}
+
+template class KernelRenderer<Space::host>;
+template class KernelRenderer<Space::device>;
+
+} // namespace gi

@@ -1,0 +1,149 @@
+#pragma once
+// What kernels of the method slhb read of a world, and what they make of it: everything lies in one space, and
+// only the samples of paths and, where they are asked for, first surfaces come back.
+
+#include "gi/methods/slhb/directions/axis_set.h"
+#include "gi/methods/slhb/hit_buffer/build_hit_buffer.h"
+#include "gi/methods/slhb/kernels/path_kernel.h"
+#include "gi/methods/slhb/lights/lamps.h"
+#include "gi/raster/draw_nearest.h"
+#include "gi/scene/model/world_on.h"
+
+#include <array>
+#include <utility>
+
+namespace gi {
+
+template <Space S>
+class KernelScene {
+public:
+    /// @param most_layers  per texel, see fill_hit_buffer
+    KernelScene(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t most_layers)
+        : world_(world), soup_(soup), marked_(upload<S>(cut_outs.marked())), most_layers_(most_layers)
+    {
+    }
+
+    /// Brings what has changed, but nothing of what lets rays through. @param soup  as it is now
+    void update(World const& world, TriangleSoup const& soup, Changes const& changes)
+    {
+        world_.update(world, changes);
+        if (changes.geometry) soup_.update(soup, world.static_triangles);
+    }
+
+    AxisSet::BuiltAxis build_axis(std::size_t a, RasterGrid const& grid, std::uint32_t seed)
+    {
+        if (axes_.size() <= a) axes_.resize(a + 1);
+        with_cut_outs(seed, [&](auto const& keep) {
+            axes_[a] = build_hit_buffer<S>(soup_.view(), grid, most_layers_, keep);
+        });
+        return {axes_[a].layers.size(), axes_[a].lost};
+    }
+
+    void draw_lamps(Lamps::Elsewhere const& now)
+    {
+        maps_.resize(now.lamps.size());
+        for (std::size_t const k : now.drawn) {
+            Lamp const& lamp = now.lamps[k];
+            for (std::size_t f = 0; f < 6; ++f) {
+                bool const empty = lamp.view.parallel ? f > 0 : sees_only_dark(lamp.view, lamp.shadow.faces[f]);
+                maps_[k][f] = empty                ? Buffer<NearestTexel, S>()
+                              : lamp.view.parallel ? draw(lamp.shadow.grid, now.seed)
+                                                   : draw(lamp.shadow.faces[f], now.seed);
+            }
+        }
+        std::vector<LampView> views(now.lamps.size());
+        for (std::size_t k = 0; k < views.size(); ++k) {
+            Lamp const& lamp = now.lamps[k];
+            views[k].choice = lamp.choice;
+            views[k].u = lamp.u;
+            ShadowMapView& shadow = views[k].shadow;
+            shadow.parallel = lamp.view.parallel;
+            shadow.grid = lamp.shadow.grid;
+            for (std::size_t f = 0; f < 6; ++f) {
+                shadow.faces[f] = lamp.shadow.faces[f];
+                shadow.maps[f] = std::as_const(maps_[k][f]).view().data;
+            }
+        }
+        lamps_ = upload<S>(views);
+    }
+    void forget_lamps()
+    {
+        maps_.clear();
+        lamps_ = {};
+    }
+
+    template <class Grid>
+    Buffer<NearestTexel, S> draw(Grid const& grid, std::uint32_t seed) const
+    {
+        Buffer<NearestTexel, S> map;
+        with_cut_outs(seed, [&](auto const& keep) { map = draw_nearest<S>(soup_.view(), grid, keep); });
+        return map;
+    }
+
+    /// What all paths of a pass have in common. @param chances  of the lamps; empty = equal
+    void start_pass(AxisSet const& axes, AliasTableView chances)
+    {
+        std::vector<AxisView> views;
+        for (HitBufferOn<S> const& b : axes_) views.push_back({{b.view(), {}}});
+        axis_views_ = upload<S>(views);
+        few_ = upload<S>(axes.few());
+        if (tables_.size() != axes.tables().entries.size()) { // of the stored schedule, once
+            tables_ = upload<S>(axes.tables().entries);
+            directions_ = upload<S>(axes.tables().axes);
+            solid_angles_ = upload<S>(axes.tables().solid_angles);
+        }
+        choice_ = {std::as_const(few_).view(), {}};
+        if (!axes.takes_few())
+            choice_.tables = {std::as_const(tables_).view(), std::as_const(directions_).view(),
+                              std::as_const(solid_angles_).view(), axes.tables().bins_across};
+        chances_ = upload<S>(std::vector<AliasEntry>(chances.entries.begin(), chances.entries.end()));
+    }
+
+    /// @param paths  all that does not lie in the space, and what is of the view; the rest is filled in
+    std::vector<PathSample> trace(TracePaths paths)
+    {
+        std::size_t const pixels = paths.primary.size();
+        if (samples_.size() != pixels) samples_ = Buffer<PathSample, S>(pixels);
+        Buffer<PathKernelCounts, S> counts = upload<S>(std::vector<PathKernelCounts>(1));
+        paths.world = world_.view();
+        paths.axes = std::as_const(axis_views_).view();
+        paths.choice = choice_;
+        paths.lamps = std::as_const(lamps_).view();
+        paths.chances = {std::as_const(chances_).view()};
+        paths.samples = samples_.view();
+        paths.counts = counts.view();
+        launch(S, "trace paths", pixels, paths);
+        counts_ = download(counts)[0];
+        return download(samples_);
+    }
+
+    PathKernelCounts const& counts() const { return counts_; } ///< of the last trace
+
+private:
+    template <class Work>
+    void with_cut_outs(std::uint32_t seed, Work const& work) const
+    {
+        if (marked_.size() == 0)
+            work(KeepAll{});
+        else
+            work(KeepUncut{world_.view(), marked_.view(), seed});
+    }
+
+    WorldOn<S> world_;
+    SoupOn<S> soup_;
+    Buffer<std::uint8_t, S> marked_;
+    std::uint32_t most_layers_;
+    std::vector<HitBufferOn<S>> axes_;
+    Buffer<AxisView, S> axis_views_;
+    Buffer<FewAxes, S> few_;
+    Buffer<AliasEntry, S> tables_, chances_;
+    Buffer<vec3, S> directions_;
+    Buffer<float, S> solid_angles_;
+    AxisChoice choice_;
+    std::vector<std::array<Buffer<NearestTexel, S>, 6>> maps_; ///< per lamp, its faces
+    Buffer<LampView, S> lamps_;
+    Buffer<PathSample, S> samples_;
+    PathKernelCounts counts_;
+};
+
+} // namespace gi

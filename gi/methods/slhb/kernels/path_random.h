@@ -1,0 +1,72 @@
+#pragma once
+// The random numbers of a path, the same on every device.
+
+#include "gi/core/rqmc.h"
+
+#include <array>
+
+namespace gi {
+
+/// Of a picture.
+GI_FN inline std::uint32_t random_key(std::uint64_t seed)
+{
+    return std::uint32_t(seed) ^ std::uint32_t(seed >> 32);
+}
+
+/// Of pixel `id` = y * width + x. Neighbours take different strata, so that means over windows of them have less
+/// noise. @param key of the picture  @param index of the path
+GI_FN inline RqmcStream pixel_stream(std::uint32_t key, std::uint32_t id, std::uint32_t width, std::uint32_t index)
+{
+    constexpr std::uint32_t kTile = 4; // pixels across, as sixteen streams share a seed
+    std::uint32_t const x = id % width, y = id / width;
+    RqmcStream stream{hash_words(key, y / kTile * width + x / kTile), index};
+    stream.place = y % kTile * kTile + x % kTile;
+    return stream;
+}
+
+/// The decisions at one vertex of a path, each with random numbers of its own.
+enum class PathDimension : std::uint32_t {
+    axis,
+    lobe,
+    lobe_u,
+    lobe_v,
+    roulette,
+    lamp,
+    lamp_pick,
+    shadow, ///< this and what follows are noise, without any order
+    cone,
+    cache,
+    count
+};
+/// The camera has the first two.
+GI_FN inline std::uint32_t dimension_of(std::uint32_t vertex, PathDimension d)
+{
+    return vertex * std::uint32_t(PathDimension::count) + 2 + std::uint32_t(d);
+}
+
+/// The numbers of all decisions at a vertex: the same as one by one, in a vector.
+struct VertexNumbers {
+    static constexpr std::size_t kRoom = 8;
+    static_assert(std::size_t(PathDimension::shadow) <= kRoom);
+    alignas(32) std::array<float, kRoom> u;
+
+    VertexNumbers() = default;
+    VertexNumbers(RqmcStream const& random, std::uint32_t vertex)
+    {
+        std::uint32_t const first = dimension_of(vertex, PathDimension{});
+        for (std::uint32_t d = 0; d < kRoom; ++d) u[d] = random.sample(first + d);
+    }
+    float operator[](PathDimension d) const { return u[std::size_t(d)]; }
+    /// That one and the next.
+    vec2 pair(PathDimension d) const { return {u[std::size_t(d)], u[std::size_t(d) + 1]}; }
+};
+
+/// Chance that a path goes on. @param throughput  its largest channel  @param scatterings  so far
+/// @param roulette  see SlhbSettings
+GI_FN inline float chance_to_go_on(float throughput, int scatterings, float roulette)
+{
+    if (roulette > 0) return glm::min(1.0f, roulette * throughput);
+    return scatterings >= 3 && throughput < 0.95f ? throughput : 1.0f;
+}
+
+} // namespace gi

@@ -1,0 +1,289 @@
+#include "gi/methods/slhb/renderer.h"
+
+#include "gi/methods/slhb/directions/grid_bounds.h"
+#include "gi/methods/slhb/ray_plan.h"
+#include "gi/methods/slhb/settings.h"
+#include "gi/render/pass_samples.h"
+#include "gi/scene/model/plan.h"
+
+#include <algorithm>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+/// Groups of light samples of a pass: few paths share each, a second-level cache holds all where lights are few,
+/// and every light has about two samples where they are many.
+std::uint32_t light_groups(std::size_t pixels, World const& world)
+{
+    constexpr std::size_t kPixelsOfGroup = 32, kLeast = 64, kUsual = 256, kMost = 4096;
+    std::size_t const for_pixels = std::clamp(pixels / kPixelsOfGroup, kLeast, kUsual),
+                      for_lights = 2 * world.light_select.entries.size() / LightPool::kCandidates;
+    return std::uint32_t(std::min(std::max(for_pixels, for_lights), kMost));
+}
+
+/// Choosing among axes and lamps takes their grids alone.
+std::uint32_t texels(bool unused, int n) { return std::uint32_t(unused ? 2 : n); }
+
+} // namespace
+
+SlhbRenderer::SlhbRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
+                           TriangleSoup soup, std::size_t first_moving, Report& report,
+                           FirstSurfaces first_surfaces, StopRequest const* stop)
+    : world_(world),
+      settings_(settings),
+      first_moving_(first_moving),
+      first_surfaces_(first_surfaces),
+      stop_(stop),
+      report_(report),
+      soup_(std::move(soup)),
+      cut_outs_(world),
+      grid_bounds_(grid_bounds(world, soup_, first_moving)),
+      axes_(slhb_, report),
+      paths_(world, settings_, report)
+{
+    shadow_maps_ = slhb_.shadows != Shadows::rays;
+    see(views);
+    build_exact();
+    end_frame();
+    make_axes();
+    make_lamps();
+    if (slhb_.cache != RadianceCaching::off && settings_.bounces > 0)
+        cache_.emplace(world.bounds.radius(), std::size_t(slhb_.memory_mib) << 20);
+}
+
+bool SlhbRenderer::orthographic() const
+{
+    return std::any_of(views_.begin(), views_.end(), [](SeenView const& v) { return v.rays.orthographic; });
+}
+
+void SlhbRenderer::build_exact()
+{
+    if (exact_ || !needs_exact_rays(world_, orthographic(), slhb_)) return;
+    StageTimer const timer(report_, "build (Embree BVH)");
+    exact_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, settings_.threads,
+                                               first_moving_, stop_);
+}
+
+/// Also the last surface sends paths along axes: only where they can meet light there.
+bool SlhbRenderer::to_the_end() const
+{
+    return !world_.emitters.empty() || !view(world_).environment_radiance.empty();
+}
+
+bool SlhbRenderer::walks() const
+{
+    return slhb_.look_ups != LookUps::none && (settings_.bounces > 0 || to_the_end());
+}
+
+void SlhbRenderer::make_axes()
+{
+    axes_.make({.bounds = grid_bounds_,
+                .soup = soup_,
+                .cut_outs = cut_outs_,
+                .resolution = texels(slhb_.exact.queries, slhb_.resolution),
+                .most_layers = std::uint32_t(slhb_.most_layers),
+                .packed = slhb_.packed,
+                .seed = settings_.seed,
+                .most_bytes = std::size_t(slhb_.memory_mib) << 20,
+                .stop = stop_,
+                .first_moving = first_moving_},
+               walks());
+}
+
+void SlhbRenderer::make_lamps()
+{
+    if (lamps_) earlier_maps_ += lamps_->maps_built();
+    lamps_.emplace(world_, grid_bounds_, soup_, cut_outs_,
+                   LampSettings{.count = std::uint32_t(shadow_maps_ ? slhb_.lamps : 0),
+                                .fresh = std::uint32_t(slhb_.fresh_lamps),
+                                .resolution = texels(slhb_.exact.shadows, slhb_.shadow_resolution),
+                                .seed = settings_.seed,
+                                .first_moving = first_moving_});
+}
+
+void SlhbRenderer::changed(Changes const& c)
+{
+    if (c.geometry || c.materials || c.coverage || c.lights || c.emitters || c.environment || c.light_select)
+        forget();
+    if (c.materials || c.environment) materials_changed();
+    bool const lights = changes_lamps(c);
+    if (c.geometry || lights) world_moved(c.geometry, lights);
+}
+
+void SlhbRenderer::world_moved(bool geometry, bool lights)
+{
+    if (geometry) {
+        {
+            StageTimer const timer(report_, "triangles that moved");
+            if (earlier_.corners.empty()) earlier_.corners = corners_of(soup_, first_moving_);
+            update_soup(world_, first_moving_, soup_);
+        }
+        {
+            StageTimer const timer(report_, "BVH of what moves (Embree)");
+            if (exact_) exact_->moved(world_);
+        }
+        if (!grow(grid_bounds_, world_.bounds)) {
+            axes_.set().moved();
+        } else {
+            if (slhb_.schedule != Schedule::streamed) // which is built anew in every pass
+                report_.lose("frames that left the bounds of the hit buffers, which were built anew");
+            make_axes();
+            lights = true; // the maps of parallel light hold the same bounds
+        }
+        lamps_->moved();
+    }
+    if (lights) make_lamps();
+}
+
+void SlhbRenderer::materials_changed()
+{
+    if ((exact_ != nullptr) != needs_exact_rays(world_, orthographic(), slhb_)) {
+        exact_.reset();
+        build_exact();
+    }
+    if (axes_.walks() != walks()) make_axes();
+}
+
+void SlhbRenderer::end_frame()
+{
+    axes_.end_frame();
+    earlier_ = {first_moving_, {}};
+    for (SeenView& v : views_) v.earlier = v.rays;
+}
+
+void SlhbRenderer::add_motion(std::size_t view, Picture& picture) const
+{
+    SeenView const& v = views_[view];
+    if (v.primary) gi::add_motion(*v.primary, soup_, v.rays, v.earlier, earlier_, picture);
+}
+
+void SlhbRenderer::see(std::span<FrameView const> views)
+{
+    std::size_t first = 0;
+    while (views_.size() > views.size()) views_.pop_back();
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        FrameView const& now = views[k];
+        bool const known = k < views_.size() && views_[k].width == now.width && views_[k].height == now.height;
+        if (k == views_.size()) views_.emplace_back();
+        SeenView& v = views_[k];
+        v.width = now.width;
+        v.height = now.height;
+        v.partner = now.partner;
+        v.hidden = now.hidden;
+        v.hidden_pixels = now.hidden.size() - std::size_t(std::ranges::count(now.hidden, 0));
+        v.rays = camera_rays(now.camera, now.width, now.height, world_.origin);
+        v.first = first;
+        first += v.pixels();
+        if (!known) v.earlier = v.rays;
+        if (v.rays.orthographic || first_surfaces_ == FirstSurfaces::by_rays)
+            v.primary.reset();
+        else if (!known || !v.primary)
+            v.primary.emplace(soup_, cut_outs_, settings_, v.width, v.height);
+    }
+    if (!exact_ && orthographic()) build_exact(); // they have no raster
+}
+
+void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
+{
+    axes_.prepare(settings_.bounces + (to_the_end() ? 1 : 0), index);
+    {
+        StageTimer const timer(report_, "shadow maps");
+        lamps_->refresh(index);
+    }
+    StageTimer const timer(report_, "G-buffer");
+    for (SeenView& v : views_) {
+        if (!v.primary) continue;
+        CameraRays const eye = eye_of_pass(v.rays, settings_.seed, index);
+        float const near_m = near_plane(world_.bounds);
+        if (sides == Sides::pair)
+            v.primary->refresh_pair(eye, near_m, index, first_moving_);
+        else
+            v.primary->refresh(eye, near_m, index);
+    }
+}
+
+SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached)
+{
+    bool const walks = axes_.walks();
+    std::uint32_t const gathered = slhb_.gather && walks
+                                       ? index / std::uint32_t(slhb_.interleave * slhb_.interleave) %
+                                             std::uint32_t(axes_.set().first_bounce_axes())
+                                       : kNoPrimitive;
+    if (!shadow_maps_) {
+        light_order_.update(world_);
+        lights_.fill(light_order_, world_, light_groups(views_.back().first + views_.back().pixels(), world_),
+                     settings_.seed, index);
+    }
+    sky_.clear();
+    if (walks && !slhb_.exact.directions) sky_ = sky_along(axes_.set(), world_);
+    return {.axes = axes_.set(),
+            .lamps = *lamps_,
+            .exact = exact_.get(),
+            .index = index,
+            .gather_axis = gathered,
+            .sky = sky_,
+            .lights = shadow_maps_ ? nullptr : &lights_,
+            .smooth = smooth_somewhere(world_),
+            .look_ups = !slhb_.exact.queries && slhb_.look_ups != LookUps::none,
+            .cache = cached && cache_ ? &*cache_ : nullptr,
+            .spread = spread_ && slhb_.look_ups == LookUps::none};
+}
+
+void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings)
+{
+    prepare(index, Sides::one);
+    StageTimer const timer(report_, "paths");
+    paths_.trace(tracing(index, endings == Endings::cached), views_, endings, sums);
+    if (cache_) cache_->end_pass();
+    for (Accumulator& s : sums) ++s.paths;
+}
+
+void SlhbRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& counts)
+{
+    if (!std::exchange(shadow_maps_, true)) make_lamps(); // they tell what moves may count in
+    prepare(index, Sides::pair);
+    StageTimer const timer(report_, "paths");
+    SlhbTracer::Pass now = tracing(index, false);
+    now.first_watched = std::uint32_t(first_moving_);
+    // The world stays as it is: look-ups pass by what moves.
+    auto const show_moving = [&](bool shown) {
+        axes_.set().show_moving(shown);
+        lamps_->show_moving(shown);
+    };
+    paths_.trace_pair(now, views_, show_moving, sums, counts);
+}
+
+void SlhbRenderer::add_coverage(std::size_t view, std::span<float> counts, std::span<vec3> radiance) const
+{
+    SeenView const& v = views_[view];
+    if (!v.primary) return;
+    constexpr std::size_t kBlock = 4096;
+    std::span const samples = paths_.samples(v);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, counts.size(), kBlock), [&](auto const& range) {
+        for (std::size_t p = range.begin(); p != range.end(); ++p) {
+            std::uint32_t const t = v.primary->triangle(p);
+            if (t == kNoPrimitive || t < first_moving_) continue;
+            counts[p] += 1;
+            for (vec3 const part : samples[p].radiance) radiance[p] += part;
+        }
+    });
+}
+
+std::span<std::uint32_t const> SlhbRenderer::light_from(std::size_t view) const
+{
+    SeenView const& v = views_[view];
+    return v.partner < 0 ? std::span<std::uint32_t const>() : paths_.light_from(v);
+}
+
+void SlhbRenderer::report_work() const
+{
+    paths_.report_work();
+    axes_.report_work();
+    report_.count("shadow maps built", double(earlier_maps_ + lamps_->maps_built()));
+    if (!cache_) return;
+    report_.count("cells of the radiance cache", double(cache_->cells()));
+    report_.count("bytes of the radiance cache", double(cache_->bytes()));
+}
+
+} // namespace gi

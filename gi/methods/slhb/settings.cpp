@@ -1,0 +1,262 @@
+#include "gi/methods/slhb/settings.h"
+
+#include "gi/core/error.h"
+#include "gi/methods/slhb/directions/axis_set.h"
+#include "gi/methods/slhb/directions/directions.h"
+#include "gi/methods/slhb/hit_buffer/hit_buffer.h"
+#include "gi/methods/slhb/ray_plan.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+#include <unistd.h>
+
+namespace gi {
+namespace {
+
+double cores_of(RenderSettings const& s)
+{
+    return s.threads > 0 ? s.threads : tbb::this_task_arena::max_concurrency();
+}
+
+std::size_t physical_bytes() { return std::size_t(sysconf(_SC_PHYS_PAGES)) * std::size_t(sysconf(_SC_PAGE_SIZE)); }
+
+/// How cluttered a scene is: the mean over texels that have any, in a coarse look from a slanted direction.
+double layers_per_texel(World const& world, TriangleSoup const& soup)
+{
+    HitBuffer const b = make_hit_buffer(
+        soup, make_grid(world.bounds, glm::normalize(vec3{0.48f, 0.62f, 0.62f}), 64, vec2{0.5f}, 0));
+    std::size_t covered = 0;
+    for (std::size_t t = 0; t + 1 < b.offset.size(); ++t) covered += b.offset[t + 1] > b.offset[t];
+    return covered > 0 ? double(b.layers.size()) / double(covered) : 0;
+}
+
+} // namespace
+
+bool needs_exact_rays(World const& world, bool orthographic, SlhbSettings const& s)
+{
+    return s.shadows == Shadows::rays || s.look_ups == LookUps::none || s.exact.any() || orthographic ||
+           narrow_somewhere(world);
+}
+
+namespace {
+
+/// All but what plan_rays decides.
+SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Costs const& costs)
+{
+    SlhbSettings s = asked.slhb;
+    // Light that comes through few openings is found by few axes: a pass needs many at once.
+    bool const sky = !world.environment_select.empty();
+    if (s.schedule == Schedule::automatic)
+        s.schedule = !s.directions.empty()         ? Schedule::stored
+                     : s.fresh_axes > 0            ? Schedule::temporal
+                     : sky && asked.slhb.axes == 0 ? Schedule::stored
+                                                   : Schedule::streamed;
+    if (s.directions.empty()) s.directions = "icosahedron:320";
+    double const pixels = double(asked.width) * asked.height;
+    // What a pass builds should cost a share of what its paths cost, or be shared by too few of them; and of the
+    // budget.
+    constexpr double kPath = 0.5e-6, kShare = 0.5, kShareOfBudget = 0.2;
+    double const budget = asked.budget_s > 0 ? asked.budget_s * cores_of(asked) : double(kInf);
+    double const worth = std::min(kShare * kPath * pixels, kShareOfBudget * budget);
+    // Few passes need more axes and lamps each: what they lack shows in the whole picture alike. Rather fewer
+    // texels.
+    bool const few_passes = budget < 8 * kPath * pixels;
+    int const enough = few_passes ? 8 : 4;
+    constexpr int kLeast = 64; // texels
+    auto const texels_for = [&](int texels, double count, double most_s, auto const& cost) {
+        while (texels > kLeast && count * cost(texels) > most_s) texels /= 2;
+        return texels;
+    };
+    auto const axis = [&](int texels) { return costs.axis(texels); };
+    auto const map = [&](int texels) { return costs.map(texels); };
+    double const unless_few = few_passes ? worth : double(kInf);
+    constexpr double kCluttered = 3; // layers
+    if (s.resolution == 0) {
+        int const wanted = costs.layers < kCluttered ? 128 : 256;
+        s.resolution = s.schedule == Schedule::stored
+                           ? texels_for(wanted, double(make_directions(s.directions).axes.size()),
+                                        kShareOfBudget * budget, axis)
+                           : texels_for(wanted, enough, unless_few, axis);
+    }
+    if (s.axes == 0)
+        s.axes = s.schedule == Schedule::temporal ? 16 : std::clamp(int(worth / axis(s.resolution)), 2, enough);
+    if (s.axes > int(FewAxes::kMost))
+        throw InputError(fmt::format("{} axes in a pass", s.axes),
+                         fmt::format("there is room for {}", FewAxes::kMost), "use --schedule stored for more");
+    if (s.schedule != Schedule::temporal) s.fresh_axes = s.axes;
+    if (s.fresh_axes == 0) s.fresh_axes = std::max(1, s.axes / 8);
+    s.fresh_axes = std::min(s.fresh_axes, s.axes);
+    bool const from_points = world.emitters.empty() && world.environment_select.empty();
+    int const most_lamps = sky ? 16 : enough;
+    if (s.shadow_resolution == 0)
+        s.shadow_resolution =
+            from_points ? 1024
+                        : texels_for(sky && budget == double(kInf) ? 512 : 256, most_lamps, unless_few, map);
+    if (s.lamps == 0)
+        s.lamps = from_points ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), sky ? 8 : 1, most_lamps);
+    if (s.memory_mib == 0) s.memory_mib = int((physical_bytes() >> 20) / 4);
+    auto const map_bytes = [&] { // cubes, which take the most
+        return 6.0 * s.lamps * s.shadow_resolution * s.shadow_resolution * sizeof(NearestTexel);
+    };
+    while (s.shadow_resolution > kLeast && map_bytes() > double(s.memory_mib) * (1 << 20))
+        s.shadow_resolution /= 2;
+    if (s.fresh_lamps == 0) s.fresh_lamps = s.lamps;
+    s.fresh_lamps = std::min(s.fresh_lamps, s.lamps);
+    return s;
+}
+
+/// Automatic: for frames, who looks at them says so.
+RadianceCaching choose_cache(RenderSettings const& asked, bool lasting)
+{
+    SlhbSettings const& s = asked.slhb;
+    if (asked.bounces == 0 || s.exact.any() || s.space == Space::device) return RadianceCaching::off;
+    if (s.cache != RadianceCaching::automatic) return s.cache;
+    if (asked.budget_s > 0 && !(asked.until_relmse > 0)) return RadianceCaching::on;
+    return lasting ? RadianceCaching::automatic : RadianceCaching::off;
+}
+
+/// Where the first pass would not end within the budget: the primary surfaces and direct light of all pixels, and
+/// indirect light for as many as there is time for. @param axes  built in a pass, for a bounce
+int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, int axes, Costs const& costs)
+{
+    if (!(asked.budget_s > 0) || asked.bounces == 0) return 1;
+    bool const rays = s.look_ups == LookUps::none, shadow_rays = s.shadows == Shadows::rays;
+    // Surfaces after the first one: many paths end by roulette, most in the cache.
+    double const pixels = double(asked.width) * asked.height, bounces = std::min(asked.bounces, 3),
+                 after = s.cache == RadianceCaching::on ? 1.3
+                         : s.roulette > 0               ? std::min(bounces, 1.5)
+                                                        : bounces;
+    double const shadow = shadow_rays ? costs.shadow_ray : 0;
+    double const fixed = (rays ? 0 : bounces * axes * costs.axis(s.resolution)) +
+                         (shadow_rays ? 0 : s.fresh_lamps * costs.map(s.shadow_resolution)) +
+                         pixels * (costs.direct + shadow),
+                 indirect = pixels * after * (costs.bounce + (rays ? costs.ray : 0) + shadow);
+    for (int const n : {1, 2, 4})
+        if ((fixed + indirect / (n * n)) / cores_of(asked) < asked.budget_s) return n;
+    return 4;
+}
+
+SlhbSettings with_rays(RenderSettings const& asked, SlhbSettings s, World const& world, TriangleSoup const& soup,
+                       Camera const& camera, Costs const& costs, bool lasting)
+{
+    RayPlan const plan = plan_rays(asked, s.resolution, world, soup, camera, costs, lasting);
+    s.look_ups = plan.look_ups;
+    // Where time decides, weak paths are worth less than others, as long as what they leave makes room for more.
+    constexpr float kRoulette = 2, kRouletteToCells = 3; // measured: docs/methods.md
+    constexpr double kFewPasses = 1.4;
+    bool const by_time =
+        lasting || asked.until_relmse > 0 || (asked.budget_s > 0 && expected_passes(asked, costs) >= kFewPasses);
+    s.cache = choose_cache(asked, lasting);
+    if (s.roulette < 0) s.roulette = !by_time ? 0 : s.cache == RadianceCaching::on ? kRouletteToCells : kRoulette;
+    s.shadows = plan.shadows;
+    if (s.interleave == 0)
+        s.interleave =
+            choose_interleave(asked, s, lasting && s.schedule == Schedule::stored ? 0 : s.fresh_axes, costs);
+    return s;
+}
+
+} // namespace
+
+SlhbSettings choose_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup,
+                             Camera const& camera)
+{
+    Costs const costs(world, layers_per_texel(world, soup));
+    return with_rays(asked, choose_look_ups(asked, world, costs), world, soup, camera, costs, false);
+}
+
+SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup,
+                                   Camera const& camera)
+{
+    Costs const costs(world, layers_per_texel(world, soup));
+    RenderSettings lasting = asked;
+    lasting.budget_s = 0;
+    SlhbSettings& wanted = lasting.slhb;
+    bool const moves = world.static_triangles < world.triangles.size();
+    // Many axes for every frame, and what moves is all that they cost.
+    if (moves && wanted.schedule == Schedule::automatic && wanted.axes == 0 && wanted.fresh_axes == 0)
+        wanted.schedule = Schedule::stored;
+    SlhbSettings s = choose_look_ups(lasting, world, costs);
+    // Few points on lamps are exchanged from pass to pass: each has the light of as many as a window of the
+    // discontinuity filter has pixels.
+    constexpr int kLamps = 16, kPasses = 4; // in which what choose_settings takes in one is exchanged
+    int const fresh = asked.slhb.fresh_lamps > 0 ? asked.slhb.fresh_lamps : std::max(1, s.lamps / kPasses);
+    if (asked.slhb.lamps == 0) s.lamps = std::max(s.lamps, kLamps);
+    s.fresh_lamps = std::min(fresh, s.lamps);
+    return with_rays(asked, s, world, soup, camera, costs, true);
+}
+
+std::string as_options(SlhbSettings const& s)
+{
+    char const* const names[] = {"auto", "stored", "streamed", "temporal"};
+    std::string text =
+        fmt::format("--schedule {} --hit-buffer {} --lamps {} --shadow-map {} --interleave {}",
+                    names[int(s.schedule)], s.resolution, s.lamps, s.shadow_resolution, s.interleave);
+    if (s.schedule == Schedule::stored)
+        text += " --directions " + s.directions;
+    else
+        text += fmt::format(" --axes {}", s.axes);
+    if (s.schedule == Schedule::temporal) text += fmt::format(" --fresh-axes {}", s.fresh_axes);
+    if (s.fresh_lamps < s.lamps) text += fmt::format(" --fresh-lamps {}", s.fresh_lamps);
+    if (s.most_layers > 0) text += fmt::format(" --max-layers {}", s.most_layers);
+    text += fmt::format(" --look-ups {} --shadows {}", s.look_ups == LookUps::none ? "none" : "all",
+                        s.shadows == Shadows::rays ? "rays" : "maps");
+    text += fmt::format(" --roulette {}", s.roulette);
+    if (s.cache != RadianceCaching::automatic)
+        text += fmt::format(" --radiance-cache {}", s.cache == RadianceCaching::on ? "on" : "off");
+    if (s.cone > 0) text += fmt::format(" --cone {}", s.cone);
+    if (s.packed) text += " --packed";
+    if (s.gather) text += " --gather";
+    if (s.space == Space::device) text += " --device cuda";
+    return text;
+}
+
+std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, Camera const& camera)
+{
+    TriangleSoup const soup = make_soup(world);
+    Costs const costs(world, layers_per_texel(world, soup));
+    SlhbSettings const s = choose_look_ups(asked, world, costs);
+    RayPlan const plan = plan_rays(asked, s.resolution, world, soup, camera, costs, false);
+    std::vector<PlanItem> items;
+    bool const walks = plan.look_ups == LookUps::all;
+    items.push_back({"look-ups in hit buffers", walks, plan.why_look_ups});
+    if (walks) {
+        char const* const names[] = {"automatic", "stored", "streamed", "temporal"};
+        items.push_back({fmt::format("schedule {}", names[int(s.schedule)]), true,
+                         s.schedule == Schedule::streamed ? "no set of directions limits how far the error falls"
+                                                          : "a sky shines, or it was asked for"});
+        if (s.schedule == Schedule::stored)
+            items.push_back(
+                {"directions " + s.directions, true,
+                 world.environment_select.empty() ? "asked for" : "a sky shines, and many axes must look for it"});
+        else
+            items.push_back({fmt::format("{} axes for each bounce of a pass", s.axes), true,
+                             fmt::format("for {} triangles and {} x {} pixels", world.triangles.size(),
+                                         asked.width, asked.height)});
+        items.push_back({fmt::format("hit buffers of {0} x {0} texels", s.resolution), true,
+                         fmt::format("{:.1f} surfaces behind each other, texels of {:.2g} m", costs.layers,
+                                     2 * world.bounds.radius() / s.resolution)});
+        items.push_back({fmt::format("at most {} MiB of hit buffers", s.memory_mib), true,
+                         "else they get fewer texels (--memory)"});
+    }
+    bool const cached = choose_cache(asked, false) == RadianceCaching::on;
+    items.push_back({"radiance cache", cached,
+                     asked.slhb.cache != RadianceCaching::automatic ? "asked for"
+                     : cached ? "time decides; it takes noise for a little blur"
+                              : "it would leave a small error however long the render is; --radiance-cache on"});
+    bool const lit = !world.light_select.empty(), rays = plan.shadows == Shadows::rays;
+    items.push_back(
+        {rays ? "shadow rays"
+              : fmt::format("{} shadow maps of {} x {}", s.lamps, s.shadow_resolution, s.shadow_resolution),
+         lit, lit ? plan.why_shadows : "nothing shines"});
+    bool const narrow = narrow_somewhere(world);
+    items.push_back({"exact rays (Embree)", !walks || rays || narrow || camera.orthographic,
+                     !walks                ? "in place of look-ups"
+                     : rays                ? "for shadows"
+                     : camera.orthographic ? "the camera is orthographic"
+                     : narrow              ? "mirrors, glass or narrow lobes cannot live on a set of axes"
+                                           : "every lobe is broad"});
+    return items;
+}
+
+} // namespace gi

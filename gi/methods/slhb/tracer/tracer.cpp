@@ -1,0 +1,271 @@
+#include "gi/methods/slhb/tracer/tracer.h"
+
+#include "gi/methods/slhb/tracer/tracer_state.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace gi {
+
+/// Axis after axis, so that the buffers of one stay in the cache.
+std::size_t SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
+{
+    thread_local std::vector<std::uint32_t> first, order;
+    thread_local QueryBatch batch;
+    AxisPool const& pool = pass.axes.pool();
+    batch.watched = pass.first_watched != kNoPrimitive;
+    first.assign(pool.size() + 1, 0);
+    std::size_t n = 0;
+    for (Vertex& v : vertices) {
+        v.near_moving = false;
+        if (v.exact) continue;
+        ++first[v.axis + 1];
+        ++n;
+    }
+    if (n == 0) return 0;
+    for (std::size_t a = 0; a < pool.size(); ++a) first[a + 1] += first[a];
+    order.resize(n);
+    for (std::uint32_t k = 0; k < vertices.size(); ++k)
+        if (!vertices[k].exact) order[first[vertices[k].axis]++] = k;
+    auto const answer = [&](std::size_t from, std::size_t to, auto const& ask) {
+        batch.resize(to - from);
+        for (std::size_t k = from; k < to; ++k)
+            batch.set(k - from, vertices[order[k]].origin, vertices[order[k]].axis);
+        ask();
+        for (std::size_t k = from; k < to; ++k) {
+            std::uint32_t const hit = batch.hit[k - from];
+            LayerHit& to_fill = vertices[order[k]].hit;
+            to_fill = {};
+            if (batch.watched) vertices[order[k]].near_moving = batch.near_moving[k - from] != 0;
+            if (hit == kNoLayerHit) continue;
+            to_fill = {hit & kPrimitiveMask,
+                       {batch.hit_x[k - from], batch.hit_y[k - from], batch.hit_z[k - from]},
+                       (hit & kAlongAxis) != 0};
+            vertices[order[k]].layer = batch.hit_layer[k - from];
+            __builtin_prefetch(&world_.surfaces[to_fill.triangle]);
+        }
+    };
+    constexpr std::size_t kWorthwhile = 64; // queries of one axis
+    if (n >= kWorthwhile * pool.size()) {
+        std::size_t from = 0;
+        for (std::size_t a = 0; a < pool.size(); ++a) { // first[a] has become the end of a
+            answer(from, first[a], [&] { nearest_layers(pool, a, world_.surfaces, batch); });
+            from = first[a];
+        }
+    } else {
+        answer(0, n, [&] { nearest_layers(pool, world_.surfaces, batch); });
+    }
+    return n;
+}
+
+namespace {
+
+vec3 off_surface(Surface const& s, vec3 position, vec3 direction)
+{
+    vec3 const normal = shading_detail::triangle_normal(s);
+    return position + (glm::dot(direction, normal) > 0 ? s.clearance : -s.clearance) * normal;
+}
+
+} // namespace
+
+void SlhbTracer::add_exactly(Pass const& pass, std::span<Unshadowed const> direct) const
+{
+    thread_local std::vector<RayQuery> rays;
+    thread_local std::vector<std::uint8_t> blocked;
+    rays.clear();
+    for (Unshadowed const& d : direct) {
+        LightSample const light = sample_light(world_, d.lamp->choice, d.position, d.lamp->u);
+        Surface const& surface = world_.surfaces[d.triangle];
+        rays.push_back(shadow_ray(d.position, shading_detail::triangle_normal(surface), surface.clearance, light,
+                                  hash_words(hash_words(pass.index, d.triangle), std::uint32_t(rays.size()))));
+    }
+    blocked.resize(rays.size());
+    pass.exact->occluded(rays, blocked);
+    for (std::size_t k = 0; k < direct.size(); ++k)
+        if (blocked[k] == 0 || !(rays[k].reach > 0)) *direct[k].to += direct[k].radiance;
+}
+
+void SlhbTracer::start_paths(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
+                             std::vector<State>& states, std::vector<Vertex>& vertices) const
+{
+    states.resize(starts.size());
+    vertices.resize(starts.size());
+    std::uint32_t const key = random_key(seed_);
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+        PathStart const& start = starts[k];
+        State s;
+        samples[k] = {};
+        s.sample = &samples[k];
+        s.random = start.on_layer ? RqmcStream(hash_words(key, start.stream), pass.index)
+                                  : pixel_stream(key, start.stream, std::uint32_t(width_), pass.index);
+        s.triangle = start.triangle;
+        s.pixel = start.stream;
+        s.direction = start.ray.direction;
+        if (start.on_layer) {
+            s.position = start.ray.origin;
+            s.has_position = s.along_axis = s.emitted = true;
+            s.scatterings = s.vertex = 1;
+        } else if (start.triangle != kNoPrimitive) {
+            // The raster says which triangle; the ray says where on its plane.
+            s.barycentric = barycentric_of(world_.surfaces[start.triangle], start.ray);
+        }
+        states[k] = s;
+        vertices[k].path = std::uint32_t(k);
+    }
+}
+
+/// Random numbers of all, and what shading will read: in loops of their own, so that they are vectors and
+/// cache misses overlap.
+void SlhbTracer::prepare_vertices(std::span<Vertex const> vertices, std::vector<State>& states) const
+{
+    for (Vertex const& v : vertices) {
+        State& s = states[v.path];
+        if (s.triangle == kNoPrimitive) continue;
+        *s.u = VertexNumbers(s.random, std::uint32_t(s.vertex));
+        Surface const& surface = world_.surfaces[s.triangle];
+        for (int k = 0; k < 3; ++k) {
+            if (surface.is(Surface::kSmooth)) __builtin_prefetch(&world_.normals[surface.vertex[k]]);
+            if (surface.is(Surface::kVaries) && !world_.uv0.empty())
+                __builtin_prefetch(&world_.uv0[surface.vertex[k]]);
+        }
+    }
+}
+
+void SlhbTracer::add_lit(Pass const& pass, Direct& direct, SlhbCounts& counts) const
+{
+    counts.shadow_lookups += direct.maps.size();
+    counts.shadow_rays += direct.rays.size();
+    if (!direct.rays.empty()) {
+        direct.queries.clear();
+        for (ShadowRay const& r : direct.rays) direct.queries.push_back(r.query);
+        direct.blocked.resize(direct.rays.size());
+        pass.exact->occluded(direct.queries, direct.blocked, pass.exact_world);
+        for (std::size_t k = 0; k < direct.rays.size(); ++k)
+            if (direct.blocked[k] == 0) *direct.rays[k].to += direct.rays[k].radiance;
+    }
+    if (parts_.shadows) {
+        add_exactly(pass, direct.maps);
+    } else {
+        for (Unshadowed const& d : direct.maps) {
+            if (d.lamp->shadow.lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
+            std::uint32_t const caster = d.place.texel != nullptr ? d.place.texel->primitive : kNoPrimitive;
+            if (caster != kNoPrimitive && caster >= pass.first_watched) d.sample->near_moving = true;
+        }
+    }
+    direct.maps.clear();
+    direct.rays.clear();
+}
+
+/// Finds where all of them go, by look-ups and exact rays.
+void SlhbTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::vector<State>& states,
+                           SlhbCounts& counts) const
+{
+    thread_local std::vector<RayQuery> rays;
+    thread_local std::vector<Hit> hits;
+    if (!pass.look_ups)
+        for (Vertex& v : vertices)
+            if (!v.exact) {
+                v.exact = true;
+                vec3 const direction = states[v.path].direction;
+                v.ray = {off_surface(world_.surfaces[v.origin.triangle], v.origin.position, direction), direction};
+            }
+    counts.queries += ask_axes(pass, vertices);
+    rays.clear();
+    for (Vertex const& v : vertices)
+        if (v.exact)
+            rays.push_back(
+                {.ray = v.ray,
+                 .seed = hash_words(states[v.path].random.own_seed() + std::uint32_t(states[v.path].vertex),
+                                    pass.index)});
+    hits.resize(rays.size());
+    if (!rays.empty()) pass.exact->nearest(rays, hits, pass.exact_world);
+    counts.exact_rays += rays.size();
+    std::size_t ray = 0;
+    for (Vertex& v : vertices) {
+        State& s = states[v.path];
+        s.has_position = !v.exact;
+        if (v.exact) {
+            s.triangle = hits[ray].triangle;
+            if (s.triangle != kNoPrimitive) __builtin_prefetch(&world_.surfaces[s.triangle]);
+            v.distance = hits[ray].distance;
+            s.barycentric = hits[ray++].barycentric;
+        } else {
+            s.triangle = v.hit.triangle;
+            s.position = v.hit.position;
+            s.barycentric = vec2{1.0f / 3};
+            v.distance = glm::length(s.position - v.origin.position);
+            if (v.near_moving) s.sample->near_moving = true;
+        }
+    }
+}
+
+/// Whether it ends here, to share what is sent on from there.
+bool SlhbTracer::ends_shared(State& s, Vertex const& v, Ending& ending) const
+{
+    if (s.vertex != 1 || s.triangle == kNoPrimitive || !s.along_axis ||
+        !bsdf_detail::is_matt(world_.bsdfs[world_.surfaces[s.triangle].material]))
+        return false;
+    Surface const& surface = world_.surfaces[s.triangle];
+    if (!s.has_position) s.position = shading_detail::SurfacePoint{surface, s.barycentric}.position();
+    if (!world_.emitter_pdf.empty() && world_.emitter_pdf[s.triangle] > 0) { // which differs from path to path
+        ShadingPoint at = shading_point(world_, s.triangle, barycentric_at(surface, s.position), s.direction);
+        at.position = s.position;
+        add_emission(s, v, at);
+    }
+    ending = {s.triangle, v.layer, v.origin.up, s.position, s.direction, s.throughput};
+    return true;
+}
+
+void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
+                       std::span<Ending> endings, std::vector<CacheNote>& notes, PathCounts& paths,
+                       SlhbCounts& counts) const
+{
+    using Clock = std::chrono::steady_clock;
+    auto const begun = Clock::now();
+    auto turned = begun; // from direct to indirect light
+    bool const from_camera = starts.empty() || !starts[0].on_layer;
+    thread_local std::vector<State> states;
+    thread_local std::vector<Vertex> vertices;
+    thread_local Direct direct;
+    thread_local std::vector<VertexNumbers> numbers;
+    thread_local std::vector<Open> open;
+    open.clear();
+    numbers.resize(starts.size());
+    start_paths(pass, starts, samples, states, vertices);
+    for (std::size_t k = 0; k < states.size(); ++k) states[k].u = &numbers[k];
+    for (Ending& e : endings) e.triangle = kNoLayerHit;
+    std::size_t active = starts.size();
+    while (active > 0) {
+        std::size_t going = 0;
+        prepare_vertices(std::span(vertices).first(active), states);
+        for (std::size_t k = 0; k < active; ++k) {
+            Vertex& v = vertices[k];
+            if (!shade(pass, states[v.path], v, direct, open, paths)) continue;
+            if (going != k) vertices[going] = v;
+            ++going;
+        }
+        add_lit(pass, direct, counts);
+        if (from_camera && turned == begun) turned = Clock::now();
+        find_hits(pass, std::span(vertices).first(going), states, counts);
+        active = going;
+        if (pass.cache != nullptr) end_in_cells(pass, states, vertices, active, open, counts);
+        if (endings.empty()) continue;
+        active = 0;
+        for (std::size_t k = 0; k < going; ++k) {
+            Vertex const& v = vertices[k];
+            if (!ends_shared(states[v.path], v, endings[v.path])) vertices[active++] = v;
+        }
+    }
+    for (Open const& o : open)
+        notes.push_back({o.keys, (states[o.path].bucket(2) - o.before) / o.throughput, o.weight, o.directional});
+    counts.direct_s += std::chrono::duration<double>(turned - begun).count();
+    counts.indirect_s += std::chrono::duration<double>(Clock::now() - turned).count();
+    for (PathSample& s : samples)
+        for (vec3& part : s.radiance)
+            if (!all_finite(part)) {
+                part = vec3{0};
+                ++paths.invalid_paths;
+            }
+}
+
+} // namespace gi

@@ -1,0 +1,85 @@
+#pragma once
+// Paths from the camera: they find the surfaces that virtual lights light, and bring all light but that.
+//
+// Of the light that a surface y sends straight to the first surface x that scatters other than by a delta lobe,
+// virtual lights bring the share
+//   w(x, y) = min(1, b / h),  h = pi f_x |cos_x| |cos_y| / |x - y|^2,  b = 1 / near^2
+// so that what one of them brings is bounded (Kollig and Keller 2004, sec. 3: "bias compensation"), and these
+// paths bring 1 - w: direct light, light along mirrors and glass, and what is nearer than about `near`. Nothing is
+// clamped away, and with exact visibility of virtual lights the sum is unbiased.
+// f_x is the largest channel, cos_x is with the shading normal and cos_y with the geometric one.
+
+#include "gi/core/rng.h"
+#include "gi/render/exact_visibility.h"
+#include "gi/render/path_sample.h"
+#include "gi/render/sampling.h"
+#include "gi/scene/model/camera.h"
+#include "gi/scene/shading/light_sampling.h"
+#include "gi/scene/shading/shading_point.h"
+
+#include <span>
+#include <vector>
+
+namespace gi {
+
+/// h of the formula above, for one pair. @param value_x  pi * largest channel of f_x * |cos_x|
+inline float bounded_term(float value_x, float cos_y, float squared_distance)
+{
+    return value_x * cos_y / squared_distance;
+}
+/// w of the formula above.
+inline float share_of_virtual_lights(float h, float bound) { return h > bound ? bound / h : 1.0f; }
+
+/// A surface that a camera path met and that virtual lights light.
+struct Receiver {
+    std::uint32_t path = 0; ///< of those that advance together
+    std::uint32_t triangle = 0;
+    vec3 throughput{1}; ///< from the camera
+    vec3 position;
+    vec3 geometric_normal; ///< unit, towards the viewer
+    Frame frame;           ///< about the shading normal, same side
+    Bsdf bsdf;
+    vec3 wo; ///< unit, local
+    float clearance;
+    bool front; ///< the viewer is on the counter-clockwise side
+    bool matt;
+};
+
+struct CameraSubpath {
+    Pcg32 rng{0, 0};
+    Ray ray;
+    vec3 throughput{1};
+    float arrival_pdf = 0; ///< of the direction we come along; 0 = camera or delta lobe
+    int scatterings = 0;   ///< non-delta, so far
+    bool straight = false; ///< comes straight from the first surface that scattered
+    float value_x = 0;     ///< there, see bounded_term
+    bool ended = false;
+    RayQuery shadow;
+    vec3 shadow_radiance{0};
+    int shadow_bucket = 0;
+    PathSample sample;
+
+    vec3& bucket(int scattered) { return sample.radiance[std::size_t(std::min(scattered, 2))]; }
+};
+
+struct CameraPaths {
+    WorldView world;
+    ExactVisibility const& visibility;
+    CameraRays camera;
+    int bounces;
+    std::uint64_t seed;
+    PixelFilter filter;
+    int width;
+    float bound; ///< b of the formula above, 1/m^2
+
+    CameraSubpath start(int x, int y, std::uint32_t index) const;
+    /// Follows all paths to their ends. @param receivers  are added, in the order of surfaces, then of paths
+    void trace(std::span<CameraSubpath> paths, std::vector<Receiver>& receivers, PathCounts& counts) const;
+
+private:
+    bool advance(CameraSubpath& p, Hit const& hit, int surface, std::uint32_t index,
+                 std::vector<Receiver>& receivers, PathCounts& counts) const;
+    void aim_at_light(CameraSubpath& p, ShadingPoint const& at, vec3 wo, float share) const;
+};
+
+} // namespace gi

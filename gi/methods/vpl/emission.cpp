@@ -1,0 +1,65 @@
+#include "gi/methods/vpl/emission.h"
+
+namespace gi {
+namespace {
+
+/// Parallel light that fills the disk around the scene. @param travels unit
+EmittedLight through_scene(Bounds const& bounds, vec3 travels, vec3 irradiance, vec2 place)
+{
+    constexpr float kAround = 1.001f; // rounding must not cut a corner off
+    float const radius = kAround * bounds.radius();
+    Frame const frame = Frame::about(travels);
+    vec2 const on_disk = radius * square_to_disk(place);
+    vec3 const from = bounds.center() - radius * travels + on_disk.x * frame.tangent + on_disk.y * frame.bitangent;
+    return {{from, travels}, irradiance * (kPi * radius * radius)};
+}
+
+EmittedLight emit_punctual(Light const& light, Bounds const& bounds, vec2 place, vec2 direction)
+{
+    if (light.type == LightType::directional)
+        return through_scene(bounds, light.direction, light.intensity, place);
+    float const lowest = light.type == LightType::spot ? light.cos_outer : -1.0f;
+    float const z = 1 - direction.x * (1 - lowest), r = std::sqrt(glm::max(0.0f, 1 - z * z));
+    vec2 const turn = azimuth(direction.y);
+    vec3 const local{r * turn.x, r * turn.y, z};
+    vec3 power = light.intensity * (2 * kPi * (1 - lowest));
+    if (light.type == LightType::spot) power *= light_detail::cone_attenuation(light, z);
+    vec3 const about = light.type == LightType::spot ? light.direction : vec3{0, 0, 1};
+    return {{light.position, Frame::about(about).to_world(local)}, power, light.range};
+}
+
+EmittedLight emit_triangle(WorldView const& world, std::uint32_t triangle, vec2 place, vec2 direction, float side)
+{
+    Surface const& surface = world.surfaces[triangle];
+    shading_detail::SurfacePoint on{surface, square_to_triangle(place)};
+    Material const& m = world.materials[surface.material];
+    if (m.emissive_map.texture >= 0) shading_detail::interpolate_uv(world, on);
+    vec3 radiance = shading_detail::look_up_emission(world, m, on);
+    if (m.alpha_mode != AlphaMode::opaque) radiance *= coverage(world, triangle, on.barycentric);
+    bool const both = surface.is(Surface::kDoubleSided);
+    vec3 const normal = shading_detail::triangle_normal(surface) * (both && side < 0.5f ? -1.0f : 1.0f);
+    float const area = 0.5f * glm::length(light_detail::area_vector(surface));
+    vec3 const leaves = Frame::about(normal).to_world(square_to_cosine_hemisphere(direction));
+    return {{on.position() + surface.clearance * normal, leaves}, radiance * (kPi * area * (both ? 2.0f : 1.0f))};
+}
+
+} // namespace
+
+EmittedLight emit_light(WorldView const& world, LightChoice choice, Bounds const& bounds, vec2 place,
+                        vec2 direction, float side)
+{
+    if (!(choice.probability > 0) || bounds.empty()) return {};
+    if (light_detail::is_environment(world, choice)) {
+        LightSample const s = sample_light(world, choice, bounds.center(), direction);
+        if (!(s.pdf > 0)) return {};
+        return through_scene(bounds, -s.direction, s.radiance / s.pdf, place);
+    }
+    std::size_t const lights = world.lights.size();
+    EmittedLight e = choice.light < lights
+                         ? emit_punctual(world.lights[choice.light], bounds, place, direction)
+                         : emit_triangle(world, world.emitters[choice.light - lights], place, direction, side);
+    e.power /= choice.probability;
+    return e;
+}
+
+} // namespace gi

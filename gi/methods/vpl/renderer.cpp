@@ -1,0 +1,140 @@
+#include "gi/methods/vpl/renderer.h"
+
+#include "gi/core/rqmc.h"
+#include "gi/render/flush_denormals.h"
+#include "gi/scene/model/plan.h"
+
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+/// Sides of the tiles whose paths advance together, px.
+constexpr int kTile = 16;
+
+/// Where nothing is said: virtual lights so near are bounded, in radii of the scene.
+constexpr float kNear = 0.02f;
+
+/// b of camera_paths.h, 1/m^2.
+float bound_of(World const& world, VirtualLightSettings const& s)
+{
+    float const near_m = s.near_m > 0 ? s.near_m : kNear * world.bounds.radius();
+    return near_m > 0 ? 1 / (near_m * near_m) : kInf;
+}
+
+} // namespace
+
+VirtualLightRenderer::VirtualLightRenderer(VisibilityKind kind, World const& world, RenderSettings const& settings,
+                                           std::size_t first_moving, Report& report)
+    : kind_(kind), world_(world), settings_(settings), first_moving_(first_moving), report_(report)
+{
+    build();
+}
+
+void VirtualLightRenderer::build()
+{
+    term_.reset();
+    {
+        StageTimer const timer(report_, "build (Embree BVH)");
+        visibility_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, settings_.threads,
+                                                        first_moving_);
+    }
+    StageTimer const timer(report_, "build (visibility)");
+    term_ = make_term(kind_, {world_, *visibility_, settings_, first_moving_, report_});
+}
+
+void VirtualLightRenderer::changed(Changes const& changes)
+{
+    // Rays that ask for coverage read the materials that there were when they were built.
+    if (changes.coverage || (changes.materials && plan_scene(world_).alpha_tests)) return build();
+    if (!changes.geometry) return;
+    visibility_->moved(world_);
+    term_->world_changed();
+}
+
+void VirtualLightRenderer::pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums)
+{
+    PathCounts counts;
+    std::vector<VirtualLight> lights;
+    {
+        StageTimer const timer(report_, "virtual lights");
+        lights = trace_light_paths(view(world_), world_.bounds, *visibility_,
+                                   {.count = std::uint32_t(settings_.vpl.light_paths),
+                                    .bounces = settings_.bounces,
+                                    .seed = settings_.seed,
+                                    .pass = index},
+                                   counts);
+    }
+    lights_ += lights.size();
+    sums[0].counts += counts;
+    rays_ += double(counts.nearest_rays);
+    {
+        StageTimer const timer(report_, "visibility of a pass");
+        term_->prepare(lights, index);
+    }
+    StageTimer const timer(report_, "paths");
+    for (std::size_t k = 0; k < views.size(); ++k) trace_view(views[k], index, lights, sums[k]);
+}
+
+void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index,
+                                      std::span<VirtualLight const> lights, Accumulator& sums)
+{
+    CameraPaths const paths{.world = view(world_),
+                            .visibility = *visibility_,
+                            .camera = camera_rays(v.camera, v.width, v.height, world_.origin),
+                            .bounces = settings_.bounces,
+                            .seed = settings_.seed,
+                            .filter = settings_.filter,
+                            .width = v.width,
+                            .bound = bound_of(world_, settings_.vpl)};
+    tbb::combinable<Counts> counts;
+    int const columns = (v.width + kTile - 1) / kTile, rows = (v.height + kTile - 1) / kTile;
+    tbb::parallel_for(0, columns * rows, [&](int tile) {
+        FlushDenormals const guard;
+        Counts& local = counts.local();
+        int const left = tile % columns * kTile, right = std::min(left + kTile, v.width);
+        int const top = tile / columns * kTile, bottom = std::min(top + kTile, v.height);
+        thread_local std::vector<CameraSubpath> batch;
+        thread_local std::vector<Receiver> receivers;
+        thread_local std::vector<vec3> gathered;
+        batch.clear();
+        receivers.clear();
+        for (int y = top; y < bottom; ++y)
+            for (int x = left; x < right; ++x) batch.push_back(paths.start(x, y, index));
+        paths.trace(batch, receivers, local.paths);
+        gathered.assign(receivers.size(), vec3{0});
+        gather({receivers, hash_words(hash_words(std::uint32_t(settings_.seed), std::uint32_t(tile)), index)},
+               lights, *term_, paths.bound, gathered, local.paths, local.gather);
+        for (std::size_t k = 0; k < receivers.size(); ++k) batch[receivers[k].path].bucket(2) += gathered[k];
+        auto next = batch.begin();
+        for (int y = top; y < bottom; ++y)
+            for (int x = left; x < right; ++x) {
+                PathSample& s = (next++)->sample;
+                for (vec3& part : s.radiance)
+                    if (!all_finite(part)) {
+                        part = vec3{0};
+                        ++local.paths.invalid_paths;
+                    }
+                sums.add(std::size_t(y) * std::size_t(v.width) + std::size_t(x), s, sums.paths);
+            }
+    });
+    ++sums.paths;
+    Counts const all = counts.combine([](Counts a, Counts const& b) {
+        a.paths += b.paths;
+        a.gather += b.gather;
+        return a;
+    });
+    sums.counts += all.paths;
+    gathered_ += all.gather;
+    rays_ += double(all.paths.nearest_rays + all.paths.shadow_rays);
+}
+
+void VirtualLightRenderer::report_work()
+{
+    report_.count("virtual lights", double(lights_));
+    report_.count("connections to virtual lights", double(gathered_.connections));
+    report_.count("of these bounded, the rest by camera paths", double(gathered_.bounded));
+    term_->report_work(report_);
+}
+
+} // namespace gi

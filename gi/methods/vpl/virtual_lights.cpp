@@ -1,0 +1,130 @@
+#include "gi/methods/vpl/virtual_lights.h"
+
+#include "gi/core/rng.h"
+#include "gi/methods/vpl/emission.h"
+#include "gi/render/flush_denormals.h"
+
+#include <algorithm>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+namespace {
+
+/// Paths that advance together, so that rays travel in packets.
+constexpr std::uint32_t kPathsTogether = 64;
+
+struct LightPath {
+    Pcg32 rng{0, 0};
+    EmittedLight light;
+    int scatterings = 0; ///< non-delta, so far
+    bool from_lamp = true;
+    std::vector<VirtualLight> left; ///< on its way
+};
+
+/// From a hit to the next ray. False where the path ends.
+bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit const& hit)
+{
+    if (hit.triangle == kNoTriangle) return false;
+    vec3 const direction = p.light.ray.direction;
+    ShadingPoint const at = shading_point(world, hit.triangle, hit.barycentric, direction);
+    if (p.from_lamp && p.light.range > 0) {
+        Light window;
+        window.range = p.light.range;
+        p.light.power *= light_detail::distance_attenuation(window, hit.distance) * square(hit.distance);
+    }
+    p.from_lamp = false;
+    vec3 const arrived = at.frame.to_local(-direction);
+    float const cos_arrived = std::abs(glm::dot(direction, at.geometric_normal));
+    if (!(arrived.z > 0) || !(cos_arrived > 0)) return false;
+    vec3 const power = p.light.power * (arrived.z / cos_arrived);
+    if (!all_finite(power) || !(max_component(power) > 0)) return false;
+    if (!only_delta(at.bsdf)) {
+        p.left.push_back({.position = at.position,
+                          .normal = at.geometric_normal,
+                          .triangle = hit.triangle,
+                          .clearance = at.clearance,
+                          .front = at.front,
+                          .power = power,
+                          .bsdf = at.bsdf,
+                          .frame = at.frame,
+                          .arrived = arrived,
+                          .matt = bsdf_detail::is_matt(at.bsdf)});
+    }
+    float const u_lobe = p.rng.uniform();
+    BsdfSample const next = sample(at.bsdf, arrived, at.front, u_lobe, p.rng.uniform2());
+    if (!next.delta && ++p.scatterings >= s.bounces) return false;
+    vec3 const leaves = at.frame.to_world(next.wi);
+    float const cos_leaves = glm::dot(leaves, at.geometric_normal);
+    if ((cos_leaves > 0) != (next.wi.z > 0) || next.wi.z == 0) return false;
+    // Of a path from the camera the weight has the cosine with the shading normal on this side.
+    vec3 weight = next.weight * std::abs(cos_leaves / next.wi.z);
+    // Only radiance is squeezed by refraction, not power.
+    if (next.transmitted && !at.bsdf.thin) weight *= square(at.front ? at.bsdf.ior : 1 / at.bsdf.ior);
+    float const survival = std::min(1.0f, max_component(weight));
+    if (!(survival > 0) || p.rng.uniform() >= survival) return false;
+    p.light.power = power * weight / survival;
+    p.light.ray = {leave(at, leaves), leaves};
+    return true;
+}
+
+void trace(WorldView const& world, ExactVisibility const& visibility, LightPaths const& s,
+           std::vector<LightPath>& paths, PathCounts& counts)
+{
+    std::vector<LightPath*> active;
+    for (LightPath& p : paths)
+        if (max_component(p.light.power) > 0) active.push_back(&p);
+    std::vector<RayQuery> queries;
+    std::vector<Hit> hits;
+    for (int surface = 0; !active.empty(); ++surface) {
+        if (surface == kLongestPath) {
+            counts.cut_paths += active.size();
+            return;
+        }
+        queries.clear();
+        for (LightPath* p : active) queries.push_back({.ray = p->light.ray, .seed = p->rng.next()});
+        hits.resize(active.size());
+        visibility.nearest(queries, hits);
+        counts.nearest_rays += active.size();
+        std::size_t left = 0;
+        for (std::size_t k = 0; k < active.size(); ++k)
+            if (advance(world, s, *active[k], hits[k])) active[left++] = active[k];
+        active.resize(left);
+    }
+}
+
+} // namespace
+
+std::vector<VirtualLight> trace_light_paths(WorldView const& world, Bounds const& bounds,
+                                            ExactVisibility const& visibility, LightPaths const& s,
+                                            PathCounts& counts)
+{
+    if (s.bounces < 1 || world.light_select.empty()) return {};
+    std::uint32_t const blocks = (s.count + kPathsTogether - 1) / kPathsTogether;
+    std::vector<std::vector<VirtualLight>> found(blocks);
+    std::vector<PathCounts> of_block(blocks);
+    tbb::parallel_for(0u, blocks, [&](std::uint32_t block) {
+        FlushDenormals const guard;
+        std::uint32_t const first = block * kPathsTogether, last = std::min(s.count, first + kPathsTogether);
+        std::vector<LightPath> paths(last - first);
+        for (std::uint32_t i = first; i < last; ++i) {
+            LightPath& p = paths[i - first];
+            p.rng = Pcg32::for_path(s.seed ^ 0x7619, i, s.pass);
+            // Strata over the lamps: every lamp gets its share of the paths, whatever the pass.
+            double const u = (double(i) + p.rng.uniform_double()) / double(s.count);
+            LightChoice const choice = choose_light(world, u);
+            vec2 const place = p.rng.uniform2(), direction = p.rng.uniform2();
+            p.light = emit_light(world, choice, bounds, place, direction, p.rng.uniform());
+            p.light.power /= float(s.count);
+        }
+        trace(world, visibility, s, paths, of_block[block]);
+        for (LightPath const& p : paths) found[block].insert(found[block].end(), p.left.begin(), p.left.end());
+    });
+    std::vector<VirtualLight> all;
+    for (std::uint32_t b = 0; b < blocks; ++b) {
+        all.insert(all.end(), found[b].begin(), found[b].end());
+        counts += of_block[b];
+    }
+    return all;
+}
+
+} // namespace gi

@@ -1,0 +1,250 @@
+#include "gi/render/exact_visibility.h"
+
+#include "gi/core/rng.h"
+#include "gi/scene/shading/shading_point.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace gi {
+namespace {
+
+/// Rays of a packet. Where the processor has no vectors of 16 floats, Embree takes a packet apart by itself.
+constexpr std::size_t kPacket = 16;
+
+struct alignas(64) PacketMask {
+    int valid[kPacket];
+};
+
+/// Fills a packet with up to kPacket queries.
+PacketMask fill(RTCRay16& packet, std::span<RayQuery const> queries)
+{
+    PacketMask mask;
+    for (std::size_t k = 0; k < kPacket; ++k) {
+        RayQuery const& q = queries[std::min(k, queries.size() - 1)];
+        mask.valid[k] = k < queries.size() ? -1 : 0;
+        packet.org_x[k] = q.ray.origin.x;
+        packet.org_y[k] = q.ray.origin.y;
+        packet.org_z[k] = q.ray.origin.z;
+        packet.dir_x[k] = q.ray.direction.x;
+        packet.dir_y[k] = q.ray.direction.y;
+        packet.dir_z[k] = q.ray.direction.z;
+        packet.tnear[k] = q.start;
+        packet.tfar[k] = q.reach;
+        packet.time[k] = 0;
+        packet.mask[k] = 0xffffffffu;
+        packet.id[k] = q.seed;
+        packet.flags[k] = 0;
+    }
+    return mask;
+}
+
+/// Embree leaves triangles out that are not finite or too far away, and refitting would not bring them back.
+bool usable(vec3 p) { return all_finite(p) && max_component(glm::abs(p)) < 1e18f; }
+bool usable(std::span<vec3 const> positions)
+{
+    return std::ranges::all_of(positions, [](vec3 p) { return usable(p); });
+}
+
+/// Are its usable triangles more than one point? Of two geometries without extent Embree 3.13 can build nothing.
+bool has_extent(World const& world, std::uint32_t first, std::uint32_t last)
+{
+    Bounds bounds;
+    for (std::uint32_t t = first; t < last; ++t) {
+        uvec3 const v = world.triangles[t];
+        vec3 const corners[3] = {world.positions[v.x], world.positions[v.y], world.positions[v.z]};
+        if (!usable(corners)) continue;
+        for (vec3 const p : corners) bounds = joined(bounds, {p, p});
+    }
+    return !bounds.empty() && bounds.low != bounds.high;
+}
+
+} // namespace
+
+void ExactVisibility::nearest(std::span<RayQuery const> queries, std::span<Hit> hits, RayWorld met) const
+{
+    RTCScene const scene = met == RayWorld::what_stays && still_ ? still_.get() : scene_.get();
+    Context context(*this);
+    for (std::size_t first = 0; first < queries.size(); first += kPacket) {
+        auto const some = queries.subspan(first, std::min(kPacket, queries.size() - first));
+        RTCRayHit16 packet;
+        PacketMask const mask = fill(packet.ray, some);
+        std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
+        std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
+        rtcIntersect16(mask.valid, scene, &context.rtc, &packet);
+        for (std::size_t k = 0; k < some.size(); ++k)
+            hits[first + k] = packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
+                                  ? Hit{}
+                                  : Hit{part_of(packet.hit.instID[0][k])
+                                            .world_triangle(packet.hit.geomID[k], packet.hit.primID[k]),
+                                        {packet.hit.u[k], packet.hit.v[k]},
+                                        packet.ray.tfar[k]};
+    }
+}
+
+void ExactVisibility::occluded(std::span<RayQuery const> queries, std::span<std::uint8_t> blocked,
+                               RayWorld met) const
+{
+    RTCScene const scene = met == RayWorld::what_stays && still_ ? still_.get() : scene_.get();
+    Context context(*this);
+    for (std::size_t first = 0; first < queries.size(); first += kPacket) {
+        auto const some = queries.subspan(first, std::min(kPacket, queries.size() - first));
+        RTCRay16 packet;
+        PacketMask const mask = fill(packet, some);
+        rtcOccluded16(mask.valid, scene, &context.rtc, &packet);
+        for (std::size_t k = 0; k < some.size(); ++k) blocked[first + k] = packet.tfar[k] < 0;
+    }
+}
+
+void ExactVisibility::coverage_filter(RTCFilterFunctionNArguments const* a)
+{
+    ExactVisibility const& self = *reinterpret_cast<Context const*>(a->context)->owner;
+    for (unsigned i = 0; i < a->N; ++i) {
+        if (a->valid[i] == 0) continue;
+        std::uint32_t const triangle = self.part_of(RTCHitN_instID(a->hit, a->N, i, 0))
+                                           .world_triangle(kCutOut, RTCHitN_primID(a->hit, a->N, i));
+        vec2 const uv{RTCHitN_u(a->hit, a->N, i), RTCHitN_v(a->hit, a->N, i)};
+        float const covered = coverage(self.world_, triangle, uv);
+        if (covered >= 1) continue;
+        std::uint64_t const key = (std::uint64_t(RTCRayN_id(a->ray, a->N, i)) << 32) | triangle;
+        float const u = float(mix_bits(key) >> 40) * 0x1p-24f;
+        if (u >= covered) a->valid[i] = 0;
+    }
+}
+
+void ExactVisibility::add_triangles(World const& world, RTCBuffer positions, unsigned geometry_id, bool moves,
+                                    Part& part)
+{
+    std::size_t const count =
+        part.triangles[geometry_id].empty() ? part.last - part.first : part.triangles[geometry_id].size();
+    RTCGeometry const geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (moves) rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
+    rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions, 0, sizeof(vec3),
+                         world.positions.size() - part.first_vertex);
+    auto* const triangles = static_cast<uvec3*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3), count));
+    if (triangles == nullptr) throw std::bad_alloc();
+    for (std::size_t i = 0; i < count; ++i)
+        triangles[i] = world.triangles[part.world_triangle(geometry_id, std::uint32_t(i))] - part.first_vertex;
+    if (geometry_id == kCutOut) {
+        rtcSetGeometryIntersectFilterFunction(geometry, coverage_filter);
+        rtcSetGeometryOccludedFilterFunction(geometry, coverage_filter);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(part.scene.get(), geometry, geometry_id);
+    rtcReleaseGeometry(geometry);
+    part.geometries[geometry_id] = geometry;
+}
+
+void ExactVisibility::build(World const& world, bool moves, Part& part)
+{
+    part.scene.reset(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(part.scene.get(),
+                     RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | (moves ? RTC_SCENE_FLAG_DYNAMIC : 0)));
+    // Low: a tree of one tree per geometry. These are good ones, by surface area, whatever is refitted later.
+    rtcSetSceneBuildQuality(part.scene.get(), moves ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
+    part.first_vertex = std::uint32_t(world.positions.size());
+    for (std::vector<std::uint32_t>& t : part.triangles) t.clear();
+    for (RTCGeometry& geometry : part.geometries) geometry = nullptr;
+    for (std::uint32_t t = part.first; t < part.last; ++t) {
+        part.first_vertex =
+            std::min({part.first_vertex, world.triangles[t].x, world.triangles[t].y, world.triangles[t].z});
+        if (!alpha_tests_) continue;
+        bool const opaque = world.materials[world.triangle_material[t]].alpha_mode == AlphaMode::opaque;
+        part.triangles[opaque ? kOpaque : kCutOut].push_back(t);
+    }
+    std::span const positions_now = std::span(world.positions).subspan(part.first_vertex);
+    bool const both = !part.triangles[kOpaque].empty() && !part.triangles[kCutOut].empty();
+    bool const empty = part.first == part.last || (both && !has_extent(world, part.first, part.last));
+    part.usable = !empty && usable(positions_now);
+    if (!empty) {
+        // Embree reads 16 bytes from every vertex, so the last one needs padding.
+        RTCBuffer const positions = rtcNewBuffer(device_.get(), (positions_now.size() + 1) * sizeof(vec3));
+        if (positions == nullptr) throw std::bad_alloc();
+        part.positions = static_cast<vec3*>(rtcGetBufferData(positions));
+        std::ranges::copy(positions_now, part.positions);
+        bool const cut_outs = !part.triangles[kCutOut].empty();
+        if (!cut_outs || !part.triangles[kOpaque].empty()) add_triangles(world, positions, kOpaque, moves, part);
+        if (cut_outs) add_triangles(world, positions, kCutOut, moves, part);
+        rtcReleaseBuffer(positions);
+    }
+    BuildStop building(stop_);
+    rtcSetSceneProgressMonitorFunction(
+        part.scene.get(), [](void* b, double) { return !static_cast<BuildStop*>(b)->given_up(); }, &building);
+    rtcCommitScene(part.scene.get());
+    rtcSetSceneProgressMonitorFunction(part.scene.get(), nullptr, nullptr);
+}
+
+void ExactVisibility::check() const
+{
+    RTCError const e = rtcGetDeviceError(device_.get());
+    if (e == RTC_ERROR_CANCELLED) throw Interrupted();
+    if (e != RTC_ERROR_NONE)
+        throw std::runtime_error(fmt::format("Embree could not build the scene (error {})", int(e)));
+}
+
+ExactVisibility::ExactVisibility(World const& world, bool alpha_tests, int threads, std::size_t first_moving,
+                                 StopRequest const* stop)
+    : device_(rtcNewDevice(threads > 0 ? fmt::format("threads={}", threads).c_str() : nullptr)),
+      stop_(stop),
+      world_(view(world)),
+      alpha_tests_(alpha_tests)
+{
+    if (!device_) throw std::runtime_error("Embree could not be started");
+    auto const triangles = std::uint32_t(world.triangles.size());
+    parts_[0].last = parts_[1].first = std::uint32_t(std::min<std::size_t>(first_moving, triangles));
+    parts_[1].last = triangles;
+    build(world, false, parts_[0]);
+    check();
+    if (parts_[1].first == triangles)
+        scene_ = std::move(parts_[0].scene);
+    else
+        build_moving(world);
+    if (parts_[0].scene) still_ = scene_of_parts(1);
+    check();
+}
+
+ExactVisibility::ScenePointer ExactVisibility::scene_of_parts(unsigned count) const
+{
+    ScenePointer scene(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    for (unsigned k = 0; k < count; ++k) {
+        RTCGeometry const instance = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(instance, parts_[k].scene.get());
+        rtcCommitGeometry(instance);
+        rtcAttachGeometryByID(scene.get(), instance, k);
+        rtcReleaseGeometry(instance);
+    }
+    rtcCommitScene(scene.get());
+    return scene;
+}
+
+void ExactVisibility::build_moving(World const& world)
+{
+    build(world, true, parts_[1]);
+    scene_ = scene_of_parts(2);
+}
+
+void ExactVisibility::moved(World const& world)
+{
+    Part& part = parts_[1];
+    if (part.first == part.last) return;
+    std::span const positions = std::span(world.positions).subspan(part.first_vertex);
+    bool const both = part.geometries[kOpaque] != nullptr && part.geometries[kCutOut] != nullptr;
+    if (part.usable && usable(positions) && (!both || has_extent(world, part.first, part.last))) {
+        std::ranges::copy(positions, part.positions);
+        for (RTCGeometry const geometry : part.geometries) {
+            if (geometry == nullptr) continue;
+            rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+            rtcCommitGeometry(geometry);
+        }
+        rtcCommitScene(part.scene.get());
+        rtcCommitGeometry(rtcGetGeometry(scene_.get(), 1)); // the instance takes the new bounds
+        rtcCommitScene(scene_.get());
+    } else {
+        build_moving(world);
+    }
+    check();
+}
+
+} // namespace gi

@@ -1,0 +1,104 @@
+#include "gi/render/pass_loop.h"
+
+#include "gi/core/error.h"
+#include "gi/core/threads.h"
+
+#include <algorithm>
+
+namespace gi {
+
+PassLoop::PassLoop(RenderSettings const& settings, StopRequest const& stop, RenderProgress const& progress,
+                   Report& report, double spent_s)
+    : settings_(settings),
+      stop_(stop),
+      progress_(progress),
+      report_(report),
+      sums_(settings.width, settings.height),
+      start_(Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(spent_s)))
+{
+}
+
+/// How many paths the next pass takes: short enough to answer Ctrl-C, the budget and the progress bar, long enough
+/// that the overhead of a pass does not show.
+std::uint32_t PassLoop::next_pass(double seconds_per_path) const
+{
+    constexpr double kPassSeconds = 0.5;
+    double paths = seconds_per_path > 0 ? kPassSeconds / seconds_per_path : 1;
+    if (settings_.budget_s > 0 && seconds_per_path > 0)
+        paths = std::min(paths, (settings_.budget_s - seconds_since(start_)) / seconds_per_path);
+    if (settings_.until_relmse > 0) paths = std::min(paths, std::max(16.0, 0.25 * double(sums_.paths)));
+    return std::uint32_t(std::clamp(paths, 1.0, double(limit() - sums_.paths)));
+}
+
+/// A disk that is full must not cost what was rendered.
+bool PassLoop::save(std::uint64_t print)
+{
+    try {
+        save_checkpoint(settings_.checkpoint, sums_, print);
+        return true;
+    } catch (InputError const& e) {
+        report_.lose("states to go on from that could not be written", 1, e.what());
+        return false;
+    }
+}
+
+RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
+{
+    constexpr double kCheckpointSeconds = 30;
+    constexpr std::uint32_t kPathsForVariance = 16;
+
+    if (settings_.resume) load_checkpoint(settings_.checkpoint, sums_, print);
+    std::uint32_t const resumed = sums_.paths;
+    bool is_saved = resumed > 0;
+    double const earlier = sums_.seconds;
+    RenderResult result;
+    auto const first_pass = Clock::now();
+    auto saved = first_pass;
+    double relmse = resumed > 0 ? sums_.relative_mse() : 0;
+    double per_path = 0;
+    while (true) {
+        if (sums_.paths >= limit()) break;
+        if (sums_.paths > 0 && stop_.requested()) {
+            result.end = RenderEnd::interrupted;
+            break;
+        }
+        if (settings_.budget_s > 0 && sums_.paths > resumed &&
+            seconds_since(start_) + per_path > settings_.budget_s) {
+            result.end = RenderEnd::budget;
+            break;
+        }
+        if (settings_.until_relmse > 0 && sums_.paths >= kPathsForVariance && relmse < settings_.until_relmse) {
+            result.end = RenderEnd::error_target;
+            break;
+        }
+        on_threads(settings_.threads, [&] { pass(sums_, next_pass(per_path)); });
+        double const now = seconds_since(start_);
+        sums_.seconds = earlier + now;
+        per_path = seconds_since(first_pass) / double(sums_.paths - resumed);
+        if (settings_.until_relmse > 0 || progress_) relmse = sums_.relative_mse();
+        if (progress_) {
+            double fraction = double(sums_.paths) / double(limit());
+            if (settings_.budget_s > 0) fraction = std::max(fraction, now / settings_.budget_s);
+            if (settings_.until_relmse > 0 && relmse > 0)
+                fraction = std::max(fraction, settings_.until_relmse / relmse);
+            progress_({std::min(1.0, fraction), sums_.paths, relmse});
+        }
+        if (keeps_state() && seconds_since(saved) > kCheckpointSeconds) {
+            is_saved |= save(print);
+            saved = Clock::now();
+        }
+    }
+    bool const may_go_on = keeps_state() && (result.end == RenderEnd::interrupted ||
+                                             (settings_.resume && result.end != RenderEnd::paths));
+    if (may_go_on) result.resumable = save(print) || is_saved;
+    if (settings_.share.merge) settings_.share.merge(sums_);
+    report_.add_time("trace", seconds_since(first_pass));
+    report_.lose("paths cut at 1024 surfaces", sums_.counts.cut_paths);
+    report_.lose("path terms that were not finite, dropped", sums_.counts.invalid_paths);
+    result.seconds = sums_.seconds;
+    result.paths = sums_.paths;
+    result.relmse = sums_.relative_mse();
+    return result;
+}
+
+} // namespace gi

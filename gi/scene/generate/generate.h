@@ -1,0 +1,37 @@
+#pragma once
+// Scenes that the project makes itself: deterministic for their parameters on every machine.
+
+#include "gi/scene/model/scene.h"
+
+#include <cstdint>
+
+namespace gi {
+
+struct AtriumOptions {
+    int bays = 5;                                         ///< arches along the gallery, >= 1
+    double detail = 1;                                    ///< tessellation; 1 gives about 50K triangles
+    bool figure = true;                                   ///< the skinned walking figure
+    double sun_elevation_deg = 42, sun_azimuth_deg = 130; ///< azimuth from -Z towards +X
+};
+Scene generate_atrium(AtriumOptions const& options);
+
+/// Cornell box by its published measurements (Cornell University Program of Computer Graphics, box data of 1998),
+/// in metres, with RGB reflectances and emission integrated from the published spectra.
+Scene generate_cornell();
+
+/// A room of 5 x 4.6 m with a mirror on the wall, 1.6 m before the camera, which is at eye height (1.6 m); two
+/// steps to climb behind it.
+Scene generate_mirror();
+
+/// A skinned mannequin with a face, 1.77 m tall, standing on y = 0 and facing +Z, with the clip "walk": an avatar
+/// for `lightwell view --avatar`.
+Scene generate_avatar();
+
+/// `count` triangles (rounded to whole boxes of 12) as randomly rotated boxes on a grid inside a closed room with
+/// a lamp.
+Scene generate_boxes(std::uint32_t triangles, std::uint64_t seed);
+
+/// A displaced sphere of about `triangles` triangles in the same room.
+Scene generate_sphere(std::uint32_t triangles, std::uint64_t seed);
+
+} // namespace gi

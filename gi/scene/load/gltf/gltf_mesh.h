@@ -1,0 +1,18 @@
+#pragma once
+#include "gi/scene/load/gltf/gltf_document.h"
+#include "gi/scene/model/scene.h"
+
+namespace gi {
+
+/// One glTF mesh: its primitives that have triangles.
+struct GltfMesh {
+    std::vector<std::int32_t> meshes; ///< indices into Scene::meshes
+    std::size_t morph_targets = 0;
+    std::vector<float> weights; ///< default morph weights, one per target
+    std::uint32_t joints = 0;   ///< a skin must have this many
+};
+
+/// All meshes, in the order of the file. Points and lines are counted as lost.
+std::vector<GltfMesh> read_meshes(GltfDocument& document, Scene& scene, Report& report);
+
+} // namespace gi

@@ -1,0 +1,2 @@
+#define TINYGLTF_IMPLEMENTATION
+#include "gi/scene/load/gltf/tinygltf.h"

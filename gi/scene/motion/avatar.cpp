@@ -1,0 +1,155 @@
+#include "gi/scene/motion/avatar.h"
+
+#include "gi/core/error.h"
+#include "gi/scene/motion/avatar_legs.h"
+#include "gi/scene/motion/inverse_kinematics.h"
+#include "gi/scene/motion/joint_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gi {
+namespace {
+
+constexpr dvec3 kUp{0, 1, 0};
+
+std::vector<std::int32_t> top_joints(Scene const& scene, std::int32_t head)
+{
+    std::vector<bool> inside(scene.nodes.size(), false); // joints of its skins, and what hangs on them
+    inside[std::size_t(head)] = true;
+    for (Skin const& s : scene.skins)
+        if (std::find(s.joints.begin(), s.joints.end(), head) != s.joints.end())
+            for (std::int32_t const j : s.joints) inside[std::size_t(j)] = true;
+    std::vector<std::int32_t> tops;
+    for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+        std::int32_t const parent = scene.nodes[n].parent;
+        bool const below = parent >= 0 && inside[std::size_t(parent)];
+        if (inside[n] && !below) tops.push_back(std::int32_t(n));
+        if (below) inside[n] = true;
+    }
+    return tops;
+}
+
+Avatar::Arm make_arm(Scene const& scene, Pose const& rest, ArmJoints const& joints, double outward,
+                     dquat const& body)
+{
+    Avatar::Arm arm;
+    arm.joints = joints;
+    arm.outward = outward;
+    dvec3 const wrist = joint_position(rest, joints.hand), elbow = joint_position(rest, joints.lower);
+    double const near = 0.25 * glm::distance(wrist, elbow);
+    dvec3 fingers{0};
+    for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+        std::int32_t const parent = scene.nodes[n].parent;
+        dvec3 const at = joint_position(rest, std::int32_t(n));
+        if (parent == joints.hand) fingers += at - wrist;
+        bool const beside = parent == scene.nodes[std::size_t(joints.hand)].parent &&
+                            std::int32_t(n) != joints.lower && scene.nodes[n].meshes.empty();
+        if (std::int32_t(n) == joints.hand || (beside && glm::distance(at, wrist) <= near))
+            arm.wrist.push_back(std::int32_t(n));
+    }
+    if (glm::length(fingers) < 1e-3 * near) fingers = wrist - elbow;
+    // Palms face down where arms are spread, and the body where they hang: there "up" is nearly along the fingers.
+    dvec3 back = body * dvec3{0.3 * outward, 1, 0};
+    if (double const length = glm::length(fingers); length > 0)
+        back -= glm::dot(back, fingers) / (length * length) * fingers;
+    arm.joint_from_hand = glm::inverse(tracker_orientation(fingers, back)) *
+                          orientation_of(rest.world_from_node[std::size_t(joints.hand)]);
+    return arm;
+}
+
+bool tracked(std::optional<dmat4> const& target)
+{
+    if (!target) return false;
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r)
+            if (!std::isfinite((*target)[c][r])) return false;
+    return true;
+}
+
+/// The horizontal direction in which a head looks, also where it looks straight up or down: its top then points
+/// backwards or forwards.
+dvec3 heading(dquat const& head)
+{
+    dvec3 const forward = head * dvec3{0, 0, -1}, top = head * kUp;
+    return {forward.x - forward.y * top.x, 0, forward.z - forward.y * top.z};
+}
+
+void drive_head(Scene const& scene, Avatar const& avatar, dmat4 const& target, dquat const& yaw, Pose& pose)
+{
+    dvec3 const joint = joint_position(pose, avatar.head);
+    dmat4 motion = turn_about(joint, yaw);
+    motion[3] += glm::dvec4(dvec3(target[3]) - joint, 0);
+    move_below(scene, avatar.tops, motion, pose);
+    dquat const now = orientation_of(pose.world_from_node[std::size_t(avatar.head)]);
+    dquat const turn = orientation_of(target) * avatar.joint_from_head * glm::inverse(now);
+    move_below(scene, {avatar.head}, turn_about(joint_position(pose, avatar.head), turn), pose);
+}
+
+/// Down and outwards for a hand in front; for others that direction is carried along by the shortest turn. So it
+/// is undecided only for hands behind the head, where a fixed pole would be for two directions, one before the
+/// face.
+dvec3 elbow_direction(dvec3 to_hand, double outward, dquat const& body)
+{
+    dvec3 const front = body * dvec3{0.3 * outward, -0.3, 0.9}, down = body * dvec3{0.4 * outward, -1, 0};
+    return turn_between(front, to_hand, down) * down;
+}
+
+void drive_arm(Scene const& scene, Avatar::Arm const& arm, dmat4 const& target, dquat const& body, Pose& pose)
+{
+    ArmJoints const& j = arm.joints;
+    dvec3 const goal(target[3]);
+    dvec3 const pole = elbow_direction(goal - joint_position(pose, j.upper), arm.outward, body);
+    bend_limb(scene, j.upper, j.lower, j.hand, goal, pole, pose);
+    dquat const now = orientation_of(pose.world_from_node[std::size_t(j.hand)]);
+    dquat const hand = orientation_of(target) * arm.joint_from_hand * glm::inverse(now);
+    move_below(scene, arm.wrist, turn_about(joint_position(pose, j.hand), hand), pose);
+}
+
+} // namespace
+
+Avatar make_avatar(Scene const& scene, AvatarJoints const& joints)
+{
+    Pose const rest = evaluate_pose(scene, std::nullopt);
+    Avatar avatar;
+    avatar.head = joints.head;
+    avatar.tops = top_joints(scene, joints.head);
+    dvec3 left = joint_position(rest, joints.left.upper) - joint_position(rest, joints.right.upper);
+    left.y = 0;
+    if (!(glm::length(left) > 0))
+        throw InputError("the avatar's shoulders are one above the other", "it is not known where it looks",
+                         "stand it upright, with +Y up");
+    avatar.world_from_body = orientation_of(left, kUp, 1);
+    dvec3 const forward = avatar.world_from_body * dvec3{0, 0, 1};
+    avatar.joint_from_head = glm::inverse(tracker_orientation(forward, kUp)) *
+                             orientation_of(rest.world_from_node[std::size_t(joints.head)]);
+    avatar.left = make_arm(scene, rest, joints.left, 1, avatar.world_from_body);
+    avatar.right = make_arm(scene, rest, joints.right, -1, avatar.world_from_body);
+    // An avatar stands on y = 0 unless its joints reach below; ankles are a little above the soles.
+    for (Skin const& skin : scene.skins)
+        for (std::int32_t const j : skin.joints)
+            avatar.floor_y = std::min(avatar.floor_y, joint_position(rest, j).y);
+    avatar.left_leg = make_leg(scene, rest, joints.left_leg, avatar);
+    avatar.right_leg = make_leg(scene, rest, joints.right_leg, avatar);
+    if (!avatar.has_legs()) avatar.left_leg = avatar.right_leg = {};
+    return avatar;
+}
+
+void drive(Scene const& scene, Avatar const& avatar, AvatarTargets const& targets, Pose& pose)
+{
+    dquat body = avatar.world_from_body;
+    if (tracked(targets.head)) {
+        dquat const yaw =
+            turn_between(body * dvec3{0, 0, 1}, heading(orientation_of(*targets.head)), body * dvec3{1, 0, 0});
+        drive_head(scene, avatar, *targets.head, yaw, pose);
+        body = yaw * body;
+    }
+    if (avatar.has_legs() && tracked(targets.left_foot))
+        drive_leg(scene, avatar.left_leg, *targets.left_foot, body, pose);
+    if (avatar.has_legs() && tracked(targets.right_foot))
+        drive_leg(scene, avatar.right_leg, *targets.right_foot, body, pose);
+    if (tracked(targets.left_hand)) drive_arm(scene, avatar.left, *targets.left_hand, body, pose);
+    if (tracked(targets.right_hand)) drive_arm(scene, avatar.right, *targets.right_hand, body, pose);
+}
+
+} // namespace gi

@@ -1,0 +1,102 @@
+#include "study/journal/durable_file.h"
+
+#include "study/script/script_error.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace study {
+namespace {
+
+namespace fs = std::filesystem;
+
+ScriptError cannot(char const* what, fs::path const& file, int error)
+{
+    return ScriptError(file.string(), {}, what, std::strerror(error),
+                       error == ENOENT ? "check the path" : "free some space, or choose another folder");
+}
+
+ScriptError cannot_read(fs::path const& file, int error)
+{
+    char const* const suggestion = error == ENOENT                     ? "check the path"
+                                   : error == EACCES || error == EPERM ? "make it readable"
+                                                                       : "check the file and its disk";
+    return ScriptError(file.string(), {}, "the file cannot be read", std::strerror(error), suggestion);
+}
+
+struct Descriptor {
+    int fd = -1;
+    ~Descriptor()
+    {
+        if (fd >= 0) ::close(fd);
+    }
+};
+
+} // namespace
+
+std::string read_whole(fs::path const& file)
+{
+    constexpr std::size_t kMost = std::size_t(1) << 30;
+    Descriptor const in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+    if (in.fd < 0) throw cannot_read(file, errno);
+    std::string text;
+    std::string chunk(1 << 16, '\0');
+    while (true) {
+        ssize_t const n = ::read(in.fd, chunk.data(), chunk.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) throw cannot_read(file, errno);
+        if (n == 0) return text;
+        text.append(chunk, 0, std::size_t(n));
+        if (text.size() > kMost) throw cannot_read(file, EFBIG);
+    }
+}
+
+void write_durably(fs::path const& file, std::string_view text)
+{
+    fs::path const folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    fs::path const temporary = folder / ("." + file.filename().string() + ".tmp-" + std::to_string(getpid()));
+    int failure = 0;
+    {
+        Descriptor const out{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
+        if (out.fd < 0) throw cannot("the file cannot be written", file, errno);
+        for (std::size_t at = 0; at < text.size() && failure == 0;) {
+            ssize_t const n = ::write(out.fd, text.data() + at, text.size() - at);
+            if (n > 0) at += std::size_t(n);
+            if (n < 0 && errno != EINTR) failure = errno;
+            if (n == 0) failure = ENOSPC;
+        }
+        if (failure == 0 && ::fsync(out.fd) != 0) failure = errno;
+    }
+    if (failure == 0 && ::rename(temporary.c_str(), file.c_str()) != 0) failure = errno;
+    if (failure != 0) {
+        ::unlink(temporary.c_str());
+        throw cannot("the file cannot be written", file, failure);
+    }
+    sync_folder(folder);
+}
+
+void sync_folder(fs::path const& folder)
+{
+    Descriptor const at{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+    if (at.fd >= 0) ::fsync(at.fd);
+}
+
+void make_folder(fs::path const& folder)
+{
+    if (folder.empty() || ::access(folder.c_str(), F_OK) == 0) {
+        std::error_code ignored;
+        if (!folder.empty() && !fs::is_directory(folder, ignored))
+            throw cannot("the folder cannot be made", folder, ENOTDIR);
+        return;
+    }
+    fs::path const parent = folder.parent_path();
+    if (parent != folder) make_folder(parent);
+    if (::mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST)
+        throw cannot("the folder cannot be made", folder, errno);
+    sync_folder(parent.empty() ? fs::path(".") : parent);
+}
+
+} // namespace study

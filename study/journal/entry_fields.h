@@ -1,0 +1,144 @@
+#pragma once
+// The fields of every kind of entry by their names in a journal, once for writing and reading.
+
+#include "study/journal/entries.h"
+
+namespace study {
+
+/// visit(entry, f) calls f(name, field) for each field in the order of the line.
+template <class Entry>
+struct Fields;
+
+template <>
+struct Fields<SessionStarted> {
+    static constexpr char const* kKind = "session_started";
+    static void visit(auto& e, auto&& f)
+    {
+        f("experiment", e.experiment);
+        f("participant_id", e.participant_id);
+        f("participant", e.participant);
+        f("session", e.session);
+        f("part", e.part);
+        f("utc", e.utc);
+        f("clock_s", e.clock_s);
+        f("version", e.version);
+        f("git_hash", e.git_hash);
+        f("script_sha256", e.script_sha256);
+        f("plan_sha256", e.plan_sha256);
+        f("seed", e.seed);
+        f("consent_sha256", e.consent_sha256);
+        f("about", e.about);
+        f("is_simulated", e.is_simulated);
+        f("gap_s", e.gap_s);
+    }
+};
+
+template <>
+struct Fields<CalibrationDone> {
+    static constexpr char const* kKind = "calibration_done";
+    static void visit(auto& e, auto&& f)
+    {
+        f("frames", e.frames);
+        f("nominal_hz", e.nominal_hz);
+        f("period_mean_ms", e.period_mean_ms);
+        f("period_sd_ms", e.period_sd_ms);
+        f("onset_method", e.onset_method);
+        f("passed", e.passed);
+        f("reason", e.reason);
+    }
+};
+
+template <>
+struct Fields<StimulusShown> {
+    static void visit(auto& e, auto&& f)
+    {
+        f("letter", e.letter);
+        f("onset_s", e.onset_s);
+        f("duration_s", e.duration_s);
+        f("onset_method", e.onset_method);
+        f("onset_uncertainty_ms", e.onset_uncertainty_ms);
+        f("frames_planned", e.frames_planned);
+        f("frames_shown", e.frames_shown);
+        f("frames_dropped", e.frames_dropped);
+        f("render_ms_mean", e.render_ms_mean);
+        f("render_ms_p99", e.render_ms_p99);
+        f("settings_sha256", e.settings_sha256);
+    }
+};
+
+template <>
+struct Fields<TrialDone> {
+    static constexpr char const* kKind = "trial_done";
+    static void visit(auto& e, auto&& f)
+    {
+        f("step", e.step);
+        f("attempt", e.attempt);
+        f("shown", e.shown);
+        f("level", e.level);
+        f("response", e.response);
+        f("value", e.value);
+        f("is_correct", e.is_correct);
+        f("response_s", e.response_s);
+        f("reaction_ms", e.reaction_ms);
+        f("response_uncertainty_ms", e.response_uncertainty_ms);
+        f("device", e.device);
+        f("is_valid", e.is_valid);
+        f("reason", e.reason);
+        f("bookkeeping_ms", e.bookkeeping_ms);
+    }
+};
+
+template <>
+struct Fields<StepDone> {
+    static constexpr char const* kKind = "step_done";
+    static void visit(auto& e, auto&& f)
+    {
+        f("step", e.step);
+        f("start_s", e.start_s);
+        f("end_s", e.end_s);
+        f("reason", e.reason);
+    }
+};
+
+template <>
+struct Fields<QuestionnaireDone> {
+    static constexpr char const* kKind = "questionnaire_done";
+    static void visit(auto& e, auto&& f)
+    {
+        f("step", e.step);
+        f("start_s", e.start_s);
+        f("end_s", e.end_s);
+        f("answers", e.answers);
+    }
+};
+
+template <>
+struct Fields<ParticipantAsked> {
+    static constexpr char const* kKind = "participant_asked";
+    static void visit(auto& e, auto&& f) { f("answers", e.answers); }
+};
+
+template <>
+struct Fields<NoteTaken> {
+    static constexpr char const* kKind = "note_taken";
+    static void visit(auto& e, auto&& f)
+    {
+        f("time_s", e.time_s);
+        f("note_kind", e.kind);
+        f("text", e.text);
+    }
+};
+
+template <>
+struct Fields<SessionEnded> {
+    static constexpr char const* kKind = "session_ended";
+    static void visit(auto& e, auto&& f)
+    {
+        f("time_s", e.time_s);
+        f("utc", e.utc);
+        f("is_complete", e.is_complete);
+        f("reason", e.reason);
+    }
+};
+
+} // namespace study

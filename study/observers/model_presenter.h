@@ -1,0 +1,35 @@
+#pragma once
+#include "study/observers/observer.h"
+#include "study/run/presenter.h"
+
+namespace study {
+
+/// Shows nothing to nobody: a display with a steady rate, a clock that goes on by as much as things take, and an
+/// observer. What is answered in a step depends on the observer, the step and the attempt alone, so a session that
+/// was cut off and goes on has the answers of one that was not.
+class ModelPresenter : public Presenter {
+public:
+    explicit ModelPresenter(Observer observer) : observer_(std::move(observer)) {}
+
+    double now() const override { return now_s_; }
+    std::vector<std::pair<std::string, std::string>> about() const override;
+    CalibrationDone calibrate(Timing const& timing) override;
+    bool ask_consent(std::string const& markdown) override;
+    ParticipantAsked ask_participant(std::vector<std::string> const& questions) override;
+    StepDone instruct(std::string const& markdown, int step) override;
+    StepDone rest(std::string const& prompt, double least_s, int step) override;
+    StepDone walk(TrialRequest const& where, std::string const& prompt, double seconds) override;
+    QuestionnaireDone ask(Questionnaire const& questionnaire, int step) override;
+    TrialDone show(TrialRequest const& trial) override;
+    Wish wish() override { return Wish::go_on; }
+    std::vector<NoteTaken> notes() override { return {}; }
+
+private:
+    StepDone take(int step, double seconds);
+    void show_stimuli(TrialRequest const& trial, double reaction_s, Random& random, TrialDone& done);
+
+    Observer observer_;
+    double now_s_ = 0;
+};
+
+} // namespace study

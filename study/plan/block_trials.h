@@ -1,0 +1,25 @@
+#pragma once
+// The trials of one block, before and after they are put in order.
+
+#include "study/plan/plan.h"
+#include "study/stats/random.h"
+
+namespace study {
+
+/// All main trials, unordered: repeats within conditions within cells.
+/// @param levels by factor, fixed where the block runs; -1 = not
+std::vector<Trial> main_trials(Script const& script, Block const& block, std::vector<int> const& levels,
+                               int participant, Random& random);
+/// Levels of all factors for every cell of cross and nest.
+std::vector<std::vector<int>> cells_of(Script const& script, Block const& block, std::vector<int> const& levels);
+std::vector<Trial> catch_trials(Script const& script, Block const& block, std::vector<int> const& levels,
+                                int count, Random& random);
+/// Practice, then main trials with catch trials among them, in their final order. Throws ScriptError.
+/// @param purpose tells the random numbers of this pass of this block from all others
+std::vector<Trial> ordered_trials(Script const& script, Block const& block, std::vector<int> const& levels,
+                                  int participant, std::uint64_t purpose);
+
+/// The random numbers of a purpose for one participant.
+Random random_for(Script const& script, int participant, std::uint64_t purpose);
+
+} // namespace study

@@ -1,0 +1,228 @@
+#include "study/script/read.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+
+namespace study {
+namespace {
+
+class Checker {
+public:
+    explicit Checker(Script const& s)
+        : s_(s),
+          factor_used_(s.factors.size()),
+          block_used_(s.blocks.size()),
+          balance_used_(s.counterbalances.size()),
+          questionnaire_used_(s.questionnaires.size())
+    {
+    }
+
+    void check()
+    {
+        std::vector<bool> fixed(s_.factors.size());
+        for (std::size_t i = 0; i < s_.counterbalances.size(); ++i)
+            if (s_.counterbalances[i].method == Balance::between) {
+                fixed[std::size_t(s_.counterbalances[i].factor)] = true;
+                factor_used_[std::size_t(s_.counterbalances[i].factor)] = true;
+                balance_used_[i] = true;
+            }
+        walk(s_.sequence, fixed);
+        check_used();
+        if (without_level_) throw *without_level_;
+        check_devices();
+    }
+
+private:
+    ScriptError error(Place where, std::string const& problem, std::string const& why,
+                      std::string const& suggestion) const
+    {
+        return {s_.file, where, problem, why, suggestion};
+    }
+    [[noreturn]] void fail(Place where, std::string const& problem, std::string const& why,
+                           std::string const& suggestion) const
+    {
+        throw error(where, problem, why, suggestion);
+    }
+    std::string const& name(int factor) const { return s_.factors[std::size_t(factor)].name; }
+
+    void walk(std::vector<SequenceItem> const& items, std::vector<bool> const& fixed)
+    {
+        for (SequenceItem const& item : items) {
+            if (item.kind == SequenceKind::questionnaire) questionnaire_used_[std::size_t(item.index)] = true;
+            if (item.kind == SequenceKind::block) check_block(item.index, fixed, item.place);
+            if (item.kind == SequenceKind::group) {
+                balance_used_[std::size_t(item.index)] = true;
+                for (int const b : s_.counterbalances[std::size_t(item.index)].blocks)
+                    check_block(b, fixed, item.place);
+            }
+            if (item.kind == SequenceKind::free_walk) check_walk(item, fixed);
+            if (item.kind == SequenceKind::per) check_per(item, fixed);
+        }
+    }
+
+    void check_per(SequenceItem const& item, std::vector<bool> fixed)
+    {
+        std::size_t const f = std::size_t(item.index);
+        if (fixed[f])
+            fail(item.place, fmt::format("per: {} where its level is fixed already", name(item.index)),
+                 "an outer 'per' or 'between' chose it", "remove one of them");
+        for (std::size_t i = 0; i < s_.counterbalances.size(); ++i)
+            if (s_.counterbalances[i].factor == item.index) balance_used_[i] = true;
+        factor_used_[f] = fixed[f] = true;
+        walk(item.items, fixed);
+    }
+
+    void check_walk(SequenceItem const& item, std::vector<bool> known)
+    {
+        for (LevelChoice const& c : item.choice) {
+            if (known[std::size_t(c.factor)])
+                fail(item.place, fmt::format("the walk sets '{}', which is fixed here", name(c.factor)),
+                     "'per' or 'between' chose its level", "leave it out of condition");
+            known[std::size_t(c.factor)] = factor_used_[std::size_t(c.factor)] = true;
+        }
+        check_known(known, item.place, "the free walk");
+    }
+
+    /// Every factor must have a level in everything that is shown.
+    void check_known(std::vector<bool> known, Place where, std::string const& what)
+    {
+        for (LevelChoice const& c : s_.reference) known[std::size_t(c.factor)] = true;
+        for (std::size_t f = 0; f < known.size(); ++f)
+            if (!known[f] && !without_level_) // said if nothing else is wrong: a factor may be used nowhere
+                without_level_ = error(where, fmt::format("factor '{}' has no level in {}", name(int(f)), what),
+                                       "it is not known what to show",
+                                       fmt::format("cross it, or fix it: only: {{{0}: LEVEL}} in a block, "
+                                                   "condition: {{{0}: LEVEL}} of a walk, per: {0}, "
+                                                   "reference: {{{0}: LEVEL}}",
+                                                   name(int(f))));
+    }
+
+    void check_block(int index, std::vector<bool> const& fixed, Place from)
+    {
+        Block const& b = s_.blocks[std::size_t(index)];
+        block_used_[std::size_t(index)] = true;
+        if (b.questionnaire >= 0) questionnaire_used_[std::size_t(b.questionnaire)] = true;
+        std::vector<bool> known = fixed;
+        auto const takes = [&](int factor, char const* how) {
+            std::size_t const f = std::size_t(factor);
+            if (fixed[f])
+                fail(b.place,
+                     fmt::format("block '{}' {} '{}', which is fixed where it runs (line {})", b.name, how,
+                                 name(factor), from.line),
+                     "'per' or 'between' chose its level", "remove one of them");
+            if (known[f])
+                fail(b.place,
+                     fmt::format("block '{}' {} '{}', which has its levels already", b.name, how, name(factor)),
+                     "it is there twice", "remove one");
+            known[f] = factor_used_[f] = true;
+        };
+        for (int const f : b.cross) takes(f, "crosses");
+        for (Nest const& n : b.nest) takes(n.factor, "nests");
+        if (b.pairs) takes(b.pairs->factor, "pairs");
+        if (b.compare && b.compare->factor >= 0) takes(b.compare->factor, "compares");
+        if (b.rank >= 0) takes(b.rank, "ranks");
+        bool const shows_reference = b.task == Task::pair_with_reference;
+        for (LevelChoice const& c : shows_reference ? s_.reference : b.compare ? b.compare->against : Choice{})
+            if (s_.factors[std::size_t(c.factor)].levels.size() == 1) factor_used_[std::size_t(c.factor)] = true;
+        for (std::size_t f = 0; f < b.only.size(); ++f) {
+            if (b.only[f].empty() || std::find(b.cross.begin(), b.cross.end(), int(f)) != b.cross.end()) continue;
+            takes(int(f), "limits");
+            if (b.only[f].size() > 1)
+                fail(b.place,
+                     fmt::format("block '{}' has several levels of '{}' that it does not cross", b.name,
+                                 name(int(f))),
+                     "it is not known which to show", fmt::format("add {} to cross", name(int(f))));
+        }
+        check_known(known, b.place, "block '" + b.name + "'");
+        for (Constraint const& c : b.constraints) check_constraint(b, c);
+    }
+
+    void check_constraint(Block const& b, Constraint const& c) const
+    {
+        bool const nested =
+            std::any_of(b.nest.begin(), b.nest.end(), [&](Nest const& n) { return n.factor == c.factor; });
+        bool const crossed = std::find(b.cross.begin(), b.cross.end(), c.factor) != b.cross.end() || nested;
+        bool const is_paired =
+            (b.pairs && b.pairs->factor == c.factor) || (b.compare && b.compare->factor == c.factor);
+        bool varies = crossed || is_paired;
+        if (c.subject == Subject::pair) varies = b.pairs || (b.compare && b.compare->factor >= 0);
+        if (c.subject == Subject::answer) varies = !presented_orders(b.task, false).empty();
+        if (c.subject == Subject::procedure) varies = b.procedures.size() > 1;
+        if (!varies)
+            fail(c.place, fmt::format("what this rule is about is the same in all trials of block '{}'", b.name),
+                 "nothing can be kept apart", "cross the factor or remove the rule");
+        if (is_paired && c.kind != RuleKind::max_run && c.kind != RuleKind::min_gap)
+            fail(c.place, fmt::format("'{}' has two levels in a trial of block '{}'", name(c.factor), b.name),
+                 "only no_repeat, max_run and min_gap are clear then", "use one of these");
+    }
+
+    void check_used() const
+    {
+        for (std::size_t f = 0; f < s_.factors.size(); ++f)
+            if (!factor_used_[f])
+                fail(s_.factors[f].place, fmt::format("factor '{}' is not used", s_.factors[f].name),
+                     "no block of the sequence has it", "cross it in a block, or remove it");
+        for (std::size_t b = 0; b < s_.blocks.size(); ++b)
+            if (!block_used_[b])
+                fail(s_.blocks[b].place, fmt::format("block '{}' is not used", s_.blocks[b].name),
+                     "nothing in the sequence leads to it", "add it to the sequence, or remove it");
+        for (std::size_t i = 0; i < s_.counterbalances.size(); ++i)
+            if (!balance_used_[i])
+                fail(s_.counterbalances[i].place,
+                     fmt::format("the order '{}' is not used", s_.counterbalances[i].name),
+                     "nothing in the sequence has it",
+                     s_.counterbalances[i].factor >= 0
+                         ? fmt::format("add {{per: {}, do: [...]}}", s_.counterbalances[i].name)
+                         : fmt::format("add '{}' to the sequence", s_.counterbalances[i].name));
+        for (std::size_t q = 0; q < s_.questionnaires.size(); ++q)
+            if (!questionnaire_used_[q] && s_.questionnaires[q].place.line > 0)
+                fail(s_.questionnaires[q].place,
+                     fmt::format("questionnaire '{}' is not used", s_.questionnaires[q].name),
+                     "nothing in the sequence asks it", "add it to the sequence, or remove it");
+    }
+
+    /// No input gives two of these answers. @param where they are asked for
+    void check_inputs(std::set<std::string> const& answers, std::string const& where) const
+    {
+        std::map<std::string, std::string> answer_by_input;
+        for (Device const& d : s_.devices) {
+            if (!answers.contains(d.answer)) continue;
+            for (std::string const& input : d.inputs)
+                if (auto const [other, is_new] = answer_by_input.emplace(input, d.answer); !is_new)
+                    fail(d.place,
+                         fmt::format("'{}' is both {} and {} in {}", input, other->second, d.answer, where),
+                         "the answer would not be known", "choose another input");
+        }
+    }
+
+    void check_devices() const
+    {
+        std::set<std::string> answers{"pause"};
+        auto const check = [&](Task task, bool may_tie, std::string const& where) {
+            std::set<std::string> own{"pause"};
+            for (auto const a : facts(task).answers) own.emplace(a);
+            if (may_tie) own.emplace("neither");
+            check_inputs(own, where);
+            answers.merge(own);
+        };
+        for (Block const& b : s_.blocks) check(b.task, b.may_tie, "block '" + b.name + "'");
+        for (std::size_t q = 0; q < s_.questionnaires.size(); ++q)
+            if (questionnaire_used_[q])
+                check(Task::questionnaire, false, "questionnaire '" + s_.questionnaires[q].name + "'");
+        for (Device const& d : s_.devices)
+            if (!answers.contains(d.answer))
+                fail(d.place, fmt::format("the answer '{}' is not used", d.answer), "no task of the script has it",
+                     "remove it");
+    }
+
+    Script const& s_;
+    std::optional<ScriptError> without_level_;
+    std::vector<bool> factor_used_, block_used_, balance_used_, questionnaire_used_;
+};
+
+} // namespace
+
+void check_design(Script const& script) { Checker(script).check(); }
+
+} // namespace study

@@ -1,0 +1,76 @@
+#include "study/plan/doubts.h"
+
+#include "study/plan/counterbalance.h"
+#include "study/plan/duration.h"
+#include "study/plan/plan_text.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+
+namespace study {
+namespace {
+
+/// QUEST+ with a function that lies above a half everywhere, where its middle is a half.
+bool never_reaches_half(Block const& b, Procedure const& p)
+{
+    bool const goes_to_false_alarms = b.task == Task::yes_no || b.task == Task::same_different;
+    return goes_to_false_alarms && p.method == Method::questplus &&
+           std::all_of(p.guess.begin(), p.guess.end(), [](double guess) { return guess >= 0.5; });
+}
+
+} // namespace
+
+std::vector<std::string> find_doubts(Script const& s)
+{
+    std::vector<std::string> doubts;
+    std::int64_t const cycle = full_cycle(s);
+    if (s.participants.count % cycle != 0)
+        doubts.push_back(
+            fmt::format("{} participants do not have all {} combinations of orders equally often; a multiple "
+                        "of {} would",
+                        s.participants.count, cycle, cycle));
+    for (Block const& b : s.blocks)
+        for (Procedure const& p : b.procedures)
+            if (never_reaches_half(b, p))
+                doubts.push_back(fmt::format("block '{}': guess of procedure '{}' is 0.5 or more; in {} it is the "
+                                             "share of false alarms, and "
+                                             "the threshold, where half of the answers are {}, is never reached; "
+                                             "guess: [0, 0.1, 0.2] would do",
+                                             b.name, p.name, facts(b.task).name,
+                                             b.task == Task::yes_no ? "yes" : "different"));
+    for (Block const& b : s.blocks) {
+        std::size_t const orders = presented_orders(b.task, false).size();
+        if (orders == 0 || !b.procedures.empty() || std::size_t(b.repeats) % orders == 0) continue;
+        doubts.push_back(
+            fmt::format("block '{}': the {} orders of presentation are balanced over all trials, but not "
+                        "within each condition; repeats: {} would do that",
+                        b.name, orders, (std::size_t(b.repeats) / orders + 1) * orders));
+    }
+    return doubts;
+}
+
+std::vector<std::string> find_doubts(Script const& s, Plan const& plan)
+{
+    constexpr std::int64_t kLongStretch_us = 20LL * 60 * 1000000;
+    std::vector<std::string> doubts;
+    if (plan.duration_us > kLongSession_us)
+        doubts.push_back(
+            fmt::format("the session is expected to take {}: people tire after about 60 minutes; repeat "
+                        "less, or make two sessions of it",
+                        clock_text(plan.duration_us)));
+    std::int64_t stretch = 0, longest = 0;
+    int where = -1;
+    for (PlanStep const& step : plan.steps) {
+        stretch = step.kind == PlanStepKind::trial ? stretch + step.duration_us : 0;
+        if (stretch <= longest) continue;
+        longest = stretch;
+        where = step.block;
+    }
+    if (longest > kLongStretch_us)
+        doubts.push_back(fmt::format("{} of trials without a break, up to block '{}'; break_every gives them",
+                                     clock_text(longest), s.blocks[std::size_t(where)].name));
+    return doubts;
+}
+
+} // namespace study

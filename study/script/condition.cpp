@@ -1,0 +1,42 @@
+#include "study/script/condition.h"
+
+#include <fmt/format.h>
+
+namespace study {
+
+double easiest(Compare const& compare) { return compare.harder_up ? compare.low : compare.high; }
+
+std::vector<int> crossed_levels(Script const& script, Block const& block, int factor)
+{
+    if (!block.only[std::size_t(factor)].empty()) return block.only[std::size_t(factor)];
+    std::vector<int> all;
+    for (std::size_t i = 0; i < script.factors[std::size_t(factor)].levels.size(); ++i) all.push_back(int(i));
+    return all;
+}
+
+void set_setting(Patch& patch, std::string const& key, std::string const& value)
+{
+    for (auto& [name, old] : patch)
+        if (name == key) {
+            old = value;
+            return;
+        }
+    patch.emplace_back(key, value);
+}
+
+Patch settings_of(Script const& script, Block const& block, Stimulus const& stimulus)
+{
+    Patch patch = block.settings; // which has those of defaults
+    for (std::size_t f = 0; f < script.factors.size(); ++f)
+        for (auto const& [key, value] : script.factors[f].levels[std::size_t(stimulus.levels[f])].settings)
+            set_setting(patch, key, value);
+    if (!stimulus.is_varied || !block.compare) return patch;
+    for (auto const& [key, value] : block.compare->with) set_setting(patch, key, value);
+    if (stimulus.level && !block.compare->vary.empty())
+        set_setting(patch, block.compare->vary, level_text(*stimulus.level));
+    return patch;
+}
+
+std::string level_text(double level) { return fmt::format("{:.9g}", level); }
+
+} // namespace study

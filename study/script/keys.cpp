@@ -1,0 +1,82 @@
+#include "study/script/keys.h"
+
+namespace study {
+
+std::map<std::string, std::set<std::string>> const& script_keys()
+{
+    static std::map<std::string, std::set<std::string>> const keys{
+        {"study",
+         {"schema", "id", "title", "seed", "participants", "timing", "factors", "reference", "defaults", "devices",
+          "counterbalance", "sequence", "blocks", "questionnaires", "record", "resume"}},
+        {"participants", {"count", "id", "ask", "consent"}},
+        {"timing",
+         {"vsync", "onset", "max_dropped_frames", "on_bad_trial", "sync_patch", "calibrate", "display_lag_ms",
+          "expected_hz"}},
+        {"sync_patch", {"corner", "px"}},
+        {"calibrate", {"frames", "max_sd_ms", "max_deviation"}},
+        {"defaults",
+         {"camera", "warmup_frames", "isi_ms", "iti_ms", "stimulus_ms", "timeout_ms", "expected_response_ms",
+          "feedback_ms", "stimuli", "settings"}},
+        {"counterbalance", {"method", "of"}},
+        {"sequence_item", {"instructions", "questionnaire", "per", "do", "free_walk", "break"}},
+        {"free_walk", {"duration_s", "prompt", "condition"}},
+        {"break", {"min_s", "prompt"}},
+        {"block",
+         {"task",          "prompt",  "instructions", "cross",       "nest",          "only",
+          "repeats",       "shuffle", "constraints",  "practice",    "break_every",   "break_s",
+          "warmup_frames", "isi_ms",  "iti_ms",       "stimulus_ms", "timeout_ms",    "expected_response_ms",
+          "feedback_ms",   "camera",  "stimuli",      "settings",    "pairs",         "ties",
+          "presentation",  "compare", "procedure",    "interleave",  "feedback",      "catch",
+          "rank",          "scale",   "modulus",      "standard",    "questionnaire", "duration_s"}},
+        {"pairs", {"factor", "omit", "list", "order"}},
+        {"rank", {"factor", "omit"}},
+        {"compare", {"vary", "factor", "omit", "against", "with", "scale", "range", "harder"}},
+        {"scale", {"min", "max", "step", "labels"}},
+        {"nest", {"in", "levels"}},
+        {"practice", {"trials", "feedback", "level"}},
+        {"catch", {"every", "level", "better", "worse"}},
+        {"constraint", {"no_repeat", "max_run", "min_gap", "of", "never_after", "not_first"}},
+        {"constant", {"name", "method", "levels", "trials_per_level"}},
+        {"staircase", {"name", "method", "up", "down", "target", "start", "steps", "stop"}},
+        {"questplus",
+         {"name", "method", "threshold", "slope", "guess", "lapse", "levels", "psychometric", "stop"}},
+        {"adjustment", {"name", "method", "starts", "trials_per_level"}},
+        {"stop", {"trials", "max_trials", "reversals"}},
+        {"questionnaire", {"title", "instructions", "scale", "items", "scales"}},
+        {"item", {"id", "text", "min", "max", "step", "labels", "reverse"}},
+        {"subscale", {"items", "score", "weight", "offset", "at_least"}},
+        {"record", {"dir", "head_pose_hz", "markers", "compress_frames"}},
+        {"resume", {"max_gap_min", "repeat"}},
+    };
+    return keys;
+}
+
+std::set<std::string> block_keys(Task task)
+{
+    std::set<std::string> keys{
+        "task",    "prompt",      "instructions", "cross",   "nest",          "only",   "repeats",
+        "shuffle", "constraints", "break_every",  "break_s", "warmup_frames", "iti_ms", "expected_response_ms",
+        "camera",  "stimuli",     "settings"};
+    TaskFacts const& f = facts(task);
+    bool const is_preference = f.takes_pairs && !f.takes_compare;
+    bool const shows_several = f.takes_pairs || task == Task::ranking || task == Task::two_interval;
+    if (task == Task::questionnaire)
+        keys.insert("questionnaire");
+    else if (task == Task::free_walk)
+        keys.insert("duration_s");
+    else
+        keys.insert({"practice", "stimulus_ms", "timeout_ms"});
+    if (shows_several) keys.insert("isi_ms");
+    if (shows_several && task != Task::two_interval) keys.insert("presentation"); // intervals follow each other
+    if (f.takes_pairs) keys.insert({"pairs", "catch"});
+    if (is_preference) keys.insert("ties");
+    if (f.takes_compare) keys.insert({"compare", "procedure", "interleave", "catch"});
+    if (!presented_orders(task, false).empty()) keys.insert({"feedback", "feedback_ms"});
+    if (task == Task::adjustment) keys.erase("catch");
+    if (task == Task::ranking) keys.insert("rank");
+    if (task == Task::rating) keys.insert("scale");
+    if (task == Task::magnitude) keys.insert({"modulus", "standard"});
+    return keys;
+}
+
+} // namespace study

@@ -1,0 +1,205 @@
+#include "study/script/read.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace study {
+namespace {
+
+void check_setting_key(Yaml const& key)
+{
+    std::string const s = key.name();
+    if (!std::isalpha(static_cast<unsigned char>(s.front())) || s.back() == '.' ||
+        s.find("..") != std::string::npos)
+        throw key.error("'" + s + "' is no setting", "settings are words with dots between", "as gi.points");
+}
+
+std::vector<std::string> names_of(std::vector<FactorLevel> const& levels)
+{
+    std::vector<std::string> names;
+    for (FactorLevel const& l : levels) names.push_back(l.name);
+    return names;
+}
+
+} // namespace
+
+Patch read_patch(Yaml const& y)
+{
+    Patch patch;
+    for (auto const& [key, value] : y.entries()) {
+        check_setting_key(key);
+        std::string const text = value.text();
+        if (text.find_first_of("\t\n\r") != std::string::npos)
+            throw value.error(value.path() + " is more than a line", "a setting is one word or number",
+                              "shorten it");
+        patch.emplace_back(key.text(), text);
+    }
+    return patch;
+}
+
+std::vector<Factor> read_factors(Yaml const& y)
+{
+    std::vector<Factor> factors;
+    for (auto const& [key, value] : y.entries()) {
+        Factor factor{key.name(), {}, key.place()};
+        for (char const* reserved : {"pair", "answer", "procedure", "do"})
+            if (factor.name == reserved)
+                throw key.error("a factor named '" + factor.name + "'", "the word means something else in scripts",
+                                "choose another name");
+        if (value.is_list()) {
+            check_setting_key(key);
+            for (Yaml const& level : value.items())
+                factor.levels.push_back({level.name(), {{factor.name, level.name()}}});
+        } else {
+            for (auto const& [name, patch] : value.entries())
+                factor.levels.push_back({name.name(), read_patch(patch)});
+        }
+        auto names = names_of(factor.levels);
+        std::sort(names.begin(), names.end());
+        if (auto const twice = std::adjacent_find(names.begin(), names.end()); twice != names.end())
+            throw value.error(fmt::format("level '{}' twice in {}", *twice, factor.name),
+                              "they could not be told apart", "remove one");
+        if (names.empty() || names.size() > 1000)
+            throw value.error(fmt::format("factor '{}' has {} levels", factor.name, names.size()),
+                              "1 to 1000 make sense", names.empty() ? "add some" : "split it");
+        factors.push_back(std::move(factor));
+    }
+    return factors;
+}
+
+int read_factor(Yaml const& name, Script const& s)
+{
+    std::vector<std::string> known;
+    for (Factor const& f : s.factors) known.push_back(f.name);
+    return name.one_of(known, "factor");
+}
+
+int read_level(Yaml const& name, Script const& s, int factor)
+{
+    Factor const& f = s.factors[std::size_t(factor)];
+    return name.one_of(names_of(f.levels), "level of factor '" + f.name + "'");
+}
+
+int read_questionnaire_name(Yaml const& name, Script const& s)
+{
+    std::vector<std::string> known;
+    for (Questionnaire const& q : s.questionnaires) known.push_back(q.name);
+    return name.one_of(known, "questionnaire");
+}
+
+Choice read_choice(Yaml const& y, Script const& s)
+{
+    Choice choice;
+    for (auto const& [key, value] : y.entries()) {
+        int const factor = read_factor(key, s);
+        choice.push_back({factor, read_level(value, s, factor)});
+    }
+    return choice;
+}
+
+std::vector<int> read_levels_of(Yaml const& y, Script const& s, int factor, std::size_t least)
+{
+    Factor const& f = s.factors[std::size_t(factor)];
+    std::vector<bool> omitted(f.levels.size());
+    if (y.has("omit"))
+        for (Yaml const& name : y.at("omit").one_or_more())
+            omitted[std::size_t(read_level(name, s, factor))] = true;
+    std::vector<int> levels;
+    for (std::size_t i = 0; i < f.levels.size(); ++i)
+        if (!omitted[i]) levels.push_back(int(i));
+    if (levels.size() < least)
+        throw y.error(
+            fmt::format("factor '{}' leaves {} of its {} levels here", f.name, levels.size(), f.levels.size()),
+            fmt::format("at least {} are needed", least), "omit fewer or add levels");
+    return levels;
+}
+
+void read_trial_timing(Yaml const& y, TrialTiming& timing)
+{
+    constexpr double kHour_ms = 3600000;
+    if (y.has("warmup_frames")) timing.warmup_frames = y.at("warmup_frames").integer(0, 100000);
+    for (auto const& [key, value] :
+         {std::pair{"isi_ms", &timing.isi_ms}, {"iti_ms", &timing.iti_ms}, {"feedback_ms", &timing.feedback_ms}})
+        if (y.has(key)) *value = y.at(key).number(0, kHour_ms);
+    auto const optional = [&](char const* key, char const* word, std::optional<double>& value) {
+        if (!y.has(key)) return;
+        if (y.at(key).is_text() && y.at(key).text() == word)
+            value.reset();
+        else
+            value = y.at(key).number(1, kHour_ms);
+    };
+    optional("stimulus_ms", "until_response", timing.stimulus_ms);
+    optional("timeout_ms", "none", timing.timeout_ms);
+    optional("expected_response_ms", "usual", timing.expected_response_ms);
+}
+
+RatingScale read_scale(Yaml const& y)
+{
+    check_keys(y, "scale");
+    RatingScale scale;
+    scale.low = y.needed("min", "1").number(-1e6, 1e6);
+    scale.high = y.needed("max", "7").number(-1e6, 1e6);
+    if (y.has("step")) scale.step = y.at("step").number(1e-6, 1e6);
+    double const steps = (scale.high - scale.low) / scale.step;
+    if (!(steps >= 1 && steps <= 1e5) || std::abs(steps - std::round(steps)) > 1e-6)
+        throw y.error(fmt::format("a scale from {:g} to {:g} by {:g}", scale.low, scale.high, scale.step),
+                      "it needs 2 to 100001 values, the last of them max", "change max or step");
+    if (y.has("labels"))
+        for (auto const& [key, value] : y.at("labels").entries())
+            scale.labels.emplace_back(key.number(scale.low, scale.high), value.text());
+    return scale;
+}
+
+Constraint read_constraint(Yaml const& y, Script const& s)
+{
+    check_keys(y, "constraint");
+    Constraint c;
+    c.place = y.place();
+    auto const subject = [&](Yaml const& name) {
+        constexpr int kOthers = 3;
+        std::vector<std::string> known{"pair", "answer", "procedure"};
+        for (Factor const& f : s.factors) known.push_back(f.name);
+        int const i = name.one_of(known, "thing that rules are about");
+        c.subject = i == 0   ? Subject::pair
+                    : i == 1 ? Subject::answer
+                    : i == 2 ? Subject::procedure
+                             : Subject::factor;
+        if (i >= kOthers) c.factor = i - kOthers;
+    };
+    bool const is_repeat = y.has("no_repeat"), is_run = y.has("max_run"), is_gap = y.has("min_gap"),
+               is_after = y.has("never_after"), is_first = y.has("not_first");
+    bool const has_subject = y.has("of");
+    if (int(is_repeat || is_run) + is_gap + is_after + is_first != 1 ||
+        has_subject != ((is_run && !is_repeat) || is_gap))
+        throw y.error(
+            "this is no constraint", "each is one rule",
+            "write {no_repeat: F}, {no_repeat: F, max_run: 2}, {max_run: 2, of: F}, {min_gap: 2, of: F}, "
+            "{never_after: {F: [a, b]}} or {not_first: {F: a}}");
+    if (has_subject) subject(y.at("of"));
+    if (is_repeat) subject(y.at("no_repeat"));
+    if (is_run) c.count = y.at("max_run").integer(1, 100000);
+    if (is_gap) {
+        c.kind = RuleKind::min_gap;
+        c.count = y.at("min_gap").integer(1, 100000);
+    }
+    if (!is_after && !is_first) return c;
+    Yaml const map = y.at(is_after ? "never_after" : "not_first");
+    auto const entries = map.entries();
+    if (entries.size() != 1)
+        throw map.error("not one factor", "a rule is of one factor", "write one constraint for each");
+    c.factor = read_factor(entries[0].first, s);
+    auto const levels = entries[0].second.one_or_more();
+    if (levels.size() != (is_after ? 2u : 1u))
+        throw entries[0].second.error(fmt::format("{} levels", levels.size()),
+                                      is_after ? "the first and the one that must not follow it are needed"
+                                               : "one is needed",
+                                      is_after ? "write [a, b]" : "write one constraint for each");
+    c.kind = is_after ? RuleKind::never_after : RuleKind::not_first;
+    if (is_after) c.from = read_level(levels[0], s, c.factor);
+    c.to = read_level(levels.back(), s, c.factor);
+    return c;
+}
+
+} // namespace study

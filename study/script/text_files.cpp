@@ -1,0 +1,37 @@
+#include "study/script/script_file.h"
+
+namespace study {
+
+bool is_text_file(std::string const& text)
+{
+    return text.ends_with(".md") && text.find('\n') == std::string::npos && text.size() < 256;
+}
+
+namespace {
+
+void check_text_file(Script const& s, std::filesystem::path const& folder, std::string const& text, Place where)
+{
+    std::error_code failure;
+    if (is_text_file(text) && !std::filesystem::is_regular_file(folder / text, failure))
+        throw ScriptError(s.file, where, "there is no file '" + text + "'", "it is looked for beside the script",
+                          "write it, or put the text itself here");
+}
+
+void check_texts(Script const& s, std::filesystem::path const& folder, std::vector<SequenceItem> const& items)
+{
+    for (SequenceItem const& item : items) {
+        if (item.kind == SequenceKind::instructions) check_text_file(s, folder, item.text, item.place);
+        check_texts(s, folder, item.items);
+    }
+}
+
+} // namespace
+
+void check_text_files(Script const& script, std::filesystem::path const& folder)
+{
+    check_text_file(script, folder, script.participants.consent, script.participants.place);
+    check_texts(script, folder, script.sequence);
+    for (Block const& b : script.blocks) check_text_file(script, folder, b.instructions, b.place);
+}
+
+} // namespace study

@@ -1,0 +1,48 @@
+#pragma once
+#include "viewer/engine/live/live_renderer.h"
+#include "viewer/protocol/cluster/cluster.h"
+
+#include <condition_variable>
+#include <mutex>
+
+namespace viewer {
+
+/// The ranks of mpirun as a FrameLink: frames in lock step, lost ranks named.
+class ClusterLink : public FrameLink {
+public:
+    ClusterLink(ClusterIdentity identity, ClusterSettings const& settings)
+        : identity_(std::move(identity)), settings_(settings)
+    {
+    }
+    void begin() override;
+    void end() override;
+    bool leads() const override;
+    void send(FrameOrder const& order) override;
+    std::optional<FrameOrder> receive() override;
+    void check() override;
+    FrameWork wait_for_all(FrameOrder const& order, FrameWork const& own) override;
+    void drawn(std::uint64_t frame) override;
+    void swapped(std::uint64_t frame, double steady_s) override;
+
+    /// When all is over: of the leader. Why it ended early; empty = it did not.
+    SwapSkew const& skew() const { return skew_; }
+    std::string const& failure() const { return failure_; }
+
+private:
+    void report_swaps();
+    template <class F>
+    auto guarded(F const& call);
+
+    ClusterIdentity identity_;
+    ClusterSettings settings_;
+    std::unique_ptr<Cluster> cluster_; ///< of the rendering thread
+    std::unique_ptr<KeepAlive> alive_; ///< between calls, which may be far apart
+    SwapSkew skew_;
+    std::string failure_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::uint64_t drawn_ = 0, released_ = 0; ///< frames, counted from 1
+    std::vector<std::pair<std::uint64_t, double>> swaps_;
+};
+
+} // namespace viewer

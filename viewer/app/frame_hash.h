@@ -1,0 +1,16 @@
+#pragma once
+#include "viewer/engine/session.h"
+#include "viewer/protocol/recording/pixel_hash.h"
+
+namespace viewer {
+
+/// Of the colours of all views.
+inline std::uint64_t frame_hash(SessionFrame const& frame)
+{
+    std::uint64_t hash = 0;
+    for (ViewPicture const& v : frame.views)
+        hash = pixel_hash(std::as_bytes(std::span(v.picture.find("color")->data)), hash);
+    return hash;
+}
+
+} // namespace viewer

@@ -1,0 +1,224 @@
+#include "viewer/app/hmd_program.h"
+
+#include "viewer/app/hmd_eyes.h"
+#include "viewer/app/user_body.h"
+#include "viewer/app/view_core.h"
+#include "viewer/devices/xr/keeper.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace viewer {
+namespace {
+
+constexpr char const* kEyes[] = {"left eye", "right eye"}; ///< names of their views
+
+WindowSettings hidden()
+{
+    WindowSettings settings;
+    settings.size_px = {64, 64};
+    settings.visibility = Visibility::hidden;
+    return settings;
+}
+
+/// Bit by bit: what is no number is equal to itself.
+bool same(HiddenMask const& a, HiddenMask const& b)
+{
+    return a.triangles == b.triangles &&
+           std::ranges::equal(std::as_bytes(std::span(a.points)), std::as_bytes(std::span(b.points)));
+}
+
+class HmdLoop {
+public:
+    HmdLoop(ViewOptions const& options, HmdOptions const& headset, gi::Report& report)
+        : core_(options, report),
+          state_(core_.state),
+          context_(report, hidden()),
+          keeper_(&context_.gl(), headset),
+          bodies_(options.avatars)
+    {
+        core_.start(nullptr, {});
+    }
+
+    ViewRunSummary run(gi::StopRequest const& stop)
+    {
+        double last = state_.clock.now_s();
+        while (core_.poll(stop) && !keeper_.ended()) {
+            HmdSession* const session = keeper_.poll();
+            if (keeper_.losses() != losses_) {
+                losses_ = keeper_.losses();
+                core_.report.lose("headset sessions lost", 1, keeper_.trouble());
+                std::fputs(fmt::format("note: {}; waiting for the headset\n", keeper_.trouble()).c_str(), stderr);
+            }
+            if (session == nullptr) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(10));
+                continue;
+            }
+            note_phase(*session);
+            std::optional<HmdFrame> const frame = session->begin_frame();
+            if (!frame) continue;
+            double const now = state_.clock.now_s();
+            double const seconds = now - std::exchange(last, now);
+            act(*session, *frame, seconds);
+            show(*session, *frame, seconds);
+        }
+        core_.finish();
+        core_.summary.gl = context_.gl().description();
+        core_.summary.headset = {{"losses", losses_},
+                                 {"phases", phases_},
+                                 {"shown", shown_},
+                                 {"reprojected", reprojected_},
+                                 {"left_out", left_out_}};
+        return core_.summary;
+    }
+
+private:
+    void note_phase(HmdSession const& session)
+    {
+        std::string const now = name(session.phase());
+        if (phases_.empty() || phases_.back() != now) phases_.push_back(now);
+    }
+
+    /// Left stick moves, right stick turns.
+    void act(HmdSession& session, HmdFrame const& frame, double seconds)
+    {
+        constexpr double kTurn_rad_s = 1.5;
+        NavigationInput in = core_.controls.motion(seconds);
+        in.right += frame.hands[0].move.x;
+        in.forward += frame.hands[0].move.y;
+        in.turn_right_rad += frame.hands[1].move.x * kTurn_rad_s * seconds;
+        state_.navigation.step(in, seconds);
+        for (CommandEvent const& c : core_.controls.commands()) {
+            core_.obey(c.command);
+            // Who goes to the first camera looks the way it does, wherever head and body are turned.
+            if (c.command == Command::first_camera && session.recentre()) started_ = false;
+        }
+    }
+
+    gi::dmat4 world_from_room() const
+    {
+        // The head that stands at the room's middle, at the height of the first frame, is where the navigation is.
+        return state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -start_);
+    }
+
+    /// What the lenses hide is not rendered.
+    void tell_hidden(HmdSession const& session)
+    {
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            HiddenMask const& mask = session.hidden(HmdEye(eye));
+            if (same(mask, told_[eye])) continue;
+            told_[eye] = mask;
+            core_.renderer->post(hidden_change(kEyes[eye], mask), [this](std::string const& wrong) {
+                if (!wrong.empty()) core_.report.lose("masks of eyes not used: all is rendered", 1, wrong);
+            });
+        }
+    }
+
+    void note_hidden(LiveFrame const& frame)
+    {
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            HiddenPixels const& hidden = frame.result.views[eye].hidden;
+            left_out_[eye] = hidden ? double(std::ranges::count(*hidden, 1)) / double(hidden->size()) : 0.0;
+        }
+    }
+
+    /// @param seconds  since the frame before
+    void show(HmdSession& session, HmdFrame const& frame, double seconds)
+    {
+        tell_hidden(session);
+        if (!started_ && frame.tracked.head) {
+            start_ = frame.tracked.head->position;
+            if (start_.y > 0.3) state_.navigation.set_eye_height(start_.y);
+            started_ = true;
+        }
+        Viewpoint at;
+        double const to_session = state_.clock.now_s() - steady_s();
+        at.pose_s = frame.pose_s + to_session;
+        at.display_s = frame.display_s + to_session;
+        at.world_from_room = world_from_room();
+        at.tracked = frame.tracked;
+        if (UserBody* const body = bodies_.first()) body->stand(at.tracked, at.world_from_room, seconds);
+        std::array<gi::Camera, 2> now;
+        for (std::size_t eye = 0; eye < 2; ++eye) {
+            now[eye] = frame.views[eye].camera;
+            now[eye].world_from_camera = at.world_from_room * now[eye].world_from_camera;
+            at.views.push_back(
+                {kEyes[eye], now[eye], frame.views[eye].width, frame.views[eye].height, eye == 0 ? -1 : 0});
+        }
+        core_.renderer->look(std::move(at));
+        auto const newest = core_.renderer->newest();
+        if (!frame.should_render || !newest || newest->result.views.size() != 2) return session.end_frame();
+        bool const fresh = newest != state_.frame;
+        double const begun = state_.clock.now_s();
+        if (fresh) {
+            state_.frame = newest;
+            state_.settings.followed = newest->settings.followed; // which the renderer sets
+            eyes_.take(*newest);
+            note_hidden(*newest);
+        }
+        double const uploaded = state_.clock.now_s();
+        HmdPicture picture;
+        picture.views = frame.views;
+        picture.values = TextureValues::srgb;
+        picture.first_row = FirstRow::top;
+        bool const moved = !(newest->order.views[0].camera == now[0] && newest->order.views[1].camera == now[1]);
+        eyes_.draw(*newest, now,
+                   {glm::ivec2{frame.views[0].width, frame.views[0].height},
+                    glm::ivec2{frame.views[1].width, frame.views[1].height}},
+                   state_.settings.reproject, tone_settings(state_.settings));
+        picture.textures = eyes_.textures();
+        session.end_frame(picture);
+        ++shown_;
+        if (moved) ++reprojected_;
+        ++core_.summary.presented;
+        core_.requests.presented(state_.clock.now_s(), {0, 0}, {});
+        FrameTimes times;
+        times.frame = newest->order.frame;
+        times.pose_s = newest->order.pose_s;
+        times.display_s = frame.display_s + to_session;
+        times.swap_s = times.display_s;
+        times.swap_method = SwapMethod::openxr;
+        times.swap_uncertainty_ms = 0.5e3 * frame.period_s;
+        times.render_ms = 1e3 * (newest->done_s - newest->begun_s);
+        times.upload_ms = 1e3 * (uploaded - begun);
+        times.draw_ms = 1e3 * (state_.clock.now_s() - uploaded);
+        times.paths = newest->order.paths;
+        times.width = newest->order.views[0].width;
+        times.height = newest->order.views[0].height;
+        times.late_ms = 1e3 * (times.swap_s - newest->order.display_s);
+        times.reprojected = moved;
+        core_.log(times);
+    }
+
+    static double steady_s()
+    {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    }
+
+    ViewCore core_;
+    ViewState& state_;
+    HmdContext context_;
+    HmdEyes eyes_;
+    HmdKeeper keeper_; ///< its sessions end before the context
+    UserBodies bodies_;
+    gi::dvec3 start_{0};
+    bool started_ = false;
+    int losses_ = 0;
+    std::vector<std::string> phases_;
+    std::uint64_t shown_ = 0, reprojected_ = 0;
+    std::array<HiddenMask, 2> told_;
+    std::array<double, 2> left_out_{}; ///< share of the pixels of each eye
+};
+
+} // namespace
+
+ViewRunSummary run_hmd(ViewOptions const& options, HmdOptions const& headset, gi::StopRequest const& stop,
+                       gi::Report& report)
+{
+    return HmdLoop(options, headset, report).run(stop);
+}
+
+} // namespace viewer

@@ -1,0 +1,66 @@
+#pragma once
+// What one window shows of the newest frame: pictures uploaded once, brought to where the head is now, composed
+// for stereo, bent and blended for walls.
+
+#include "viewer/devices/gl/display_pass.h"
+#include "viewer/devices/gl/reprojection.h"
+#include "viewer/devices/gl/wall_pass.h"
+#include "viewer/engine/live/live_renderer.h"
+
+#include <deque>
+
+namespace viewer {
+
+/// A part of a window and the views of a frame that it shows.
+struct Pane {
+    glm::ivec2 corner_px{}, size_px{}; ///< from the window's top left corner
+    StereoMode stereo = StereoMode::off;
+    int left = -1, right = -1; ///< views of the frame; -1 = none: it stays dark
+    bool right_alone = false;  ///< the second of two windows
+    int wall = -1;             ///< index into the walls' settings; -1 = flat, as it is
+};
+
+struct PresentSettings {
+    gi::ToneMapSettings tone;
+    Comparison comparison = Comparison::off;
+    float split = 0.5f;
+    bool swap_eyes = false;
+};
+
+class Presenter {
+public:
+    /// The window's context is current, here and in all calls.
+    /// @param walls  settings of the walls that panes name; their passes are made here
+    explicit Presenter(std::vector<WallSettings> const& walls);
+
+    /// Uploads the views that these panes show.
+    void take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> const& panes);
+    /// Over what is there; nothing outside of the panes is touched.
+    /// @param on_screen_px  of the target's top left corner   @param now  a camera per view, for reprojection;
+    /// empty =
+    ///                      as rendered
+    void draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& panes,
+              PresentSettings const& settings, std::vector<gi::Camera> const& now);
+
+private:
+    /// Of one view.
+    struct Shown {
+        PictureTexture picture, other;
+        Reprojection reprojection, other_reprojection;
+        bool has_other = false, fresh = false;
+    };
+    EyeView eye(int view, std::vector<gi::Camera> const& now);
+    void draw_on_wall(Pane const& pane, DrawTarget const& target, EyeView const& left, EyeView const& right,
+                      DisplaySettings const& settings);
+    ShownPicture bent(Pane const& pane, EyeView const& eye, DisplaySettings const& settings, std::size_t side,
+                      glm::ivec2 size_px);
+
+    std::deque<Shown> shown_;
+    std::shared_ptr<LiveFrame const> frame_;
+    DisplayPass pass_;
+    std::deque<WallPass> walls_;
+    std::array<std::optional<TextureTarget>, 2> flat_, bent_;
+    glm::ivec2 bent_px_{};
+};
+
+} // namespace viewer

@@ -1,0 +1,242 @@
+#include "viewer/app/view_core.h"
+
+#include "gi/core/error.h"
+#include "gi/image_io/picture_file.h"
+#include "viewer/app/frame_hash.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+nlohmann::json all_settings(Settings const& s)
+{
+    nlohmann::json j = nlohmann::json::object();
+    for (SettingKey const& k : setting_keys()) j[k.key] = get(s, k.key);
+    return j;
+}
+
+std::string next(std::string const& key, std::string const& now)
+{
+    for (SettingKey const& k : setting_keys()) {
+        if (k.key != key) continue;
+        auto const at = std::find(k.words.begin(), k.words.end(), now);
+        return at == k.words.end() || at + 1 == k.words.end() ? k.words.front() : *(at + 1);
+    }
+    return now;
+}
+
+} // namespace
+
+ViewCore::ViewCore(ViewOptions const& o, gi::Report& r)
+    : options(o), display(o.display), report(r), session(o.load, o.threads, r), requests(state, controls, r)
+{
+    if (o.drive) session.drive_bodies(o.drive);
+    for (Change const& c : o.settings) session.apply(c);
+    session.apply({"scene", o.scene});
+    state.settings = session.settings();
+    state.facts = facts_of(session);
+    start_at(o.first_camera(session.world()));
+    state.navigation.set_eye_height(o.eye_height_m);
+    state.navigation.set_mode(o.navigation);
+    state.loaded = [this] { look_anew(); };
+    if (!o.remote.socket.empty() || o.remote.port) {
+        remote_ = std::make_unique<RemoteServer>(
+            o.remote, [this](RemoteRequest const& request) { return requests.handle(request); }, r);
+        requests.answer_with(remote_.get());
+        if (o.remote.port) fmt::print(stderr, "note: remote control at 127.0.0.1:{}\n", remote_->port());
+    }
+}
+
+ViewCore::~ViewCore()
+{
+    if (renderer) renderer->stop();
+}
+
+void ViewCore::start_at(gi::Camera const& camera)
+{
+    state.first_camera = state.camera = camera;
+    // A walk through a scene takes seconds, whatever its size.
+    double const speed = std::clamp(0.2 * state.facts.radius_m, 0.05, 20.0);
+    NavigationMode const mode = state.navigation.mode();
+    state.navigation = Navigation(camera.world_from_camera, speed, state.facts.center);
+    state.navigation.set_mode(mode);
+    gi::dvec3 const from(camera.world_from_camera[3]);
+    state.screen_distance_m = std::clamp(glm::length(state.facts.center - from), 0.2, 1e4);
+}
+
+void ViewCore::look_anew()
+{
+    renderer->ask([this](Session& s) {
+        try {
+            state.inbox.put([this, facts = facts_of(s), camera = options.first_camera(s.world())] {
+                state.facts = facts;
+                state.selection.reset();
+                start_at(camera);
+            });
+        } catch (gi::InputError const& e) { // it has no camera of the name that was asked for
+            state.inbox.put([this, why = std::string(e.what())] { state.message = why; });
+        }
+    });
+}
+
+void ViewCore::make_files()
+{
+    for (auto const& file : {options.record, options.frame_log})
+        if (!file.empty() && std::filesystem::exists(file))
+            throw gi::InputError("'" + file.string() + "' is there already", "it would be replaced",
+                                 "give another name, or delete it");
+    if (!options.frame_log.empty())
+        log_ = std::make_unique<FrameLog>(options.frame_log,
+                                          options.header.program + "\n" + options.header.command_line, report);
+    if (options.record.empty()) return;
+    RecordingHeader header = options.header;
+    header.scene = options.scene;
+    header.settings = {{"settings", all_settings(state.settings)}, {"load", options.load_options}};
+    for (Change const& c : options.settings)
+        if (is_hidden_mask(c.key)) header.settings["settings"][c.key] = c.value;
+    recorder_ = std::make_unique<Recorder>(options.record, header, report);
+}
+
+void ViewCore::start(FrameLink* link, std::function<void()> published,
+                     std::function<std::vector<ViewOrder>(FrameOrder const&)> own_views)
+{
+    make_files();
+    state.is_one_of_ranks = link != nullptr;
+    LiveRenderer::Hooks hooks;
+    hooks.finished = [this](LiveFrame const& f) {
+        ++summary.rendered;
+        summary.schedule = f.schedule;
+        if (!recorder_) return;
+        FrameOrder order = f.order;
+        if (!f.ordered.empty()) order.views = f.ordered;
+        // What a rank of a cluster has rendered is not what a replay of all walls renders.
+        recorder_->append({order, f.ordered.empty() ? std::optional(frame_hash(f.result)) : std::nullopt, {}});
+    };
+    hooks.published = std::move(published);
+    hooks.own_views = std::move(own_views);
+    hooks.failed = [this](std::string const& why) {
+        report.lose("frames that could not be rendered", 1, why);
+        state.inbox.put([this, why] { state.message = why; });
+    };
+    renderer = std::make_unique<LiveRenderer>(session, state.clock, link, hooks);
+    state.renderer = renderer.get();
+    state.refresh_ground();
+}
+
+bool ViewCore::poll(gi::StopRequest const& stop)
+{
+    double const now = state.clock.now_s();
+    if (last_poll_s_ > 0)
+        summary.longest_block_ms = std::max(summary.longest_block_ms, 1e3 * (now - last_poll_s_));
+    last_poll_s_ = now;
+    watch_files();
+    state.inbox.read();
+    requests.step();
+    if (remote_) remote_->poll();
+    return !state.ends && !stop.requested() && !renderer->stopped() &&
+           !(options.time_limit_s > 0 && now > options.time_limit_s);
+}
+
+void ViewCore::obey(Command command)
+{
+    Settings const& s = state.settings;
+    switch (command) {
+    case Command::close:
+        state.ends = true;
+        break;
+    case Command::panel:
+        state.change({"panel", !s.panel});
+        break;
+    case Command::screenshot:
+        state.wants_screenshot = state.own_screenshot = true;
+        break;
+    case Command::swap_eyes:
+        state.change({"swap_eyes", !s.swap_eyes});
+        break;
+    case Command::next_navigation:
+        state.navigation.set_mode(NavigationMode((int(state.navigation.mode()) + 1) % 3));
+        state.refresh_ground();
+        break;
+    case Command::first_camera:
+        state.navigation.go_to(state.first_camera.world_from_camera);
+        break;
+    case Command::next_view:
+        state.change({"view", next("view", s.view)});
+        break;
+    case Command::compare:
+        state.change({"compare", s.compare.empty() ? "reference" : ""});
+        state.change({"view", s.compare.empty() ? "picture" : "split"});
+        break;
+    case Command::next_method:
+        state.change({"method", next("method", s.method)});
+        break;
+    case Command::brighter:
+        state.change({"exposure", std::min(32.0, s.exposure_ev + 0.25)});
+        break;
+    case Command::darker:
+        state.change({"exposure", std::max(-32.0, s.exposure_ev - 0.25)});
+        break;
+    case Command::play:
+        state.change({"play", !s.play});
+        break;
+    case Command::reproject:
+        state.change({"reproject", !s.reproject});
+        break;
+    case Command::select:
+    case Command::drag:
+        break;
+    }
+}
+
+void ViewCore::log(FrameTimes const& times)
+{
+    if (times.dropped > 0) report.lose("frames dropped", std::uint64_t(times.dropped));
+    if (log_) log_->append(times);
+}
+
+void ViewCore::watch_files()
+{
+    if (recorder_) tell_failure(options.record, recorder_->failure());
+    if (log_) tell_failure(options.frame_log, log_->failure());
+}
+
+void ViewCore::tell_failure(std::filesystem::path const& file, std::string const& why)
+{
+    if (why.empty() || !unwritten_.insert(file).second) return;
+    summary.files_whole = false;
+    state.message = fmt::format("'{}' cannot be written any further ({}) what came before is kept; make room and "
+                                "begin anew",
+                                file.string(), why);
+    std::fputs(("lightwell: " + state.message + "\n").c_str(), stderr);
+}
+
+void ViewCore::finish()
+{
+    renderer->stop();
+    if (recorder_) {
+        recorder_->finish();
+        summary.recorded = recorder_->written_frames();
+    }
+    if (log_) {
+        log_->close();
+        summary.frames = log_->summary();
+    }
+    watch_files();
+}
+
+void ViewCore::save_screenshot(glm::ivec2 window_px, std::vector<unsigned char> const& bytes)
+{
+    std::string const base = fmt::format("{}lightwell_{:06}", options.screenshots, state.frame->order.frame);
+    try {
+        gi::write_png(base + ".png", window_px.x, window_px.y, bytes);
+        gi::write_exr(base + ".exr", state.frame->result.views[0].picture, gi::PixelType::single, report);
+        state.message = "saved " + base + ".png and .exr";
+    } catch (gi::InputError const& e) {
+        state.message = e.what();
+    }
+}
+
+} // namespace viewer

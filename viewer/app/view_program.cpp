@@ -1,0 +1,428 @@
+#include "viewer/app/view_program.h"
+
+#include "gi/core/error.h"
+#include "viewer/app/display_windows.h"
+#include "viewer/app/layout.h"
+#include "viewer/app/panel_contents.h"
+#include "viewer/app/present_thread.h"
+#include "viewer/app/user_body.h"
+#include "viewer/app/user_tracking.h"
+#include "viewer/app/view_core.h"
+#include "viewer/devices/gl/gamepads.h"
+#include "viewer/devices/gl/panel.h"
+#include "viewer/displays/compose.h"
+
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+#include <algorithm>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace viewer {
+namespace {
+
+constexpr double kLook_s = 0.004;       // between two looks at input and sockets
+constexpr double kPresentation_Hz = 60; // of old pictures seen from new places
+constexpr double kFlicker_Hz = 2;
+
+double steady_s()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+class WindowLoop {
+public:
+    WindowLoop(ViewOptions const& options, FrameLink* link, gi::Report& report)
+        : core_(options, report), state_(core_.state), link_(link), bodies_(options.avatars)
+    {
+        if (options.display) {
+            if (!follows()) tracking_.emplace(*core_.display);
+            shown_ = open_windows(*core_.display, core_.options.rank, core_.options.swap_interval, core_.report);
+        } else {
+            open_desktop();
+        }
+        if (!shown_.windows.empty()) shown_.windows.front()->window.gl().release(); // to the thread that draws
+        std::function<std::vector<ViewOrder>(FrameOrder const&)> own;
+        if (link != nullptr && options.display)
+            own = [this](FrameOrder const& order) {
+                return views_of_rank(*core_.display, order.views, core_.options.rank);
+            };
+        core_.start(
+            link, [] { glfwPostEmptyEvent(); }, own);
+    }
+
+    ViewRunSummary run(gi::StopRequest const& stop)
+    {
+        double last = state_.clock.now_s();
+        while (core_.poll(stop)) {
+            wait_for_windows(kLook_s);
+            double const now = state_.clock.now_s();
+            take_input();
+            if (follows())
+                note_sizes();
+            else
+                look(now - last);
+            last = now;
+            show();
+        }
+        presenting_.reset();
+        core_.finish();
+        core_.summary.gl = shown_.windows.empty() ? "" : shown_.windows[0]->window.gl().description();
+        if (tracking_) core_.summary.trackers = tracking_->stats(steady_s());
+        return core_.summary;
+    }
+
+private:
+    bool follows() const { return core_.options.rank > 0; }
+
+    void open_desktop()
+    {
+        bool const two = state_.settings.stereo == name_of(StereoMode::two_windows);
+        WindowSettings settings;
+        settings.title = "Lightwell: " + core_.options.scene;
+        settings.size_px = core_.options.size_px;
+        settings.swap_interval = core_.options.swap_interval;
+        if (state_.settings.stereo == name_of(StereoMode::quad_buffer)) settings.quad_buffer = QuadBuffer::wanted;
+        std::string const scene = settings.title;
+        std::size_t const windows = two ? 2 : 1;
+        std::vector<std::string> const& monitors = core_.options.monitors;
+        if (!monitors.empty() && monitors.size() != windows)
+            throw gi::InputError(fmt::format("{} monitors for {} windows", monitors.size(), windows),
+                                 "each window fills one", two ? "--fullscreen LEFT,RIGHT" : "name one");
+        for (std::size_t i = 0; i < windows; ++i) {
+            if (!monitors.empty()) settings.monitor = monitors[i];
+            if (two) settings.title = scene + (i == 0 ? " (left eye)" : " (right eye)");
+            if (i == 1 && monitors.empty()) {
+                Window const& left = shown_.windows[0]->window;
+                settings.position_px = left.position_px() + glm::ivec2(left.framebuffer_px().x, 0);
+            }
+            shown_.windows.push_back(
+                std::make_unique<ShownWindow>(settings, std::vector<WallSettings>{}, core_.report));
+        }
+        state_.has_two_windows = two;
+        shown_.windows[0]->window.gl().make_current();
+        panel_ = std::make_unique<Panel>(shown_.windows[0]->window);
+    }
+
+    void take_input()
+    {
+        for (std::size_t w = 0; w < shown_.windows.size(); ++w) {
+            std::vector<InputEvent> events = shown_.windows[w]->window.take_events();
+            if (w == 0) gamepads_.poll(events);
+            if (panel_ && w == 0 && state_.settings.panel) panel_->claim(events);
+            if (!events.empty()) dirty_ = true;
+            for (InputEvent const& e : events) core_.controls.take(e, height_px());
+        }
+        for (CommandEvent const& c : core_.controls.commands()) {
+            dirty_ = true;
+            core_.obey(c.command);
+            if (c.command == Command::select) select({c.x, c.y});
+            if (c.command == Command::drag) drag({c.x, c.y});
+        }
+        int const mode = core_.controls.stereo_mode();
+        if (mode < 0 || core_.display) return;
+        try {
+            state_.change({"stereo", name_of(kStereoModes[std::size_t(mode) % std::size(kStereoModes)])});
+        } catch (gi::InputError const& e) {
+            state_.message = e.what();
+        }
+    }
+
+    glm::ivec2 first_px() const
+    {
+        return shown_.windows.empty() ? glm::ivec2(0) : shown_.windows[0]->window.framebuffer_px();
+    }
+    double height_px() const { return std::max(1, first_px().y); }
+
+    /// Of one eye's picture in the window.
+    glm::dvec2 eye_px()
+    {
+        StereoMode const mode = core_.display ? StereoMode::off : possible_mode();
+        return glm::max(glm::dvec2(eye_size(mode, first_px())), glm::dvec2(1));
+    }
+    double aspect() const { return std::max(1, first_px().x) / height_px(); }
+
+    void select(glm::dvec2 at_px)
+    {
+        glm::dvec2 const px = eye_px();
+        state_.pick(glm::mod(at_px, px) / px, aspect(), [this](std::optional<Selection> const& found) {
+            state_.selection = found;
+            if (found) state_.navigation.set_pivot(found->picked.position);
+            dirty_ = true;
+        });
+    }
+
+    /// Along the picture plane, so that the place that was picked stays under the mouse.
+    void drag(glm::dvec2 by_px)
+    {
+        if (!state_.selection) return;
+        gi::dmat4 const m = state_.navigation.world_from_camera();
+        double const depth = glm::dot(state_.selection->picked.position - gi::dvec3(m[3]), -gi::dvec3(m[2]));
+        double const height_m = 2 * depth * std::tan(0.5 * state_.camera.yfov_rad);
+        glm::dvec2 const by_m = by_px * height_m * glm::dvec2(aspect(), 1) / eye_px();
+        state_.move_selection(by_m.x * gi::dvec3(m[0]) - by_m.y * gi::dvec3(m[1]));
+    }
+
+    /// Where the windows have no buffers of the eyes, these are shown side by side.
+    StereoMode possible_mode()
+    {
+        StereoMode const mode = *stereo_mode(state_.settings.stereo);
+        if (mode != StereoMode::quad_buffer || shown_.windows[0]->window.has_quad_buffer()) return mode;
+        if (!std::exchange(fallback_told_, true))
+            core_.report.lose("stereo by quad buffers, which this window has not: side by side instead");
+        return StereoMode::side_by_side;
+    }
+
+    std::vector<glm::ivec2> window_sizes() const
+    {
+        std::vector<glm::ivec2> sizes;
+        for (auto const& w : shown_.windows) sizes.push_back(w->window.framebuffer_px());
+        return sizes;
+    }
+
+    void note_sizes()
+    {
+        if (core_.display) viewer::note_sizes(*core_.display, shown_);
+    }
+
+    void set_panes(std::vector<std::vector<Pane>> const& panes)
+    {
+        for (std::size_t w = 0; w < panes.size(); ++w) {
+            int const at = core_.display ? shown_.of[w] : int(w);
+            if (at >= 0) shown_.windows[std::size_t(at)]->panes = panes[w];
+        }
+    }
+
+    void look(double seconds)
+    {
+        NavigationInput const in = core_.controls.motion(seconds);
+        state_.navigation.step(in, seconds);
+        bodies_.step(core_.controls, seconds);
+        Viewpoint at;
+        at.pose_s = state_.clock.now_s();
+        at.display_s = at.pose_s + expected_s_;
+        note_sizes();
+        Layout layout;
+        if (core_.display) {
+            Display const& display = *core_.display;
+            double const seen_s = steady_s() + expected_s_;
+            // The head that rests stands where the navigation is.
+            at.world_from_room = state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -rest());
+            at.tracked = tracking_->bodies(0, seen_s);
+            bodies_.put(
+                display, [&](std::size_t user) { return tracking_->bodies(user, seen_s); }, seconds, at);
+            layout = display_layout(display, tracking_->heads(seen_s), at.world_from_room);
+        } else {
+            at.world_from_room = state_.navigation.world_from_camera();
+            if (UserBody* const body = bodies_.first()) {
+                gi::dmat4 const world_from_head = at.world_from_room;
+                at.world_from_room = state_.navigation.world_from_room() *
+                                     glm::translate(gi::dmat4(1), gi::dvec3{0, -core_.options.eye_height_m, 0});
+                at.tracked = body->before_desktop(glm::inverse(at.world_from_room) * world_from_head);
+                body->stand(at.tracked, at.world_from_room, seconds);
+            }
+            layout = desktop_layout(state_, possible_mode(), window_sizes());
+        }
+        at.views = std::move(layout.views);
+        if (link_ == nullptr) {
+            cameras_.clear();
+            for (ViewOrder const& v : at.views) cameras_.push_back(v.camera);
+            set_panes(layout.panes);
+        }
+        core_.renderer->look(std::move(at));
+    }
+
+    /// Where the first user's head rests, in the room.
+    gi::dvec3 rest() const
+    {
+        return core_.display->users.empty() ? gi::dvec3{0} : resting_head(core_.display->users[0]).position;
+    }
+
+    bool has_moved() const { return cameras_.size() == shown_cameras_.size() && !(cameras_ == shown_cameras_); }
+
+    void show()
+    {
+        auto const newest = core_.renderer->newest();
+        if (!newest || presenting_->busy()) return;
+        double const since_s = state_.clock.now_s() - last_swap_s_;
+        bool const fresh = newest != state_.frame;
+        bool const moved =
+            state_.settings.reproject && link_ == nullptr && has_moved() && since_s > 1 / kPresentation_Hz;
+        bool const flickers = state_.settings.view == "flicker" && since_s > 0.5 / kFlicker_Hz;
+        bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
+                                         [](auto const& w) { return w->window.framebuffer_px() != w->shown_px; });
+        if (fresh || moved || flickers || dirty_ || resized || state_.wants_screenshot) present(newest, fresh);
+    }
+
+    /// What the presenting thread is given, and gives back.
+    struct Presentation {
+        std::shared_ptr<LiveFrame const> frame;
+        bool fresh = false, panel = false, wants_bytes = false, reprojected = false;
+        PresentSettings settings;
+        std::vector<gi::Camera> cameras;
+        std::vector<glm::ivec2> sizes;
+        double begun_s = 0;
+        FrameTimes times;
+        SwapTime swap;
+        double shown_s = 0;
+        std::vector<unsigned char> bytes;
+    };
+
+    void present(std::shared_ptr<LiveFrame const> const& newest, bool fresh)
+    {
+        dirty_ = false;
+        state_.drawing = true;
+        auto const p = std::make_shared<Presentation>();
+        p->frame = newest;
+        p->fresh = fresh;
+        p->begun_s = state_.clock.now_s();
+        p->settings = present_settings();
+        p->wants_bytes = std::exchange(state_.wants_screenshot, false);
+        std::vector<gi::Camera> rendered;
+        for (ViewOrder const& v : newest->order.views) rendered.push_back(v.camera);
+        bool const reprojects =
+            state_.settings.reproject && link_ == nullptr && cameras_.size() == rendered.size();
+        shown_cameras_ = p->cameras = reprojects ? cameras_ : rendered;
+        p->reprojected = !(shown_cameras_ == rendered);
+        if (fresh) {
+            state_.frame = newest;
+            state_.settings.followed = newest->settings.followed; // which the renderer sets
+            if (link_ != nullptr && core_.display) set_panes(display_panes(*core_.display, newest->order.views));
+            meter_.see(newest);
+        }
+        state_.live_error = meter_.latest();
+        for (auto const& w : shown_.windows) {
+            w->shown_px = w->window.framebuffer_px();
+            w->shown_panes = w->panes;
+            w->on_screen_px = w->window.position_px();
+        }
+        p->panel = panel_ && state_.settings.panel;
+        if (p->panel) {
+            panel_->begin();
+            fill_panel(state_, frames_per_s_);
+            panel_->finish();
+        }
+        presenting_->start([this, p] { draw(*p); },
+                           [this, p] {
+                               state_.inbox.put([this, p] { presented(*p); });
+                               glfwPostEmptyEvent();
+                           });
+    }
+
+    /// On the presenting thread.
+    void draw(Presentation& p)
+    {
+        for (std::size_t w = 0; w < shown_.windows.size(); ++w) {
+            ShownWindow& shown = *shown_.windows[w];
+            shown.window.gl().make_current();
+            double const from = state_.clock.now_s();
+            if (p.fresh) shown.presenter.take(p.frame, shown.shown_panes);
+            double const uploaded = state_.clock.now_s();
+            clear(target_of(shown.window));
+            shown.presenter.draw(target_of(shown.window), shown.on_screen_px, shown.shown_panes, p.settings,
+                                 p.cameras);
+            if (w == 0 && p.wants_bytes) p.bytes = read_bytes(target_of(shown.window));
+            if (w == 0 && p.panel) panel_->draw();
+            p.times.upload_ms += 1e3 * (uploaded - from);
+            p.times.draw_ms += 1e3 * (state_.clock.now_s() - uploaded);
+        }
+        p.swap.time = SwapTime::Clock::now();
+        if (link_ != nullptr && p.fresh) {
+            for (auto const& w : shown_.windows) { // drawn, not only asked for
+                w->window.gl().make_current();
+                glFinish();
+            }
+            link_->drawn(p.frame->order.frame);
+        }
+        for (auto const& w : shown_.windows) {
+            w->window.gl().make_current();
+            p.swap = w->timer.swap();
+        }
+        for (auto const& w : shown_.windows) w->window.gl().release();
+        p.shown_s = state_.clock.at_s(p.swap.time);
+    }
+
+    void presented(Presentation const& p)
+    {
+        glm::ivec2 const px = shown_.windows.empty() ? glm::ivec2(0) : shown_.windows[0]->shown_px;
+        if (p.wants_bytes && std::exchange(state_.own_screenshot, false)) core_.save_screenshot(px, p.bytes);
+        state_.drawing = false;
+        core_.requests.presented(p.shown_s, px, p.bytes);
+        if (core_.requests.wants_bytes()) state_.wants_screenshot = true;
+        ++core_.summary.presented;
+        if (p.fresh) log(*p.frame, p.times, p.swap, p.begun_s, p.shown_s, p.reprojected);
+        last_swap_s_ = p.shown_s;
+    }
+
+    void log(LiveFrame const& f, FrameTimes times, SwapTime const& swap, double begun, double shown_s,
+             bool reprojected)
+    {
+        if (link_ != nullptr)
+            link_->swapped(f.order.frame, std::chrono::duration<double>(swap.time.time_since_epoch()).count());
+        expected_s_ = (f.done_s - f.begun_s) + (shown_s - begun);
+        times.frame = f.order.frame;
+        times.pose_s = f.order.pose_s;
+        times.display_s = f.order.display_s;
+        times.swap_s = shown_s;
+        times.swap_method = swap.method == GlSwapMethod::sync_control ? SwapMethod::oml : SwapMethod::fence;
+        times.swap_uncertainty_ms = swap.uncertainty_ms;
+        times.wait_ms = 1e3 * (begun - f.done_s);
+        times.render_ms = 1e3 * (f.done_s - f.begun_s);
+        times.paths = f.order.paths;
+        if (!f.order.views.empty()) {
+            times.width = f.order.views[0].width;
+            times.height = f.order.views[0].height;
+        }
+        // While nothing moves no frame is due at any time.
+        bool const due = f.result.still_frames <= 1 && last_fresh_s_ > 0;
+        times.dropped =
+            due ? std::max(0, int(std::floor((shown_s - last_fresh_s_) * f.settings.rate_hz - 0.5))) : 0;
+        times.late_ms = 1e3 * (shown_s - f.order.display_s);
+        times.reprojected = reprojected;
+        if (tracking_) times.tracker_ms = tracking_->age_ms(steady_s());
+        core_.log(times);
+        if (last_fresh_s_ > 0) frames_per_s_ = 0.8 * frames_per_s_ + 0.2 / std::max(1e-4, shown_s - last_fresh_s_);
+        last_fresh_s_ = shown_s;
+    }
+
+    PresentSettings present_settings() const
+    {
+        Settings const& s = state_.settings;
+        PresentSettings p;
+        p.tone = tone_settings(s);
+        p.split = float(s.split);
+        p.swap_eyes = s.swap_eyes;
+        if (s.compare.empty()) return p;
+        bool const second = std::fmod(state_.clock.now_s() * kFlicker_Hz, 1.0) < 0.5;
+        p.comparison = s.view == "split"               ? Comparison::split
+                       : s.view == "difference"        ? Comparison::difference
+                       : s.view == "flicker" && second ? Comparison::other
+                                                       : Comparison::off;
+        return p;
+    }
+
+    ViewCore core_;
+    ViewState& state_;
+    FrameLink* link_;
+    UserBodies bodies_;
+    std::optional<UserTracking> tracking_;
+    Gamepads gamepads_;
+    DisplayWindows shown_;
+    std::unique_ptr<Panel> panel_; ///< not on the walls of a display
+    std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
+    ErrorMeter meter_;
+    std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: now, and as shown
+    bool dirty_ = true, fallback_told_ = false;
+    double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;
+};
+
+} // namespace
+
+ViewRunSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop,
+                        gi::Report& report)
+{
+    return WindowLoop(options, link, report).run(stop);
+}
+
+} // namespace viewer

@@ -1,0 +1,101 @@
+#include "viewer/app/view_state.h"
+
+#include "gi/core/error.h"
+#include "gi/kernel/device.h"
+#include "viewer/displays/stereo_mode.h"
+
+namespace viewer {
+
+void ViewState::change(Change const& c, std::function<void(std::string const&)> done)
+{
+    if (is_setting(c.key)) {
+        Settings changed = settings;
+        set(changed, c);
+        if (c.key == "device") {
+            if (is_one_of_ranks)
+                throw gi::InputError("'device' while several ranks run", "each has to have such a device",
+                                     "start them with --set device=" + changed.device);
+            gi::check_device(changed.device == "cuda" ? gi::Space::device : gi::Space::host);
+        }
+        if (c.key == "stereo" && changed.stereo == name_of(StereoMode::two_windows) && !has_two_windows)
+            throw gi::InputError("'stereo' = two-windows", "there is no second window",
+                                 "start with --set stereo=two-windows");
+        settings = std::move(changed);
+        renderer->post(c);
+        if (done) done({});
+        return;
+    }
+    renderer->post(c, [this, c, done = std::move(done)](std::string const& error) {
+        inbox.put([this, c, error, done] {
+            if (!error.empty()) message = error;
+            if (error.empty() && c.key == "scene" && loaded) loaded();
+            if (done) done(error);
+            refresh_facts();
+        });
+    });
+}
+
+void ViewState::move_selection(gi::dvec3 by)
+{
+    selection->picked.position += by;
+    renderer->ask([this, object = selection->object, by](Session& s) {
+        try {
+            gi::dvec3 const at = s.position_of(object) + by;
+            Change const moved{"object." + object + ".position", {at.x, at.y, at.z}};
+            inbox.put([this, moved] { change(moved); });
+        } catch (gi::InputError const& e) {
+            inbox.put([this, why = std::string(e.what())] { message = why; });
+        }
+    });
+}
+
+void ViewState::refresh_facts()
+{
+    renderer->ask([this](Session& s) { inbox.put([this, now = facts_of(s)] { facts = now; }); });
+    refresh_ground();
+}
+
+void ViewState::refresh_ground()
+{
+    if (navigation.mode() != NavigationMode::walk) return;
+    renderer->ask([this, known = ground_of_](Session& s) {
+        if (!s.has_scene() || s.world().scene == known.lock()) return;
+        auto const ground = std::make_shared<Ground const>(s.world());
+        inbox.put([this, ground, scene = std::weak_ptr(s.world().scene)] {
+            navigation.set_ground(ground);
+            ground_of_ = scene;
+        });
+    });
+}
+
+gi::Camera ViewState::now() const
+{
+    gi::Camera c = camera;
+    c.world_from_camera = navigation.world_from_camera();
+    return c;
+}
+
+void ViewState::pick(glm::dvec2 at, double aspect, std::function<void(std::optional<Selection> const&)> done)
+{
+    // Pixels of an eye are not square where the halves of a window hold the whole view each.
+    if (frame && !frame->order.views.empty() && frame->order.views[0].camera.off_axis) {
+        gi::ViewTangents const edge = *frame->order.views[0].camera.off_axis;
+        aspect = (edge.right - edge.left) / (edge.top - edge.bottom);
+    }
+    renderer->ask([this, at, aspect, eye = now(), done = std::move(done)](Session& s) {
+        std::optional<Selection> found;
+        if (auto const hit = viewer::pick(s.world(), eye, aspect, at)) {
+            gi::Scene const& scene = *s.world().scene;
+            // The nearest node above it that has a name: what its author would call the thing.
+            std::int32_t node = std::int32_t(hit->node);
+            while (node >= 0 && scene.nodes[std::size_t(node)].name.empty())
+                node = scene.nodes[std::size_t(node)].parent;
+            found = Selection{*hit, node >= 0 ? scene.nodes[std::size_t(node)].name : std::to_string(hit->node),
+                              hit->material < scene.material_names.size() ? scene.material_names[hit->material]
+                                                                          : "default"};
+        }
+        inbox.put([found, done] { done(found); });
+    });
+}
+
+} // namespace viewer

@@ -1,0 +1,39 @@
+#include "viewer/base/report_json.h"
+
+#include <cstdio>
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+namespace viewer {
+
+nlohmann::ordered_json to_json(gi::Report const& report)
+{
+    nlohmann::ordered_json j;
+    j["stages_s"] = nlohmann::ordered_json::object();
+    for (auto const& [stage, seconds] : report.times()) j["stages_s"][stage] = seconds;
+    j["counts"] = nlohmann::ordered_json::object();
+    for (auto const& [what, value] : report.counts()) j["counts"][what] = value;
+    j["losses"] = nlohmann::ordered_json::object();
+    for (auto const& [what, loss] : report.losses())
+        j["losses"][what] = {{"count", loss.count}, {"first", loss.first}};
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    j["peak_memory_bytes"] = std::uint64_t(usage.ru_maxrss) * 1024;
+    return j;
+}
+
+void print_losses(gi::Report const& report, std::string const& whose)
+{
+    for (auto const& [what, loss] : report.losses())
+        std::fputs(fmt::format("lost: {}{}: {}{}\n", whose, what, loss.count,
+                               loss.first.empty() ? "" : " (first: " + loss.first + ")")
+                       .c_str(),
+                   stderr);
+}
+
+std::string to_text(nlohmann::ordered_json const& json)
+{
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+} // namespace viewer

@@ -1,0 +1,34 @@
+#include "viewer/bench/bench_session.h"
+
+#include "viewer/offline/load_world.h"
+
+namespace viewer {
+
+std::unique_ptr<Session> bench_session(std::string const& scene, std::vector<Change> const& settings,
+                                       gi::Report& report)
+{
+    auto const load = [](std::string const& name, gi::Report& r) {
+        RenderOptions options;
+        options.scene = name;
+        return load_lit_scene(options, r);
+    };
+    auto session = std::make_unique<Session>(load, 0, report);
+    for (Change const& change : settings) session->apply(change);
+    session->apply({"scene", scene});
+    return session;
+}
+
+gi::Layer reference_of(Session const& session, ViewOrder const& view, int paths, gi::Report& report)
+{
+    gi::RenderSettings s;
+    s.width = view.width;
+    s.height = view.height;
+    s.paths = std::uint32_t(paths);
+    s.seed = 99; // not that of the frames
+    s.bounces = session.settings().bounces;
+    return *gi::find_method("reference")
+                .render(session.world(), view.camera, s, {}, {}, report)
+                .picture.find("color");
+}
+
+} // namespace viewer

@@ -1,0 +1,22 @@
+#pragma once
+// What happens to every picture after its render: a filter, and files for the page.
+
+#include "viewer/bench/pictures_plan.h"
+#include "viewer/bench/sweep_reference.h"
+
+namespace viewer {
+
+struct FilteredPicture {
+    gi::Picture picture;
+    double seconds = 0;       ///< of the filter
+    bool no_variance = false; ///< the filter had nothing to go by and changed nothing
+};
+FilteredPicture filtered(gi::Picture picture, PictureFilter const& filter);
+
+struct PictureFiles {
+    std::string picture, flip_map; ///< within the folder
+};
+PictureFiles save_pictures(gi::Picture const& picture, SweepReference const& reference,
+                           std::filesystem::path const& folder, std::string const& stem);
+
+} // namespace viewer

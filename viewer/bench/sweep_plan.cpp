@@ -1,0 +1,135 @@
+#include "viewer/bench/sweep_plan.h"
+
+#include "gi/core/error.h"
+#include "gi/image_io/picture_file.h"
+#include "gi/methods/slhb/directions/directions.h"
+#include "viewer/base/arguments.h"
+#include "viewer/base/outputs.h"
+#include "viewer/bench/bench_record.h"
+#include "viewer/engine/settings.h"
+#include "viewer/offline/load_world.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+gi::Picture read_reference(std::string const& file, gi::RenderSettings const& s)
+{
+    gi::Picture picture = gi::read_picture(file);
+    if (picture.find("color") == nullptr)
+        throw gi::InputError("'" + file + "' is no reference", "it has no layer 'color'", "choose another");
+    if (picture.width != s.width || picture.height != s.height)
+        throw gi::InputError(fmt::format("'{}' is {}x{}", file, picture.width, picture.height),
+                             fmt::format("the pictures to judge are {}x{}", s.width, s.height),
+                             fmt::format("add --size {}x{}", picture.width, picture.height));
+    return picture;
+}
+
+/// A second sweep may replace what a first one wrote, but not what it reads itself.
+void check_pictures(SweepOptions const& o, std::vector<std::string> const& names,
+                    std::vector<std::string> const& inputs)
+{
+    if (!std::filesystem::exists(o.out)) return;
+    std::vector<std::string> files;
+    for (std::string const& scene : names)
+        for (std::string const& method : o.methods)
+            for (std::string const& budget : o.budgets)
+                for (char const* end : {".exr", ".png", "_flip.png"})
+                    files.push_back(
+                        (std::filesystem::path(o.out) / (picture_stem(scene, method, budget) + end)).string());
+    check_outputs(files, inputs);
+}
+
+} // namespace
+
+SweepMethod find_sweep_method(std::string const& name, std::string const& schedule_of_all)
+{
+    std::size_t const colon = name.find(':');
+    gi::Method const& method = gi::find_method(name.substr(0, colon));
+    if (colon == std::string::npos) return {name, method, parse_schedule(schedule_of_all), ""};
+    for (char const* const graded : {"vpl_slhb", "vpl_imperfect", "vpl_ao", "vpl_dao"})
+        if (method.name == graded) return {name, method, gi::Schedule::automatic, name.substr(colon + 1)};
+    if (method.name != "slhb")
+        throw gi::InputError(fmt::format("--methods {}: '{}' has no schedules", name, method.name),
+                             "slhb alone has axes to schedule", fmt::format("name it '{}'", method.name));
+    return {name, method, parse_schedule(name.substr(colon + 1)), ""};
+}
+
+gi::RenderSettings sweep_settings(RenderOptions options)
+{
+    options.budget = "1s";
+    options.png = "unused";
+    return make_settings(options);
+}
+
+SweepScene load_sweep_scene(RenderOptions const& options, std::string const& name, gi::Report& report)
+{
+    gi::World world = load_world(options, report);
+    ChosenCamera const chosen = choose_camera(world, camera_choice(options));
+    if (!chosen.note.empty()) std::fputs(fmt::format("note: {}: {}\n", name, chosen.note).c_str(), stderr);
+    return {options, name, std::move(world), chosen.camera};
+}
+
+std::string picture_stem(std::string const& scene, std::string method, std::string const& budget)
+{
+    std::ranges::replace(method, ':', '-');
+    std::ranges::replace(method, '%', 'p');
+    return fmt::format("{}_{}_{}", scene, method, budget);
+}
+
+gi::RenderSettings settings_of(SweepMethod const& m, gi::RenderSettings s)
+{
+    s.slhb.schedule = m.schedule;
+    if (m.quality.empty()) return s;
+    std::string const what = "--methods " + m.name;
+    if (m.method.name == "vpl_imperfect") {
+        s.vpl.points = parse_points(what, m.quality, s.vpl.point_map);
+    } else if (m.method.name == "vpl_slhb") {
+        gi::make_directions(m.quality);
+        s.slhb.directions = m.quality;
+    } else {
+        char* end = nullptr;
+        s.vpl.ao_radius_m = std::strtof(m.quality.c_str(), &end);
+        if (*end != 0 || !(s.vpl.ao_radius_m >= 0 && s.vpl.ao_radius_m <= 1e9f))
+            throw gi::InputError(what, "what stands behind the colon is its radius, m",
+                                 fmt::format("write {}:0.5", m.method.name));
+    }
+    return s;
+}
+
+SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
+{
+    SweepPlan plan;
+    for (std::string const& name : o.methods) plan.methods.push_back(find_sweep_method(name, o.render.schedule));
+    refuse_twins("--methods", o.methods, o.methods);
+    for (std::string const& text : o.budgets) plan.budgets_s.push_back(parse_duration("--budgets", text));
+    refuse_twins("--budgets", plan.budgets_s, o.budgets);
+    std::vector<std::string> names;
+    for (std::string const& scene : o.scenes) names.push_back(std::filesystem::path(scene).stem().string());
+    refuse_twins("--scene", names, names);
+    plan.settings = sweep_settings(o.render);
+    for (SweepMethod const& m : plan.methods) settings_of(m, plan.settings);
+    plan.filter = make_denoise_settings(o.render, plan.settings);
+    camera_choice(o.render); // throws before anything is loaded
+    if (!o.reference.empty() && o.scenes.size() > 1)
+        throw gi::InputError("--reference is given for several scenes", "one picture cannot judge them all",
+                             "sweep one scene at a time, or drop it");
+    check_folder(o.out);
+    std::vector<std::string> inputs = o.scenes;
+    inputs.insert(inputs.end(), {o.reference, o.render.environment});
+    check_pictures(o, names, inputs);
+    if (!o.reference.empty()) plan.reference = read_reference(o.reference, plan.settings);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        RenderOptions options = o.render;
+        options.scene = o.scenes[i];
+        plan.scenes.push_back(load_sweep_scene(options, names[i], report));
+    }
+    for (SweepScene const& scene : plan.scenes) check_pictures(o, names, scene.world.scene->files);
+    return plan;
+}
+
+} // namespace viewer

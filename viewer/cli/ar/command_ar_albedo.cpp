@@ -1,0 +1,228 @@
+#include "ar/camera/error.h"
+#include "ar/markers/marker_map_file.h"
+#include "ar/pipeline/estimate_albedo.h"
+#include "ar/pose/pose_file.h"
+#include "ar/runtime/frame_clock.h"
+#include "ar/runtime/frames_apart.h"
+#include "ar/runtime/runner.h"
+#include "ar/runtime/source_losses.h"
+#include "ar/scene/session_inputs.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "gi/image_io/picture_file.h"
+#include "viewer/base/arguments.h"
+#include "viewer/base/interrupt.h"
+#include "viewer/base/outputs.h"
+#include "viewer/base/report_json.h"
+#include "viewer/cli/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct AlbedoArguments {
+    std::string session, out, poses;
+    int views = 8, frames = 0;
+    bool scene = false;
+    EstimateSettings settings;
+};
+
+struct SeenFrames {
+    std::vector<AlbedoFrame> kept;
+    int found = 0, without_pose = 0, refused = 0;
+};
+
+/// Where the camera was: from the file, by what a tracker recorded, or by what the frame shows.
+class CameraPath {
+public:
+    CameraPath(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera, gi::Report& report)
+        : camera_(camera), detector_(ar::read_marker_map(session.markers))
+    {
+        if (!a.poses.empty())
+            poses_ = ar::read_poses(a.poses);
+        else if (session.tracked)
+            poses_ = recorded_poses(*session.tracked, report);
+    }
+    /// Its confidence, too.
+    std::optional<std::pair<ar::Pose, double>> at(ar::Frame const& frame, double time_s)
+    {
+        if (!poses_.empty()) {
+            auto const pose = told_pose(poses_, time_s);
+            if (!pose) return std::nullopt;
+            return std::pair(*pose, 1.0);
+        }
+        ar::PoseEstimate const p =
+            ar::estimate_pose(detector_.next(ar::gray_of(frame)), camera_.model, tracker_.expected(time_s));
+        tracker_.add(time_s, p);
+        if (!p.found() || p.ambiguous) return std::nullopt;
+        return std::pair(p.world_from_camera, p.confidence);
+    }
+
+private:
+    ArCamera const& camera_;
+    std::vector<ar::TimedPose> poses_;
+    ar::MarkerTracker detector_;
+    ar::PoseTracker tracker_;
+};
+
+SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera,
+                gi::StopRequest const& stop, gi::Report& report)
+{
+    CameraPath path(a, session, camera, report);
+    ar::OpenOptions open = session.frames.options;
+    open.pace = ar::Pace::fastest;
+    auto const source = ar::open_source(session.frames.source, open);
+    if (a.frames == 0 && (source->description().is_live || session.frames.source == "counter"))
+        throw gi::InputError("frames of '" + session.frames.source + "', all of them", "they never end",
+                             "say how many to look at: --frames 300");
+    FrameClock clock(session.frames.source, source->description(), false);
+    SeenFrames seen;
+    KeptApart<AlbedoFrame> kept(std::size_t(a.views));
+    for (int n = 0; !stop.requested() && (a.frames == 0 || n < a.frames);) {
+        std::optional<ar::Frame> const frame = source->next(std::chrono::milliseconds(200));
+        if (!frame) {
+            if (source->state().kind != ar::SourceState::Kind::running) break;
+            continue;
+        }
+        ++n;
+        double const time_s = clock(*frame);
+        try {
+            auto const pose = path.at(*frame, time_s);
+            if (!pose) {
+                ++seen.without_pose;
+                continue;
+            }
+            ++seen.found;
+            if (!kept.wants_next()) {
+                kept.skip();
+                continue;
+            }
+            cv::Mat const rgb = ar::rgb_of(*frame);
+            if (rgb.size() != cv::Size(camera.model.size_px.x, camera.model.size_px.y))
+                throw ar::InputError("a frame of another size", "the calibration is not of it", "calibrate again");
+            kept.add({rgb.clone(), frame->exposure, pose->first, pose->second});
+        } catch (ar::InputError const& e) {
+            ++seen.refused;
+            report.lose("frames that could not be used", 1, e.what());
+        }
+    }
+    tell_losses(source->counts(), source->state(), report);
+    seen.refused += int(source->counts().refused);
+    seen.kept = kept.take();
+    return seen;
+}
+
+void write_texture(fs::path const& file, cv::Mat const& linear)
+{
+    cv::Mat const srgb = ar::bytes_of(linear, ar::srgb_photometry());
+    gi::write_png(file, srgb.cols, srgb.rows, {srgb.ptr(), srgb.total() * 3});
+}
+
+std::string describe(AlbedoEstimate const& e, SeenFrames const& seen)
+{
+    ar::AlbedoFit const& fit = e.solution.fit;
+    std::string text = fmt::format("camera found in {} frames ({} without it, {} refused); {} compared\n",
+                                   seen.found, seen.without_pose, seen.refused, seen.kept.size());
+    text += fmt::format("{:<28} {:^23} {:^23} {:>8}\n", "", "albedo", "spread of pixels", "pixels");
+    for (AlbedoEntry const& p : e.entries)
+        text += p.samples == 0 ? fmt::format("{:<28} not seen\n", p.name)
+                               : fmt::format("{:<28} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:>8}\n",
+                                             p.name, p.albedo.x, p.albedo.y, p.albedo.z, p.spread.x, p.spread.y,
+                                             p.spread.z, p.samples);
+    text +=
+        fmt::format("left out: {} clipped pixels, {} in the dark, {} at borders, {} highlights, {} not finite; {} "
+                    "values clamped\n",
+                    fit.clipped, fit.dark, fit.border, fit.specular, fit.not_finite, fit.clamped);
+    if (e.texels > 0)
+        text += fmt::format("textures: {} texels, {} not seen (the surface's median), {} pixels outside\n",
+                            e.texels, e.filled, e.outside);
+    text += fmt::format("{} turns, last change {:.4f}{}\n", e.solution.iterations, e.solution.last_change,
+                        e.solution.converged ? "" : " (not converged)");
+    return text;
+}
+
+fs::path texture_beside(fs::path const& out, std::size_t patch)
+{
+    return out.parent_path() / fmt::format("{}-{}.png", out.stem().string(), patch + 1);
+}
+
+/// Nothing that is read may be written over, but estimates of before.
+void check_albedo_outputs(AlbedoArguments const& a, ArSession session, fs::path const& out, RealScene const& real)
+{
+    session.real.estimates.clear();
+    if (!a.poses.empty()) session.tracked.reset();
+    std::vector<std::string> read{a.poses}, written{out.string()};
+    for (fs::path const& file : files_read_by(session)) read.push_back(file.string());
+    for (std::size_t k = 0; k < real.patches.size(); ++k)
+        if (real.patches[k].texels > 0) written.push_back(texture_beside(out, k).string());
+    check_outputs(written, read);
+}
+
+int run_albedo(AlbedoArguments const& a)
+{
+    ArSession session = read_ar_session(a.session);
+    if (a.scene) {
+        if (session.real.scene.empty())
+            throw gi::InputError("--scene with '" + a.session + "'", "the session has no real.scene",
+                                 "write albedo: estimate at its planes, boxes, meshes or depth");
+        session.real.estimate_scene = true;
+    }
+    fs::path const out = a.out.empty() ? session.real.estimates : fs::path(a.out);
+    gi::Report report;
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    ArCamera const camera = load_ar_camera(session.camera);
+    RealScene real = model_of(session.real, report);
+    check_albedo_outputs(a, session, out, real);
+    SeenFrames const seen = look(a, session, camera, stop, report);
+    if (stop.requested()) return kInterrupted;
+    AlbedoEstimate estimate = estimate_albedos(std::move(real), PlaceLight(session).begin(), camera, seen.kept,
+                                               a.settings, stop, report);
+    if (stop.requested()) return kInterrupted; // of few paths: not to be kept
+    for (std::size_t k = 0; k < estimate.entries.size(); ++k) {
+        if (estimate.textures[k].empty()) continue;
+        estimate.entries[k].texture = texture_beside(out, k);
+        write_texture(estimate.entries[k].texture, estimate.textures[k]);
+    }
+    gi::write_text(out, format_albedos(estimate.entries));
+    fmt::print("{}{}\n", describe(estimate, seen), out.string());
+    print_losses(report);
+    return 0;
+}
+
+} // namespace
+
+void add_ar_albedo(CLI::App& ar, int& exit_code)
+{
+    auto const a = std::make_shared<AlbedoArguments>();
+    CLI::App* const c = ar.add_subcommand(
+        "albedo", "Estimate the colours of the real things of a session from its frames and the captured light");
+    c->add_option("session", a->session,
+                  "with 'albedo: estimate' or 'texture: estimate' at what is to be estimated")
+        ->required();
+    c->add_option("--out", a->out, "File of the albedos; left out: the one that the session reads");
+    c->add_option("--poses", a->poses, "Where the camera was (CSV or TUM), in place of its markers");
+    c->add_flag("--scene", a->scene, "Also of the scene's materials, where the session does not say it");
+    c->add_option("--views", a->views, "Frames to compare, spread over the session")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    c->add_option("--frames", a->frames, "Looks at no more than so many; 0 = all, of files")
+        ->check(CLI::NonNegativeNumber);
+    c->add_option("--resolution", a->settings.resolution, "Pixels compared per pixel of the camera")
+        ->check(CLI::Range(0.05, 1.0))
+        ->capture_default_str();
+    c->add_option("--paths", a->settings.paths, "Of the reference renderer, per pixel compared")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    c->footer(R"(Examples:
+  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
+  lightwell ar albedo desk/session.yaml --scene --poses desk/poses.csv --views 2 --paths 4)");
+    c->callback([a, &exit_code] { exit_code = run_albedo(*a); });
+}
+
+} // namespace viewer

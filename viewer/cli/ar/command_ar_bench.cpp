@@ -1,0 +1,293 @@
+#include "ar/markers/aruco.h"
+#include "ar/markers/marker_map_file.h"
+#include "ar/pipeline/plain_composite.h"
+#include "ar/pipeline/synthesize.h"
+#include "ar/runtime/measured_run.h"
+#include "gi/core/error.h"
+#include "viewer/base/arguments.h"
+#include "viewer/base/interrupt.h"
+#include "viewer/base/report_json.h"
+#include "viewer/base/validators.h"
+#include "viewer/bench/bench_record.h"
+#include "viewer/cli/ar/ar_chain_check.h"
+#include "viewer/cli/commands.h"
+#include "viewer/report/table_file.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fmt/format.h>
+#include <memory>
+#include <opencv2/core.hpp>
+
+namespace viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BenchArguments {
+    std::string session, folder, out;
+    std::vector<std::string> sizes{"640x480", "1280x720"};
+    std::vector<std::uint32_t> paths{1, 2, 4};
+    std::vector<double> resolutions{0.5};
+    int frames = 20;
+    std::uint32_t truth_paths = 8;
+    bool counter = false, window = false, json = false;
+};
+
+std::string size_text(glm::ivec2 px) { return fmt::format("{}x{}", px.x, px.y); }
+
+/// Made if it is not there, kept for the next time.
+fs::path synthetic_session(BenchArguments const& a, glm::ivec2 size_px, gi::StopRequest const& stop,
+                           gi::Report& report)
+{
+    SynthesizeOptions o;
+    fs::path const all = a.folder.empty() ? fs::temp_directory_path() / "lightwell_ar_bench" : fs::path(a.folder);
+    o.folder = all / fmt::format("desk {} {} frames {} paths", size_text(size_px), a.frames, a.truth_paths);
+    o.size_px = size_px;
+    o.frames = a.frames;
+    o.truth = a.truth_paths > 0;
+    o.quality.paths = std::max(a.truth_paths, 2u);
+    synthesize(o, stop, report);
+    return o.folder / "session.yaml";
+}
+
+Cell cell_of(std::vector<double> const& values) { return values.empty() ? Cell() : Cell(summarise(values)); }
+
+std::vector<double> values_of(std::vector<ArFrameRecord> const& frames, double (*value)(ArFrameRecord const&))
+{
+    std::vector<double> values;
+    for (ArFrameRecord const& f : frames) values.push_back(value(f));
+    return values;
+}
+
+/// Frames whose camera was found: into others nothing is rendered.
+double found_percent(std::vector<ArFrameRecord> const& frames)
+{
+    auto const found = std::count_if(frames.begin(), frames.end(),
+                                     [](ArFrameRecord const& f) { return f.world_from_camera.has_value(); });
+    return frames.empty() ? 0 : 100 * double(found) / double(frames.size());
+}
+
+/// Median, 95 % and most of each stage.
+void add_stages(BenchTable& table, std::string const& size, std::uint32_t paths, double resolution,
+                std::string const& pace, std::vector<ArFrameRecord> const& frames)
+{
+    using Record = ArFrameRecord const&;
+    std::pair<char const*, double (*)(Record)> const stages[] = {
+        {"read", [](Record f) { return f.read_ms; }},
+        {"age when handed over", [](Record f) { return f.age_ms; }},
+        {"decode", [](Record f) { return f.times.decode_ms; }},
+        {"detect", [](Record f) { return f.times.detect_ms; }},
+        {"pose", [](Record f) { return f.times.pose_ms; }},
+        {"wait to be rendered", [](Record f) { return f.times.wait_ms; }},
+        {"light", [](Record f) { return f.times.light_ms; }},
+        {"render", [](Record f) { return f.times.render_ms; }},
+        {"composite", [](Record f) { return f.times.composite_ms; }},
+        {"wait to be shown", [](Record f) { return f.show_wait_ms; }},
+        {"present", [](Record f) { return f.present_ms; }},
+        {"capture to result", [](Record f) { return f.latency_ms; }},
+        {"capture to swap", [](Record f) { return f.swapped_ms; }},
+    };
+    for (auto const& [name, value] : stages) {
+        Spread const s = spread_of(values_of(frames, value));
+        if (s.most > 0)
+            table.add({size, double(paths), resolution, pace, std::string(name), s.median, s.p95, s.most});
+    }
+}
+
+/// What of finding markers is the search of the library (OpenCV, or apriltag), in the same round.
+Cell share_of_search(ArSession const& session, ArResult const& last)
+{
+    ar::MarkerMap const map = ar::read_marker_map(session.markers);
+    if (last.camera.empty()) return {};
+    ar::Frame frame;
+    frame.size_px = {last.camera.cols, last.camera.rows};
+    frame.planes[0] = last.camera;
+    cv::Mat const gray = ar::gray_of(frame);
+    ar::SearchSettings plain = ar::search_settings({}, gray.size());
+    plain.refinement = ar::Refinement::none;
+    std::vector<std::string> dictionaries;
+    for (ar::PlacedMarker const& m : ar::placed_markers(map))
+        if (std::find(dictionaries.begin(), dictionaries.end(), m.dictionary) == dictionaries.end())
+            dictionaries.push_back(m.dictionary);
+    auto const times = measure_interleaved(7, {[&] { ar::detect(gray, map); },
+                                               [&] {
+                                                   for (std::string const& d : dictionaries)
+                                                       ar::find_markers(gray, d, plain);
+                                               }});
+    return ratio(times[1], times[0]);
+}
+
+/// Plain OpenCV's time over ours, in the same round, and by how many bytes they differ. Only for sRGB bytes.
+std::pair<Cell, Cell> plain_over_ours(MeasuredRun const& m)
+{
+    if (!m.last.pair || !m.compositor) return {};
+    ar::Photometry const &p = m.compositor->photometry(), srgb = ar::srgb_photometry();
+    if (p.unit_of_byte != srgb.unit_of_byte || p.vignetting != srgb.vignetting || p.colour != srgb.colour ||
+        p.radiance_per_unit != 1)
+        return {};
+    ar::Compositor compositor(p); // differences, without noise
+    cv::Mat ours, plain, difference;
+    auto const times = measure_interleaved(7, {[&] { compositor(m.last.camera, *m.last.pair, {}, ours); },
+                                               [&] { plain = plain_composite(m.last.camera, *m.last.pair); }});
+    cv::absdiff(ours, plain, difference);
+    cv::Scalar const mean = cv::mean(difference);
+    return {ratio(times[1], times[0]), (mean[0] + mean[1] + mean[2]) / 3};
+}
+
+void measure(BenchArguments const& a, ArSession session, MeasureSettings const& settings, bool given,
+             BenchTable& table, BenchTable& stages, gi::StopRequest& stop, gi::Report& report)
+{
+    std::string const size = size_text(load_ar_camera(session.camera).model.size_px);
+    auto const one = [&](std::uint32_t paths, double resolution) {
+        session.render.paths = paths;
+        session.render.resolution = resolution;
+        MeasuredRun const m = measure_run(session, settings, stop, report);
+        if (stop.requested()) {
+            if (m.fast.empty() && m.own.empty()) return;
+            table.facts.emplace_back("ended early", fmt::format("{}, {} paths", size, paths));
+        }
+        bool const swapped = settings.in_window;
+        auto const [plain, bytes] = plain_over_ours(m);
+        table.add({size, double(paths), resolution, m.frames_per_s, found_percent(m.fast),
+                   cell_of(values_of(
+                       m.own, swapped ? [](ArFrameRecord const& f) { return f.swapped_ms; }
+                                      : [](ArFrameRecord const& f) { return f.latency_ms; })),
+                   double(m.own.size()), double(m.overtaken), cell_of(m.errors.flip_affected),
+                   cell_of(m.errors.camera_affected), cell_of(m.errors.flip_elsewhere),
+                   cell_of(m.errors.position_mm), cell_of(m.errors.rotation_deg), share_of_search(session, m.last),
+                   plain, bytes});
+        add_stages(stages, size, paths, resolution, "fast", m.fast);
+        add_stages(stages, size, paths, resolution, "own", m.own);
+        if (m.refused > 0) table.facts.emplace_back("frames refused, " + size, fmt::format("{}", m.refused));
+    };
+    if (given) return one(session.render.paths, session.render.resolution);
+    for (std::uint32_t const paths : a.paths)
+        for (double const resolution : a.resolutions)
+            if (!stop.requested()) one(paths, resolution);
+}
+
+void keep(std::vector<BenchTable*> const& tables, BenchArguments const& a)
+{
+    for (BenchTable* const t : tables) {
+        if (!a.out.empty()) write(*t, a.out);
+        if (a.json)
+            fmt::print("{}", to_json(*t));
+        else
+            print(*t);
+        if (!a.out.empty() && !a.json) fmt::print("{}\n", (fs::path(a.out) / (t->name + ".json")).string());
+    }
+}
+
+int run_bench(BenchArguments const& a)
+{
+    gi::Report report;
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    char const* const latency = a.window ? "capture_to_swap_ms" : "capture_to_result_ms";
+    BenchTable table = start_table("ar", "Frames per second and latency of augmented reality, with the error",
+                                   {"size", "paths", "resolution", "fast_frames_per_s", "found_percent", latency,
+                                    "own_frames", "own_overtaken", "flip_affected", "flip_of_adding_nothing",
+                                    "flip_elsewhere", "position_mm", "rotation_deg", "search_share_of_detect",
+                                    "plain_opencv_over_composite", "plain_opencv_differs_bytes"});
+    BenchTable stages =
+        start_table("ar_stages", "Stages of a frame",
+                    {"size", "paths", "resolution", "pace", "stage", "median_ms", "p95_ms", "most_ms"});
+    if (!a.window)
+        table.facts.emplace_back("latency", "without a window: until the composite is ready, not shown");
+    table.facts.emplace_back("first frames", "left out: they build what lasts");
+    if (!a.session.empty()) {
+        ArSession const session = read_ar_session(a.session);
+        fs::path const folder = fs::path(a.session).parent_path();
+        MeasureSettings settings{a.frames, {}, {}, a.window};
+        if (fs::is_directory(folder / "truth")) settings.truth = folder / "truth";
+        if (fs::exists(folder / "poses.csv")) settings.true_poses = folder / "poses.csv";
+        measure(a, session, settings, true, table, stages, stop, report);
+    } else {
+        for (std::string const& size : a.sizes) {
+            auto const [width, height] = parse_size(size);
+            fs::path const file = synthetic_session(a, {width, height}, stop, report);
+            if (stop.requested()) break;
+            MeasureSettings settings{a.frames, {}, file.parent_path() / "poses.csv", a.window};
+            if (a.truth_paths > 0) settings.truth = file.parent_path() / "truth";
+            measure(a, read_ar_session(file), settings, false, table, stages, stop, report);
+            if (stop.requested()) break;
+        }
+        table.facts.emplace_back("paths of frames and truth", fmt::format("{}", std::max(a.truth_paths, 2u)));
+    }
+    keep({&stages, &table}, a);
+    print_losses(report);
+    return stop.requested() ? kInterrupted : 0;
+}
+
+int run_counter(BenchArguments const& a)
+{
+    gi::Report report;
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    ChainChecked checked = check_chain({a.sizes, a.frames, a.window}, stop, report);
+    keep({&checked.table}, a);
+    print_losses(report);
+    if (stop.requested()) return kInterrupted;
+    if (!checked.good) std::fputs("lightwell: what was shown is not what the records say\n", stderr);
+    return checked.good ? 0 : 1;
+}
+
+int run(BenchArguments const& a)
+{
+    if (!a.out.empty()) {
+        check_folder(a.out);
+        make_folder(a.out);
+    }
+    return a.counter ? run_counter(a) : run_bench(a);
+}
+
+} // namespace
+
+void add_ar_bench(CLI::App& ar, int& exit_code)
+{
+    auto const a = std::make_shared<BenchArguments>();
+    CLI::App* const c = ar.add_subcommand(
+        "bench", "Frames per second, latency from capture to what is shown, and the error of both");
+    CLI::Option* const session =
+        c->add_option("session", a->session, "As of run, with its own quality; left out: desks made for it");
+    c->add_option("--size", a->sizes, "Of frames, WIDTHxHEIGHT; repeatable")
+        ->take_all()
+        ->excludes(session)
+        ->capture_default_str();
+    c->add_option("--paths", a->paths, "Per rendered pixel and side, comma-separated")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(1, 1024))
+        ->excludes(session)
+        ->capture_default_str();
+    c->add_option("--resolution", a->resolutions, "Rendered pixels per pixel of the camera, comma-separated")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(in_range(0.05, 4))
+        ->excludes(session)
+        ->capture_default_str();
+    c->add_option("--frames", a->frames, "Of each desk or session; with --counter: to be shown")
+        ->check(CLI::Range(2, 100000))
+        ->capture_default_str();
+    c->add_option("--truth-paths", a->truth_paths, "Of the desk's frames and truth, per pixel; 0 = no truth")
+        ->check(CLI::Range(0, 100000))
+        ->capture_default_str();
+    c->add_option("--folder", a->folder, "Where desks are kept for the next time; left out: of temporary files");
+    c->add_flag("--window", a->window, "At own pace, show it: the latency is that of the swap");
+    c->add_flag("--counter", a->counter,
+                "Instead, check that what is shown belongs together: frames that show their number, and a ball "
+                "that moves with the camera. Exit code 1 if not");
+    c->add_option("--out", a->out, "Folder for the tables, as JSON and CSV");
+    c->add_flag("--json", a->json, "Print the tables as JSON");
+    c->footer(R"(Examples:
+  lightwell ar bench --size 320x240 --frames 3 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table
+  lightwell ar bench --counter --size 320x240 --frames 10
+
+Each quality is run twice: as fast as possible (frames per second, error; nothing is given up) and at the camera's own pace of
+30 Hz (latency; what newer frames overtake is counted). Beside them, in the same rounds: the share of the library's own search
+(OpenCV's, or apriltag's) in finding markers, and compositing by plain OpenCV, a whole picture per step, over ours.)");
+    c->callback([a, &exit_code] { exit_code = run(*a); });
+}
+
+} // namespace viewer

@@ -1,0 +1,82 @@
+#include "ar/camera/error.h"
+#include "ar/camera/yaml.h"
+#include "ar/markers/draw.h"
+#include "ar/markers/marker_map_file.h"
+#include "viewer/base/outputs.h"
+#include "viewer/base/validators.h"
+#include "viewer/cli/ar/ar_arguments.h"
+#include "viewer/cli/ar/ar_board_views.h"
+#include "viewer/cli/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+constexpr int kViews = 20;
+
+struct BoardOptions {
+    BoardArguments board;
+    std::string out, markers, views;
+    double dpi = 600, margin_m = -1;
+    bool upright = false;
+};
+
+int run_board(BoardOptions const& o)
+{
+    check_outputs({o.out, o.markers}, {});
+    ar::CharucoBoard board = board_of(o.board);
+    if (!o.upright) board.world_from_board.rotation = glm::angleAxis(glm::radians(-90.0), glm::dvec3(1, 0, 0));
+    ar::MarkerMap const map{{}, {board}, {}};
+    ar::Sheet const sheet = ar::sheet_of(map, 0, o.margin_m);
+    std::filesystem::path const out = o.out;
+    if (out.extension() == ".svg") {
+        ar::write_text(out, ar::to_svg(sheet));
+    } else if (out.extension() == ".png") {
+        double const dots_per_m = o.dpi / 0.0254;
+        ar::write_png(out, ar::draw(sheet, dots_per_m), dots_per_m);
+    } else {
+        throw ar::InputError("--out '" + o.out + "' is of an unknown kind", "its ending says what is written",
+                             "end it with .svg or .png");
+    }
+    if (!o.markers.empty()) ar::write_marker_map(o.markers, map);
+    fmt::print(
+        "{}: {:.1f} x {:.1f} mm, {} markers of {}; print it at 100 % and measure: {} squares are {:.1f} mm\n",
+        o.out, 1e3 * sheet.width_m, 1e3 * sheet.height_m, ar::marker_count(board), board.dictionary,
+        board.squares_x, 1e3 * board.square_m * board.squares_x);
+    if (!o.markers.empty())
+        fmt::print("{}: the board {}, its lower left corner in the origin\n", o.markers,
+                   o.upright ? "stands upright, faces z" : "lies flat, its top away from z");
+    if (!o.views.empty()) {
+        write_board_views(o.views, board, kViews);
+        fmt::print("{}: {} views of it by the camera of truth.yaml\n", o.views, kViews);
+    }
+    return 0;
+}
+
+} // namespace
+
+void add_ar_board(CLI::App& ar, int& exit_code)
+{
+    auto const o = std::make_shared<BoardOptions>();
+    CLI::App* const c = ar.add_subcommand("board", "Draw a board to be printed at its size, and describe it.");
+    declare_board_arguments(*c, o->board);
+    c->get_option("--squares")->required();
+    c->add_option("--out", o->out, "drawing: .svg (in mm) or .png")->required();
+    c->add_option("--markers", o->markers, "marker map of it (YAML), for ar run, track, calibrate and probe");
+    c->add_option("--dpi", o->dpi, "of a PNG, dots per inch")->check(in_range(20, 4800))->capture_default_str();
+    c->add_option("--margin", o->margin_m, "white around it, m; left out: a cell of a marker")
+        ->check(in_range(0, 10));
+    c->add_flag("--upright", o->upright, "in the map it stands; left out: it lies on a table");
+    c->add_option("--views", o->views, "folder for views of it by a camera that is known, to try ar calibrate");
+    c->footer(R"(Examples:
+  lightwell ar board --squares 7x5 --square 0.04 --marker 0.03 --out board.svg --markers markers.yaml
+  lightwell ar board --squares 8x6 --square 0.02 --marker 0.014 --dictionary DICT_5X5_100 --out board.png
+
+Printers scale: measure the whole board with a ruler, and where it is off, call again with the sides that were measured.)");
+    c->callback([o, &exit_code] { exit_code = run_board(*o); });
+}
+
+} // namespace viewer

@@ -1,0 +1,235 @@
+#include "ar/calibration/collector.h"
+#include "ar/calibration/lens_choice.h"
+#include "ar/calibration/report.h"
+#include "ar/camera/error.h"
+#include "ar/markers/detect.h"
+#include "ar/markers/marker_map_file.h"
+#include "viewer/base/interrupt.h"
+#include "viewer/base/outputs.h"
+#include "viewer/base/validators.h"
+#include "viewer/base/version.h"
+#include "viewer/cli/ar/ar_arguments.h"
+#include "viewer/cli/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+constexpr int kFewestViews = 4;
+constexpr std::size_t kMostViews = 60; ///< of files; each that is taken is a fit of all
+
+struct CalibrateOptions {
+    SourceArguments source;
+    BoardArguments board;
+    std::string markers, chessboard, lens = "automatic", out, report;
+    int every = 1, views = 15;
+    bool stills = false;
+};
+
+/// What a picture shows of the board; few or no points where it does not.
+using Finder = std::function<ar::BoardView(cv::Mat const&, std::string const&)>;
+
+Finder finder(CalibrateOptions const& o)
+{
+    int const given = int(!o.markers.empty()) + int(!o.chessboard.empty()) + int(!o.board.squares.empty());
+    if (given != 1)
+        throw ar::InputError("it is not clear what the pictures show", "the board has to be known",
+                             "give one of --markers FILE, --squares 7x5 and --chessboard 9x6");
+    if (!o.chessboard.empty()) {
+        glm::ivec2 const n = parse_squares("--chessboard", o.chessboard);
+        if (n.x < 3 || n.y < 3)
+            throw ar::InputError("--chessboard " + o.chessboard, "3 inner corners each way are the fewest",
+                                 "count corners where four squares meet");
+        return [n, square_m = o.board.square_m](cv::Mat const& gray, std::string const& name) {
+            return ar::find_chessboard(gray, n.x, n.y, square_m, name).value_or(ar::BoardView{name, {}, {}});
+        };
+    }
+    ar::MarkerMap const map =
+        o.markers.empty() ? ar::MarkerMap{{}, {board_of(o.board)}, {}} : ar::read_marker_map(o.markers);
+    if (map.boards.empty())
+        throw ar::InputError("there is no board in " + o.markers, "lenses are calibrated by flat boards",
+                             "add it under boards:, see lightwell ar board --help");
+    return [map](cv::Mat const& gray, std::string const& name) {
+        ar::Sighting const sighting = ar::detect(gray, map);
+        ar::BoardView best{name, {}, {}};
+        for (std::size_t i = 0; i < map.boards.size(); ++i)
+            if (auto v = ar::view_of(sighting, map, i, name); v.pixels.size() > best.pixels.size())
+                best = std::move(v);
+        return best;
+    };
+}
+
+struct Search {
+    std::uint64_t looked_at = 0, refused = 0;
+    cv::Mat last; ///< picture of a view that was taken
+};
+
+Search search(ar::FrameSource& source, ar::Collector& collector, Finder const& find, CalibrateOptions const& o,
+              gi::StopRequest const& stop)
+{
+    Search s;
+    gi::ProgressBar bar("calibrate " + o.source.source);
+    bool const live = source.description().is_live;
+    for (std::uint64_t n = 0; !stop.requested();) {
+        if (live ? collector.enough() : collector.views().size() >= kMostViews) break;
+        auto const frame = source.next(std::chrono::milliseconds(100));
+        if (!frame && source.state().kind != ar::SourceState::Kind::running) break;
+        if (!frame || n++ % std::uint64_t(o.every) != 0) continue;
+        ++s.looked_at;
+        cv::Mat gray;
+        try {
+            gray = ar::gray_of(*frame);
+        } catch (ar::InputError const&) {
+            ++s.refused;
+            continue;
+        }
+        if (collector.offer(find(gray, fmt::format("frame {}", frame->sequence))).taken) s.last = gray.clone();
+        bar.update(std::min(1.0, double(collector.views().size()) / o.views),
+                   fmt::format("{} views; {}", collector.views().size(), collector.next()));
+    }
+    return s;
+}
+
+void print(ar::LensCalibration const& c)
+{
+    fmt::print("{}, {} x {} px\n", name_of(c.camera.lens), c.camera.size_px.x, c.camera.size_px.y);
+    auto const values = parameters_of(c.camera);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        fmt::print("  {:<3} {:>12.5f} +- {:.5f}\n", c.parameters[i], values[i], c.standard_deviations[i]);
+    fmt::print("reprojection: {:.3f} px RMS of {} views\n", c.rms_px, c.used_views());
+    for (ar::ViewResult const& v : c.views)
+        fmt::print("  {:<14} {:.3f} px, {} points{}\n", v.name, v.rms_px, v.residuals_px.size(),
+                   v.used ? "" : "; left out: " + v.why);
+}
+
+/// Response, vignetting, colour and noise belong to the sensor: what the file that is replaced knew of them stays.
+ar::Calibration known_sensor(std::string const& file)
+{
+    ar::Calibration known;
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) return known;
+    ar::Calibration const before = ar::read_calibration(file);
+    known.camera.size_px = before.camera.size_px;
+    known.photometry = before.photometry;
+    known.noise = before.noise;
+    for (auto const& entry : before.provenance)
+        if (entry.first == "vignetting" || entry.first == "noise" || entry.first == "colour")
+            known.provenance.push_back(entry);
+    return known;
+}
+
+void say_what_is_kept(ar::Calibration& c, glm::ivec2 size_px, std::string const& file)
+{
+    if (!c.photometry && !c.noise && c.provenance.empty()) return;
+    if (c.camera.size_px == size_px) {
+        fmt::print("{}: response, vignetting, colour and noise are those that it had\n", file);
+        return;
+    }
+    fmt::print("warning: {} had response, vignetting, colour or noise for pictures of {} x {}: left out\n", file,
+               c.camera.size_px.x, c.camera.size_px.y);
+    c = {};
+}
+
+int run_calibrate(CalibrateOptions const& o)
+{
+    check_outputs({o.out, o.report}, {o.source.source, o.markers});
+    Finder const find = finder(o);
+    ar::Calibration calibration = known_sensor(o.out);
+    auto const source = open(o.source, ar::Pace::fastest, ar::Delivery::newest);
+    std::error_code error;
+    bool const pictures = o.source.source.find('%') != std::string::npos ||
+                          (std::filesystem::is_directory(o.source.source, error) &&
+                           !std::filesystem::exists(o.source.source + "/session.json", error));
+    bool const stills = o.stills || pictures;
+    auto const lens = ar::lens_named(o.lens);
+    ar::Collector collector(source->description().size_px, stills ? ar::ViewSource::stills : ar::ViewSource::live,
+                            lens.value_or(ar::LensModel::radial_tangential), o.views);
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    Search const s = search(*source, collector, find, o, stop);
+    if (stop.requested()) return kInterrupted;
+    auto const& counts = collector.counts();
+    fmt::print(
+        "{}; of {} frames looked at {} are new views, {} like others, {} show too little of the board, in {} "
+        "it moves, {} cannot be decoded\n",
+        describe(source->counts()), s.looked_at, counts.taken, counts.alike, counts.too_few_points, counts.moving,
+        s.refused);
+    auto const too_few = [&](std::string const& why) {
+        fmt::print(stderr, "lightwell: these views do not suffice ({}) {}\n", why,
+                   collector.enough() ? "take others" : collector.next());
+        return 1;
+    };
+    if (counts.taken < kFewestViews) return too_few(fmt::format("{} of {}", counts.taken, kFewestViews));
+    ar::CalibrationReport report;
+    report.views = collector.views();
+    report.background = s.last;
+    try {
+        if (!lens) report.choice = ar::choose_lens(report.views, source->description().size_px);
+        report.lens =
+            ar::calibrate_lens(report.views, source->description().size_px, lens ? *lens : report.choice->chosen);
+        ar::check(report.lens.camera, o.out);
+    } catch (ar::InputError const& e) {
+        return too_few(e.what());
+    }
+    say_what_is_kept(calibration, report.lens.camera.size_px, o.out);
+    calibration.camera = report.lens.camera;
+    calibration.rms_px = report.lens.rms_px;
+    calibration.covariance = report.lens.covariance;
+    std::vector<std::pair<std::string, std::string>> provenance{
+        {"made_by", "lightwell ar calibrate"},
+        {"version", version_text()},
+        {"source", o.source.source},
+        {"views", std::to_string(report.lens.used_views())}};
+    provenance.insert(provenance.end(), calibration.provenance.begin(), calibration.provenance.end());
+    calibration.provenance = std::move(provenance);
+    report.photometry = calibration.photometry;
+    report.noise = calibration.noise;
+    ar::write_calibration(o.out, calibration);
+    if (!o.report.empty()) ar::write_report(o.report, report);
+    if (report.choice) fmt::print("lens: {}\n", report.choice->why);
+    print(report.lens);
+    fmt::print("coverage: {:.0f} % of the picture{}\n", 100 * report.lens.coverage,
+               collector.enough() ? "" : "; to be surer: " + collector.next());
+    for (std::string const& w : report.lens.warnings) fmt::print("warning: {}\n", w);
+    fmt::print("{}\n", o.out);
+    return 0;
+}
+
+} // namespace
+
+void add_ar_calibrate(CLI::App& ar, int& exit_code)
+{
+    auto const o = std::make_shared<CalibrateOptions>();
+    CLI::App* const c = ar.add_subcommand("calibrate", "Find a camera's lens by views of a printed board.");
+    declare_source_arguments(*c, o->source);
+    c->add_option("--markers", o->markers, "marker map with the board, as lightwell ar board writes it");
+    declare_board_arguments(*c, o->board);
+    c->add_option("--chessboard", o->chessboard, "a plain one: inner corners, as 9x6, of squares of --square");
+    c->add_option("--lens", o->lens, "automatic: which predicts unseen views best")
+        ->check(CLI::IsMember({"automatic", "pinhole", "radial_tangential", "rational", "fisheye"}))
+        ->capture_default_str();
+    c->add_option("--out", o->out, "calibration to write (YAML, OpenCV reads it too)")->required();
+    c->add_option("--report", o->report, "HTML page: residuals, coverage, parameters");
+    c->add_option("--every", o->every, "looks at every so many frames")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    c->add_option("--views", o->views, "wanted; a camera is watched until there are as many")
+        ->check(CLI::Range(kFewestViews, int(kMostViews)))
+        ->capture_default_str();
+    c->add_flag("--stills", o->stills, "nothing moves in the frames: as of a folder of pictures");
+    c->footer(R"(Examples:
+  lightwell ar board --squares 7x5 --out board.svg --markers markers.yaml --views views
+  lightwell ar calibrate views --markers markers.yaml --lens radial_tangential --out camera.yaml --report report.html
+  lightwell ar calibrate views --squares 7x5 --every 2 --lens fisheye --out fisheye.yaml
+
+Of cameras, videos and sessions only frames count between which the board was held still. Exit code 1: views do not suffice.
+Of a calibration that is replaced, response, vignetting, colour and noise stay.)");
+    c->callback([o, &exit_code] { exit_code = run_calibrate(*o); });
+}
+
+} // namespace viewer

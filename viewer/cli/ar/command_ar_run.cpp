@@ -1,0 +1,250 @@
+#include "ar/runtime/ar_window.h"
+#include "ar/runtime/frame_table.h"
+#include "ar/runtime/frame_truth.h"
+#include "ar/runtime/hmd_run.h"
+#include "ar/scene/session_inputs.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "viewer/base/interrupt.h"
+#include "viewer/base/outputs.h"
+#include "viewer/base/report_json.h"
+#include "viewer/cli/ar/ar_recording.h"
+#include "viewer/cli/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunArguments {
+    std::string session, out, video, record_input, poses, truth, true_poses, frame_table, stats, display;
+    int frames = 0;
+    bool fast = false, window = false, gpu = false;
+    std::string monitor, eyes;
+    bool hmd = false, seated = false;
+};
+
+/// Nothing that is read may be written over.
+void check_arguments(RunArguments const& a, ArSession const& session)
+{
+    std::vector<std::string> read{a.poses, a.true_poses};
+    for (fs::path const& file : files_read_by(session)) read.push_back(file.string());
+    check_outputs({a.frame_table, a.stats, a.video}, read);
+    std::vector<fs::path> folders{folder_of_source(session.frames.source), a.truth};
+    if (session.hmd && session.hmd->right) folders.push_back(folder_of_source(session.hmd->right->source));
+    std::error_code ignored;
+    for (fs::path const& folder : folders)
+        if (!a.out.empty() && !folder.empty() && fs::equivalent(a.out, folder, ignored))
+            throw gi::InputError("--out '" + a.out + "' is a folder that is read",
+                                 "its pictures would be replaced", "name another folder");
+    if (a.eyes.empty()) return;
+    if (!fs::create_directories(a.eyes, ignored) && ignored)
+        throw gi::InputError("'" + a.eyes + "' cannot be made", ignored.message(), "choose another folder");
+    fs::path const eyes = a.eyes;
+    check_outputs({(eyes / "left.png").string(), (eyes / "right.png").string(), a.stats}, read);
+}
+
+/// With what the command line says of the tracker.
+ArSession session_of(RunArguments const& a)
+{
+    ArSession session = read_ar_session(a.session);
+    if (!a.poses.empty())
+        session.tracked.reset();
+    else if (!a.display.empty()) {
+        if (!session.tracked) session.tracked.emplace();
+        session.tracked->display = a.display;
+    }
+    return session;
+}
+
+int run_in_hmd(RunArguments const& a, ArSession const& session, ArRunOptions const& o, gi::StopRequest const& stop,
+               std::optional<TrackedCamera> const& tracker, gi::Report& report)
+{
+    ArHmdOptions hmd;
+    hmd.pass_through = {o.frames, o.pace, o.poses, o.tracked};
+    hmd.headset.space = a.seated ? HmdSpace::local : HmdSpace::stage;
+    hmd.eyes = a.eyes;
+    ArHmdSummary summary;
+    auto const keep = [&] {
+        if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
+        if (tracker) fmt::print("{}", tracker->describe());
+        fmt::print("{}", describe(summary));
+        print_losses(report);
+    };
+    try {
+        run_ar_in_hmd(session, hmd, stop, report, summary);
+    } catch (...) {
+        if (summary.frames.frames > 0) keep();
+        throw;
+    }
+    keep();
+    if (summary.frames.end.kind == ar::SourceState::Kind::lost) {
+        std::fputs(fmt::format("lightwell: the source was lost: {}\n", summary.frames.end.reason).c_str(), stderr);
+        return 1;
+    }
+    if (summary.frames.frames == 0 && !stop.requested())
+        throw gi::InputError("no frame could be used", describe(summary.frames.left),
+                             "check the session's frames");
+    return stop.requested() ? kInterrupted : 0;
+}
+
+int run_session(RunArguments const& a, bool poses_only)
+{
+    ArSession const session = session_of(a);
+    check_arguments(a, session);
+    if (!a.video.empty()) {
+        glm::ivec2 const size_px = load_ar_camera(session.camera).model.size_px;
+        check_video(a.video, size_px.x, size_px.y, 30);
+    }
+    ArRunOptions o;
+    o.frames = a.frames;
+    o.pace = a.fast ? ar::Pace::fastest : ar::Pace::own;
+    o.find_poses_only = poses_only;
+    if (a.gpu) o.composite = CompositeBy::window;
+    if (!a.poses.empty()) o.poses = ar::read_poses(a.poses);
+    gi::Report report;
+    std::optional<TrackedCamera> tracker;
+    if (session.tracked) {
+        tracker.emplace(*session.tracked, report);
+        o.poses = tracker->recorded();
+        if (tracker->is_live()) o.tracked = [&](ar::Frame const& f) { return tracker->at(f.captured_s); };
+    }
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    if (a.hmd) return run_in_hmd(a, session, o, stop, tracker, report);
+    FrameTruth truth(a.truth, a.true_poses);
+    ArRecording recording({a.out, a.video, a.record_input, session.camera.string(),
+                           a.fast ? PictureThread::WhenFull::wait : PictureThread::WhenFull::lose});
+    std::optional<ArWindow> window;
+    std::optional<ar::Compositor> compositor;
+    o.opened = [&](ar::SourceDescription const& source, ArPipeline const& pipeline) {
+        if (a.gpu) compositor = pipeline.compositor();
+        ArWindowSettings settings{.size_px = source.size_px, .monitor = a.monitor};
+        settings.compositor = compositor ? &*compositor : nullptr;
+        if (a.window) window.emplace(settings, report);
+        recording.begin(source);
+    };
+    if (!a.record_input.empty()) o.taken = [&](ar::Frame const& f) { recording.add_input(f); };
+    auto const look = [&] {
+        if (window && window->wants_close()) stop.request();
+    };
+    o.idle = [&] {
+        if (window) window->idle();
+        look();
+    };
+    ArSummary summary;
+    auto const keep = [&](std::string const& recorded) {
+        if (!a.stats.empty()) gi::write_text(a.stats, to_text(to_json(report)));
+        if (tracker) fmt::print("{}", tracker->describe());
+        if (!a.frame_table.empty()) gi::write_text(a.frame_table, frame_table(summary));
+        fmt::print("{}{}{}", describe(summary), describe(truth.errors()), recorded);
+        print_losses(report);
+    };
+    auto const shown = [&](ArFrameRecord& f, ArResult const& r) {
+        if (window) window->show(f, r);
+        look();
+        recording.add(f, r.rgb);
+        truth.add(f, r);
+    };
+    try {
+        run_ar(session, o, shown, stop, report, summary);
+        recording.finish();
+    } catch (...) {
+        try {
+            recording.finish();
+        } catch (std::exception const&) { // the first problem is the one to tell
+        }
+        if (!summary.frames.empty()) keep(recording.text());
+        throw;
+    }
+    keep(recording.text());
+    if (summary.end.kind == ar::SourceState::Kind::lost) {
+        std::fputs(fmt::format("lightwell: the source was lost: {}\n", summary.end.reason).c_str(), stderr);
+        return 1;
+    }
+    if (!recording.failure().empty()) {
+        std::fputs(fmt::format("lightwell: '{}' was cut off ({}) what was written until then can be played\n",
+                               a.record_input, recording.failure())
+                       .c_str(),
+                   stderr);
+        return 1;
+    }
+    if (summary.frames.empty() && !stop.requested())
+        throw gi::InputError("no frame could be used", describe(summary.source), "check the session's frames");
+    bool const was_closed = window && window->wants_close();
+    return stop.requested() && !was_closed ? kInterrupted : 0;
+}
+
+void add_session_options(CLI::App& c, RunArguments& a)
+{
+    c.add_option("session", a.session, "What is filmed, where the markers are, what is added: see docs/ar.md")
+        ->required();
+    c.add_option("--frames", a.frames, "At most so many; 0 = all")->check(CLI::NonNegativeNumber);
+    c.add_flag("--fast", a.fast, "Files: a frame as soon as the one before is done, not at their own pace");
+    c.add_option("--table", a.frame_table, "CSV with a line for each frame: times, pose, counts");
+    c.add_option("--stats", a.stats, "JSON: seconds of the renderer's stages, counts, losses");
+    c.add_option("--display", a.display,
+                 "A room whose tracker says where the camera is, in place of its markers (docs/displays.md)");
+    c.add_option("--true-poses", a.true_poses, "Where the camera really was (CSV or TUM): the error is told");
+}
+
+} // namespace
+
+void add_ar_run(CLI::App& ar, int& exit_code)
+{
+    auto const run = std::make_shared<RunArguments>();
+    CLI::App* const run_command = ar.add_subcommand("run", "Add virtual things to frames, live or from files");
+    add_session_options(*run_command, *run);
+    run_command->add_option("--out", run->out, "Folder for the composites, as PNG");
+    run_command->add_option("--video", run->video,
+                            "The composites as a video, .mkv (lossless) or .mp4, each shown until the next");
+    run_command
+        ->add_option("--record-input", run->record_input, "Folder to make: the camera's frames as a session")
+        ->excludes("--fast");
+    run_command->add_option("--poses", run->poses, "Where the camera was (CSV or TUM), in place of its markers");
+    CLI::Option* const window =
+        run_command->add_flag("--window", run->window, "Show it: S before and after, H panel, Escape ends");
+    run_command->add_option("--monitor", run->monitor, "Full screen on the one of this number or name")
+        ->needs("--window");
+    CLI::Option* const hmd = run_command->add_flag(
+        "--hmd", run->hmd, "In the headset of the OpenXR runtime that carries the camera (docs/hmd.md)");
+    run_command->add_flag("--seated", run->seated, "Of --hmd: no floor")->needs(hmd);
+    run_command->add_option("--eyes", run->eyes, "Of --hmd: folder for the last pictures of both eyes, as PNG")
+        ->needs(hmd);
+    run_command->add_option("--truth", run->truth,
+                            "Folder of pictures with the things really there: FLIP is told");
+    for (char const* other :
+         {"--window", "--out", "--video", "--record-input", "--table", "--truth", "--true-poses"})
+        hmd->excludes(run_command->get_option(other));
+    run_command
+        ->add_flag("--gpu", run->gpu, "Composites are made by the window's GPU: the same within a byte, no counts")
+        ->needs(window)
+        ->excludes("--out")
+        ->excludes("--video")
+        ->excludes("--truth");
+    run_command->footer(R"(Examples:
+  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4
+  lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --table frames.csv --stats stages.json
+  lightwell ar run desk/session.yaml --poses desk/poses.csv --video desk.mkv --record-input desk/recorded
+
+A frame that is rendered too late for a newer one is given up and counted as overtaken; with --fast none is.)");
+    run_command->callback([run, &exit_code] { exit_code = run_session(*run, false); });
+}
+
+void add_ar_track(CLI::App& ar, int& exit_code)
+{
+    auto const track = std::make_shared<RunArguments>();
+    CLI::App* const track_command =
+        ar.add_subcommand("track", "Find the camera in each frame, and how sure that is");
+    add_session_options(*track_command, *track);
+    track_command->footer(R"(Examples:
+  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth
+  lightwell ar track desk/session.yaml --fast --true-poses desk/poses.csv)");
+    track_command->callback([track, &exit_code] { exit_code = run_session(*track, true); });
+}
+
+} // namespace viewer

@@ -1,0 +1,218 @@
+// Vignetting, noise and colour of a camera, each from pictures made for it, added to its calibration file.
+
+#include "ar/calibration/calibration_file.h"
+#include "ar/calibration/sensor_report.h"
+#include "ar/camera/error.h"
+#include "viewer/base/outputs.h"
+#include "viewer/cli/ar/ar_arguments.h"
+#include "viewer/cli/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+struct SensorOptions {
+    std::vector<std::string> pictures, centres;
+    std::string calibration, out, report;
+    double half_px = 0; ///< 0: by the distance of patches
+};
+
+void declare_sensor_options(CLI::App& c, SensorOptions& o)
+{
+    c.add_option("--calibration", o.calibration, "file to add it to")->required();
+    c.add_option("--out", o.out, "writes there, and leaves --calibration as it is");
+    c.add_option("--report", o.report, "HTML page: what was fitted, beside the pictures' values");
+}
+
+/// A calibration that is being added to, with the pictures for it.
+struct SensorSession {
+    SensorOptions const& options;
+    ar::Calibration calibration;
+    std::vector<cv::Mat> rgb;
+    ar::SensorReport report;
+
+    explicit SensorSession(SensorOptions const& o) : options(o)
+    {
+        check_outputs({o.out, o.report}, o.pictures);
+        check_outputs({o.report}, {o.calibration});
+        calibration = ar::read_calibration(o.calibration);
+        glm::ivec2 const size = calibration.camera.size_px;
+        for (std::string const& file : o.pictures) {
+            rgb.push_back(read_rgb(file));
+            if (rgb.back().cols != size.x || rgb.back().rows != size.y)
+                throw ar::InputError(fmt::format("{} has {} x {} pixels, {} is of {} x {}", file, rgb.back().cols,
+                                                 rgb.back().rows, o.calibration, size.x, size.y),
+                                     "both have to be of one camera, neither scaled nor cut",
+                                     "take the pictures as the camera gives them");
+        }
+        if (calibration.photometry) return;
+        calibration.photometry = ar::srgb_photometry(); // as `ar run` reads its pictures
+        fmt::print("{} has no response: bytes are taken to be sRGB (measure it by lightwell ar response)\n",
+                   o.calibration);
+    }
+
+    /// @param fit what was fitted, with its error, for the file's provenance
+    void write(std::string const& name, std::string const& fit)
+    {
+        auto& p = calibration.provenance;
+        std::erase_if(p, [&](auto const& entry) { return entry.first == name; });
+        p.emplace_back(name, fit);
+        std::string const out = options.out.empty() ? options.calibration : options.out;
+        ar::write_calibration(out, calibration);
+        if (!options.report.empty()) ar::write_report(options.report, report);
+        fmt::print("{}\n", out);
+    }
+};
+
+int run_vignetting(SensorOptions const& o)
+{
+    SensorSession s(o);
+    ar::VignettingFit const fit = ar::vignetting_of_flat(s.rgb, *s.calibration.photometry);
+    auto const& v = fit.vignetting;
+    s.calibration.photometry->vignetting = v;
+    s.report.vignetting = fit;
+    fmt::print("vignetting: 1 {:+.4f} r^2 {:+.4f} r^4 {:+.4f} r^6, {:.1f} % of the light in the corners\n", v[0],
+               v[1], v[2], 100 * (1 + v[0] + v[1] + v[2]));
+    std::string const error = fmt::format("{:.2f} % RMS of {} parts of {} pictures", 100 * fit.rms,
+                                          fit.points.size(), o.pictures.size());
+    fmt::print("error: {}\n", error);
+    if (fit.rms > 0.03)
+        fmt::print("warning: what the pictures show is hardly evenly bright: turn it and compare\n");
+    s.write("vignetting", error);
+    return 0;
+}
+
+int run_noise(SensorOptions const& o)
+{
+    SensorSession s(o);
+    ar::NoiseFit const fit = ar::noise_of_pairs(s.rgb, *s.calibration.photometry);
+    s.calibration.noise = fit.noise;
+    s.report.noise = fit;
+    fmt::print("noise: variance {:.4g} + {:.4g} unit; sigma {:.4f} at 0.18\n", fit.noise.read, fit.noise.photon,
+               fit.noise.sigma(0.18));
+    std::string const error = fmt::format("{:.1f} % RMS of the variances at {} brightnesses of {} pairs",
+                                          100 * fit.rms, fit.points.size(), o.pictures.size() / 2);
+    fmt::print("error: {}\n", error);
+    if (fit.rms > 0.5)
+        fmt::print("warning: no line fits the variances: did anything move, or the light flicker?\n");
+    s.write("noise", error);
+    return 0;
+}
+
+cv::Point2d parse_pixel(std::string const& text)
+{
+    cv::Point2d p;
+    char const* const end = text.data() + text.size();
+    auto const x = std::from_chars(text.data(), end, p.x);
+    if (x.ec == std::errc() && x.ptr != end && *x.ptr == ',') {
+        auto const y = std::from_chars(x.ptr + 1, end, p.y);
+        if (y.ec == std::errc() && y.ptr == end && std::isfinite(p.x) && std::isfinite(p.y)) return p;
+    }
+    throw ar::InputError("--patches " + text,
+                         "a patch's centre is two numbers of pixels, from 0,0 at the upper left",
+                         "write it as 120,85.5");
+}
+
+std::vector<cv::Point2d> patch_centres(SensorOptions const& o, ar::CameraModel const& camera)
+{
+    std::vector<cv::Point2d> given;
+    for (std::string const& text : o.centres) given.push_back(parse_pixel(text));
+    if (given.size() == ar::chart_linear_rgb().size()) return given;
+    if (given.size() == 4) return ar::chart_centres({given[0], given[1], given[2], given[3]}, camera);
+    throw ar::InputError(fmt::format("--patches has {} centres", given.size()),
+                         "the chart has 24 patches, 4 at its corners",
+                         "give dark skin, bluish green, black and white, or all 24 row by row");
+}
+
+/// A fifth of the smallest distance between patches: well inside them.
+double default_half_px(std::vector<cv::Point2d> const& centres)
+{
+    double least = 1e9;
+    for (std::size_t i = 0; i < centres.size(); ++i)
+        for (std::size_t j = i + 1; j < centres.size(); ++j)
+            least = std::min(least, cv::norm(centres[i] - centres[j]));
+    return 0.2 * least;
+}
+
+int run_colour(SensorOptions const& o)
+{
+    SensorSession s(o);
+    auto const centres = patch_centres(o, s.calibration.camera);
+    double const half_px = o.half_px > 0 ? o.half_px : default_half_px(centres);
+    s.report.patches = ar::patch_units(s.rgb[0], centres, half_px, *s.calibration.photometry);
+    ar::ColourFit const fit = ar::fit_colour(s.report.patches, ar::chart_linear_rgb());
+    s.calibration.photometry->colour = fit.colour;
+    s.report.colour = fit;
+    for (int r = 0; r < 3; ++r)
+        fmt::print("{} {:+.4f} {:+.4f} {:+.4f}\n", r == 0 ? "colour:" : "       ", fit.colour(r, 0),
+                   fit.colour(r, 1), fit.colour(r, 2));
+    auto const worst = std::max_element(fit.delta_e.begin(), fit.delta_e.end()) - fit.delta_e.begin();
+    std::string const error =
+        fmt::format("delta E (CIE 1976) mean {:.2f}, largest {:.2f}", fit.mean_delta_e, fit.largest_delta_e);
+    fmt::print("error: {} (patch {}); {:.2f} without the matrix\n", error, worst + 1, fit.delta_e_before);
+    s.write("colour", error);
+    return 0;
+}
+
+} // namespace
+
+void add_ar_vignetting(CLI::App& ar, int& exit_code)
+{
+    auto const o = std::make_shared<SensorOptions>();
+    CLI::App* const c = ar.add_subcommand(
+        "vignetting",
+        "Add how the light falls off to the corners to a calibration, from pictures of something evenly bright.");
+    c->add_option("PICTURES", o->pictures, "of a lit wall through paper, or of a clear sky, out of focus; 8 bits")
+        ->required();
+    declare_sensor_options(*c, *o);
+    c->footer(R"(Example:
+  lightwell ar vignetting flat1.png flat2.png --calibration camera.yaml --report vignetting.html
+
+Two pictures with the camera turned upside down between them show whether it was evenly bright. Parts with clipped pixels do not count.
+The response comes first (lightwell ar response): light is read by it.)");
+    c->callback([o, &exit_code] { exit_code = run_vignetting(*o); });
+}
+
+void add_ar_noise(CLI::App& ar, int& exit_code)
+{
+    auto const o = std::make_shared<SensorOptions>();
+    CLI::App* const c = ar.add_subcommand(
+        "noise", "Add a sensor's noise to a calibration, from pairs of pictures of a scene at rest.");
+    c->add_option("PICTURES", o->pictures, "first, second, first, second, ... of equal exposure; 8 bits, not JPEG")
+        ->required();
+    declare_sensor_options(*c, *o);
+    c->footer(R"(Example:
+  lightwell ar noise a1.png a2.png b1.png b2.png --calibration camera.yaml --report noise.html
+
+At the exposure and gain that the camera will have: noise is of a unit of light at that exposure. The scene has dark and bright parts.)");
+    c->callback([o, &exit_code] { exit_code = run_noise(*o); });
+}
+
+void add_ar_colour(CLI::App& ar, int& exit_code)
+{
+    auto const o = std::make_shared<SensorOptions>();
+    o->pictures.resize(1);
+    CLI::App* const c = ar.add_subcommand(
+        "colour",
+        "Add a camera's colour matrix to a calibration, from a picture of a ColorChecker with 24 patches.");
+    c->add_option("PICTURE", o->pictures[0], "of the chart, evenly lit, nothing clipped; 8 bits")->required();
+    c->add_option("--patches", o->centres,
+                  "centres X,Y in pixels of dark skin, bluish green, black and white (the corners), or of all 24")
+        ->required()
+        ->expected(1, 24);
+    c->add_option("--half", o->half_px, "pixels: half the side of the square of a patch that is averaged")
+        ->check(CLI::Range(0.5, 1000.0));
+    declare_sensor_options(*c, *o);
+    c->footer(R"(Example:
+  lightwell ar colour chart.png --patches 92,80 548,82 545,388 95,385 --calibration camera.yaml --report colour.html
+
+Response and vignetting come first (lightwell ar response, lightwell ar vignetting). The matrix holds for the light it was measured in.)");
+    c->callback([o, &exit_code] { exit_code = run_colour(*o); });
+}
+
+} // namespace viewer

@@ -1,0 +1,61 @@
+#include "ar/pipeline/synthesize.h"
+#include "viewer/base/arguments.h"
+#include "viewer/base/interrupt.h"
+#include "viewer/base/report_json.h"
+#include "viewer/cli/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+struct SynthesizeArguments {
+    SynthesizeOptions options;
+    std::string folder, size = "640x480";
+    bool no_truth = false, no_denoise = false;
+};
+
+int run_synthesize(SynthesizeArguments const& a)
+{
+    SynthesizeOptions o = a.options;
+    o.folder = a.folder;
+    auto const [width, height] = parse_size(a.size);
+    o.size_px = {width, height};
+    o.truth = !a.no_truth;
+    o.quality.denoise = !a.no_denoise;
+    gi::Report report;
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    int const done = synthesize(o, stop, report);
+    fmt::print("{}: {} of {} frames\n", (o.folder / "session.yaml").string(), done, o.frames);
+    print_losses(report);
+    return stop.requested() ? kInterrupted : 0;
+}
+
+} // namespace
+
+void add_ar_synthesize(CLI::App& ar, int& exit_code)
+{
+    auto const made = std::make_shared<SynthesizeArguments>();
+    CLI::App* const synthesize = ar.add_subcommand(
+        "synthesize",
+        "Make a session in which all is known: frames, true poses, probe, pictures with the things there");
+    synthesize->add_option("folder", made->folder, "Where its files go")->required();
+    synthesize->add_option("--size", made->size, "Of frames, WIDTHxHEIGHT")->capture_default_str();
+    synthesize->add_option("--frames", made->options.frames, "How many")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    synthesize->add_option("--paths", made->options.quality.paths, "Of the reference renderer, per pixel")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    synthesize->add_option("--threads", made->options.quality.threads, "0 = all")->check(CLI::NonNegativeNumber);
+    synthesize->add_flag("--no-truth", made->no_truth, "Leave out the pictures with the things really there");
+    synthesize->add_flag("--no-denoise", made->no_denoise, "Leave frames as noisy as paths are");
+    synthesize->footer(R"(Example:
+  lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth)");
+    synthesize->callback([made, &exit_code] { exit_code = run_synthesize(*made); });
+}
+
+} // namespace viewer

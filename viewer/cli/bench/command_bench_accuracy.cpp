@@ -1,0 +1,318 @@
+// Bias of slhb by paired differences. Renders of one seed share axes, lamps and random numbers; what differs is
+// whether look-ups or exact rays answer, and whether paths take axes or directions of their own. So the difference
+// of two means has far less noise than either, and seeds give its standard error.
+
+#include "gi/methods/registry.h"
+#include "gi/metrics/metrics.h"
+#include "viewer/base/report_json.h"
+#include "viewer/bench/bench_record.h"
+#include "viewer/cli/commands.h"
+#include "viewer/offline/load_world.h"
+#include "viewer/report/table_file.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <memory>
+#include <numeric>
+
+namespace viewer {
+namespace {
+
+using namespace gi;
+
+struct AccuracyOptions {
+    RenderOptions render;
+    std::vector<std::string> scenes{"cornell", "atrium"}, directions{"icosahedron:80", "icosahedron:320"};
+    std::vector<int> resolutions{32, 64, 128, 256, 512};
+    std::uint32_t paths = 64, direction_paths = 256, reference_paths = 4096;
+    int seeds = 8;
+    std::string out;
+};
+
+/// The light of one render, or a difference of two.
+struct Light {
+    std::vector<float> direct, indirect;
+};
+
+double mean(std::vector<float> const& v)
+{
+    return std::accumulate(v.begin(), v.end(), 0.0) / double(std::max<std::size_t>(1, v.size()));
+}
+
+/// One per seed.
+using Lights = std::vector<Light>;
+using Part = std::vector<float> Light::*;
+
+Lights combine(Lights a, Lights const& b, float factor)
+{
+    for (std::size_t k = 0; k < a.size(); ++k)
+        for (Part const p : {&Light::direct, &Light::indirect})
+            for (std::size_t i = 0; i < (a[k].*p).size(); ++i) (a[k].*p)[i] += factor * (b[k].*p)[i];
+    return a;
+}
+Lights differences(Lights const& a, Lights const& b) { return combine(a, b, -1); }
+Lights sums(Lights const& a, Lights const& b) { return combine(a, b, 1); }
+
+struct Estimate {
+    double value = 0, error = 0; ///< a mean and its standard error
+};
+
+/// Of the picture's mean, in units of `unit`.
+Estimate estimate(Lights const& lights, Part part, double unit)
+{
+    double const n = double(lights.size());
+    double sum = 0, squares = 0;
+    for (Light const& l : lights) sum += mean(l.*part);
+    for (Light const& l : lights) squares += std::pow(mean(l.*part) - sum / n, 2);
+    return {sum / n / unit, std::sqrt(squares / (n * (n - 1))) / unit};
+}
+
+Estimate operator-(Estimate a, Estimate b) { return {a.value - b.value, std::hypot(a.error, b.error)}; }
+
+std::vector<float> mean_picture(Lights const& lights, Part part)
+{
+    std::vector<float> sum((lights[0].*part).size());
+    for (Light const& l : lights)
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += (l.*part)[k] / float(lights.size());
+    return sum;
+}
+
+/// relMSE that no number of paths and seeds takes away. Products of different seeds have no noise in the mean; so
+/// this may be a little below 0.
+double systematic_relmse(Lights const& differences, std::vector<float> const& reference)
+{
+    double const n = double(differences.size());
+    double total = 0;
+    for (std::size_t k = 0; k < reference.size(); ++k) {
+        double sum = 0, squares = 0, r = double(reference[k]);
+        for (Light const& d : differences) {
+            sum += double(d.indirect[k]);
+            squares += double(d.indirect[k]) * double(d.indirect[k]);
+        }
+        total += (sum * sum - squares) / (n * (n - 1)) / (r * r + kRelativeFloor);
+    }
+    return total / double(reference.size());
+}
+
+/// Of one row; those of one cause are of indirect light.
+struct Biases {
+    Estimate direct, indirect, of_hit_buffers, of_shadow_maps, of_directions;
+};
+
+struct Rendered {
+    Lights lights;
+    double seconds = 0, lost_layers = 0;
+};
+
+/// One scene with everything that its rows are measured against.
+class Bench {
+public:
+    Bench(AccuracyOptions const& options, RenderOptions render, BenchTable& table, Report& report)
+        : o_(options),
+          table_(table),
+          report_(report),
+          scene_(render.scene),
+          world_(load_world(render, report)),
+          camera_(choose_camera(world_, camera_choice(render)).camera),
+          settings_(make_settings(render))
+    {
+        settings_.checkpoint.clear();
+        std::uint32_t const each = std::max(1u, o_.reference_paths / std::uint32_t(o_.seeds));
+        Lights const reference = render_seeds("reference", {}, each, 1000).lights;
+        reference_ = mean_picture(reference, &Light::indirect);
+        Rendered const free = render_exactly({}, true, o_.direction_paths);
+        free_ = free.lights;
+        direct_ = estimate(free_, &Light::direct, 1).value;
+        indirect_ = estimate(free_, &Light::indirect, 1).value;
+        add({"exact rays", "free", std::monostate{}},
+            {part(free_, &Light::direct) - part(reference, &Light::direct),
+             part(free_, &Light::indirect) - part(reference, &Light::indirect),
+             {},
+             {},
+             {}},
+            std::monostate{}, free);
+    }
+
+    void stream() { add_rows("streamed", {}); }
+    void store(std::string const& directions) { add_rows("stored", directions); }
+
+private:
+    struct Name {
+        std::string schedule, directions;
+        Cell hit_buffer;
+    };
+
+    Rendered render_seeds(char const* method, SlhbSettings const& slhb, std::uint32_t paths,
+                          std::uint64_t first_seed)
+    {
+        Rendered r;
+        StopRequest const stop;
+        RenderSettings s = settings_;
+        s.slhb = slhb;
+        s.paths = paths;
+        for (int k = 0; k < o_.seeds; ++k) {
+            s.seed = first_seed + std::uint64_t(k);
+            Report report;
+            RenderResult const result = find_method(method).render(world_, camera_, s, stop, {}, report);
+            r.lights.push_back({result.picture.find("L1")->data, result.picture.find("L2")->data});
+            r.seconds += result.seconds / o_.seeds;
+            for (auto const& [what, loss] : report.losses()) {
+                if (what == "layers beyond the limit of a texel") r.lost_layers += double(loss.count);
+                report_.lose(what, loss.count, loss.first);
+            }
+        }
+        return r;
+    }
+    SlhbSettings slhb(std::string const& directions) const
+    {
+        SlhbSettings s = settings_.slhb;
+        s.schedule = directions.empty() ? Schedule::streamed : Schedule::stored;
+        s.directions = directions;
+        return s;
+    }
+    Rendered render_exactly(std::string const& directions, bool free, std::uint32_t paths)
+    {
+        SlhbSettings s = slhb(directions);
+        s.exact = {.queries = true, .shadows = true, .directions = free};
+        return render_seeds("slhb", s, paths, 1);
+    }
+    /// As a share of all light.
+    Estimate part(Lights const& l, Part p) const
+    {
+        return estimate(l, p, p == &Light::direct ? direct_ : indirect_);
+    }
+    void add(Name const& name, Biases const& b, Cell systematic, Rendered const& r)
+    {
+        std::vector<Cell> row{scene_, name.schedule, name.directions, name.hit_buffer};
+        for (Estimate const& e : {b.direct, b.indirect, b.of_hit_buffers, b.of_shadow_maps, b.of_directions}) {
+            row.push_back(e.value);
+            row.push_back(e.error);
+        }
+        row.push_back(systematic);
+        row.push_back(measure_errors(mean_picture(r.lights, &Light::indirect), reference_, 3).relmse);
+        row.push_back(r.lost_layers);
+        row.push_back(r.seconds);
+        table_.add(row);
+        write(table_, o_.out);
+    }
+    void add_rows(char const* schedule, std::string const& directions);
+
+    AccuracyOptions const& o_;
+    BenchTable& table_;
+    Report& report_;
+    std::string scene_;
+    World world_;
+    Camera camera_;
+    RenderSettings settings_;
+    std::vector<float> reference_;
+    Lights free_;
+    double direct_ = 0, indirect_ = 0;
+};
+
+void Bench::add_rows(char const* schedule, std::string const& directions)
+{
+    // Streamed axes are uniform: their part is 0 by construction, and the noise of axes that all pixels share is
+    // not added to it.
+    bool const streamed = directions.empty();
+    Lights const of_directions =
+        streamed ? Lights{} : differences(render_exactly(directions, false, o_.direction_paths).lights, free_);
+    Lights const exact = render_exactly(directions, false, o_.paths).lights;
+    SlhbSettings s = slhb(directions);
+    s.exact.queries = true;
+    Lights const with_maps = render_seeds("slhb", s, o_.paths, 1).lights;
+    s.exact.queries = false;
+    Lights const of_maps = differences(with_maps, exact);
+    for (int const resolution : o_.resolutions) {
+        s.resolution = resolution;
+        Rendered const r = render_seeds("slhb", s, o_.paths, 1);
+        Lights const of_buffers = differences(r.lights, with_maps);
+        Lights all = differences(r.lights, exact);
+        if (!streamed) all = sums(all, of_directions);
+        add({schedule, streamed ? "all" : directions, double(resolution)},
+            {part(all, &Light::direct), part(all, &Light::indirect), part(of_buffers, &Light::indirect),
+             part(of_maps, &Light::indirect), streamed ? Estimate{0, 0} : part(of_directions, &Light::indirect)},
+            systematic_relmse(all, reference_), r);
+    }
+}
+
+int run(AccuracyOptions& o)
+{
+    check_folder(o.out);
+    make_folder(o.out);
+    BenchTable table =
+        start_table("accuracy", "Bias of slhb, by paired differences",
+                    {"scene", "schedule", "directions", "hit_buffer", "bias_direct", "bias_direct_error",
+                     "bias_indirect", "bias_indirect_error", "of_hit_buffers", "of_hit_buffers_error",
+                     "of_shadow_maps", "of_shadow_maps_error", "of_directions", "of_directions_error",
+                     "systematic_relmse_indirect", "relmse_indirect", "lost_layers", "seconds"});
+    table.facts = {{"size", o.render.size},
+                   {"bounces", std::to_string(o.render.bounces)},
+                   {"seeds", std::to_string(o.seeds)},
+                   {"paths", std::to_string(o.paths)},
+                   {"direction_paths", std::to_string(o.direction_paths)},
+                   {"reference", fmt::format("path tracing, {} paths per pixel", o.reference_paths)}};
+    o.render.out = "unused";
+    Report report;
+    for (std::string const& scene : o.scenes) {
+        RenderOptions options = o.render;
+        options.scene = scene;
+        Bench bench(o, options, table, report);
+        for (std::string const& directions : o.directions) bench.store(directions);
+        bench.stream();
+    }
+    show(table, o.out, o.render.json);
+    print_losses(report);
+    return 0;
+}
+
+} // namespace
+
+void add_bench_accuracy(CLI::App& bench, int& exit_code)
+{
+    auto const o = std::make_shared<AccuracyOptions>();
+    o->render.size = "64x64";
+    o->render.bounces = 2;
+    CLI::App* const c =
+        bench.add_subcommand("accuracy", "Bias of slhb by directions and texels of its hit buffers.");
+    auto const list = [&](char const* name, auto& values, char const* help) {
+        c->add_option(name, values, help)->delimiter(',')->capture_default_str()->allow_extra_args(false);
+    };
+    auto const paths = [&](char const* name, std::uint32_t& value, char const* help) {
+        c->add_option(name, value, help)->check(CLI::Range(1u, 1u << 24))->capture_default_str();
+    };
+    list("--scene", o->scenes, "files or names, comma-separated");
+    list("--directions", o->directions, "of the stored schedule, comma-separated");
+    list("--hit-buffers", o->resolutions, "texels on a side, comma-separated");
+    declare_view_options(*c, o->render);
+    declare_lens_options(*c, o->render);
+    c->add_option("--size", o->render.size, "width x height, pixels")->capture_default_str();
+    c->add_option("--bounces", o->render.bounces, "indirect bounces")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    c->add_option("--seeds", o->seeds, "renders of each kind, which give the standard errors")
+        ->check(CLI::Range(2, 1000))
+        ->capture_default_str();
+    paths("--paths", o->paths, "per pixel and seed");
+    paths("--direction-paths", o->direction_paths, "the same, where directions are compared by exact rays");
+    paths("--reference-paths", o->reference_paths, "per pixel, of the reference, all seeds together");
+    c->add_option("--threads", o->render.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
+    declare_slhb_quality(*c, o->render);
+    c->add_option("--out", o->out, "folder for accuracy.json and accuracy.csv")->required();
+    c->add_flag("--json", o->render.json, "print the table as JSON");
+    c->footer(R"(Example:
+  lightwell bench accuracy --scene cornell --directions icosahedron:80 --hit-buffers 32 --size 16x16 --seeds 2 --paths 8 --direction-paths 8 --reference-paths 32 --out accuracy
+
+bias_direct and bias_indirect are what the means of L1 and L2 over all channels differ by from the truth, as a share
+of it; columns that end in _error are standard errors over the seeds. bias_indirect is the sum of three parts, each a
+difference of renders with the same seeds and lamps, the first two with the same axes and random numbers too:
+  of_hit_buffers  slhb less slhb with exact rays along its axes
+  of_shadow_maps  that less the same with exact rays to its lamps
+  of_directions   stored: that less exact rays by the cosine, each path its own; streamed axes are uniform: 0
+The row "exact rays" is the last of these less the reference: it should be 0 within its error.
+systematic_relmse_indirect is the relMSE of L2 that no number of paths and seeds takes away (from products of
+different seeds, so noise may make it negative; seeds turn stored sets, whose own error it does not see); relmse_indirect that of the mean of all seeds against the reference.)");
+    c->callback([o, &exit_code] { exit_code = run(*o); });
+}
+
+} // namespace viewer

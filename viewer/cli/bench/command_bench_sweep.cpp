@@ -1,0 +1,90 @@
+#include "gi/methods/registry.h"
+#include "viewer/base/interrupt.h"
+#include "viewer/bench/bench_record.h"
+#include "viewer/bench/sweep.h"
+#include "viewer/bench/sweep_methods.h"
+#include "viewer/cli/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+int run(SweepOptions const& o)
+{
+    SweepResult const result = run_sweep(o);
+    show(result.table, o.out, o.render.json);
+    if (!result.interrupted) return 0;
+    std::fputs(
+        "note: interrupted: the rows so far are saved; the same command starts again, but for the reference "
+        "pictures\n",
+        stderr);
+    return kInterrupted;
+}
+
+} // namespace
+
+void add_bench_sweep(CLI::App& bench, int& exit_code)
+{
+    auto const o = std::make_shared<SweepOptions>();
+    std::string known;
+    for (gi::Method const& m : gi::methods()) {
+        o->methods.emplace_back(m.name);
+        known += fmt::format("\n  {}: {}", m.name, m.summary);
+    }
+    o->budgets = {"30ms", "100ms", "300ms", "1s", "3s", "10s"};
+    CLI::App* const c = bench.add_subcommand("sweep", "The error that methods leave after budgets of time.");
+    auto const list = [&](char const* name, std::vector<std::string>& values, std::string const& help) {
+        return c->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
+    };
+    list("--scene", o->scenes, "files or names, comma-separated")->required();
+    list("--methods", o->methods,
+         "comma-separated, of:" + known +
+             "\n  slhb:auto, slhb:stored, slhb:streamed, slhb:temporal: with that schedule"
+             "\n  vpl_imperfect:30%, vpl_slhb:icosahedron:80, vpl_ao:0.5, vpl_dao:0.5: with those points, "
+             "directions, radius (m)")
+        ->capture_default_str();
+    list("--budgets", o->budgets, "times for a frame, comma-separated")->capture_default_str();
+    RenderOptions& r = o->render;
+    c->add_option("--size", r.size, "width x height, pixels")->capture_default_str();
+    declare_view_options(*c, r);
+    declare_lens_options(*c, r);
+    c->add_option("--bounces", r.bounces, "indirect bounces; 0 = direct light only")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    CLI::Option* const paths = c->add_option("--reference-paths", o->reference_paths,
+                                             "paths per pixel of the reference picture, which is kept in DIR")
+                                   ->check(CLI::Range(2, 1 << 24))
+                                   ->capture_default_str();
+    c->add_option("--reference", o->reference, "a picture to take as reference, for one scene")->excludes(paths);
+    c->add_option("--repeats", o->repeats, "renders per row, each with its own seed; rows hold medians")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    declare_denoise(*c, r);
+    declare_slhb(*c, r);
+    declare_virtual_lights(*c, r);
+    c->add_option("--threads", r.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
+    c->add_option("--out", o->out, "folder for sweep.json, sweep.csv and the pictures")->required();
+    c->add_flag("--json", r.json, "print the table as JSON");
+    c->add_flag("--quiet", r.quiet, "no progress bar");
+    c->footer(R"(Examples:
+  lightwell bench sweep --scene cornell --methods reference --budgets 20ms --repeats 2 --size 32x32 --reference-paths 32 --out sweep
+  lightwell bench sweep --scene cornell,atrium --methods slhb:stored,slhb:streamed --budgets 20ms --repeats 1 --size 24x24 --reference-paths 8 --out both --json
+  lightwell bench sweep --scene cornell --methods vpl_exact,vpl_slhb,vpl_imperfect:30%,vpl_imperfect:5%,vpl_ao:0.1,vpl_dao:0.1,vpl_none --light-paths 64 --budgets 20ms --repeats 1 --size 24x24 --reference-paths 8 --out visibility
+
+Columns: budget_s, what was asked for, structures, paths and filter together; frame_s, the whole call with all that the method builds for it (a method
+finishes at least one path per pixel, so it may be more); trace_s, the tracing alone; paths per pixel; Mrays_per_s;
+relmse (relmse_indirect: of L2 alone), flip and bias against the reference, which is rendered with a seed of its own; reference_relmse, what the
+noise of the reference adds to relmse.
+
+Ctrl-C drops the render at hand, saves the rows so far and exits with 130; a second one ends at once.)");
+    c->callback([o, c, &exit_code] {
+        check_sweep_methods(*c, o->render, o->methods);
+        exit_code = run(*o);
+    });
+}
+
+} // namespace viewer

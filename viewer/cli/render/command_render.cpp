@@ -1,0 +1,242 @@
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "gi/image_io/picture_file.h"
+#include "gi/methods/registry.h"
+#include "viewer/base/interrupt.h"
+#include "viewer/base/outputs.h"
+#include "viewer/base/report_json.h"
+#include "viewer/base/version.h"
+#include "viewer/cli/command_table.h"
+#include "viewer/cli/commands.h"
+#include "viewer/offline/exposure.h"
+#include "viewer/offline/frame_options.h"
+#include "viewer/offline/frame_sequence.h"
+#include "viewer/offline/load_world.h"
+#include "viewer/offline/rank_work.h"
+#include "viewer/offline/render_picture.h"
+#include "viewer/offline/render_record.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+/// @param render  called with what stops it and shows how far it is
+gi::RenderResult
+trace(RenderOptions const& o, RankWork& work,
+      std::function<gi::RenderResult(gi::StopRequest const&, gi::RenderProgress const&)> const& render)
+{
+    InterruptGuard const guard(work.stop());
+    gi::ProgressBar bar("render " + std::filesystem::path(o.scene).filename().string(), !o.quiet && work.leads());
+    auto const show = [&](gi::RenderStatus const& s) {
+        bar.update(s.fraction, fmt::format("{} paths, relMSE {:.2g}", s.paths, s.relmse));
+    };
+    return render(work.stop(), show);
+}
+
+void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::RenderResult& result, gi::Report& report)
+{
+    gi::StageTimer const timer(report, "save");
+    gi::Picture& picture = result.picture;
+    picture.metadata = make_metadata(o, settings, result);
+    if (!o.png.empty()) gi::write_png(o.png, picture.width, picture.height, display_bytes(o, picture));
+    keep_layers(o, picture);
+    if (!o.out.empty()) save_exr(o, o.out, picture, report);
+}
+
+struct Shot {
+    gi::ScenePlan plan;
+    gi::RenderResult result;
+    std::map<std::string, gi::Report::Loss> loaded; ///< losses before the paths
+};
+
+Shot shoot_moment(RenderOptions const& o, gi::RenderSettings const& settings, gi::World const& world,
+                  FrameCamera const& eye, RankWork& work, gi::Report& report)
+{
+    gi::Camera const camera = eye.of(world, o.time_s.value_or(0), 0);
+    auto const loaded = report.losses();
+    gi::RenderResult result = trace(o, work, [&](gi::StopRequest const& stop, gi::RenderProgress const& progress) {
+        return gi::find_method(o.method).render(world, camera, settings, stop, progress, report);
+    });
+    return {gi::plan_scene(world), std::move(result), loaded};
+}
+
+/// While the shutter is open.
+Shot shoot_motion(RenderOptions const& o, gi::RenderSettings const& settings, gi::MovingWorld& world,
+                  FrameCamera const& eye, RankWork& work, gi::Report& report)
+{
+    Exposure const exposure{*o.time_s, o.shutter_s, false, [&](gi::World const& now, double after_s) {
+                                return eye.of(now, *o.time_s + after_s, 0);
+                            }};
+    gi::RenderResult result = trace(o, work, [&](gi::StopRequest const& stop, gi::RenderProgress const& progress) {
+        return expose(gi::find_method(o.method), world, exposure, settings, stop, progress, report);
+    });
+    return {gi::plan_scene(world.world()), std::move(result), {}};
+}
+
+std::vector<std::string> outputs_of(RenderOptions const& o, gi::RenderSettings const& settings)
+{
+    return {o.out, o.png, o.stats, settings.checkpoint.string()};
+}
+
+Shot shoot(RenderOptions const& o, gi::RenderSettings const& settings, CameraChoice const& choice,
+           CameraMotion const& motion, RankWork& work, gi::Report& report)
+{
+    auto const scene = load_lit_scene(o, report);
+    check_outputs(outputs_of(o, settings), scene->files);
+    bool const blurs = o.shutter_s > 0 && depends_on_time(*scene, false, motion);
+    if (o.shutter_s > 0 && !blurs) say(kNothingMoves);
+    gi::World still;
+    std::optional<gi::MovingWorld> moving;
+    {
+        gi::StageTimer const timer(report, "world");
+        if (blurs)
+            moving.emplace(scene, *o.time_s, report);
+        else
+            still = gi::build_world(scene, o.time_s, report);
+    }
+    FrameCamera const eye(blurs ? moving->world() : still, choice, motion);
+    if (!eye.note().empty()) say(eye.note());
+    return blurs ? shoot_motion(o, settings, *moving, eye, work, report)
+                 : shoot_moment(o, settings, still, eye, work, report);
+}
+
+/// Options that no output reads.
+void check_display(CLI::App const& command, RenderOptions const& o)
+{
+    for (char const* name : {"--exposure", "--tone"})
+        if (command.get_option(name)->count() > 0 && o.png.empty() && o.video.empty())
+            throw gi::InputError(std::string(name) + " without --png or --video",
+                                 "it is about pictures for a display", "add --png F.png, or leave it out");
+}
+
+void check_endings(RenderOptions const& o)
+{
+    check_ending(o.out, ".exr", "an OpenEXR picture", "use --png for a PNG, or end it with .exr");
+    check_ending(o.png, ".png", "a PNG", "use --out for an OpenEXR picture, or end it with .png");
+}
+
+/// What several processes cannot share.
+void check_ranks(RenderOptions const& o, gi::RenderSettings const& s)
+{
+    auto const refuse = [](std::string const& option, std::string const& why, std::string const& suggestion) {
+        return gi::InputError(option + " with several processes", why, suggestion);
+    };
+    if (o.frames.empty()) {
+        if (s.budget_s > 0 || s.until_relmse > 0)
+            throw refuse(s.budget_s > 0 ? "--budget" : "--until",
+                         "which paths each has to trace must be known before", "give --paths");
+        if (o.resume) throw refuse("--resume", "they keep no state of a single picture", "leave it out");
+        if (o.shutter_s > 0) throw refuse("--shutter", "it takes one world through all moments", "leave it out");
+        return;
+    }
+    if (o.reuse > 1)
+        throw refuse("--reuse", "a frame takes light from those before it, which other processes have",
+                     "render with one process, or leave --reuse out");
+    if (!o.video.empty() && o.out.empty())
+        throw refuse("--video", "it is made from the frames of all of them, by their files",
+                     "add --out F_%04d.exr, on a disk that all of them see");
+}
+
+int render_picture(RenderOptions const& o, gi::RenderSettings settings,
+                   gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work)
+{
+    CameraMotion const motion = make_motion(o);
+    check_outputs(outputs_of(o, settings), {o.scene, o.environment, o.camera_path});
+    std::string const state = o.out.empty() ? "" : o.out + ".state"; // also where this render keeps none
+    bool const has_state = !state.empty() && std::filesystem::exists(state);
+    if (!work.alone()) {
+        settings.checkpoint.clear();
+        settings.share = work.share(settings.paths);
+    }
+    if (o.resume && !has_state) say("there is no '" + state + "': starting afresh");
+    if (!o.resume && has_state && work.leads())
+        throw gi::InputError("'" + state + "' holds an unfinished render", "a new one would replace it",
+                             "add --resume to go on, or delete it");
+
+    gi::Report report;
+    auto [plan, result, loaded] = shoot(o, settings, choice, motion, work, report);
+    work.gather(result, report, loaded);
+    if (!work.leads()) {
+        work.finish();
+        return 0;
+    }
+    std::string const remark = denoise(result.picture, denoise_settings, report);
+    if (!remark.empty()) say(remark);
+    save(o, settings, result, report);
+    if (!settings.checkpoint.empty() && !result.resumable) std::filesystem::remove(settings.checkpoint);
+
+    nlohmann::ordered_json const stats = make_stats(o, settings, plan, result, report);
+    if (!o.stats.empty()) gi::write_text(o.stats, to_text(stats));
+    if (o.json) {
+        std::fputs(to_text(stats).c_str(), stdout);
+    } else {
+        for (std::string const& file : {o.out, o.png, o.stats})
+            if (!file.empty()) fmt::print("{}\n", file);
+        fmt::print("{}\n", summary_line(o, settings, result));
+    }
+    std::fflush(stdout);
+    print_losses(report);
+    work.finish();
+    if (result.end != gi::RenderEnd::interrupted) return 0;
+    say(std::string("interrupted: the picture so far is saved") +
+        (o.shutter_s > 0               ? "; with --shutter it cannot be resumed"
+         : settings.checkpoint.empty() ? "; with --out it could be resumed"
+         : !result.resumable           ? "; its state could not be written, so that it cannot be resumed"
+                                       : "; the same command with --resume goes on"));
+    return kInterrupted;
+}
+
+int run(RenderOptions o)
+{
+    gi::find_method(o.method);
+    gi::RenderSettings const settings = make_settings(o);
+    gi::DenoiseSettings const denoise_settings = make_denoise_settings(o, settings);
+    check_endings(o);
+    CameraChoice const choice = camera_choice(o);
+    if (!o.background.empty()) parse_background(o.background); // before any work
+    if (Cluster::started_by_mpirun()) check_ranks(o, settings);
+    std::string const command = describe_call(o, settings, stop_option(settings), "").at("command");
+    Cluster cluster({version_text(), command, Cluster::started_by_mpirun() ? file_hash(o.scene) : 0},
+                    cluster_settings(o.ranks));
+    if (!cluster.leads()) be_silent();
+    std::string const what_stays = o.frames.empty() ? "of a picture that several processes share nothing is kept"
+                                   : o.out.empty()  ? "frames that are complete stay"
+                                                    : "the same command with --resume renders what is missing";
+    try {
+        RankWork work(cluster);
+        return o.frames.empty() ? render_picture(o, settings, denoise_settings, choice, work)
+                                : render_frames(o, settings, denoise_settings, choice, work);
+    } catch (RankInterrupted const&) {
+        say("interrupted: " + what_stays);
+        return kInterrupted;
+    } catch (RankLoss const& e) {
+        std::fputs(fmt::format("lightwell: {} stops: {}; {}\n", cluster.name(), e.what(), what_stays).c_str(),
+                   stderr);
+        return 1;
+    } catch (std::exception const& e) {
+        cluster.leave(e.what());
+        throw;
+    }
+}
+
+} // namespace
+
+void add_render(CLI::App& app, int& exit_code)
+{
+    auto const o = std::make_shared<RenderOptions>();
+    CLI::App* const c = app.add_subcommand("render", about("render"));
+    declare_options(*c, *o);
+    c->callback([o, c, &exit_code] {
+        NamedMethod const method{o->method, parse_schedule(o->schedule), "--schedule " + o->schedule};
+        check_slhb(*c, {method});
+        check_virtual_lights(*c, {method});
+        check_display(*c, *o);
+        exit_code = run(*o);
+    });
+}
+
+} // namespace viewer

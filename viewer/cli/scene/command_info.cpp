@@ -1,0 +1,145 @@
+#include "gi/core/error.h"
+#include "gi/image_io/picture_file.h"
+#include "gi/methods/slhb/directions/direction_picture.h"
+#include "gi/methods/slhb/directions/direction_quality.h"
+#include "gi/methods/slhb/settings.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/model/plan.h"
+#include "gi/scene/model/summary.h"
+#include "viewer/base/outputs.h"
+#include "viewer/base/report_json.h"
+#include "viewer/base/validators.h"
+#include "viewer/cli/command_table.h"
+#include "viewer/cli/commands.h"
+#include "viewer/offline/choose_camera.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+struct InfoOptions {
+    std::string scene, directions, png;
+    std::optional<double> time_s;
+    bool json = false;
+};
+
+/// A set of directions, how even it is, and its maps.
+int run_directions(InfoOptions const& o)
+{
+    constexpr std::size_t kSamples = std::size_t(1) << 18;
+    check_ending(o.png, ".png", "a PNG", "end it with .png");
+    check_outputs({o.png}, {});
+    gi::DirectionSet const set = gi::make_directions(o.directions);
+    gi::DirectionQuality const q = gi::measure(set, kSamples);
+    nlohmann::ordered_json j;
+    j["directions"] = set.name;
+    j["count"] = set.size();
+    j["axes"] = set.axes.size();
+    j["largest_gap_deg"] = glm::degrees(q.largest_gap_rad);
+    j["mean_gap_deg"] = glm::degrees(q.mean_gap_rad);
+    j["solid_angle_smallest"] = q.smallest_solid_angle;
+    j["solid_angle_largest"] = q.largest_solid_angle;
+    j["solid_angle_deviation"] = q.solid_angle_deviation;
+    for (auto const& [name, mapping] :
+         {std::pair{"octahedral", gi::SphereMapping::octahedral}, {"lat_long", gi::SphereMapping::lat_long}})
+        for (std::uint32_t const size : {64u, 256u, 1024u}) {
+            gi::DirectionMap const map = gi::make_direction_map(set, mapping, size);
+            gi::MapQuality const m = gi::measure(view(map), set, kSamples);
+            j["maps"].push_back({{"mapping", name},
+                                 {"width", map.width},
+                                 {"height", map.height},
+                                 {"wrong_share", m.wrong_share},
+                                 {"mean_excess_deg", glm::degrees(m.mean_excess_rad)},
+                                 {"largest_excess_deg", glm::degrees(m.largest_excess_rad)}});
+        }
+    if (!o.png.empty()) {
+        gi::DirectionPicture const picture = gi::draw(set);
+        gi::write_png(o.png, picture.width, picture.height, picture.rgb);
+        j["png"] = o.png;
+    }
+    if (o.json) {
+        std::fputs(to_text(j).c_str(), stdout);
+        return 0;
+    }
+    fmt::print("{}\n  {:<22} {} on {} axes\n", set.name, "directions", set.size(), set.axes.size());
+    fmt::print("  {:<22} {:.3f} at most, {:.3f} on average, degrees\n", "gap to the nearest",
+               glm::degrees(q.largest_gap_rad), glm::degrees(q.mean_gap_rad));
+    fmt::print("  {:<22} {:.3f} to {:.3f} of the mean, standard deviation {:.3f}\n", "solid angle",
+               q.smallest_solid_angle, q.largest_solid_angle, q.solid_angle_deviation);
+    fmt::print("Map against brute force      not the nearest     farther by, on average / at most, degrees\n");
+    for (auto const& m : j["maps"])
+        fmt::print("  {:<12} {:>5} x {:<5} {:>13.3f} % {:>18.5f} / {:.4f}\n", m["mapping"].get<std::string>(),
+                   m["width"].get<int>(), m["height"].get<int>(), 100 * m["wrong_share"].get<double>(),
+                   m["mean_excess_deg"].get<double>(), m["largest_excess_deg"].get<double>());
+    if (!o.png.empty()) fmt::print("{}\n", o.png);
+    std::fflush(stdout);
+    return 0;
+}
+
+int run(InfoOptions const& o)
+{
+    if (o.scene.empty() == o.directions.empty())
+        throw gi::InputError("info needs a SCENE or --directions", "it was given both or none",
+                             "give one of them");
+    if (!o.directions.empty()) return run_directions(o);
+    if (!o.png.empty()) throw gi::InputError("--png is for --directions", "a scene has no drawing", "use render");
+    gi::Report report;
+    auto const scene = std::make_shared<gi::Scene const>(gi::load_scene(o.scene, report));
+    gi::World const world = gi::build_world(scene, o.time_s, report);
+    gi::SceneSummary const summary = gi::summarise(world);
+    gi::ScenePlan const plan = gi::plan_scene(world);
+    std::vector<gi::PlanItem> const slhb = gi::explain_settings({}, world, choose_camera(world, {}).camera);
+    if (o.json) {
+        nlohmann::ordered_json j;
+        j["scene"] = o.scene;
+        for (gi::SummaryLine const& line : summary.lines) j["content"][line.what] = line.value;
+        for (gi::PlanItem const& item : slhb)
+            j["plan_slhb"].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
+        for (gi::PlanItem const& item : plan.items)
+            j["plan"].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
+        j["report"] = to_json(report);
+        std::fputs(to_text(j).c_str(), stdout);
+        return 0;
+    }
+    fmt::print("{}\n", o.scene);
+    for (gi::SummaryLine const& line : summary.lines) fmt::print("  {:<22} {}\n", line.what, line.value);
+    auto const print_plan = [](char const* title, std::vector<gi::PlanItem> const& items) {
+        fmt::print("{}\n", title);
+        for (gi::PlanItem const& item : items)
+            fmt::print("  {:<4} {:<38} {}\n", item.build ? "yes" : "no", item.what, item.reason);
+    };
+    print_plan("What is built for it", plan.items);
+    print_plan("By the method slhb, at 512 x 512 pixels", slhb);
+    std::fflush(stdout);
+    print_losses(report);
+    return 0;
+}
+
+} // namespace
+
+void add_info(CLI::App& app, int& exit_code)
+{
+    auto const o = std::make_shared<InfoOptions>();
+    CLI::App* const c = app.add_subcommand("info", about("info"));
+    c->add_option("SCENE", o->scene,
+                  "a scene file, a folder of OBJ or PLY frames, or atrium, cornell, mirror, avatar");
+    c->add_option("--directions", o->directions,
+                  "instead of a scene: FAMILY:COUNT, a set of directions; families are\n"
+                  "icosahedron, octahedron, tetrahedron, uv_grid, halton, fibonacci");
+    c->add_option("--png", o->png, "with --directions: a drawing of them");
+    c->add_option("--time", o->time_s, "moment of the animation, s")->check(in_range(-1e9, 1e9));
+    c->add_flag("--json", o->json, "print JSON");
+    c->footer(R"(Examples:
+  lightwell info atrium
+  lightwell info cornell --json
+  lightwell info --directions icosahedron:320 --png icosahedron.png
+
+Below "environment map" stands what it sends: irradiance (red, green, blue) of unshadowed faces that look up, down and
+where most comes from; and how much of the map is smooth, by squared radiance: little, where it has a sun.)");
+    c->callback([o, &exit_code] { exit_code = run(*o); });
+}
+
+} // namespace viewer

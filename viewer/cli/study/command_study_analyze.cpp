@@ -1,0 +1,106 @@
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "study/analysis/result_tables.h"
+#include "study/observers/simulate.h"
+#include "study/report/page.h"
+#include "viewer/base/outputs.h"
+#include "viewer/base/version.h"
+#include "viewer/cli/commands.h"
+#include "viewer/study/study_records.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+struct AnalyzeOptions {
+    std::string dir, script, out;
+    study::AnalysisSettings settings;
+    bool json = false;
+};
+
+/// The CSV of each table.
+std::vector<study::TextFile> csv_files(study::Analysis const& analysis)
+{
+    std::vector<study::TextFile> files;
+    for (study::ResultTable const& t : study::result_tables(analysis))
+        files.push_back({t.name + ".csv", study::csv_text(t.table, "NA")});
+    files.push_back({"analysis.json", study::to_json(analysis)});
+    return files;
+}
+
+int run_analyze(AnalyzeOptions const& o)
+{
+    study::Dataset const records = load_records(o.dir, o.script);
+    study::Analysis const analysis = study::analyze(records.script, records.sessions, o.settings);
+    if (!o.out.empty()) write_files(o.out, csv_files(analysis));
+    std::fputs((o.json ? study::to_json(analysis) : study::to_text(analysis)).c_str(), stdout);
+    return 0;
+}
+
+std::optional<study::Truth> truth_beside(std::filesystem::path const& dir)
+{
+    auto const file = study::truth_file(dir);
+    if (!std::filesystem::exists(file)) return {};
+    auto const bytes = gi::read_bytes(file, std::size_t(64) << 20);
+    return study::read_truth({bytes.begin(), bytes.end()}, file.string());
+}
+
+int run_report(AnalyzeOptions const& o)
+{
+    check_outputs({o.out}, {o.script});
+    study::Dataset const records = load_records(o.dir, o.script);
+    study::Analysis const analysis = study::analyze(records.script, records.sessions, o.settings);
+    study::ReportFacts facts;
+    facts.program = version_text();
+    facts.truth = truth_beside(o.dir);
+    facts.frame_interval_ms = frame_intervals_ms(o.dir);
+    gi::write_text(o.out, study::report_page(records.script, records.sessions, analysis, facts));
+    fmt::print("{}\n", o.out);
+    return 0;
+}
+
+void add_options(CLI::App& command, AnalyzeOptions& o)
+{
+    command.add_option("DIR", o.dir, "folder of the records")->required();
+    command.add_option("--script", o.script, "the experiment; otherwise the one that lies in DIR/code");
+    command.add_option("--exclude", o.settings.exclude, "participants to leave out: P003,P007")->delimiter(',');
+    command.add_option("--replicates", o.settings.replicates, "of bootstraps over observers")
+        ->check(CLI::Range(100, 100000))
+        ->capture_default_str();
+    command.add_option("--confidence", o.settings.confidence, "of intervals")
+        ->check(CLI::Range(0.5, 0.999))
+        ->capture_default_str();
+    command.add_option("--seed", o.settings.seed, "of bootstraps")->capture_default_str();
+}
+
+} // namespace
+
+void add_study_analyze(CLI::App& study, int& exit_code)
+{
+    auto const o = std::make_shared<AnalyzeOptions>();
+    CLI::App* const analyze = study.add_subcommand(
+        "analyze", "What the records say: exclusions, scales, thresholds, tests, timing, with their uncertainty.");
+    add_options(*analyze, *o);
+    analyze->add_flag("--json", o->json, "print JSON");
+    analyze->add_option("--out", o->out, "folder for every table as CSV, and all of it as JSON");
+    analyze->callback([o, &exit_code] { exit_code = run_analyze(*o); });
+    analyze->footer(R"(Examples:
+  lightwell study example pairs --out pairs.yaml
+  lightwell study simulate pairs.yaml --participants 1..6 --out compared
+  lightwell study analyze compared --script pairs.yaml --exclude P002)");
+
+    CLI::App* const report =
+        study.add_subcommand("report", "The same as one page (HTML) with drawings: for reading and for print.");
+    add_options(*report, *o);
+    report->add_option("--out", o->out, "file to write (HTML)")->required();
+    report->callback([o, &exit_code] { exit_code = run_report(*o); });
+    report->footer(R"(Examples:
+  lightwell study example staircase --out staircase.yaml
+  lightwell study simulate staircase.yaml --participants 1..4 --out climbed
+  lightwell study report climbed --script staircase.yaml --out report.html)");
+}
+
+} // namespace viewer

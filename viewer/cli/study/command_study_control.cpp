@@ -1,0 +1,31 @@
+#include "viewer/base/interrupt.h"
+#include "viewer/base/report_json.h"
+#include "viewer/cli/command_table.h"
+#include "viewer/cli/commands.h"
+#include "viewer/experiment/control_window.h"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+namespace viewer {
+
+void add_study_control(CLI::App& study, int& exit_code)
+{
+    auto const where = std::make_shared<std::string>();
+    CLI::App* const c = study.add_subcommand("control", about("study control"));
+    c->add_option("SOCKET", *where, "the --remote of study run, or the digits of its --remote-port")->required();
+    c->callback([where, &exit_code] {
+        gi::Report report;
+        gi::StopRequest stop;
+        InterruptGuard const guard(stop);
+        run_control_window(*where, stop, report);
+        print_losses(report);
+        exit_code = 0;
+    });
+    c->footer(R"(Example (beside a session that runs):
+  lightwell study control /tmp/session.sock
+
+It ends with the session.)");
+}
+
+} // namespace viewer

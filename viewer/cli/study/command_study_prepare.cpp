@@ -1,0 +1,111 @@
+#include "gi/core/error.h"
+#include "study/journal/durable_file.h"
+#include "viewer/base/arguments.h"
+#include "viewer/base/interrupt.h"
+#include "viewer/base/outputs.h"
+#include "viewer/base/report_json.h"
+#include "viewer/base/version.h"
+#include "viewer/cli/command_table.h"
+#include "viewer/experiment/prepared_list.h"
+#include "viewer/experiment/study_stimuli.h"
+#include "viewer/offline/rank_options.h"
+#include "viewer/offline/rank_work.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+struct PrepareOptions {
+    std::string script, size = "1280x720", out;
+    double font_px = 22;
+    int threads = 0;
+    RankOptions ranks;
+};
+
+int run(PrepareOptions const& o)
+{
+    LoadedScript const loaded = load_script(o.script);
+    auto const [width, height] = parse_size(o.size);
+    auto const list = prepared_list(loaded.script, {width, height}, float(o.font_px), version_text());
+    if (list.empty())
+        throw gi::InputError("nothing to prepare in " + o.script, "no block has stimuli: prepared",
+                             "write it in the block, or run with live stimuli");
+    study::make_folder(o.out);
+    Cluster cluster(
+        {version_text(), "study prepare " + o.size, Cluster::started_by_mpirun() ? file_hash(o.script) : 0},
+        cluster_settings(o.ranks));
+    gi::Report report;
+    std::size_t made = 0, number = 0;
+    bool is_interrupted = false;
+    try {
+        RankWork work(cluster);
+        InterruptGuard const guard(work.stop());
+        gi::ProgressBar bar("prepare " + loaded.script.id, work.leads());
+        SceneAccess const scenes = study_scenes();
+        for (auto const& [key, wanted] : list) {
+            bar.update(double(number) / double(list.size()), name_of(wanted.stimulus));
+            if (int(number++ % std::size_t(work.size())) != work.rank()) continue;
+            try {
+                made += prepare_stimulus(wanted, o.out, key, scenes, o.threads, work.stop(), report);
+            } catch (gi::InputError const& e) {
+                is_interrupted = work.stop().requested();
+                if (is_interrupted) break;
+                throw gi::InputError(wanted.where, e.what(), "stimuli that are complete stay");
+            }
+        }
+        work.talk([&](Cluster& c) {
+            if (!c.leads()) {
+                std::string const count = std::to_string(made);
+                return c.give({count.begin(), count.end()});
+            }
+            for (int rank = 1; rank < c.size(); ++rank)
+                if (auto const count = c.take(rank))
+                    made += std::size_t(std::stoul(std::string(count->begin(), count->end())));
+        });
+        if (is_interrupted) throw RankInterrupted();
+        bool const leads = work.leads();
+        work.finish();
+        if (!leads) return 0;
+    } catch (RankInterrupted const&) {
+        fmt::print(stderr, "interrupted: stimuli that are complete stay\n");
+        return kInterrupted;
+    } catch (RankLoss const& e) {
+        fmt::print(stderr, "lightwell: {} stops: {}; stimuli that are complete stay\n", cluster.name(), e.what());
+        return 1;
+    } catch (std::exception const& e) {
+        cluster.leave(e.what());
+        throw;
+    }
+    print_losses(report);
+    fmt::print("{}: {} stimuli, {} rendered, {} there already\n", o.out, list.size(), made, list.size() - made);
+    return 0;
+}
+
+} // namespace
+
+void add_study_prepare(CLI::App& study, int& exit_code)
+{
+    auto const o = std::make_shared<PrepareOptions>();
+    CLI::App* const c = study.add_subcommand("prepare", about("study prepare"));
+    c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
+    c->add_option("--size", o->size, "of the participant's window, px")->capture_default_str();
+    c->add_option("--font", o->font_px, "height of its letters, px")
+        ->check(CLI::Range(8, 200))
+        ->capture_default_str();
+    c->add_option("--out", o->out, "folder for the pictures")->required();
+    c->add_option("--threads", o->threads, "that render, 0 = all")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    declare_rank_options(*c, o->ranks);
+    c->callback([o, &exit_code] { exit_code = run(*o); });
+    c->footer(R"(Example:
+  mpirun -n 2 lightwell study prepare faces.yaml --size 1280x720 --out prepared
+
+Stimuli are known by a hash of scene, settings, size and the program's version. Under mpirun they are spread over the processes,
+which have to see one disk.)");
+}
+
+} // namespace viewer

@@ -1,0 +1,219 @@
+#include "gi/core/error.h"
+#include "study/plan/plan.h"
+#include "study/run/session.h"
+#include "viewer/base/arguments.h"
+#include "viewer/base/interrupt.h"
+#include "viewer/base/report_json.h"
+#include "viewer/base/validators.h"
+#include "viewer/base/version.h"
+#include "viewer/cli/command_table.h"
+#include "viewer/displays/display_file.h"
+#include "viewer/experiment/prepared_files.h"
+#include "viewer/experiment/prepared_list.h"
+#include "viewer/experiment/study_stimuli.h"
+#include "viewer/experiment/trial_presenter.h"
+#include "viewer/study/study_outcome.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fmt/format.h>
+#include <memory>
+#include <unistd.h>
+
+namespace viewer {
+namespace {
+
+struct RunOptions {
+    std::string script, dir, size = "1280x720", fullscreen, remote, prepared, display;
+    std::optional<int> remote_port;
+    int participant = 1, session = 1, threads = 0, marker_port = kMarkerPort;
+    double font_px = 22;
+    bool hmd = false, seated = false, resume = false, no_vsync = false, json = false;
+};
+
+std::string host_name()
+{
+    char name[256] = {};
+    return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
+}
+
+/// Before anybody sits down: everything that will be shown can be set, read, and seen from its camera.
+void check_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scenes)
+{
+    gi::Report report; // what scenes lose counts when they are shown
+    Session session(scenes.load, 0, report);
+    std::stable_sort(stimuli.begin(), stimuli.end(),
+                     [](auto const& a, auto const& b) { return a.settings.scene < b.settings.scene; });
+    bool is_edited = false;
+    for (auto const& [s, where] : stimuli) {
+        if (s.ar) continue; // ArStimulusCheck has looked at it
+        try {
+            if (s.scene != session.scene_name() || is_edited) session.apply({"scene", s.scene});
+            scenes.camera(session.world(), s.camera);
+            for (Change const& c : s.edits) session.apply(c);
+        } catch (gi::InputError const& e) {
+            throw gi::InputError(
+                where, e.what(),
+                "mend its settings; scenes are looked for beside the script, then in the current folder");
+        }
+        is_edited = !s.edits.empty();
+    }
+}
+
+void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOptions const& o)
+{
+    for (auto const& [key, wanted] : prepared_list(script, screen_px, float(o.font_px), version_text())) {
+        std::filesystem::path const folder = std::filesystem::path(o.prepared) / key;
+        if (!std::filesystem::exists(folder))
+            throw gi::InputError(
+                fmt::format("a stimulus of {} is not in '{}'", name_of(wanted.stimulus), o.prepared),
+                fmt::format("nothing was prepared for it in a window of {} x {} px by this version", screen_px.x,
+                            screen_px.y),
+                "run lightwell study prepare with this script, --size and --font, and name its "
+                "folder by --prepared");
+        read_prepared(folder);
+    }
+}
+
+/// Walls and headsets show one stimulus at a time, rendered as heads move.
+void check_one_at_a_time(study::Script const& script, study::Plan const& plan, bool in_headset, bool on_walls)
+{
+    for (study::PlanStep const& step : plan.steps) {
+        if (step.kind != study::PlanStepKind::trial || step.trial.stimuli.empty()) continue;
+        study::Block const& block = script.blocks[std::size_t(step.block)];
+        bool headset = in_headset, is_ar = false;
+        std::vector<study::Stimulus> stimuli = step.trial.stimuli;
+        if (step.trial.reference) stimuli.push_back(*step.trial.reference);
+        for (std::size_t i = 0; i < stimuli.size(); ++i) {
+            StimulusSettings const settings = stimulus_settings(script, block, stimuli[i]);
+            auto const view = settings.view;
+            is_ar |= settings.ar.has_value();
+            bool const is_in_it = view ? *view == StimulusViewer::headset : in_headset;
+            if (i > 0 && is_in_it != headset)
+                throw gi::InputError(fmt::format("{}: block {}", script.file, block.name),
+                                     "stimuli of one trial have different displays (view)",
+                                     "let trials differ in it: per: FACTOR, or cross");
+            headset = is_in_it;
+        }
+        if (is_ar && on_walls)
+            throw gi::InputError(fmt::format("{}: block {} on walls", script.file, block.name),
+                                 "its stimuli are a camera's pictures", "run it in a window, without --display");
+        if (!headset && !on_walls) continue;
+        bool const is_several =
+            !block.is_sequential && step.trial.order.size() + (step.trial.reference ? 1 : 0) > 1;
+        if (!is_several && block.stimuli == study::Stimuli::live) continue;
+        throw gi::InputError(
+            fmt::format("{}: block {} {}", script.file, block.name, headset ? "in a headset" : "on walls"),
+            is_several ? "it shows several stimuli side by side" : "its stimuli are prepared pictures",
+            is_several ? "write presentation: sequential" : "write stimuli: live");
+    }
+}
+
+int run(RunOptions const& o)
+{
+    LoadedScript const loaded = load_script(o.script);
+    study::Script const& script = loaded.script;
+    if (o.participant > script.participants.count)
+        throw gi::InputError(fmt::format("participant {} of {}", o.participant, script.participants.count),
+                             "the script has no more", "name a smaller number, or raise participants.count");
+    study::Plan const plan = study::make_plan(script, o.participant);
+    gi::Report report;
+    TrialOptions trials;
+    trials.scenes = study_scenes();
+    auto const [width, height] = parse_size(o.size);
+    study::SessionSettings settings;
+    settings.dir = o.dir.empty() ? script.record.dir : o.dir;
+    settings.script_folder = loaded.folder;
+    settings.script_text = loaded.text;
+    settings.session = o.session;
+    settings.start = o.resume ? study::SessionStart::go_on : study::SessionStart::begin;
+    settings.version = version_number();
+    settings.git_hash = git_hash();
+    if (!o.resume) check_is_new(plan.participant_id, settings);
+
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    if (o.hmd && !o.display.empty())
+        throw gi::InputError("--hmd with --display", "a session is seen in one of them", "give one");
+    ArStimulusCheck ar(loaded);
+    ar.add(plan);
+    ar.check();
+    std::vector<PlannedStimulus> const stimuli = stimuli_of(script, plan); // refuses settings, naming their block
+    check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
+    check_stimuli(stimuli, trials.scenes);
+    if (!o.display.empty()) trials.screen.display = load_display(o.display, report);
+    trials.view = o.hmd ? StimulusViewer::headset : StimulusViewer::window;
+    trials.headset.space = o.seated ? HmdSpace::local : HmdSpace::stage;
+    trials.screen.window.title = "Lightwell: " + script.id;
+    trials.screen.window.size_px = {width, height};
+    trials.screen.window.monitor = o.fullscreen;
+    trials.screen.window.swap_interval = o.no_vsync ? 0 : 1;
+    trials.screen.font_px = float(o.font_px);
+    trials.threads = o.threads;
+    trials.folder = study::session_folder(settings.dir, plan.participant_id, o.session);
+    trials.participant = plan.participant_id;
+    trials.stem = fmt::format("sub-{}_ses-{:02}", plan.participant_id, o.session);
+    trials.remote.socket = o.remote;
+    trials.remote.port = o.remote_port;
+    trials.marker_port = o.marker_port;
+    trials.prepared = o.prepared;
+    trials.version = version_text();
+    trials.stop = &stop;
+    trials.about = {{"host", host_name()}, {"program", version_text()}};
+
+    study::SessionOutcome outcome;
+    {
+        TrialPresenter presenter(script, trials, report);
+        check_prepared(script, presenter.screen_px(), o);
+        outcome = study::run_session(script, o.participant, presenter, settings);
+    }
+    if (!outcome.folder.empty()) keep_tables(settings.dir, o.script);
+    print_losses(report);
+    if (o.json)
+        std::fputs(to_text(session_json(plan.participant_id, outcome)).c_str(), stdout);
+    else
+        print_session(plan.participant_id, outcome);
+    return outcome.is_complete ? 0 : 1;
+}
+
+} // namespace
+
+void add_study_run(CLI::App& study, int& exit_code)
+{
+    auto const o = std::make_shared<RunOptions>();
+    CLI::App* const c = study.add_subcommand("run", about("study run"));
+    c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
+    c->add_option("--participant", o->participant, "number, from 1")->check(CLI::Range(1, 100000))->required();
+    c->add_option("--session", o->session, "number of the session")
+        ->check(CLI::Range(1, 99))
+        ->capture_default_str();
+    c->add_flag("--resume", o->resume, "go on with a session that was cut off: same order, nothing twice");
+    c->add_option("--dir", o->dir, "folder of the data set; record.dir of the script otherwise");
+    c->add_option("--size", o->size, "of the window, px")->capture_default_str();
+    c->add_option("--fullscreen", o->fullscreen, "on the monitor of this number or name");
+    c->add_option("--display", o->display, "walls in place of a window (docs/displays.md)");
+    c->add_flag("--hmd", o->hmd,
+                "stimuli in a headset through OpenXR (docs/hmd.md), where `view` says nothing else");
+    c->add_flag("--seated", o->seated, "of a headset: as of view");
+    c->add_option("--font", o->font_px, "height of letters, px")->check(CLI::Range(8, 200))->capture_default_str();
+    c->add_option("--prepared", o->prepared, "folder of study prepare, for blocks with stimuli: prepared");
+    c->add_option("--threads", o->threads, "that render, 0 = all")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    c->add_option("--remote", o->remote, "Unix socket for the experimenter (study control, docs/remote.md)");
+    c->add_option("--remote-port", o->remote_port, "the same on 127.0.0.1; 0 = a free one")
+        ->check(CLI::Range(0, 65535));
+    c->add_option("--marker-port", o->marker_port, "UDP port of 127.0.0.1 for markers")
+        ->check(CLI::Range(1, 65535))
+        ->capture_default_str();
+    c->add_flag("--no-vsync", o->no_vsync, "swaps do not wait for the display (trying out)");
+    c->add_flag("--json", o->json, "print JSON");
+    c->callback([o, &exit_code] { exit_code = run(*o); });
+    c->footer(R"(Example (needs a display):
+  lightwell study run pairs.yaml --participant 1 --dir data --fullscreen 0 --remote /tmp/session.sock
+
+Escape twice ends the session; what is done is kept, and --resume goes on. Exit codes: 0 every step is done, 1 not every one,
+2 the input or the call is wrong, the display does not keep time and the script requires it, or the disk fails.)");
+}
+
+} // namespace viewer

@@ -1,0 +1,216 @@
+#include "gi/core/file.h"
+#include "gi/image_io/picture_file.h"
+#include "viewer/base/outputs.h"
+#include "viewer/base/report_json.h"
+#include "viewer/cli/command_table.h"
+#include "viewer/cli/commands.h"
+#include "viewer/displays/calibration.h"
+#include "viewer/displays/display_file.h"
+#include "viewer/displays/examples.h"
+#include "viewer/displays/import.h"
+#include "viewer/displays/view_summary.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+
+namespace viewer {
+namespace {
+
+struct DisplayOptions {
+    std::string file, out, out_folder, pattern = "grid", section, example;
+    bool json = false;
+};
+
+nlohmann::ordered_json display_json(Display const& d, std::vector<ViewSummary> const& views)
+{
+    nlohmann::ordered_json j;
+    j["name"] = d.name;
+    for (ViewSummary const& v : views)
+        j["views"].push_back({{"name", v.view.name},
+                              {"wall", d.walls[std::size_t(v.view.wall)].name},
+                              {"width_m", v.width_m},
+                              {"height_m", v.height_m},
+                              {"width_px", v.view.width_px},
+                              {"height_px", v.view.height_px},
+                              {"stereo", name_of(d.walls[std::size_t(v.view.wall)].stereo)},
+                              {"rank", d.walls[std::size_t(v.view.wall)].rank},
+                              {"eye_is", name_of(v.view.place)},
+                              {"distance_m", v.distance_m},
+                              {"horizontal_fov_deg", v.horizontal_deg},
+                              {"vertical_fov_deg", v.vertical_deg},
+                              {"px_per_deg_across", v.px_per_deg_across},
+                              {"px_per_deg_upward", v.px_per_deg_upward}});
+    return j;
+}
+
+void print_parts(Display const& d)
+{
+    for (DisplayWindow const& w : d.windows)
+        fmt::print("window {}: {} x {} px at ({}, {}){}{}\n", w.name, w.width_px, w.height_px, w.x_px, w.y_px,
+                   w.monitor >= 0 ? fmt::format(" of monitor {}", w.monitor) : "",
+                   w.fullscreen ? ", full screen" : "");
+    for (User const& u : d.users)
+        fmt::print("user {}: eyes {:.4g} m apart, head at ({:.4g}, {:.4g}, {:.4g}) m{}\n", u.name,
+                   u.interpupillary_m, u.head.translation_m.x, u.head.translation_m.y, u.head.translation_m.z,
+                   u.tracker >= 0 ? ", tracked by " + d.trackers[std::size_t(u.tracker)].name : "");
+    for (DisplayTracker const& t : d.trackers)
+        fmt::print("tracker {}: {}{}{}, latency {:.4g} ms\n", t.name, name_of(t.type),
+                   t.port > 0 ? fmt::format(" at {}:{}", t.address, t.port) : "",
+                   t.body.empty() ? "" : ", body " + t.body, t.latency_ms);
+}
+
+int run_check(DisplayOptions const& o)
+{
+    gi::Report report;
+    Display const d = load_display(o.file, report);
+    std::vector<ViewSummary> const views = summarise_views(d);
+    for (ViewSummary const& v : views)
+        if (!v.view.camera)
+            report.lose("eyes at rest that do not see their wall, which stays dark", 1,
+                        fmt::format("{}: the eye is {} the wall", v.view.name, name_of(v.view.place)));
+    if (o.json) {
+        nlohmann::ordered_json j = display_json(d, views);
+        j["report"] = to_json(report);
+        std::fputs(to_text(j).c_str(), stdout);
+        return 0;
+    }
+    fmt::print("{}{}\n", o.file, d.name.empty() ? "" : ": " + d.name);
+    fmt::print("{:<28}{:>16}{:>14}  {:<18}{:>5}{:>10}{:>16}{:>14}\n", "view", "wall, m", "picture, px", "stereo",
+               "rank", "eye at, m", "angle, degrees", "px/degree");
+    for (ViewSummary const& v : views) {
+        Wall const& wall = d.walls[std::size_t(v.view.wall)];
+        fmt::print("{:<28}{:>16}{:>14}  {:<18}{:>5}{:>10}{:>16}{:>14}\n", v.view.name,
+                   fmt::format("{:.4g} x {:.4g}", v.width_m, v.height_m),
+                   fmt::format("{} x {}", v.view.width_px, v.view.height_px), name_of(wall.stereo), wall.rank,
+                   fmt::format("{:.3f}", v.distance_m),
+                   v.view.camera ? fmt::format("{:.1f} x {:.1f}", v.horizontal_deg, v.vertical_deg) : "dark",
+                   v.view.camera ? fmt::format("{:.1f} x {:.1f}", v.px_per_deg_across, v.px_per_deg_upward) : "");
+    }
+    print_parts(d);
+    std::fflush(stdout);
+    print_losses(report);
+    return 0;
+}
+
+int run_import(DisplayOptions const& o)
+{
+    check_outputs({o.out}, {o.file});
+    gi::Report report;
+    Display const d = import_display(o.file, o.section, report);
+    save_display(o.out, d);
+    fmt::print("{}: {} walls, {} windows, {} users, from a configuration of {}\n", o.out, d.walls.size(),
+               d.windows.size(), d.users.size(), name_of(format_of(o.file)));
+    std::fflush(stdout);
+    print_losses(report);
+    return 0;
+}
+
+/// "03_left_wall_right_eye.png"
+std::string picture_name(std::size_t index, std::string const& view)
+{
+    std::string name = fmt::format("{:02}_", index);
+    for (char const c : view.substr(0, 80)) {
+        bool const is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        if (is_plain || name.back() != '_') name += is_plain ? c : '_';
+    }
+    return name + ".png";
+}
+
+int run_calibrate(DisplayOptions const& o)
+{
+    auto const pattern = calibration_pattern(o.pattern);
+    if (!pattern) {
+        std::string known;
+        for (CalibrationPattern const p : kCalibrationPatterns)
+            known += (known.empty() ? "" : ", ") + std::string(name_of(p));
+        throw gi::InputError("'" + o.pattern + "' is no pattern", "it is not known what to draw",
+                             "there are: " + known);
+    }
+    gi::Report report;
+    Display const d = load_display(o.file, report);
+    std::error_code failure;
+    std::filesystem::create_directories(o.out_folder, failure);
+    if (failure)
+        throw gi::InputError("the folder " + o.out_folder + " cannot be made", failure.message(), "name another");
+    auto const views = views_of(d, {});
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        CalibrationPicture const picture = draw_calibration(*pattern, d, views[i]);
+        auto const file = std::filesystem::path(o.out_folder) / picture_name(i, views[i].name);
+        gi::write_png(file, picture.width, picture.height, picture.rgb);
+        fmt::print("{}\n", file.string());
+    }
+    std::fflush(stdout);
+    print_losses(report);
+    return 0;
+}
+
+int run_example(DisplayOptions const& o)
+{
+    std::string known;
+    for (DisplayExample const& example : display_examples()) {
+        known += (known.empty() ? "" : ", ") + std::string(example.name);
+        if (o.example != example.name) continue;
+        check_outputs({o.out}, {});
+        gi::write_text(o.out, example.text);
+        fmt::print("{}\n", o.out);
+        std::fflush(stdout);
+        return 0;
+    }
+    throw gi::InputError("there is no example '" + o.example + "'", "the program carries others",
+                         "there are: " + known);
+}
+
+} // namespace
+
+void add_display(CLI::App& app, int& exit_code)
+{
+    auto const o = std::make_shared<DisplayOptions>();
+    CLI::App* const display = app.add_subcommand("display", about("display"));
+    display->require_subcommand(1);
+
+    CLI::App* const check =
+        display->add_subcommand("check", "What a display file describes, seen from the resting head.");
+    check->add_option("FILE", o->file, "display file (YAML)")->required();
+    check->add_flag("--json", o->json, "print JSON");
+    check->callback([o, &exit_code] { exit_code = run_check(*o); });
+
+    CLI::App* const import =
+        display->add_subcommand("import", "Turn the configuration of another program into a display file.");
+    import->add_option("FILE", o->file, ".json (SGCT), .pvx (ParaView), .eqc (Equalizer) or .cfg (Vrui)")
+        ->required();
+    import->add_option("--out", o->out, "display file to write")->required();
+    import->add_option("--section", o->section, "of Vrui: the environment, usually the name of a machine");
+    import->callback([o, &exit_code] { exit_code = run_import(*o);
+});
+
+CLI::App* const calibrate =
+    display->add_subcommand("calibrate", "One PNG per wall and eye, to be shown full screen.");
+calibrate->add_option("FILE", o->file, "display file (YAML)")->required();
+calibrate->add_option("--pattern", o->pattern, "grid, corners, eyes, colours, crosstalk or blend")
+    ->capture_default_str();
+calibrate->add_option("--out-dir", o->out_folder, "folder for the pictures")->required();
+calibrate->callback([o, &exit_code] { exit_code = run_calibrate(*o); });
+
+CLI::App* const example =
+    display->add_subcommand("example", "Write one of the displays that the program carries.");
+example
+    ->add_option("NAME", o->example,
+                 "desktop3d.yaml, powerwall.yaml, cave4.yaml, cave5.yaml, dome.yaml,\n"
+                 "cave.json, cave.pvx, cave.eqc or cave.cfg")
+    ->required();
+example->add_option("--out", o->out, "file to write")->required();
+example->callback([o, &exit_code] { exit_code = run_example(*o); });
+
+display->footer(R"(Examples:
+  lightwell display example cave4.yaml --out cave4.yaml
+  lightwell display check cave4.yaml
+  lightwell display calibrate cave4.yaml --pattern grid --out-dir patterns
+  lightwell display example cave.pvx --out cave.pvx
+  lightwell display import cave.pvx --out imported.yaml
+
+Angles and pixels per degree are those of one eye at the resting head; the latter in the middle of the wall. docs/displays.md
+says what the files hold.)");
+} // namespace viewer
+
+} // namespace viewer

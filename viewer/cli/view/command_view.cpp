@@ -1,0 +1,367 @@
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "viewer/app/cluster_link.h"
+#include "viewer/app/hmd_program.h"
+#include "viewer/app/layout.h"
+#include "viewer/app/view_program.h"
+#include "viewer/base/arguments.h"
+#include "viewer/base/interrupt.h"
+#include "viewer/base/outputs.h"
+#include "viewer/base/report_json.h"
+#include "viewer/base/validators.h"
+#include "viewer/base/version.h"
+#include "viewer/cli/command_table.h"
+#include "viewer/cli/commands.h"
+#include "viewer/displays/display_file.h"
+#include "viewer/offline/load_world.h"
+#include "viewer/offline/rank_options.h"
+#include "viewer/offline/render_options.h"
+#include "viewer/offline/render_picture.h"
+#include "viewer/offline/replay.h"
+#include "viewer/offline/user_avatars.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fstream>
+#include <memory>
+#include <set>
+
+namespace viewer {
+namespace {
+
+struct ViewArguments {
+    RenderOptions scene; ///< scene, camera, sky
+    std::vector<std::string> settings, fullscreen;
+    std::string size, navigate = "fly", record, frame_log, remote, stats, screenshots, display, replay, out, video,
+                      avatar;
+    RankOptions ranks;
+    double fps = 30, eye_height_m = 1.6;
+    int paths = 0;
+    bool hmd = false, seated = false;
+    std::optional<int> remote_port;
+    double time_limit_s = 0;
+    bool no_vsync = false;
+};
+
+/// As it was given, from what the system knows of this process.
+std::string command_line()
+{
+    std::ifstream in("/proc/self/cmdline", std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    std::replace(text.begin(), text.end(), '\0', ' ');
+    if (!text.empty()) text.pop_back();
+    return text;
+}
+
+NavigationMode parse_navigation(std::string const& name)
+{
+    for (NavigationMode const m : {NavigationMode::fly, NavigationMode::walk, NavigationMode::orbit})
+        if (name == name_of(m)) return m;
+    throw gi::InputError("--navigate " + name, "it is not known here", "choose fly, walk or orbit");
+}
+
+/// Of options and display. Those of a display's file are in its folder.
+std::vector<AvatarChoice> choices_of(ViewArguments const& a, std::optional<Display> const& display)
+{
+    return avatar_choices(a.avatar, a.eye_height_m, display, std::filesystem::path(a.display).parent_path());
+}
+
+ViewOptions view_options(ViewArguments const& a, std::string const& command_line, gi::Report& report)
+{
+    ViewOptions o;
+    RenderOptions const& scene = a.scene;
+    if (!a.display.empty()) o.display = load_display(a.display, report);
+    std::vector<AvatarChoice> const avatars = choices_of(a, o.display);
+    RecordedScenes scenes = scenes_with(scene, avatars, report);
+    o.load = std::move(scenes.load);
+    o.drive = std::move(scenes.drive);
+    o.avatars = scenes.avatars;
+    o.eye_height_m = resting_eye_height_m(o.display, a.eye_height_m);
+    o.scene = scene.scene;
+    CameraChoice const choice = camera_choice(scene);
+    o.first_camera = [choice](gi::World const& world) {
+        ChosenCamera const chosen = choose_camera(world, choice);
+        if (!chosen.note.empty()) say(chosen.note);
+        return chosen.camera;
+    };
+    for (std::string const& s : a.settings) o.settings.push_back(parse_change(s));
+    auto const size = parse_size(a.size.empty() ? "1280x720" : a.size);
+    o.size_px = {size.first, size.second};
+    o.monitors = a.fullscreen;
+    o.swap_interval = a.no_vsync ? 0 : 1;
+    o.threads = scene.threads;
+    o.navigation = parse_navigation(a.navigate);
+    o.screenshots = a.screenshots;
+    o.record = a.record;
+    o.frame_log = a.frame_log;
+    o.header.program = version_text();
+    o.header.command_line = command_line;
+    o.load_options = {{"environment", scene.environment},
+                      {"environment_rotate_deg", scene.environment_rotate_deg},
+                      {"environment_scale", scene.environment_scale},
+                      {"background", scene.background}};
+    put_avatars(o.load_options, avatars);
+    o.remote.socket = a.remote;
+    o.remote.port = a.remote_port;
+    o.time_limit_s = a.time_limit_s;
+    return o;
+}
+
+/// Which rank this is, before MPI has begun.
+int rank_of_environment()
+{
+    char const* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
+    return rank == nullptr ? -1 : std::atoi(rank);
+}
+
+int ranks_of_environment()
+{
+    char const* const ranks = std::getenv("OMPI_COMM_WORLD_SIZE");
+    return ranks == nullptr ? 1 : std::atoi(ranks);
+}
+
+/// Throws InputError where windows of the display belong to ranks that were not started.
+void check_ranks(Display const& display, int ranks)
+{
+    std::vector<std::string> windows;
+    std::set<int> missing;
+    for (Wall const& wall : display.walls) {
+        if (wall.rank < ranks || !missing.insert(wall.rank).second) continue;
+        for (int const w : windows_of(display, wall.rank))
+            windows.push_back("'" + display.windows[std::size_t(w)].name + "'");
+    }
+    if (missing.empty()) return;
+    bool const one = missing.size() == 1;
+    throw gi::InputError(fmt::format("window{} {} belong{} to rank{} {}, but there are {} ranks",
+                                     windows.size() == 1 ? "" : "s", fmt::join(windows, ", "),
+                                     windows.size() == 1 ? "s" : "", one ? "" : "s", fmt::join(missing, ", "),
+                                     ranks),
+                         "ranks count from 0, and nobody would show them",
+                         fmt::format("start with mpirun -n {}", *missing.rbegin() + 1));
+}
+
+/// Followers have no sockets, files and people of their own.
+void follow(ViewOptions& o)
+{
+    if (o.rank <= 0) return;
+    o.record.clear();
+    o.remote = {};
+    if (!o.frame_log.empty()) o.frame_log += fmt::format(".{}", o.rank);
+}
+
+int finish(ViewArguments const& a, ViewRunSummary const& done, ClusterLink const* link, gi::Report const& report)
+{
+    nlohmann::ordered_json stats;
+    stats["version"] = version_text();
+    stats["gl"] = done.gl;
+    stats["frames_rendered"] = done.rendered;
+    stats["schedule"] = done.schedule;
+    stats["presented"] = done.presented;
+    stats["recorded"] = done.recorded;
+    stats["longest_block_ms"] = done.longest_block_ms;
+    stats["frames"] = to_json(done.frames);
+    stats["trackers"] = done.trackers;
+    stats["headset"] = done.headset;
+    if (link != nullptr) stats["swap_skew"] = to_text(link->skew());
+    stats["report"] = to_json(report);
+    if (!a.stats.empty()) gi::write_text(a.stats, to_text(stats));
+    fmt::print("{} frames rendered, {} shown{}\n", done.rendered, done.presented,
+               !a.record.empty() ? fmt::format(", {} recorded to {}", done.recorded, a.record) : "");
+    if (link != nullptr && link->skew().frames > 0) fmt::print("{}\n", to_text(link->skew()));
+    std::fflush(stdout);
+    print_losses(report);
+    if (link != nullptr && !link->failure().empty()) {
+        std::fputs(("lightwell: " + link->failure() + "\n").c_str(), stderr);
+        return 1;
+    }
+    return done.files_whole ? 0 : 1;
+}
+
+/// Before the session: afterwards it would be lost.
+void check_results(ViewArguments const& a)
+{
+    std::string const screenshot = a.screenshots.empty() ? "" : a.screenshots + "lightwell_000000.png";
+    check_outputs({a.stats, a.record, a.frame_log, screenshot},
+                  {a.scene.scene, a.scene.environment, a.display, a.avatar});
+}
+
+int run(ViewArguments const& a, std::string const& command_line)
+{
+    gi::Report report;
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    ViewOptions o = view_options(a, command_line, report);
+    o.rank = Cluster::started_by_mpirun() ? rank_of_environment() : -1;
+    follow(o);
+    if (o.rank >= 0 && o.display) {
+        try {
+            check_ranks(*o.display, ranks_of_environment());
+        } catch (gi::InputError const&) {
+            if (o.rank == 0) throw;
+            return 0; // else mpirun may end the leader before it has said why
+        }
+    }
+    if (o.rank < 0) check_results(a);
+    if (a.hmd)
+        return finish(a, run_hmd(o, {a.seated ? HmdSpace::local : HmdSpace::stage, a.eye_height_m}, stop, report),
+                      nullptr, report);
+    if (o.rank < 0) return finish(a, run_view(o, nullptr, stop, report), nullptr, report);
+    if (!o.display)
+        throw gi::InputError("view by several ranks without --display", "it is not known which walls each shows",
+                             "add --display FILE.yaml whose walls have ranks");
+    std::string what = o.scene + " on " + a.display;
+    std::uint64_t hash = file_hash(o.scene) ^ file_hash(a.display);
+    for (AvatarChoice const& avatar : choices_of(a, o.display)) {
+        what += " with " + avatar.file;
+        hash ^= file_hash(avatar.file) * (2 * avatar.user + 1); // the same for two users does not cancel out
+    }
+    ClusterLink link({version_text(), what, hash}, cluster_settings(a.ranks));
+    if (o.rank == 0) check_results(a); // by now the others learn of a leader that leaves
+    ViewRunSummary const done = run_view(o, &link, stop, report);
+    if (o.rank == 0) return finish(a, done, &link, report);
+    print_losses(report, fmt::format("rank {}: ", o.rank));
+    if (!link.failure().empty()) std::fputs(("lightwell: " + link.failure() + "\n").c_str(), stderr);
+    return link.failure().empty() && done.files_whole ? 0 : 1;
+}
+
+int run_replay(ViewArguments const& a)
+{
+    gi::Report report;
+    gi::StopRequest stop;
+    InterruptGuard const guard(stop);
+    ReplayOptions o;
+    o.file = a.replay;
+    for (std::string const& s : a.settings) o.settings.push_back(parse_change(s));
+    o.paths = a.paths;
+    if (!a.size.empty()) o.size = parse_size(a.size);
+    o.out = a.out;
+    o.video = a.video;
+    o.fps = a.fps;
+    o.threads = a.scene.threads;
+    ReplaySummary const done = replay(
+        o,
+        [&report](nlohmann::json const& load) {
+            RenderOptions options;
+            try {
+                options.environment = load.value("environment", "");
+                options.environment_rotate_deg = load.value("environment_rotate_deg", 0.0);
+                options.environment_scale = load.value("environment_scale", 1.0);
+                options.background = load.value("background", "");
+            } catch (nlohmann::json::exception const& e) {
+                throw gi::InputError("what the recording's scenes are read with cannot be read", e.what(),
+                                     "record the walk again");
+            }
+            return scenes_with(options, avatars_of(load), report);
+        },
+        stop, report);
+    fmt::print("{} frames replayed", done.frames);
+    if (as_recorded(o))
+        fmt::print(": {} as recorded bit by bit, {} not, {} unknown", done.same, done.other, done.unknown);
+    fmt::print("\n");
+    if (done.first_other) fmt::print("first other frame: {}\n", *done.first_other);
+    std::string const loss = describe_loss(done.end);
+    if (!loss.empty()) say(loss);
+    std::fflush(stdout);
+    print_losses(report);
+    return done.interrupted ? kInterrupted : done.other > 0 ? 1 : 0;
+}
+
+/// Options of walks that a replay does not read, and the other way round.
+void check_mode(CLI::App const& command, ViewArguments const& a)
+{
+    bool const replays = !a.replay.empty();
+    auto const refuse = [&](std::initializer_list<char const*> names, std::string const& when) {
+        for (char const* name : names)
+            if (command.get_option(name)->count() > 0)
+                throw gi::InputError(std::string(name) + " " + when, "it would not be read", "leave it out");
+    };
+    if (replays)
+        refuse({"scene", "--record", "--frame-log", "--remote", "--remote-port", "--display", "--hmd",
+                "--fullscreen", "--time-limit", "--navigate", "--screenshots", "--stats", "--camera", "--envmap",
+                "--avatar", "--eye-height"},
+               "with --replay");
+    else
+        refuse({"--out", "--video", "--paths", "--fps"}, "without --replay");
+    if (!a.hmd) refuse({"--seated"}, "without --hmd");
+    if (a.hmd) refuse({"--size", "--fullscreen", "--no-vsync"}, "with --hmd");
+    if (!a.fullscreen.empty()) refuse({"--size"}, "with --fullscreen");
+    if (!a.display.empty()) {
+        refuse({"--size", "--fullscreen"}, "with --display");
+        for (std::string const& s : a.settings)
+            if (parse_change(s).key == "stereo")
+                throw gi::InputError("--set " + s + " with --display", "it would not be read",
+                                     "set the stereo of each wall in the display's file");
+    }
+    if (!replays && a.scene.scene.empty())
+        throw gi::InputError("nothing to view", "neither a scene nor --replay is given", "lightwell view atrium");
+    if (a.hmd && !a.display.empty())
+        throw gi::InputError("--hmd with --display", "a headset has its own displays", "leave out one of them");
+}
+
+} // namespace
+
+void add_view(CLI::App& app, int& exit_code)
+{
+    auto const a = std::make_shared<ViewArguments>();
+    CLI::App* const c = app.add_subcommand("view", about("view"));
+    c->add_option("scene", a->scene.scene, "a file or a generated scene, as of render");
+    declare_view_options(*c, a->scene);
+    c->add_option("--set", a->settings,
+                  "KEY=VALUE before the first frame, e.g. stereo=anaglyph-dubois, or device=cuda; repeatable")
+        ->take_all();
+    c->add_option("--size", a->size, "of the window, pixels (default: 1280x720); of a replay: of each view");
+    c->add_option("--fullscreen", a->fullscreen,
+                  "on the monitor of this number or name; LEFT,RIGHT for stereo=two-windows")
+        ->delimiter(',');
+    c->add_flag("--no-vsync", a->no_vsync, "swap at once");
+    c->add_option("--display", a->display, "walls, users and trackers, YAML (docs/displays.md)");
+    c->add_flag("--hmd", a->hmd, "in the headset of the OpenXR runtime (docs/hmd.md)");
+    c->add_option("--avatar", a->avatar,
+                  "a skinned model, or avatar: driven by the first user's head and hands, seen in mirrors");
+    c->add_flag("--seated", a->seated, "of --hmd: no floor; the eyes begin at --eye-height");
+    c->add_option(
+         "--eye-height", a->eye_height_m,
+         "m above the floor: of who walks, of an avatar's user, of --seated; a display's user says his own")
+        ->check(in_range(0.2, 3))
+        ->capture_default_str();
+    declare_rank_options(*c, a->ranks);
+    c->add_option("--navigate", a->navigate, "fly, walk or orbit")->capture_default_str();
+    c->add_option("--threads", a->scene.threads, "0 = all")->check(in_range(0, 1024));
+    c->add_option("--record", a->record, "recording (.lwr) of everything that decides the pixels");
+    c->add_option("--frame-log", a->frame_log, "CSV of the times of every frame");
+    c->add_option("--remote", a->remote, "Unix socket to be controlled by (docs/remote.md)");
+    c->add_option("--remote-port", a->remote_port, "the same on 127.0.0.1; 0 = a free one");
+    c->add_option("--replay", a->replay, "render a recording again, off-screen; with --set otherwise than then");
+    c->add_option("--paths", a->paths, "of --replay: per pixel and frame; 0 = as then")
+        ->check(in_range(0, 1 << 20));
+    c->add_option("--out", a->out, "of --replay: frames of the first view, e.g. walk_%05d.png or .exr");
+    c->add_option("--video", a->video, "of --replay: .mkv (FFV1) or .mp4 (H.264)");
+    c->add_option("--fps", a->fps, "of --video")->check(in_range(0.01, 1000))->capture_default_str();
+    c->add_option("--screenshots", a->screenshots, "prefix of pictures saved by F2");
+    c->add_option("--time-limit", a->time_limit_s, "end after so many seconds; 0 = never")
+        ->check(in_range(0, 1e9));
+    c->add_option("--stats", a->stats, "JSON about the whole session");
+    c->footer(
+        R"(Keys: W A S D Q E move, drag looks, wheel nears, click selects, control + drag moves what is selected,
+1..9 0 stereo, V split/flicker/difference, C compare with the reference, M method, + - exposure, space plays,
+Tab fly/walk/orbit, Z X raise the avatar's hands, R first camera, P reprojection, F1 panel, F2 screenshot, F11 swaps eyes, Esc ends.
+All settings: docs/viewer.md. Exit code 1: the recording or the frame log was not written to its end, or a rank was lost.
+Esc, Ctrl-C and the end of --time-limit close all files and exit with 0; a replay that Ctrl-C cuts short exits with 130.
+
+Examples (they need a display):
+  lightwell view atrium
+  lightwell view atrium --set stereo=anaglyph-dubois --record walk.lwr --frame-log frames.csv
+  lightwell view mirror --avatar avatar --navigate walk
+  lightwell view --replay walk.lwr
+  lightwell view --replay walk.lwr --set method=reference --paths 256 --video walk.mkv
+  mpirun --enable-recovery --bind-to none -n 4 lightwell view atrium --display cave4.yaml)");
+    c->callback([a, c, &exit_code] {
+        check_mode(*c, *a);
+        exit_code = a->replay.empty() ? run(*a, command_line()) : run_replay(*a);
+    });
+}
+
+} // namespace viewer

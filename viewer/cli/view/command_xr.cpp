@@ -1,0 +1,65 @@
+#include "viewer/base/report_json.h"
+#include "viewer/cli/command_table.h"
+#include "viewer/cli/commands.h"
+#include "viewer/devices/xr/info.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace viewer {
+namespace {
+
+char const* tracked(HmdInfo const& info)
+{
+    if (info.tracks_position) return info.tracks_rotation ? "position and rotation" : "position";
+    return info.tracks_rotation ? "rotation" : "nothing";
+}
+
+int run_info(bool as_json)
+{
+    HmdInfo const info = ask_runtime();
+    if (as_json) {
+        nlohmann::ordered_json const j{{"runtime", info.runtime},
+                                       {"system", info.system},
+                                       {"views", "primary stereo"},
+                                       {"width", info.width},
+                                       {"height", info.height},
+                                       {"widest", info.widest},
+                                       {"highest", info.highest},
+                                       {"tracks_position", info.tracks_position},
+                                       {"tracks_rotation", info.tracks_rotation},
+                                       {"blend_modes", info.blend_modes},
+                                       {"extensions_used", info.extensions_used},
+                                       {"extensions_missing", info.extensions_missing}};
+        std::fputs(to_text(j).c_str(), stdout);
+        return 0;
+    }
+    fmt::print("{}\n  {:<22} {}\n  {:<22} {}\n", info.runtime, "headset", info.system, "tracks", tracked(info));
+    fmt::print("  {:<22} {} x {} pixels each, at most {} x {}\n", "two views", info.width, info.height,
+               info.widest, info.highest);
+    fmt::print("  {:<22} {}\n", "blend modes", fmt::join(info.blend_modes, ", "));
+    for (std::string const& e : info.extensions_used) fmt::print("  {:<22} {}\n", "uses", e);
+    for (std::string const& e : info.extensions_missing) fmt::print("  {:<22} {}\n", "is missing", e);
+    std::fflush(stdout);
+    return 0;
+}
+
+} // namespace
+
+void add_xr(CLI::App& app, int& exit_code)
+{
+    CLI::App* const c = app.add_subcommand("xr", about("xr"));
+    c->require_subcommand(1);
+    auto const as_json = std::make_shared<bool>(false);
+    CLI::App* const info = c->add_subcommand("info", "What the OpenXR runtime and its headset say of themselves.");
+    info->add_flag("--json", *as_json, "print JSON");
+    info->footer(R"(Examples:
+  lightwell xr info
+  XR_RUNTIME_JSON=/usr/share/openxr/1/openxr_monado.json lightwell xr info --json
+
+Exit code 2 where there is no runtime or no headset; see docs/hmd.md.)");
+    info->callback([as_json, &exit_code] { exit_code = run_info(*as_json); });
+}
+
+} // namespace viewer

@@ -1,0 +1,80 @@
+#include "viewer/devices/gl/panel.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+#include <filesystem>
+#include <imgui.h>
+
+namespace viewer {
+
+namespace {
+
+/// Readable from a chair: an outline font where there is one, else the built-in one, enlarged.
+void add_font(float px)
+{
+    constexpr char const* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+    ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+    static ImWchar const kLatin[] = {0x20, 0x17f, 0x2010, 0x2027, 0x2190, 0x2193, 0};
+    if (std::filesystem::exists(kFont)) {
+        fonts.AddFontFromFileTTF(kFont, px, nullptr, kLatin);
+        return;
+    }
+    ImFontConfig enlarged;
+    enlarged.SizePixels = px;
+    fonts.AddFontDefault(&enlarged);
+}
+
+} // namespace
+
+Panel::Panel(Window& window, float font_px) : window_(window)
+{
+    IMGUI_CHECKVERSION();
+    context_ = ImGui::CreateContext();
+    ImGui::SetCurrentContext(context_);
+    ImGui::GetIO().IniFilename = nullptr; // nothing is written beside the scene
+    ImGui::StyleColorsDark();
+    if (font_px > 0) add_font(font_px);
+    ImGui_ImplGlfw_InitForOpenGL(window.glfw(), true);
+    ImGui_ImplOpenGL3_Init("#version 450 core");
+    ImGui_ImplOpenGL3_NewFrame(); // makes its textures and programs
+}
+
+Panel::~Panel()
+{
+    window_.gl().make_current();
+    ImGui::SetCurrentContext(context_);
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext(context_);
+}
+
+void Panel::begin()
+{
+    ImGui::SetCurrentContext(context_);
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+}
+
+void Panel::finish() { ImGui::Render(); }
+
+void Panel::draw()
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Panel::claim(std::vector<InputEvent>& events) const
+{
+    ImGui::SetCurrentContext(context_);
+    ImGuiIO const& io = ImGui::GetIO();
+    for (InputEvent& e : events) {
+        bool const keys = e.kind == InputKind::key || e.kind == InputKind::character;
+        bool const mouse =
+            e.kind == InputKind::mouse_move || e.kind == InputKind::mouse_button || e.kind == InputKind::scroll;
+        if (e.action == InputAction::release) continue;
+        if ((keys && io.WantCaptureKeyboard) || (mouse && io.WantCaptureMouse)) e.meant_for = InputFor::panel;
+    }
+}
+
+} // namespace viewer

@@ -1,0 +1,29 @@
+#pragma once
+// A finished picture on the GPU: linear radiance, and depth where it is to be reprojected.
+
+#include "viewer/devices/gl/draw_target.h"
+
+#include <span>
+
+namespace viewer {
+
+class PictureTexture {
+public:
+    /// Takes the place of what was there. Rows from the top.
+    /// @param rgb     3 floats a pixel, linear
+    /// @param depth_m one float a pixel, along the camera's axis, 0 = nothing was hit (infinitely far); or empty
+    /// Throws InputError on another number of values.
+    void upload(glm::ivec2 size_px, std::span<float const> rgb, std::span<float const> depth_m = {});
+
+    ShownPicture shown() const { return {color_.id(), size_px_}; }
+    unsigned depth_texture() const { return has_depth_ ? depth_.id() : 0; } ///< 0 = none was given
+    float nearest_m() const { return nearest_m_; } ///< least depth that is not 0; infinite where there is none
+
+private:
+    glm::ivec2 size_px_{};
+    GlObject color_, depth_;
+    bool has_depth_ = false;
+    float nearest_m_ = 0;
+};
+
+} // namespace viewer

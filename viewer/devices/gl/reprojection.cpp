@@ -1,0 +1,81 @@
+#include "viewer/devices/gl/reprojection.h"
+
+#include "gi/core/error.h"
+
+#include <cmath>
+#include <epoxy/gl.h>
+
+namespace viewer {
+namespace {
+
+using glm::dmat3;
+using glm::dvec3;
+
+gi::ViewTangents tangents_of(gi::Camera const& camera, glm::ivec2 size)
+{
+    if (camera.orthographic)
+        throw gi::InputError("the orthographic camera '" + camera.name + "' cannot be reprojected",
+                             "its pixels do not look from one place", "show its pictures as they are");
+    double const y = std::tan(0.5 * camera.yfov_rad), x = y * size.x / size.y;
+    return camera.off_axis.value_or(gi::ViewTangents{-x, x, -y, y});
+}
+
+/// (right, up, forward) of a point at depth 1 from its pixel.
+dmat3 frame_from_pixel(gi::ViewTangents const& v, glm::ivec2 size)
+{
+    dmat3 m(0.0);
+    m[0][0] = (v.right - v.left) / size.x;
+    m[1][1] = (v.bottom - v.top) / size.y;
+    m[2] = dvec3(v.left, v.top, 1);
+    return m;
+}
+
+/// Axes right, up, forward in the world.
+dmat3 axes_of(gi::Camera const& camera)
+{
+    auto const& m = camera.world_from_camera;
+    return {dvec3(m[0]), dvec3(m[1]), -dvec3(m[2])};
+}
+
+} // namespace
+
+ReprojectionMaps reprojection_maps(gi::Camera const& a, glm::ivec2 a_px, gi::Camera const& b, glm::ivec2 b_px)
+{
+    dmat3 const pixel_from_frame = glm::inverse(frame_from_pixel(tangents_of(a, a_px), a_px));
+    dmat3 const a_from_world = pixel_from_frame * glm::transpose(axes_of(a));
+    ReprojectionMaps maps;
+    maps.a_from_b = glm::mat3(a_from_world * axes_of(b) * frame_from_pixel(tangents_of(b, b_px), b_px));
+    maps.b_in_a = glm::vec3(a_from_world * (dvec3(b.world_from_camera[3]) - dvec3(a.world_from_camera[3])));
+    return maps;
+}
+
+Reprojection::Reprojection()
+    : turn_({"full_screen.vert"}, {"reprojection.frag"}, "#define SEARCHES 0\n"),
+      search_({"full_screen.vert"}, {"reprojection.frag"}, "#define SEARCHES 1\n")
+{
+}
+
+ShownPicture Reprojection::draw(PictureTexture const& picture, gi::Camera const& a, gi::Camera const& b,
+                                glm::ivec2 size_px)
+{
+    ShownPicture const shown = picture.shown();
+    if (shown.texture == 0)
+        throw gi::InputError("there is no picture to reproject", "none was uploaded", "upload one first");
+    ReprojectionMaps const maps = reprojection_maps(a, shown.size_px, b, size_px);
+    if (!out_ || out_->shown().size_px != size_px) out_.emplace(TextureTarget::Format::linear, size_px);
+    bool const searches =
+        picture.depth_texture() != 0 && std::isfinite(picture.nearest_m()) && maps.b_in_a != glm::vec3(0.0f);
+    bind(out_->target());
+    glBindTextureUnit(0, shown.texture);
+    glBindTextureUnit(1, searches ? picture.depth_texture() : shown.texture);
+    GlProgram const& program = searches ? search_ : turn_;
+    program.set("a_from_b", maps.a_from_b);
+    program.set("b_in_a", maps.b_in_a);
+    program.set("nearest", searches ? 1 / picture.nearest_m() : 0.0f);
+    program.use();
+    glBindVertexArray(vertices_.id());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    return out_->shown();
+}
+
+} // namespace viewer

@@ -1,0 +1,130 @@
+#include "viewer/devices/gl/wall_pass.h"
+
+#include "gi/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+void check_mesh(WarpMesh const& mesh)
+{
+    std::size_t const wanted = std::size_t(std::max(mesh.columns, 0)) * std::size_t(std::max(mesh.rows, 0));
+    if (mesh.columns < 2 || mesh.rows < 2 || mesh.vertices.size() != wanted)
+        throw gi::InputError(
+            fmt::format("a warp mesh of {} x {} with {} vertices", mesh.columns, mesh.rows, mesh.vertices.size()),
+            "it needs at least 2 x 2, and columns times rows of them", "give all vertices, rows from the lowest");
+    for (WarpVertex const& v : mesh.vertices)
+        if (!std::isfinite(v.position.x + v.position.y + v.picture.x + v.picture.y) ||
+            !(v.weight >= 0 && v.weight <= 1))
+            throw gi::InputError("a vertex of a warp mesh is not finite or its weight is not in 0 to 1",
+                                 "it has no place in the picture", "mend the mesh");
+}
+
+void check_blend(WallSettings const& s)
+{
+    EdgeBlend const& b = s.blend;
+    for (auto const& [one, other] : {std::pair{b.left, b.right}, {b.bottom, b.top}})
+        if (!(one >= 0 && other >= 0 && one + other <= 1))
+            throw gi::InputError(fmt::format("edge blends of {} and {} of the picture", one, other),
+                                 "each is at least 0 and both together at most 1", "give the overlaps in parts");
+    if (!(b.power > 0) || !std::isfinite(b.power))
+        throw gi::InputError(fmt::format("an edge blend with the power {}", b.power), "it fades by no rule",
+                             "give a positive one; 2 is usual");
+    for (int k = 0; k < 3; ++k) {
+        if (!(s.gain[k] >= 0) || !std::isfinite(s.gain[k]))
+            throw gi::InputError(fmt::format("a colour gain of {}", s.gain[k]), "light is multiplied by it",
+                                 "give a number from 0");
+        if (!(s.gamma[k] > 0) || !std::isfinite(s.gamma[k]))
+            throw gi::InputError(fmt::format("a display gamma of {}", s.gamma[k]), "it is an exponent",
+                                 "give a positive number; 2.2 is usual");
+    }
+    if (!s.blend_map) return;
+    BlendMap const& m = *s.blend_map;
+    bool const fits = m.size_px.x > 0 && m.size_px.y > 0 &&
+                      m.weights.size() == std::size_t(m.size_px.x) * std::size_t(m.size_px.y);
+    bool const in_range = std::ranges::all_of(m.weights, [](float w) { return w >= 0 && w <= 1; });
+    if (!fits || !in_range)
+        throw gi::InputError(
+            fmt::format("a blend map of {} x {} with {} weights", m.size_px.x, m.size_px.y, m.weights.size()),
+            "it needs one per pixel, each in 0 to 1", "mend the map");
+}
+
+std::vector<unsigned> grid_triangles(int columns, int rows)
+{
+    std::vector<unsigned> out;
+    for (int y = 0; y + 1 < rows; ++y)
+        for (int x = 0; x + 1 < columns; ++x) {
+            auto const a = unsigned(y * columns + x), above = a + unsigned(columns);
+            for (unsigned const i : {a, a + 1, above, above, a + 1, above + 1}) out.push_back(i);
+        }
+    return out;
+}
+
+WallSettings const& checked(WallSettings const& settings)
+{
+    check_mesh(settings.mesh);
+    check_blend(settings);
+    return settings;
+}
+
+} // namespace
+
+WallPass::WallPass(WallSettings const& settings)
+    : settings_(checked(settings)),
+      program_({"wall.vert"}, {"tone_map.glsl", "wall.frag"}, "#define CURVE 0\n#define CURVE_FILMIC 1\n")
+{
+    auto const& vertices = settings_.mesh.vertices;
+    glNamedBufferStorage(buffer_.id(), GLsizeiptr(vertices.size() * sizeof(WarpVertex)), vertices.data(), 0);
+    auto const indices = grid_triangles(settings_.mesh.columns, settings_.mesh.rows);
+    index_count_ = int(indices.size());
+    glNamedBufferStorage(indices_.id(), GLsizeiptr(indices.size() * sizeof(unsigned)), indices.data(), 0);
+    glVertexArrayVertexBuffer(vertices_.id(), 0, buffer_.id(), 0, sizeof(WarpVertex));
+    glVertexArrayElementBuffer(vertices_.id(), indices_.id());
+    auto const attribute = [&](GLuint index, GLint size, std::size_t offset) {
+        glEnableVertexArrayAttrib(vertices_.id(), index);
+        glVertexArrayAttribFormat(vertices_.id(), index, size, GL_FLOAT, GL_FALSE, GLuint(offset));
+        glVertexArrayAttribBinding(vertices_.id(), index, 0);
+    };
+    attribute(0, 2, offsetof(WarpVertex, position));
+    attribute(1, 2, offsetof(WarpVertex, picture));
+    attribute(2, 1, offsetof(WarpVertex, weight));
+
+    float const all = 1;
+    BlendMap const* const map = settings_.blend_map ? &*settings_.blend_map : nullptr;
+    glm::ivec2 const size = map ? map->size_px : glm::ivec2(1);
+    map_ = texture_2d(GL_R32F, size, GL_NEAREST);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTextureSubImage2D(map_.id(), 0, 0, 0, size.x, size.y, GL_RED, GL_FLOAT, map ? map->weights.data() : &all);
+
+    EdgeBlend const& b = settings_.blend;
+    program_.set("overlap", glm::vec4(b.left, b.right, b.bottom, b.top));
+    program_.set("power", b.power);
+    program_.set("gain", settings_.gain);
+    program_.set("gamma", settings_.gamma);
+}
+
+void WallPass::draw(DrawTarget const& target, ShownPicture const& encoded) const
+{
+    if (encoded.texture == 0)
+        throw gi::InputError("a wall has no picture", "there is nothing to bend", "draw the eye's picture first");
+    bind(target);
+    // Of the rectangle alone: others share the window.
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(target.corner_px.x, target.corner_px.y, target.size_px.x, target.size_px.y);
+    glClearColor(0, 0, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    program_.set("up", target.rows == RowOrder::top_last ? 1.0f : -1.0f);
+    glBindTextureUnit(0, encoded.texture);
+    glBindTextureUnit(1, map_.id());
+    program_.use();
+    glBindVertexArray(vertices_.id());
+    glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+    glDisable(GL_SCISSOR_TEST);
+}
+
+} // namespace viewer

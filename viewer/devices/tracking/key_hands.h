@@ -1,0 +1,19 @@
+#pragma once
+// Hands of a user who has only keys: they hang before the hips, and rise beside the head while a key is held.
+
+#include "viewer/protocol/frame_order.h"
+
+namespace viewer {
+
+class KeyHands {
+public:
+    /// @param seconds  since the last step; from the hip to the head a hand takes 0.6 s
+    void step(bool left_rises, bool right_rises, double seconds);
+    /// @param head  in the room; hands keep to the way it faces and do not nod with it
+    Tracked with_head(RoomPose const& head) const;
+
+private:
+    double left_ = 0, right_ = 0; ///< 0 = down, 1 = up
+};
+
+} // namespace viewer

@@ -1,0 +1,61 @@
+#include "viewer/devices/tracking/one_euro.h"
+
+#include "viewer/devices/tracking/pose_math.h"
+
+namespace viewer {
+namespace {
+
+double time_constant(double cutoff_hz) { return 1 / (2 * 3.14159265358979323846 * cutoff_hz); }
+
+double share(double cutoff_hz, double dt_s) { return dt_s / (dt_s + time_constant(cutoff_hz)); }
+
+/// Brings both velocities on, returns the cutoff.
+double follow(OneEuroSettings const& s, gi::dvec3 measured, double dt_s, gi::dvec3& velocity, gi::dvec3& slow)
+{
+    slow += share(s.speed_cutoff_hz, dt_s) * (measured - slow);
+    double const speed = glm::length(slow);
+    velocity += share(s.velocity_min_cutoff_hz + s.velocity_beta * speed, dt_s) * (measured - velocity);
+    return s.min_cutoff_hz + s.beta * speed;
+}
+
+} // namespace
+
+OneEuroPosition start(gi::dvec3 position)
+{
+    OneEuroPosition f;
+    f.raw = f.value = position;
+    return f;
+}
+
+OneEuroRotation start(gi::dquat const& rotation)
+{
+    OneEuroRotation f;
+    f.raw = f.value = rotation;
+    return f;
+}
+
+OneEuroPosition step(OneEuroSettings const& settings, OneEuroPosition const& before, gi::dvec3 position,
+                     double dt_s)
+{
+    OneEuroPosition f = before;
+    double const cutoff = follow(settings, (position - before.raw) / dt_s, dt_s, f.velocity, f.slow_velocity);
+    f.raw = position;
+    f.value += share(cutoff, dt_s) * (position - before.value);
+    f.lag_s = time_constant(cutoff);
+    return f;
+}
+
+OneEuroRotation step(OneEuroSettings const& settings, OneEuroRotation const& before, gi::dquat const& rotation,
+                     double dt_s)
+{
+    OneEuroRotation f = before;
+    double const cutoff = follow(settings, log_rotation(glm::inverse(before.raw) * rotation) / dt_s, dt_s,
+                                 f.velocity, f.slow_velocity);
+    f.raw = rotation;
+    gi::dvec3 const ahead = log_rotation(glm::inverse(before.value) * rotation);
+    f.value = glm::normalize(before.value * exp_rotation(share(cutoff, dt_s) * ahead));
+    f.lag_s = time_constant(cutoff);
+    return f;
+}
+
+} // namespace viewer

@@ -1,0 +1,49 @@
+#pragma once
+// What the hands do, as actions that a runtime binds to the buttons of its controllers, and that its user may
+// rebind.
+
+#include "viewer/devices/xr/frame.h"
+#include "viewer/devices/xr/openxr.h"
+
+namespace viewer {
+
+class Actions {
+public:
+    /// Suggests bindings for the simple controller and those of Oculus Touch, Valve Index, HTC Vive and Windows
+    /// Mixed Reality, and attaches them to the session. Throws CallError.
+    Actions(XrInstance instance, XrSession session);
+    ~Actions();
+    Actions(Actions const&) = delete;
+    Actions& operator=(Actions const&) = delete;
+
+    /// Asks which controllers are there; after XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED.
+    void read_profiles();
+    /// Buttons as of now; released while the session has no focus.
+    void read_buttons();
+    struct Hand {
+        HmdHand state;
+        std::optional<RoomPose> grip;
+    };
+    /// Where they are at a time, in the room.
+    std::array<Hand, 2> hands(XrSpace space, RoomPose const& room_from_space, XrTime time) const;
+
+private:
+    XrAction make_action(char const* name, char const* shown_name, XrActionType type) const;
+    void suggest() const;
+    XrPath path(std::string const& text) const;
+    XrActionStateGetInfo of_hand(XrAction action, std::size_t hand) const;
+    bool is_pressed(XrAction action, std::size_t hand) const;
+
+    XrInstance instance_;
+    XrSession session_;
+    XrActionSet set_ = XR_NULL_HANDLE;
+    XrAction aim_{}, grip_{}, move_{}, select_{}, trigger_{}, menu_{};
+    std::array<XrPath, 2> hand_path_{};
+    std::array<XrSpace, 2> aim_space_{}, grip_space_{};
+    std::array<HmdHand, 2> hands_;
+};
+
+/// The pose of a space in another, in the room; empty where it is not known.
+std::optional<RoomPose> locate(XrSpace what, XrSpace space, RoomPose const& room_from_space, XrTime time);
+
+} // namespace viewer

@@ -1,0 +1,53 @@
+#pragma once
+// The connection to an OpenXR runtime and the headset it has: instance and system, extensions, clock.
+
+#include "viewer/devices/xr/info.h"
+#include "viewer/devices/xr/openxr.h"
+
+#include <string>
+#include <vector>
+
+namespace viewer {
+
+/// How pictures go to the runtime; `ask` has no session and takes every extension that lightwell knows.
+enum class PicturePath { glx, egl, none, ask };
+
+class Runtime {
+public:
+    /// Throws InputError where there is no runtime, no headset, or an extension that is needed is missing.
+    explicit Runtime(PicturePath path);
+    ~Runtime();
+    Runtime(Runtime const&) = delete;
+    Runtime& operator=(Runtime const&) = delete;
+
+    XrInstance instance() const { return instance_; }
+    XrSystemId system() const { return system_; }
+    bool uses(char const* extension) const;
+    XrEnvironmentBlendMode blend_mode() const { return blend_mode_; }
+
+    /// Seconds of steady_clock from the runtime's clock and back.
+    double steady_s(XrTime time) const;
+    XrTime xr_time(double steady_s) const;
+
+    /// A function of an extension in use. Throws CallError where it is not there.
+    template <class Function>
+    Function function(char const* name) const
+    {
+        return reinterpret_cast<Function>(pointer(name));
+    }
+
+    HmdInfo info;
+
+private:
+    PFN_xrVoidFunction pointer(char const* name) const;
+    void connect(PicturePath path);
+    void find_headset();
+
+    XrInstance instance_ = XR_NULL_HANDLE;
+    XrSystemId system_ = XR_NULL_SYSTEM_ID;
+    XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+    PFN_xrConvertTimespecTimeToTimeKHR to_time_ = nullptr;
+    PFN_xrConvertTimeToTimespecTimeKHR from_time_ = nullptr;
+};
+
+} // namespace viewer

@@ -1,0 +1,429 @@
+#include "viewer/displays/check.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <set>
+
+namespace viewer {
+namespace {
+
+using Fault = std::optional<DisplayFault>;
+
+bool is_within(double x, double low, double high) { return x >= low && x <= high; } // false for NaN
+
+bool is_placed(Placement const& p)
+{
+    for (int i = 0; i < 3; ++i)
+        if (!is_within(p.translation_m[i], -kFarthestCorner_m, kFarthestCorner_m) ||
+            !is_within(p.rotation_deg[i], -3600, 3600))
+            return false;
+    return true;
+}
+
+template <typename Part>
+Fault names_fault(std::vector<Part> const& parts, char const* list)
+{
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (parts[i].name.empty())
+            return DisplayFault{list,     i, "name", "the name is empty", "messages and pictures go by names",
+                                "name it"};
+        if (!seen.insert(parts[i].name).second)
+            return DisplayFault{list,
+                                i,
+                                "name",
+                                "'" + parts[i].name + "' is there twice",
+                                "others refer to it by its name",
+                                "give each its own"};
+    }
+    return {};
+}
+
+Fault viewport_fault(Wall const& wall, std::size_t i, DisplayWindow const& window)
+{
+    Viewport const& v = wall.viewport;
+    bool const in_px = v.unit == LengthUnit::px;
+    char const* const key = in_px ? "viewport_px" : "viewport_fraction";
+    double const limit = kLargestWindow_px;
+    for (double const x : {v.x, v.y, v.width, v.height})
+        if (!is_within(x, 0, limit))
+            return DisplayFault{"walls",
+                                i,
+                                key,
+                                "the viewport is not within the window",
+                                "it would be cut off",
+                                "give [left, top, width, height] from the top left corner"};
+    PixelRectangle const r = viewport_px(wall, window);
+    if (r.width < 1 || r.height < 1)
+        return DisplayFault{"walls",
+                            i,
+                            key,
+                            "the viewport has no pixels",
+                            "nothing could be shown in it",
+                            "give [left, top, width, height]"};
+    if (r.x + r.width > window.width_px || r.y + r.height > window.height_px)
+        return DisplayFault{"walls",
+                            i,
+                            key,
+                            fmt::format("the viewport reaches to pixel ({}, {}) of window '{}', which has {} x {}",
+                                        r.x + r.width, r.y + r.height, window.name, window.width_px,
+                                        window.height_px),
+                            "it would be cut off",
+                            "make it smaller, or the window larger"};
+    if ((wall.stereo == StereoMode::side_by_side && r.width % 2 != 0) ||
+        (wall.stereo == StereoMode::top_bottom && r.height % 2 != 0))
+        return DisplayFault{"walls",
+                            i,
+                            key,
+                            fmt::format("{} x {} pixels cannot be halved", r.width, r.height),
+                            std::string(name_of(wall.stereo)) + " gives each eye one half",
+                            "choose an even size"};
+    return {};
+}
+
+Fault finish_fault(Wall const& wall, std::size_t i)
+{
+    WallFrame const frame = wall_frame(wall.corners);
+    WallBlend const& b = wall.blend;
+    for (double const band : {b.left_m, b.right_m, b.top_m, b.bottom_m})
+        if (!is_within(band, 0, 1e6))
+            return DisplayFault{"walls",
+                                i,
+                                "blend",
+                                "a band of blending is negative or not finite",
+                                "it is a width on the wall",
+                                "give metres, or 0"};
+    double const slack = 1 + 1e-9;
+    if (b.left_m + b.right_m > frame.width_m * slack || b.top_m + b.bottom_m > frame.height_m * slack)
+        return DisplayFault{"walls",
+                            i,
+                            "blend",
+                            "the bands of blending overlap each other",
+                            fmt::format("the wall is {:.4g} x {:.4g} m", frame.width_m, frame.height_m),
+                            "make them narrower"};
+    if (!is_within(b.power, 0.1, 10))
+        return DisplayFault{"walls",
+                            i,
+                            "blend",
+                            fmt::format("a power of {:g}", b.power),
+                            "the light's rise has 0.1 to 10",
+                            "2 is usual, 1 is straight"};
+    if (!is_within(b.gamma, 1, 4))
+        return DisplayFault{
+            "walls",       i, "blend", fmt::format("a gamma of {:g}", b.gamma), "projectors have 1 to 4",
+            "2.2 is usual"};
+    for (int c = 0; c < 3; ++c)
+        if (!is_within(wall.gain[c], 0, 4))
+            return DisplayFault{"walls",
+                                i,
+                                "gain",
+                                fmt::format("a gain of {:g}", wall.gain[c]),
+                                "it is a factor on light, 0 to 4",
+                                "1 leaves it as it is"};
+    if (wall.warp)
+        if (auto const fault = find_fault(*wall.warp))
+            return DisplayFault{"walls",
+                                i,
+                                "warp",
+                                *fault,
+                                "the picture would be torn",
+                                "export the mesh again, row by row from below"};
+    return {};
+}
+
+Fault wall_fault(Display const& d, std::size_t i)
+{
+    Wall const& wall = d.walls[i];
+    auto const fault = [&](char const* key, std::string const& problem, std::string const& why,
+                           std::string const& suggestion) {
+        return DisplayFault{"walls", i, key, problem, why, suggestion};
+    };
+    if (auto const corners = find_fault(wall.corners))
+        return fault("lower_left_m", "wall '" + wall.name + "': " + corners->problem, corners->why,
+                     corners->suggestion);
+    if (wall.window < 0 || std::size_t(wall.window) >= d.windows.size())
+        return fault("window", "wall '" + wall.name + "' has no window", "it is not known where to draw it",
+                     "name one of windows");
+    if (wall.user < 0 || std::size_t(wall.user) >= d.users.size())
+        return fault("user", "wall '" + wall.name + "' has no user", "it is not known for whose eyes to draw it",
+                     "name one of users");
+    bool const two = wall.stereo == StereoMode::two_windows;
+    if (two != (wall.second_window >= 0))
+        return fault("stereo", two ? "two-windows without a second_window" : "a second_window without two-windows",
+                     "the right eye has a window of its own then, and only then",
+                     two ? "name one" : "set stereo: two-windows, or remove it");
+    if (two && (std::size_t(wall.second_window) >= d.windows.size() || wall.second_window == wall.window))
+        return fault("second_window", "the right eye has no window of its own", "both would draw over each other",
+                     "name another of windows");
+    if (wall.rank < 0 || wall.rank > 4095)
+        return fault("rank", fmt::format("rank {}", wall.rank), "processes count from 0 to 4095", "change it");
+    bool const sized = wall.render_width_px > 0 && wall.render_height_px > 0;
+    if ((wall.render_width_px != 0 || wall.render_height_px != 0) &&
+        (!sized || wall.render_width_px > kLargestWindow_px || wall.render_height_px > kLargestWindow_px))
+        return fault("render_px", fmt::format("pictures of {} x {}", wall.render_width_px, wall.render_height_px),
+                     fmt::format("1 to {} pixels are drawn", kLargestWindow_px), "change it, or remove it");
+    if (auto f = viewport_fault(wall, i, d.windows[std::size_t(wall.window)])) return f;
+    if (two)
+        if (auto f = viewport_fault(wall, i, d.windows[std::size_t(wall.second_window)])) return f;
+    return finish_fault(wall, i);
+}
+
+Fault window_fault(DisplayWindow const& w, std::size_t i)
+{
+    if (w.width_px < 1 || w.height_px < 1 || w.width_px > kLargestWindow_px || w.height_px > kLargestWindow_px)
+        return DisplayFault{"windows",
+                            i,
+                            "size_px",
+                            fmt::format("a window of {} x {}", w.width_px, w.height_px),
+                            fmt::format("windows have 1 to {} pixels a side", kLargestWindow_px),
+                            "change it"};
+    if (std::abs(w.x_px) > 1000000 || std::abs(w.y_px) > 1000000)
+        return DisplayFault{
+            "windows",  i, "position_px", "the window is a million pixels away", "no desktop is that large",
+            "change it"};
+    if (w.monitor < -1 || w.monitor > 255)
+        return DisplayFault{"windows",
+                            i,
+                            "monitor",
+                            fmt::format("monitor {}", w.monitor),
+                            "monitors count from 0 to 255",
+                            "change it, or leave it out"};
+    return {};
+}
+
+Fault user_fault(Display const& d, std::size_t i)
+{
+    User const& user = d.users[i];
+    double const eyes = user.interpupillary_m;
+    if (!is_within(eyes, kNarrowestEyes_m, kWidestEyes_m)) {
+        std::string suggestion = "0.063 is usual; stereo: off shows one eye's picture";
+        for (auto const& [unit, metres] : {std::pair{"millimetres", 1e-3}, {"centimetres", 1e-2}})
+            if (is_within(eyes * metres, kNarrowestEyes_m, kWidestEyes_m))
+                suggestion = fmt::format("metres? {} {} are {:.4g} m", eyes, unit, eyes * metres);
+        return DisplayFault{"users",
+                            i,
+                            "interpupillary_m",
+                            fmt::format("eyes {} m apart", eyes),
+                            fmt::format("people's are {} to {} m apart", kNarrowestEyes_m, kWidestEyes_m),
+                            suggestion};
+    }
+    if (!is_placed(user.head))
+        return DisplayFault{"users",
+                            i,
+                            "head_position_m",
+                            "the head is nowhere",
+                            "a value is not finite or too large",
+                            "metres and degrees"};
+    if (!is_within(glm::length(user.eye_offset_m), 0, 1))
+        return DisplayFault{"users",
+                            i,
+                            "eye_offset_m",
+                            "the eyes are more than a metre from the tracked point",
+                            "it is worn on the head",
+                            "metres? 0.1 is usual"};
+    if (user.tracker < -1 || user.tracker >= int(d.trackers.size()))
+        return DisplayFault{"users",
+                            i,
+                            "head_tracker",
+                            "there is no such tracker",
+                            "nothing would move the head",
+                            "name one of trackers, or leave it out"};
+    if (user.eye_height_m && !is_within(*user.eye_height_m, 0.3, 3))
+        return DisplayFault{"users",
+                            i,
+                            "eye_height_m",
+                            fmt::format("eyes {} m above the floor", *user.eye_height_m),
+                            "those of people who stand are 0.3 to 3 m above it",
+                            "metres? 1.65 is usual"};
+    if (!user.avatar.empty() && i > OrderLimits::users)
+        return DisplayFault{"users",
+                            i,
+                            "avatar",
+                            "too many users with avatars",
+                            fmt::format("orders hold {} besides the first", OrderLimits::users),
+                            "give avatars to the first of them"};
+    return {};
+}
+
+Fault tracker_fault(DisplayTracker const& t, std::size_t i)
+{
+    auto const fault = [&](char const* key, std::string const& problem, std::string const& why,
+                           std::string const& suggestion) {
+        return DisplayFault{"trackers", i, key, problem, why, suggestion};
+    };
+    bool const is_network = t.type == DisplayTrackerType::osc || t.type == DisplayTrackerType::dtrack;
+    if (is_network && !is_within(t.port, 1, 65535))
+        return fault("port", fmt::format("port {}", t.port), "its packets come to a port, 1 to 65535",
+                     t.type == DisplayTrackerType::osc ? "port: 9000" : "port: 5000");
+    if (is_network && t.address.empty())
+        return fault("address", "no address", "it is bound to one interface only", "address: 127.0.0.1");
+    if (t.type == DisplayTrackerType::osc && (t.body.empty() || t.body[0] != '/'))
+        return fault("body", "'" + t.body + "' is no OSC path", "paths tell the bodies apart", "body: /head");
+    if (t.type == DisplayTrackerType::dtrack &&
+        (t.body.empty() || t.body.size() > 4 || t.body.find_first_not_of("0123456789") != std::string::npos))
+        return fault("body", "'" + t.body + "' is no body of DTrack", "they have numbers from 0", "body: 0");
+    if (t.type == DisplayTrackerType::openxr && t.body != "head" && t.body != "left_hand" &&
+        t.body != "right_hand")
+        return fault("body", "'" + t.body + "' is nothing that OpenXR tracks", "it has a head and two hands",
+                     "head, left_hand or right_hand");
+    bool const has_limbs = is_network || t.type == DisplayTrackerType::file;
+    auto const name = [](std::string const& id) { return id.starts_with('/') ? id.substr(1) : id; };
+    std::set<std::string> bodies{name(t.body)};
+    for (LimbBody const& b : kLimbBodies) {
+        std::string const& id = t.*b.body;
+        if (id.empty()) continue;
+        if (!has_limbs)
+            return fault(b.key, "a body for type: " + std::string(name_of(t.type)), "it has its own names",
+                         "remove it");
+        if (!bodies.insert(name(id)).second)
+            return fault(b.key, "body '" + id.substr(0, 64) + "' twice", "it cannot be two parts of a body",
+                         "give each its own");
+    }
+    if ((t.type == DisplayTrackerType::file) == t.file.empty())
+        return fault("file", t.file.empty() ? "no file" : "a file with type: " + std::string(name_of(t.type)),
+                     "poses are read from one with type: file, and only then", "give it, or remove it");
+    if (!is_placed(t.room_from_tracker))
+        return fault("room_from_tracker", "the tracker is nowhere", "a value is not finite or too large",
+                     "metres and degrees");
+    if (!is_within(t.latency_ms, 0, 1000))
+        return fault("latency_ms", fmt::format("a latency of {} ms", t.latency_ms), "it is 0 to 1000",
+                     "milliseconds from motion to packet");
+    if (!is_within(t.filter.min_cutoff_hz, 0.001, 1000) || !is_within(t.filter.beta_per_m, 0, 1e4))
+        return fault("filter", "the filter is out of range", "cut-off 0.001 to 1000 Hz, beta 0 to 10,000 per m",
+                     "min_cutoff_hz: 1, beta_per_m: 1");
+    return {};
+}
+
+/// Trackers of one protocol may share a port.
+Fault ports_fault(Display const& d)
+{
+    auto const is_network = [](DisplayTracker const& t) {
+        return t.type == DisplayTrackerType::osc || t.type == DisplayTrackerType::dtrack;
+    };
+    for (std::size_t i = 0; i < d.trackers.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            DisplayTracker const &a = d.trackers[i], &b = d.trackers[j];
+            if (!is_network(a) || !is_network(b) || a.type == b.type || a.port != b.port || a.address != b.address)
+                continue;
+            return DisplayFault{
+                "trackers",
+                i,
+                "port",
+                fmt::format("trackers '{}' and '{}' share {} port {}", b.name, a.name, a.address, a.port),
+                "one speaks OSC, the other DTrack",
+                "give each a port of its own"};
+        }
+    return {};
+}
+
+bool overlap(PixelRectangle const& a, PixelRectangle const& b)
+{
+    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+/// Walls that would draw over each other, or windows that two processes would open.
+Fault sharing_fault(Display const& d)
+{
+    for (std::size_t i = 0; i < d.walls.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            Wall const &a = d.walls[i], &b = d.walls[j];
+            for (int const mine : {a.window, a.second_window})
+                for (int const other : {b.window, b.second_window}) {
+                    if (mine < 0 || mine != other) continue;
+                    DisplayWindow const& window = d.windows[std::size_t(mine)];
+                    if (a.rank != b.rank)
+                        return DisplayFault{
+                            "walls",
+                            i,
+                            "rank",
+                            fmt::format("window '{}' is on ranks {} and {}", window.name, b.rank, a.rank),
+                            "one process opens a window",
+                            "give its walls one rank, or each a window"};
+                    // A mesh says where a wall's picture goes, so that several may share a viewport.
+                    if (!a.warp && !b.warp && overlap(viewport_px(a, window), viewport_px(b, window)))
+                        return DisplayFault{
+                            "walls",
+                            i,
+                            a.viewport.unit == LengthUnit::px ? "viewport_px" : "viewport_fraction",
+                            fmt::format("walls '{}' and '{}' overlap in window '{}'", b.name, a.name, window.name),
+                            "one would be drawn over the other",
+                            "move one of them"};
+                }
+        }
+    return {};
+}
+
+/// How far the walls overlap along `right` of the first, where they lie in one plane side by side; 0 = they do
+/// not.
+double overlap_m(WallFrame const& a, WallFrame const& b)
+{
+    if (glm::dot(a.normal, b.normal) < 0.9999 || glm::dot(a.right, b.right) < 0.9999) return 0;
+    gi::dvec3 const to = b.lower_left - a.lower_left;
+    double const across = glm::dot(to, a.right), upward = glm::dot(to, a.up);
+    if (std::abs(glm::dot(to, a.normal)) > 0.01 * a.width_m || std::abs(upward) > 0.5 * a.height_m) return 0;
+    return across > 0 && across < a.width_m ? a.width_m - across : 0;
+}
+
+} // namespace
+
+Fault find_fault(Display const& d)
+{
+    if (d.walls.empty())
+        return DisplayFault{"", 0, "walls", "the display has no walls", "there is nothing to draw on", "add one"};
+    if (d.walls.size() > kMostWalls)
+        return DisplayFault{"",
+                            0,
+                            "walls",
+                            fmt::format("{} walls", d.walls.size()),
+                            fmt::format("up to {} are handled", kMostWalls),
+                            "is it one display?"};
+    for (auto const& fault : {names_fault(d.walls, "walls"), names_fault(d.windows, "windows"),
+                              names_fault(d.users, "users"), names_fault(d.trackers, "trackers")})
+        if (fault) return fault;
+    for (std::size_t i = 0; i < d.windows.size(); ++i)
+        if (auto fault = window_fault(d.windows[i], i)) return fault;
+    for (std::size_t i = 0; i < d.trackers.size(); ++i)
+        if (auto fault = tracker_fault(d.trackers[i], i)) return fault;
+    if (auto fault = ports_fault(d)) return fault;
+    for (std::size_t i = 0; i < d.users.size(); ++i)
+        if (auto fault = user_fault(d, i)) return fault;
+    for (std::size_t i = 0; i < d.walls.size(); ++i)
+        if (auto fault = wall_fault(d, i)) return fault;
+    return sharing_fault(d);
+}
+
+void require_sound(Display const& display, std::string const& file)
+{
+    if (auto const f = find_fault(display)) throw gi::InputError({file, 0, 0}, f->problem, f->why, f->suggestion);
+}
+
+void report_doubts(Display const& d, gi::Report& report)
+{
+    for (User const& u : d.users)
+        if (!is_within(u.interpupillary_m, kFewNarrower_m, kFewWider_m))
+            report.lose("unusual distances between the eyes: most people's are 0.050 to 0.075 m", 1,
+                        fmt::format("user '{}', {} m", u.name, u.interpupillary_m));
+    std::set<int> used;
+    for (Wall const& wall : d.walls) used.insert({wall.window, wall.second_window});
+    for (std::size_t i = 0; i < d.windows.size(); ++i)
+        if (!used.contains(int(i))) report.lose("windows without a wall, which stay dark", 1, d.windows[i].name);
+    std::vector<WallFrame> frames;
+    for (Wall const& wall : d.walls) frames.push_back(wall_frame(wall.corners));
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        if (frames[i].skew_deg > 0.01)
+            report.lose("walls that were not quite rectangular, made so", 1,
+                        fmt::format("'{}', {:.3g} degrees", d.walls[i].name, frames[i].skew_deg));
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        for (std::size_t j = 0; j < frames.size(); ++j) {
+            double const overlap_width = i == j ? 0 : overlap_m(frames[i], frames[j]);
+            if (overlap_width < 1e-3) continue;
+            double const slack = 0.01 + 0.02 * overlap_width;
+            if (std::abs(d.walls[i].blend.right_m - overlap_width) > slack ||
+                std::abs(d.walls[j].blend.left_m - overlap_width) > slack)
+                report.lose("walls that overlap by another width than they are blended over", 1,
+                            fmt::format("'{}' and '{}' overlap by {:.4g} m", d.walls[i].name, d.walls[j].name,
+                                        overlap_width));
+        }
+}
+
+} // namespace viewer

@@ -1,0 +1,148 @@
+#pragma once
+// What a picture is shown on and who looks at it: walls in a room, the windows that feed them, users with eyes,
+// trackers that follow their heads. Plain data; display_file.h reads and writes it, check.h says what is wrong.
+//
+// Frames: room, right-handed, +Y up, metres. Pixels of windows count from the top left corner, x to the right, y
+// down. Positions on a wall (u, v) count from the lower left corner, 0 to 1, as its corners do.
+
+#include "viewer/displays/off_axis.h"
+#include "viewer/displays/stereo_mode.h"
+#include "viewer/displays/warp_mesh.h"
+#include "viewer/protocol/frame_order.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace viewer {
+
+/// Rotation in degrees about x, then y, then z of the room; then the translation.
+struct Placement {
+    gi::dvec3 translation_m{0}, rotation_deg{0};
+
+    bool operator==(Placement const&) const = default;
+};
+RoomPose pose_of(Placement const& placement);
+
+enum class LengthUnit { px, fraction };
+
+/// Part of a window; fractions are of its size.
+struct Viewport {
+    LengthUnit unit = LengthUnit::fraction;
+    double x = 0, y = 0, width = 1, height = 1;
+
+    bool operator==(Viewport const&) const = default;
+};
+
+/// Where a wall's picture fades out because a neighbour's fades in: widths on the wall, from its edges inward.
+struct WallBlend {
+    double left_m = 0, right_m = 0, top_m = 0, bottom_m = 0;
+    double power = 2;   ///< of the curve in blend.h: 1 = straight
+    double gamma = 2.2; ///< of the projector: light = value^gamma
+
+    bool operator==(WallBlend const&) const = default;
+};
+
+struct Wall {
+    std::string name;
+    WallCorners corners;
+    int window = 0;
+    int second_window = -1;                        ///< of the right eye, with StereoMode::two_windows
+    Viewport viewport;                             ///< in either window
+    int render_width_px = 0, render_height_px = 0; ///< of each eye's picture; 0 = as the viewport has
+    StereoMode stereo = StereoMode::off;
+    bool swap_eyes = false; ///< the right eye takes the left eye's place
+    int user = 0;           ///< whose eyes it serves
+    WallBlend blend;
+    std::string warp_file; ///< as the file states it, if the mesh comes from one
+    std::optional<WallMesh> warp;
+    gi::dvec3 gain{1}; ///< factor on red, green and blue light
+    int rank = 0;      ///< the process that draws it, where several share the work
+
+    bool operator==(Wall const&) const = default;
+};
+
+struct DisplayWindow {
+    std::string name;
+    int width_px = 0, height_px = 0;
+    int x_px = 0, y_px = 0; ///< on the monitor, or on the desktop where none is named
+    int monitor = -1;       ///< as the window system counts them; -1 = none named
+    bool fullscreen = false;
+
+    bool operator==(DisplayWindow const&) const = default;
+};
+
+struct User {
+    std::string name;
+    double interpupillary_m = 0.063;
+    Placement head;            ///< where nothing tracks it
+    gi::dvec3 eye_offset_m{0}; ///< from the tracked point to the middle between the eyes; in the head's frame
+    int tracker = -1;          ///< that follows the head; -1 = none
+    std::string avatar{};      ///< file of a skinned model that he has, as stated; empty = none
+    std::optional<double> eye_height_m{}; ///< standing, above the floor y = 0; none = where the head rests
+
+    bool operator==(User const&) const = default;
+};
+
+enum class DisplayTrackerType { osc, dtrack, openxr, file, fake };
+
+enum class FilterType { none, one_euro };
+
+/// Casiez et al. 2012: cut-off frequency = minimum + beta * speed.
+struct TrackerFilter {
+    FilterType type = FilterType::none;
+    double min_cutoff_hz = 1;
+    double beta_per_m = 1; ///< Hz per m/s
+
+    bool operator==(TrackerFilter const&) const = default;
+};
+
+struct DisplayTracker {
+    std::string name;
+    DisplayTrackerType type = DisplayTrackerType::fake;
+    std::string address = "127.0.0.1"; ///< of the interface to listen at (osc, dtrack)
+    int port = 0;
+    std::string body; ///< osc: path; dtrack: number; openxr: head, left_hand, right_hand
+    std::string file; ///< recorded poses
+    Placement room_from_tracker;
+    double latency_ms = 0; ///< from motion to packet, measured
+    TrackerFilter filter{};
+    std::string left_hand_body{}, right_hand_body{}; ///< of the same sender, as it names them; empty = the usual
+    std::string left_foot_body{}, right_foot_body{};
+
+    bool operator==(DisplayTracker const&) const = default;
+};
+
+/// Bodies of a tracker besides the one that it is of.
+struct LimbBody {
+    char const* key; ///< in files
+    std::string DisplayTracker::*body;
+};
+inline constexpr LimbBody kLimbBodies[]{{"left_hand_body", &DisplayTracker::left_hand_body},
+                                        {"right_hand_body", &DisplayTracker::right_hand_body},
+                                        {"left_foot_body", &DisplayTracker::left_foot_body},
+                                        {"right_foot_body", &DisplayTracker::right_foot_body}};
+
+struct Display {
+    std::string name;
+    std::vector<Wall> walls;
+    std::vector<DisplayWindow> windows;
+    std::vector<User> users;
+    std::vector<DisplayTracker> trackers;
+
+    bool operator==(Display const&) const = default;
+};
+
+char const* name_of(DisplayTrackerType type);
+std::optional<DisplayTrackerType> tracker_type(std::string const& name);
+
+struct PixelRectangle {
+    int x = 0, y = 0, width = 0, height = 0;
+
+    bool operator==(PixelRectangle const&) const = default;
+};
+/// The wall's part of its window. Edges of fractions go to the nearest pixel, so that neighbours share them.
+PixelRectangle viewport_px(Wall const& wall, DisplayWindow const& window);
+
+} // namespace viewer

@@ -1,0 +1,27 @@
+#include "viewer/displays/display_keys.h"
+
+namespace viewer {
+
+std::map<std::string, std::set<std::string>> const& display_keys()
+{
+    static std::map<std::string, std::set<std::string>> const keys{
+        {"display", {"name", "walls", "windows", "users", "trackers"}},
+        {"wall",
+         {"name", "lower_left_m", "lower_right_m", "upper_left_m", "window", "second_window", "viewport_px",
+          "viewport_fraction", "render_px", "stereo", "swap_eyes", "user", "blend", "warp", "gain", "rank"}},
+        {"blend", {"left_m", "right_m", "top_m", "bottom_m", "power", "gamma"}},
+        {"warp", {"file", "columns", "rows", "nodes"}},
+        {"window", {"name", "size_px", "position_px", "monitor", "fullscreen"}},
+        {"user",
+         {"name", "interpupillary_m", "head_position_m", "head_rotation_deg", "eye_offset_m", "head_tracker",
+          "avatar", "eye_height_m"}},
+        {"tracker",
+         {"name", "type", "address", "port", "body", "left_hand_body", "right_hand_body", "left_foot_body",
+          "right_foot_body", "file", "room_from_tracker", "latency_ms", "filter"}},
+        {"room_from_tracker", {"translation_m", "rotation_deg"}},
+        {"filter", {"type", "min_cutoff_hz", "beta_per_m"}},
+    };
+    return keys;
+}
+
+} // namespace viewer

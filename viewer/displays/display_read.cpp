@@ -1,0 +1,260 @@
+#include "gi/core/file.h"
+#include "viewer/displays/check.h"
+#include "viewer/displays/display_file.h"
+#include "viewer/displays/display_keys.h"
+
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+using gi::YamlReader;
+
+constexpr double kAny = 1e9; ///< what is read is judged in check.cpp
+
+YamlReader needed(YamlReader const& map, char const* key, char const* example)
+{
+    if (!map.has(key))
+        throw map.error(fmt::format("{} is missing", key), "it has no usual value",
+                        fmt::format("{}: {}", key, example));
+    return map.at(key);
+}
+
+std::vector<double> numbers(YamlReader const& list, std::size_t count, double low, double high)
+{
+    auto const items = list.items();
+    if (items.size() != count)
+        throw list.error(fmt::format("{} numbers, not {}", items.size(), count), "each has its meaning",
+                         fmt::format("write a list of {}", count));
+    std::vector<double> out;
+    for (YamlReader const& item : items) out.push_back(item.number(low, high));
+    return out;
+}
+
+template <typename Part>
+int index_of(std::vector<Part> const& parts, YamlReader const& name, char const* list)
+{
+    std::string const wanted = name.text();
+    std::string known;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (parts[i].name == wanted) return int(i);
+        if (i < 20) known += (i ? ", " : "") + parts[i].name;
+    }
+    throw name.error(fmt::format("'{}' is not in {}", wanted.substr(0, 64), list), "there is nothing of that name",
+                     parts.empty() ? fmt::format("add {}", list) : "there are: " + known);
+}
+
+WallMesh read_mesh(YamlReader const& y)
+{
+    WallMesh mesh;
+    mesh.columns = int(needed(y, "columns", "2").integer(2, kMostWarpNodes));
+    mesh.rows = int(needed(y, "rows", "2").integer(2, kMostWarpNodes));
+    for (YamlReader const& node : needed(y, "nodes", "[[0, 0, 0, 0], ...]").items()) {
+        auto const v = numbers(node, 4, -kAny, kAny);
+        mesh.nodes.push_back({{v[0], v[1]}, {v[2], v[3]}});
+    }
+    return mesh;
+}
+
+void read_warp(Wall& wall, YamlReader const& y, std::filesystem::path const& folder)
+{
+    check_display_keys(y, "warp");
+    if (!y.has("file")) {
+        wall.warp = read_mesh(y);
+        return;
+    }
+    if (y.has("columns") || y.has("rows") || y.has("nodes"))
+        throw y.error("warp has both a file and a mesh", "only one of them can count", "keep one");
+    wall.warp_file = y.at("file").text();
+    auto const path = folder / wall.warp_file;
+    auto const bytes = gi::read_bytes(path, std::size_t(1) << 20);
+    YamlReader const mesh = YamlReader::parse({bytes.begin(), bytes.end()}, path.string(), "warp");
+    mesh.only_keys({"columns", "rows", "nodes"});
+    wall.warp = read_mesh(mesh);
+    if (auto const fault = find_fault(*wall.warp))
+        throw mesh.error(*fault, "the picture would be torn", "export the mesh again, row by row from below");
+}
+
+WallBlend read_blend(YamlReader const& y)
+{
+    check_display_keys(y, "blend");
+    WallBlend blend;
+    for (auto const& [key, value] : {std::pair{"left_m", &blend.left_m},
+                                     {"right_m", &blend.right_m},
+                                     {"top_m", &blend.top_m},
+                                     {"bottom_m", &blend.bottom_m},
+                                     {"power", &blend.power},
+                                     {"gamma", &blend.gamma}})
+        if (y.has(key)) *value = y.at(key).number(-kAny, kAny);
+    return blend;
+}
+
+Wall read_wall(YamlReader const& y, Display const& d, std::filesystem::path const& folder)
+{
+    check_display_keys(y, "wall");
+    Wall wall;
+    wall.name = needed(y, "name", "front").text();
+    double const far = 10 * kFarthestCorner_m;
+    wall.corners = {needed(y, "lower_left_m", "[-1.5, 0, -1.5]").vector(-far, far),
+                    needed(y, "lower_right_m", "[1.5, 0, -1.5]").vector(-far, far),
+                    needed(y, "upper_left_m", "[-1.5, 3, -1.5]").vector(-far, far)};
+    wall.window = index_of(d.windows, needed(y, "window", "front"), "windows");
+    if (y.has("second_window")) wall.second_window = index_of(d.windows, y.at("second_window"), "windows");
+    if (y.has("user"))
+        wall.user = index_of(d.users, y.at("user"), "users");
+    else if (d.users.size() > 1)
+        throw y.error("user is missing", "there are several", "name one of users");
+    if (y.has("viewport_px") && y.has("viewport_fraction"))
+        throw y.error("a viewport in pixels and one in fractions", "only one of them can count", "keep one");
+    for (auto const& [key, unit] :
+         {std::pair{"viewport_px", LengthUnit::px}, {"viewport_fraction", LengthUnit::fraction}})
+        if (y.has(key)) {
+            auto const v = numbers(y.at(key), 4, -kAny, kAny);
+            wall.viewport = {unit, v[0], v[1], v[2], v[3]};
+        }
+    if (y.has("render_px")) {
+        auto const items = y.at("render_px").items();
+        if (items.size() != 2)
+            throw y.at("render_px").error("not two numbers", "a picture has a width and a height", "[1024, 1024]");
+        wall.render_width_px = int(items[0].integer(1, kLargestWindow_px));
+        wall.render_height_px = int(items[1].integer(1, kLargestWindow_px));
+    }
+    if (y.has("stereo")) {
+        auto const mode = stereo_mode(y.at("stereo").text());
+        if (!mode)
+            throw y.at("stereo").error("'" + y.at("stereo").text().substr(0, 64) + "' is no stereo mode",
+                                       "it is not known how to show two eyes",
+                                       "there are: " + stereo_mode_names());
+        wall.stereo = *mode;
+    }
+    if (y.has("swap_eyes")) wall.swap_eyes = y.at("swap_eyes").boolean();
+    if (y.has("blend")) wall.blend = read_blend(y.at("blend"));
+    if (y.has("warp")) read_warp(wall, y.at("warp"), folder);
+    if (y.has("gain")) wall.gain = y.at("gain").vector_or_number(-kAny, kAny);
+    if (y.has("rank")) wall.rank = int(y.at("rank").integer(0, 4095));
+    return wall;
+}
+
+DisplayWindow read_window(YamlReader const& y)
+{
+    check_display_keys(y, "window");
+    DisplayWindow window;
+    window.name = needed(y, "name", "front").text();
+    auto const pair = [](YamlReader const& list, std::int64_t low, std::int64_t high) {
+        auto const items = list.items();
+        if (items.size() != 2) throw list.error("not two numbers", "pixels count across and down", "[1920, 1080]");
+        return std::pair{int(items[0].integer(low, high)), int(items[1].integer(low, high))};
+    };
+    std::tie(window.width_px, window.height_px) = pair(needed(y, "size_px", "[1920, 1080]"), -1000000, 1000000);
+    if (y.has("position_px")) std::tie(window.x_px, window.y_px) = pair(y.at("position_px"), -10000000, 10000000);
+    if (y.has("monitor")) window.monitor = int(y.at("monitor").integer(0, 1000));
+    if (y.has("fullscreen")) window.fullscreen = y.at("fullscreen").boolean();
+    return window;
+}
+
+User read_user(YamlReader const& y, Display const& d, std::filesystem::path const& folder)
+{
+    check_display_keys(y, "user");
+    User user;
+    user.name = needed(y, "name", "visitor").text();
+    if (y.has("interpupillary_m")) user.interpupillary_m = y.at("interpupillary_m").number(-kAny, kAny);
+    user.head.translation_m = needed(y, "head_position_m", "[0, 1.7, 0]").vector(-kAny, kAny);
+    if (y.has("head_rotation_deg")) user.head.rotation_deg = y.at("head_rotation_deg").vector(-kAny, kAny);
+    if (y.has("eye_offset_m")) user.eye_offset_m = y.at("eye_offset_m").vector(-kAny, kAny);
+    if (y.has("head_tracker")) user.tracker = index_of(d.trackers, y.at("head_tracker"), "trackers");
+    if (y.has("avatar")) {
+        user.avatar = y.at("avatar").text();
+        std::error_code error;
+        if (user.avatar != "avatar" && !std::filesystem::is_regular_file(folder / user.avatar, error))
+            throw y.at("avatar").error("there is no file '" + user.avatar.substr(0, 256) + "'",
+                                       "it would be the user's body", "name a skinned model, or avatar");
+    }
+    if (y.has("eye_height_m")) user.eye_height_m = y.at("eye_height_m").number(-kAny, kAny);
+    return user;
+}
+
+TrackerFilter read_filter(YamlReader const& y)
+{
+    check_display_keys(y, "filter");
+    TrackerFilter filter;
+    std::string const type = needed(y, "type", "one-euro").text();
+    if (type != "none" && type != "one-euro")
+        throw y.at("type").error("'" + type.substr(0, 64) + "' is no filter", "it is not known how to smooth",
+                                 "none or one-euro");
+    filter.type = type == "none" ? FilterType::none : FilterType::one_euro;
+    if (y.has("min_cutoff_hz")) filter.min_cutoff_hz = y.at("min_cutoff_hz").number(-kAny, kAny);
+    if (y.has("beta_per_m")) filter.beta_per_m = y.at("beta_per_m").number(-kAny, kAny);
+    return filter;
+}
+
+DisplayTracker read_tracker(YamlReader const& y)
+{
+    check_display_keys(y, "tracker");
+    DisplayTracker tracker;
+    tracker.name = needed(y, "name", "head").text();
+    std::string const type = needed(y, "type", "dtrack").text();
+    auto const known = tracker_type(type);
+    if (!known)
+        throw y.at("type").error("'" + type.substr(0, 64) + "' is no type of tracker",
+                                 "it is not known how to listen to it", "osc, dtrack, openxr, file or fake");
+    tracker.type = *known;
+    if (y.has("address")) tracker.address = y.at("address").text();
+    if (y.has("port")) tracker.port = int(y.at("port").integer(-1000000, 1000000));
+    if (y.has("body")) tracker.body = y.at("body").text();
+    for (LimbBody const& b : kLimbBodies)
+        if (y.has(b.key)) tracker.*b.body = y.at(b.key).text();
+    if (y.has("file")) tracker.file = y.at("file").text();
+    if (y.has("room_from_tracker")) {
+        YamlReader const r = y.at("room_from_tracker");
+        check_display_keys(r, "room_from_tracker");
+        if (r.has("translation_m"))
+            tracker.room_from_tracker.translation_m = r.at("translation_m").vector(-kAny, kAny);
+        if (r.has("rotation_deg"))
+            tracker.room_from_tracker.rotation_deg = r.at("rotation_deg").vector(-kAny, kAny);
+    }
+    if (y.has("latency_ms")) tracker.latency_ms = y.at("latency_ms").number(-kAny, kAny);
+    if (y.has("filter")) tracker.filter = read_filter(y.at("filter"));
+    return tracker;
+}
+
+/// The error at the place that the fault names, or as near as the file has it.
+gi::InputError error_of(DisplayFault const& f, YamlReader const& root)
+{
+    if (f.list.empty()) return root.error(f.problem, f.why, f.suggestion);
+    YamlReader const part = root.at(f.list).items().at(f.index);
+    YamlReader const at = part.has(f.key) ? part.at(f.key) : part;
+    return at.error(f.problem, f.why, f.suggestion);
+}
+
+} // namespace
+
+Display parse_display(std::string const& text, std::string const& name, gi::Report& report)
+{
+    YamlReader const root = YamlReader::parse(text, name, "display");
+    check_display_keys(root, "display");
+    Display d;
+    if (root.has("name")) d.name = root.at("name").text();
+    auto const each = [&](char const* list, char const* example, auto const& read) {
+        for (YamlReader const& item : needed(root, list, example).items()) read(item);
+    };
+    if (root.has("trackers"))
+        each("trackers", "[...]", [&](YamlReader const& y) { d.trackers.push_back(read_tracker(y)); });
+    each("windows", "[{name: front, size_px: [1920, 1080]}]",
+         [&](YamlReader const& y) { d.windows.push_back(read_window(y)); });
+    auto const folder = std::filesystem::path(name).parent_path();
+    each("users", "[{name: visitor, head_position_m: [0, 1.7, 0]}]",
+         [&](YamlReader const& y) { d.users.push_back(read_user(y, d, folder)); });
+    each("walls", "[{name: front, window: front, lower_left_m: [-1.5, 0, -1.5], ...}]",
+         [&](YamlReader const& y) { d.walls.push_back(read_wall(y, d, folder)); });
+    if (auto const fault = find_fault(d)) throw error_of(*fault, root);
+    report_doubts(d, report);
+    return d;
+}
+
+Display load_display(std::filesystem::path const& file, gi::Report& report)
+{
+    auto const bytes = gi::read_bytes(file, std::size_t(1) << 24);
+    return parse_display({bytes.begin(), bytes.end()}, file.string(), report);
+}
+
+} // namespace viewer

@@ -1,0 +1,129 @@
+#include "gi/core/file.h"
+#include "viewer/displays/display_file.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace viewer {
+namespace {
+
+/// Texts in double quotes, which YAML reads as JSON does. Numbers in their shortest exact form.
+std::string quoted(std::string const& text)
+{
+    return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string vec(gi::dvec3 v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+
+class Writer {
+public:
+    void line(std::string const& text) { out_ += text + "\n"; }
+    /// The first line of an item of a list, then the others.
+    void begin(std::string const& name) { line("  - name: " + quoted(name)); }
+    void key(std::string const& key, std::string const& value) { line("    " + key + ": " + value); }
+    std::string take() { return std::move(out_); }
+
+private:
+    std::string out_;
+};
+
+std::string mesh_text(WallMesh const& m)
+{
+    std::string out = fmt::format("\n      columns: {}\n      rows: {}\n      nodes:", m.columns, m.rows);
+    for (WarpNode const& n : m.nodes)
+        out += fmt::format("\n        - [{}, {}, {}, {}]", n.place.x, n.place.y, n.picture.x, n.picture.y);
+    return out;
+}
+
+void write_wall(Writer& w, Wall const& wall, Display const& d)
+{
+    w.begin(wall.name);
+    w.key("lower_left_m", vec(wall.corners.lower_left));
+    w.key("lower_right_m", vec(wall.corners.lower_right));
+    w.key("upper_left_m", vec(wall.corners.upper_left));
+    w.key("window", quoted(d.windows[std::size_t(wall.window)].name));
+    if (wall.second_window >= 0) w.key("second_window", quoted(d.windows[std::size_t(wall.second_window)].name));
+    if (Viewport const& v = wall.viewport; v != Viewport{})
+        w.key(v.unit == LengthUnit::px ? "viewport_px" : "viewport_fraction",
+              fmt::format("[{}, {}, {}, {}]", v.x, v.y, v.width, v.height));
+    if (wall.render_width_px > 0)
+        w.key("render_px", fmt::format("[{}, {}]", wall.render_width_px, wall.render_height_px));
+    if (wall.stereo != StereoMode::off) w.key("stereo", quoted(name_of(wall.stereo)));
+    if (wall.swap_eyes) w.key("swap_eyes", "true");
+    w.key("user", quoted(d.users[std::size_t(wall.user)].name));
+    if (WallBlend const& b = wall.blend; b != WallBlend{})
+        w.key("blend", fmt::format("{{left_m: {}, right_m: {}, top_m: {}, bottom_m: {}, power: {}, gamma: {}}}",
+                                   b.left_m, b.right_m, b.top_m, b.bottom_m, b.power, b.gamma));
+    if (!wall.warp_file.empty())
+        w.key("warp", "{file: " + quoted(wall.warp_file) + "}");
+    else if (wall.warp)
+        w.key("warp", mesh_text(*wall.warp));
+    if (wall.gain != gi::dvec3{1}) w.key("gain", vec(wall.gain));
+    if (wall.rank != 0) w.key("rank", std::to_string(wall.rank));
+}
+
+void write_window(Writer& w, DisplayWindow const& window)
+{
+    w.begin(window.name);
+    w.key("size_px", fmt::format("[{}, {}]", window.width_px, window.height_px));
+    if (window.x_px != 0 || window.y_px != 0)
+        w.key("position_px", fmt::format("[{}, {}]", window.x_px, window.y_px));
+    if (window.monitor >= 0) w.key("monitor", std::to_string(window.monitor));
+    if (window.fullscreen) w.key("fullscreen", "true");
+}
+
+void write_user(Writer& w, User const& user, Display const& d)
+{
+    w.begin(user.name);
+    w.key("interpupillary_m", fmt::format("{}", user.interpupillary_m));
+    w.key("head_position_m", vec(user.head.translation_m));
+    if (user.head.rotation_deg != gi::dvec3{0}) w.key("head_rotation_deg", vec(user.head.rotation_deg));
+    if (user.eye_offset_m != gi::dvec3{0}) w.key("eye_offset_m", vec(user.eye_offset_m));
+    if (user.tracker >= 0) w.key("head_tracker", quoted(d.trackers[std::size_t(user.tracker)].name));
+    if (!user.avatar.empty()) w.key("avatar", quoted(user.avatar));
+    if (user.eye_height_m) w.key("eye_height_m", fmt::format("{}", *user.eye_height_m));
+}
+
+void write_tracker(Writer& w, DisplayTracker const& t)
+{
+    w.begin(t.name);
+    w.key("type", name_of(t.type));
+    if (t.address != DisplayTracker{}.address) w.key("address", quoted(t.address));
+    if (t.port != 0) w.key("port", std::to_string(t.port));
+    if (!t.body.empty()) w.key("body", quoted(t.body));
+    for (LimbBody const& b : kLimbBodies)
+        if (!(t.*b.body).empty()) w.key(b.key, quoted(t.*b.body));
+    if (!t.file.empty()) w.key("file", quoted(t.file));
+    if (t.room_from_tracker != Placement{})
+        w.key("room_from_tracker", "{translation_m: " + vec(t.room_from_tracker.translation_m) +
+                                       ", rotation_deg: " + vec(t.room_from_tracker.rotation_deg) + "}");
+    if (t.latency_ms != 0) w.key("latency_ms", fmt::format("{}", t.latency_ms));
+    if (t.filter != TrackerFilter{})
+        w.key("filter", fmt::format("{{type: {}, min_cutoff_hz: {}, beta_per_m: {}}}",
+                                    t.filter.type == FilterType::none ? "none" : "one-euro",
+                                    t.filter.min_cutoff_hz, t.filter.beta_per_m));
+}
+
+} // namespace
+
+std::string to_yaml(Display const& d)
+{
+    Writer w;
+    if (!d.name.empty()) w.line("name: " + quoted(d.name));
+    w.line("walls:");
+    for (Wall const& wall : d.walls) write_wall(w, wall, d);
+    w.line("windows:");
+    for (DisplayWindow const& window : d.windows) write_window(w, window);
+    w.line("users:");
+    for (User const& user : d.users) write_user(w, user, d);
+    if (!d.trackers.empty()) w.line("trackers:");
+    for (DisplayTracker const& tracker : d.trackers) write_tracker(w, tracker);
+    return w.take();
+}
+
+void save_display(std::filesystem::path const& file, Display const& display)
+{
+    gi::write_text(file, to_yaml(display));
+}
+
+} // namespace viewer

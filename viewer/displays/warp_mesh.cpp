@@ -1,0 +1,58 @@
+#include "viewer/displays/warp_mesh.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+constexpr double kLeastArea = 1e-12; ///< of a triangle, as a share of the viewport
+
+double twice_area(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c)
+{
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+bool is_within(glm::dvec2 p, double low, double high) // false for NaN
+{
+    return p.x >= low && p.x <= high && p.y >= low && p.y <= high;
+}
+
+/// Each triangle of a cell, lower one first.
+std::array<std::array<WarpNode const*, 3>, 2> triangles(WallMesh const& m, int i, int j)
+{
+    WarpNode const &ll = m.node(i, j), &lr = m.node(i + 1, j), &ur = m.node(i + 1, j + 1), &ul = m.node(i, j + 1);
+    return {{{&ll, &lr, &ur}, {&ll, &ur, &ul}}};
+}
+
+} // namespace
+
+std::optional<std::string> find_fault(WallMesh const& m)
+{
+    if (m.columns < 2 || m.rows < 2 || m.columns > kMostWarpNodes || m.rows > kMostWarpNodes)
+        return fmt::format("a mesh has 2 to {} columns and rows of nodes, this one {} and {}", kMostWarpNodes,
+                           m.columns, m.rows);
+    if (m.nodes.size() != std::size_t(m.columns) * std::size_t(m.rows))
+        return fmt::format("{} columns and {} rows need {} nodes, there are {}", m.columns, m.rows,
+                           m.columns * m.rows, m.nodes.size());
+    for (std::size_t n = 0; n < m.nodes.size(); ++n) {
+        if (!is_within(m.nodes[n].place, -1, 2))
+            return fmt::format("node {} is farther outside the viewport than its size", n);
+        if (!is_within(m.nodes[n].picture, 0, 1)) return fmt::format("node {} is outside the picture", n);
+    }
+    double turn = 0;
+    for (int j = 0; j + 1 < m.rows; ++j)
+        for (int i = 0; i + 1 < m.columns; ++i)
+            for (auto const& t : triangles(m, i, j)) {
+                double const area = twice_area(t[0]->place, t[1]->place, t[2]->place);
+                if (std::abs(area) < kLeastArea)
+                    return fmt::format("cell {} of row {} is flat: three of its nodes lie on a line", i, j);
+                if (turn == 0) turn = area;
+                if (turn * area < 0)
+                    return fmt::format("the mesh folds at cell {} of row {}: what lies there would be drawn twice",
+                                       i, j);
+            }
+    return {};
+}
+
+} // namespace viewer

@@ -1,0 +1,105 @@
+#include "viewer/engine/lane.h"
+
+#include "gi/filter/filter_names.h"
+
+#include <limits>
+
+namespace viewer {
+namespace {
+
+/// Still pictures are filtered while they have few paths, and no longer when they have many: so they converge to
+/// what the method converges to.
+constexpr int kFilteredFrames = 48;
+/// Likewise light is taken from the other eye only at first.
+constexpr int kSharedFrames = 16;
+
+/// For methods that do not know where surfaces were: nothing is reused while anything moves.
+void without_motion(gi::Picture& picture)
+{
+    if (picture.find("motion") != nullptr) return;
+    gi::Layer& motion = picture.add("motion", 3);
+    std::fill(motion.data.begin(), motion.data.end(), std::numeric_limits<float>::quiet_NaN());
+}
+
+} // namespace
+
+gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
+{
+    if (c.lights || c.materials || c.coverage || c.emitters || c.environment) return gi::SceneChange::light;
+    return c.geometry || camera_moved ? gi::SceneChange::motion : gi::SceneChange::nothing;
+}
+
+Lane::Lane(std::string const& method, gi::MovingWorld const& world, Settings const& settings, int threads,
+           std::vector<ViewOrder> const& first, gi::Report& report)
+    : report_(report), threads_(threads)
+{
+    gi::RenderSettings s = render_settings(settings, threads);
+    double pixels = 0;
+    for (ViewOrder const& v : first) pixels += double(v.width) * v.height;
+    s.width = std::max(1, int(std::sqrt(pixels))); // the plan counts pixels
+    s.height = std::max(1, int(std::lround(pixels / s.width)));
+    // One set of axes for all frames: what is seen moves, and fresh axes for every frame would flicker.
+    if (s.slhb.schedule == gi::Schedule::automatic && method == "slhb") s.slhb.schedule = gi::Schedule::stored;
+    s.slhb.interleave = 1;
+    renderer_ = gi::find_method(method).frames(world, first.front().camera, s, report);
+}
+
+std::vector<gi::RenderResult> Lane::render(FrameOrder const& order, std::span<HiddenPixels const> hidden,
+                                           gi::Changes const& changes, Settings const& settings,
+                                           gi::StopRequest const& stop)
+{
+    if (!first_) renderer_->changed(changes);
+    bool anything_moved = first_ || seen_.size() != order.views.size() || changes.any();
+    seen_.resize(order.views.size());
+    std::vector<bool> moved(order.views.size());
+    for (std::size_t k = 0; k < order.views.size(); ++k) {
+        ViewOrder const& now = order.views[k];
+        Seen& s = seen_[k];
+        bool const same = s.reuse && s.name == now.name && s.width == now.width && s.height == now.height &&
+                          s.most_frames == settings.reuse;
+        if (!same) s.reuse = std::make_unique<gi::TemporalReuse>(gi::TemporalSettings{settings.reuse});
+        moved[k] = !same || !(s.camera == now.camera) || s.hidden != hidden[k];
+        anything_moved |= moved[k];
+        s = {now.name, now.camera, now.width, now.height, std::move(s.reuse), settings.reuse, hidden[k]};
+    }
+    first_ = false;
+    still_ = anything_moved ? 1 : still_ + 1;
+    std::vector<gi::FrameView> views;
+    for (std::size_t k = 0; k < order.views.size(); ++k) {
+        ViewOrder const& v = order.views[k];
+        views.push_back(
+            {v.camera, v.width, v.height, settings.share_eyes && still_ <= kSharedFrames ? v.partner : -1});
+        if (hidden[k]) views.back().hidden = *hidden[k];
+    }
+    // Their blur would stay in the mean of a picture at rest.
+    auto const endings = settings.share_endings && anything_moved ? gi::Endings::cached : gi::Endings::exact;
+    renderer_->follow(settings.schedule == "auto" ? settings.followed : 0);
+    std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(order.paths), endings, stop);
+    for (std::size_t k = 0; k < results.size(); ++k)
+        finish(k, results, views[k].partner, scene_change(changes, moved[k]), settings);
+    return results;
+}
+
+void Lane::finish(std::size_t view, std::vector<gi::RenderResult>& results, int partner, gi::SceneChange change,
+                  Settings const& settings)
+{
+    gi::RenderResult& result = results[view];
+    gi::TakenLight taken;
+    gi::TemporalReuse const* past = nullptr;
+    if (!result.light_from.empty()) {
+        taken = {&results[std::size_t(partner)].picture, result.light_from};
+        past = seen_[std::size_t(partner)].reuse.get();
+    }
+    if (settings.reuse > 1) {
+        gi::StageTimer const timer(report_, "temporal reuse");
+        without_motion(result.picture);
+        seen_[view].reuse->add(result.picture, change, past, taken.from);
+    }
+    gi::DenoiseSettings const filter = denoise_settings(settings, threads_);
+    if (!gi::can_filter(filter, result.paths, settings.reuse > 1) || still_ > kFilteredFrames) return;
+    gi::StageTimer const timer(report_, "denoise");
+    gi::DenoiseReport const done = gi::denoise(result.picture, filter, taken);
+    if (done.not_finite > 0) report_.lose("pixels not filtered, as a value is not finite", done.not_finite);
+}
+
+} // namespace viewer

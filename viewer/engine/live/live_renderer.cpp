@@ -1,0 +1,348 @@
+#include "viewer/engine/live/live_renderer.h"
+
+#include "gi/core/error.h"
+#include "viewer/engine/live/background_priority.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace viewer {
+namespace {
+
+double pixels_of(std::vector<ViewOrder> const& views)
+{
+    double sum = 0;
+    for (ViewOrder const& v : views) sum += double(v.width) * v.height;
+    return sum;
+}
+
+bool same_views(std::vector<ViewOrder> const& a, std::vector<ViewOrder> const& b)
+{
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](ViewOrder const& x, ViewOrder const& y) {
+        return x.camera == y.camera && x.name == y.name;
+    });
+}
+
+bool same_sizes(std::vector<ViewOrder> const& a, std::vector<ViewOrder> const& b)
+{
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](ViewOrder const& x, ViewOrder const& y) {
+        return x.width == y.width && x.height == y.height;
+    });
+}
+
+} // namespace
+
+LiveRenderer::LiveRenderer(Session& session, SessionClock const& clock, FrameLink* link, Hooks hooks)
+    : session_(session), clock_(clock), link_(link), hooks_(std::move(hooks)), thread_([this] { run(); })
+{
+}
+
+LiveRenderer::~LiveRenderer() { stop(); }
+
+void LiveRenderer::stop()
+{
+    quit_ = true;
+    {
+        std::lock_guard const lock(mutex_);
+        if (refining_) refining_->request();
+    }
+    wake_.notify_all();
+    if (thread_.joinable()) thread_.join();
+}
+
+void LiveRenderer::ask(std::function<void(Session&)> question)
+{
+    {
+        std::lock_guard const lock(mutex_);
+        jobs_.push_back([this, question = std::move(question)] { question(session_); });
+    }
+    wake_.notify_all();
+}
+
+void LiveRenderer::post(Change change, std::function<void(std::string const&)> done)
+{
+    {
+        std::lock_guard const lock(mutex_);
+        jobs_.push_back([this, change = std::move(change), done = std::move(done)] {
+            std::string error;
+            try {
+                session_.apply(change);
+                changes_.push_back(change);
+            } catch (gi::InputError const& e) {
+                error = e.what();
+            }
+            if (done) done(error);
+        });
+        if (refining_) refining_->request();
+    }
+    wake_.notify_all();
+}
+
+void LiveRenderer::go_to(double scene_s)
+{
+    ask([this, scene_s](Session&) { scene_s_ = scene_s; });
+}
+
+void LiveRenderer::look(Viewpoint viewpoint)
+{
+    bool moved = false;
+    {
+        std::lock_guard const lock(mutex_);
+        moved = !same_views(viewpoint.views, viewpoint_.views) || !(viewpoint.tracked == viewpoint_.tracked) ||
+                viewpoint.others != viewpoint_.others || !same_sizes(viewpoint.views, viewpoint_.views);
+        viewpoint_ = std::move(viewpoint);
+        if (moved) looked_ = true;
+        if (moved && refining_) refining_->request();
+    }
+    if (moved) wake_.notify_all();
+}
+
+void LiveRenderer::again()
+{
+    {
+        std::lock_guard const lock(mutex_);
+        looked_ = true;
+    }
+    wake_.notify_all();
+}
+
+std::shared_ptr<LiveFrame const> LiveRenderer::newest() const
+{
+    std::lock_guard const lock(mutex_);
+    return newest_;
+}
+
+bool LiveRenderer::rests() const
+{
+    std::lock_guard const lock(mutex_);
+    return resting_ && !looked_ && jobs_.empty();
+}
+
+std::shared_ptr<LiveFrame const> LiveRenderer::next_frame(double timeout_s)
+{
+    double const asked = clock_.now_s();
+    again();
+    std::unique_lock lock(mutex_);
+    published_.wait_for(lock, std::chrono::duration<double>(timeout_s),
+                        [&] { return quit_ || stopped_ || (newest_ && newest_->begun_s >= asked); });
+    return newest_ && newest_->begun_s >= asked ? newest_ : nullptr;
+}
+
+void LiveRenderer::do_jobs()
+{
+    while (true) {
+        std::function<void()> job;
+        {
+            std::lock_guard const lock(mutex_);
+            if (jobs_.empty()) return;
+            resting_ = false;
+            job = std::move(jobs_.front());
+            jobs_.pop_front();
+        }
+        job();
+    }
+}
+
+/// Or until there is something to do.
+void LiveRenderer::wait_until(double time_s)
+{
+    std::unique_lock lock(mutex_);
+    wake_.wait_for(lock, std::chrono::duration<double>(std::max(0.0, time_s - clock_.now_s())),
+                   [&] { return quit_ || !jobs_.empty(); });
+}
+
+void LiveRenderer::run()
+{
+    BackgroundPriority const priority;
+    try {
+        if (link_ != nullptr)
+            run_linked();
+        else
+            run_leading();
+    } catch (std::exception const& e) {
+        if (hooks_.failed) hooks_.failed(e.what());
+    }
+    stopped_ = true;
+    published_.notify_all();
+    if (hooks_.published) hooks_.published();
+}
+
+void LiveRenderer::run_linked()
+{
+    link_->begin();
+    if (link_->leads())
+        run_leading();
+    else
+        run_following();
+    link_->end();
+}
+
+bool LiveRenderer::scene_may_move(Viewpoint const& now) const
+{
+    Settings const& s = session_.settings();
+    return !has_last_ || !changes_.empty() || (s.play && s.speed != 0 && session_.moves()) ||
+           !(now.tracked == last_.tracked) || now.others != last_.others || scene_s_ != last_.scene_s;
+}
+
+bool LiveRenderer::anything_moves(Viewpoint const& now) const
+{
+    return scene_may_move(now) || !same_views(now.views, last_views_);
+}
+
+/// A change like one of the user, so that a replay and the other ranks make it too.
+void LiveRenderer::choose_followed(bool may_move)
+{
+    Settings const& s = session_.settings();
+    bool const is_governed = s.method == "slhb" && s.schedule == "auto";
+    int const followed = is_governed ? follow_governor_.next(may_move) : 0;
+    if (followed == s.followed) return;
+    Change const change{"followed", followed};
+    session_.apply(change);
+    changes_.push_back(change);
+}
+
+FrameOrder LiveRenderer::make_order(Viewpoint const& now, bool still, FrameBudget& budget)
+{
+    Settings const& s = session_.settings();
+    budget = governor_.next(pixels_of(now.views), still, {s.paths, s.scale});
+    FrameOrder order;
+    order.frame = frame_++;
+    order.pose_s = now.pose_s;
+    order.display_s = now.display_s;
+    order.scene_s = scene_s_;
+    order.world_from_room = now.world_from_room;
+    order.tracked = now.tracked;
+    order.others = now.others;
+    order.changes = std::exchange(changes_, {});
+    order.views = now.views;
+    for (ViewOrder& v : order.views) {
+        v.width = std::max(1, int(std::lround(v.width * budget.scale)));
+        v.height = std::max(1, int(std::lround(v.height * budget.scale)));
+    }
+    order.paths = budget.paths;
+    return order;
+}
+
+void LiveRenderer::run_leading()
+{
+    while (!quit_) {
+        Viewpoint now;
+        bool looked = false;
+        {
+            std::lock_guard const lock(mutex_);
+            now = viewpoint_;
+            looked = looked_.exchange(false);
+            if (looked || !jobs_.empty()) resting_ = false;
+        }
+        do_jobs(); // after: so a frame has all that was asked before its viewpoint
+        double const begun = clock_.now_s();
+        Settings const& s = session_.settings();
+        if (has_last_ && s.play && session_.moves()) scene_s_ += s.speed * (begun - last_begun_s_);
+        last_begun_s_ = begun;
+        bool const still = !anything_moves(now);
+        bool const rests = !session_.has_scene() || now.views.empty() ||
+                           (still && (!s.refine || still_paths_ >= kConvergedPaths));
+        if (rests && !looked) {
+            if (link_ != nullptr) link_->check();
+            std::unique_lock lock(mutex_);
+            resting_ = true;
+            wake_.wait_for(lock, std::chrono::milliseconds(100),
+                           [&] { return quit_ || !jobs_.empty() || looked_; });
+            continue;
+        }
+        if (!session_.has_scene() || now.views.empty()) {
+            wait_until(begun + 0.01);
+            continue;
+        }
+        choose_followed(scene_may_move(now));
+        FrameBudget budget;
+        FrameOrder order = make_order(now, still, budget);
+        if (link_ != nullptr) link_->send(order);
+        {
+            std::lock_guard const lock(mutex_);
+            resting_ = false;
+            // Ranks must trace the same number of paths, and a comparison as many with both methods.
+            bool const may_end_early = still && link_ == nullptr && s.method == "slhb" && s.compare.empty();
+            refining_ = may_end_early ? std::make_shared<gi::StopRequest>() : nullptr;
+        }
+        if (!render(std::move(order), budget)) wait_until(clock_.now_s() + 0.2);
+        if (!still) wait_until(begun + 1 / s.rate_hz);
+    }
+}
+
+void LiveRenderer::run_following()
+{
+    while (!quit_) {
+        std::optional<FrameOrder> order = link_->receive();
+        if (!order) return;
+        for (Change const& c : order->changes) session_.apply(c);
+        render(std::move(*order), {});
+    }
+}
+
+/// Of the frame whose order is the last one, on whatever ranks.
+void LiveRenderer::measure(FrameWork const& work, FrameBudget const& budget)
+{
+    Settings const& s = session_.settings();
+    governor_.measured({last_.paths, budget.scale}, pixels_of(last_views_) / (budget.scale * budget.scale),
+                       work.seconds, s.rate_hz);
+    if (s.method == "slhb" && s.schedule == "auto")
+        follow_governor_.measured({work.following, work.moved, s.rate_hz});
+}
+
+bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
+{
+    auto frame = std::make_shared<LiveFrame>();
+    frame->begun_s = clock_.now_s();
+    frame->budget = budget;
+    gi::StopRequest never;
+    std::shared_ptr<gi::StopRequest> const stop = refining_;
+    if (hooks_.own_views) {
+        frame->ordered = order.views;
+        order.views = hooks_.own_views(order);
+    }
+    try {
+        frame->result = session_.render(order, stop ? *stop : never);
+    } catch (gi::InputError const& e) {
+        if (hooks_.failed) hooks_.failed(e.what());
+        frame->result = {};
+    }
+    {
+        std::lock_guard const lock(mutex_);
+        refining_ = nullptr;
+    }
+    frame->done_s = clock_.now_s();
+    bool const done = !frame->result.views.empty() || order.views.empty(); // a rank may have no walls to draw
+    if (!frame->result.views.empty()) {
+        order.paths = frame->result.paths;
+        still_paths_ = frame->result.still_frames > 1 ? still_paths_ + std::uint32_t(order.paths)
+                                                      : std::uint32_t(order.paths);
+    }
+    frame->still_paths = still_paths_;
+    frame->settings = session_.settings();
+    last_views_ = frame->ordered.empty() ? order.views : frame->ordered;
+    last_ = order;
+    has_last_ = true;
+    frame->order = std::move(order);
+    FrameWork const own{frame->done_s - frame->begun_s, frame->result.following, frame->result.moved};
+    if (done && link_ == nullptr) measure(own, budget);
+    if (!frame->result.views.empty()) stored_ = own.following.stored;
+    if (Settings const& s = frame->settings; s.method == "slhb")
+        frame->schedule = schedule_sentence(s.schedule, s.followed, stored_, follow_governor_.share_of_all());
+    if (done && hooks_.finished) hooks_.finished(*frame);
+    if (!done) return false;
+    FrameOrder const shown = frame->order;
+    {
+        std::lock_guard const lock(mutex_);
+        newest_ = std::move(frame);
+    }
+    published_.notify_all();
+    if (hooks_.published) hooks_.published();
+    if (link_ == nullptr) return true;
+    FrameWork const slowest = link_->wait_for_all(shown, own);
+    if (shown.views.empty()) stored_ = slowest.following.stored; // this rank has no hit buffers of its own
+    if (link_->leads()) measure(slowest, budget);
+    return true;
+}
+
+} // namespace viewer

@@ -1,0 +1,18 @@
+#pragma once
+#include "gi/scene/model/camera.h"
+#include "gi/scene/model/world.h"
+
+namespace viewer {
+
+/// What is seen at a place of a picture.
+struct Picked {
+    std::uint32_t triangle = 0, node = 0, material = 0; ///< of the world, the scene, the world
+    double distance_m = 0;
+    gi::dvec3 position{0}; ///< m, absolute
+};
+
+/// The nearest triangle on the ray of a camera through (x, y) in [0, 1]^2 of its picture, (0, 0) top left. Looks
+/// at every triangle: milliseconds for a million. Triangles without area are never met.
+std::optional<Picked> pick(gi::World const& world, gi::Camera const& camera, double aspect, glm::dvec2 at);
+
+} // namespace viewer

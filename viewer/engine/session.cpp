@@ -1,0 +1,160 @@
+#include "viewer/engine/session.h"
+
+#include "gi/core/error.h"
+#include "gi/filter/filter_names.h"
+#include "gi/kernel/device.h"
+#include "gi/scene/motion/animation.h"
+
+#include <algorithm>
+#include <malloc.h>
+
+namespace viewer {
+namespace {
+
+/// Settings that the structures of a method are built by.
+bool decides_method(std::string const& key)
+{
+    for (char const* const k : {"method", "device", "schedule", "directions", "resolution", "axes", "lamps",
+                                "light_paths", "points", "ao_radius", "bounces", "seed"})
+        if (key == k) return true;
+    return false;
+}
+
+} // namespace
+
+Session::Session(LoadScene load, int threads, gi::Report& report)
+    : load_(std::move(load)), threads_(threads), report_(report)
+{
+}
+
+bool Session::moves() const
+{
+    return world_ && std::any_of(scene_->playbacks.begin(), scene_->playbacks.end(), [&](gi::Playback const& p) {
+               return p.weight > 0 && p.speed != 0 && scene_->animations[std::size_t(p.animation)].duration_s > 0;
+           });
+}
+
+void Session::apply(Change const& change)
+{
+    if (change.key == "scene") return load(change);
+    if (is_scene_edit(change.key)) {
+        if (!world_) throw gi::InputError("'" + change.key + "'", "no scene is loaded", "load one first");
+        if (is_object_edit(change.key)) return place_object(change);
+        pending_.add(edit(*world_, change));
+        std::erase_if(edits_, [&](Change const& c) { return c.key == change.key; });
+        edits_.push_back(change);
+        return;
+    }
+    if (is_hidden_mask(change.key)) return hidden_.apply(change);
+    Settings changed = settings_;
+    set(changed, change);
+    if (change.key == "device") gi::check_device(changed.device == "cuda" ? gi::Space::device : gi::Space::host);
+    if (change.key == "denoise") gi::check_filter(denoise_settings(changed, 0));
+    settings_ = std::move(changed);
+    if (decides_method(change.key)) restart();
+    if (change.key == "compare") compared_.reset();
+}
+
+void Session::restart()
+{
+    main_.reset();
+    compared_.reset();
+}
+
+void Session::load(Change const& change)
+{
+    if (!change.value.is_string())
+        throw gi::InputError("'scene' = " + change.value.dump(), "it takes a name",
+                             "set a file or a built-in scene");
+    std::string const name = change.value.get<std::string>();
+    auto scene = load_(name, report_);
+    placed_.clear();
+    edits_.clear();
+    rebuild(std::move(scene));
+    name_ = name;
+    malloc_trim(0); // the scene before is gone: a session may load many
+}
+
+void Session::rebuild(std::shared_ptr<gi::Scene const> scene)
+{
+    auto world = std::make_unique<gi::MovingWorld>(scene, time_s_, report_);
+    restart(); // lanes look at the world
+    world_ = std::move(world);
+    scene_ = std::move(scene);
+    pending_ = {};
+    for (Change const& c : edits_) edit(*world_, c);
+}
+
+gi::dvec3 Session::position_of(std::string const& object) const
+{
+    if (!world_)
+        throw gi::InputError("there is no object '" + object + "'", "no scene is loaded", "load one first");
+    gi::Pose now = gi::evaluate_pose(*scene_, time_s_);
+    place(*scene_, placed_, now);
+    return placed_object(*scene_, now, placed_, {"object." + object + ".scale", 1}).position;
+}
+
+void Session::place_object(Change const& change)
+{
+    gi::Pose now = gi::evaluate_pose(*scene_, time_s_);
+    place(*scene_, placed_, now);
+    PlacedObject const object = placed_object(*scene_, now, placed_, change);
+    if (!scene_->nodes[object.node].driven) {
+        auto scene = std::make_shared<gi::Scene>(*scene_);
+        scene->nodes[object.node].driven = true;
+        rebuild(std::move(scene));
+    }
+    std::erase_if(placed_, [&](PlacedObject const& p) { return p.node == object.node; });
+    placed_.push_back(object);
+}
+
+gi::Changes Session::move_to(FrameOrder const& order)
+{
+    time_s_ = order.scene_s;
+    gi::Pose pose = gi::evaluate_pose(*scene_, time_s_);
+    place(*scene_, placed_, pose);
+    if (drive_) drive_(*scene_, order, pose);
+    gi::Changes changes = std::exchange(pending_, {});
+    changes.add(world_->advance(pose));
+    return changes;
+}
+
+SessionFrame Session::render(FrameOrder const& order, gi::StopRequest const& stop)
+{
+    if (!world_) throw gi::InputError("there is nothing to render", "no scene is loaded", "load one first");
+    gi::Changes changes;
+    {
+        gi::StageTimer const timer(report_, "world");
+        changes = move_to(order);
+    }
+    SessionFrame frame;
+    frame.moved = changes.geometry;
+    if (order.views.empty()) return frame;
+    if (!main_)
+        main_ = std::make_unique<Lane>(settings_.method, *world_, settings_, threads_, order.views, report_);
+    std::vector<HiddenPixels> hidden;
+    for (ViewOrder const& v : order.views) hidden.push_back(hidden_.pixels(v));
+    std::vector<gi::RenderResult> results = main_->render(order, hidden, changes, settings_, stop);
+    frame.still_frames = main_->still_frames();
+    frame.following = main_->following();
+    frame.options = results[0].options;
+    frame.paths = int(results[0].paths);
+    for (std::size_t k = 0; k < results.size(); ++k) {
+        frame.rays += results[k].rays;
+        frame.views.push_back({std::move(results[k].picture), {}, hidden[k]});
+    }
+    if (!settings_.compare.empty() && settings_.compare != settings_.method) {
+        if (!compared_)
+            compared_ =
+                std::make_unique<Lane>(settings_.compare, *world_, settings_, threads_, order.views, report_);
+        std::vector<gi::RenderResult> others = compared_->render(order, hidden, changes, settings_, stop);
+        for (std::size_t k = 0; k < others.size(); ++k) {
+            frame.rays += others[k].rays;
+            frame.views[k].compared = std::move(others[k].picture);
+        }
+    }
+    frame.stages_s = added_.times();
+    return frame;
+}
+
+} // namespace viewer

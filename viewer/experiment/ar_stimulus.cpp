@@ -1,0 +1,195 @@
+#include "viewer/experiment/ar_stimulus.h"
+
+#include "ar/scene/session_inputs.h"
+#include "gi/core/file.h"
+#include "study/script/sha256.h"
+
+#include <algorithm>
+#include <charconv>
+#include <fmt/format.h>
+#include <map>
+#include <yaml-cpp/yaml.h>
+
+namespace viewer {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::string_view kPrefix = "ar.";
+
+std::string text_of_file(fs::path const& file)
+{
+    auto const bytes = gi::read_bytes(file, std::size_t(1) << 20);
+    return {bytes.begin(), bytes.end()};
+}
+
+void set_at(YAML::Node node, std::string const& key, YAML::Node const& value)
+{
+    std::size_t const dot = key.find('.');
+    std::string const first = key.substr(0, dot);
+    if (dot == std::string::npos) {
+        node[first] = value;
+        return;
+    }
+    if (!node[first].IsDefined() || !node[first].IsMap()) node[first] = YAML::Node(YAML::NodeType::Map);
+    set_at(node[first], key.substr(dot + 1), value);
+}
+
+YAML::Node yaml_value_of(std::string const& text)
+{
+    try {
+        return YAML::Load(text);
+    } catch (YAML::Exception const&) {
+        return YAML::Node(text);
+    }
+}
+
+std::string with(std::string const& text, study::Patch const& overrides)
+{
+    YAML::Node root = YAML::Load(text);
+    for (auto const& [key, value] : overrides) set_at(root, key, yaml_value_of(value));
+    YAML::Emitter out;
+    out << root;
+    return out.c_str();
+}
+
+/// What is wrong with a text that was put together: its lines are nowhere to be seen.
+std::string without_place(std::string text, fs::path const& file)
+{
+    if (!text.starts_with(file.string() + ":")) return text;
+    text.erase(0, file.string().size());
+    return text.substr(std::min(text.find_first_not_of(":0123456789 "), text.size()));
+}
+
+/// All of the overrides together: one may need another. The one to blame is that without which the others can be,
+/// else the first that cannot be alone.
+void check_overrides(std::string const& text, ArStimulus const& s)
+{
+    auto const problem_of = [&](study::Patch const& overrides) -> std::optional<std::string> {
+        try {
+            parse_ar_session(with(text, overrides), s.session);
+        } catch (gi::InputError const& e) {
+            return e.what();
+        }
+        return std::nullopt;
+    };
+    auto const blame = [&](std::pair<std::string, std::string> const& one, std::string const& problem) {
+        std::string const key = std::string(kPrefix) + one.first;
+        throw ArSettingError(key, one.second, fmt::format("{}: {}", key, one.second),
+                             without_place(problem, s.session),
+                             "write what the session's file could have there (docs/ar.md)");
+    };
+    std::optional<std::string> const together = problem_of(s.overrides);
+    if (!together) return;
+    for (std::size_t k = 0; k < s.overrides.size(); ++k) {
+        study::Patch others = s.overrides;
+        others.erase(others.begin() + std::ptrdiff_t(k));
+        if (!problem_of(others)) blame(s.overrides[k], *together);
+    }
+    for (auto const& one : s.overrides)
+        if (auto const alone = problem_of({one})) blame(one, *alone);
+    blame(s.overrides.back(), *together);
+}
+
+template <class Number>
+Number number_of(std::string const& key, std::string const& text, char const* what)
+{
+    Number n{};
+    auto const [end, failure] = std::from_chars(text.data(), text.data() + text.size(), n);
+    if (failure != std::errc{} || end != text.data() + text.size() || !(n >= 0) || !(double(n) < 1e9))
+        throw ArSettingError(key, text, key + ": " + text, std::string("it is no ") + what, "write 0 or more");
+    return n;
+}
+
+ArShow show_of(std::string const& key, std::string const& text)
+{
+    if (text == "composite") return ArShow::composite;
+    if (text == "camera") return ArShow::camera;
+    if (text == "truth") return ArShow::truth;
+    throw ArSettingError(key, text, key + ": " + text, "there is nothing of that name to see",
+                         "choose composite, camera or truth");
+}
+
+std::string hash_of_file(fs::path const& file)
+{
+    static std::map<std::pair<std::string, fs::file_time_type>, std::string> known;
+    auto& hash = known[{file.string(), fs::last_write_time(file)}];
+    if (hash.empty()) {
+        auto const bytes = gi::read_bytes(file);
+        hash = study::sha256({reinterpret_cast<char const*>(bytes.data()), bytes.size()});
+    }
+    return hash;
+}
+
+/// A file, or the files of a folder; of a pattern of numbers those of its folder.
+void add_hash(fs::path const& what, std::string& all)
+{
+    std::error_code none;
+    if (fs::is_regular_file(what, none)) {
+        all += what.filename().string() + " " + hash_of_file(what) + "\n";
+        return;
+    }
+    bool const is_pattern = what.filename().string().find('%') != std::string::npos;
+    fs::path const folder = is_pattern ? what.parent_path() : what;
+    if (!fs::is_directory(folder, none)) return;
+    std::vector<fs::path> files;
+    for (auto const& entry : fs::directory_iterator(folder))
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    for (fs::path const& file : files) all += file.filename().string() + " " + hash_of_file(file) + "\n";
+}
+
+} // namespace
+
+bool is_ar_setting(std::string const& key) { return key == "ar" || key.starts_with(kPrefix); }
+
+ArStimulus ar_stimulus(study::Patch const& patch, fs::path const& folder)
+{
+    ArStimulus s;
+    std::string name;
+    for (auto const& [key, value] : patch)
+        if (key == "ar") name = value;
+    for (auto const& [key, value] : patch)
+        if (name.empty() && is_ar_setting(key))
+            throw ArSettingError(key, value, key + ": " + value, "there is no `ar: SESSION.yaml` beside it",
+                                 "name the AR session that it is a setting of");
+    s.session = folder / name;
+    if (!fs::is_regular_file(s.session))
+        throw ArSettingError("ar", name, "there is no AR session '" + s.session.string() + "'",
+                             "a stimulus is made of it",
+                             "make one (lightwell ar synthesize), or correct the path");
+    s.truth = s.session.parent_path() / "truth";
+    for (auto const& [key, value] : patch) {
+        if (!key.starts_with(kPrefix)) continue;
+        std::string const own = key.substr(kPrefix.size());
+        if (own == "frame")
+            s.frame = number_of<std::uint64_t>(key, value, "number of a frame");
+        else if (own == "from_s")
+            s.from_s = number_of<double>(key, value, "time in seconds");
+        else if (own == "show")
+            s.show = show_of(key, value);
+        else if (own == "truth")
+            s.truth = s.session.parent_path() / value;
+        else if (own == "poses")
+            s.poses = s.session.parent_path() / value;
+        else
+            s.overrides.emplace_back(own, value);
+    }
+    std::string const text = text_of_file(s.session);
+    parse_ar_session(text, s.session); // what is wrong within the file is said with its own place
+    check_overrides(text, s);
+    s.text = with(text, s.overrides);
+    return s;
+}
+
+ArSession session_of(ArStimulus const& s) { return parse_ar_session(s.text, s.session); }
+
+std::string content_hash(ArStimulus const& s)
+{
+    std::string all = s.text + "\n";
+    for (fs::path const& file : files_read_by(session_of(s))) add_hash(file, all);
+    if (!s.poses.empty()) add_hash(s.poses, all);
+    if (s.show == ArShow::truth) add_hash(s.truth, all);
+    return study::sha256(all);
+}
+
+} // namespace viewer

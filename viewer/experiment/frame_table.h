@@ -1,0 +1,50 @@
+#pragma once
+// What was swapped when, and where it was seen from: rows are kept in memory while stimuli are shown, and appended
+// to two files between trials.
+
+#include "viewer/devices/gl/swap_timer.h"
+#include "viewer/protocol/frame_order.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace viewer {
+
+struct FrameRow {
+    int step = 0, attempt = 1; ///< of the plan
+    std::string shown;         ///< letters of the stimuli; "-" = none
+    double swap_s = 0;         ///< steady clock
+    double uncertainty_ms = 0;
+    char const* method = "";
+    double render_ms = 0; ///< of the newest picture that was shown
+    int dropped = 0;      ///< refreshes before it that had nothing new
+};
+struct PoseRow {
+    double time_s = 0;
+    gi::dvec3 position{0};          ///< m, world
+    gi::dquat rotation{1, 0, 0, 0}; ///< world from camera
+};
+
+class FrameTable {
+public:
+    /// Appends to FOLDER/STEM_frames.csv and _poses.csv; they are made with their first row.
+    FrameTable(std::filesystem::path folder, std::string stem) : folder_(std::move(folder)), stem_(std::move(stem))
+    {
+    }
+
+    void add(FrameRow row) { frames_.push_back(std::move(row)); }
+    void add(PoseRow const& row) { poses_.push_back(row); }
+    /// Throws InputError where the files cannot be written; the rows stay.
+    void flush();
+    /// Both files as .csv.gz in place of .csv, what was compressed before kept.
+    void compress();
+
+private:
+    std::filesystem::path folder_;
+    std::string stem_;
+    std::vector<FrameRow> frames_;
+    std::vector<PoseRow> poses_;
+};
+
+} // namespace viewer

@@ -1,0 +1,211 @@
+#include "viewer/experiment/hmd_screen.h"
+
+#include "gi/core/error.h"
+#include "viewer/engine/live/navigation.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+#include <thread>
+
+namespace viewer {
+namespace {
+
+using Clock = InputEvent::Clock;
+constexpr std::chrono::seconds kPatience{20};     ///< without a session
+constexpr std::chrono::milliseconds kUnseen{100}; ///< without a frame that is seen
+constexpr double kTextWidth = 0.8; ///< of the text before the head: tangent of its angle to the middle, twice
+
+/// The headset has its own rate: a monitor must not hold it back.
+WindowSettings beside_headset(WindowSettings settings)
+{
+    settings.swap_interval = 0;
+    return settings;
+}
+
+glm::ivec2 size_of(HmdView const& view) { return {view.width, view.height}; }
+
+} // namespace
+
+HmdScreen::HmdScreen(ScreenSettings const& settings, HmdOptions const& headset, gi::Report& report)
+    : context_(report, beside_headset(settings.window)),
+      last_look_(Clock::now()),
+      report_(report),
+      keeper_(&context_.gl(), headset)
+{
+    if (!context_.window)
+        throw gi::InputError("no window beside the headset", "there is no display server for text and keys",
+                             "set DISPLAY, or start one (Xvfb)");
+    panel_ = std::make_unique<Panel>(*context_.window, settings.font_px);
+    HmdSession* session = nullptr;
+    if (next_frame(session)) session->end_frame();
+}
+
+HmdScreen::~HmdScreen()
+{
+    context_.gl().make_current();
+    panel_.reset();
+}
+
+glm::ivec2 HmdScreen::size_px() const { return context_.window->framebuffer_px(); }
+double HmdScreen::refresh_hz() const { return frame_.period_s > 0 ? 1 / frame_.period_s : 0; }
+
+std::vector<std::pair<std::string, std::string>> HmdScreen::about() const
+{
+    glm::ivec2 const px = size_of(frame_.views[0]);
+    return {{"display", fmt::format("headset, {} x {} px an eye", px.x, px.y)},
+            {"opengl", context_.gl().description()}};
+}
+
+/// The next frame that somebody will see; none where nobody sees any for a while (the headset lies on the table).
+/// Input is read meanwhile.
+std::optional<HmdFrame> HmdScreen::next_frame(HmdSession*& session)
+{
+    auto const begun = Clock::now();
+    int const losses = keeper_.losses();
+    while (true) {
+        poll_windows();
+        for (InputEvent& e : context_.window->take_events()) input_.push_back(e);
+        gamepads_.poll(input_);
+        session = keeper_.poll();
+        if (keeper_.losses() != losses)
+            throw gi::InputError("the headset was lost", keeper_.trouble(), "start it, and go on with --resume");
+        if (session != nullptr)
+            if (std::optional<HmdFrame> frame = session->begin_frame()) {
+                look(*frame);
+                if (frame->should_render) return frame;
+                session->end_frame();
+            }
+        auto const waited = Clock::now() - begun;
+        if (session != nullptr && waited > kUnseen) return {};
+        if (session == nullptr && waited > kPatience)
+            throw gi::InputError("the headset has no session", keeper_.trouble(), "look after its runtime");
+        if (session == nullptr) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+}
+
+/// Buttons are known as they are when a frame begins.
+void HmdScreen::look(HmdFrame const& frame)
+{
+    auto const now = Clock::now();
+    longest_look_ms_ =
+        std::max(longest_look_ms_, std::chrono::duration<double, std::milli>(now - last_look_).count());
+    last_look_ = now;
+    for (int hand = 0; hand < 2; ++hand) {
+        HmdHand const &was = hands_[std::size_t(hand)], &is = frame.hands[std::size_t(hand)];
+        bool const before[] = {was.select, was.trigger, was.menu}, after[] = {is.select, is.trigger, is.menu};
+        for (int code = 0; code < 3; ++code) {
+            if (before[code] == after[code]) continue;
+            InputEvent e;
+            e.kind = InputKind::hand_button;
+            e.action = after[code] ? InputAction::press : InputAction::release;
+            e.device = hand;
+            e.code = code;
+            e.time = now;
+            input_.push_back(e);
+        }
+    }
+    hands_ = frame.hands;
+    if (!start_ && frame.tracked.head) start_ = frame.tracked.head->position;
+    frame_ = frame;
+}
+
+gi::dmat4 HmdScreen::world_from_room() const
+{
+    Navigation const upright(world_from_camera_, 1, gi::dvec3(world_from_camera_[3]));
+    return upright.world_from_room() * glm::translate(gi::dmat4(1), -start_.value_or(gi::dvec3{0}));
+}
+
+std::vector<ViewOrder> HmdScreen::own_views(gi::dmat4 const& world_from_camera, double)
+{
+    world_from_camera_ = world_from_camera;
+    std::vector<ViewOrder> views;
+    if (frame_.views[0].width <= 0) return views; // nobody has looked yet
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+        gi::Camera camera = frame_.views[eye].camera;
+        camera.world_from_camera = world_from_room() * camera.world_from_camera;
+        glm::ivec2 const px = size_of(frame_.views[eye]);
+        views.push_back({eye == 0 ? "left eye" : "right eye", camera, px.x, px.y, eye == 0 ? -1 : 0});
+    }
+    return views;
+}
+
+void HmdScreen::draw_text(ScreenContent const& content)
+{
+    clear(target_of(*context_.window), ScreenContent::kGrey);
+    if (!content.text) return;
+    panel_->begin();
+    content.text(size_px());
+    panel_->finish();
+    panel_->draw();
+}
+
+/// What the window has, before both eyes: as far to the side as what lies straight ahead, far away.
+void HmdScreen::place_text(HmdFrame const& frame)
+{
+    glm::ivec2 const from = size_px();
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+        DrawTarget const to = eyes_.target(eye);
+        gi::ViewTangents const t = frame.views[eye].camera.off_axis.value_or(gi::ViewTangents{-1, 1, -1, 1});
+        double const px_per_tangent = to.size_px.x / (t.right - t.left);
+        int const width = int(kTextWidth * px_per_tangent), height = width * from.y / std::max(1, from.x);
+        int const x = int(-t.left * px_per_tangent) - width / 2;
+        int const y = int(t.top / (t.top - t.bottom) * to.size_px.y) - height / 2; // from the top
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to.framebuffer);
+        // The window has its bottom row first, the eye its top row.
+        glBlitFramebuffer(0, 0, from.x, from.y, x, y + height, x + width, y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+ScreenSwap HmdScreen::present(ScreenContent const& content)
+{
+    HmdSession* session = nullptr;
+    std::optional<HmdFrame> const next = next_frame(session);
+    context_.gl().make_current();
+    draw_text(content);
+    if (content.patch_size_px.x > 0 && !std::exchange(patch_told_, true))
+        report_.lose("patches for a photodiode, which a headset has not");
+    if (!next) { // only the window shows it
+        context_.window->swap();
+        return {Clock::now(), Clock::now(), 1e3, "openxr_predicted"};
+    }
+    HmdFrame const& frame = *next;
+    std::array const sizes{size_of(frame.views[0]), size_of(frame.views[1])};
+    auto const shown = content.panes.empty() ? nullptr : content.panes[0].frame;
+    if (shown && shown->result.views.size() == 2) {
+        if (taken_ != shown) eyes_.take(*shown);
+        taken_ = shown;
+        std::vector<ViewOrder> const now = own_views(world_from_camera_, 0);
+        eyes_.draw(*shown, {now[0].camera, now[1].camera}, sizes, shown->settings.reproject,
+                   tone_settings(shown->settings));
+    } else {
+        eyes_.clear(sizes, ScreenContent::kGrey);
+    }
+    if (content.text) place_text(frame);
+    context_.window->swap();
+    HmdPicture picture;
+    picture.views = frame.views;
+    picture.values = TextureValues::srgb;
+    picture.first_row = FirstRow::top;
+    picture.textures = eyes_.textures();
+    session->end_frame(picture);
+    Clock::time_point const seen{
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(frame.display_s))};
+    return {seen, seen, 0.5e3 * frame.period_s, "openxr_predicted"};
+}
+
+void HmdScreen::wait_until(Clock::time_point time)
+{
+    do {
+        HmdSession* session = nullptr;
+        if (next_frame(session)) session->repeat_frame();
+    } while (Clock::now() < time);
+}
+
+std::vector<InputEvent> HmdScreen::take_input() { return std::exchange(input_, {}); }
+
+} // namespace viewer

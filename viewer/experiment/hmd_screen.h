@@ -1,0 +1,53 @@
+#pragma once
+// A headset through OpenXR. Onsets are the runtime's predictions of when a frame is seen, and are labelled so.
+// Text floats before the head, and is in a window of the computer too, which has the keyboard.
+
+#include "viewer/app/hmd_eyes.h"
+#include "viewer/devices/gl/gamepads.h"
+#include "viewer/devices/gl/panel.h"
+#include "viewer/devices/xr/keeper.h"
+#include "viewer/experiment/screen_settings.h"
+
+namespace viewer {
+
+class HmdScreen : public Screen {
+public:
+    /// Throws InputError where there is no runtime, headset or window.
+    HmdScreen(ScreenSettings const& settings, HmdOptions const& headset, gi::Report& report);
+    ~HmdScreen() override;
+
+    glm::ivec2 size_px() const override;
+    double refresh_hz() const override;
+    std::vector<std::pair<std::string, std::string>> about() const override;
+    ScreenSwap present(ScreenContent const& content) override;
+    void wait_until(InputEvent::Clock::time_point time) override;
+    std::vector<InputEvent> take_input() override;
+    double take_longest_look_ms() override { return std::exchange(longest_look_ms_, 0); }
+    bool has_own_views() const override { return true; }
+    std::vector<ViewOrder> own_views(gi::dmat4 const& world_from_camera, double steady_s) override;
+
+private:
+    std::optional<HmdFrame> next_frame(HmdSession*& session);
+    void look(HmdFrame const& frame);
+    void draw_text(ScreenContent const& content);
+    void place_text(HmdFrame const& frame);
+    gi::dmat4 world_from_room() const;
+
+    HmdContext context_;
+    std::unique_ptr<Panel> panel_;
+    HmdEyes eyes_;
+    Gamepads gamepads_;
+    HmdFrame frame_; ///< the last one
+    std::array<HmdHand, 2> hands_;
+    std::vector<InputEvent> input_;
+    std::shared_ptr<LiveFrame const> taken_;
+    gi::dmat4 world_from_camera_{1}; ///< of the stimulus
+    std::optional<gi::dvec3> start_; ///< where the head was first, in the room
+    InputEvent::Clock::time_point last_look_;
+    double longest_look_ms_ = 0;
+    gi::Report& report_;
+    bool patch_told_ = false;
+    HmdKeeper keeper_; ///< its sessions end before the context
+};
+
+} // namespace viewer

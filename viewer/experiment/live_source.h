@@ -1,0 +1,48 @@
+#pragma once
+#include "viewer/experiment/stimulus_place.h"
+
+namespace viewer {
+
+/// Renders stimuli while they are seen, in a thread of its own.
+class LiveSource : public StimulusSource {
+public:
+    /// @param published  called on the rendering thread   All arguments outlive it.
+    LiveSource(SceneAccess const& scenes, int threads, SessionClock const& clock, std::function<void()> published,
+               gi::Report& report);
+    ~LiveSource() override;
+
+    void prepare(StimulusSettings const& stimulus, StimulusView const& view) override;
+    bool is_ready() override;
+    void at(double seconds) override;
+    void change(StimulusSettings const& stimulus) override;
+    void walk(NavigationInput const& input, double seconds) override;
+    void rest() override;
+    bool moves() const override { return plays_ || stimulus_.path != StimulusPath::none; }
+    std::shared_ptr<LiveFrame const> newest() override;
+
+private:
+    void post(Change const& change);
+    void post_settings(Settings const& wanted);
+    void look(double seconds);
+
+    SceneAccess const& scenes_;
+    SessionClock const& clock_;
+    Session session_;
+    Settings posted_;   ///< that the session has, or will have soon
+    std::string scene_; ///< likewise
+    bool edited_ = false;
+    StimulusSettings stimulus_;
+    StimulusView view_;
+
+    std::mutex mutex_; ///< of what follows: the rendering thread writes it
+    std::string error_;
+    std::optional<StimulusPlace> place_; ///< none = not known yet
+    double settled_s_ = 0;               ///< session clock: frames that began later have all settings
+    int warm_frames_ = 0;                ///< of those
+    std::atomic<bool> plays_{false};     ///< clips go on once it is seen
+    double last_s_ = -1;
+    std::optional<Navigation> navigation_; ///< of a walk
+    std::unique_ptr<LiveRenderer> renderer_;
+};
+
+} // namespace viewer

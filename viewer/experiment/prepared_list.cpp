@@ -1,0 +1,67 @@
+#include "viewer/experiment/prepared_list.h"
+
+#include "gi/core/error.h"
+#include "study/run/adaptive_run.h"
+#include "viewer/experiment/trial.h"
+
+#include <algorithm>
+
+namespace viewer {
+
+namespace {
+
+/// Those that a procedure may choose.
+std::vector<double> levels_of(study::Script const& script, study::Block const& block, study::Trial const& trial)
+{
+    std::vector<double> levels;
+    if (block.compare && trial.procedure >= 0)
+        levels = reachable_levels(block.procedures[std::size_t(trial.procedure)], *block.compare);
+    if (levels.empty())
+        throw gi::InputError(script.file + ": block " + block.name + ": stimuli: prepared",
+                             "its levels cannot be told before", "write stimuli: live");
+    return levels;
+}
+
+} // namespace
+
+std::map<std::string, PreparedStimulus> prepared_list(study::Script const& script, glm::ivec2 screen_px,
+                                                      float font_px, std::string const& version)
+{
+    std::map<std::string, PreparedStimulus> list;
+    bool const is_any = std::any_of(script.blocks.begin(), script.blocks.end(),
+                                    [](study::Block const& b) { return b.stimuli == study::Stimuli::prepared; });
+    if (!is_any) return list;
+    auto const add = [&](study::Block const& block, study::Trial const& trial, study::Stimulus const& stimulus) {
+        PreparedStimulus p;
+        p.stimulus = stimulus_settings(script, block, stimulus);
+        std::size_t const together =
+            block.is_sequential ? 1 : trial.order.size() + (trial.reference.has_value() ? 1 : 0);
+        p.view = view_of(block, p.stimulus, together, screen_px, font_px);
+        p.where = script.file + ": block " + block.name + ", " + stimulus_label(script, block, stimulus);
+        list.emplace(prepared_key(p, version), p);
+    };
+    for (int participant = 1; participant <= script.participants.count; ++participant)
+        for (study::PlanStep const& step : make_plan(script, participant).steps) {
+            if (step.kind != study::PlanStepKind::trial) continue;
+            study::Block const& block = script.blocks[std::size_t(step.block)];
+            if (block.stimuli != study::Stimuli::prepared) continue;
+            if (block.task == study::Task::adjustment)
+                throw gi::InputError(script.file + ": block " + block.name + ": stimuli: prepared",
+                                     "what is adjusted is rendered while it is seen", "write stimuli: live");
+            for (study::Stimulus s : step.trial.stimuli) {
+                bool const has_levels = block.compare && !block.compare->vary.empty();
+                if (!s.is_varied || s.level || !has_levels) {
+                    add(block, step.trial, s);
+                    continue;
+                }
+                for (double const level : levels_of(script, block, step.trial)) {
+                    s.level = level;
+                    add(block, step.trial, s);
+                }
+            }
+            if (step.trial.reference) add(block, step.trial, *step.trial.reference);
+        }
+    return list;
+}
+
+} // namespace viewer

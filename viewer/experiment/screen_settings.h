@@ -1,0 +1,16 @@
+#pragma once
+#include "viewer/devices/gl/window.h"
+#include "viewer/displays/display.h"
+#include "viewer/experiment/screen.h"
+
+#include <optional>
+
+namespace viewer {
+
+struct ScreenSettings {
+    WindowSettings window;
+    float font_px = 22;
+    std::optional<Display> display; ///< in place of the window; text and patch are in its first one
+};
+
+} // namespace viewer

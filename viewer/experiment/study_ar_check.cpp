@@ -1,0 +1,97 @@
+#include "ar/camera/error.h"
+#include "study/script/condition.h"
+#include "study/script/setting_place.h"
+#include "viewer/experiment/ar_pictures.h"
+#include "viewer/experiment/study_stimuli.h"
+
+#include <algorithm>
+#include <regex>
+
+namespace viewer {
+namespace {
+
+bool is_ar(study::Patch const& patch)
+{
+    return std::any_of(patch.begin(), patch.end(), [](auto const& one) { return is_ar_setting(one.first); });
+}
+
+/// "file:12:3: ..."
+bool has_place(std::string const& message)
+{
+    static std::regex const place("^[^ ]+:[0-9]+:[0-9]+: .*");
+    return std::regex_match(message, place);
+}
+
+/// The message without a place is that of a setting: it gets the one where the script has it.
+[[noreturn]] void throw_at(LoadedScript const& loaded, std::string const& key, std::string const& value,
+                           std::string const& message)
+{
+    study::Place const place = study::place_of_setting(loaded.text, key, value);
+    throw gi::InputError(gi::TextLocation{loaded.script.file, place.line, place.column}, message, "", "");
+}
+
+} // namespace
+
+void ArStimulusCheck::add(study::Block const& block, study::Stimulus const& stimulus)
+{
+    study::Patch patch = settings_of(loaded_.script, block, stimulus);
+    if (is_ar(patch)) patches_.emplace(std::move(patch), block.camera);
+}
+
+void ArStimulusCheck::add(study::Plan const& plan)
+{
+    study::Script const& s = loaded_.script;
+    for (study::PlanStep const& step : plan.steps) {
+        bool const walks = step.kind == study::PlanStepKind::free_walk;
+        if (step.kind != study::PlanStepKind::trial && !walks) continue;
+        study::Block const block = step.block >= 0 ? s.blocks[std::size_t(step.block)] : plain_block(s);
+        std::vector<study::Stimulus> stimuli = step.trial.stimuli;
+        if (walks) {
+            stimuli = {study::Stimulus{step.levels, false, {}}};
+            study::Patch const patch = settings_of(s, block, stimuli[0]);
+            for (auto const& [key, value] : patch)
+                if (is_ar_setting(key))
+                    throw_at(
+                        loaded_, key, value,
+                        "a free walk through an AR session (its frames are seen from where the camera was) give "
+                        "it a scene");
+        }
+        if (step.trial.reference) stimuli.push_back(*step.trial.reference);
+        for (study::Stimulus& stimulus : stimuli) {
+            bool const is_open = stimulus.is_varied && !stimulus.level && block.compare;
+            if (!is_open) {
+                add(block, stimulus);
+                continue;
+            }
+            for (double const level : {block.compare->low, block.compare->high}) {
+                stimulus.level = level;
+                add(block, stimulus);
+            }
+        }
+    }
+}
+
+void ArStimulusCheck::check() const
+{
+    for (auto const& [patch, camera] : patches_) {
+        auto const at_setting = [&](std::string const& key, auto const& e) {
+            for (auto const& [k, value] : patch)
+                if (k == key) throw_at(loaded_, key, value, e.what());
+            throw_at(loaded_, key, "", e.what());
+        };
+        try {
+            StimulusSettings const s = stimulus_settings(patch, camera, loaded_.folder);
+            check_ar_pictures(*s.ar);
+        } catch (ArSettingError const& e) {
+            at_setting(e.key, e);
+        } catch (gi::InputError const& e) {
+            if (has_place(e.what())) throw;
+            at_setting("ar", e);
+        } catch (ar::InputError const& e) {
+            if (has_place(e.what())) throw;
+            at_setting("ar", e);
+        }
+    }
+}
+
+} // namespace viewer

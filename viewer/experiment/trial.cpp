@@ -1,0 +1,360 @@
+#include "viewer/experiment/trial.h"
+
+#include "gi/core/quantile.h"
+#include "study/run/trial.h"
+#include "viewer/experiment/page.h"
+#include "viewer/experiment/refresh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace viewer {
+namespace {
+
+constexpr int kGap_px = 16;
+constexpr float kTextLines = 6.5f;  ///< below the pictures
+constexpr double kRound_ms = 6000;  ///< of a path, where stimuli stay until the answer
+constexpr double kAdjustSteps = 40; ///< over the whole range
+
+/// "ba" with a reference: between the two of a pair, before all others.
+std::string presented(study::TrialRequest const& r)
+{
+    std::string order = r.step->trial.order;
+    if (!r.reference) return order;
+    order.insert(!r.block->is_sequential && order.size() == 2 ? 1 : 0, 1, 'r');
+    return order;
+}
+
+double render_ms(LiveFrame const& f) { return 1e3 * (f.done_s - f.begun_s); }
+
+} // namespace
+
+std::vector<ScreenPane> panes_for(std::size_t count, glm::ivec2 screen_px, float text_px)
+{
+    std::vector<ScreenPane> panes(count);
+    int const n = int(count), height = std::max(screen_px.y / 2, screen_px.y - int(text_px));
+    int const width = std::max(1, (screen_px.x - kGap_px * (n - 1)) / std::max(1, n));
+    for (int i = 0; i < n; ++i) {
+        panes[std::size_t(i)].corner_px = {i * (width + kGap_px), 0};
+        panes[std::size_t(i)].size_px = {width, height};
+    }
+    return panes;
+}
+
+StimulusView view_of(study::Block const& block, StimulusSettings const& stimulus, std::size_t together,
+                     glm::ivec2 screen_px, float font_px)
+{
+    StimulusView view;
+    view.size_px = panes_for(together, screen_px, kTextLines * font_px).front().size_px;
+    view.stereo = *stereo_mode(stimulus.settings.stereo);
+    view.duration_s = 1e-3 * block.timing.stimulus_ms.value_or(kRound_ms);
+    view.warmup_frames = block.timing.warmup_frames;
+    return view;
+}
+
+TrialPresenter::Trial::Trial(TrialPresenter& presenter, study::TrialRequest const& request)
+    : p_(presenter),
+      request_(request),
+      block_(*request.block),
+      order_(presented(request)),
+      response_(block_, p_.keys_, request.step->trial.order),
+      level_(request.level)
+{
+    for (char const letter : order_) {
+        if (std::any_of(known_.begin(), known_.end(), [&](Known const& k) { return k.letter == letter; }))
+            continue;
+        std::size_t const at = letter == 'r' ? request.stimuli.size() : std::size_t(letter - 'a');
+        study::Stimulus const& stimulus = letter == 'r' ? *request.reference : request.stimuli.at(at);
+        StimulusSettings settings = stimulus_settings(*request.script, block_, stimulus);
+        StereoMode const stereo = *stereo_mode(settings.settings.stereo);
+        StimulusSource& source = p_.source(known_.size(), block_.stimuli, settings);
+        known_.push_back({letter, stimulus, std::move(settings), &source, stereo});
+    }
+}
+
+ScreenContent TrialPresenter::Trial::content(std::string const& letters)
+{
+    ScreenContent c;
+    glm::ivec2 const px = p_.screen_->size_px();
+    c.panes = panes_for(letters.size(), px, kTextLines * p_.options_.screen.font_px);
+    for (std::size_t i = 0; i < letters.size(); ++i)
+        for (Known const& k : known_)
+            if (k.letter == letters[i]) {
+                c.panes[i].frame = k.source->newest();
+                c.panes[i].stereo = k.stereo;
+            }
+    p_.add_patch(c, !letters.empty());
+    return c;
+}
+
+/// Input and wishes while nothing is to be shown. False where the trial is over.
+bool TrialPresenter::Trial::wait(double until_s, bool cross)
+{
+    ScreenContent empty = content("");
+    if (cross) empty.text = [](glm::vec2 px) { draw_cross(px); };
+    p_.present(empty);
+    do {
+        p_.screen_->wait_until(Clock::now() + std::chrono::milliseconds(5));
+        p_.between_frames();
+        heed(p_.screen_->take_input());
+        if (p_.should_end()) return false;
+    } while (p_.now() < until_s);
+    return true;
+}
+
+bool TrialPresenter::Trial::get_ready(Known const& k)
+{
+    std::size_t const together = block_.is_sequential ? 1 : order_.size();
+    StimulusView view = view_of(block_, k.settings, together, p_.screen_->size_px(), p_.options_.screen.font_px);
+    view.on_walls = p_.on_walls();
+    k.source->prepare(k.settings, view);
+    while (!k.source->is_ready())
+        if (!wait(0, block_.is_sequential)) return false;
+    k.source->rest();
+    return true;
+}
+
+/// One stimulus after the other, so that each has the machine for itself.
+bool TrialPresenter::Trial::get_all_ready()
+{
+    for (Known const& k : known_)
+        if (!get_ready(k)) return false;
+    return wait(p_.trial_end_s_ + 1e-3 * block_.timing.iti_ms, block_.is_sequential);
+}
+
+/// Before a stimulus that follows another one. What moves and was seen already begins anew.
+bool TrialPresenter::Trial::wait_between(std::size_t next)
+{
+    double const until_s = p_.now() + 1e-3 * block_.timing.isi_ms;
+    for (Known const& k : known_)
+        if (k.letter == order_[next] && order_.find(k.letter) < next && k.source->moves() && !get_ready(k))
+            return false;
+    return wait(until_s, true);
+}
+
+bool TrialPresenter::Trial::has_ended()
+{
+    if (p_.should_end()) return true;
+    return is_answered_ || (block_.timing.timeout_ms && p_.now() > onset_s_ + 1e-3 * *block_.timing.timeout_ms);
+}
+
+/// What is not meant as an answer; true where one of the events was for the program.
+bool TrialPresenter::Trial::heed(std::vector<InputEvent> const& events)
+{
+    bool was_any = false;
+    for (InputEvent const& e : events) {
+        was_any |= p_.heed_window(e);
+        is_lost_ |= e.kind == InputKind::focus && e.action == InputAction::release;
+    }
+    return was_any;
+}
+
+void TrialPresenter::Trial::take_answers()
+{
+    for (InputEvent const& e : p_.screen_->take_input()) {
+        if (heed({e}) || is_answered_ || p_.seconds(e.time) < onset_s_) continue;
+        is_answered_ = response_.take(e);
+    }
+    adjust();
+}
+
+/// Another level of what is varied, seen as soon as it is rendered.
+void TrialPresenter::Trial::adjust()
+{
+    int const steps = response_.take_steps();
+    if (steps == 0 || !block_.compare || !level_) return;
+    study::Compare const& c = *block_.compare;
+    double const low = to_scale(c.scale, c.low), high = to_scale(c.scale, c.high);
+    double const moved = to_scale(c.scale, *level_) + steps * (high - low) / kAdjustSteps;
+    level_ = study::from_scale(c.scale, std::clamp(moved, low, high));
+    for (Known& k : known_) {
+        if (!k.stimulus.is_varied) continue;
+        k.stimulus.level = level_;
+        k.settings = stimulus_settings(*request_.script, block_, k.stimulus);
+        k.source->change(k.settings);
+    }
+}
+
+void TrialPresenter::Trial::add_rows(std::string const& letters, ScreenSwap const& swap, int dropped,
+                                     ScreenContent const& c)
+{
+    FrameRow row;
+    row.step = request_.step_index;
+    row.attempt = request_.attempt;
+    row.shown = letters.empty() ? "-" : letters;
+    row.swap_s = p_.seconds(swap.time);
+    row.uncertainty_ms = swap.uncertainty_ms;
+    row.method = swap.method;
+    row.dropped = dropped;
+    for (ScreenPane const& pane : c.panes)
+        if (pane.frame) row.render_ms = std::max(row.render_ms, render_ms(*pane.frame));
+    if (block_.stimuli == study::Stimuli::live && !c.panes.empty() && c.panes[0].frame)
+        p_.keep_pose(row.swap_s, c.panes[0].frame->order.views);
+    p_.table_.add(std::move(row));
+}
+
+void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer)
+{
+    bool const stays = !block_.timing.stimulus_ms && takes_answer;
+    double const length_s = 1e-3 * block_.timing.stimulus_ms.value_or(0);
+    std::vector<Known*> seen;
+    for (Known& k : known_)
+        if (letters.find(k.letter) != std::string::npos) seen.push_back(&k);
+    for (Known* const k : seen) k->source->at(0);
+    heed(p_.screen_->take_input());                       // what was pressed before is no answer
+    std::vector<std::shared_ptr<LiveFrame const>> frames; // that were seen
+    std::vector<double> render;
+    auto const note_frames = [&](ScreenContent const& c) {
+        for (ScreenPane const& pane : c.panes)
+            if (pane.frame && std::find(frames.begin(), frames.end(), pane.frame) == frames.end()) {
+                frames.push_back(pane.frame);
+                render.push_back(render_ms(*pane.frame));
+                if (frames.size() > 8) frames.erase(frames.begin());
+            }
+    };
+    ScreenContent c = content(letters);
+    if (stays) c.text = [this](glm::vec2 px) { response_.draw(px); };
+    ScreenSwap swap = p_.present(c);
+    ScreenSwap const onset = swap;
+    onset_s_ = p_.seconds(onset.time);
+    onset_uncertainty_ms_ = onset.uncertainty_ms;
+    p_.screen_->take_longest_look_ms();
+    p_.markers_.send(onset_s_, "stimulus",
+                     {{"step", request_.step_index}, {"attempt", request_.attempt}, {"shown", letters}});
+    add_rows(letters, swap, 0, c);
+    note_frames(c);
+    int shown = 1, dropped = 0;
+    double const first_s = p_.seconds(onset.seen);
+    double last_s = first_s;
+    while (!p_.should_end()) {
+        if (!stays && last_s + p_.period_s_ > first_s + length_s - 0.5 * p_.period_s_) break;
+        if (takes_answer) {
+            take_answers();
+            if (stays && has_ended()) break;
+        }
+        for (Known* const k : seen) k->source->at(p_.now() - onset_s_);
+        c = content(letters);
+        int clicked = -1;
+        if (stays) c.text = [&](glm::vec2 px) { clicked = response_.draw(px); };
+        swap = p_.present(c);
+        if (clicked >= 0 && response_.click(clicked)) is_answered_ = true;
+        double const at_s = p_.seconds(swap.seen);
+        int const lost = dropped_between(at_s - last_s, p_.period_s_);
+        dropped += lost;
+        ++shown;
+        last_s = at_s;
+        add_rows(letters, swap, lost, c);
+        note_frames(c);
+    }
+    c = content("");
+    swap = p_.present(c);
+    double const end_s = p_.seconds(swap.time);
+    dropped += dropped_between(p_.seconds(swap.seen) - last_s, p_.period_s_);
+    add_rows("", swap, 0, c);
+    for (Known* const k : seen) k->source->rest();
+    longest_look_ms_ = std::max(longest_look_ms_, p_.screen_->take_longest_look_ms());
+
+    double const p99_ms = render.empty() ? 0 : gi::quantile(render, 0.99);
+    for (char const letter : letters) {
+        study::StimulusShown s;
+        s.letter = letter;
+        s.onset_s = onset_s_;
+        s.duration_s = end_s - onset_s_;
+        s.onset_method = onset.method;
+        s.onset_uncertainty_ms = onset.uncertainty_ms;
+        s.frames_planned = stays ? shown + dropped : std::max(1, int(std::lround(length_s / p_.period_s_)));
+        s.frames_shown = shown;
+        s.frames_dropped = dropped;
+        s.render_ms_mean =
+            std::accumulate(render.begin(), render.end(), 0.0) / std::max<double>(1, double(render.size()));
+        s.render_ms_p99 = p99_ms;
+        for (Known const& k : known_)
+            if (k.letter == letter) s.settings_sha256 = k.settings.sha256;
+        done_.shown.push_back(std::move(s));
+    }
+}
+
+void TrialPresenter::Trial::give_feedback()
+{
+    bool const wanted =
+        request_.step->trial.phase == study::Phase::practice ? block_.practice.has_feedback : block_.has_feedback;
+    std::string const& right = request_.step->trial.answer;
+    if (!wanted || right.empty() || !is_answered_) return;
+    bool const is_right = response_.response() == right;
+    ScreenContent c = content("");
+    c.text = [&](glm::vec2 px) { draw_page(px, {{PageLine::Kind::heading, is_right ? "right" : "wrong"}}, ""); };
+    p_.present(c);
+    p_.screen_->wait_until(Clock::now() + std::chrono::microseconds(int(1e3 * block_.timing.feedback_ms)));
+}
+
+study::TrialDone TrialPresenter::Trial::run()
+{
+    p_.see_in(known_.front().settings.view.value_or(p_.options_.view));
+    bool const ready = get_all_ready();
+    if (ready && !block_.is_sequential) {
+        appear(order_, true);
+    } else if (ready) {
+        for (std::size_t i = 0; i < order_.size() && !p_.should_end(); ++i) {
+            if (i > 0 && !wait_between(i)) break;
+            appear(order_.substr(i, 1), i + 1 == order_.size());
+        }
+    }
+    // The answer may come while the last stimulus is seen, or after it.
+    while (ready && !has_ended()) {
+        ScreenContent c = content("");
+        int clicked = -1;
+        c.text = [&](glm::vec2 px) { clicked = response_.draw(px); };
+        p_.present(c);
+        if (clicked >= 0 && response_.click(clicked)) is_answered_ = true;
+        take_answers();
+    }
+    longest_look_ms_ = std::max(longest_look_ms_, p_.screen_->take_longest_look_ms());
+    done_.step = request_.step_index;
+    done_.attempt = request_.attempt;
+    done_.level = level_;
+    if (p_.should_end()) {
+        p_.end_early();
+        done_.is_valid = false;
+        done_.reason = "skipped";
+        return done_;
+    }
+    if (is_answered_ && response_.given()) {
+        GivenAnswer const& by = *response_.given();
+        done_.response = response_.response();
+        done_.value = block_.task == study::Task::adjustment ? level_ : response_.value();
+        done_.response_s = p_.seconds(by.time);
+        done_.reaction_ms = 1e3 * (*done_.response_s - onset_s_);
+        done_.response_uncertainty_ms = onset_uncertainty_ms_ + longest_look_ms_;
+        done_.device = by.input;
+        p_.markers_.send(*done_.response_s, "answer",
+                         {{"step", request_.step_index}, {"answer", done_.response}, {"input", by.input}});
+    }
+    if (is_lost_) {
+        done_.is_valid = false;
+        done_.reason = "lost_focus";
+    }
+    give_feedback();
+    return done_;
+}
+
+study::TrialDone TrialPresenter::show(study::TrialRequest const& request)
+{
+    SessionStatus& status = experimenter_.status;
+    status.trials_done = request.trials_done;
+    status.trials_planned = request.trials_planned;
+    status.doing =
+        fmt::format("trial {} of {}, {}", request.trials_done + 1, request.trials_planned, request.block->name);
+    study::TrialDone done = Trial(*this, request).run();
+    study::TrialDone judged = done;
+    judge(script_, request.step->trial, judged);
+    status.bad_trials += !judged.is_valid;
+    status.trials_done += request.attempt == 1 ? 1 : 0; // each of the plan counts once
+    status.last =
+        done.reaction_ms ? fmt::format("{} after {:.0f} ms", done.response, *done.reaction_ms) : done.reason;
+    trial_end_s_ = now();
+    return done;
+}
+
+} // namespace viewer

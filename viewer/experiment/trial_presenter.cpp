@@ -1,0 +1,305 @@
+#include "viewer/experiment/trial_presenter.h"
+
+#include "gi/core/error.h"
+#include "viewer/experiment/ar_source.h"
+#include "viewer/experiment/hmd_screen.h"
+#include "viewer/experiment/live_source.h"
+#include "viewer/experiment/page.h"
+#include "viewer/experiment/prepared.h"
+#include "viewer/experiment/refresh.h"
+#include "viewer/experiment/window_screen.h"
+
+#include <GLFW/glfw3.h>
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+constexpr double kPage_Hz = 30;
+
+std::unique_ptr<Screen> open_screen(StimulusViewer viewer, TrialOptions const& options, gi::Report& report)
+{
+    if (viewer == StimulusViewer::headset)
+        return std::make_unique<HmdScreen>(options.screen, options.headset, report);
+    return std::make_unique<WindowScreen>(options.screen, report);
+}
+
+} // namespace
+
+TrialPresenter::TrialPresenter(study::Script const& script, TrialOptions const& options, gi::Report& report)
+    : script_(script),
+      options_(options),
+      report_(report),
+      viewer_(options.view),
+      screen_(open_screen(options.view, options, report)),
+      keys_(script),
+      markers_(script.record.markers, options.marker_port, script.id, report),
+      experimenter_(options.remote, report),
+      table_(options.folder, options.stem),
+      period_s_(1 / script.timing.expected_hz)
+{
+    experimenter_.status.experiment = script.id;
+    experimenter_.status.participant = options.participant;
+    experimenter_.status.started_s = now();
+    if (double const hz = screen_->refresh_hz(); hz > 0) period_s_ = 1.0 / hz;
+}
+
+TrialPresenter::~TrialPresenter()
+{
+    try {
+        if (script_.record.compress_frames)
+            table_.compress();
+        else
+            table_.flush();
+    } catch (gi::InputError const& e) {
+        report_.lose("rows of frames and poses that could not be kept", 1, e.what());
+    }
+}
+
+double TrialPresenter::seconds(Clock::time_point t) const
+{
+    return std::chrono::duration<double>(t.time_since_epoch()).count();
+}
+
+double TrialPresenter::now() const { return seconds(Clock::now()); }
+
+std::vector<std::pair<std::string, std::string>> TrialPresenter::about() const
+{
+    auto all = options_.about;
+    for (auto const& fact : screen_->about()) all.push_back(fact);
+    double const hz = screen_->refresh_hz();
+    all.emplace_back("refresh_hz", hz > 0 ? fmt::format("{:g}", hz) : "unknown");
+    all.emplace_back("display_lag_ms", fmt::format("{:g}", script_.timing.display_lag_ms));
+    return all;
+}
+
+std::function<std::vector<ViewOrder>(gi::Camera const&)> TrialPresenter::on_walls()
+{
+    if (!screen_->has_own_views()) return {};
+    // Seen about a refresh later.
+    return [this](gi::Camera const& camera) {
+        return screen_->own_views(camera.world_from_camera, now() + period_s_);
+    };
+}
+
+/// Swaps that do not wait for the display are made to come one refresh after the other.
+ScreenSwap TrialPresenter::present(ScreenContent content)
+{
+    between_frames();
+    if (paced_) screen_->wait_until(next_swap_);
+    ScreenSwap const swap = screen_->present(content);
+    auto const period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s_));
+    // What drawing takes belongs to the period; what came late is not made up for.
+    next_swap_ = std::max(next_swap_ + period, Clock::now());
+    return swap;
+}
+
+void TrialPresenter::see_in(StimulusViewer viewer)
+{
+    if (viewer == viewer_) return;
+    bool const headset = viewer == StimulusViewer::headset;
+    if (!headset) instruct("Please take the headset off.", -1);
+    screen_.reset(); // one panel at a time
+    screen_ = open_screen(viewer, options_, report_);
+    viewer_ = viewer;
+    if (double const hz = screen_->refresh_hz(); hz > 0) period_s_ = 1 / hz;
+    study::CalibrationDone const kept = calibrate(script_.timing);
+    if (should_end()) end_early();
+    if (!kept.passed && script_.timing.vsync == study::Vsync::required)
+        throw gi::InputError(headset ? "the headset" : "the window", kept.reason,
+                             "write vsync: record where onsets need not be exact");
+    experimenter_.note(now(), "display",
+                       fmt::format("{}, a refresh every {:.3f} ms (sd {:.3f}), onsets {}{}{}",
+                                   headset ? "headset" : "window", kept.period_mean_ms, kept.period_sd_ms,
+                                   kept.onset_method, kept.passed ? "" : ", not passed: ", kept.reason));
+    if (headset) instruct("Please put the headset on. Its triggers answer, the other button goes on.", -1);
+}
+
+void TrialPresenter::between_frames()
+{
+    experimenter_.poll(now());
+    if (options_.stop != nullptr && options_.stop->requested() && !should_end()) {
+        experimenter_.note(now(), "abort", "the program was interrupted");
+        experimenter_.abort("interrupted (SIGINT or SIGTERM)");
+    }
+}
+
+void TrialPresenter::add_patch(ScreenContent& content, bool white) const
+{
+    if (!script_.timing.sync_patch) return;
+    auto const& patch = *script_.timing.sync_patch;
+    using study::Corner;
+    bool const left = patch.corner == Corner::bottom_left || patch.corner == Corner::top_left;
+    bool const top = patch.corner == Corner::top_left || patch.corner == Corner::top_right;
+    glm::ivec2 const px = screen_->size_px();
+    content.patch_size_px = {patch.px, patch.px};
+    content.patch_corner_px = {left ? 0 : px.x - patch.px, top ? 0 : px.y - patch.px};
+    content.patch_is_white = white;
+}
+
+study::CalibrationDone TrialPresenter::calibrate(study::Timing const& timing)
+{
+    paced_ = false;
+    std::vector<double> swaps;
+    std::string method;
+    ScreenContent empty;
+    constexpr int kFirst = 10; // they build pipelines
+    for (int i = 0; i < timing.calibrate.frames + kFirst && !should_end(); ++i) {
+        ScreenSwap const swap = present(empty);
+        method = swap.method;
+        if (i >= kFirst) swaps.push_back(seconds(swap.seen));
+    }
+    experimenter_.check_aborted(); // too few swaps are not the display's fault
+    study::CalibrationDone done = judge_refresh(swaps, screen_->refresh_hz(), timing, method);
+    using study::OnsetMethod;
+    bool const is_less = (timing.onset == OnsetMethod::oml && method != "oml") ||
+                         (timing.onset == OnsetMethod::openxr && method != "openxr_predicted") ||
+                         timing.onset == OnsetMethod::wp_presentation;
+    if (is_less) {
+        done.passed = false;
+        done.reason += std::string(done.reason.empty() ? "" : "; ") +
+                       "onsets of the method that the script asks for cannot be had from this display";
+    }
+    // Swaps that come much faster than the display's refreshes do not wait for it.
+    paced_ = done.period_mean_ms < 0.5e3 * period_s_;
+    if (!paced_ && done.passed) period_s_ = 1e-3 * done.period_mean_ms;
+    return done;
+}
+
+bool TrialPresenter::is_confirm(InputEvent const& e) const
+{
+    return e.meant_for == InputFor::scene && keys_.given(e, {"confirm"}).has_value();
+}
+
+void TrialPresenter::keep_pose(double time_s, std::vector<ViewOrder> const& views)
+{
+    study::Record const& record = script_.record;
+    bool const is_due =
+        record.poses_by_frame || (record.head_pose_hz > 0 && time_s >= last_pose_s_ + 1 / record.head_pose_hz);
+    if (!is_due || views.empty()) return;
+    last_pose_s_ = time_s;
+    gi::dmat4 const m = views[0].camera.world_from_camera;
+    table_.add(PoseRow{time_s, gi::dvec3(m[3]), glm::quat_cast(glm::dmat3(m))});
+}
+
+std::string TrialPresenter::confirm_hint(std::string const& what) const
+{
+    return fmt::format("{}: {}", keys_.input_of("confirm"), what);
+}
+
+bool TrialPresenter::page(std::function<void(glm::vec2)> const& text,
+                          std::function<bool(InputEvent const&)> const& done, std::function<bool()> const& over)
+{
+    bool const was_paced = std::exchange(paced_, false);
+    screen_->take_input(); // what was pressed before is not meant for it
+    bool is_done = false;
+    while (!is_done && !should_end()) {
+        ScreenContent content;
+        content.text = text;
+        present(content);
+        screen_->wait_until(Clock::now() + std::chrono::microseconds(int(1e6 / kPage_Hz)));
+        for (InputEvent const& e : screen_->take_input())
+            if (!heed_window(e)) is_done |= done(e);
+        is_done |= over && over();
+    }
+    paced_ = was_paced;
+    if (!is_done) end_early();
+    return is_done;
+}
+
+/// What the experimenter wished for ends what is under way: skipped, it is done; aborted, it is not.
+void TrialPresenter::end_early()
+{
+    experimenter_.check_aborted();
+    experimenter_.take_wish();
+}
+
+/// What is meant for the program: the window is closed, or escape pressed twice, which end the session.
+bool TrialPresenter::heed_window(InputEvent const& e)
+{
+    constexpr std::chrono::seconds kTwice{2};
+    bool const escape = e.kind == InputKind::key && e.action == InputAction::press && e.code == GLFW_KEY_ESCAPE;
+    if (!escape && e.kind != InputKind::close) return false;
+    bool const twice = escape && e.time - escaped_ < kTwice;
+    if (escape) escaped_ = e.time;
+    if (!twice && escape) return true;
+    experimenter_.note(seconds(e.time), "abort", escape ? "escape was pressed twice" : "the window was closed");
+    experimenter_.abort("aborted by the participant");
+    return true;
+}
+
+study::StepDone TrialPresenter::instruct(std::string const& markdown, int step)
+{
+    study::StepDone done{step, now(), 0, ""};
+    experimenter_.status.doing = "instructions";
+    std::vector<PageLine> const lines = parse_page(markdown);
+    std::string const footer = confirm_hint("go on");
+    bool const read = page([&](glm::vec2 px) { draw_page(px, lines, footer); },
+                           [&](InputEvent const& e) { return is_confirm(e); });
+    done.end_s = now();
+    if (!read) done.reason = "skipped";
+    return done;
+}
+
+study::StepDone TrialPresenter::rest(std::string const& prompt, double least_s, int step)
+{
+    study::StepDone done{step, now(), 0, ""};
+    experimenter_.status.doing = "break";
+    std::vector<PageLine> const lines = parse_page(prompt.empty() ? "Take a break." : prompt);
+    double const end = now() + least_s;
+    auto const left = [&] { return int(std::ceil(end - now())); };
+    bool const rested = page(
+        [&](glm::vec2 px) {
+            draw_page(px, lines, left() > 0 ? fmt::format("{} s", left()) : confirm_hint("go on"));
+        },
+        [&](InputEvent const& e) { return now() >= end && is_confirm(e); });
+    done.end_s = now();
+    if (!rested) done.reason = "skipped";
+    return done;
+}
+
+StimulusSource& TrialPresenter::source(std::size_t number, study::Stimuli kind, StimulusSettings const& stimulus)
+{
+    if (stimulus.ar) {
+        bool const is_prepared = kind == study::Stimuli::prepared;
+        auto& all = is_prepared ? ar_prepared_ : ar_;
+        while (all.size() <= number)
+            all.push_back(
+                std::make_unique<ArSource>(is_prepared ? options_.prepared : "", options_.version, report_));
+        return *all[number];
+    }
+    if (kind == study::Stimuli::prepared) {
+        while (prepared_.size() <= number)
+            prepared_.push_back(std::make_unique<PreparedSource>(options_.prepared, options_.version));
+        return *prepared_[number];
+    }
+    while (live_.size() <= number)
+        live_.push_back(std::make_unique<LiveSource>(
+            options_.scenes, options_.threads, clock_, [] { glfwPostEmptyEvent(); }, report_));
+    return *live_[number];
+}
+
+study::Wish TrialPresenter::wish()
+{
+    try {
+        table_.flush();
+    } catch (gi::InputError const& e) { // the journal decides whether a session can go on
+        report_.lose("times that rows of frames could not be written", 1, e.what());
+    }
+    between_frames();
+    if (experimenter_.is_paused()) {
+        experimenter_.status.doing = "paused";
+        page(
+            [&](glm::vec2 px) {
+                draw_page(px, {{PageLine::Kind::text, "A moment, please."}}, "");
+            },
+            [](InputEvent const&) { return false; }, [&] { return !experimenter_.is_paused(); });
+    }
+    experimenter_.check_aborted();
+    return experimenter_.take_wish();
+}
+
+std::vector<study::NoteTaken> TrialPresenter::notes() { return experimenter_.take_notes(); }
+
+} // namespace viewer

@@ -1,0 +1,98 @@
+#pragma once
+// Shows the steps of a session to a participant in a window (study/run/presenter.h says what is asked of it).
+
+#include "study/run/presenter.h"
+#include "viewer/devices/xr/session.h"
+#include "viewer/experiment/answer_keys.h"
+#include "viewer/experiment/experimenter.h"
+#include "viewer/experiment/frame_table.h"
+#include "viewer/experiment/markers.h"
+#include "viewer/experiment/screen_settings.h"
+#include "viewer/experiment/stimulus_source.h"
+
+namespace viewer {
+
+struct TrialOptions {
+    ScreenSettings screen;
+    StimulusViewer view = StimulusViewer::window; ///< where a stimulus says nothing of it, and for text at first
+    HmdOptions headset;
+    SceneAccess scenes;
+    int threads = 0;              ///< 0 = all
+    std::string participant;      ///< for the experimenter
+    std::filesystem::path folder; ///< of the session, for its frames
+    std::string stem;             ///< "sub-P001_ses-01"
+    RemoteOptions remote;
+    gi::StopRequest const* stop = nullptr; ///< of Ctrl-C; null = none
+    int marker_port = kMarkerPort;
+    std::filesystem::path prepared; ///< pictures made ahead (study prepare)
+    std::string version;            ///< of the program that made them
+    std::vector<std::pair<std::string, std::string>> about;
+};
+
+class TrialPresenter : public study::Presenter {
+public:
+    /// Opens the window. All arguments outlive it. Throws InputError.
+    TrialPresenter(study::Script const& script, TrialOptions const& options, gi::Report& report);
+    ~TrialPresenter() override;
+
+    glm::ivec2 screen_px() const { return screen_->size_px(); }
+
+    double now() const override;
+    std::vector<std::pair<std::string, std::string>> about() const override;
+    study::CalibrationDone calibrate(study::Timing const& timing) override;
+    bool ask_consent(std::string const& markdown) override;
+    study::ParticipantAsked ask_participant(std::vector<std::string> const& questions) override;
+    study::StepDone instruct(std::string const& markdown, int step) override;
+    study::StepDone rest(std::string const& prompt, double least_s, int step) override;
+    study::StepDone walk(study::TrialRequest const& where, std::string const& prompt, double seconds) override;
+    study::QuestionnaireDone ask(study::Questionnaire const& questionnaire, int step) override;
+    study::TrialDone show(study::TrialRequest const& trial) override;
+    study::Wish wish() override;
+    std::vector<study::NoteTaken> notes() override;
+
+private:
+    using Clock = InputEvent::Clock;
+    class Trial; ///< one of them, while it runs
+
+    ScreenSwap present(ScreenContent content);
+    /// The other display, where it is not the one that is open; the participant is told to put a headset on or
+    /// off.
+    void see_in(StimulusViewer viewer);
+    void between_frames();
+    /// Views of walls for a source; empty in a window.
+    std::function<std::vector<ViewOrder>(gi::Camera const&)> on_walls();
+    bool should_end() const { return experimenter_.wants_end(); }
+    StimulusSource& source(std::size_t number, study::Stimuli kind, StimulusSettings const& stimulus);
+    /// Until `done` says so, 30 times a second, or the experimenter ends it (false).
+    bool page(std::function<void(glm::vec2)> const& text, std::function<bool(InputEvent const&)> const& done,
+              std::function<bool()> const& over = {});
+    bool heed_window(InputEvent const& event);
+    void end_early();
+    /// Of the first view, as often as record.head_pose_hz says.
+    void keep_pose(double time_s, std::vector<ViewOrder> const& views);
+    bool is_confirm(InputEvent const& event) const;
+    std::string confirm_hint(std::string const& what) const;
+    double seconds(Clock::time_point t) const;
+    void add_patch(ScreenContent& content, bool white) const;
+
+    study::Script const& script_;
+    TrialOptions const& options_;
+    gi::Report& report_;
+    SessionClock clock_;    ///< of the sources; its zero is this
+    StimulusViewer viewer_; ///< that the screen is
+    std::unique_ptr<Screen> screen_;
+    AnswerKeys keys_;
+    Markers markers_;
+    Experimenter experimenter_;
+    FrameTable table_;
+    std::vector<std::unique_ptr<StimulusSource>> live_, prepared_, ar_,
+        ar_prepared_;            ///< by the letter that they show
+    double period_s_ = 1.0 / 60; ///< of refreshes
+    bool paced_ = false;         ///< swaps do not wait for the display: they are made to come at expected_hz
+    Clock::time_point next_swap_;
+    Clock::time_point escaped_{}; ///< when escape was pressed last
+    double last_pose_s_ = -1e9;
+    double trial_end_s_ = 0; ///< of the trial before
+};
+
+} // namespace viewer

@@ -1,0 +1,191 @@
+#include "viewer/experiment/window_screen.h"
+
+#include "viewer/app/layout.h"
+#include "viewer/devices/gl/draw_target.h"
+#include "viewer/displays/views.h"
+#include "viewer/engine/live/navigation.h"
+
+#include <GLFW/glfw3.h>
+#include <algorithm>
+#include <atomic>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace viewer {
+namespace {
+
+using Clock = InputEvent::Clock;
+constexpr double kLook_s = 0.001;
+
+double ms_between(Clock::time_point a, Clock::time_point b)
+{
+    return std::chrono::duration<double, std::milli>(b - a).count();
+}
+
+PresentSettings settings_of(LiveFrame const& frame)
+{
+    PresentSettings settings;
+    settings.tone = tone_settings(frame.settings);
+    settings.swap_eyes = frame.settings.swap_eyes;
+    return settings;
+}
+
+} // namespace
+
+WindowScreen::WindowScreen(ScreenSettings const& settings, gi::Report& report)
+    : display_(settings.display), last_look_(Clock::now())
+{
+    if (display_) {
+        tracking_.emplace(*display_);
+        shown_ = open_windows(*display_, -1, settings.window.swap_interval, report);
+        note_sizes(*display_, shown_);
+    } else {
+        shown_.windows.push_back(
+            std::make_unique<ShownWindow>(settings.window, std::vector<WallSettings>{}, report));
+    }
+    first().window.gl().make_current();
+    panel_ = std::make_unique<Panel>(first().window, settings.font_px);
+    first().window.gl().release(); // to the thread that draws
+}
+
+WindowScreen::~WindowScreen()
+{
+    thread_.reset();
+    first().window.gl().make_current();
+    panel_.reset();
+    presenters_.clear();
+}
+
+glm::ivec2 WindowScreen::size_px() const { return first().window.framebuffer_px(); }
+double WindowScreen::refresh_hz() const { return first().window.refresh_hz(); }
+
+std::vector<std::pair<std::string, std::string>> WindowScreen::about() const
+{
+    glm::ivec2 const px = size_px();
+    return {{"display", display_ ? "walls: " + display_->name : fmt::format("window of {} x {} px", px.x, px.y)},
+            {"opengl", first().window.gl().description()}};
+}
+
+std::vector<ViewOrder> WindowScreen::own_views(gi::dmat4 const& world_from_camera, double steady_s)
+{
+    note_sizes(*display_, shown_);
+    gi::dvec3 const rest = display_->users.empty() ? gi::dvec3{0} : resting_head(display_->users[0]).position;
+    Navigation const upright(world_from_camera, 1, gi::dvec3(world_from_camera[3]));
+    gi::dmat4 const world_from_room = upright.world_from_room() * glm::translate(gi::dmat4(1), -rest);
+    return display_layout(*display_, tracking_->heads(steady_s), world_from_room).views;
+}
+
+void WindowScreen::look()
+{
+    wait_for_windows(kLook_s);
+    take_events();
+}
+
+void WindowScreen::take_events()
+{
+    auto const now = Clock::now();
+    longest_look_ms_ = std::max(longest_look_ms_, ms_between(last_look_, now));
+    last_look_ = now;
+    for (auto const& w : shown_.windows)
+        for (InputEvent& e : w->window.take_events()) input_.push_back(e);
+    gamepads_.poll(input_);
+}
+
+void WindowScreen::wait_until(Clock::time_point time)
+{
+    do look();
+    while (Clock::now() < time);
+}
+
+std::vector<InputEvent> WindowScreen::take_input()
+{
+    poll_windows();
+    take_events();
+    return std::exchange(input_, {});
+}
+
+double WindowScreen::take_longest_look_ms()
+{
+    last_look_ = Clock::now();
+    return std::exchange(longest_look_ms_, 0);
+}
+
+ScreenSwap WindowScreen::present(ScreenContent const& content)
+{
+    for (auto const& w : shown_.windows) {
+        w->shown_px = w->window.framebuffer_px();
+        w->on_screen_px = w->window.position_px();
+    }
+    if (content.text) {
+        panel_->begin();
+        content.text(first().shown_px);
+        panel_->finish();
+    }
+    ScreenSwap swap;
+    std::atomic<bool> done = false;
+    thread_->start([&] { swap = draw(content); },
+                   [&] {
+                       done = true;
+                       glfwPostEmptyEvent();
+                   });
+    while (!done || thread_->busy()) look();
+    return swap;
+}
+
+void WindowScreen::draw_panes(DrawTarget const& whole, ScreenContent const& content)
+{
+    while (presenters_.size() < content.panes.size()) presenters_.emplace_back(std::vector<WallSettings>{});
+    taken_.resize(std::max(taken_.size(), content.panes.size()));
+    for (std::size_t k = 0; k < content.panes.size(); ++k) {
+        ScreenPane const& p = content.panes[k];
+        if (!p.frame) continue;
+        int const right = p.frame->order.views.size() > 1 ? 1 : -1;
+        std::vector<Pane> const panes{{p.corner_px, p.size_px, p.stereo, 0, right}};
+        if (taken_[k] != p.frame) presenters_[k].take(p.frame, panes);
+        taken_[k] = p.frame;
+        presenters_[k].draw(whole, first().on_screen_px, panes, settings_of(*p.frame), {});
+    }
+}
+
+void WindowScreen::draw_walls(DrawTarget const& whole, ShownWindow& window, ScreenContent const& content)
+{
+    if (content.panes.empty() || !content.panes[0].frame) return;
+    auto const& frame = content.panes[0].frame;
+    auto const at = std::find_if(shown_.windows.begin(), shown_.windows.end(),
+                                 [&](auto const& w) { return w.get() == &window; });
+    auto const number = std::find(shown_.of.begin(), shown_.of.end(), int(at - shown_.windows.begin()));
+    auto const panes = display_panes(*display_, frame->order.views)[std::size_t(number - shown_.of.begin())];
+    taken_.resize(shown_.windows.size());
+    auto& taken = taken_[std::size_t(at - shown_.windows.begin())];
+    if (taken != frame) window.presenter.take(frame, panes);
+    taken = frame;
+    window.presenter.draw(whole, window.on_screen_px, panes, settings_of(*frame), {});
+}
+
+/// On the drawing thread. Windows are drawn one after the other and then swapped, so that they change together.
+ScreenSwap WindowScreen::draw(ScreenContent const& content)
+{
+    for (auto const& w : shown_.windows) {
+        w->window.gl().make_current();
+        DrawTarget const whole = target_of(w->window);
+        clear(whole, ScreenContent::kGrey);
+        if (display_)
+            draw_walls(whole, *w, content);
+        else
+            draw_panes(whole, content);
+        if (w.get() != &first()) continue;
+        if (content.text) panel_->draw();
+        if (content.patch_size_px.x > 0)
+            clear(part_of(whole, content.patch_corner_px, content.patch_size_px), content.patch_is_white ? 1 : 0);
+    }
+    SwapTime swap;
+    for (auto const& w : shown_.windows) {
+        w->window.gl().make_current();
+        swap = w->timer.swap();
+    }
+    for (auto const& w : shown_.windows) w->window.gl().release();
+    return {swap.time, swap.seen, swap.uncertainty_ms,
+            swap.method == GlSwapMethod::sync_control ? "oml" : "swap_finish"};
+}
+
+} // namespace viewer

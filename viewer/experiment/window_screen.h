@@ -1,0 +1,51 @@
+#pragma once
+// A window, or the walls of a display. Drawing and swapping are another thread's, so that input is read while it
+// waits for the display; present() returns when the swap is done and has read the input meanwhile.
+
+#include "viewer/app/display_windows.h"
+#include "viewer/app/present_thread.h"
+#include "viewer/app/user_tracking.h"
+#include "viewer/devices/gl/gamepads.h"
+#include "viewer/devices/gl/panel.h"
+#include "viewer/experiment/screen_settings.h"
+
+namespace viewer {
+
+class WindowScreen : public Screen {
+public:
+    /// @param report  outlives it. Throws InputError where no window can be opened.
+    WindowScreen(ScreenSettings const& settings, gi::Report& report);
+    ~WindowScreen() override;
+
+    glm::ivec2 size_px() const override;
+    double refresh_hz() const override;
+    std::vector<std::pair<std::string, std::string>> about() const override;
+    ScreenSwap present(ScreenContent const& content) override;
+    void wait_until(InputEvent::Clock::time_point time) override;
+    std::vector<InputEvent> take_input() override;
+    double take_longest_look_ms() override;
+    bool has_own_views() const override { return display_.has_value(); }
+    std::vector<ViewOrder> own_views(gi::dmat4 const& world_from_camera, double steady_s) override;
+
+private:
+    void look();
+    void take_events();
+    ScreenSwap draw(ScreenContent const& content);
+    void draw_panes(DrawTarget const& whole, ScreenContent const& content);
+    void draw_walls(DrawTarget const& whole, ShownWindow& window, ScreenContent const& content);
+    ShownWindow& first() const { return *shown_.windows.front(); }
+
+    std::optional<Display> display_;
+    std::optional<UserTracking> tracking_; ///< of a display
+    DisplayWindows shown_;                 ///< one window where there is no display
+    std::unique_ptr<Panel> panel_;
+    std::deque<Presenter> presenters_; ///< of the panes
+    std::vector<std::shared_ptr<LiveFrame const>> taken_;
+    std::vector<InputEvent> input_;
+    InputEvent::Clock::time_point last_look_;
+    double longest_look_ms_ = 0;
+    Gamepads gamepads_;
+    std::unique_ptr<PresentThread> thread_ = std::make_unique<PresentThread>();
+};
+
+} // namespace viewer

@@ -1,0 +1,91 @@
+#include "viewer/offline/exposure.h"
+
+#include "gi/core/rng.h"
+#include "gi/methods/slhb/settings.h"
+#include "gi/render/fingerprint.h"
+#include "gi/render/pass_samples.h"
+#include "gi/scene/motion/motion.h"
+#include "viewer/engine/flat_triangles.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace viewer {
+
+bool depends_on_time(gi::Scene const& scene, bool scene_still, CameraMotion const& camera)
+{
+    if (camera.path || camera.turn_rad != 0) return true;
+    if (scene_still) return false;
+    gi::Motion const motion = gi::find_motion(scene);
+    auto const moves = [](std::string const& why) { return !why.empty(); };
+    return std::ranges::any_of(motion.node, moves) || std::ranges::any_of(motion.morph, moves);
+}
+
+namespace {
+
+/// Triangles that move would be appended to all stored axes anew for every path: fresh axes are less work.
+gi::RenderSettings with_moving_triangles(gi::RenderSettings settings)
+{
+    gi::SlhbSettings& s = settings.slhb;
+    if (s.schedule == gi::Schedule::automatic && s.directions.empty() && s.fresh_axes == 0)
+        s.schedule = gi::Schedule::streamed;
+    return settings;
+}
+
+/// A budget is that of this one picture, and builds all that it is made of: not that of a frame among others.
+gi::RenderSettings with_budget(gi::RenderSettings settings, gi::Method const& method, gi::World const& world,
+                               gi::Camera const& camera)
+{
+    if (method.name == "slhb" && settings.budget_s > 0)
+        settings.slhb = gi::choose_settings(settings, world, gi::make_soup(world), camera);
+    return settings;
+}
+
+} // namespace
+
+gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposure const& exposure,
+                        gi::RenderSettings const& settings, gi::StopRequest const& stop,
+                        gi::RenderProgress const& progress, gi::Report& report)
+{
+    gi::Camera const first = exposure.camera(world.world(), 0);
+    bool const moves = !exposure.still && world.world().static_triangles < world.world().triangles.size();
+    gi::RenderSettings const asked =
+        with_budget(moves ? with_moving_triangles(settings) : settings, method, world.world(), first);
+    auto const renderer = method.frames(world, first, asked, report);
+    FlatTriangles flat(exposure.still ? gi::Changes{} : world.advance(exposure.from_s));
+    auto const moments = [&](std::uint32_t pass) {
+        double const after_s = exposure.shutter_s * gi::moment_of_pass(settings.seed, pass);
+        gi::Moment now;
+        if (!exposure.still) {
+            gi::StageTimer const timer(report, "world");
+            now.changes = world.advance(exposure.from_s + after_s);
+            flat.see(now.changes, report);
+        }
+        now.camera = exposure.camera(world.world(), after_s);
+        return now;
+    };
+    gi::RenderResult result = renderer->frame(first, stop, progress, moments);
+    if (!exposure.still) world.advance(exposure.from_s);
+    return result;
+}
+
+std::uint64_t motion_fingerprint(gi::MovingWorld& world, Exposure const& exposure,
+                                 gi::RenderSettings const& settings, std::string const& method)
+{
+    if (!exposure.still) world.advance(exposure.from_s + exposure.shutter_s);
+    constexpr int kMoments = 16;
+    auto const camera = [&](int i) { return exposure.camera(world.world(), exposure.shutter_s * i / kMoments); };
+    std::uint64_t hash = gi::fingerprint(world.world(), camera(kMoments), settings, method);
+    auto const add = [&](double v) { hash = gi::mix_bits(hash ^ std::bit_cast<std::uint64_t>(v)); };
+    for (int i = 1; i < kMoments; ++i) {
+        gi::Camera const c = camera(i);
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) add(c.world_from_camera[column][row]);
+        add(c.yfov_rad);
+        if (auto const& edge = c.off_axis)
+            for (double const v : {edge->left, edge->right, edge->bottom, edge->top}) add(v);
+    }
+    return hash;
+}
+
+} // namespace viewer

@@ -1,0 +1,185 @@
+#include "viewer/offline/render_record.h"
+
+#include "viewer/base/report_json.h"
+#include "viewer/base/version.h"
+#include "viewer/report/machine.h"
+
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kSchema = 1; // of the statistics: counts up when a key changes its meaning or goes
+
+/// Every option that decides the values of the picture, in one order and with the defaults written out.
+std::string normalised_command(RenderOptions const& o, gi::RenderSettings const& s, std::string const& amount,
+                               std::string const& chosen)
+{
+    std::string command = fmt::format(
+        "lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} {}", o.scene, o.method,
+        s.width, s.height, s.bounces, o.filter, o.seed_per_frame && !o.frames.empty() ? o.seed : s.seed, amount);
+    auto const add = [&](char const* option, std::string const& value) {
+        if (!value.empty()) command += fmt::format(" {} {}", option, value);
+    };
+    add("--camera", o.camera);
+    add("--look-from", o.look_from);
+    add("--look-at", o.look_at);
+    if (o.fov_deg) add("--fov", fmt::format("{}", *o.fov_deg));
+    if (o.aperture_radius_m) add("--aperture-radius", fmt::format("{}", *o.aperture_radius_m));
+    if (o.focus_distance_m) add("--focus-distance", fmt::format("{}", *o.focus_distance_m));
+    if (!o.eye.empty()) {
+        add("--eye", o.eye);
+        add("--eye-distance", fmt::format("{}", o.eye_distance_m));
+        if (o.screen_distance_m) add("--screen-distance", fmt::format("{}", *o.screen_distance_m));
+    }
+    if (o.time_s) add("--time", fmt::format("{}", *o.time_s));
+    add("--envmap", o.environment);
+    if (o.environment_rotate_deg != 0) add("--envmap-rotate", fmt::format("{}", o.environment_rotate_deg));
+    if (o.environment_scale != 1) add("--envmap-scale", fmt::format("{}", o.environment_scale));
+    add("--background", o.background);
+    if (o.denoise != "none") add("--denoise", o.denoise);
+    add("--camera-path", o.camera_path);
+    add("--frames", o.frames);
+    if (o.turns) add("--turntable", o.turntable.empty() ? "1" : o.turntable);
+    if (o.reuse > 1) add("--reuse", std::to_string(o.reuse));
+    if (o.seed_per_frame && !o.frames.empty()) command += " --seed-per-frame";
+    if (o.shutter_s > 0) add("--shutter", fmt::format("{}", o.shutter_s));
+    if (!chosen.empty()) command += " " + chosen;
+    return command;
+}
+
+/// One path says nothing about its variance.
+bool knows_error(gi::RenderResult const& r) { return r.paths >= 2; }
+
+double rays_per_second(gi::RenderResult const& r) { return r.seconds > 0 ? r.rays / r.seconds : 0; }
+
+} // namespace
+
+char const* end_text(gi::RenderEnd end)
+{
+    switch (end) {
+    case gi::RenderEnd::paths:
+        return "paths";
+    case gi::RenderEnd::budget:
+        return "budget";
+    case gi::RenderEnd::error_target:
+        return "error target";
+    case gi::RenderEnd::interrupted:
+        return "interrupted";
+    }
+    return "";
+}
+
+std::string stop_option(gi::RenderSettings const& s)
+{
+    if (s.budget_s > 0) return fmt::format("--budget {}s", s.budget_s);
+    if (s.until_relmse > 0) return fmt::format("--until relmse={}", s.until_relmse);
+    return fmt::format("--paths {}", s.paths);
+}
+
+Json relmse_json(gi::RenderResult const& r) { return knows_error(r) ? Json(r.relmse) : Json(); }
+
+Json to_json(gi::ScenePlan const& plan)
+{
+    Json j = Json::array();
+    for (gi::PlanItem const& item : plan.items)
+        j.push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
+    return j;
+}
+
+std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::RenderSettings const& s,
+                                                 gi::RenderResult const& result)
+{
+    return {{"version", version_number()},
+            {"git", git_hash()},
+            {"command", normalised_command(o, s, fmt::format("--paths {}", result.paths), result.options)},
+            {"scene", o.scene},
+            {"method", o.method},
+            {"size", fmt::format("{}x{}", s.width, s.height)},
+            {"seed", std::to_string(s.seed)},
+            {"filter", o.filter},
+            {"denoise", o.denoise},
+            {"bounces", std::to_string(s.bounces)},
+            {"paths", std::to_string(result.paths)},
+            {"units", "radiance, W/(m2 sr), linear Rec. 709"}};
+}
+
+Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::string const& amount,
+                   std::string const& chosen)
+{
+    auto const or_null = [](auto const& value) { return value ? Json(*value) : Json(); };
+    auto const name_or_null = [](std::string const& name) { return name.empty() ? Json() : Json(name); };
+    Json j;
+    j["schema"] = kSchema;
+    j["program"] = version_text();
+    j["command"] = normalised_command(o, s, amount, chosen);
+    Machine const machine = this_machine();
+    j["machine"] = {{"cpu", machine.cpu}, {"cores", machine.cores}, {"memory_gib", machine.memory_gib}};
+    j["settings"] = {{"scene", o.scene},
+                     {"method", o.method},
+                     {"width", s.width},
+                     {"height", s.height},
+                     {"camera", name_or_null(o.camera)},
+                     {"look_from", name_or_null(o.look_from)},
+                     {"look_at", name_or_null(o.look_at)},
+                     {"fov_deg", or_null(o.fov_deg)},
+                     {"aperture_radius_m", or_null(o.aperture_radius_m)},
+                     {"focus_distance_m", or_null(o.focus_distance_m)},
+                     {"eye", name_or_null(o.eye)},
+                     {"eye_distance_m", o.eye.empty() ? Json() : Json(o.eye_distance_m)},
+                     {"screen_distance_m", or_null(o.screen_distance_m)},
+                     {"time_s", or_null(o.time_s)},
+                     {"envmap", name_or_null(o.environment)},
+                     {"envmap_rotate_deg", o.environment_rotate_deg},
+                     {"envmap_scale", o.environment_scale},
+                     {"background", name_or_null(o.background)},
+                     {"paths_limit", s.paths},
+                     {"budget_s", s.budget_s > 0 ? Json(s.budget_s) : Json()},
+                     {"until_relmse", s.until_relmse > 0 ? Json(s.until_relmse) : Json()},
+                     {"bounces", s.bounces},
+                     {"filter", o.filter},
+                     {"denoise", o.denoise},
+                     {"seed", s.seed},
+                     {"threads", s.threads},
+                     {"resume", o.resume},
+                     {"aovs", o.layers},
+                     {"half", o.half},
+                     {"exposure_ev", o.exposure_ev},
+                     {"tone", o.tone},
+                     {"frames", name_or_null(o.frames)},
+                     {"turntable", o.turns ? Json(o.turntable.empty() ? "1" : o.turntable) : Json()},
+                     {"camera_path", name_or_null(o.camera_path)},
+                     {"seed_per_frame", o.seed_per_frame},
+                     {"reuse", o.reuse},
+                     {"shutter_s", o.shutter_s}};
+    j["outputs"] = {{"exr", name_or_null(o.out)},
+                    {"png", name_or_null(o.png)},
+                    {"video", name_or_null(o.video)},
+                    {"stats", name_or_null(o.stats)}};
+    return j;
+}
+
+Json make_stats(RenderOptions const& o, gi::RenderSettings const& s, gi::ScenePlan const& plan,
+                gi::RenderResult const& r, gi::Report const& report)
+{
+    Json j = describe_call(o, s, fmt::format("--paths {}", r.paths), r.options);
+    j["result"] = {{"end", end_text(r.end)}, {"paths_per_pixel", r.paths},
+                   {"seconds", r.seconds},   {"relmse_estimate", relmse_json(r)},
+                   {"rays", r.rays},         {"rays_per_s", rays_per_second(r)}};
+    j["plan"] = to_json(plan);
+    j["report"] = to_json(report);
+    return j;
+}
+
+std::string summary_line(RenderOptions const& o, gi::RenderSettings const& s, gi::RenderResult const& r)
+{
+    return fmt::format("{} x {} pixels, {} paths each, {:.2f} s, {:.2f} Mrays/s, {}", s.width, s.height, r.paths,
+                       r.seconds, rays_per_second(r) * 1e-6,
+                       knows_error(r) ? fmt::format("estimated relMSE {:.2g}{}", r.relmse,
+                                                    o.denoise == "none" ? "" : " before the filter")
+                                      : std::string("relMSE unknown from one path"));
+}
+
+} // namespace viewer

@@ -1,0 +1,127 @@
+#include "viewer/offline/replay.h"
+
+#include "gi/image_io/picture_file.h"
+#include "viewer/app/frame_hash.h"
+#include "viewer/offline/frame_range.h"
+#include "viewer/offline/video_writer.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+#include <set>
+
+namespace viewer {
+namespace {
+
+/// The size of the first view at its largest: videos have one size.
+std::pair<int, int> largest_view(RecordingReader& reader)
+{
+    std::pair<int, int> size{0, 0};
+    while (auto const frame = reader.next())
+        if (!frame->order.views.empty())
+            size = std::max(size, {frame->order.views[0].width, frame->order.views[0].height});
+    reader.rewind();
+    return {size.first / 2 * 2, size.second / 2 * 2};
+}
+
+/// Frames at uneven times as a video at an even rate: each shows the last that was due.
+class TimedVideo {
+public:
+    TimedVideo(std::string const& file, std::pair<int, int> size, double fps)
+        : size_(size), fps_(fps), writer_(file, size.first, size.second, fps)
+    {
+    }
+    void show(gi::Picture const& picture, gi::ToneMapSettings const& tone, double time_s)
+    {
+        if (!first_s_) first_s_ = time_s;
+        repeat_until(time_s - *first_s_);
+        std::vector<unsigned char> const bytes = gi::tone_map_bytes(*picture.find("color"), tone);
+        cv::Mat const in(picture.height, picture.width, CV_8UC3, const_cast<unsigned char*>(bytes.data()));
+        cv::Mat out;
+        cv::resize(in, out, {size_.first, size_.second}, 0, 0, cv::INTER_LINEAR);
+        shown_.assign(out.data, out.data + out.total() * 3);
+    }
+    void finish()
+    {
+        if (!shown_.empty()) writer_.add(shown_);
+        writer_.finish();
+    }
+
+private:
+    void repeat_until(double time_s)
+    {
+        while (!shown_.empty() && writer_.frames() < std::int64_t(std::floor(time_s * fps_))) writer_.add(shown_);
+    }
+    std::pair<int, int> size_;
+    double fps_;
+    VideoWriter writer_;
+    std::vector<unsigned char> shown_;
+    std::optional<double> first_s_;
+};
+
+void save(std::string const& pattern, std::uint64_t frame, gi::Picture const& picture,
+          gi::ToneMapSettings const& tone, gi::Report& report)
+{
+    std::string const file = parse_frame_name("--out", pattern).of(int(frame));
+    if (file.ends_with(".exr"))
+        gi::write_exr(file, picture, gi::PixelType::single, report);
+    else
+        gi::write_png(file, picture.width, picture.height, gi::tone_map_bytes(*picture.find("color"), tone));
+}
+
+} // namespace
+
+bool as_recorded(ReplayOptions const& o) { return o.settings.empty() && o.paths == 0 && !o.size; }
+
+ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopRequest const& stop,
+                     gi::Report& report)
+{
+    RecordingReader reader(o.file);
+    RecordingHeader const& header = reader.header();
+    std::optional<TimedVideo> video;
+    if (!o.video.empty()) video.emplace(o.video, o.size.value_or(largest_view(reader)), o.fps);
+    RecordedScenes const scenes = load(header.settings.value("load", nlohmann::json::object()));
+    Session session(scenes.load, o.threads, report);
+    session.drive_bodies(scenes.drive);
+    std::set<std::string> overridden;
+    nlohmann::json const settings = header.settings.value("settings", nlohmann::json::object());
+    for (Change const& c : o.settings) overridden.insert(c.key);
+    for (auto const& [key, value] : settings.items())
+        if (!overridden.contains(key)) session.apply({key, value}); // a device may not be here
+    for (Change const& c : o.settings) session.apply(c);
+    session.apply({"scene", header.scene});
+    ReplaySummary summary;
+    gi::ProgressBar bar("replay " + o.file);
+    while (auto frame = reader.next()) {
+        if (stop.requested()) {
+            summary.interrupted = true;
+            break;
+        }
+        FrameOrder& order = frame->order;
+        for (Change const& c : order.changes)
+            if (!overridden.contains(c.key)) session.apply(c);
+        if (o.paths > 0) order.paths = o.paths;
+        for (ViewOrder& v : order.views)
+            if (o.size) std::tie(v.width, v.height) = *o.size;
+        SessionFrame const result = session.render(order, {});
+        ++summary.frames;
+        bar.update(0, fmt::format("{} frames", summary.frames));
+        if (frame->pixel_hash && as_recorded(o)) {
+            bool const same = frame_hash(result) == *frame->pixel_hash;
+            ++(same ? summary.same : summary.other);
+            if (!same && !summary.first_other) summary.first_other = order.frame;
+        } else {
+            ++summary.unknown;
+        }
+        if (result.views.empty()) continue;
+        gi::ToneMapSettings const tone = tone_settings(session.settings());
+        gi::Picture const& picture = result.views[0].picture;
+        if (!o.out.empty()) save(o.out, order.frame, picture, tone, report);
+        if (video) video->show(picture, tone, order.display_s);
+    }
+    if (video && summary.frames > 0) video->finish();
+    summary.end = reader.end();
+    return summary;
+}
+
+} // namespace viewer

@@ -1,0 +1,206 @@
+#include "viewer/protocol/cluster/cluster.h"
+
+#include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "gi/core/rng.h"
+#include "viewer/protocol/cluster/cluster_state.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace viewer {
+
+OnRankLoss parse_on_rank_loss(std::string const& text)
+{
+    if (text == "stop") return OnRankLoss::stop;
+    if (text == "continue") return OnRankLoss::go_on;
+    throw gi::InputError("--on-rank-loss " + text, "there is no such choice", "take stop or continue");
+}
+
+std::uint64_t file_hash(std::string const& file)
+{
+    if (!std::filesystem::is_regular_file(file)) return 0;
+    std::uint64_t hash = 0;
+    for (unsigned char const byte : gi::read_bytes(file)) hash = gi::mix_bits(hash + byte + 1);
+    return hash;
+}
+
+Cluster::Cluster(ClusterIdentity const& identity, ClusterSettings const& settings)
+    : state_(std::make_unique<State>(identity, settings))
+{
+    state_->start();
+}
+
+Cluster::~Cluster()
+{
+    try {
+        leave("see its own message");
+    } catch (std::exception const&) {
+        // There is nobody left to tell.
+    }
+}
+
+bool Cluster::started_by_mpirun() { return Messenger::started_with_others(); }
+int Cluster::rank() const { return state_->rank; }
+int Cluster::size() const { return state_->size; }
+std::string Cluster::name(int r) const { return state_->name(r); }
+std::vector<std::string> Cluster::take_news() { return std::exchange(state_->news, {}); }
+
+double Cluster::now_s()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void Cluster::check()
+{
+    if (!alone()) state_->pump();
+}
+
+void Cluster::send(FrameOrder const& order)
+{
+    if (alone()) return;
+    std::vector<std::uint8_t> const bytes = to_bytes(order);
+    state_->note_order(bytes);
+    state_->pump();
+    state_->send_to_others(Writer(Say::order).append(bytes));
+}
+
+std::optional<FrameOrder> Cluster::receive()
+{
+    if (alone()) return {};
+    State& s = *state_;
+    s.await([&s] { return !s.orders.empty() || s.is_ended; }, [](int who) { return who == 0; },
+            s.settings.silence_s, "while an order was waited for");
+    if (s.orders.empty()) {
+        finish();
+        return {};
+    }
+    std::vector<std::uint8_t> const bytes = std::move(s.orders.front());
+    s.orders.pop_front();
+    s.note_order(bytes);
+    return order_from_bytes(bytes);
+}
+
+std::vector<std::string> Cluster::wait(std::uint64_t frame, std::uint64_t check, std::string const& note)
+{
+    if (alone()) return {};
+    State& s = *state_;
+    std::uint64_t const mine = gi::mix_bits(s.orders_check ^ gi::mix_bits(check));
+    std::string const what_for = fmt::format("before the swap of frame {}", frame);
+    if (!leads()) {
+        Writer out(Say::arrived);
+        s.last_go.answered_s = now_s();
+        out.put(State::Arrival{frame, mine}).put(s.last_go).put(note);
+        s.tell_swap(out);
+        s.send(0, std::move(out));
+        s.await([&] { return s.gone && *s.gone == frame; }, [](int who) { return who == 0; }, s.settings.silence_s,
+                what_for);
+        return {};
+    }
+    std::vector<std::string> notes;
+    auto const is_missing = [&s](int r) { return s.living(r) && !s.peers[std::size_t(r)].arrival; };
+    auto const others = s.other_ranks();
+    s.await([&] { return std::none_of(others.begin(), others.end(), is_missing); }, is_missing,
+            s.settings.silence_s, what_for);
+    for (int r : others) {
+        auto const arrival = std::exchange(s.peers[std::size_t(r)].arrival, {});
+        if (!s.living(r) || !arrival) continue;
+        if (arrival->frame != frame)
+            s.lose(r, fmt::format("is at frame {}, not {}", arrival->frame, frame));
+        else if (arrival->check != mine)
+            s.lose(r, fmt::format("has another scene or other orders than {} at frame {} (check {:016x}, not "
+                                  "{:016x})",
+                                  name(0), frame, arrival->check, mine));
+        else
+            notes.push_back(std::move(s.peers[std::size_t(r)].note));
+    }
+    s.send_to_others(Writer(Say::go).put(frame).put(now_s()));
+    return notes;
+}
+
+void Cluster::report_swap(std::uint64_t frame, double time_s)
+{
+    if (alone()) return;
+    if (leads())
+        state_->swaps.add(frame, time_s, 0);
+    else
+        state_->swap = {frame, time_s, true};
+}
+
+SwapSkew Cluster::swap_skew() const { return state_->swaps.skew(); }
+
+std::pair<double, double> Cluster::clock_ahead_s(int r) const
+{
+    auto const clock = state_->peers[std::size_t(r)].clock.estimate();
+    return clock ? std::pair(clock->ahead_s, clock->error_s) : std::pair(0.0, 0.0);
+}
+
+void Cluster::give(std::vector<std::uint8_t> bytes)
+{
+    State& s = *state_;
+    s.await([&s] { return s.wants > 0; }, [](int who) { return who == 0; }, s.settings.silence_s,
+            "while it took what this rank had made");
+    --s.wants;
+    s.send(0, std::move(Writer(Say::data).append(bytes)));
+    s.await([&s] { return s.messenger->sent_all(0); }, [](int who) { return who == 0; }, s.settings.silence_s,
+            "while it took what this rank had made");
+}
+
+std::optional<std::vector<std::uint8_t>> Cluster::take(int from)
+{
+    State& s = *state_;
+    State::Peer& p = s.peers[std::size_t(from)];
+    if (!s.living(from)) return {};
+    s.send(from, Writer(Say::want));
+    s.await([&] { return !p.data.empty() || !s.living(from); }, [from](int who) { return who == from; },
+            s.settings.silence_s, "while its part was waited for");
+    if (p.data.empty()) return {};
+    auto bytes = std::move(p.data.front());
+    p.data.pop_front();
+    return bytes;
+}
+
+void Cluster::finish()
+{
+    State& s = *state_;
+    if (alone() || s.over) return;
+    auto const others = s.other_ranks();
+    if (leads()) {
+        s.send_to_others(Writer(Say::end));
+        auto const is_missing = [&s](int r) { return s.living(r) && !s.peers[std::size_t(r)].said_goodbye; };
+        s.await([&] { return std::none_of(others.begin(), others.end(), is_missing); }, is_missing,
+                s.settings.silence_s, "at the end");
+        // From here on nobody dies: the last message tells whether all may wait for each other in MPI_Finalize.
+        s.send_to_others(Writer(Say::go).put(std::uint64_t(s.others_living())).put(now_s()));
+    } else {
+        s.await([&s] { return s.is_ended; }, [](int who) { return who == 0; }, s.settings.silence_s, "at the end");
+        Writer out(Say::goodbye);
+        s.tell_swap(out);
+        s.gone.reset();
+        s.is_leaving = true;
+        s.send(0, std::move(out));
+        s.await([&s] { return s.gone.has_value() || s.peers[0].lost; }, [](int who) { return who == 0; },
+                s.settings.silence_s, "at the end");
+    }
+    bool const all = leads() ? s.others_living() : s.gone.value_or(0) != 0;
+    s.messenger->flush(others, 0.5);
+    s.over = true;
+    if (all) s.messenger->finalize();
+}
+
+void Cluster::leave(std::string const& why)
+{
+    State& s = *state_;
+    if (alone() || s.over) return;
+    s.over = true;
+    if (!s.broken.empty()) return; // they know, or have left
+    s.send_to_others(Writer(Say::leaves).put(why));
+    std::vector<int> rest;
+    for (int r : s.other_ranks())
+        if (s.living(r)) rest.push_back(r);
+    s.messenger->flush(rest, 0.5);
+}
+
+} // namespace viewer

@@ -1,0 +1,126 @@
+#include "viewer/protocol/cluster/messenger.h"
+
+#include "gi/core/error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <mpi.h>
+#include <thread>
+
+namespace viewer {
+
+namespace {
+
+constexpr int kTag = 5;
+
+struct Sending {
+    MPI_Request request = MPI_REQUEST_NULL;
+    std::vector<std::uint8_t> bytes;
+};
+
+struct Receiving {
+    MPI_Request request = MPI_REQUEST_NULL;
+    Message message;
+};
+
+bool done(MPI_Request& request)
+{
+    int flag = 0;
+    return MPI_Test(&request, &flag, MPI_STATUS_IGNORE) == MPI_SUCCESS && flag != 0;
+}
+
+} // namespace
+
+struct Messenger::Transfers {
+    std::vector<std::deque<Sending>> sending;     ///< per rank
+    std::vector<std::deque<Receiving>> receiving; ///< per rank
+};
+
+bool Messenger::started_with_others()
+{
+    char const* const size = std::getenv("OMPI_COMM_WORLD_SIZE");
+    return size != nullptr && std::atoi(size) > 1;
+}
+
+Messenger::Messenger() : transfers_(std::make_unique<Transfers>())
+{
+    // Else hwloc asks every X server of this machine for its screens, and a server that ends meanwhile ends us.
+    setenv("HWLOC_COMPONENTS", "-gl", 0);
+    int provided = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
+    if (provided < MPI_THREAD_SERIALIZED)
+        throw gi::InputError("this MPI has no MPI_THREAD_SERIALIZED",
+                             "ranks say that they are alive from a second thread while they render",
+                             "use Open MPI as Debian packs it");
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN); // a rank that is gone is not the end of the others
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+    MPI_Comm_size(MPI_COMM_WORLD, &size_);
+    transfers_->sending.resize(std::size_t(size_));
+    transfers_->receiving.resize(std::size_t(size_));
+}
+
+// Buffers that MPI may still read stay, where something was not sent before the end.
+Messenger::~Messenger()
+{
+    int finalized = 0;
+    MPI_Finalized(&finalized);
+    if (finalized == 0) static_cast<void>(transfers_.release());
+}
+
+void Messenger::send(int to, std::vector<std::uint8_t> bytes)
+{
+    auto& queue = transfers_->sending[std::size_t(to)];
+    queue.push_back({MPI_REQUEST_NULL, std::move(bytes)});
+    Sending& s = queue.back();
+    if (MPI_Isend(s.bytes.data(), int(s.bytes.size()), MPI_BYTE, to, kTag, MPI_COMM_WORLD, &s.request) !=
+        MPI_SUCCESS)
+        queue.pop_back(); // who is gone will be missed
+}
+
+std::vector<Message> Messenger::poll()
+{
+    while (true) {
+        int there = 0;
+        MPI_Message handle;
+        MPI_Status status;
+        if (MPI_Improbe(MPI_ANY_SOURCE, kTag, MPI_COMM_WORLD, &there, &handle, &status) != MPI_SUCCESS ||
+            there == 0)
+            break;
+        int size = 0;
+        MPI_Get_count(&status, MPI_BYTE, &size);
+        auto& queue = transfers_->receiving[std::size_t(status.MPI_SOURCE)];
+        queue.push_back({MPI_REQUEST_NULL, {status.MPI_SOURCE, std::vector<std::uint8_t>(std::size_t(size))}});
+        Receiving& r = queue.back();
+        MPI_Imrecv(r.message.bytes.data(), size, MPI_BYTE, &handle, &r.request);
+    }
+    std::vector<Message> arrived;
+    for (auto& queue : transfers_->receiving)
+        while (!queue.empty() && done(queue.front().request)) {
+            arrived.push_back(std::move(queue.front().message));
+            queue.pop_front();
+        }
+    for (int r = 0; r < size_; ++r) sent_all(r);
+    return arrived;
+}
+
+bool Messenger::sent_all(int to)
+{
+    auto& queue = transfers_->sending[std::size_t(to)];
+    while (!queue.empty() && done(queue.front().request)) queue.pop_front();
+    return queue.empty();
+}
+
+void Messenger::flush(std::span<int const> ranks, double at_most_s)
+{
+    auto const end = std::chrono::steady_clock::now() + std::chrono::duration<double>(at_most_s);
+    auto const all_sent = [&] {
+        return std::all_of(ranks.begin(), ranks.end(), [this](int r) { return sent_all(r); });
+    };
+    while (!all_sent() && std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+void Messenger::finalize() { MPI_Finalize(); }
+
+} // namespace viewer

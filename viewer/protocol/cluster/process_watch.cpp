@@ -1,0 +1,61 @@
+#include "viewer/protocol/cluster/process_watch.h"
+
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <sstream>
+#include <unistd.h>
+
+namespace viewer {
+namespace {
+
+std::string text_of(std::string const& file)
+{
+    std::ifstream in(file);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+struct Stat {
+    char state = 0;
+    std::uint64_t started = 0;
+};
+
+/// Of /proc/PID/stat (proc(5)): fields 3 and 22. The second, a name in brackets, may hold anything.
+std::optional<Stat> read_stat(std::int32_t pid)
+{
+    std::string const text = text_of("/proc/" + std::to_string(pid) + "/stat");
+    auto const bracket = text.rfind(')');
+    if (bracket == std::string::npos) return {};
+    std::istringstream in(text.substr(bracket + 1));
+    Stat s;
+    in >> s.state;
+    std::string skipped;
+    for (int field = 4; field < 22; ++field) in >> skipped;
+    in >> s.started;
+    return in ? std::optional(s) : std::nullopt;
+}
+
+} // namespace
+
+ProcessId this_process()
+{
+    ProcessId id;
+    std::array<char, 256> space{};
+    static_cast<void>(readlink("/proc/self/ns/pid", space.data(), space.size() - 1));
+    id.machine = text_of("/proc/sys/kernel/random/boot_id") + space.data();
+    id.number = getpid();
+    if (auto const stat = read_stat(id.number)) id.started = stat->started;
+    return id;
+}
+
+ProcessState state_of(ProcessId const& process, ProcessId const& here)
+{
+    if (process.machine != here.machine || process.started == 0) return ProcessState::unknown;
+    auto const stat = read_stat(process.number);
+    if (!stat || stat->started != process.started || stat->state == 'Z' || stat->state == 'X')
+        return ProcessState::ended;
+    return stat->state == 'T' || stat->state == 't' ? ProcessState::stopped : ProcessState::runs;
+}
+
+} // namespace viewer

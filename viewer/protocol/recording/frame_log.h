@@ -1,0 +1,26 @@
+#pragma once
+// --frame-log: one line of CSV per frame, written behind the frames' back and readable at any time.
+
+#include "viewer/protocol/recording/append_file.h"
+#include "viewer/protocol/recording/frame_summary.h"
+
+namespace viewer {
+
+class FrameLog {
+public:
+    /// @param about lines for the top of the file, e.g. the program and its command; may be empty
+    /// Throws InputError if the file exists or cannot be made.
+    FrameLog(std::filesystem::path const& file, std::string const& about, gi::Report& report);
+
+    /// Does not wait for the disk.
+    void append(FrameTimes const& times);
+    FrameSummary summary() const { return statistics_.summary(); }
+    std::string failure() const { return file_.failure(); }
+    void close() { file_.close(); }
+
+private:
+    AppendFile file_;
+    FrameStatistics statistics_;
+};
+
+} // namespace viewer

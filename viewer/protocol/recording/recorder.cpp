@@ -1,0 +1,89 @@
+#include "gi/core/error.h"
+#include "viewer/protocol/json_text.h"
+#include "viewer/protocol/recording/crc32.h"
+#include "viewer/protocol/recording/record_format.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+void put_record(ByteWriter& to, RecordType type, Bytes const& payload)
+{
+    ByteWriter head;
+    head.put_u32(std::uint32_t(payload.size()));
+    head.put_byte(type);
+    to.put_raw(head.bytes());
+    to.put_raw(payload);
+    to.put_u32(crc32(payload, crc32(head.bytes())));
+}
+
+Bytes header_bytes(RecordingHeader const& h)
+{
+    ByteWriter payload;
+    for (std::string const& text : {h.program, h.scene, h.command_line, json_line(h.settings), h.created}) {
+        if (text.size() > kMostHeaderText)
+            throw gi::InputError(
+                "a recording's header is too long",
+                fmt::format("a text of {} bytes is in it, {} are the most", text.size(), kMostHeaderText),
+                "record without so many settings");
+        payload.put_text(text);
+    }
+    ByteWriter file;
+    file.put_raw(kRecordingMagic);
+    file.put_u32(kRecordingVersion);
+    put_record(file, kHeaderRecord, payload.bytes());
+    return file.take();
+}
+
+} // namespace
+
+Recorder::Recorder(std::filesystem::path const& file, RecordingHeader header, gi::Report& report)
+    : file_(file, "records of the recording", report)
+{
+    if (header.created.empty())
+        header.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+    file_.append(header_bytes(header));
+}
+
+Recorder::~Recorder() { finish(); }
+
+void Recorder::append(RecordedFrame const& f)
+{
+    if (last_frame_ && f.order.frame <= *last_frame_)
+        throw gi::InputError(fmt::format("frame {} cannot be recorded", f.order.frame),
+                             fmt::format("it comes after frame {}", *last_frame_), "count frames up");
+    ByteWriter payload;
+    payload.put_byte(std::uint8_t((f.pixel_hash ? 1 : 0) + (f.times ? 2 : 0)));
+    if (f.pixel_hash) payload.put_u64(*f.pixel_hash);
+    if (f.times) put(payload, *f.times);
+    payload.put_raw(to_bytes(f.order));
+    ByteWriter record;
+    put_record(record, kFrameRecord, payload.bytes());
+    file_.append(record.bytes());
+    last_frame_ = f.order.frame;
+    ++frames_;
+}
+
+std::uint64_t Recorder::written_frames() const
+{
+    std::uint64_t const chunks = file_.written_chunks();
+    return chunks == 0 ? 0 : std::min(chunks - 1, frames_); // the header is before them, the end behind
+}
+
+void Recorder::finish()
+{
+    if (finished_) return;
+    finished_ = true;
+    ByteWriter payload, record;
+    payload.put_u64(frames_);
+    put_record(record, kEndRecord, payload.bytes());
+    if (file_.failure().empty()) file_.append(record.bytes());
+    file_.close();
+}
+
+} // namespace viewer

@@ -1,0 +1,111 @@
+#pragma once
+// Recordings of what decided the pixels of every frame (.lwr): enough to render a walk again, bit by bit.
+//
+//   0  8 bytes   "\x89LWR\r\n\x1a\n"
+//   8  u32       version of the format: 1
+//   12 records   u32 length of the payload, u8 type, payload, u32 CRC-32 of length, type and payload
+//
+// All numbers are little-endian. Type 1, first and once: the header, as texts. Type 2: a frame. Type 3, last: the
+// number of frames, where the recording was closed in order. Frames count up. A file is read up to the first
+// record that is not whole: what a killed process leaves is a recording without a last record.
+
+#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/recording/append_file.h"
+#include "viewer/protocol/recording/frame_times.h"
+
+#include <istream>
+#include <memory>
+
+namespace viewer {
+
+struct RecordingHeader {
+    std::string program; ///< version and git hash
+    std::string scene;   ///< as it was named
+    std::string command_line;
+    nlohmann::json settings; ///< before the first frame
+    std::string created;     ///< UTC, "2026-05-04T12:30:00Z"
+
+    bool operator==(RecordingHeader const&) const = default;
+};
+
+struct RecordedFrame {
+    FrameOrder order;
+    std::optional<std::uint64_t> pixel_hash; ///< see pixel_hash.h
+    std::optional<FrameTimes> times;
+
+    bool operator==(RecordedFrame const&) const = default;
+};
+
+class Recorder {
+public:
+    /// An empty header.created becomes now. Throws InputError if the file exists, cannot be made, or the header is
+    /// longer than a recording may hold.
+    Recorder(std::filesystem::path const& file, RecordingHeader header, gi::Report& report);
+    ~Recorder();
+
+    /// Does not wait for the disk. Throws InputError on an order that check_order refuses or whose number is not
+    /// above the one before.
+    void append(RecordedFrame const& frame);
+    /// Why nothing is recorded any more (a full disk); empty = all is well.
+    std::string failure() const { return file_.failure(); }
+    /// That are in the file so far.
+    std::uint64_t written_frames() const;
+    /// Marks the end, waits for the disk and closes. May be called again.
+    void finish();
+
+private:
+    AppendFile file_;
+    std::uint64_t frames_ = 0;
+    std::optional<std::uint64_t> last_frame_;
+    bool finished_ = false;
+};
+
+/// finished: closed in order. cut: it just ends, as after a kill. damaged: there are bytes that are no record.
+enum class RecordingState { finished, cut, damaged };
+
+struct RecordingEnd {
+    RecordingState state = RecordingState::cut;
+    std::string why; ///< of a damage
+    std::uint64_t frames = 0;
+    std::optional<std::uint64_t> last_frame; ///< the last that was read
+    std::uint64_t unread_bytes = 0;          ///< after it
+};
+
+class RecordingReader {
+public:
+    /// Throws InputError if it is no recording, one of another version, or ends within its header.
+    explicit RecordingReader(std::filesystem::path const& file);
+    /// @param size bytes of `in` from its beginning
+    RecordingReader(std::unique_ptr<std::istream> in, std::uint64_t size, std::string name);
+
+    RecordingHeader const& header() const { return header_; }
+    std::string const& name() const { return name_; }
+    std::uint64_t bytes() const { return size_; }
+    /// The next frame; none at the end, which end() then describes. A damaged record is an end, never an error.
+    std::optional<RecordedFrame> next();
+    /// Valid once next() has found none.
+    RecordingEnd const& end() const { return end_; }
+    /// To the first frame again.
+    void rewind();
+
+private:
+    struct Record {
+        std::uint8_t type = 0;
+        Bytes payload;
+    };
+    Record read_record();
+    void read_header();
+    void end_at(RecordingState state, std::uint64_t unread, std::string const& why);
+
+    std::unique_ptr<std::istream> in_;
+    std::uint64_t size_ = 0, at_ = 0, first_frame_at_ = 0;
+    std::string name_;
+    RecordingHeader header_;
+    RecordingEnd end_;
+    bool ended_ = false;
+};
+
+/// What was not read of a recording that does not end in order, as one line; empty = nothing.
+std::string describe_loss(RecordingEnd const& end);
+
+} // namespace viewer

@@ -1,0 +1,96 @@
+#pragma once
+// Remote control of a running program: requests come as lines of JSON from many clients and are handed to one
+// function, between frames and without blocking. Nothing that a client sends, or omits to read, can stop it.
+
+#include "gi/core/report.h"
+#include "viewer/protocol/remote/request.h"
+#include "viewer/protocol/remote/socket.h"
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <optional>
+
+namespace viewer {
+
+struct RemoteLimits {
+    std::size_t line_bytes = std::size_t(1) << 20;   ///< of a request
+    std::size_t output_bytes = std::size_t(4) << 20; ///< a client that leaves more unread is dropped
+    std::size_t clients = 64;                        ///< at once; further ones are told so and closed
+    std::size_t waiting = 64;                        ///< requests of one client to be answered later
+    std::size_t lines_per_poll = 32;                 ///< of one client; the rest wait for the next poll
+};
+
+struct RemoteOptions {
+    std::filesystem::path socket; ///< empty = none
+    std::optional<int> port;      ///< of 127.0.0.1; 0 = one that is free
+    RemoteLimits limits;
+};
+
+class RemoteServer {
+public:
+    /// Gives the result of a request, none = RemoteServer::answer will come later. Throws gi::InputError to
+    /// refuse.
+    using Handler = std::function<std::optional<nlohmann::json>(RemoteRequest const&)>;
+
+    /// Throws InputError if it cannot listen. @param report of clients dropped; must outlive this
+    RemoteServer(RemoteOptions const& options, Handler handler, gi::Report& report);
+    /// Closes all connections and removes the socket's file.
+    ~RemoteServer();
+    RemoteServer(RemoteServer const&) = delete;
+    RemoteServer& operator=(RemoteServer const&) = delete;
+
+    /// Accepts, reads, answers; waits at most `timeout` for the first thing to do. Calls the handler.
+    void poll(std::chrono::milliseconds timeout = {});
+    /// To a request whose handler gave no result. @return false where its client has gone, or it has its answer
+    bool answer(std::uint64_t token, nlohmann::json const& result);
+    bool refuse(std::uint64_t token, std::string const& error);
+    /// Serves a connected socket too, e.g. one of a pair.
+    void adopt(Socket connection);
+
+    int port() const { return port_; } ///< 0 = none
+    std::size_t clients() const { return clients_.size(); }
+    std::size_t waiting() const { return waiting_.size(); } ///< requests without an answer yet
+
+private:
+    struct Client {
+        Socket socket;
+        std::string in, out;
+        std::size_t searched = 0; ///< bytes of `in` without a line's end
+        std::size_t waiting = 0;  ///< requests to be answered later
+        bool spoke = false;       ///< its first line was an object
+        bool skipping = false;    ///< the rest of a line that is too long
+        bool ended = false;       ///< it sends no more
+        bool closing = false;     ///< once `out` is sent
+        bool dead = false;
+    };
+    struct Waiting {
+        std::uint64_t client;
+        nlohmann::json id;
+    };
+
+    void accept_from(Socket const& listener);
+    void receive(Client& client);
+    void handle_lines(std::uint64_t number, Client& client);
+    void handle_line(std::uint64_t number, Client& client, std::string_view line);
+    void dispatch(std::uint64_t number, Client& client, nlohmann::json const& request);
+    bool finish(std::uint64_t token, char const* kind, nlohmann::json const& value);
+    void send(std::uint64_t number, Client& client, nlohmann::ordered_json const& answer);
+    void send_error(std::uint64_t number, Client& client, nlohmann::json const& id, std::string const& error);
+    void flush(Client& client);
+    void forget_dead();
+    static bool has_line(Client& client);
+
+    RemoteLimits limits_;
+    Handler handler_;
+    gi::Report& report_;
+    std::filesystem::path path_;
+    std::uint64_t path_inode_ = 0;
+    int port_ = 0;
+    Socket at_path_, on_port_;
+    std::map<std::uint64_t, Client> clients_;
+    std::map<std::uint64_t, Waiting> waiting_;
+    std::uint64_t next_client_ = 1, next_token_ = 1;
+};
+
+} // namespace viewer

@@ -1,0 +1,119 @@
+#include "viewer/report/chart.h"
+#include "viewer/report/html.h"
+#include "viewer/report/page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace viewer {
+namespace {
+
+using Row = std::vector<Cell>;
+
+/// The rows of a table that share a value, in order.
+struct Group {
+    std::string value;
+    std::vector<Row const*> rows;
+};
+
+std::vector<Group> group_by(BenchTable const& t, std::vector<Row const*> const& rows, std::string const& column)
+{
+    std::vector<Group> groups;
+    for (Row const* row : rows) {
+        std::string const value = to_text(cell(t, *row, column));
+        auto at = std::find_if(groups.begin(), groups.end(), [&](Group const& g) { return g.value == value; });
+        if (at == groups.end()) at = groups.insert(at, Group{value, {}});
+        at->rows.push_back(row);
+    }
+    return groups;
+}
+
+std::string seconds_text(double s)
+{
+    return s < 1 ? fmt::format("{:.3g} ms", 1000 * s) : fmt::format("{:.3g} s", s);
+}
+
+std::string chart_html(BenchTable const& t, Group const& scene, std::string const& metric,
+                       std::string const& label)
+{
+    if (t.column(metric) < 0) return "";
+    Chart chart;
+    chart.title = fmt::format("{}: {} over time", scene.value, label);
+    chart.x_label = "time of a whole frame, s";
+    chart.y_label = label;
+    for (Group const& method : group_by(t, scene.rows, "method")) {
+        Curve curve{method.value, {}};
+        for (Row const* row : method.rows) {
+            Cell const& error = cell(t, *row, metric);
+            auto const* m = std::get_if<Measured>(&error);
+            curve.points.push_back({number(cell(t, *row, "frame_s")), number(error), m != nullptr ? m->min : 0,
+                                    m != nullptr ? m->max : 0});
+        }
+        chart.curves.push_back(std::move(curve));
+    }
+    double const noise = number(cell(t, *scene.rows.front(), "reference_" + metric));
+    if (noise > 0) {
+        chart.level = noise;
+        chart.level_label = "noise of the reference";
+    }
+    return fmt::format("<figure>\n<figcaption>{}</figcaption>\n{}</figure>\n", escaped(chart.title),
+                       to_svg(chart));
+}
+
+/// Only names within the folder: a table may come from anywhere.
+std::string picture_html(BenchTable const& t, Row const& row, std::string const& column,
+                         std::filesystem::path const& folder, std::string const& description)
+{
+    auto const* name = std::get_if<std::string>(&cell(t, row, column));
+    if (name == nullptr) return "";
+    return embedded_png(folder / std::filesystem::path(*name).filename(), description) + "\n";
+}
+
+std::string picture_figure(BenchTable const& t, Row const& row, std::filesystem::path const& folder,
+                           std::string const& what)
+{
+    std::string const budget = seconds_text(number(cell(t, row, "budget_s")));
+    std::string words = fmt::format("<strong>{}</strong>, took {}<br>relMSE {:.3g}", budget,
+                                    seconds_text(number(cell(t, row, "frame_s"))), number(cell(t, row, "relmse")));
+    if (t.column("flip") >= 0) words += fmt::format(", FLIP {:.3g}", number(cell(t, row, "flip")));
+    return "<figure>\n" + picture_html(t, row, "picture_file", folder, what + ", " + budget) +
+           picture_html(t, row, "flip_file", folder, "FLIP error of " + what + ", " + budget) + "<figcaption>" +
+           words + "</figcaption>\n</figure>\n";
+}
+
+std::string pictures_html(BenchTable const& t, Group const& scene, std::filesystem::path const& folder)
+{
+    if (t.column("picture_file") < 0) return "";
+    std::string html =
+        "<div class=\"pictures\">\n<div>\n<h4>reference picture</h4>\n<figure>\n" +
+        picture_html(t, *scene.rows.front(), "reference_file", folder, scene.value + ", reference") +
+        "</figure>\n</div>\n<div>\n";
+    for (Group const& method : group_by(t, scene.rows, "method")) {
+        html += "<h4>" + escaped(method.value) + "</h4>\n<div class=\"strip\">\n";
+        for (Row const* row : method.rows)
+            html += picture_figure(t, *row, folder, scene.value + ", " + method.value);
+        html += "</div>\n";
+    }
+    return html + "</div>\n</div>\n"
+                  "<p class=\"note\">Below each picture its FLIP error: 0 <span class=\"scale\"></span> 1. "
+                  "Click a picture to see it in its own size.</p>\n";
+}
+
+} // namespace
+
+std::string sweep_figures(BenchTable const& table, std::filesystem::path const& folder)
+{
+    for (char const* needed : {"scene", "method", "budget_s", "frame_s", "relmse"})
+        if (table.column(needed) < 0) return "";
+    std::vector<Row const*> all;
+    for (Row const& row : table.rows) all.push_back(&row);
+    std::string html;
+    for (Group const& scene : group_by(table, all, "scene"))
+        html += "<h3>" + escaped(scene.value) + "</h3>\n<div class=\"charts\">\n" +
+                chart_html(table, scene, "relmse", "relMSE") + chart_html(table, scene, "flip", "FLIP") +
+                "</div>\n" + pictures_html(table, scene, folder);
+    return html;
+}
+
+} // namespace viewer
