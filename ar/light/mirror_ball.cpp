@@ -66,7 +66,7 @@ PartialMap unwrap_ball(cv::Mat const& radiance, CameraModel const& camera, glm::
     double const unseen = std::numbers::pi - ball.half_angle_rad; // directions beyond: behind the ball
     glm::dvec3 const to_camera = -ball.axis;
     glm::dquat const camera_from_world = glm::conjugate(world_from_camera);
-    auto const look = [&](glm::dvec3 world) -> Look {
+    auto const look = [&](glm::dvec3 world) -> PictureSample {
         glm::dvec3 const d = camera_from_world * world;
         double const toward = std::acos(std::clamp(glm::dot(d, to_camera), -1.0, 1.0));
         if (toward < settings.camera_half_angle_rad || toward >= unseen) return {};
@@ -79,7 +79,7 @@ PartialMap unwrap_ball(cv::Mat const& radiance, CameraModel const& camera, glm::
         double const cosine = glm::dot(normal, -glm::normalize(at));
         double const weight = (cosine - settings.least_cosine) / (1 - settings.least_cosine);
         auto const pixel = project(camera, at);
-        return weight > 0 && pixel ? Look{*pixel, weight} : Look{};
+        return weight > 0 && pixel ? PictureSample{*pixel, weight} : PictureSample{};
     };
     // The ball is equal-area: pi r^2 pixels for the whole sphere.
     double const radius_px = std::sqrt(camera.fx * camera.fy) * std::tan(ball.half_angle_rad);

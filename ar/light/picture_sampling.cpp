@@ -21,7 +21,7 @@ cv::Vec3f bilinear(cv::Mat const& picture, glm::dvec2 p)
 } // namespace
 
 PartialMap gather(cv::Mat const& radiance, cv::Size size, double pixels_per_texel,
-                  std::function<Look(glm::dvec3)> const& look)
+                  std::function<PictureSample(glm::dvec3)> const& look)
 {
     int const n = std::clamp(int(std::ceil(pixels_per_texel)), 2, 16);
     PartialMap out{cv::Mat::zeros(size, CV_32FC3), cv::Mat::zeros(size, CV_32FC1)};
@@ -34,7 +34,7 @@ PartialMap gather(cv::Mat const& radiance, cv::Size size, double pixels_per_texe
                     double const v = (j + (b + 0.5) / n) / size.height, sr = std::sin(std::numbers::pi * v);
                     for (int a = 0; a < n; ++a) {
                         all += sr;
-                        Look const at = look(direction_of_uv({(i + (a + 0.5) / n) / size.width, v}));
+                        PictureSample const at = look(direction_of_uv({(i + (a + 0.5) / n) / size.width, v}));
                         glm::dvec2 const p = at.pixel;
                         bool const inside =
                             p.x >= 0 && p.y >= 0 && p.x <= radiance.cols - 1 && p.y <= radiance.rows - 1;

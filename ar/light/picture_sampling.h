@@ -10,7 +10,7 @@
 namespace ar {
 
 /// Where in the picture a direction of the world is seen, and how well (0 = not).
-struct Look {
+struct PictureSample {
     glm::dvec2 pixel{0};
     double weight = 0;
 };
@@ -18,7 +18,7 @@ struct Look {
 /// Each texel: the mean of the picture, bilinear, at a grid of directions in it, by solid angle, where weight > 0;
 /// its weight is the mean of theirs. What falls outside the picture is not seen.
 PartialMap gather(cv::Mat const& radiance, cv::Size size, double pixels_per_texel,
-                  std::function<Look(glm::dvec3)> const& look);
+                  std::function<PictureSample(glm::dvec3)> const& look);
 
 /// @throws InputError not CV_32FC3 of the camera's size, or not finite, or negative
 void check_picture(cv::Mat const& radiance, CameraModel const& camera, std::string const& where);

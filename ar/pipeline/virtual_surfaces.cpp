@@ -89,14 +89,14 @@ void VirtualSurfaces::know(PairPictures const& low, cv::Size size, cv::Rect low_
 {
     cv::Size const low_size = low.coverage.size();
     known_.create(low_size);
-    std::fill(known_.values.begin(), known_.values.end(), KnownLight{});
+    std::fill(known_.values.begin(), known_.values.end(), PixelLight{});
     for (int y = low_region.y; y < low_region.br().y; ++y)
         for (int x = low_region.x; x < low_region.br().x; ++x) {
             float const covered = low.coverage.at<float>(y, x);
             if (!(covered > 0)) continue;
             auto const [left, right] = pixels_in(x, low_size.width, size.width);
             auto const [top, bottom] = pixels_in(y, low_size.height, size.height);
-            KnownLight k;
+            PixelLight k;
             cv::Vec3f albedo;
             float points = 0;
             for (int j = std::max(top, region.y); j < std::min(bottom, region.br().y); ++j)
@@ -131,7 +131,7 @@ std::optional<cv::Vec3f> VirtualSurfaces::light_at(cv::Vec2f place, cv::Vec3f co
         float const scale = 1.0f / float(reach);
         for (int j = std::max(y0 - reach + 1, 0); j <= std::min(y0 + reach, known_.rows - 1); ++j)
             for (int i = std::max(x0 - reach + 1, 0); i <= std::min(x0 + reach, known_.cols - 1); ++i) {
-                KnownLight const& k = known_(j, i);
+                PixelLight const& k = known_(j, i);
                 float const tent =
                     (1 - std::abs(float(i) - place[0]) * scale) * (1 - std::abs(float(j) - place[1]) * scale);
                 if (!(k.coverage > 0 && tent > 0)) continue;

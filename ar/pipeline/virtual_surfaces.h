@@ -30,7 +30,7 @@ struct VirtualPixel {
 };
 
 /// What a rendered pixel knows of virtual things.
-struct KnownLight {
+struct PixelLight {
     cv::Vec3f light, normal; ///< light: radiance over albedo
     float depth_m = 0;
     float coverage = 0; ///< 0: it knows nothing
@@ -75,7 +75,7 @@ private:
     // Memory of the last call.
     SurfaceRaster raster_;
     PixelGrid<VirtualPixel> pixels_; ///< of the region
-    PixelGrid<KnownLight> known_;    ///< of the rendered size
+    PixelGrid<PixelLight> known_;    ///< of the rendered size
     SharpSurfaces out_;
 };
 

@@ -10,9 +10,9 @@
 namespace viewer {
 
 template <class T>
-class KeptApart {
+class SpacedFrames {
 public:
-    explicit KeptApart(std::size_t wanted) : wanted_(wanted) {}
+    explicit SpacedFrames(std::size_t wanted) : wanted_(wanted) {}
 
     /// Whether `add` would keep the next one; where it would not, it is counted with `skip`.
     bool wants_next() const { return seen_ % step_ == 0; }

@@ -54,7 +54,7 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
             results.back().camera = r.camera;
         },
         stop, report, fast);
-    tell_losses(fast.source, fast.end, report);
+    report_losses(fast.source, fast.end, report);
     if (shown_s.size() > 1) m.frames_per_s = double(shown_s.size() - 1) / (shown_s.back() - shown_s.front());
     FrameTruth truth(settings.truth, settings.true_poses);
     for (std::size_t k = 0; k < results.size() && !stop.requested(); ++k) truth.add(fast.frames[k], results[k]);
@@ -77,14 +77,14 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
     if (!camera->description().is_live) {
         double const own_hz = camera->description().frames_per_s;
         std::vector<ar::Frame> frames = read_frames(*camera, settings.frames);
-        tell_losses({}, camera->state(), report); // what was refused is counted already
+        report_losses({}, camera->state(), report); // what was refused is counted already
         if (frames.empty()) return m;
         std::vector<double> times_s = times_of(frames, {session.frames.source, camera->description(), false});
         auto loop = std::make_unique<LoopSource>(std::move(frames),
                                                  own_hz > 0 ? own_hz : session.frames.options.frames_per_s);
         if (!o.poses.empty()) // they come back with their frames
             o.tracked = [poses = o.poses, times_s = std::move(times_s), l = loop.get()](ar::Frame const& f) {
-                return told_pose(poses, times_s[l->index_of(f.sequence)]);
+                return recorded_pose(poses, times_s[l->index_of(f.sequence)]);
             };
         camera = std::move(loop);
     }
@@ -95,7 +95,7 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
             if (window) window->show(f, r);
         },
         stop, report, own);
-    tell_losses(own.source, own.end, report);
+    report_losses(own.source, own.end, report);
     m.overtaken = own.overtaken;
     m.own = settled(std::move(own.frames));
     return m;

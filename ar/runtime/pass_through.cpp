@@ -172,7 +172,7 @@ std::shared_ptr<PassThroughFrame> PassThrough::composited(ar::Frame const& frame
     made->captured_s = frame.captured_s;
     std::optional<ar::Pose> known;
     bool const is_told = !options_.poses.empty() || options_.tracked;
-    if (is_told) known = options_.tracked ? options_.tracked(frame) : told_pose(options_.poses, time_s);
+    if (is_told) known = options_.tracked ? options_.tracked(frame) : recorded_pose(options_.poses, time_s);
     if (is_told && !known) {
         made->rgb.push_back(ar::rgb_of(frame).clone());
         if (other != nullptr) made->rgb.push_back(ar::rgb_of(*other).clone());

@@ -8,7 +8,7 @@ namespace viewer {
 namespace {
 
 /// Cameras have few buffers: what is on its way keeps none of them.
-void give_back(OnItsWay& w)
+void give_back(FrameInFlight& w)
 {
     if (!w.frame.owner) return;
     ArResult& r = w.result;
@@ -51,7 +51,7 @@ void RunThreads::rethrow() const
 }
 
 /// What `work` handed over before it threw is still taken.
-void RunThreads::guarded(std::function<void()> const& work, HandOver<OnItsWay>& filled)
+void RunThreads::guarded(std::function<void()> const& work, HandOver<FrameInFlight>& filled)
 {
     try {
         work();
@@ -62,13 +62,13 @@ void RunThreads::guarded(std::function<void()> const& work, HandOver<OnItsWay>& 
     filled.close();
 }
 
-void RunThreads::hand_over(OnItsWay w, HandOver<OnItsWay>& to)
+void RunThreads::hand_over(FrameInFlight w, HandOver<FrameInFlight>& to)
 {
     if (!is_timed_) {
         to.put(std::move(w));
         return;
     }
-    to.replace(std::move(w), [this](OnItsWay const& older, OnItsWay& newer) {
+    to.replace(std::move(w), [this](FrameInFlight const& older, FrameInFlight& newer) {
         newer.overtaken += older.overtaken + 1;
         std::lock_guard const lock(mutex_);
         ++overtaken_;
@@ -91,7 +91,7 @@ void RunThreads::find_all()
             if (!frame && state_.kind != ar::SourceState::Kind::running) break;
         }
         if (!frame) continue;
-        OnItsWay w;
+        FrameInFlight w;
         w.time_s = clock_(*frame);
         w.read_ms = 1e3 * (ar::steady_now_s() - asked_s);
         w.frame = std::move(*frame);
@@ -108,11 +108,11 @@ void RunThreads::find_all()
     }
 }
 
-ArResult RunThreads::found_in(OnItsWay const& w)
+ArResult RunThreads::found_in(FrameInFlight const& w)
 {
     std::optional<double> const begun_s = is_timed_ ? std::optional(w.frame.arrived_s) : std::nullopt;
     if (options_.poses.empty() && !options_.tracked) return pipeline_.find(w.frame, w.time_s, {}, begun_s);
-    if (auto const known = options_.tracked ? options_.tracked(w.frame) : told_pose(options_.poses, w.time_s))
+    if (auto const known = options_.tracked ? options_.tracked(w.frame) : recorded_pose(options_.poses, w.time_s))
         return pipeline_.find(w.frame, w.time_s, known, begun_s);
     ArResult r; // nobody knows
     double const from_s = begun_s ? *begun_s : ar::steady_now_s();
@@ -125,7 +125,7 @@ ArResult RunThreads::found_in(OnItsWay const& w)
 void RunThreads::add_all()
 {
     try {
-        while (std::optional<OnItsWay> w = found_.take()) {
+        while (std::optional<FrameInFlight> w = found_.take()) {
             try {
                 if (!options_.find_poses_only)
                     pipeline_.add(w->result, w->frame, w->time_s, ending_, options_.composite);

@@ -13,7 +13,7 @@
 namespace viewer {
 
 /// A frame on its way through the threads.
-struct OnItsWay {
+struct FrameInFlight {
     ar::Frame frame;   ///< once the camera is found, without the bytes that belong to a device
     double time_s = 0; ///< since the first
     double read_ms = 0;
@@ -31,7 +31,7 @@ public:
     RunThreads(RunThreads const&) = delete;
     RunThreads& operator=(RunThreads const&) = delete;
 
-    std::optional<OnItsWay> next(std::chrono::milliseconds wait) { return done_.take(wait); }
+    std::optional<FrameInFlight> next(std::chrono::milliseconds wait) { return done_.take(wait); }
     bool has_ended() const { return done_.has_ended(); }
     /// What is on its way is given up.
     void end();
@@ -41,10 +41,10 @@ public:
     void rethrow() const;
 
 private:
-    void guarded(std::function<void()> const& work, HandOver<OnItsWay>& filled);
-    void hand_over(OnItsWay w, HandOver<OnItsWay>& to);
+    void guarded(std::function<void()> const& work, HandOver<FrameInFlight>& filled);
+    void hand_over(FrameInFlight w, HandOver<FrameInFlight>& to);
     void find_all();
-    ArResult found_in(OnItsWay const& w);
+    ArResult found_in(FrameInFlight const& w);
     void add_all();
     void refuse(ar::InputError const& e);
 
@@ -55,7 +55,7 @@ private:
     FrameClock clock_;
     gi::Report& report_;
     gi::StopRequest ending_;
-    HandOver<OnItsWay> found_, done_;
+    HandOver<FrameInFlight> found_, done_;
 
     mutable std::mutex mutex_; // of what follows
     ar::SourceCounts counts_;

@@ -12,7 +12,7 @@
 namespace viewer {
 namespace {
 
-ArFrameRecord record_of(OnItsWay const& w, bool is_timed)
+ArFrameRecord record_of(FrameInFlight const& w, bool is_timed)
 {
     ar::Frame const& frame = w.frame;
     ArResult const& r = w.result;
@@ -78,7 +78,7 @@ void run_ar(ArSession const& session, ar::FrameSource& source, ArRunOptions cons
     RunThreads ahead(source, pipeline, options, is_timed, {session.frames.source, about, is_timed}, report);
     while (!stop.requested() && !ahead.has_ended() &&
            (options.frames == 0 || int(summary.frames.size()) < options.frames)) {
-        std::optional<OnItsWay> const w = ahead.next(std::chrono::milliseconds(10));
+        std::optional<FrameInFlight> const w = ahead.next(std::chrono::milliseconds(10));
         ahead.tell(summary);
         summary.seconds = ar::steady_now_s() - begun_s;
         if (w) {

@@ -4,7 +4,7 @@
 
 namespace viewer {
 
-void tell_losses(ar::SourceCounts const& counts, ar::SourceState const& state, gi::Report& report)
+void report_losses(ar::SourceCounts const& counts, ar::SourceState const& state, gi::Report& report)
 {
     if (counts.refused > 0)
         report.lose("frames that could not be read", std::size_t(counts.refused), counts.last_refusal);

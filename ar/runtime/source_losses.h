@@ -7,6 +7,6 @@
 namespace viewer {
 
 /// Counts what was refused. @throws gi::InputError the source broke off
-void tell_losses(ar::SourceCounts const& counts, ar::SourceState const& state, gi::Report& report);
+void report_losses(ar::SourceCounts const& counts, ar::SourceState const& state, gi::Report& report);
 
 } // namespace viewer

@@ -92,13 +92,16 @@ private:
 
     void read_render(YamlReader const& r)
     {
-        r.only_keys({"paths", "resolution", "bounces", "denoise", "seed", "directions", "hit_buffer", "lamps",
-                     "fresh_lamps", "shadow_map"});
+        r.only_keys({"paths", "resolution", "bounces", "denoise", "seed", "directions", "hit_buffer",
+                     "light_samples", "fresh_light_samples", "lamps", "fresh_lamps", "shadow_map"});
         gi::SlhbSettings& slhb = session_.render.slhb;
         if (r.has("directions")) slhb.directions = directions(r.at("directions"));
         if (r.has("hit_buffer")) slhb.resolution = int(r.at("hit_buffer").integer(8, 4096));
-        if (r.has("lamps")) slhb.lamps = int(r.at("lamps").integer(1, 1024));
-        if (r.has("fresh_lamps")) slhb.fresh_lamps = int(r.at("fresh_lamps").integer(1, 1024));
+        for (char const* const key :
+             {"lamps", "light_samples"}) // lamps, fresh_lamps: what they were called before
+            if (r.has(key)) slhb.light_samples = int(r.at(key).integer(1, 1024));
+        for (char const* const key : {"fresh_lamps", "fresh_light_samples"})
+            if (r.has(key)) slhb.fresh_light_samples = int(r.at(key).integer(1, 1024));
         if (r.has("shadow_map")) slhb.shadow_resolution = int(r.at("shadow_map").integer(8, 4096));
         if (r.has("denoise")) session_.render.denoise = filter(r.at("denoise"));
         if (r.has("paths")) session_.render.paths = std::uint32_t(r.at("paths").integer(1, 65536));

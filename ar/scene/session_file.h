@@ -34,7 +34,7 @@ struct ArRender {
     int bounces = 3;
     gi::DenoiseSettings denoise; ///< nothing without two paths
     std::uint64_t seed = 0;
-    gi::SlhbSettings slhb; ///< directions, resolution, lamps, fresh_lamps, shadow_resolution
+    gi::SlhbSettings slhb; ///< directions, resolution, light_samples, fresh_light_samples, shadow_resolution
 };
 
 /// What is done to a rendered pair before it is put into a frame; each costs only where it is asked for.

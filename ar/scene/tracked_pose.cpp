@@ -126,7 +126,7 @@ std::vector<ar::TimedPose> recorded_poses(ArTracked const& tracked, gi::Report& 
     return camera.recorded();
 }
 
-std::optional<ar::Pose> told_pose(std::vector<ar::TimedPose> const& poses, double time_s)
+std::optional<ar::Pose> recorded_pose(std::vector<ar::TimedPose> const& poses, double time_s)
 {
     constexpr double kRounding_s = 2e-6;
     double const first_s = poses.front().time_s, last_s = poses.back().time_s;

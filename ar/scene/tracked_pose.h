@@ -31,7 +31,7 @@ ArTracked read_tracked(gi::YamlReader const& pose, std::filesystem::path const& 
 std::vector<ar::TimedPose> recorded_poses(ArTracked const& tracked, gi::Report& report);
 /// @param poses   not empty. @param time_s  since the first frame; clocks of files round
 /// @return nothing before the first and after the last
-std::optional<ar::Pose> told_pose(std::vector<ar::TimedPose> const& poses, double time_s);
+std::optional<ar::Pose> recorded_pose(std::vector<ar::TimedPose> const& poses, double time_s);
 /// Its display and the meshes and the recording that this names. @throws gi::InputError as TrackedCamera
 std::vector<std::filesystem::path> files_read_by(ArTracked const& tracked);
 

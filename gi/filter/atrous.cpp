@@ -111,7 +111,7 @@ void filter_row(Iteration const& it, Spans spans, int y)
 }
 
 /// Light that is known has no noise any more.
-void lay(KnownLight const& known, Planes const& from, int y, Planes& out)
+void lay(FilteredLight const& known, Planes const& from, int y, Planes& out)
 {
     known.area.for_known(y, [&](Span span) {
         for (int p = light::direct; p < light::luminance && &from != &out; ++p)
@@ -130,7 +130,7 @@ void lay(KnownLight const& known, Planes const& from, int y, Planes& out)
 
 } // namespace
 
-Planes filter_atrous(FilterInput& input, int iterations, KnownLight const& known)
+Planes filter_atrous(FilterInput& input, int iterations, FilteredLight const& known)
 {
     find_variances(input);
     int const height = input.light.height();

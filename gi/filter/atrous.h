@@ -8,13 +8,13 @@
 // max(0, 1 - d^2)^2: no exponential, and exactly 0 across edges. Direct and indirect light share all but the
 // luminance. At the end, pixels that stayed noisy on outlines are smoothed (gi/filter/outlines.h).
 
-#include "gi/filter/known_light.h"
+#include "gi/filter/filtered_light.h"
 
 namespace gi {
 
 /// @param iterations 1 to kMaxIterations
 /// @param known  is kept, and from the second iteration on seen by what is wanted
 /// @return the light, filtered; input.light is used up
-Planes filter_atrous(FilterInput& input, int iterations, KnownLight const& known);
+Planes filter_atrous(FilterInput& input, int iterations, FilteredLight const& known);
 
 } // namespace gi

@@ -56,7 +56,7 @@ void store(Planes const& guides, Planes const& filtered, RowSpans const& wanted,
 
 } // namespace
 
-DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, TakenLight const& taken)
+DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, ReusedLight const& taken)
 {
     if (settings.denoiser == Denoiser::none) return {};
     check(picture, settings);
@@ -64,7 +64,8 @@ DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, TakenLi
     DenoiseReport report;
     on_threads(settings.threads, [&] {
         bool const atrous = settings.denoiser == Denoiser::atrous;
-        KnownLight known{taken.partner ? own_area(picture, taken, reach_of(settings)) : whole_area(picture), {}};
+        FilteredLight known{taken.partner ? own_area(picture, taken, reach_of(settings)) : whole_area(picture),
+                            {}};
         FilterInput input = make_filter_input(picture, atrous, known.area);
         if (taken.partner) known.light = take_filtered(picture, taken, known.area, input.report);
         store(input.guides,

@@ -3,7 +3,7 @@
 // divided by the albedo, over neighbours that lie on the same surface; so textures and outlines stay as sharp as
 // they were.
 
-#include "gi/filter/taken_light.h"
+#include "gi/filter/reused_light.h"
 
 namespace gi {
 
@@ -42,6 +42,6 @@ struct DenoiseReport {
 /// the number of threads.
 /// @param taken  of a partner that has been filtered: its light over its albedo is taken as it is, and only where
 ///               the picture takes none is filtered. oidn filters all of the picture instead
-DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, TakenLight const& taken = {});
+DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, ReusedLight const& taken = {});
 
 } // namespace gi

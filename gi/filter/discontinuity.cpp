@@ -80,7 +80,7 @@ void widen_row(Planes const& guides, Planes const& means, int window, int reach,
 
 } // namespace
 
-Planes filter_discontinuity(FilterInput const& input, int window, int reach, KnownLight const& known)
+Planes filter_discontinuity(FilterInput const& input, int window, int reach, FilteredLight const& known)
 {
     Planes out(kWeight + 1, input.light.width(), input.light.height());
     auto const in_rows = [&](auto const& work) {

@@ -4,7 +4,7 @@
 // each of their patterns has the same share in every mean. Indirect light changes slowly over a surface: the means
 // of the windows around may be averaged once more (as a step of an a-trous wavelet does, Dammertz et al. 2010).
 
-#include "gi/filter/known_light.h"
+#include "gi/filter/filtered_light.h"
 
 namespace gi {
 
@@ -13,6 +13,6 @@ namespace gi {
 /// window * reach <= Planes::kMargin
 /// @param known  is kept; means of windows are taken from it too, but for the first around what is wanted
 /// @return the light, filtered; luminance and variance are left out
-Planes filter_discontinuity(FilterInput const& input, int window, int reach, KnownLight const& known);
+Planes filter_discontinuity(FilterInput const& input, int window, int reach, FilteredLight const& known);
 
 } // namespace gi

@@ -38,7 +38,7 @@ FilterArea whole_area(Picture const& picture)
     return area;
 }
 
-FilterArea own_area(Picture const& picture, TakenLight const& taken, int reach)
+FilterArea own_area(Picture const& picture, ReusedLight const& taken, int reach)
 {
     Layer const &albedo = needed_layer(picture, "albedo"), &normal = needed_layer(picture, "normal"),
                 &other = needed_layer(*taken.partner, "albedo");

@@ -2,8 +2,8 @@
 // Which pixels of a picture a filter has to find the light of, and which it looks at for that: few of either where
 // the light of most is known.
 
+#include "gi/filter/reused_light.h"
 #include "gi/filter/spans.h"
-#include "gi/filter/taken_light.h"
 
 namespace gi {
 
@@ -27,6 +27,6 @@ FilterArea whole_area(Picture const& picture);
 
 /// Surfaces that take no light from a partner that could tell it are wanted. Sizes may differ.
 /// @param reach  of the filter, pixels; as large as the picture and more: everything is near
-FilterArea own_area(Picture const& picture, TakenLight const& taken, int reach);
+FilterArea own_area(Picture const& picture, ReusedLight const& taken, int reach);
 
 } // namespace gi

@@ -148,7 +148,8 @@ FilterInput make_filter_input(Picture const& picture, bool with_variance, Filter
         if (!row.no_variance || !known.no_variance) no_variance = false;
     });
     tbb::parallel_for(0, picture.height, [&](int y) {
-        for (Span const& s : area.wanted[std::size_t(y)]) measure_footprints(*layers.position, s, y, in.guides);
+        RowSpans const& rows = is_measured ? area.near : area.wanted;
+        for (Span const& s : rows[std::size_t(y)]) measure_footprints(*layers.position, s, y, in.guides);
     });
     in.report = {without_surface, not_finite, with_variance && no_variance};
     return in;

@@ -41,8 +41,8 @@ struct FilterInput {
 Layer const& needed_layer(Picture const& picture, char const* name);
 Layer& needed_layer(Picture& picture, char const* name);
 
-/// Fills in what is near and reports what the filter has to find; footprints where they are wanted. Throws
-/// InputError where a layer is missing.
+/// Fills in what is near and reports what the filter has to find; footprints where they are wanted, and of all
+/// that is near where variances were measured. Throws InputError where a layer is missing.
 FilterInput make_filter_input(Picture const& picture, bool with_variance, FilterArea const& area);
 
 inline constexpr float kLargest = 1e18f; ///< its square is still finite

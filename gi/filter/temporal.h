@@ -12,7 +12,7 @@
 //
 // A second eye need not ask the frame before where it takes the first one's light: that has its past with it.
 
-#include "gi/filter/taken_light.h"
+#include "gi/filter/reused_light.h"
 
 namespace gi {
 
@@ -45,7 +45,7 @@ public:
     /// and motion (throws InputError where one is missing): x, y: pixels from here to where the surface was; z:
     /// its depth then, m; NaN where it was not. All frames have one size.
     /// @param partner, from  the reuse of a partner, to which this frame has been added already, and which of its
-    ///   pixels' light to take (TakenLight::from): their means while anything moves are those of the partner
+    ///   pixels' light to take (ReusedLight::from): their means while anything moves are those of the partner
     TemporalCounts add(Picture& frame, SceneChange change, TemporalReuse const* partner = nullptr,
                        std::span<std::uint32_t const> from = {});
 

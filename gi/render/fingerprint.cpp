@@ -113,9 +113,9 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
         SlhbSettings const& o = s.slhb;
         for (char const c : o.directions) h.add(std::uint64_t(c));
         for (int const v :
-             {int(o.schedule), o.resolution, o.axes, o.fresh_axes, o.lamps, o.fresh_lamps, o.shadow_resolution,
-              o.most_layers, int(o.packed), o.interleave, int(o.gather), int(o.look_ups), int(o.shadows),
-              int(o.cache), int(o.exact.queries), int(o.exact.shadows), int(o.exact.directions)})
+             {int(o.schedule), o.resolution, o.axes, o.fresh_axes, o.light_samples, o.fresh_light_samples,
+              o.shadow_resolution, o.most_layers, int(o.packed), o.interleave, int(o.gather), int(o.look_ups),
+              int(o.shadows), int(o.cache), int(o.exact.queries), int(o.exact.shadows), int(o.exact.directions)})
             h.add(std::uint64_t(v));
         h.add(o.cone);
         h.add(o.roulette);

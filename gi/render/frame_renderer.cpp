@@ -15,7 +15,7 @@ void hide_pixels(Picture& picture, std::span<std::uint8_t const> hidden)
     }
 }
 
-void FrameRenderer::follow(int) {}
+void FrameRenderer::update_axes(int) {}
 
 PairResult FrameRenderer::pair(FrameView const&, PairSettings const&, PairWorld const&, StopRequest const&)
 {

@@ -31,8 +31,8 @@ struct FrameView {
 };
 
 /// What is found of the light that surfaces send on to others.
-enum class Endings : std::uint8_t {
-    own,   ///< each path finds it by itself: one that meets nothing new stays as it was, whatever others meet
+enum class VertexSharing : std::uint8_t {
+    none,  ///< each path finds it by itself: one that meets nothing new stays as it was, whatever others meet
     exact, ///< paths that end on one layer share it
     cached ///< paths may end in cells of a cache that is kept while light and geometry stay: much less work, a
            ///< little blur
@@ -66,7 +66,7 @@ struct PairResult {
 void hide_pixels(Picture& picture, std::span<std::uint8_t const> hidden);
 
 /// Directions kept for each bounce, and those that followed what moves in a frame.
-struct Following {
+struct DynamicUpdate {
     int stored = 0;     ///< all of them; 0 = none are kept
     int axes = 0;       ///< different ones that followed, of all bounces
     int bounces = 1;    ///< that choose theirs by themselves
@@ -82,9 +82,9 @@ public:
     /// From the next frame on: of the directions kept for each bounce (method slhb, schedule stored) about so many
     /// follow what moves, others from frame to frame, and paths take no others; 0 = all. Methods that keep none
     /// have nothing to do.
-    virtual void follow(int axes);
+    virtual void update_axes(int axes);
     /// What that came to in the last frame.
-    virtual Following following() const { return {}; }
+    virtual DynamicUpdate dynamic_update() const { return {}; }
     /// Renders what the camera sees now, with the budget and paths of the settings for every frame. Layers as
     /// those of RenderResult and, where the method knows it, "motion" (see gi/render/motion.h).
     /// @param moments  where given, every path of a pixel is of a moment of its own, so that their mean is blurred
@@ -96,8 +96,8 @@ public:
     /// Budget, paths and size of the settings do not count here; hidden pixels do here alone.
     /// @param paths  per pixel, >= 1
     /// @return a result per view, in their order; `interrupted` where `stop` came first, with fewer paths
-    virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings endings,
-                                            StopRequest const& stop) = 0;
+    virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths,
+                                            VertexSharing sharing, StopRequest const& stop) = 0;
     /// One view with what moves and without it; `turn` is asked for the one and the other in turns, `with` first,
     /// and leaves the world at either. Where things only vanish, the world stays at `with` if it can, and of the
     /// other picture only those paths are traced that what moves could change; bounds of the world, and with them

@@ -62,8 +62,8 @@ struct SlhbSettings {
     int resolution = 0;        ///< texels of a hit buffer, about resolution x resolution
     int axes = 0;              ///< of a pass, streamed and temporal
     int fresh_axes = 0;        ///< of these, replaced in a pass, temporal
-    int lamps = 0;             ///< light samples with a shadow map per pass
-    int fresh_lamps = 0;       ///< of these, replaced in a pass
+    int light_samples = 0;             ///< light samples with a shadow map per pass
+    int fresh_light_samples = 0;       ///< of these, replaced in a pass
     int shadow_resolution = 0; ///< texels of a shadow map, squared
     int most_layers = 0;       ///< per texel; 0 = all
     int memory_mib = 0;        ///< that hit buffers and shadow maps may take
@@ -148,7 +148,7 @@ struct RenderResult {
     bool resumable = false; ///< settings.checkpoint holds what is needed to go on
     double rays = 0;        ///< closest-hit and shadow rays, or look-ups
     /// Of a view with a partner: per pixel the partner's whose light all its paths took, to half a pixel, else
-    /// kOwnLight (gi/filter/taken_light.h). Empty without one.
+    /// kOwnLight (gi/filter/reused_light.h). Empty without one.
     std::vector<std::uint32_t> light_from;
 };
 

@@ -34,8 +34,8 @@ py::dict next(Frames& frames, std::vector<std::tuple<std::string, gi::Camera, in
 {
     check_range("budget_s", budget_s, 1e-4, 1e4);
     check_range("time_s", scene_s, -1e9, 1e9);
-    if (paths) check_range("paths", *paths, 1, viewer::OrderLimits::paths);
-    std::vector<viewer::ViewOrder> orders;
+    if (paths) check_range("paths", *paths, 1, viewer::CommandLimits::paths);
+    std::vector<viewer::ViewCommand> orders;
     for (auto const& [name, camera, width, height, partner] : views)
         orders.push_back({name, camera, width, height, partner});
     MadeFrame made;

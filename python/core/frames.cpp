@@ -72,23 +72,23 @@ gi::Camera Frames::camera_at(viewer::StimulusSettings const& stimulus, int width
     return viewer::stimulus_views(place, stimulus, view, seconds).at(0).camera;
 }
 
-MadeFrame Frames::render(std::vector<viewer::ViewOrder> views, FrameWork work, double scene_s,
+MadeFrame Frames::render(std::vector<viewer::ViewCommand> views, FrameWork work, double scene_s,
                          gi::StopRequest const& stop)
 {
     if (views.empty())
         throw gi::InputError("a frame without a view", "there is nothing to render", "give at least one");
     std::lock_guard const lock(mutex_);
-    viewer::FrameOrder order;
+    viewer::FrameCommand order;
     order.frame = frame_;
     order.scene_s = scene_s;
     order.world_from_room = views[0].camera.world_from_camera;
     order.views = std::move(views);
     double pixels = 0;
-    for (viewer::ViewOrder const& v : order.views) pixels += double(v.width) * v.height;
+    for (viewer::ViewCommand const& v : order.views) pixels += double(v.width) * v.height;
     viewer::FrameBudget const budget =
         work.paths ? viewer::FrameBudget{*work.paths, 1} : governor_.next(pixels, false, {0, 1});
     order.paths = budget.paths;
-    check_order(order);
+    check_command(order);
     auto const begun = std::chrono::steady_clock::now();
     MadeFrame made;
     made.frame = session_.render(order, stop);

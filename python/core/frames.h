@@ -3,7 +3,7 @@
 // settings of a stimulus of an experiment.
 
 #include "viewer/engine/governor.h"
-#include "viewer/engine/session.h"
+#include "viewer/engine/render_session.h"
 #include "viewer/experiment/stimulus_place.h"
 
 #include <mutex>
@@ -42,7 +42,7 @@ public:
                          double duration_s) const;
 
     /// @param scene_s  time of the scene's clips, s. Throws InputError without a scene or a view.
-    MadeFrame render(std::vector<viewer::ViewOrder> views, FrameWork work, double scene_s,
+    MadeFrame render(std::vector<viewer::ViewCommand> views, FrameWork work, double scene_s,
                      gi::StopRequest const& stop);
 
 private:
@@ -52,7 +52,7 @@ private:
     mutable std::mutex mutex_;
     gi::Report report_;
     viewer::SceneAccess scenes_;
-    viewer::Session session_;
+    viewer::RenderSession session_;
     viewer::Governor governor_;
     std::uint64_t frame_ = 0;
     bool is_edited_ = false;

@@ -108,13 +108,14 @@ study::TrialDone PythonPresenter::show(study::TrialRequest const& trial)
         [&] { return from_dict<study::TrialDone>(steps_.attr("show")(to_dict(trial))); });
 }
 
-study::Wish PythonPresenter::wish()
+study::ExperimenterAction PythonPresenter::action()
 {
-    return call<study::Wish>([&] {
-        static std::map<std::string, study::Wish> const kWishes{{"go_on", study::Wish::go_on},
-                                                                {"pause", study::Wish::pause},
-                                                                {"skip", study::Wish::skip},
-                                                                {"abort", study::Wish::abort}};
+    return call<study::ExperimenterAction>([&] {
+        static std::map<std::string, study::ExperimenterAction> const kWishes{
+            {"go_on", study::ExperimenterAction::go_on},
+            {"pause", study::ExperimenterAction::pause},
+            {"skip", study::ExperimenterAction::skip},
+            {"abort", study::ExperimenterAction::abort}};
         auto const word = py::cast<std::string>(steps_.attr("wish")());
         auto const found = kWishes.find(word);
         if (found == kWishes.end())

@@ -26,7 +26,7 @@ public:
     study::StepDone walk(study::TrialRequest const& where, std::string const& prompt, double seconds) override;
     study::QuestionnaireDone ask(study::Questionnaire const& questionnaire, int step) override;
     study::TrialDone show(study::TrialRequest const& trial) override;
-    study::Wish wish() override;
+    study::ExperimenterAction action() override;
     std::vector<study::NoteTaken> notes() override;
 
     /// What a method raised, which ended the session; null = nothing.

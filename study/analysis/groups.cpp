@@ -20,7 +20,7 @@ std::vector<Group> groups_of(Script const& script, std::vector<ObserverTrials> c
         std::set<int> levels;
         for (ObserverTrials const& o : observers)
             for (TrialRow const& row : o.rows)
-                if (row.step->block == block && row.standing == Standing::counted)
+                if (row.step->block == block && row.status == TrialStatus::counted)
                     levels.insert(shared_level(*row.block, row.step->trial, int(f)));
         if (levels.size() < 2) continue;
         for (int const level : levels)
@@ -50,7 +50,7 @@ std::vector<ObserverTrials> counted(std::vector<ObserverTrials> const& observers
     for (ObserverTrials const& o : observers) {
         out.push_back({o.participant, {}});
         for (TrialRow const& row : o.rows)
-            if (row.step->block == block && row.standing == Standing::counted && group.has(row))
+            if (row.step->block == block && row.status == TrialStatus::counted && group.has(row))
                 out.back().rows.push_back(row);
     }
     return out;

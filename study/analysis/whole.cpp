@@ -20,9 +20,9 @@ void exclude_trials(ObserverTrials const& o, Analysis& a)
         std::string const reason = row.done->reason.empty() ? "" : ": " + row.done->reason;
         if (row.is_kept_though_invalid)
             ++counts[{"kept", "flagged" + reason + ", kept since the script says on_bad_trial: keep"}];
-        else if (row.standing == Standing::invalid || row.standing == Standing::superseded)
-            ++counts[{"left out", std::string(name_of(row.standing)) + reason}];
-        else if (row.standing == Standing::unanswered)
+        else if (row.status == TrialStatus::invalid || row.status == TrialStatus::superseded)
+            ++counts[{"left out", std::string(name_of(row.status)) + reason}];
+        else if (row.status == TrialStatus::unanswered)
             ++counts[{"left out", "no answer" + reason}];
     }
     for (auto const& [key, n] : counts) a.exclusions.push_back({o.participant, key.first, key.second, n});
@@ -48,17 +48,17 @@ void summarise(RecordedSession const& session, SessionStarted const& start, std:
     it->is_complete = it->is_complete && is_complete(session);
     it->is_simulated = it->is_simulated || start.is_simulated;
     for (TrialRow const& row : rows) {
-        it->counted += row.standing == Standing::counted;
-        it->practice += row.standing == Standing::practice;
-        it->invalid += row.standing == Standing::invalid;
-        it->superseded += row.standing == Standing::superseded;
-        it->unanswered += row.standing == Standing::unanswered;
-        if (row.standing == Standing::catch_trial) {
+        it->counted += row.status == TrialStatus::counted;
+        it->practice += row.status == TrialStatus::practice;
+        it->invalid += row.status == TrialStatus::invalid;
+        it->superseded += row.status == TrialStatus::superseded;
+        it->unanswered += row.status == TrialStatus::unanswered;
+        if (row.status == TrialStatus::catch_trial) {
             ++it->catches;
             bool const is_right = row.done->is_correct.value_or(row.done->response == row.step->trial.answer);
             it->catches_right += is_right;
         }
-        if (row.standing != Standing::counted) continue;
+        if (row.status != TrialStatus::counted) continue;
         if (row.done->response == "first") ++it->choices, ++it->chose_first;
         if (row.done->response == "second") ++it->choices;
     }
@@ -71,7 +71,7 @@ void finish_summary(ObserverTrials const& observer, AnalysisSettings const& sett
         std::find(settings.exclude.begin(), settings.exclude.end(), s.participant) != settings.exclude.end();
     std::vector<double> reactions;
     for (TrialRow const& row : observer.rows)
-        if (row.standing == Standing::counted && row.done->reaction_ms)
+        if (row.status == TrialStatus::counted && row.done->reaction_ms)
             reactions.push_back(*row.done->reaction_ms);
     s.reaction_median_ms = gi::quantile(reactions, 0.5);
     if (s.choices > 0) s.bias_p = binomial_test(s.chose_first, s.choices);

@@ -21,7 +21,7 @@ public:
     StepDone walk(TrialRequest const& where, std::string const& prompt, double seconds) override;
     QuestionnaireDone ask(Questionnaire const& questionnaire, int step) override;
     TrialDone show(TrialRequest const& trial) override;
-    Wish wish() override { return Wish::go_on; }
+    ExperimenterAction action() override { return ExperimenterAction::go_on; }
     std::vector<NoteTaken> notes() override { return {}; }
 
 private:

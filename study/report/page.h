@@ -8,7 +8,7 @@
 namespace study {
 
 /// What a simulation says of its observers (study/observers writes it).
-struct Truth {
+struct SimulatedTruth {
     std::map<std::string, std::map<std::string, double>> quality_jod; ///< by factor and level
     struct Varied {
         double threshold = 0, slope = 1;
@@ -18,13 +18,14 @@ struct Truth {
     double lapse = 0;
 };
 /// @throws ScriptError where it is no such text
-Truth read_truth(std::string const& json, std::string const& name);
+SimulatedTruth read_truth(std::string const& json, std::string const& name);
 /// Where the share of right answers is `proportion`; NaN where it never is, or the setting is not known.
-double true_level(Truth const& truth, std::string const& setting, bool harder_up, double guess, double proportion);
+double true_level(SimulatedTruth const& truth, std::string const& setting, bool harder_up, double guess,
+                  double proportion);
 
 struct ReportFacts {
     std::string program; ///< "lightwell 0.1.0 (git 1a2b3c4)"
-    std::optional<Truth> truth;
+    std::optional<SimulatedTruth> truth;
     std::vector<double> frame_interval_ms{}; ///< between neighbouring frames of a stimulus; empty = not kept
 };
 

@@ -5,9 +5,9 @@
 
 namespace study {
 
-Truth read_truth(std::string const& json, std::string const& name)
+SimulatedTruth read_truth(std::string const& json, std::string const& name)
 {
-    Truth t;
+    SimulatedTruth t;
     try {
         auto const j = nlohmann::json::parse(json);
         for (auto const& [factor, levels] : j.at("quality_jod").items())
@@ -22,13 +22,14 @@ Truth read_truth(std::string const& json, std::string const& name)
     return t;
 }
 
-double true_level(Truth const& truth, std::string const& setting, bool harder_up, double guess, double proportion)
+double true_level(SimulatedTruth const& truth, std::string const& setting, bool harder_up, double guess,
+                  double proportion)
 {
     auto const it = truth.varied.find(setting);
     if (it == truth.varied.end()) return kUnknown;
     double const f = (proportion - guess) / (1 - guess - truth.lapse);
     if (!(f > 0 && f < 1)) return kUnknown;
-    Truth::Varied const& v = it->second;
+    SimulatedTruth::Varied const& v = it->second;
     double const sign = harder_up ? -1 : 1;
     if (v.is_weibull) return v.threshold * std::pow(-std::log1p(-f), sign / v.slope);
     double low = -10, high = 10; // the quantile of the normal distribution

@@ -24,7 +24,7 @@ struct TrialRequest {
 };
 
 /// The experimenter's wish, which may come at any time.
-enum class Wish { go_on, pause, skip, abort };
+enum class ExperimenterAction { go_on, pause, skip, abort };
 
 /// Thrown out of any call: somebody aborts while it is under way. The reason says who; it stands in session.json.
 struct Aborted : std::runtime_error {
@@ -53,7 +53,7 @@ public:
     /// (as if Aborted were thrown). A StepDone may have these reasons too.
     virtual TrialDone show(TrialRequest const& trial) = 0;
     /// Since the last call; asked between steps.
-    virtual Wish wish() = 0;
+    virtual ExperimenterAction action() = 0;
     virtual std::vector<NoteTaken> notes() = 0; ///< since the last call
 };
 

@@ -71,19 +71,20 @@ bool Progress::falls_away(int step) const
     return (is_catch || s.kind == PlanStepKind::rest) && !has_main_trial_after(step);
 }
 
-Due Progress::due_of(int step) const
+NextStep Progress::due_of(int step) const
 {
-    Due due{step, attempts_[std::size_t(step)] + 1, false, {}};
+    NextStep due{step, attempts_[std::size_t(step)] + 1, false, {}};
     if (at(step).kind != PlanStepKind::trial) return due;
     due.level = at(step).trial.level;
     if (AdaptiveRun const* const run = run_of_step_[std::size_t(step)]) due.level = run->level();
     return due;
 }
 
-std::optional<Due> Progress::next() const
+std::optional<NextStep> Progress::next() const
 {
     if (!refresh_.empty()) return due_of(refresh_.front());
-    if (questionnaire_of_ >= 0) return Due{questionnaire_of_, attempts_[std::size_t(questionnaire_of_)], true, {}};
+    if (questionnaire_of_ >= 0)
+        return NextStep{questionnaire_of_, attempts_[std::size_t(questionnaire_of_)], true, {}};
     int step = 0;
     while (step < int(plan_.steps.size()) && (is_done_[std::size_t(step)] || falls_away(step))) ++step;
     bool const is_over = step == int(plan_.steps.size());

@@ -11,7 +11,7 @@
 
 namespace study {
 
-struct Due {
+struct NextStep {
     int step = 0, attempt = 1;
     bool is_questionnaire_of_trial = false; ///< the trial of the step is done, its items are not
     std::optional<double> level;            ///< of what is varied
@@ -38,7 +38,7 @@ public:
     Progress(Script const& script, Plan const& plan);
 
     /// None: every step is done.
-    std::optional<Due> next() const;
+    std::optional<NextStep> next() const;
     /// @throws std::invalid_argument where the entry cannot follow from this plan and the entries before
     void apply(JournalEntry const& entry);
 
@@ -57,7 +57,7 @@ private:
     bool falls_away(int step) const;
     bool has_main_trial_after(int step) const;
     bool is_same_pass(int a, int b) const;
-    Due due_of(int step) const;
+    NextStep due_of(int step) const;
     PlanStep const& at(int step) const { return plan_.steps[std::size_t(step)]; }
 
     Script const& script_;

@@ -204,23 +204,23 @@ private:
                 fmt::format("the wall clock went {:+.3f} s; times are those of the monotonic clock, which did not",
                             offset_s - clock_offset_s_));
         clock_offset_s_ = offset_s;
-        switch (call([&] { return p_.wish(); })) {
-        case Wish::pause:
+        switch (call([&] { return p_.action(); })) {
+        case ExperimenterAction::pause:
             note("pause", "");
             call([&] { return p_.rest("Pause", 0, -1); });
             note("resume", "");
             return false;
-        case Wish::abort:
+        case ExperimenterAction::abort:
             throw Aborted();
-        case Wish::skip:
+        case ExperimenterAction::skip:
             return true;
-        case Wish::go_on:
+        case ExperimenterAction::go_on:
             break;
         }
         return false;
     }
 
-    void skip(Due const& due)
+    void skip(NextStep const& due)
     {
         note("skip", fmt::format("step {}", due.step + 1));
         bool const is_trial = step(due).kind == PlanStepKind::trial && !due.is_questionnaire_of_trial;
@@ -237,9 +237,9 @@ private:
         }
     }
 
-    PlanStep const& step(Due const& due) const { return plan_.steps[std::size_t(due.step)]; }
+    PlanStep const& step(NextStep const& due) const { return plan_.steps[std::size_t(due.step)]; }
 
-    void perform(Due const& due)
+    void perform(NextStep const& due)
     {
         PlanStep const& at = step(due);
         switch (at.kind) {
@@ -260,7 +260,7 @@ private:
         }
     }
 
-    void perform_trial(Due const& due)
+    void perform_trial(NextStep const& due)
     {
         Block const& block = s_.blocks[std::size_t(step(due).block)];
         if (due.is_questionnaire_of_trial)
@@ -271,14 +271,14 @@ private:
             show(due);
     }
 
-    void keep_step(Due const& due, StepDone done)
+    void keep_step(NextStep const& due, StepDone done)
     {
         if (done.reason == "aborted") throw Aborted();
         done.step = due.step;
         keep(done);
     }
 
-    void ask(Due const& due, int questionnaire)
+    void ask(NextStep const& due, int questionnaire)
     {
         Questionnaire const& asked = s_.questionnaires[std::size_t(questionnaire)];
         QuestionnaireDone done = call([&] { return p_.ask(asked, due.step); });
@@ -287,9 +287,9 @@ private:
         keep(done);
     }
 
-    TrialRequest request(Due const& due) const { return request_of(s_, plan_, progress_, due); }
+    TrialRequest request(NextStep const& due) const { return request_of(s_, plan_, progress_, due); }
 
-    void show(Due const& due)
+    void show(NextStep const& due)
     {
         TrialRequest const r = request(due);
         double const total = watch_.ms(), synced = files_.journal.synced_ms() - synced_before_;

@@ -2,7 +2,7 @@
 
 namespace study {
 
-TrialRequest request_of(Script const& script, Plan const& plan, Progress const& progress, Due const& due)
+TrialRequest request_of(Script const& script, Plan const& plan, Progress const& progress, NextStep const& due)
 {
     PlanStep const& step = plan.steps[std::size_t(due.step)];
     TrialRequest r;

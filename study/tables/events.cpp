@@ -165,7 +165,7 @@ std::vector<std::string> event_cells(Script const& s, TrialRow const& row)
         cell(done.bookkeeping_ms),
         cell(done.is_valid),
         cell(done.reason),
-        row.is_kept_though_invalid ? "counted though invalid" : std::string(name_of(row.standing))};
+        row.is_kept_though_invalid ? "counted though invalid" : std::string(name_of(row.status))};
     cells.insert(cells.end(), rest.begin(), rest.end());
     return cells;
 }

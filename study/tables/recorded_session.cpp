@@ -18,14 +18,14 @@ ScriptError broken(Script const& script, RecordedSession const& session, std::st
             "use the script and the plan with which the session was recorded"};
 }
 
-Standing standing_of(Script const& script, TrialRow const& row, int attempts)
+TrialStatus standing_of(Script const& script, TrialRow const& row, int attempts)
 {
-    if (row.step->trial.phase == Phase::practice) return Standing::practice;
-    if (row.done->attempt < attempts) return Standing::superseded;
+    if (row.step->trial.phase == Phase::practice) return TrialStatus::practice;
+    if (row.done->attempt < attempts) return TrialStatus::superseded;
     bool const is_answered = !row.done->response.empty() || row.done->value;
-    if (!is_answered) return row.done->is_valid ? Standing::unanswered : Standing::invalid;
-    if (!row.done->is_valid && script.timing.on_bad_trial != BadTrial::keep) return Standing::invalid;
-    return row.step->trial.phase == Phase::catches ? Standing::catch_trial : Standing::counted;
+    if (!is_answered) return row.done->is_valid ? TrialStatus::unanswered : TrialStatus::invalid;
+    if (!row.done->is_valid && script.timing.on_bad_trial != BadTrial::keep) return TrialStatus::invalid;
+    return row.step->trial.phase == Phase::catches ? TrialStatus::catch_trial : TrialStatus::counted;
 }
 
 } // namespace
@@ -67,20 +67,20 @@ std::vector<TimedEntry> timed_entries(RecordedSession const& session)
     return out;
 }
 
-std::string_view name_of(Standing standing)
+std::string_view name_of(TrialStatus status)
 {
-    switch (standing) {
-    case Standing::counted:
+    switch (status) {
+    case TrialStatus::counted:
         return "counted";
-    case Standing::practice:
+    case TrialStatus::practice:
         return "practice";
-    case Standing::catch_trial:
+    case TrialStatus::catch_trial:
         return "catch";
-    case Standing::superseded:
+    case TrialStatus::superseded:
         return "repeated later";
-    case Standing::invalid:
+    case TrialStatus::invalid:
         return "invalid";
-    case Standing::unanswered:
+    case TrialStatus::unanswered:
         break;
     }
     return "no answer";
@@ -101,12 +101,12 @@ std::vector<TrialRow> trial_rows(Script const& script, RecordedSession const& se
             session.plan.steps[std::size_t(done->step)].kind != PlanStepKind::trial)
             throw broken(script, session, fmt::format("step {} is no trial", done->step + 1));
         PlanStep const& step = session.plan.steps[std::size_t(done->step)];
-        TrialRow row{&step,      &script.blocks[std::size_t(step.block)],
-                     done,       start.session,
-                     timed.part, timed.offset_s,
-                     Standing{}, false};
-        row.standing = standing_of(script, row, attempts[done->step]);
-        row.is_kept_though_invalid = row.standing == Standing::counted && !done->is_valid;
+        TrialRow row{&step,         &script.blocks[std::size_t(step.block)],
+                     done,          start.session,
+                     timed.part,    timed.offset_s,
+                     TrialStatus{}, false};
+        row.status = standing_of(script, row, attempts[done->step]);
+        row.is_kept_though_invalid = row.status == TrialStatus::counted && !done->is_valid;
         rows.push_back(row);
     }
     return rows;

@@ -29,7 +29,7 @@ struct TimedEntry {
 std::vector<TimedEntry> timed_entries(RecordedSession const& session);
 
 /// Why a trial does not count in analyses; `counted` = it does.
-enum class Standing {
+enum class TrialStatus {
     counted,
     practice,
     catch_trial, ///< counts for attention only
@@ -37,7 +37,7 @@ enum class Standing {
     invalid,     ///< flagged, and not repeated (yet)
     unanswered,
 };
-std::string_view name_of(Standing standing);
+std::string_view name_of(TrialStatus status);
 
 /// A trial that was carried through, with its place in the plan.
 struct TrialRow {
@@ -46,7 +46,7 @@ struct TrialRow {
     TrialDone const* done;
     int session, part;
     double offset_s; ///< as TimedEntry
-    Standing standing;
+    TrialStatus status;
     bool is_kept_though_invalid; ///< counted because the script says on_bad_trial: keep
 };
 /// In the order of the journal. The pointers are into script, session and plan.

@@ -21,7 +21,7 @@ inline RenderSettings blur_settings(std::uint32_t paths)
     s.paths = paths;
     s.bounces = 0;
     s.seed = 5;
-    s.slhb.lamps = 1;
+    s.slhb.light_samples = 1;
     s.slhb.shadow_resolution = 8;
     return s;
 }

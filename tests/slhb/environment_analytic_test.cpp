@@ -76,14 +76,14 @@ TEST(EnvironmentLight, OneBrightTexelIsAParallelLight)
         -vec3(dvec3{std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)});
     light.intensity = vec3(float(kRadiance * solid_angle));
     add_light(with_light, light);
-    World const map = world_of(with_map), lamp = world_of(with_light);
+    World const map = world_of(with_map), light_point = world_of(with_light);
     for (Method const m : kMethods) {
         RenderSettings s = small_settings(32, m == Method::reference ? 512 : 256, 3);
         s.slhb.shadow_resolution = 512;
-        s.slhb.lamps = 8;
+        s.slhb.light_samples = 8;
         s.slhb.axes = 8;
         s.slhb.resolution = 128;
-        Picture const a = render_with(m, map, yard_camera(), s), b = render_with(m, lamp, yard_camera(), s);
+        Picture const a = render_with(m, map, yard_camera(), s), b = render_with(m, light_point, yard_camera(), s);
         for (char const* const part : {"L1", "L2"}) {
             double const truth = mean_of(b, part).mean, found = mean_of(a, part).mean;
             EXPECT_GT(truth, part[1] == '1' ? 0.05 : 0.005);

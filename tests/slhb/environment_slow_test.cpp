@@ -66,7 +66,7 @@ TEST_P(RealSky, NoBiasAgainstTheReference)
             s.slhb.schedule = schedule;
             s.slhb.resolution = 128;
             s.slhb.shadow_resolution = 512;
-            s.slhb.lamps = 8;
+            s.slhb.light_samples = 8;
             s.slhb.axes = 8;
             RunningMean const found = over_seeds(stored ? stored_seeds : 6, s, [&](RenderSettings const& now) {
                 return render_with_slhb(world, camera, now).result.picture;

@@ -34,7 +34,7 @@ TEST(SlhbExactParts, WithoutLookUpsThereIsNoBias)
     });
     s.slhb.schedule = Schedule::streamed;
     s.slhb.axes = 8;
-    s.slhb.lamps = 8;
+    s.slhb.light_samples = 8;
     for (bool const own_directions : {false, true}) {
         s.slhb.exact = {.queries = true, .shadows = true, .directions = own_directions};
         Estimate const exact = indirect_over_seeds(s, kSeeds, [&](RenderSettings const& now) {
@@ -53,11 +53,11 @@ TEST(SlhbExactParts, NothingIsLookedUp)
     add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, add_material(scene, lambert(vec3{0.5f})));
     add_sphere(scene, {0, 0.4f, 0}, 0.4f, 2, add_material(scene, lambert(vec3{0.8f})), true);
     set_environment(scene, vec3{1});
-    Light lamp;
-    lamp.type = LightType::directional;
-    lamp.direction = {0, -1, 0};
-    lamp.intensity = vec3{1};
-    add_light(scene, lamp);
+    Light light_point;
+    light_point.type = LightType::directional;
+    light_point.direction = {0, -1, 0};
+    light_point.intensity = vec3{1};
+    add_light(scene, light_point);
     World const world = world_of(scene);
     Camera const camera = look_at({1, 1, 2}, {0, 0.2, 0}, 50);
     for (Schedule const schedule : {Schedule::streamed, Schedule::stored}) {

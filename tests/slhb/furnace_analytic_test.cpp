@@ -46,7 +46,7 @@ TEST(SlhbFurnace, ClosedSphereThatGlows)
             s.slhb.shadow_resolution = 128;
             s.slhb.resolution = 64;
             s.slhb.axes = 8;
-            s.slhb.lamps = 8;
+            s.slhb.light_samples = 8;
             // E (1 + rho + ... + rho^(bounces + 1))
             double const truth = 0.5 * (1 - std::pow(double(rho), bounces + 2)) / (1 - double(rho));
             expect_mean(render_with_slhb(world, look_at({0.1, 0.2, 0.1}, {-1, -0.5, -0.7}, 90), s).result.picture,

@@ -38,12 +38,12 @@ protected:
         s.slhb.resolution = 64;
     }
 
-    std::vector<RenderResult> render(bool hides, int partner, Endings endings, std::uint32_t paths)
+    std::vector<RenderResult> render(bool hides, int partner, VertexSharing sharing, std::uint32_t paths)
     {
         std::vector<FrameView> views{{eye(), kSize, kSize}, {eye(0.06), kSize, kSize, partner}};
         if (hides) views[0].hidden = views[1].hidden = hidden;
         Report report;
-        auto results = start_slhb_frames(world, eye(), s, report)->views(views, paths, endings, {});
+        auto results = start_slhb_frames(world, eye(), s, report)->views(views, paths, sharing, {});
         counts = report.counts();
         return results;
     }
@@ -70,10 +70,10 @@ protected:
 
 TEST_F(HiddenPixels, AreBlackAndAllOthersAreTheSame)
 {
-    auto const all = render(false, -1, Endings::own, 3);
+    auto const all = render(false, -1, VertexSharing::none, 3);
     EXPECT_FALSE(counts.contains("share of pixels not rendered"));
     double const before = lookups();
-    auto const some = render(true, -1, Endings::own, 3);
+    auto const some = render(true, -1, VertexSharing::none, 3);
     for (std::size_t k = 0; k < 2; ++k) {
         expect_black(some[k].picture);
         for (Layer const& layer : some[k].picture.layers) {
@@ -92,13 +92,13 @@ TEST_F(HiddenPixels, AreBlackAndAllOthersAreTheSame)
     EXPECT_NEAR(1 - lookups() / before, share(), 0.05);
 }
 
-/// With a partner and shared endings light comes from fewer pixels: the same picture, other noise.
+/// With a partner and shared vertices light comes from fewer pixels: the same picture, other noise.
 TEST_F(HiddenPixels, GiveNoLightToOthers)
 {
     constexpr std::uint32_t kPaths = 128;
-    auto const all = render(false, 0, Endings::cached, kPaths);
+    auto const all = render(false, 0, VertexSharing::cached, kPaths);
     double const before = lookups(), taken = counts.at("share of pixels lit by a partner view");
-    auto const some = render(true, 0, Endings::cached, kPaths);
+    auto const some = render(true, 0, VertexSharing::cached, kPaths);
     EXPECT_NEAR(counts.at("share of pixels lit by a partner view"), taken, 0.05);
     for (std::size_t k = 0; k < 2; ++k) {
         expect_black(some[k].picture);
@@ -126,7 +126,7 @@ TEST_F(HiddenPixels, OfAnEarlierCallAreForgotten)
     auto const frames = start_slhb_frames(world, eye(), s, report);
     FrameView view{eye(), kSize, kSize};
     view.hidden = hidden;
-    frames->views({&view, 1}, 1, Endings::exact, {});
+    frames->views({&view, 1}, 1, VertexSharing::exact, {});
     RenderResult const whole = frames->frame(eye(), {}, {});
     EXPECT_GT(whole.picture.find("depth")->data[0], 0);
 }

@@ -30,7 +30,7 @@ void check_furnace()
         s.slhb.schedule = schedule;
         if (schedule == Schedule::stored) s.slhb.directions = "icosahedron:80";
         s.slhb.resolution = s.slhb.shadow_resolution = 32;
-        s.slhb.lamps = 4;
+        s.slhb.light_samples = 4;
         s.slhb.axes = schedule == Schedule::stored ? 0 : 4;
         auto const frames = start_kernel_frames(S, world, camera, s, report);
         double sum = 0;

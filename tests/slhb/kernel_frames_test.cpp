@@ -48,8 +48,8 @@ RenderSettings settings_of(Schedule schedule)
     if (schedule == Schedule::stored) s.slhb.directions = "icosahedron:80";
     s.slhb.resolution = 48;
     s.slhb.shadow_resolution = 64;
-    s.slhb.lamps = 4;
-    s.slhb.fresh_lamps = 2;
+    s.slhb.light_samples = 4;
+    s.slhb.fresh_light_samples = 2;
     s.slhb.interleave = 1;
     return s;
 }
@@ -119,8 +119,8 @@ public:
         SCOPED_TRACE(what);
         kernels->changed(changes);
         cpu_->changed(changes);
-        auto found = kernels->views(views, 2, Endings::exact, {});
-        auto const expected = cpu_->views(views, 2, Endings::own, {});
+        auto found = kernels->views(views, 2, VertexSharing::exact, {});
+        auto const expected = cpu_->views(views, 2, VertexSharing::none, {});
         EXPECT_EQ(found.size(), expected.size());
         for (std::size_t k = 0; k < found.size(); ++k) expect_same(found[k], expected[k]);
         return found;
@@ -130,10 +130,10 @@ public:
         FrameView const view{frame_eye(), kFrameSize, kFrameSize};
         return layer(next(changes, {&view, 1}, what)[0], "color");
     }
-    void follow(int axes)
+    void update_axes(int axes)
     {
-        kernels->follow(axes);
-        cpu_->follow(axes);
+        kernels->update_axes(axes);
+        cpu_->update_axes(axes);
     }
 
 private:
@@ -247,15 +247,15 @@ template <Space S>
 void check_following()
 {
     Both<S> both(settings_of(Schedule::stored));
-    both.follow(8);
+    both.update_axes(8);
     for (int k = 0; k < 7; ++k) both.next(both.place({-0.05 * k, 0.02 * k, 0}), "8 of 40");
-    Following const f = both.kernels->following();
+    DynamicUpdate const f = both.kernels->dynamic_update();
     EXPECT_EQ(f.stored, 40);
     EXPECT_GE(f.axes, 8);
     EXPECT_LT(f.axes, 40);
-    both.follow(0);
+    both.update_axes(0);
     both.next({}, "all, and nothing moved");
-    EXPECT_EQ(both.kernels->following().axes, 40);
+    EXPECT_EQ(both.kernels->dynamic_update().axes, 40);
 }
 LIGHTWELL_TEST_BOTH(KernelFrames, MayFollowInSomeDirections, check_following);
 
@@ -274,13 +274,13 @@ void check_views()
     for (std::size_t k = 0; k < 3; ++k) { // none of the others counts, nor of a partner
         auto const one =
             start_kernel_frames(S, alone.world, frame_eye(), settings_of(Schedule::stored), alone.report)
-                ->views({&views[k], 1}, 2, Endings::exact, {});
+                ->views({&views[k], 1}, 2, VertexSharing::exact, {});
         EXPECT_EQ(layer(one[0], "color"), layer(whole[k], "color")) << k;
     }
     views[2].partner = 0;
     auto const partners =
         start_kernel_frames(S, alone.world, frame_eye(), settings_of(Schedule::stored), alone.report)
-            ->views(views, 2, Endings::cached, {});
+            ->views(views, 2, VertexSharing::cached, {});
     EXPECT_EQ(layer(partners[2], "color"), layer(whole[2], "color"));
     EXPECT_TRUE(partners[2].light_from.empty());
     views[0].hidden = views[2].hidden = hidden;
@@ -335,11 +335,11 @@ void check_end()
     StopRequest stop;
     stop.request();
     FrameView const view{frame_eye(), kFrameSize, kFrameSize};
-    auto const one = both.kernels->views({&view, 1}, 5, Endings::own, stop);
+    auto const one = both.kernels->views({&view, 1}, 5, VertexSharing::none, stop);
     EXPECT_EQ(one[0].paths, 1u);
     EXPECT_EQ(one[0].end, RenderEnd::interrupted);
     EXPECT_GT(mean_of(one[0].picture).mean, 0);
-    EXPECT_EQ(both.kernels->views({&view, 1}, 5, Endings::own, {})[0].end, RenderEnd::paths);
+    EXPECT_EQ(both.kernels->views({&view, 1}, 5, VertexSharing::none, {})[0].end, RenderEnd::paths);
 }
 LIGHTWELL_TEST_BOTH(KernelFrames, EndWithFewerPathsWhereTheyAreStopped, check_end);
 
@@ -367,7 +367,7 @@ TEST(KernelFrames, RefuseWhatKernelsLackAndGoOn)
 {
     Both<Space::host> both(settings_of(Schedule::stored));
     FrameView const view{orthographic({0, 0, 0.9}, {0, 0, 0}, 1), kFrameSize, kFrameSize};
-    EXPECT_THROW(both.kernels->views({&view, 1}, 1, Endings::own, {}), InputError);
+    EXPECT_THROW(both.kernels->views({&view, 1}, 1, VertexSharing::none, {}), InputError);
     EXPECT_THROW(
         both.kernels->pair({frame_eye(), kFrameSize, kFrameSize}, {}, [](PairSide) { return Changes{}; }, {}),
         InputError);

@@ -69,17 +69,18 @@ void expect_like_cpu(Scene scene, RenderSettings const& settings, std::string co
 {
     World const world = world_of(std::move(scene));
     SlhbRun const expected = render_with_slhb(world, room_camera(), settings);
-    EXPECT_EQ(expected.counts.at("endings shaded for several paths"), 0) << what;
+    EXPECT_EQ(expected.counts.at("shared vertices shaded for several paths"), 0) << what;
     expect_same_picture(render_with_kernels(S, world, room_camera(), settings), expected, what);
 }
 
 template <Space S>
 void check_lights()
 {
-    Scene lamp = room();
-    add_quad(lamp, {-0.3f, 0.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(lamp, emitter(vec3{10})));
-    expect_like_cpu<S>(lamp, settings_of(8, 4), "area light");
-    expect_like_cpu<S>(lamp, settings_of(8, 0), "area light, no bounces");
+    Scene light_point = room();
+    add_quad(light_point, {-0.3f, 0.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f},
+             add_material(light_point, emitter(vec3{10})));
+    expect_like_cpu<S>(light_point, settings_of(8, 4), "area light");
+    expect_like_cpu<S>(light_point, settings_of(8, 0), "area light, no bounces");
 
     Scene points = room();
     for (int k = 0; k < 3; ++k) {
@@ -107,16 +108,17 @@ LIGHTWELL_TEST_BOTH(KernelRender, LightsAsOnTheCpu, check_lights);
 template <Space S>
 void check_schedules()
 {
-    Scene lamp = room();
-    add_quad(lamp, {-0.3f, 0.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(lamp, emitter(vec3{10})));
+    Scene light_point = room();
+    add_quad(light_point, {-0.3f, 0.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f},
+             add_material(light_point, emitter(vec3{10})));
     RenderSettings s = settings_of(6, 5);
     s.slhb.schedule = Schedule::temporal;
-    expect_like_cpu<S>(lamp, s, "temporal");
+    expect_like_cpu<S>(light_point, s, "temporal");
     s.slhb.schedule = Schedule::stored;
     s.slhb.directions = "icosahedron:80";
-    expect_like_cpu<S>(lamp, s, "stored");
+    expect_like_cpu<S>(light_point, s, "stored");
     s.slhb.most_layers = 2;
-    expect_like_cpu<S>(lamp, s, "few layers");
+    expect_like_cpu<S>(light_point, s, "few layers");
 }
 LIGHTWELL_TEST_BOTH(KernelRender, SchedulesAsOnTheCpu, check_schedules);
 

@@ -1,4 +1,4 @@
-#include "gi/methods/slhb/lights/lamps.h"
+#include "gi/methods/slhb/lights/light_points.h"
 #include "gi/scene/generate/figure.h"
 #include "gi/scene/motion/moving_world.h"
 #include "tests/support/scenes.h"
@@ -18,9 +18,9 @@ std::shared_ptr<Scene const> walk(Source source)
     add_quad(scene, {-5, 0, 5}, {10, 0, 0}, {0, 0, -10}, add_material(scene, lambert(vec3{0.5f})));
     add_figure(scene, glm::translate(dmat4(1), dvec3{0, 0, 0}), 1);
     if (source == Source::rectangle) {
-        Material lamp = lambert(vec3{0});
-        lamp.emission = vec3{10};
-        add_quad(scene, {-1, 4, -1}, {2, 0, 0}, {0, 0, 2}, add_material(scene, lamp));
+        Material light_point = lambert(vec3{0});
+        light_point.emission = vec3{10};
+        add_quad(scene, {-1, 4, -1}, {2, 0, 0}, {0, 0, 2}, add_material(scene, light_point));
     } else if (source == Source::sky) {
         set_environment(scene, vec3{1});
     } else {
@@ -47,23 +47,24 @@ TEST_P(KeptLamps, HaveTheShadowsOfNow)
     bounds.low -= vec3{1};
     bounds.high += vec3{1};
     ASSERT_LT(world.static_triangles, world.triangles.size());
-    Lamps lamps(world, bounds, soup, cut_outs,
-                {.count = 5, .fresh = 2, .resolution = 32, .seed = 3, .first_moving = world.static_triangles});
+    LightPoints light_points(
+        world, bounds, soup, cut_outs,
+        {.count = 5, .fresh = 2, .resolution = 32, .seed = 3, .first_moving = world.static_triangles});
     ShadowMapBuilder const builder(bounds, soup, cut_outs, 32);
     std::size_t covered = 0, taken = 0;
     for (std::uint32_t pass = 0; pass < 8; ++pass) {
         if (pass % 3 != 1) {
             moving.advance(0.1 * pass);
             update_soup(world, world.static_triangles, soup);
-            lamps.moved();
+            light_points.moved();
         }
-        lamps.refresh(pass);
-        ASSERT_EQ(lamps.fixed(), GetParam() == Source::point);
-        for (Lamp const& lamp : lamps.lamps()) {
-            ShadowMap anew = lamp.shadow;
+        light_points.refresh(pass);
+        ASSERT_EQ(light_points.fixed(), GetParam() == Source::point);
+        for (LightPoint const& light_point : light_points.light_points()) {
+            ShadowMap anew = light_point.shadow;
             for (int face = 0; face < 6; ++face) {
-                builder.build(lamp.view, face, soup.count, 0, anew);
-                auto const& now = lamp.shadow.maps[std::size_t(face)].texels;
+                builder.build(light_point.view, face, soup.count, 0, anew);
+                auto const& now = light_point.shadow.maps[std::size_t(face)].texels;
                 auto const& expected = anew.maps[std::size_t(face)].texels;
                 ASSERT_EQ(now.size(), expected.size());
                 for (std::size_t t = 0; t < now.size(); ++t) {
@@ -81,20 +82,20 @@ TEST_P(KeptLamps, HaveTheShadowsOfNow)
 
 INSTANTIATE_TEST_SUITE_P(Of, KeptLamps, testing::Values(Source::rectangle, Source::sky, Source::point));
 
-TEST(Lamps, PointsAreSuccessiveOnesHoweverFewAreFresh)
+TEST(LightPoints, PointsAreSuccessiveOnesHoweverFewAreFresh)
 {
     Report report;
     World const world = build_world(walk(Source::rectangle), 0, report);
     TriangleSoup const soup = make_soup(world);
     CutOuts const cut_outs(world);
-    Lamps few(world, world.bounds, soup, cut_outs, {.count = 4, .fresh = 1, .resolution = 8, .seed = 3}),
+    LightPoints few(world, world.bounds, soup, cut_outs, {.count = 4, .fresh = 1, .resolution = 8, .seed = 3}),
         all(world, world.bounds, soup, cut_outs, {.count = 4, .fresh = 4, .resolution = 8, .seed = 3});
     for (std::uint32_t pass = 0; pass <= 4; ++pass) few.refresh(pass);
     all.refresh(1);
     EXPECT_EQ(few.maps_built(), 8u);
     for (std::size_t k = 0; k < 4; ++k) {
-        EXPECT_EQ(few.lamps()[k].number, all.lamps()[k].number);
-        EXPECT_EQ(few.lamps()[k].u, all.lamps()[k].u);
+        EXPECT_EQ(few.light_points()[k].number, all.light_points()[k].number);
+        EXPECT_EQ(few.light_points()[k].u, all.light_points()[k].u);
     }
 }
 

@@ -142,8 +142,8 @@ TEST(MotionVectors, OfViewsOfTheReferenceStartWithNone)
     Camera const camera = moving.world().cameras.at(0), aside = a_step_aside(camera);
     auto const frames = start_reference_frames(moving, camera, one_path(), report);
     FrameView const one[]{{camera, 16, 16}}, two[]{{aside, 16, 16}, {aside, 8, 8}};
-    frames->views(one, 1, Endings::own, {});
-    auto const results = frames->views(two, 1, Endings::own, {});
+    frames->views(one, 1, VertexSharing::none, {});
+    auto const results = frames->views(two, 1, VertexSharing::none, {});
     std::size_t still = 0;
     for (std::size_t i = 0; i < 64; ++i) still += rgb(*results[1].picture.find("motion"), i).x == 0;
     EXPECT_EQ(still, 64u);

@@ -104,7 +104,7 @@ TEST_P(Appended, IsWhatIsBuiltFromEverything)
     for (float const t : {0.0f, 0.3f, 1.1f, 0.6f}) {
         moving.go_to(t, holes);
         split.moved();
-        split.follow();
+        split.update_axes();
         AxisSet whole(moving.source(false, most_layers));
         whole.store(directions);
         ASSERT_EQ(columns(split.pool()), columns(whole.pool())) << t;
@@ -129,7 +129,7 @@ TEST(Moving, FreshAxesHaveWhatMovesToo)
         moving.go_to(0.2f * float(pass), false);
         split.refresh(2, 6, 2, pass);
         split.moved();
-        split.follow();
+        split.update_axes();
         AxisSet whole(moving.source(false, 0));
         whole.refresh(2, 6, 2, pass);
         ASSERT_EQ(columns(split.pool()), columns(whole.pool())) << pass;
@@ -143,11 +143,11 @@ TEST(Moving, WhatLeavesTheBuffersLeavesNothingBehind)
     split.store(make_directions("octahedron:8"));
     auto const still = columns(split.pool());
     split.moved();
-    split.follow();
+    split.update_axes();
     EXPECT_NE(columns(split.pool()), still);
     moving.go_to(1e6f, false); // far outside every grid
     split.moved();
-    split.follow();
+    split.update_axes();
     EXPECT_EQ(columns(split.pool()), still);
 }
 
@@ -180,7 +180,7 @@ TEST(Moving, SomeAxesFollowInTurns)
         for (auto const& each : times)
             for (int const n : each) EXPECT_EQ(n, 1);
     }
-    some.follow();
+    some.update_axes();
     AxisSet whole(moving.source(false, 0));
     whole.store(directions);
     EXPECT_EQ(columns(some.pool()), columns(whole.pool()));
@@ -204,7 +204,7 @@ TEST(Moving, SomeAxesBringWhatAllDo)
                 }
                 return sum / float(kTurnSamples);
             };
-            set.follow();
+            set.update_axes();
             vec3 const all = mean();
             vec3 some{0};
             for (std::uint32_t turn = 0; turn < kTurns; ++turn) {

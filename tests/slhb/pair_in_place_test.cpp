@@ -84,8 +84,8 @@ protected:
         scene_ = std::make_shared<Scene const>(std::move(joint));
         settings_ = small_settings(40, 1, 3);
         settings_.slhb.resolution = 32;
-        settings_.slhb.lamps = 4;
-        settings_.slhb.fresh_lamps = 2;
+        settings_.slhb.light_samples = 4;
+        settings_.slhb.fresh_light_samples = 2;
         settings_.slhb.shadow_resolution = 32;
     }
     Pose pose(double time_s, PairSide side) const

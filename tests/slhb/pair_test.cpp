@@ -51,7 +51,7 @@ protected:
         auto const frames = start_slhb_frames(world, camera(), settings_, report_);
         frames->changed(world.advance(pose(side)));
         FrameView const v = view();
-        return frames->views({&v, 1}, paths, Endings::own, stop_)[0].picture.find("color")->data;
+        return frames->views({&v, 1}, paths, VertexSharing::none, stop_)[0].picture.find("color")->data;
     }
     static std::vector<float> const& color(RenderResult const& r) { return r.picture.find("color")->data; }
 

@@ -87,8 +87,8 @@ TEST(PathShare, OfSlhbWithLampsThatStay)
 {
     RenderSettings s = small_settings(24, 16, 4);
     s.slhb.schedule = Schedule::temporal;
-    s.slhb.lamps = 4;
-    s.slhb.fresh_lamps = 1;
+    s.slhb.light_samples = 4;
+    s.slhb.fresh_light_samples = 1;
     s.slhb.interleave = 2;
     expect_shares_make_the_whole(s, with(render_slhb));
 }

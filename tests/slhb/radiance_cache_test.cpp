@@ -30,12 +30,12 @@ struct Seen {
     double ended, cells; ///< paths that ended in cells, per pass
 };
 
-Seen see(MovingWorld const& world, Camera const& camera, Endings endings, std::uint32_t paths,
+Seen see(MovingWorld const& world, Camera const& camera, VertexSharing sharing, std::uint32_t paths,
          RenderSettings const& s = settings_of_cache())
 {
     Report report;
     FrameView const view{camera, kCachedSize, kCachedSize};
-    auto result = start_slhb_frames(world, camera, s, report)->views({&view, 1}, paths, endings, {});
+    auto result = start_slhb_frames(world, camera, s, report)->views({&view, 1}, paths, sharing, {});
     return {std::move(result[0].picture),
             report.counts().at("paths that ended in the radiance cache") / double(paths),
             report.counts().at("cells of the radiance cache")};
@@ -107,7 +107,7 @@ TEST(RadianceCache, SaysTheWeightedMeanOfItsNotes)
     }
     notes[0].push_back({taught, vec3{std::nanf("")}, 1}); // counts for nothing
     cache.learn(notes);
-    RadianceCache::Known const known = cache.find(keys);
+    RadianceCache::CachedRadiance const known = cache.find(keys);
     EXPECT_LT(known.go_on, 0.3f);
     EXPECT_GT(known.go_on, 0);
     EXPECT_NEAR(known.radiance.x, 3, 1e-5f);
@@ -196,8 +196,8 @@ void expect_same_light(Picture const& exact, Picture const& cached)
 TEST(RadianceCache, BringsTheSameLightByRays)
 {
     MovingWorld const world = box();
-    Seen const exact = see(world, in_box(), Endings::own, 512),
-               cached = see(world, in_box(), Endings::cached, 512);
+    Seen const exact = see(world, in_box(), VertexSharing::none, 512),
+               cached = see(world, in_box(), VertexSharing::cached, 512);
     EXPECT_EQ(exact.ended, 0);
     EXPECT_GT(cached.ended, 0.3 * kCachedSize * kCachedSize);
     expect_same_light(exact.picture, cached.picture);
@@ -211,8 +211,8 @@ TEST(RadianceCache, BringsTheSameLightByLookUps)
     s.slhb.directions = "icosahedron:320";
     s.slhb.resolution = 64;
     s.slhb.shadow_resolution = 64;
-    Seen const exact = see(world, in_box(), Endings::own, 256, s),
-               cached = see(world, in_box(), Endings::cached, 256, s);
+    Seen const exact = see(world, in_box(), VertexSharing::none, 256, s),
+               cached = see(world, in_box(), VertexSharing::cached, 256, s);
     EXPECT_GT(cached.ended, 0.3 * kCachedSize * kCachedSize);
     expect_same_light(exact.picture, cached.picture);
 }
@@ -230,7 +230,7 @@ TEST(RadianceCache, KeepsTheFurnace)
     MovingWorld const world(std::make_shared<Scene const>(std::move(scene)), 0, report);
     RenderSettings s = settings_of_cache();
     s.bounces = 32;
-    Seen const seen = see(world, look_at({0.9, 0.5, 4}, {0.8, 0, 0}, 40), Endings::cached, 128, s);
+    Seen const seen = see(world, look_at({0.9, 0.5, 4}, {0.8, 0, 0}, 40), VertexSharing::cached, 128, s);
     EXPECT_GT(seen.ended, 20); // most paths escape
     EXPECT_NEAR(mean_of(seen.picture).mean, 1, 0.003);
 }
@@ -240,7 +240,7 @@ TEST(RadianceCache, DoesNotDependOnThreads)
     MovingWorld const world = box();
     auto const run = [&](std::size_t threads) {
         tbb::global_control const most(tbb::global_control::max_allowed_parallelism, threads);
-        return see(world, in_box(), Endings::cached, 3).picture.find("color")->data;
+        return see(world, in_box(), VertexSharing::cached, 3).picture.find("color")->data;
     };
     EXPECT_EQ(run(1), run(2));
 }
@@ -257,7 +257,7 @@ TEST(RadianceCache, CellsGoWithTheSizeOfTheWorld)
         MovingWorld const world(std::make_shared<Scene const>(std::move(scene)), 0, report);
         Camera camera = in_box();
         camera.world_from_camera[3] = glm::dvec4(dvec3(camera.world_from_camera[3]) * double(scale), 1);
-        cells.push_back(see(world, camera, Endings::cached, 4).cells);
+        cells.push_back(see(world, camera, VertexSharing::cached, 4).cells);
     }
     EXPECT_NEAR(cells[1] / cells[0], 1, 0.15);
     EXPECT_NEAR(cells[2] / cells[0], 1, 0.15);
@@ -270,14 +270,14 @@ TEST(RadianceCache, ChangesOfLightAreSeenAtOnce)
     RenderSettings const s = settings_of_cache();
     FrameView const view{in_box(), kCachedSize, kCachedSize};
     auto const frames = start_slhb_frames(world, view.camera, s, report);
-    auto const light = [&] { return frames->views({&view, 1}, 8, Endings::cached, {})[0].picture; };
+    auto const light = [&] { return frames->views({&view, 1}, 8, VertexSharing::cached, {})[0].picture; };
     light();
     double const before = report.counts().at("cells of the radiance cache");
     EXPECT_GT(before, 0);
     Changes changes;
     changes.lights = true;
     frames->changed(changes);
-    frames->views({&view, 1}, 1, Endings::own, {});
+    frames->views({&view, 1}, 1, VertexSharing::none, {});
     EXPECT_EQ(report.counts().at("cells of the radiance cache"), 0);
 }
 

@@ -1,7 +1,7 @@
 // Several pictures of one moment: each is what it would be alone, and an eye that takes light from the other one
 // has the same error for less work.
 
-#include "gi/filter/taken_light.h"
+#include "gi/filter/reused_light.h"
 #include "gi/methods/slhb/frames.h"
 #include "gi/metrics/metrics.h"
 #include "gi/render/accumulator.h"
@@ -44,11 +44,11 @@ TEST(Views, AreThePicturesThatTheyWouldBeAlone)
     MovingWorld const world(view_room(), 0, report);
     RenderSettings s = settings_of_views(0);
     std::vector<FrameView> const all{{view_eye(), 64, 64}, {view_eye(0.5), 40, 56}, {view_eye(-0.2), 64, 30}};
-    auto const together = start_slhb_frames(world, view_eye(), s, report)->views(all, 3, Endings::exact, {});
+    auto const together = start_slhb_frames(world, view_eye(), s, report)->views(all, 3, VertexSharing::exact, {});
     ASSERT_EQ(together.size(), 3u);
     for (std::size_t k = 0; k < all.size(); ++k) {
         auto const alone =
-            start_slhb_frames(world, view_eye(), s, report)->views({&all[k], 1}, 3, Endings::exact, {});
+            start_slhb_frames(world, view_eye(), s, report)->views({&all[k], 1}, 3, VertexSharing::exact, {});
         EXPECT_EQ(color(together[k]), color(alone[0])) << k;
         EXPECT_EQ(together[k].picture.width, all[k].width);
     }
@@ -65,9 +65,9 @@ TEST(Views, LightTakenFromAPartnerIsTheLightThere)
     std::vector<FrameView> const own{{view_eye(), 64, 64}, {view_eye(apart), 64, 64}};
     std::vector<FrameView> taking = own;
     taking[1].partner = 0;
-    auto const a = start_slhb_frames(world, view_eye(), s, report)->views(own, 256, Endings::exact, {});
+    auto const a = start_slhb_frames(world, view_eye(), s, report)->views(own, 256, VertexSharing::exact, {});
     Report counted;
-    auto const b = start_slhb_frames(world, view_eye(), s, counted)->views(taking, 256, Endings::exact, {});
+    auto const b = start_slhb_frames(world, view_eye(), s, counted)->views(taking, 256, VertexSharing::exact, {});
     double const share = counted.counts().at("share of pixels lit by a partner view");
     EXPECT_GT(share, 0.8);
     EXPECT_LT(share, 0.99); // what only the second eye sees is traced
@@ -93,8 +93,8 @@ TEST(Views, MirrorsAreTracedForEachEye)
     std::vector<FrameView> const own{{front, 48, 48}, {right, 48, 48}};
     std::vector<FrameView> taking = own;
     taking[1].partner = 0;
-    auto const a = start_slhb_frames(world, front, s, report)->views(own, 4, Endings::exact, {});
-    auto const b = start_slhb_frames(world, front, s, report)->views(taking, 4, Endings::exact, {});
+    auto const a = start_slhb_frames(world, front, s, report)->views(own, 4, VertexSharing::exact, {});
+    auto const b = start_slhb_frames(world, front, s, report)->views(taking, 4, VertexSharing::exact, {});
     EXPECT_EQ(b[1].picture.find("L0")->data, a[1].picture.find("L0")->data);
     EXPECT_GT(relmse_of(*a[1].picture.find("color"), *a[0].picture.find("color")), 1e-3); // they do differ
 }
@@ -109,7 +109,7 @@ TEST(Views, TellWhoseLightTheyTook)
     auto const frames = start_slhb_frames(world, view_eye(), s, report);
     std::size_t told_of_one = 0;
     for (std::uint32_t const paths : {1u, 6u}) {
-        auto const results = frames->views(views, paths, Endings::exact, {});
+        auto const results = frames->views(views, paths, VertexSharing::exact, {});
         EXPECT_TRUE(results[0].light_from.empty());
         ASSERT_EQ(results[1].light_from.size(), results[1].picture.pixels());
         std::size_t told = 0;
@@ -147,19 +147,19 @@ TEST(Views, MayChangeFromFrameToFrame)
     MovingWorld const world(view_room(), 0, report);
     auto const frames = start_slhb_frames(world, view_eye(), settings_of_views(1), report);
     std::vector<FrameView> views{{view_eye(), 32, 32}, {view_eye(0.1), 32, 32, 0}};
-    EXPECT_EQ(frames->views(views, 1, Endings::exact, {}).size(), 2u);
+    EXPECT_EQ(frames->views(views, 1, VertexSharing::exact, {}).size(), 2u);
     views[1].width = 20;
     views[1].camera = view_eye(0.3);
-    auto const resized = frames->views(views, 1, Endings::exact, {});
+    auto const resized = frames->views(views, 1, VertexSharing::exact, {});
     EXPECT_EQ(resized[1].picture.pixels(), 640u);
     for (std::size_t i = 0; i < 640; ++i)
         if (vec3 const m = rgb(*resized[1].picture.find("motion"), i); m.z == m.z) {
             EXPECT_EQ(vec2(m), vec2(0));
         }
     views.pop_back();
-    EXPECT_EQ(frames->views(views, 2, Endings::exact, {}).size(), 1u);
+    EXPECT_EQ(frames->views(views, 2, VertexSharing::exact, {}).size(), 1u);
     views.push_back({orthographic({0, 0.5, 0.8}, {0, 0, 0}, 1), 16, 16});
-    EXPECT_EQ(frames->views(views, 1, Endings::exact, {})[1].picture.width, 16);
+    EXPECT_EQ(frames->views(views, 1, VertexSharing::exact, {})[1].picture.width, 16);
 }
 
 } // namespace

@@ -101,12 +101,12 @@ TEST(Report, OfOneObserverOrOfASessionWithoutTrialsSaysSo)
     expect_sound(report_page(s, {}, analyze(s, {}), {"lightwell", {}, {}}));
 }
 
-TEST(Truth, GivesTheLevelOfAShareOfRightAnswers)
+TEST(SimulatedTruth, GivesTheLevelOfAShareOfRightAnswers)
 {
-    Truth const t = read_truth(R"({"quality_jod": {"m": {"a": 0, "b": -1.5}}, "lapse": 0,
+    SimulatedTruth const t = read_truth(R"({"quality_jod": {"m": {"a": 0, "b": -1.5}}, "lapse": 0,
       "varied": {"points": {"threshold": 100, "slope": 2, "function": "weibull"},
                  "size": {"threshold": 5, "slope": 2, "function": "normal"}}})",
-                               "truth.json");
+                                        "truth.json");
     EXPECT_EQ(t.quality_jod.at("m").at("b"), -1.5);
     // Of the Weibull function half is reached where (x/a)^b = log 2; turned round where higher is harder.
     EXPECT_NEAR(true_level(t, "points", false, 0.5, 0.75), 100 * std::sqrt(std::log(2.0)), 1e-9);

@@ -45,7 +45,7 @@ TEST(SimulatedVisibility, IsRankedAsItsObserversSawIt)
     Dataset const d = read_dataset(dir, file);
     ASSERT_EQ(d.sessions.size(), 24u);
     Analysis const a = analyze(d.script, d.sessions);
-    Truth const truth = read_truth(text_of(truth_file(dir)), "truth.json");
+    SimulatedTruth const truth = read_truth(text_of(truth_file(dir)), "truth.json");
 
     ScaleResult const& pairs = a.blocks.at(0).scales.at(0);
     ASSERT_EQ(a.blocks[0].name, "similarity");

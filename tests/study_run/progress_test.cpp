@@ -13,13 +13,13 @@ struct Walk {
     Script script;
     Plan plan = make_plan(script, 1);
     Progress progress{script, plan};
-    std::vector<Due> done;
+    std::vector<NextStep> done;
 
     explicit Walk(Script s) : script(std::move(s)) {}
 
     PlanStep const& at(int step) const { return plan.steps[std::size_t(step)]; }
 
-    TrialDone trial(Due const& due, bool is_correct = true) const
+    TrialDone trial(NextStep const& due, bool is_correct = true) const
     {
         TrialDone t;
         t.step = due.step;
@@ -29,7 +29,7 @@ struct Walk {
         return t;
     }
     /// To the end; `answer` changes trials.
-    void go(std::function<void(Due const&, TrialDone&)> const& answer, std::size_t most = 10000)
+    void go(std::function<void(NextStep const&, TrialDone&)> const& answer, std::size_t most = 10000)
     {
         for (auto due = progress.next(); due && most > 0; due = progress.next(), --most) {
             done.push_back(*due);
@@ -46,11 +46,11 @@ struct Walk {
     }
     int count(int step) const
     {
-        return int(std::count_if(done.begin(), done.end(), [&](Due const& d) { return d.step == step; }));
+        return int(std::count_if(done.begin(), done.end(), [&](NextStep const& d) { return d.step == step; }));
     }
 };
 
-void well(Due const&, TrialDone&) {}
+void well(NextStep const&, TrialDone&) {}
 
 TEST(Progress, GoesThroughThePlanInItsOrder)
 {
@@ -65,7 +65,7 @@ TEST(Progress, BadTrialsComeAgainAtTheEndOfTheirBlock)
 {
     Walk w(rating_script());
     int const first = 5, second = 9;
-    w.go([&](Due const& due, TrialDone& t) {
+    w.go([&](NextStep const& due, TrialDone& t) {
         t.is_valid = due.attempt > 1 || (due.step != first && due.step != second);
     });
     ASSERT_EQ(w.done.size(), w.plan.steps.size() + 2);
@@ -77,7 +77,7 @@ TEST(Progress, BadTrialsComeAgainAtTheEndOfTheirBlock)
 TEST(Progress, BadTrialsComeThreeTimesAtMost)
 {
     Walk w(rating_script());
-    w.go([](Due const&, TrialDone& t) { t.is_valid = false; });
+    w.go([](NextStep const&, TrialDone& t) { t.is_valid = false; });
     for (std::size_t i = 2; i < w.plan.steps.size(); ++i) // after questionnaire and instructions
         EXPECT_EQ(w.count(int(i)), w.at(int(i)).trial.phase == Phase::practice ? 1 : kMostAttempts);
 }
@@ -85,14 +85,14 @@ TEST(Progress, BadTrialsComeThreeTimesAtMost)
 TEST(Progress, BadTrialsAreKeptWhereTheScriptSaysSo)
 {
     Walk w(rating_script(4, "", ", on_bad_trial: keep"));
-    w.go([](Due const&, TrialDone& t) { t.is_valid = false; });
+    w.go([](NextStep const&, TrialDone& t) { t.is_valid = false; });
     EXPECT_EQ(w.done.size(), w.plan.steps.size());
 }
 
 TEST(Progress, SkippedTrialsDoNotComeAgain)
 {
     Walk w(rating_script());
-    w.go([](Due const& due, TrialDone& t) {
+    w.go([](NextStep const& due, TrialDone& t) {
         t.is_valid = due.step != 6;
         if (!t.is_valid) t.reason = "skipped";
     });
@@ -105,7 +105,7 @@ TEST(Progress, StaircasesStepAsTheyShould)
     int const procedure = 0;
     std::vector<double> levels;
     std::vector<bool> const answers{true, true, true, true, false, true, true, false}; // 2 down, 1 up
-    w.go([&](Due const& due, TrialDone& t) {
+    w.go([&](NextStep const& due, TrialDone& t) {
         Trial const& trial = w.at(due.step).trial;
         if (trial.procedure != procedure || trial.phase != Phase::main) return;
         t.is_correct = levels.size() < answers.size() ? bool(answers[levels.size()]) : true;
@@ -133,7 +133,7 @@ blocks:
     procedure: {method: staircase, target: 0.75, start: 50, steps: 2, stop: {max_trials: 6}}
 )"));
     std::vector<double> levels;
-    w.go([&](Due const& due, TrialDone& t) {
+    w.go([&](NextStep const& due, TrialDone& t) {
         levels.push_back(*due.level);
         t.is_correct = levels.size() % 2 == 1;
     });
@@ -144,7 +144,7 @@ TEST(Progress, WhatARunNoLongerNeedsFallsAway)
 {
     Walk w(adaptive_script());
     int staircase = 0, quest = 0;
-    w.go([&](Due const& due, TrialDone& t) {
+    w.go([&](NextStep const& due, TrialDone& t) {
         Trial const& trial = w.at(due.step).trial;
         if (trial.phase != Phase::main) return;
         ++(trial.procedure == 0 ? staircase : quest);
@@ -152,7 +152,7 @@ TEST(Progress, WhatARunNoLongerNeedsFallsAway)
     });
     EXPECT_LT(staircase, 30);
     EXPECT_EQ(quest, 12);
-    Due const last = w.done.back();
+    NextStep const last = w.done.back();
     EXPECT_EQ(w.at(last.step).trial.phase, Phase::main) << "a catch trial or a break after the last main trial";
 }
 
@@ -162,7 +162,7 @@ TEST(Progress, ProceduresHearOfValidTrialsOnly)
         Walk w(adaptive_script());
         std::vector<double> levels;
         int bad = -1;
-        w.go([&](Due const& due, TrialDone& t) {
+        w.go([&](NextStep const& due, TrialDone& t) {
             Trial const& trial = w.at(due.step).trial;
             if (trial.procedure != procedure || trial.phase != Phase::main) return;
             levels.push_back(*due.level);
@@ -181,7 +181,7 @@ TEST(Progress, QuestPlusAsksForItsLevels)
 {
     Walk w(adaptive_script());
     std::vector<double> levels;
-    w.go([&](Due const& due, TrialDone& t) {
+    w.go([&](NextStep const& due, TrialDone& t) {
         Trial const& trial = w.at(due.step).trial;
         if (trial.procedure != 1 || trial.phase != Phase::main) return;
         t.is_correct = *due.level < 60; // a sharp threshold
@@ -198,7 +198,7 @@ TEST(Progress, RefusesEntriesThatDoNotFollow)
     EXPECT_THROW(w.progress.apply(StepDone{3, 0, 1, ""}), std::invalid_argument);
     EXPECT_THROW(w.progress.apply(w.trial({0, 1, false, {}})), std::invalid_argument);
     w.go(well, 6);
-    Due const due = *w.progress.next();
+    NextStep const due = *w.progress.next();
     TrialDone t = w.trial(due);
     t.attempt = 2;
     EXPECT_THROW(w.progress.apply(t), std::invalid_argument);
@@ -224,7 +224,7 @@ TEST(Progress, AfterALongGapInstructionsAndPracticeComeAgain)
         w.done.clear();
         w.go(well);
         std::vector<int> steps;
-        for (Due const& d : w.done) steps.push_back(d.step);
+        for (NextStep const& d : w.done) steps.push_back(d.step);
         bool const is_long = std::abs(gap_s) > 100;
         std::vector<int> const expected = is_long ? std::vector<int>{1, 2, 3, 9} : std::vector<int>{9, 10, 11, 12};
         EXPECT_EQ(std::vector<int>(steps.begin(), steps.begin() + 4), expected) << gap_s;

@@ -14,7 +14,7 @@ TEST(Resume, NotesThatTheWallClockWasChanged)
     TestPresenter p;
     SessionSettings settings = settings_in(dir.path());
     settings.unix_s = [&] { return 1795334400 + p.clock_s - (p.shown.size() >= 5 ? 3600 : 0); };
-    p.on_wish = [&] { return p.shown.size() > 8 ? Wish::abort : Wish::go_on; };
+    p.on_wish = [&] { return p.shown.size() > 8 ? ExperimenterAction::abort : ExperimenterAction::go_on; };
     run_session(rating_script(), 1, p, settings);
     auto const journal = journal_in(dir.path());
     ASSERT_EQ(notes_of(journal, "clock_changed").size(), 1u);
@@ -23,7 +23,7 @@ TEST(Resume, NotesThatTheWallClockWasChanged)
     // Goes on before it was cut off, as the wall clock has it: the gap is unknown, so practice comes again.
     settings.start = SessionStart::go_on;
     settings.unix_s = [&] { return 1795330000 + p.clock_s; };
-    p.on_wish = [] { return Wish::go_on; };
+    p.on_wish = [] { return ExperimenterAction::go_on; };
     p.said.clear();
     EXPECT_TRUE(run_session(rating_script(), 1, p, settings).is_complete);
     EXPECT_EQ(notes_of(journal, "clock_changed").size(), 2u);
@@ -49,7 +49,7 @@ TEST(Resume, GoesOnOnlyWithWhatItBeganWith)
 {
     TemporaryFolder const dir;
     TestPresenter p;
-    p.on_wish = [&] { return p.shown.size() > 5 ? Wish::abort : Wish::go_on; };
+    p.on_wish = [&] { return p.shown.size() > 5 ? ExperimenterAction::abort : ExperimenterAction::go_on; };
     Script const s = rating_script();
     run_session(s, 1, p, settings_in(dir.path()));
     std::string const before = file_text(journal_in(dir.path()));
@@ -131,7 +131,7 @@ TEST(Resume, WithoutADisplayChangesNothing)
     EXPECT_THROW(run_session(s, 1, p, settings_in(dir / "data")), std::runtime_error);
     EXPECT_FALSE(fs::exists(dir / "data"));
     p.has_display = true;
-    p.on_wish = [&] { return p.shown.size() > 5 ? Wish::abort : Wish::go_on; };
+    p.on_wish = [&] { return p.shown.size() > 5 ? ExperimenterAction::abort : ExperimenterAction::go_on; };
     run_session(s, 1, p, settings_in(dir / "data"));
     std::string const before = file_text(journal_in(dir / "data"));
     p.has_display = false;
@@ -143,11 +143,11 @@ TEST(Resume, WritesAPlanThatIsMissing)
 {
     TemporaryFolder const dir;
     TestPresenter p;
-    p.on_wish = [&] { return p.shown.size() > 5 ? Wish::abort : Wish::go_on; };
+    p.on_wish = [&] { return p.shown.size() > 5 ? ExperimenterAction::abort : ExperimenterAction::go_on; };
     Script const s = rating_script();
     fs::path const plan = run_session(s, 1, p, settings_in(dir.path())).folder / "plan.tsv";
     std::string const text = file_text(plan);
-    p.on_wish = [] { return Wish::go_on; };
+    p.on_wish = [] { return ExperimenterAction::go_on; };
     for (bool const was_complete : {false, true}) {
         fs::remove(plan);
         EXPECT_TRUE(run_session(s, 1, p, settings_in(dir.path(), SessionStart::go_on)).is_complete);
@@ -175,7 +175,7 @@ TEST(Resume, RefusesAJournalThatWasChanged)
 {
     TemporaryFolder const dir;
     TestPresenter p;
-    p.on_wish = [&] { return p.shown.size() > 5 ? Wish::abort : Wish::go_on; };
+    p.on_wish = [&] { return p.shown.size() > 5 ? ExperimenterAction::abort : ExperimenterAction::go_on; };
     Script const s = rating_script();
     run_session(s, 1, p, settings_in(dir.path()));
     std::string text = file_text(journal_in(dir.path()));

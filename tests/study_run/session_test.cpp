@@ -190,9 +190,9 @@ TEST(Session, AsksForConsentFirstAndOnceAndKeepsNothingWithoutIt)
     EXPECT_EQ(p.said.at(0), "I agree.");
 
     p.agrees = true;
-    p.on_wish = [&] { return p.said.size() > 2 ? Wish::abort : Wish::go_on; };
+    p.on_wish = [&] { return p.said.size() > 2 ? ExperimenterAction::abort : ExperimenterAction::go_on; };
     EXPECT_FALSE(run_session(s, 1, p, settings).is_complete);
-    p.on_wish = [] { return Wish::go_on; };
+    p.on_wish = [] { return ExperimenterAction::go_on; };
     settings.start = SessionStart::go_on;
     EXPECT_TRUE(run_session(s, 1, p, settings).is_complete);
     EXPECT_EQ(p.consents, 2);
@@ -208,7 +208,10 @@ TEST(Session, DoesWhatTheExperimenterWishes)
     p.on_wish = [&] {
         static int polls = 0;
         ++polls;
-        return polls == 4 ? Wish::pause : polls == 6 ? Wish::skip : polls == 9 ? Wish::abort : Wish::go_on;
+        return polls == 4   ? ExperimenterAction::pause
+               : polls == 6 ? ExperimenterAction::skip
+               : polls == 9 ? ExperimenterAction::abort
+                            : ExperimenterAction::go_on;
     };
     p.waiting_notes = {{0.5, "note", "the lamp flickers"}};
     Script const s = rating_script();

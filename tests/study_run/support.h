@@ -63,7 +63,7 @@ blocks:
 class TestPresenter : public Presenter {
 public:
     std::function<void(TrialRequest const&, TrialDone&)> on_show = [](auto const&, auto&) {};
-    std::function<Wish()> on_wish = [] { return Wish::go_on; };
+    std::function<ExperimenterAction()> on_wish = [] { return ExperimenterAction::go_on; };
     std::vector<NoteTaken> waiting_notes;
     bool agrees = true, display_is_good = true, has_display = true;
     std::vector<TrialRequest> shown;
@@ -129,7 +129,7 @@ public:
         on_show(r, done);
         return done;
     }
-    Wish wish() override { return on_wish(); }
+    ExperimenterAction action() override { return on_wish(); }
     std::vector<NoteTaken> notes() override { return std::exchange(waiting_notes, {}); }
 
 private:

@@ -195,7 +195,7 @@ TEST(ObserverFile, SaysWhatIsWrongAndWhere)
     EXPECT_EQ(message("{}"), "");
 }
 
-TEST(Truth, IsThatOfEveryParticipant)
+TEST(SimulatedTruth, IsThatOfEveryParticipant)
 {
     Script const s = with_block("task: pair, pairs: {factor: q}");
     ObserverModel m = plain_model(s);

@@ -91,7 +91,7 @@ TEST(Frames, ABudgetIsThatOfOneExposure)
     TemporaryFolder const folder;
     std::string const call = "render atrium --time 0.4 --shutter 0.04 --size 16x16 --method slhb --out e.exr ";
     auto const lasts = [&] {
-        return contains(gi::read_picture(folder / "e.exr").metadata.at("command"), "--fresh-lamps");
+        return contains(gi::read_picture(folder / "e.exr").metadata.at("command"), "--fresh-light-samples");
     };
     run_well(call + "--paths 2", folder.path());
     EXPECT_TRUE(lasts());

@@ -91,7 +91,7 @@ TEST_F(Albedos, WithNothingToGoByAreRefused)
 
 TEST(FramesApart, AreSpreadOverAll)
 {
-    KeptApart<int> kept(4);
+    SpacedFrames<int> kept(4);
     for (int i = 0; i < 1000; ++i)
         if (kept.wants_next())
             kept.add(i);
@@ -102,7 +102,7 @@ TEST(FramesApart, AreSpreadOverAll)
     EXPECT_EQ(some.front(), 0);
     EXPECT_GE(some.back(), 600);
     for (std::size_t i = 1; i < some.size(); ++i) EXPECT_GT(some[i] - some[i - 1], 100);
-    KeptApart<int> few(4);
+    SpacedFrames<int> few(4);
     few.add(7);
     EXPECT_EQ(few.take(), std::vector<int>{7});
 }

@@ -34,7 +34,7 @@ PairPictures rendered(ProxySurface const& floor, gi::Material const& material, f
     settings.bounces = 4;
     settings.slhb.directions = "icosahedron:80";
     settings.slhb.resolution = 48;
-    settings.slhb.lamps = 4;
+    settings.slhb.light_samples = 4;
     settings.slhb.shadow_resolution = 64;
     PairRenderer renderer(join_scenes(scene_of(plane, report), ball(material), gi::dmat4(1)), settings, report);
     renderer.set_environment(sky(lamp));

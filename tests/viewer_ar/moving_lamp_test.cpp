@@ -61,7 +61,7 @@ TEST(MovingLamp, IsFollowedInTheFrameThatShowsIt)
     session.render.resolution = 1;
     session.render.slhb.directions = "icosahedron:80";
     session.render.slhb.resolution = 32;
-    session.render.slhb.lamps = 8;
+    session.render.slhb.light_samples = 8;
     session.render.slhb.shadow_resolution = 64;
     // Wide, so that a lamp at its borders stands beside the ball and not behind it.
     ArCamera const camera{{ar::LensModel::pinhole, {120, 90}, 35, 35, 59.5, 44.5, {}}, ar::srgb_photometry(), {}};

@@ -41,7 +41,7 @@ gi::RenderSettings quick_settings()
     settings.bounces = 1;
     settings.slhb.directions = "icosahedron:80";
     settings.slhb.resolution = 48;
-    settings.slhb.lamps = 4;
+    settings.slhb.light_samples = 4;
     settings.slhb.shadow_resolution = 64;
     return settings;
 }

@@ -21,7 +21,7 @@ TEST(Cluster, AloneNothingWaits)
     EXPECT_TRUE(cluster.leads());
     EXPECT_TRUE(cluster.name().starts_with("rank 0 on "));
     for (std::uint64_t frame = 0; frame < 3; ++frame) {
-        FrameOrder order;
+        FrameCommand order;
         order.frame = frame;
         cluster.send(order);
         KeepAlive const alive(cluster);
@@ -43,11 +43,11 @@ TEST(Cluster, SettingsAreChecked)
 
 TEST(Wire, ComesBackAndRefusesWhatIsCutShort)
 {
-    Writer out(Say::lost);
+    Writer out(MessageKind::lost);
     out.put(std::int32_t(7)).put(std::string("rank 7")).put(0.1);
     std::vector<std::uint8_t> const bytes = out.take();
     Reader in(bytes);
-    EXPECT_EQ(in.get<Say>(), Say::lost);
+    EXPECT_EQ(in.get<MessageKind>(), MessageKind::lost);
     EXPECT_EQ(in.get<std::int32_t>(), 7);
     EXPECT_EQ(in.text(), "rank 7");
     EXPECT_EQ(in.get<double>(), 0.1);
@@ -56,7 +56,7 @@ TEST(Wire, ComesBackAndRefusesWhatIsCutShort)
         Reader part({bytes.data(), n});
         EXPECT_THROW(
             {
-                part.get<Say>();
+                part.get<MessageKind>();
                 part.get<std::int32_t>();
                 part.text();
                 part.get<double>();

@@ -22,8 +22,8 @@ std::shared_ptr<gi::Scene const> cornell(std::string const& name, gi::Report&)
 struct Live {
     gi::Report report;
     SessionClock clock;
-    Session session{cornell, 0, report};
-    std::vector<FrameOrder> orders; ///< finished, by the rendering thread
+    RenderSession session{cornell, 0, report};
+    std::vector<FrameCommand> orders; ///< finished, by the rendering thread
     std::vector<std::string> failures;
     gi::Camera eye;
     std::unique_ptr<LiveRenderer> renderer;
@@ -54,26 +54,26 @@ struct Live {
 /// The leader of ranks of which another one takes as long as told.
 class SlowestRank : public FrameLink {
 public:
-    explicit SlowestRank(double seconds, std::optional<gi::Following> following = {})
-        : seconds_(seconds), following_(following)
+    explicit SlowestRank(double seconds, std::optional<gi::DynamicUpdate> dynamic_update = {})
+        : seconds_(seconds), dynamic_update_(dynamic_update)
     {
     }
     void begin() override {}
     void end() override {}
     bool leads() const override { return true; }
-    void send(FrameOrder const&) override {}
-    std::optional<FrameOrder> receive() override { return {}; }
+    void send(FrameCommand const&) override {}
+    std::optional<FrameCommand> receive() override { return {}; }
     void check() override {}
-    FrameWork wait_for_all(FrameOrder const&, FrameWork const& own) override
+    FrameWork wait_for_all(FrameCommand const&, FrameWork const& own) override
     {
-        return {seconds_, following_.value_or(own.following), own.moved};
+        return {seconds_, dynamic_update_.value_or(own.dynamic_update), own.moved};
     }
     void drawn(std::uint64_t) override {}
     void swapped(std::uint64_t, double) override {}
 
 private:
     double seconds_;
-    std::optional<gi::Following> following_;
+    std::optional<gi::DynamicUpdate> dynamic_update_;
 };
 
 /// Of all ranks the slowest decides what there is time for, whatever this one took for its share of the pixels.
@@ -88,7 +88,7 @@ TEST(LiveRenderer, GoesByTheSlowestRank)
         hooks.finished = [&](LiveFrame const& f) {
             if (f.result.still_frames <= 1) budget = f.budget;
         };
-        hooks.own_views = [](FrameOrder const& order) { return std::vector{order.views.at(0)}; };
+        hooks.own_views = [](FrameCommand const& order) { return std::vector{order.views.at(0)}; };
         live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, &link, hooks);
         std::shared_ptr<LiveFrame const> frame;
         for (int i = 0; i < 12; ++i) {
@@ -113,9 +113,9 @@ TEST(LiveRenderer, ALeaderWithoutWallsSaysWhatOthersDo)
 {
     Live live;
     live.renderer.reset();
-    SlowestRank link(0.01, gi::Following{160, 160, 3, 0});
+    SlowestRank link(0.01, gi::DynamicUpdate{160, 160, 3, 0});
     LiveRenderer::Hooks hooks;
-    hooks.own_views = [](FrameOrder const&) { return std::vector<ViewOrder>{}; };
+    hooks.own_views = [](FrameCommand const&) { return std::vector<ViewCommand>{}; };
     live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, &link, hooks);
     std::shared_ptr<LiveFrame const> frame;
     for (int i = 0; i < 3; ++i) {
@@ -171,7 +171,7 @@ TEST(LiveRenderer, AtRestNoFrameComes)
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
         EXPECT_EQ(live.renderer->newest(), frame);
         std::promise<void> go;
-        live.renderer->ask([&](Session&) { go.get_future().wait(); });
+        live.renderer->ask([&](RenderSession&) { go.get_future().wait(); });
         EXPECT_FALSE(live.renderer->rests()) << "what was asked may change something";
         go.set_value();
         ASSERT_TRUE(rests_soon());
@@ -200,7 +200,7 @@ TEST(LiveRenderer, AChangeShowsInTheNextFrameAndErrorsComeBack)
     EXPECT_NE(answers[1].find("bounces"), std::string::npos);
     EXPECT_NE(answers[2].find("elsewhere"), std::string::npos);
     std::size_t recorded = 0;
-    for (FrameOrder const& o : live.orders) recorded += o.changes.size();
+    for (FrameCommand const& o : live.orders) recorded += o.changes.size();
     EXPECT_EQ(recorded, 1u);
 }
 
@@ -230,7 +230,7 @@ TEST(LiveRenderer, NobodyWaitsForAFrame)
 TEST(LiveRenderer, ItsOrdersCanBeRenderedAgain)
 {
     struct Seen {
-        FrameOrder order;
+        FrameCommand order;
         std::vector<float> color;
     };
     std::vector<Seen> seen;
@@ -249,7 +249,7 @@ TEST(LiveRenderer, ItsOrdersCanBeRenderedAgain)
     }
     live.renderer->stop();
     gi::Report report;
-    Session again(cornell, 0, report);
+    RenderSession again(cornell, 0, report);
     for (Change const& c : std::vector<Change>{
              {"scene", "cornell"}, {"resolution", 64}, {"directions", "icosahedron:80"}, {"rate", 50}})
         again.apply(c);
@@ -275,10 +275,10 @@ TEST(LiveRenderer, FewerDirectionsFollowWhatTakesTooLong)
             {"scene", "walk"}, {"resolution", 64}, {"rate", 1000}, {"schedule", schedule}};
         gi::Report report;
         SessionClock clock;
-        Session session(walk, 0, report), again(walk, 0, report);
+        RenderSession session(walk, 0, report), again(walk, 0, report);
         for (Change const& c : settings) session.apply(c), again.apply(c);
         struct Seen {
-            FrameOrder order;
+            FrameCommand order;
             std::vector<float> color;
             std::string schedule;
         };
@@ -297,13 +297,13 @@ TEST(LiveRenderer, FewerDirectionsFollowWhatTakesTooLong)
         int changed = 0;
         for (Seen const& s : seen) {
             for (Change const& c : s.order.changes) {
-                changed += c.key == "followed";
+                changed += c.key == "updated_axes";
                 again.apply(c);
             }
             ASSERT_EQ(again.render(s.order, {}).views[0].picture.find("color")->data, s.color) << s.order.frame;
         }
         EXPECT_EQ(changed > 0, schedule == "auto");
-        EXPECT_EQ(session.settings().followed > 0, schedule == "auto");
+        EXPECT_EQ(session.settings().updated_axes > 0, schedule == "auto");
         EXPECT_NE(seen.back().schedule.find(schedule == "auto" ? "of 160 directions" : "as it was set"),
                   std::string::npos);
     }

@@ -22,7 +22,7 @@ std::shared_ptr<Ground const> ground_with(std::vector<std::pair<gi::vec3, gi::ve
     return std::make_shared<Ground const>(gi::test::world_of(std::move(scene)));
 }
 
-Standing at(double x, double z) { return {{x, 0, z}, 1.6}; }
+WalkStance at(double x, double z) { return {{x, 0, z}, 1.6}; }
 
 TEST(Walking, TheFloorIsFoundBelow)
 {
@@ -47,13 +47,13 @@ TEST(Walking, StepsAreClimbedUpToTheLimit)
     std::vector<std::pair<gi::vec3, gi::vec3>> stairs;
     for (int i = 1; i <= 8; ++i) stairs.push_back({{-2, 0, -10}, {2, 0.2f * float(i), -0.3f * float(i)}});
     auto const ground = ground_with(stairs);
-    Standing const up = walk(*ground, at(0, 1), {0, 0, -6});
+    WalkStance const up = walk(*ground, at(0, 1), {0, 0, -6});
     EXPECT_NEAR(up.foot.y, 1.6, 1e-4);
     EXPECT_NEAR(up.foot.z, -5, 1e-6);
-    Standing const down = walk(*ground, up, {0, 0, 6});
+    WalkStance const down = walk(*ground, up, {0, 0, 6});
     EXPECT_NEAR(down.foot.y, 0, 1e-4);
     auto const high = ground_with({{{-2, 0, -10}, {2, 0.39f, -1}}, {{-2, 0, -10}, {2, 0.85f, -3}}});
-    Standing const blocked = walk(*high, at(0, 1), {0, 0, -6});
+    WalkStance const blocked = walk(*high, at(0, 1), {0, 0, -6});
     EXPECT_NEAR(blocked.foot.y, 0.39, 1e-4) << "0.39 m are climbed, 0.46 m are not";
     EXPECT_GT(blocked.foot.z, -3.0);
     EXPECT_LT(blocked.foot.z, -2.6);
@@ -62,9 +62,9 @@ TEST(Walking, StepsAreClimbedUpToTheLimit)
 TEST(Walking, DeepFallsAreNotSteppedInto)
 {
     auto const low = ground_with({{{-1, 0, -2}, {1, 0.9f, 2}}}), high = ground_with({{{-1, 0, -2}, {1, 1.1f, 2}}});
-    Standing const from_low = walk(*low, {{0, 0.9, 0}, 1.6}, {0, 0, -5});
+    WalkStance const from_low = walk(*low, {{0, 0.9, 0}, 1.6}, {0, 0, -5});
     EXPECT_NEAR(from_low.foot.y, 0, 1e-4) << "0.9 m are stepped down";
-    Standing const from_high = walk(*high, {{0, 1.1, 0}, 1.6}, {0, 0, -5});
+    WalkStance const from_high = walk(*high, {{0, 1.1, 0}, 1.6}, {0, 0, -5});
     EXPECT_NEAR(from_high.foot.y, 1.1, 1e-4);
     EXPECT_NEAR(from_high.foot.z, -2, 0.11) << "to the edge";
     // The end of the world.
@@ -74,9 +74,9 @@ TEST(Walking, DeepFallsAreNotSteppedInto)
 TEST(Walking, WallsAreNotWalkedThrough)
 {
     auto const ground = ground_with({{{-5, 0, -3.05f}, {5, 3, -3}}});
-    Standing const straight = walk(*ground, at(0, 0), {0, 0, -8});
+    WalkStance const straight = walk(*ground, at(0, 0), {0, 0, -8});
     EXPECT_NEAR(straight.foot.z, -2.75, 0.01) << "a body's radius before it";
-    Standing const along = walk(*ground, at(0, 0), {-4, 0, -4});
+    WalkStance const along = walk(*ground, at(0, 0), {-4, 0, -4});
     EXPECT_NEAR(along.foot.z, -2.75, 0.01);
     EXPECT_NEAR(along.foot.x, -4, 0.1) << "it slides";
     // A low lintel is a wall; a high one is not.
@@ -85,7 +85,7 @@ TEST(Walking, WallsAreNotWalkedThrough)
     EXPECT_NEAR(walk(*lintels, at(2, 0), {0, 0, -8}).foot.z, -8, 1e-6);
     // A corner holds.
     auto const corner = ground_with({{{-5, 0, -3.05f}, {5, 3, -3}}, {{2, 0, -5}, {2.05f, 3, 5}}});
-    Standing const held = walk(*corner, at(0, 0), {30, 0, -30});
+    WalkStance const held = walk(*corner, at(0, 0), {30, 0, -30});
     EXPECT_NEAR(held.foot.x, 1.75, 0.05);
     EXPECT_NEAR(held.foot.z, -2.75, 0.05);
 }

@@ -1,4 +1,4 @@
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 #include "gi/core/error.h"
 
@@ -12,14 +12,14 @@ namespace {
 double constexpr kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// What a viewer in a window sends: one turned camera, one change.
-FrameOrder desktop_order()
+FrameCommand desktop_order()
 {
-    FrameOrder o;
+    FrameCommand o;
     o.frame = 123456;
     o.pose_s = 2057.6012345;
     o.display_s = 2057.617912;
     o.scene_s = 12.345678;
-    ViewOrder v;
+    ViewCommand v;
     v.name = "window";
     v.camera = gi::look_at({1.25, 1.7, 3.1}, {0.3, 1.2, -0.4}, 60);
     v.width = 1920;
@@ -29,9 +29,9 @@ FrameOrder desktop_order()
     return o;
 }
 
-FrameOrder cave_order()
+FrameCommand cave_order()
 {
-    FrameOrder o = desktop_order();
+    FrameCommand o = desktop_order();
     o.world_from_room[3] = {0.1, -0.0, 1e-300, 1};
     o.tracked.head = {{0.1, 1.8, 0.2}, glm::normalize(gi::dquat(0.9, 0.1, -0.2, 0.05))};
     o.tracked.right_hand = {{0.4, 1.1, -0.2}, glm::normalize(gi::dquat(0.3, 0.1, 0.2, 0.5))};
@@ -44,7 +44,7 @@ FrameOrder cave_order()
                  {"light.0", {{"on", true}, {"color", {1, 0.1 + 0.2, 0}}, {"note", nullptr}}}};
     o.views.clear();
     for (int i = 0; i < 8; ++i) {
-        ViewOrder v = desktop_order().views[0];
+        ViewCommand v = desktop_order().views[0];
         v.name = "wall " + std::to_string(i / 2) + (i % 2 == 0 ? ", left eye" : ", right eye");
         v.camera.off_axis = gi::ViewTangents{-0.31 - i, 1.0 / 3, -0.7, 0.9};
         v.partner = i % 2 == 0 ? -1 : i - 1;
@@ -58,7 +58,7 @@ FrameOrder cave_order()
     return o;
 }
 
-std::string why_refused(FrameOrder const& order)
+std::string why_refused(FrameCommand const& order)
 {
     try {
         to_bytes(order);
@@ -68,137 +68,137 @@ std::string why_refused(FrameOrder const& order)
     return "";
 }
 
-TEST(FrameOrder, ComesBackInAllItsBits)
+TEST(FrameCommand, ComesBackInAllItsBits)
 {
-    for (FrameOrder const& o : {FrameOrder{}, desktop_order(), cave_order()}) {
-        FrameOrder const back = order_from_bytes(to_bytes(o));
+    for (FrameCommand const& o : {FrameCommand{}, desktop_order(), cave_order()}) {
+        FrameCommand const back = command_from_bytes(to_bytes(o));
         EXPECT_EQ(back, o);
         EXPECT_EQ(to_bytes(back), to_bytes(o)); // also tells -0 from 0
     }
-    EXPECT_TRUE(std::signbit(order_from_bytes(to_bytes(cave_order())).world_from_room[3].y));
+    EXPECT_TRUE(std::signbit(command_from_bytes(to_bytes(cave_order())).world_from_room[3].y));
 }
 
 /// Of before there were feet and further users.
-TEST(FrameOrder, OldOnesAreRead)
+TEST(FrameCommand, OldOnesAreRead)
 {
-    FrameOrder o;
+    FrameCommand o;
     o.tracked.head = {{1, 2, 3}, {1, 0, 0, 0}};
     o.tracked.right_hand = {{4, 5, 6}, {1, 0, 0, 0}};
     std::vector<std::uint8_t> const old{1,  0, 0, 0, 0,  0, 0, 0,  0,  0, 0, 0, 0,  0, 0, 0,  0,   0,  0, 0, 0,
                                         0,  0, 0, 0, 0,  1, 0, 0,  5,  7, 0, 0, 0,  0, 0, 0,  240, 63, 0, 0, 0,
                                         0,  0, 0, 0, 64, 0, 0, 0,  0,  0, 0, 8, 64, 7, 0, 0,  0,   0,  0, 0, 16,
                                         64, 0, 0, 0, 0,  0, 0, 20, 64, 0, 0, 0, 0,  0, 0, 24, 64,  0,  0};
-    EXPECT_EQ(order_from_bytes(old), o);
+    EXPECT_EQ(command_from_bytes(old), o);
     EXPECT_EQ(to_bytes(o), old);
 }
 
-TEST(FrameOrder, RandomNumbersComeBackExactly)
+TEST(FrameCommand, RandomNumbersComeBackExactly)
 {
     std::mt19937_64 random(7);
     auto const number = [&] { return std::ldexp(double(std::int64_t(random())), int(random() % 120) - 123); };
     for (int n = 0; n < 2000; ++n) {
-        FrameOrder o = desktop_order();
+        FrameCommand o = desktop_order();
         o.frame = random();
         for (double* const v : {&o.pose_s, &o.display_s, &o.scene_s}) *v = number();
         for (int c = 0; c < 4; ++c)
             for (int r = 0; r < 3; ++r) o.views[0].camera.world_from_camera[c][r] = number();
         o.changes = {{"k", number()}, {"i", std::int64_t(random())}, {"u", random()}};
-        FrameOrder const back = order_from_bytes(to_bytes(o));
+        FrameCommand const back = command_from_bytes(to_bytes(o));
         ASSERT_EQ(back, o) << n;
         for (std::size_t i = 0; i < 3; ++i) ASSERT_EQ(back.changes[i].value.is_number_float(), i == 0);
     }
 }
 
-TEST(FrameOrder, IsSmall)
+TEST(FrameCommand, IsSmall)
 {
     EXPECT_LE(to_bytes(desktop_order()).size(), 160u);
     std::size_t const eight = to_bytes(cave_order()).size();
     EXPECT_LE(eight, 160u + 8 * 160u + 300u);
 }
 
-TEST(FrameOrder, EveryCutAndEveryFlippedByteIsAnOrderOrAnInputError)
+TEST(FrameCommand, EveryCutAndEveryFlippedByteIsAnOrderOrAnInputError)
 {
     std::vector<std::uint8_t> const whole = to_bytes(cave_order());
     for (std::size_t n = 0; n < whole.size(); ++n) {
-        EXPECT_THROW(order_from_bytes(std::span(whole).first(n)), gi::InputError) << n;
+        EXPECT_THROW(command_from_bytes(std::span(whole).first(n)), gi::InputError) << n;
         for (int bit = 0; bit < 8; ++bit) {
             auto damaged = whole;
             damaged[n] ^= std::uint8_t(1 << bit);
             try {
-                check_order(order_from_bytes(damaged));
+                check_command(command_from_bytes(damaged));
             } catch (gi::InputError const&) {
             }
         }
     }
     auto longer = whole;
     longer.push_back(0);
-    EXPECT_THROW(order_from_bytes(longer), gi::InputError);
+    EXPECT_THROW(command_from_bytes(longer), gi::InputError);
     longer = whole;
     longer[0] = 2;
     try {
-        order_from_bytes(longer);
+        command_from_bytes(longer);
         FAIL();
     } catch (gi::InputError const& e) {
         EXPECT_NE(std::string(e.what()).find("version 2"), std::string::npos) << e.what();
     }
 }
 
-TEST(FrameOrder, ClaimedCountsTakeNoMemory)
+TEST(FrameCommand, ClaimedCountsTakeNoMemory)
 {
-    std::vector<std::uint8_t> bytes = to_bytes(FrameOrder{});
+    std::vector<std::uint8_t> bytes = to_bytes(FrameCommand{});
     bytes.back() = 0xff; // the number of views
     bytes.insert(bytes.end(), {0xff, 0xff, 0xff, 0x7f});
-    EXPECT_THROW(order_from_bytes(bytes), gi::InputError);
-    EXPECT_THROW(order_from_bytes(std::vector<std::uint8_t>(11, 0xff)), gi::InputError);
+    EXPECT_THROW(command_from_bytes(bytes), gi::InputError);
+    EXPECT_THROW(command_from_bytes(std::vector<std::uint8_t>(11, 0xff)), gi::InputError);
 }
 
-TEST(FrameOrder, WhatCannotBeRenderedIsRefused)
+TEST(FrameCommand, WhatCannotBeRenderedIsRefused)
 {
-    using Spoil = void (*)(FrameOrder&);
+    using Spoil = void (*)(FrameCommand&);
     std::pair<Spoil, char const*> const cases[] = {
-        {[](FrameOrder& o) { o.pose_s = kNaN; }, "time"},
-        {[](FrameOrder& o) { o.paths = 0; }, "paths"},
-        {[](FrameOrder& o) { o.paths = -4; }, "paths"},
-        {[](FrameOrder& o) { o.world_from_room[0][3] = 0.5; }, "affine"},
-        {[](FrameOrder& o) { o.world_from_room[0] = o.world_from_room[1]; }, "flattens"},
-        {[](FrameOrder& o) { o.tracked.head->rotation.w = 3; }, "unit"},
-        {[](FrameOrder& o) { o.tracked.head->position.x = kNaN; }, "head"},
-        {[](FrameOrder& o) {
+        {[](FrameCommand& o) { o.pose_s = kNaN; }, "time"},
+        {[](FrameCommand& o) { o.paths = 0; }, "paths"},
+        {[](FrameCommand& o) { o.paths = -4; }, "paths"},
+        {[](FrameCommand& o) { o.world_from_room[0][3] = 0.5; }, "affine"},
+        {[](FrameCommand& o) { o.world_from_room[0] = o.world_from_room[1]; }, "flattens"},
+        {[](FrameCommand& o) { o.tracked.head->rotation.w = 3; }, "unit"},
+        {[](FrameCommand& o) { o.tracked.head->position.x = kNaN; }, "head"},
+        {[](FrameCommand& o) {
              o.others = {{}};
              o.others[0].right_foot = {{0, kNaN, 0}, {1, 0, 0, 0}};
          },
          "right_foot"},
-        {[](FrameOrder& o) { o.others.resize(OrderLimits::users + 1); }, "users"},
-        {[](FrameOrder& o) { o.views[0].width = 0; }, "pixels"},
-        {[](FrameOrder& o) { o.views[0].height = 16385; }, "pixels"},
-        {[](FrameOrder& o) { o.views[0].partner = 0; }, "partner"},
-        {[](FrameOrder& o) { o.views[3].partner = -2; }, "partner"},
-        {[](FrameOrder& o) { o.views[0].camera.off_axis->left = 1; }, "inside"},
-        {[](FrameOrder& o) { o.views[2].camera.ymag_m = 0; }, "height"},
-        {[](FrameOrder& o) { o.views[0].camera.off_axis.reset(), o.views[0].camera.yfov_rad = 3.2; }, "field"},
-        {[](FrameOrder& o) { o.views[0].camera.aperture_radius_m = -1; }, "aperture"},
-        {[](FrameOrder& o) { o.views[0].name.resize(5000); }, "name"},
-        {[](FrameOrder& o) { o.views.resize(257, o.views[0]); }, "views"},
-        {[](FrameOrder& o) { o.changes[0].value = kNaN; }, "exposure"},
-        {[](FrameOrder& o) { o.changes[0].value = "\xff"; }, "exposure"},
-        {[](FrameOrder& o) { o.changes[0].value = std::string(1 << 20, 'a'); }, "exposure"},
-        {[](FrameOrder& o) { o.changes[0].key.clear(); }, "key"},
+        {[](FrameCommand& o) { o.others.resize(CommandLimits::users + 1); }, "users"},
+        {[](FrameCommand& o) { o.views[0].width = 0; }, "pixels"},
+        {[](FrameCommand& o) { o.views[0].height = 16385; }, "pixels"},
+        {[](FrameCommand& o) { o.views[0].partner = 0; }, "partner"},
+        {[](FrameCommand& o) { o.views[3].partner = -2; }, "partner"},
+        {[](FrameCommand& o) { o.views[0].camera.off_axis->left = 1; }, "inside"},
+        {[](FrameCommand& o) { o.views[2].camera.ymag_m = 0; }, "height"},
+        {[](FrameCommand& o) { o.views[0].camera.off_axis.reset(), o.views[0].camera.yfov_rad = 3.2; }, "field"},
+        {[](FrameCommand& o) { o.views[0].camera.aperture_radius_m = -1; }, "aperture"},
+        {[](FrameCommand& o) { o.views[0].name.resize(5000); }, "name"},
+        {[](FrameCommand& o) { o.views.resize(257, o.views[0]); }, "views"},
+        {[](FrameCommand& o) { o.changes[0].value = kNaN; }, "exposure"},
+        {[](FrameCommand& o) { o.changes[0].value = "\xff"; }, "exposure"},
+        {[](FrameCommand& o) { o.changes[0].value = std::string(1 << 20, 'a'); }, "exposure"},
+        {[](FrameCommand& o) { o.changes[0].key.clear(); }, "key"},
     };
     for (auto const& [spoil, word] : cases) {
-        FrameOrder o = cave_order();
+        FrameCommand o = cave_order();
         ASSERT_EQ(why_refused(o), "");
         spoil(o);
         EXPECT_NE(why_refused(o).find(word), std::string::npos) << word << ": " << why_refused(o);
     }
 }
 
-TEST(FrameOrder, DeepValuesAreRefusedBeforeTheyFillTheStack)
+TEST(FrameCommand, DeepValuesAreRefusedBeforeTheyFillTheStack)
 {
     nlohmann::json deep = 1;
-    for (int i = 0; i < OrderLimits::value_depth; ++i) deep = nlohmann::json::array({deep});
-    FrameOrder o = desktop_order();
+    for (int i = 0; i < CommandLimits::value_depth; ++i) deep = nlohmann::json::array({deep});
+    FrameCommand o = desktop_order();
     o.changes = {{"k", deep}};
-    EXPECT_EQ(order_from_bytes(to_bytes(o)), o);
+    EXPECT_EQ(command_from_bytes(to_bytes(o)), o);
     o.changes = {{"k", nlohmann::json::array({deep})}};
     EXPECT_NE(why_refused(o).find("deep"), std::string::npos);
 }

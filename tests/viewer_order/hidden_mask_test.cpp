@@ -75,9 +75,9 @@ TEST(HiddenPixels, ThoseNearWhatIsSeenAreRendered)
 TEST(HiddenMask, ComesThroughAnOrderInAllItsBits)
 {
     HiddenMask const mask{{{-1.1f, 0.1f}, {1 / 3.0f, -2e-7f}, {0, 1e4f}}, {0, 1, 2, 2, 1, 0}};
-    FrameOrder order;
+    FrameCommand order;
     order.changes = {hidden_change("left eye", mask), hidden_change("right eye", {})};
-    FrameOrder const back = order_from_bytes(to_bytes(order));
+    FrameCommand const back = command_from_bytes(to_bytes(order));
     EXPECT_TRUE(is_hidden_mask(back.changes[0].key));
     EXPECT_EQ(hidden_mask_of(back.changes[0]), (std::pair{std::string("left eye"), mask}));
     EXPECT_EQ(hidden_mask_of(back.changes[1]), (std::pair{std::string("right eye"), HiddenMask{}}));
@@ -91,9 +91,9 @@ TEST(HiddenMask, TheLargestFitsAnOrder)
         mask.points.push_back({-1.17549435e-38f * float(i + 1), 0.1f + float(i) * 1.1920929e-7f});
     for (std::size_t i = 0; i < 3 * HiddenMaskLimits::triangles; ++i)
         mask.triangles.push_back(std::uint32_t(mask.points.size() - 1 - i % 7));
-    FrameOrder order;
+    FrameCommand order;
     order.changes = {hidden_change("left eye", mask)};
-    EXPECT_EQ(hidden_mask_of(order_from_bytes(to_bytes(order)).changes[0]).second, mask);
+    EXPECT_EQ(hidden_mask_of(command_from_bytes(to_bytes(order)).changes[0]).second, mask);
     mask.points.push_back({0, 0});
     EXPECT_THROW(hidden_mask_of(hidden_change("left eye", mask)), gi::InputError);
 }

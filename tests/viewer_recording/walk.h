@@ -14,7 +14,7 @@ namespace viewer::test {
 inline RecordedFrame walk_frame(std::uint64_t n)
 {
     RecordedFrame f;
-    FrameOrder& o = f.order;
+    FrameCommand& o = f.order;
     double const t = double(n) / 60;
     o.frame = n;
     o.pose_s = t;
@@ -26,7 +26,7 @@ inline RecordedFrame walk_frame(std::uint64_t n)
     if (n % 5 == 4) o.others = {{}, o.tracked};
     if (n % 10 == 0) o.changes = {{"exposure", 1 + t}, {"label", "a \"b\", #c\n"}};
     for (int i = 0; i < 1 + int(n % 2); ++i) {
-        ViewOrder v;
+        ViewCommand v;
         v.name = "wall, " + std::to_string(i);
         v.camera = gi::look_at({std::sin(t), 1.7, -t}, {0, 1, -t - 3}, 60);
         if (i == 1) v.camera.off_axis = gi::ViewTangents{-1, 0.5, -0.25, 0.75};

@@ -8,7 +8,7 @@
 #include "viewer/devices/tracking/footsteps.h"
 #include "viewer/devices/tracking/key_hands.h"
 #include "viewer/devices/tracking/own_avatar.h"
-#include "viewer/engine/session.h"
+#include "viewer/engine/render_session.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
@@ -23,12 +23,12 @@ constexpr double kEyes_m = 1.6;
 struct Room {
     gi::Report report;
     std::shared_ptr<OwnAvatar const> avatar;
-    std::unique_ptr<Session> session;
+    std::unique_ptr<RenderSession> session;
 
     explicit Room(std::optional<gi::Scene> const& model)
     {
         if (model) avatar = std::make_shared<OwnAvatar const>(*model, kEyes_m);
-        session = std::make_unique<Session>(
+        session = std::make_unique<RenderSession>(
             [own = avatar](std::string const&, gi::Report&) {
                 gi::Scene room = gi::generate_mirror();
                 return std::make_shared<gi::Scene const>(own ? own->joined(std::move(room)) : std::move(room));
@@ -36,18 +36,18 @@ struct Room {
             0, report);
         if (avatar)
             session->drive_bodies(
-                [own = avatar](gi::Scene const& s, FrameOrder const& o, gi::Pose& p) { own->drive(s, o, p); });
+                [own = avatar](gi::Scene const& s, FrameCommand const& o, gi::Pose& p) { own->drive(s, o, p); });
         session->apply({"denoise", "none"});
         session->apply({"reuse", 1});
         session->apply({"scene", "mirror"});
     }
-    SessionFrame render(FrameOrder const& order) { return session->render(order, {}); }
+    SessionFrame render(FrameCommand const& order) { return session->render(order, {}); }
 };
 
 /// Standing there, looking into the mirror. @param raised_s  how long the right hand has been rising
-FrameOrder standing(std::uint64_t frame, double raised_s, double aside_m = 0, double pitch_rad = 0)
+FrameCommand standing(std::uint64_t frame, double raised_s, double aside_m = 0, double pitch_rad = 0)
 {
-    FrameOrder o;
+    FrameCommand o;
     o.frame = frame;
     KeyHands hands;
     hands.step(false, true, raised_s);
@@ -127,7 +127,7 @@ TEST(AvatarInMirror, ItsHeadIsNotInItsUsersWay)
     Room room(gi::generate_avatar());
     std::uint64_t frame = 0;
     for (double const pitch : {-0.9, -0.4, 0.0, 0.7}) {
-        FrameOrder order = standing(frame++, 0, 0, pitch);
+        FrameCommand order = standing(frame++, 0, 0, pitch);
         order.paths = 1;
         order.views[0].camera.yfov_rad = 1.4; // as wide as headsets
         SessionFrame const f = room.render(order);
@@ -151,7 +151,7 @@ TEST(AvatarInMirror, StepsAreInTheOrders)
     Room live(gi::generate_avatar());
     double highest_m = 0;
     for (std::uint64_t f = 0; f < 8; ++f) {
-        FrameOrder order = standing(f, 0, 0.06 * double(f));
+        FrameCommand order = standing(f, 0, 0.06 * double(f));
         order.paths = 1;
         feet.step(order.tracked, order.world_from_room, 0.05);
         for (auto const& foot : {order.tracked.left_foot, order.tracked.right_foot})
@@ -161,7 +161,7 @@ TEST(AvatarInMirror, StepsAreInTheOrders)
     }
     EXPECT_GT(highest_m, 0.02) << "in the middle of a step";
     Room replayed(gi::generate_avatar());
-    for (auto const& bytes : orders) runs[1].push_back(color(replayed.render(order_from_bytes(bytes))));
+    for (auto const& bytes : orders) runs[1].push_back(color(replayed.render(command_from_bytes(bytes))));
     EXPECT_EQ(runs[0], runs[1]);
 }
 
@@ -172,10 +172,10 @@ TEST(AvatarInMirror, TheSameOrdersGiveTheSamePixels)
     for (auto& run : runs) {
         Room room(gi::generate_avatar());
         for (std::uint64_t f = 0; f < 6; ++f) {
-            FrameOrder order = standing(f, 0.15 * double(f), 0.02 * double(f));
+            FrameCommand order = standing(f, 0.15 * double(f), 0.02 * double(f));
             order.paths = 1;
             if (f == 4) order.tracked.left_hand.reset();
-            run.push_back(color(room.render(&run == runs ? order : order_from_bytes(to_bytes(order)))));
+            run.push_back(color(room.render(&run == runs ? order : command_from_bytes(to_bytes(order)))));
         }
     }
     EXPECT_EQ(runs[0], runs[1]);

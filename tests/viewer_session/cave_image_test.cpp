@@ -4,7 +4,7 @@
 #include "tests/support/scenes.h"
 #include "viewer/displays/display_file.h"
 #include "viewer/displays/views.h"
-#include "viewer/engine/session.h"
+#include "viewer/engine/render_session.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ constexpr double kBeside = 1e-3; ///< of a wall's extent that a strip reaches to
 
 /// The same wall seen through a strip along one of its edges, one pixel wide. What it shows lies on the edge, half
 /// of it beyond the wall: there both walls of an edge must show the same.
-ViewOrder strip_along(ViewOrder view, Side side)
+ViewCommand strip_along(ViewCommand view, Side side)
 {
     gi::ViewTangents& t = *view.camera.off_axis;
     double const wide = kBeside * (t.right - t.left), high = kBeside * (t.top - t.bottom);
@@ -66,11 +66,11 @@ TEST(Cave, WallsAreContinuousAcrossTheirEdges)
     Display display = load_display(LIGHTWELL_SOURCE_DIR "/data/displays/cave4.yaml", report);
     for (Wall& wall : display.walls) wall.stereo = StereoMode::off;
     std::vector<std::optional<RoomPose>> const heads{RoomPose{{0.3, 1.6, 0.2}, {1, 0, 0, 0}}};
-    std::vector<ViewOrder> const walls = view_orders(views_of(display, heads), gi::dmat4(1));
+    std::vector<ViewCommand> const walls = view_orders(views_of(display, heads), gi::dmat4(1));
     ASSERT_EQ(walls.size(), 4u);
     auto const view_of = [&](std::string const& name) {
         return *std::find_if(walls.begin(), walls.end(),
-                             [&](ViewOrder const& v) { return v.name.starts_with(name); });
+                             [&](ViewCommand const& v) { return v.name.starts_with(name); });
     };
     // The left wall's right edge is the front wall's left one, and so on; rows count from the top.
     Edge const edges[] = {{"left", Side::right, "front", Side::left},
@@ -78,12 +78,12 @@ TEST(Cave, WallsAreContinuousAcrossTheirEdges)
                           {"front", Side::bottom, "floor", Side::top},
                           {"left", Side::bottom, "floor", Side::left, true},
                           {"right", Side::bottom, "floor", Side::right}};
-    FrameOrder order;
+    FrameCommand order;
     for (Edge const& e : edges) {
         order.views.push_back(strip_along(view_of(e.wall), e.side));
         order.views.push_back(strip_along(view_of(e.other), e.other_side));
     }
-    Session session(room, 0, report);
+    RenderSession session(room, 0, report);
     session.apply({"directions", "icosahedron:1280"});
     session.apply({"denoise", "none"});
     session.apply({"scene", "room"});

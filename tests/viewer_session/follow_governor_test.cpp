@@ -1,6 +1,6 @@
 // How many directions follow what moves, by frames of a machine whose times are made up.
 
-#include "viewer/engine/follow_governor.h"
+#include "viewer/engine/update_governor.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kRate = 20; // Hz
 
-/// Following one axis takes so long, s; bounces choose theirs by themselves.
+/// DynamicUpdate one axis takes so long, s; bounces choose theirs by themselves.
 struct Machine {
-    FollowGovernor governor;
+    UpdateGovernor governor;
     double axis_s;
     bool moves = true;
     int bounces = 3, stored = 160;
@@ -39,14 +39,14 @@ struct Machine {
     }
 };
 
-TEST(FollowGovernor, AllFollowWhatCostsLittle)
+TEST(UpdateGovernor, AllFollowWhatCostsLittle)
 {
     Machine m{{}, 0.1 * 0.05 / 160};
     for (int i = 0; i < 50; ++i) EXPECT_EQ(m.frame(), 0);
     EXPECT_NEAR(m.governor.share_of_all(), 0.1, 1e-9);
 }
 
-TEST(FollowGovernor, FewerFollowWhatCostsMuch)
+TEST(UpdateGovernor, FewerFollowWhatCostsMuch)
 {
     int last = 1000;
     for (double const share : {0.15, 0.3, 0.6, 1.2, 5.0}) {
@@ -61,7 +61,7 @@ TEST(FollowGovernor, FewerFollowWhatCostsMuch)
     EXPECT_EQ(last, 8);
 }
 
-TEST(FollowGovernor, FallsAtOnceWhereAFrameIsMissed)
+TEST(UpdateGovernor, FallsAtOnceWhereAFrameIsMissed)
 {
     Machine m{{}, 0.1 * 0.05 / 160};
     m.settle();
@@ -74,7 +74,7 @@ TEST(FollowGovernor, FallsAtOnceWhereAFrameIsMissed)
     EXPECT_EQ(m.frame(), 0);
 }
 
-TEST(FollowGovernor, OneSlowFrameChangesNothing)
+TEST(UpdateGovernor, OneSlowFrameChangesNothing)
 {
     Machine m{{}, 0.18 * 0.05 / 160};
     m.settle();
@@ -83,7 +83,7 @@ TEST(FollowGovernor, OneSlowFrameChangesNothing)
 }
 
 /// Times that scatter by a quarter up and down, about every threshold.
-TEST(FollowGovernor, DoesNotFlap)
+TEST(UpdateGovernor, DoesNotFlap)
 {
     for (int const stored : {160, 40})
         for (int const bounces : {1, 2, 3})
@@ -103,7 +103,7 @@ TEST(FollowGovernor, DoesNotFlap)
             }
 }
 
-TEST(FollowGovernor, AllFollowWhereNothingMovesAndAsManyAsBeforeAfterwards)
+TEST(UpdateGovernor, AllFollowWhereNothingMovesAndAsManyAsBeforeAfterwards)
 {
     Machine m{{}, 0.8 * 0.05 / 160};
     int const before = m.settle();
@@ -118,9 +118,9 @@ TEST(FollowGovernor, AllFollowWhereNothingMovesAndAsManyAsBeforeAfterwards)
 }
 
 /// A head that is tracked, or a lamp that is dimmed: something might have moved, and did not.
-TEST(FollowGovernor, WhatOnlyMayMoveIsNotFollowedForLong)
+TEST(UpdateGovernor, WhatOnlyMayMoveIsNotFollowedForLong)
 {
-    FollowGovernor g;
+    UpdateGovernor g;
     for (int i = 0; i < 20; ++i) {
         g.next(true);
         g.measured({{160, 160, 3, 0.04}, true, kRate});
@@ -133,7 +133,7 @@ TEST(FollowGovernor, WhatOnlyMayMoveIsNotFollowedForLong)
     EXPECT_EQ(g.next(true), 0);
 }
 
-TEST(FollowGovernor, SaysWhatItDoesAndWhy)
+TEST(UpdateGovernor, SaysWhatItDoesAndWhy)
 {
     EXPECT_EQ(schedule_sentence("streamed", 8, 160, 1), "streamed, as it was set");
     EXPECT_EQ(schedule_sentence("auto", 0, 0, 0).find("none"), 0u);

@@ -4,7 +4,7 @@
 #include "gi/metrics/metrics.h"
 #include "gi/scene/generate/generate.h"
 #include "tests/support/scenes.h"
-#include "viewer/engine/session.h"
+#include "viewer/engine/render_session.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
@@ -45,9 +45,9 @@ std::shared_ptr<gi::Scene const> room(std::string const&, gi::Report&)
     return std::make_shared<gi::Scene const>(std::move(scene));
 }
 
-FrameOrder view_order(std::uint64_t frame, double aside = 0)
+FrameCommand view_order(std::uint64_t frame, double aside = 0)
 {
-    FrameOrder o;
+    FrameCommand o;
     o.frame = frame;
     gi::Camera camera = gi::look_at({-0.6, 0.1, 0.9}, {0.1, -0.4, 0}, 60);
     camera.off_axis = kView;
@@ -64,7 +64,7 @@ class HiddenViews : public ::testing::Test {
 protected:
     HiddenViews()
     {
-        for (Session* s : {&masked, &whole}) {
+        for (RenderSession* s : {&masked, &whole}) {
             s->apply({"scene", "room"});
             s->apply({"resolution", 48});
             s->apply({"directions", "icosahedron:80"});
@@ -79,7 +79,7 @@ protected:
     }
 
     gi::Report report, other_report;
-    Session masked{room, 0, report}, whole{room, 0, other_report};
+    RenderSession masked{room, 0, report}, whole{room, 0, other_report};
 };
 
 std::vector<float> const& view_color(SessionFrame const& f, std::size_t view = 0)
@@ -139,7 +139,7 @@ TEST_F(HiddenViews, FiltersDoNotMixBlackIntoWhatIsSeen)
         set({"denoise", filter});
         SessionFrame a, b;
         for (std::uint64_t f = 0; f < 12; ++f) {
-            FrameOrder o = view_order(f, 0.004 * double(f));
+            FrameCommand o = view_order(f, 0.004 * double(f));
             o.paths = 2;
             a = masked.render(o, {});
             b = whole.render(o, {});
@@ -180,17 +180,17 @@ TEST_F(HiddenViews, AMaskThatGoesLeavesNoBlackBehind)
 /// The orders alone decide, as of a recording or on another rank; of a picture of another size too.
 TEST_F(HiddenViews, OrdersBringTheSamePixelsElsewhere)
 {
-    Session leader(room, 0, report), follower(room, 0, other_report);
-    for (Session* s : {&leader, &follower}) s->apply({"scene", "room"});
+    RenderSession leader(room, 0, report), follower(room, 0, other_report);
+    for (RenderSession* s : {&leader, &follower}) s->apply({"scene", "room"});
     for (std::uint64_t f = 0; f < 6; ++f) {
-        FrameOrder o = view_order(f, 0.01 * double(f));
+        FrameCommand o = view_order(f, 0.01 * double(f));
         if (f == 1) o.changes.push_back(hidden_change("left eye", around_a_lens()));
         if (f == 2) o.changes.push_back(hidden_change("right eye", around_a_lens()));
         if (f == 4) o.changes.push_back(hidden_change("left eye", {}));
         if (f == 3) o.views[1].width = 90;
         for (Change const& c : o.changes) leader.apply(c);
         SessionFrame const a = leader.render(o, {});
-        FrameOrder const there = order_from_bytes(to_bytes(o));
+        FrameCommand const there = command_from_bytes(to_bytes(o));
         for (Change const& c : there.changes) follower.apply(c);
         SessionFrame const b = follower.render(there, {});
         for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_EQ(view_color(a, eye), view_color(b, eye)) << f;
@@ -210,7 +210,7 @@ TEST_F(HiddenViews, KeepWhatTheyHaveWhereAMaskIsRefused)
     SessionFrame const after = masked.render(view_order(0), {});
     EXPECT_EQ(after.views[0].hidden, before.views[0].hidden);
     EXPECT_EQ(after.still_frames, 2);
-    for (std::size_t k = 0; k + 2 < OrderLimits::views; ++k)
+    for (std::size_t k = 0; k + 2 < CommandLimits::views; ++k)
         masked.apply(hidden_change("view " + std::to_string(k), around_a_lens()));
     EXPECT_THROW(masked.apply(hidden_change("one more", around_a_lens())), gi::InputError);
     EXPECT_NO_THROW(masked.apply(hidden_change("left eye", around_a_lens())));

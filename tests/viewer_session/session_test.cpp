@@ -1,6 +1,6 @@
 // The same changes and orders give the same pixels; what is set is set; what cannot be leaves all as it was.
 
-#include "viewer/engine/session.h"
+#include "viewer/engine/render_session.h"
 
 #include "gi/core/error.h"
 #include "gi/kernel/device.h"
@@ -43,18 +43,18 @@ gi::Camera eye(double aside = 0)
     return camera;
 }
 
-FrameOrder order(std::uint64_t frame, double aside = 0, bool stereo = false)
+FrameCommand order(std::uint64_t frame, double aside = 0, bool stereo = false)
 {
-    FrameOrder o;
+    FrameCommand o;
     o.frame = frame;
     o.views.push_back({"left", eye(aside), 40, 30, -1});
     if (stereo) o.views.push_back({"right", eye(aside + 0.06), 40, 30, 0});
     return o;
 }
 
-Session started(gi::Report& report)
+RenderSession started(gi::Report& report)
 {
-    Session s(scene_of, 0, report);
+    RenderSession s(scene_of, 0, report);
     s.apply({"scene", "room"});
     s.apply({"resolution", 48});
     s.apply({"directions", "icosahedron:80"});
@@ -78,12 +78,12 @@ double relmse(std::vector<float> const& a, std::vector<float> const& b)
     return gi::measure_errors(a, b, 3).relmse;
 }
 
-TEST(Session, TheSameOrdersGiveTheSamePixels)
+TEST(RenderSession, TheSameOrdersGiveTheSamePixels)
 {
     std::vector<std::vector<float>> runs[2];
     for (auto& run : runs) {
         gi::Report report;
-        Session s = started(report);
+        RenderSession s = started(report);
         for (std::uint64_t f = 0; f < 8; ++f) {
             if (f == 2) s.apply({"light.0.intensity", {3, 2, 1}});
             if (f == 3) s.apply({"object.block.position", {0.2, 0.1, 0}});
@@ -98,17 +98,17 @@ TEST(Session, TheSameOrdersGiveTheSamePixels)
     EXPECT_GT(relmse(runs[0][5], runs[0][4]), 1e-3);
 }
 
-TEST(Session, WhatStandsStillConvergesToTheReference)
+TEST(RenderSession, WhatStandsStillConvergesToTheReference)
 {
     gi::Report report;
-    Session s = started(report), judge = started(report);
+    RenderSession s = started(report), judge = started(report);
     s.apply({"directions", "icosahedron:320"});
     s.apply({"resolution", 128});
     judge.apply({"method", "reference"});
     SessionFrame frame, truth;
     double first = 0;
     for (std::uint64_t f = 0; f < 200; ++f) {
-        FrameOrder o = order(f, 0, true);
+        FrameCommand o = order(f, 0, true);
         o.paths = 4;
         frame = s.render(o, {});
         truth = judge.render(o, {});
@@ -121,10 +121,10 @@ TEST(Session, WhatStandsStillConvergesToTheReference)
     EXPECT_NEAR(mean(color(frame, 1)) / mean(color(truth, 1)), 1, 0.02);
 }
 
-TEST(Session, ComparesTwoMethods)
+TEST(RenderSession, ComparesTwoMethods)
 {
     gi::Report report;
-    Session s = started(report);
+    RenderSession s = started(report);
     s.apply({"compare", "reference"});
     SessionFrame const f = s.render(order(0), {});
     ASSERT_TRUE(f.views[0].compared.has_value());
@@ -133,10 +133,10 @@ TEST(Session, ComparesTwoMethods)
     EXPECT_FALSE(s.render(order(1), {}).views[0].compared.has_value());
 }
 
-TEST(Session, RefusesWhatCannotBeAndKeepsAll)
+TEST(RenderSession, RefusesWhatCannotBeAndKeepsAll)
 {
     gi::Report report;
-    Session s = started(report);
+    RenderSession s = started(report);
     std::vector<float> const before = color(s.render(order(0), {}));
     Settings const settings = s.settings();
     std::vector<Change> const wrong{{"nonsense", 1},
@@ -167,17 +167,17 @@ TEST(Session, RefusesWhatCannotBeAndKeepsAll)
                                     {"environment.scale", 2}};
     for (Change const& c : wrong) EXPECT_THROW(s.apply(c), gi::InputError) << c.key << " = " << c.value;
     for (SettingKey const& k : setting_keys()) EXPECT_EQ(get(s.settings(), k.key), get(settings, k.key)) << k.key;
-    Session fresh = started(report);
+    RenderSession fresh = started(report);
     EXPECT_EQ(color(fresh.render(order(0), {})), before);
     EXPECT_EQ(color(fresh.render(order(1), {})), color(s.render(order(1), {})));
-    EXPECT_THROW(Session(scene_of, 0, report).render(order(0), {}), gi::InputError);
+    EXPECT_THROW(RenderSession(scene_of, 0, report).render(order(0), {}), gi::InputError);
 }
 
 /// Where there is no device it is refused, and the session goes on as it was.
-TEST(Session, RendersByKernelsWhereThereIsADevice)
+TEST(RenderSession, RendersByKernelsWhereThereIsADevice)
 {
     gi::Report report;
-    Session s = started(report), fresh = started(report);
+    RenderSession s = started(report), fresh = started(report);
     EXPECT_EQ(color(s.render(order(0), {})), color(fresh.render(order(0), {})));
     s.apply({"device", "cpu"}); // begins anew
     fresh.apply({"device", "cpu"});
@@ -197,7 +197,7 @@ TEST(Session, RendersByKernelsWhereThereIsADevice)
     EXPECT_THROW(s.apply({"device", "abacus"}), gi::InputError);
 }
 
-TEST(Session, EveryKeyCanBeSetToWhatItIs)
+TEST(RenderSession, EveryKeyCanBeSetToWhatItIs)
 {
     Settings s;
     for (SettingKey const& k : setting_keys()) {
@@ -209,22 +209,22 @@ TEST(Session, EveryKeyCanBeSetToWhatItIs)
 
 /// While a block goes on moving, the viewer takes to following 8 of 40 directions for each bounce, and back: what
 /// was reused stays, pictures stay right, and the same orders give the same pixels.
-TEST(Session, FewerDirectionsMayFollowWhatMoves)
+TEST(RenderSession, FewerDirectionsMayFollowWhatMoves)
 {
     constexpr std::uint64_t kFrames = 60, kFewer = 20, kAll = 40;
     gi::Report report;
-    Session s = started(report), again = started(report), judge = started(report);
+    RenderSession s = started(report), again = started(report), judge = started(report);
     judge.apply({"method", "reference"});
     judge.apply({"reuse", 1});
     judge.apply({"denoise", "none"});
     std::vector<double> error(kFrames);
     for (std::uint64_t f = 0; f < kFrames; ++f) {
-        FrameOrder o = order(f, 0.002 * double(f));
+        FrameCommand o = order(f, 0.002 * double(f));
         o.paths = 2;
         o.changes.push_back({"object.block.position", {0.004 * double(f), 0, 0}});
         if (f == kFewer) o.changes.push_back({"followed", 8});
         if (f == kAll) o.changes.push_back({"followed", 0});
-        FrameOrder const kept = order_from_bytes(to_bytes(o)); // as a recording or another rank has it
+        FrameCommand const kept = command_from_bytes(to_bytes(o)); // as a recording or another rank has it
         for (Change const& c : o.changes) s.apply(c);
         for (Change const& c : kept.changes) again.apply(c);
         std::vector<float> const now = color(s.render(o, {}));
@@ -248,21 +248,21 @@ TEST(Session, FewerDirectionsMayFollowWhatMoves)
 }
 
 /// Who names a schedule has it: then nothing else decides how many follow.
-TEST(Session, AScheduleThatIsNamedStays)
+TEST(RenderSession, AScheduleThatIsNamedStays)
 {
     gi::Report report;
     std::vector<float> pictures[2];
-    for (int followed : {0, 8}) {
-        Session s = started(report);
+    for (int updated : {0, 8}) {
+        RenderSession s = started(report);
         s.apply({"schedule", "stored"});
-        s.apply({"followed", followed});
+        s.apply({"updated_axes", updated});
         s.apply({"object.block.position", {0.1, 0, 0}});
-        pictures[followed / 8] = color(s.render(order(0), {}));
+        pictures[updated / 8] = color(s.render(order(0), {}));
     }
     EXPECT_EQ(pictures[0], pictures[1]);
 }
 
-TEST(Session, PointsAreANumberOrAShareOfTheTexels)
+TEST(RenderSession, PointsAreANumberOrAShareOfTheTexels)
 {
     Settings s;
     int const texels = 64 * 64;
@@ -279,10 +279,10 @@ TEST(Session, PointsAreANumberOrAShareOfTheTexels)
 }
 
 /// A study changes method, points and radius from stimulus to stimulus.
-TEST(Session, ApproximationsOfVisibilityAreShownLiveInStereo)
+TEST(RenderSession, ApproximationsOfVisibilityAreShownLiveInStereo)
 {
     gi::Report report;
-    Session s = started(report);
+    RenderSession s = started(report);
     s.apply({"light_paths", 64});
     double none = 0;
     for (char const* const method : {"vpl_none", "vpl_exact", "vpl_slhb", "vpl_imperfect", "vpl_ao", "vpl_dao"}) {
@@ -302,10 +302,10 @@ TEST(Session, ApproximationsOfVisibilityAreShownLiveInStereo)
     EXPECT_LT(mean(color(s.render(order(1), {}))), before) << "dao, wider";
 }
 
-TEST(Session, EditsOutliveANewWorld)
+TEST(RenderSession, EditsOutliveANewWorld)
 {
     gi::Report report;
-    Session s = started(report);
+    RenderSession s = started(report);
     s.apply({"material.2.base_color", {0.9, 0, 0}});
     s.apply({"light.0.intensity", {0, 0, 0}});
     s.apply({"object.block.position", {0.2, 0, 0}}); // from now on it is apart from what stays
@@ -320,7 +320,7 @@ TEST(Session, EditsOutliveANewWorld)
 TEST(Picking, FindsTheNearestObject)
 {
     gi::Report report;
-    Session const s = started(report);
+    RenderSession const s = started(report);
     gi::Camera const camera = gi::look_at({0, 0.5, 0.9}, {-0.05, -0.1, -0.1}, 60);
     auto const hit = pick(s.world(), camera, 1.5, {0.5, 0.5});
     ASSERT_TRUE(hit.has_value());
@@ -336,15 +336,15 @@ TEST(Picking, FindsTheNearestObject)
 
 /// A second eye whose light, past and filter are the first one's has no more error than one that has all of its
 /// own.
-TEST(Session, ASecondEyeIsAsRightAsTheFirst)
+TEST(RenderSession, ASecondEyeIsAsRightAsTheFirst)
 {
     gi::Report report;
     std::array<double, 2> error{};
     std::vector<float> truth;
     for (bool const shared : {false, true}) {
-        Session session = started(report), still = started(report);
+        RenderSession session = started(report), still = started(report);
         session.apply({"share_eyes", shared});
-        FrameOrder o;
+        FrameCommand o;
         SessionFrame last;
         for (std::uint64_t k = 0; k < 12; ++k) {
             o = order(k, 0.005 * double(k), true);

@@ -72,11 +72,11 @@ protected:
     static std::vector<std::string> const& keys()
     {
         static std::vector<std::string> const all{
-            "method",     "compare",       "schedule",  "directions", "resolution",   "axes",
-            "followed",   "lamps",         "bounces",   "seed",       "reuse",        "denoise",
-            "share_eyes", "share_endings", "exposure",  "tone",       "rate",         "paths",
-            "scale",      "play",          "speed",     "stereo",     "eye_distance", "swap_eyes",
-            "view",       "split",         "reproject", "refine",     "panel"};
+            "method",       "compare",        "schedule",  "directions", "resolution",   "axes",
+            "updated_axes", "light_samples",  "bounces",   "seed",       "reuse",        "denoise",
+            "share_eyes",   "radiance_cache", "exposure",  "tone",       "rate",         "paths",
+            "scale",        "play",           "speed",     "stereo",     "eye_distance", "swap_eyes",
+            "view",         "split",          "reproject", "refine",     "panel"};
         return all;
     }
 
@@ -180,8 +180,9 @@ protected:
               "checkerboard", "quad-buffer", "two-windows"}},
             {"view", {"picture", "split", "flicker", "difference"}}};
         static std::map<std::string, std::pair<int, int>> const counts{
-            {"resolution", {0, 256}}, {"axes", {0, 64}},      {"followed", {0, 64}}, {"lamps", {0, 64}},
-            {"bounces", {0, 4}},      {"seed", {0, 1 << 30}}, {"reuse", {1, 32}},    {"paths", {0, 3}}};
+            {"resolution", {0, 256}},   {"axes", {0, 64}},   {"updated_axes", {0, 64}},
+            {"light_samples", {0, 64}}, {"bounces", {0, 4}}, {"seed", {0, 1 << 30}},
+            {"reuse", {1, 32}},         {"paths", {0, 3}}};
         static std::map<std::string, std::pair<double, double>> const numbers{
             {"exposure", {-4, 4}}, {"rate", {5, 60}},        {"scale", {0, 1}},
             {"speed", {-3, 3}},    {"eye_distance", {0, 1}}, {"split", {0, 1}}};

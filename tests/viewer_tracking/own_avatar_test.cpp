@@ -44,7 +44,7 @@ struct Driven {
     void to(Tracked const& tracked, gi::dmat4 const& world_from_room = gi::dmat4(1))
     {
         pose = gi::evaluate_pose(scene, 0);
-        FrameOrder order;
+        FrameCommand order;
         order.tracked = tracked;
         order.world_from_room = world_from_room;
         avatar.drive(scene, order, pose);
@@ -345,7 +345,7 @@ TEST(OwnAvatar, EveryUserMovesHisOwn)
     gi::Scene const scene = third.joined(first.joined(gi::generate_cornell()));
     std::int32_t const heads[2] = {first.joints_in(scene).head, third.joints_in(scene).head};
     EXPECT_NE(heads[0], heads[1]);
-    FrameOrder order;
+    FrameCommand order;
     order.tracked.head = RoomPose{{0.5, 1.6, 0}, {1, 0, 0, 0}};
     order.others.resize(2);
     order.others[1].head = RoomPose{{-0.5, 1.5, 0.3}, exp_rotation({0, 1, 0})};

@@ -65,9 +65,9 @@ TEST(VisibilityFrames, ViewsShareVirtualLightsAndAreEachWhatOneViewWouldBe)
     for (VisibilityKind const kind : kKinds) {
         FrameView const both[] = {{left, 24, 24}, {right, 16, 16, 0}};
         auto const shared =
-            start_virtual_light_frames(kind, world, s, report)->views(both, 2, Endings::cached, stop);
-        auto const alone =
-            start_virtual_light_frames(kind, world, s, report)->views({both + 1, 1}, 2, Endings::exact, stop);
+            start_virtual_light_frames(kind, world, s, report)->views(both, 2, VertexSharing::cached, stop);
+        auto const alone = start_virtual_light_frames(kind, world, s, report)
+                               ->views({both + 1, 1}, 2, VertexSharing::exact, stop);
         ASSERT_EQ(shared.size(), 2u);
         EXPECT_EQ(shared[1].picture.find("color")->data, alone[0].picture.find("color")->data) << int(kind);
     }

@@ -70,7 +70,7 @@ void ClusterLink::report_swaps()
     for (auto const& [frame, time_s] : now) cluster_->report_swap(frame, time_s);
 }
 
-void ClusterLink::send(FrameOrder const& order)
+void ClusterLink::send(FrameCommand const& order)
 {
     guarded([&] {
         report_swaps();
@@ -78,7 +78,7 @@ void ClusterLink::send(FrameOrder const& order)
     });
 }
 
-std::optional<FrameOrder> ClusterLink::receive()
+std::optional<FrameCommand> ClusterLink::receive()
 {
     return guarded([&] {
         report_swaps();
@@ -91,7 +91,7 @@ void ClusterLink::check()
     guarded([] {});
 }
 
-FrameWork ClusterLink::wait_for_all(FrameOrder const& order, FrameWork const& own)
+FrameWork ClusterLink::wait_for_all(FrameCommand const& order, FrameWork const& own)
 {
     {
         // A window may be hidden, or its loop about to end: nobody waits for that for ever.
@@ -109,8 +109,8 @@ FrameWork ClusterLink::wait_for_all(FrameOrder const& order, FrameWork const& ow
         FrameWork const other = work_from(bytes);
         slowest.seconds = std::max(slowest.seconds, other.seconds);
         slowest.moved |= other.moved;
-        gi::Following const &a = other.following, &b = slowest.following;
-        if (std::tie(a.seconds, a.stored) > std::tie(b.seconds, b.stored)) slowest.following = a;
+        gi::DynamicUpdate const &a = other.dynamic_update, &b = slowest.dynamic_update;
+        if (std::tie(a.seconds, a.stored) > std::tie(b.seconds, b.stored)) slowest.dynamic_update = a;
     }
     return slowest;
 }

@@ -1,5 +1,5 @@
 #pragma once
-#include "viewer/engine/session.h"
+#include "viewer/engine/render_session.h"
 #include "viewer/protocol/recording/pixel_hash.h"
 
 namespace viewer {

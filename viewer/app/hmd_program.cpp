@@ -155,7 +155,7 @@ private:
         double const begun = state_.clock.now_s();
         if (fresh) {
             state_.frame = newest;
-            state_.settings.followed = newest->settings.followed; // which the renderer sets
+            state_.settings.updated_axes = newest->settings.updated_axes; // which the renderer sets
             eyes_.take(*newest);
             note_hidden(*newest);
         }

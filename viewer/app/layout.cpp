@@ -26,7 +26,7 @@ Layout desktop_layout(ViewState const& state, StereoMode mode, std::span<glm::iv
 namespace {
 
 /// views_of names a view "wall" or "wall, left eye".
-bool is_of(ViewOrder const& view, Wall const& wall)
+bool is_of(ViewCommand const& view, Wall const& wall)
 {
     return view.name.starts_with(wall.name) &&
            (view.name.size() == wall.name.size() || view.name[wall.name.size()] == ',');
@@ -43,7 +43,7 @@ Layout display_layout(Display const& display, std::span<std::optional<RoomPose> 
     return layout;
 }
 
-std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<ViewOrder const> views)
+std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<ViewCommand const> views)
 {
     std::vector<std::vector<Pane>> panes(display.windows.size());
     for (std::size_t w = 0; w < display.walls.size(); ++w) {
@@ -68,9 +68,9 @@ std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<V
     return panes;
 }
 
-std::vector<ViewOrder> views_of_rank(Display const& display, std::span<ViewOrder const> views, int rank)
+std::vector<ViewCommand> views_of_rank(Display const& display, std::span<ViewCommand const> views, int rank)
 {
-    std::vector<ViewOrder> own;
+    std::vector<ViewCommand> own;
     std::vector<int> index(views.size(), -1);
     for (std::size_t k = 0; k < views.size(); ++k) {
         auto const wall = std::find_if(display.walls.begin(), display.walls.end(),

@@ -8,7 +8,7 @@
 namespace viewer {
 
 struct Layout {
-    std::vector<ViewOrder> views;
+    std::vector<ViewCommand> views;
     std::vector<std::vector<Pane>> panes; ///< per window
 };
 
@@ -20,9 +20,9 @@ Layout desktop_layout(ViewState const& state, StereoMode mode, std::span<glm::iv
 Layout display_layout(Display const& display, std::span<std::optional<RoomPose> const> heads,
                       gi::dmat4 const& world_from_room);
 /// Panes for views that were made by display_layout, here or by another process: by their names.
-std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<ViewOrder const> views);
+std::vector<std::vector<Pane>> display_panes(Display const& display, std::span<ViewCommand const> views);
 /// Of these views, those of the walls of a rank.
-std::vector<ViewOrder> views_of_rank(Display const& display, std::span<ViewOrder const> views, int rank);
+std::vector<ViewCommand> views_of_rank(Display const& display, std::span<ViewCommand const> views, int rank);
 
 /// What the passes of the walls are made with: one per wall.
 std::vector<WallSettings> wall_settings(Display const& display);

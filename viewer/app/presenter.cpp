@@ -45,7 +45,7 @@ EyeView Presenter::eye(int view, std::vector<gi::Camera> const& now)
 {
     if (!frame_ || view < 0 || std::size_t(view) >= frame_->order.views.size()) return {};
     Shown& s = shown_[std::size_t(view)];
-    ViewOrder const& rendered = frame_->order.views[std::size_t(view)];
+    ViewCommand const& rendered = frame_->order.views[std::size_t(view)];
     if (!s.fresh) return {};
     EyeView e{s.picture.shown(), s.has_other ? s.other.shown() : s.picture.shown()};
     bool const moved = std::size_t(view) < now.size() && !rendered.camera.orthographic &&

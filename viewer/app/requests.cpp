@@ -145,7 +145,7 @@ void Requests::load(RemoteRequest const& r)
             return;
         }
         // Behind the question for the scene's first camera, which comes back by the same way.
-        state_.renderer->ask([this, token](Session&) {
+        state_.renderer->ask([this, token](RenderSession&) {
             state_.inbox.put([this, token] {
                 changed_s_ = state_.clock.now_s();
                 loads_.push_back({changed_s_, token});
@@ -192,7 +192,7 @@ void Requests::step()
 void Requests::pick(RemoteRequest const& r)
 {
     if (!state_.frame) throw gi::InputError("nothing to pick", "no frame was shown yet", "ask again");
-    ViewOrder const& v = state_.frame->order.views[0];
+    ViewCommand const& v = state_.frame->order.views[0];
     double const scale = state_.frame->budget.scale > 0 ? state_.frame->budget.scale : 1;
     double const width = v.width / scale, height = v.height / scale;
     double const x = r.arguments.at("x_px").get<double>(), y = r.arguments.at("y_px").get<double>();
@@ -294,7 +294,7 @@ Json Requests::stats() const
         j["still_frames"] = f.result.still_frames;
         j["at_rest"] = changed_s_ < stepped_s_ && !state_.drawing && state_.renderer->rests() &&
                        state_.renderer->newest() == state_.frame;
-        for (ViewOrder const& v : f.order.views)
+        for (ViewCommand const& v : f.order.views)
             j["views"].push_back({{"name", v.name}, {"width", v.width}, {"height", v.height}});
         j["stages_ms"] = Json::object();
         for (auto const& [stage, seconds] : f.result.stages_s) j["stages_ms"][stage] = 1e3 * seconds;

@@ -1,5 +1,5 @@
 #pragma once
-#include "viewer/engine/session.h"
+#include "viewer/engine/render_session.h"
 
 namespace viewer {
 
@@ -21,7 +21,7 @@ struct SceneFacts {
     float environment_rotation_rad = 0, environment_scale = 1;
 };
 
-inline SceneFacts facts_of(Session const& s)
+inline SceneFacts facts_of(RenderSession const& s)
 {
     SceneFacts f;
     if (!s.has_scene()) return f;

@@ -41,7 +41,7 @@ ViewCore::ViewCore(ViewOptions const& o, gi::Report& r)
     start_at(o.first_camera(session.world()));
     state.navigation.set_eye_height(o.eye_height_m);
     state.navigation.set_mode(o.navigation);
-    state.loaded = [this] { look_anew(); };
+    state.loaded = [this] { reset_view(); };
     if (!o.remote.socket.empty() || o.remote.port) {
         remote_ = std::make_unique<RemoteServer>(
             o.remote, [this](RemoteRequest const& request) { return requests.handle(request); }, r);
@@ -67,9 +67,9 @@ void ViewCore::start_at(gi::Camera const& camera)
     state.screen_distance_m = std::clamp(glm::length(state.facts.center - from), 0.2, 1e4);
 }
 
-void ViewCore::look_anew()
+void ViewCore::reset_view()
 {
-    renderer->ask([this](Session& s) {
+    renderer->ask([this](RenderSession& s) {
         try {
             state.inbox.put([this, facts = facts_of(s), camera = options.first_camera(s.world())] {
                 state.facts = facts;
@@ -101,7 +101,7 @@ void ViewCore::make_files()
 }
 
 void ViewCore::start(FrameLink* link, std::function<void()> published,
-                     std::function<std::vector<ViewOrder>(FrameOrder const&)> own_views)
+                     std::function<std::vector<ViewCommand>(FrameCommand const&)> own_views)
 {
     make_files();
     state.is_one_of_ranks = link != nullptr;
@@ -110,7 +110,7 @@ void ViewCore::start(FrameLink* link, std::function<void()> published,
         ++summary.rendered;
         summary.schedule = f.schedule;
         if (!recorder_) return;
-        FrameOrder order = f.order;
+        FrameCommand order = f.order;
         if (!f.ordered.empty()) order.views = f.ordered;
         // What a rank of a cluster has rendered is not what a replay of all walls renders.
         recorder_->append({order, f.ordered.empty() ? std::optional(frame_hash(f.result)) : std::nullopt, {}});
@@ -199,11 +199,11 @@ void ViewCore::log(FrameTimes const& times)
 
 void ViewCore::watch_files()
 {
-    if (recorder_) tell_failure(options.record, recorder_->failure());
-    if (log_) tell_failure(options.frame_log, log_->failure());
+    if (recorder_) report_failure(options.record, recorder_->failure());
+    if (log_) report_failure(options.frame_log, log_->failure());
 }
 
-void ViewCore::tell_failure(std::filesystem::path const& file, std::string const& why)
+void ViewCore::report_failure(std::filesystem::path const& file, std::string const& why)
 {
     if (why.empty() || !unwritten_.insert(file).second) return;
     summary.files_whole = false;

@@ -22,7 +22,7 @@ public:
     /// InputError.
     /// @param link  null where this process is alone   @param published  called on the rendering thread
     void start(FrameLink* link, std::function<void()> published,
-               std::function<std::vector<ViewOrder>(FrameOrder const&)> own_views = {});
+               std::function<std::vector<ViewCommand>(FrameCommand const&)> own_views = {});
     /// Answers from the rendering thread, taps, sockets. False where it is time to end.
     bool poll(gi::StopRequest const& stop);
     /// What a key or button means, but for selecting and dragging.
@@ -38,7 +38,7 @@ public:
     std::optional<Display> display; ///< as far as the windows can show it
     gi::Report& report;
     ViewState state;
-    Session session;
+    RenderSession session;
     Controls controls;
     Requests requests;
     std::unique_ptr<LiveRenderer> renderer;
@@ -49,8 +49,8 @@ private:
     void make_files();
     /// Tells once of each file that cannot be written any more.
     void watch_files();
-    void tell_failure(std::filesystem::path const& file, std::string const& why);
-    void look_anew(); ///< at a scene that was loaded, from its first camera
+    void report_failure(std::filesystem::path const& file, std::string const& why);
+    void reset_view(); ///< at a scene that was loaded, from its first camera
 
     std::unique_ptr<RemoteServer> remote_;
     std::unique_ptr<Recorder> recorder_;

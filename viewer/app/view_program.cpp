@@ -43,9 +43,9 @@ public:
             open_desktop();
         }
         if (!shown_.windows.empty()) shown_.windows.front()->window.gl().release(); // to the thread that draws
-        std::function<std::vector<ViewOrder>(FrameOrder const&)> own;
+        std::function<std::vector<ViewCommand>(FrameCommand const&)> own;
         if (link != nullptr && options.display)
-            own = [this](FrameOrder const& order) {
+            own = [this](FrameCommand const& order) {
                 return views_of_rank(*core_.display, order.views, core_.options.rank);
             };
         core_.start(
@@ -227,7 +227,7 @@ private:
         at.views = std::move(layout.views);
         if (link_ == nullptr) {
             cameras_.clear();
-            for (ViewOrder const& v : at.views) cameras_.push_back(v.camera);
+            for (ViewCommand const& v : at.views) cameras_.push_back(v.camera);
             set_panes(layout.panes);
         }
         core_.renderer->look(std::move(at));
@@ -280,14 +280,14 @@ private:
         p->settings = present_settings();
         p->wants_bytes = std::exchange(state_.wants_screenshot, false);
         std::vector<gi::Camera> rendered;
-        for (ViewOrder const& v : newest->order.views) rendered.push_back(v.camera);
+        for (ViewCommand const& v : newest->order.views) rendered.push_back(v.camera);
         bool const reprojects =
             state_.settings.reproject && link_ == nullptr && cameras_.size() == rendered.size();
         shown_cameras_ = p->cameras = reprojects ? cameras_ : rendered;
         p->reprojected = !(shown_cameras_ == rendered);
         if (fresh) {
             state_.frame = newest;
-            state_.settings.followed = newest->settings.followed; // which the renderer sets
+            state_.settings.updated_axes = newest->settings.updated_axes; // which the renderer sets
             if (link_ != nullptr && core_.display) set_panes(display_panes(*core_.display, newest->order.views));
             meter_.see(newest);
         }

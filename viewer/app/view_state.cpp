@@ -38,7 +38,7 @@ void ViewState::change(Change const& c, std::function<void(std::string const&)> 
 void ViewState::move_selection(gi::dvec3 by)
 {
     selection->picked.position += by;
-    renderer->ask([this, object = selection->object, by](Session& s) {
+    renderer->ask([this, object = selection->object, by](RenderSession& s) {
         try {
             gi::dvec3 const at = s.position_of(object) + by;
             Change const moved{"object." + object + ".position", {at.x, at.y, at.z}};
@@ -51,14 +51,14 @@ void ViewState::move_selection(gi::dvec3 by)
 
 void ViewState::refresh_facts()
 {
-    renderer->ask([this](Session& s) { inbox.put([this, now = facts_of(s)] { facts = now; }); });
+    renderer->ask([this](RenderSession& s) { inbox.put([this, now = facts_of(s)] { facts = now; }); });
     refresh_ground();
 }
 
 void ViewState::refresh_ground()
 {
     if (navigation.mode() != NavigationMode::walk) return;
-    renderer->ask([this, known = ground_of_](Session& s) {
+    renderer->ask([this, known = ground_of_](RenderSession& s) {
         if (!s.has_scene() || s.world().scene == known.lock()) return;
         auto const ground = std::make_shared<Ground const>(s.world());
         inbox.put([this, ground, scene = std::weak_ptr(s.world().scene)] {
@@ -82,7 +82,7 @@ void ViewState::pick(glm::dvec2 at, double aspect, std::function<void(std::optio
         gi::ViewTangents const edge = *frame->order.views[0].camera.off_axis;
         aspect = (edge.right - edge.left) / (edge.top - edge.bottom);
     }
-    renderer->ask([this, at, aspect, eye = now(), done = std::move(done)](Session& s) {
+    renderer->ask([this, at, aspect, eye = now(), done = std::move(done)](RenderSession& s) {
         std::optional<Selection> found;
         if (auto const hit = viewer::pick(s.world(), eye, aspect, at)) {
             gi::Scene const& scene = *s.world().scene;

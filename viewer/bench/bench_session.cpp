@@ -4,21 +4,21 @@
 
 namespace viewer {
 
-std::unique_ptr<Session> bench_session(std::string const& scene, std::vector<Change> const& settings,
-                                       gi::Report& report)
+std::unique_ptr<RenderSession> bench_session(std::string const& scene, std::vector<Change> const& settings,
+                                             gi::Report& report)
 {
     auto const load = [](std::string const& name, gi::Report& r) {
         RenderOptions options;
         options.scene = name;
         return load_lit_scene(options, r);
     };
-    auto session = std::make_unique<Session>(load, 0, report);
+    auto session = std::make_unique<RenderSession>(load, 0, report);
     for (Change const& change : settings) session->apply(change);
     session->apply({"scene", scene});
     return session;
 }
 
-gi::Layer reference_of(Session const& session, ViewOrder const& view, int paths, gi::Report& report)
+gi::Layer reference_of(RenderSession const& session, ViewCommand const& view, int paths, gi::Report& report)
 {
     gi::RenderSettings s;
     s.width = view.width;

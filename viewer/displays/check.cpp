@@ -235,12 +235,12 @@ Fault user_fault(Display const& d, std::size_t i)
                             fmt::format("eyes {} m above the floor", *user.eye_height_m),
                             "those of people who stand are 0.3 to 3 m above it",
                             "metres? 1.65 is usual"};
-    if (!user.avatar.empty() && i > OrderLimits::users)
+    if (!user.avatar.empty() && i > CommandLimits::users)
         return DisplayFault{"users",
                             i,
                             "avatar",
                             "too many users with avatars",
-                            fmt::format("orders hold {} besides the first", OrderLimits::users),
+                            fmt::format("orders hold {} besides the first", CommandLimits::users),
                             "give avatars to the first of them"};
     return {};
 }

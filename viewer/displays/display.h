@@ -8,7 +8,7 @@
 #include "viewer/displays/off_axis.h"
 #include "viewer/displays/stereo_mode.h"
 #include "viewer/displays/warp_mesh.h"
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 #include <cstdint>
 #include <optional>

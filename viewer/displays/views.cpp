@@ -61,15 +61,15 @@ std::vector<DisplayView> views_of(Display const& d, std::span<std::optional<Room
     return views;
 }
 
-std::vector<ViewOrder> view_orders(std::span<DisplayView const> views, gi::dmat4 const& world_from_room,
-                                   std::vector<int>* sources)
+std::vector<ViewCommand> view_orders(std::span<DisplayView const> views, gi::dmat4 const& world_from_room,
+                                     std::vector<int>* sources)
 {
-    std::vector<ViewOrder> orders;
+    std::vector<ViewCommand> orders;
     std::vector<int> order_of(views.size(), -1);
     for (std::size_t i = 0; i < views.size(); ++i) {
         DisplayView const& view = views[i];
         if (!view.camera) continue;
-        ViewOrder order{view.name, *view.camera, view.width_px, view.height_px, -1};
+        ViewCommand order{view.name, *view.camera, view.width_px, view.height_px, -1};
         gi::dmat4& m = order.camera.world_from_camera;
         m = world_from_room * m;
         // Directions do not depend on the scale of the user.

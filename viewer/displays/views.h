@@ -2,7 +2,7 @@
 // Eyes and the cameras that look from them through the walls.
 
 #include "viewer/displays/display.h"
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 #include <optional>
 #include <span>
@@ -41,7 +41,7 @@ std::vector<DisplayView> views_of(Display const& display, std::span<std::optiona
 
 /// Those that see their wall, in the world. world_from_room is rigid up to a scale. The views' indices are given
 /// by `sources` where it is not null.
-std::vector<ViewOrder> view_orders(std::span<DisplayView const> views, gi::dmat4 const& world_from_room,
-                                   std::vector<int>* sources = nullptr);
+std::vector<ViewCommand> view_orders(std::span<DisplayView const> views, gi::dmat4 const& world_from_room,
+                                     std::vector<int>* sources = nullptr);
 
 } // namespace viewer

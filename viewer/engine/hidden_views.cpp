@@ -9,7 +9,7 @@
 namespace viewer {
 namespace {
 
-gi::ViewTangents tangents_of(ViewOrder const& view)
+gi::ViewTangents tangents_of(ViewCommand const& view)
 {
     double const y = std::tan(0.5 * view.camera.yfov_rad), x = y * view.width / view.height;
     return view.camera.off_axis.value_or(gi::ViewTangents{-x, x, -y, y});
@@ -24,14 +24,14 @@ void HiddenViews::apply(Change const& change)
         views_.erase(name);
         return;
     }
-    if (views_.size() >= OrderLimits::views && !views_.contains(name))
+    if (views_.size() >= CommandLimits::views && !views_.contains(name))
         throw gi::InputError("'" + change.key + "'",
                              fmt::format("{} views have masks, which is the most", views_.size()),
                              "set one of these, or empty it first");
     views_[name] = {std::move(mask), {}, 0, 0, nullptr};
 }
 
-HiddenPixels HiddenViews::pixels(ViewOrder const& view)
+HiddenPixels HiddenViews::pixels(ViewCommand const& view)
 {
     auto const found = views_.find(view.name);
     if (found == views_.end() || view.camera.orthographic) return nullptr;

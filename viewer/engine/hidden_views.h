@@ -16,7 +16,7 @@ public:
     /// Throws InputError as hidden_mask_of, and on masks of more views than an order may hold.
     void apply(Change const& change);
     /// Kept until the mask, the size of the view or its tangents change. Null of orthographic cameras.
-    HiddenPixels pixels(ViewOrder const& view);
+    HiddenPixels pixels(ViewCommand const& view);
 
 private:
     struct View {

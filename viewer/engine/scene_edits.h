@@ -8,7 +8,7 @@
 // then the world is built anew.
 
 #include "gi/scene/motion/moving_world.h"
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 namespace viewer {
 

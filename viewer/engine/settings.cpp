@@ -122,10 +122,12 @@ std::vector<Entry> const& entries()
         count("resolution", "texels along a side of a hit buffer, 0 = chosen by the plan", &Settings::resolution,
               0, 4096),
         count("axes", "of a pass, streamed and temporal, 0 = chosen by the plan", &Settings::axes, 0, 4096),
-        count("followed",
-              "of the schedule auto, which sets it: stored axes of each bounce that follow what moves, 0 = all",
-              &Settings::followed, 0, 64),
-        count("lamps", "points on lamps with a shadow map, 0 = chosen by the plan", &Settings::lamps, 0, 1024),
+        count("updated_axes",
+              "of the schedule auto, which sets it: stored axes per bounce that are brought to what has moved, 0 "
+              "= all",
+              &Settings::updated_axes, 0, 64),
+        count("light_samples", "light samples that get a shadow map, 0 = chosen by the plan",
+              &Settings::light_samples, 0, 1024),
         word("device", "that slhb runs on; by cuda paths end at mirrors, glass and narrow lobes, which is counted",
              &Settings::device, {"cpu", "cuda"}),
         count("light_paths",
@@ -144,8 +146,8 @@ std::vector<Entry> const& entries()
         count("reuse", "frames that light is reused over, 1 = none", &Settings::reuse, 1, 256),
         word("denoise", "filter", &Settings::denoise, gi::filter_names()),
         flag("share_eyes", "an eye may take light that the other one found", &Settings::share_eyes),
-        flag("share_endings", "while anything moves, paths may end in cells of light that others found",
-             &Settings::share_endings),
+        flag("radiance_cache", "while anything moves, paths may end in the radiance cache",
+             &Settings::radiance_cache),
         real("exposure", "stops", &Settings::exposure_ev, -32, 32),
         word("tone", "curve", &Settings::tone, {"srgb", "filmic"}),
         real("rate", "frames per second that it aims at, Hz", &Settings::rate_hz, 0.1, 1000),
@@ -169,12 +171,22 @@ std::vector<Entry> const& entries()
 
 Entry const* find(std::string const& key)
 {
+    std::string const now = current_key(key);
     for (Entry const& e : entries())
-        if (e.about.key == key) return &e;
+        if (e.about.key == now) return &e;
     return nullptr;
 }
 
 } // namespace
+
+std::string current_key(std::string const& key)
+{
+    constexpr std::pair<char const*, char const*> kRenamed[]{
+        {"lamps", "light_samples"}, {"followed", "updated_axes"}, {"share_endings", "radiance_cache"}};
+    for (auto const& [before, now] : kRenamed)
+        if (key == before) return now;
+    return key;
+}
 
 char const* name_of(SettingType type)
 {
@@ -251,7 +263,7 @@ gi::RenderSettings render_settings(Settings const& s, int threads)
     r.slhb.directions = s.directions;
     r.slhb.resolution = s.resolution;
     r.slhb.axes = s.axes;
-    r.slhb.lamps = s.lamps;
+    r.slhb.light_samples = s.light_samples;
     r.vpl.light_paths = s.light_paths;
     r.vpl.points = parse_points("'points'", s.points, r.vpl.point_map);
     r.vpl.ao_radius_m = float(s.ao_radius_m);

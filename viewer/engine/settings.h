@@ -5,7 +5,7 @@
 #include "gi/filter/denoise.h"
 #include "gi/filter/tone_map.h"
 #include "gi/render/render_settings.h"
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 #include <span>
 
@@ -14,9 +14,10 @@ namespace viewer {
 struct Settings {
     std::string method = "slhb", compare;      ///< compare: a second method to look at beside it; empty = none
     std::string schedule = "auto", directions; ///< as --schedule and --directions
-    int resolution = 0, axes = 0, lamps = 0;   ///< of slhb, 0 = what the plan chooses
-    int followed = 0; ///< with the schedule auto: stored axes of each bounce that follow what moves in a frame, 0
-                      ///< = all. The live viewer sets it in every frame (follow_governor.h)
+    int resolution = 0, axes = 0, light_samples = 0; ///< of slhb, 0 = what the plan chooses
+    int updated_axes =
+        0; ///< with the schedule auto: stored axes of each bounce that are brought to what has moved,
+           ///< per frame; 0 = all. The live viewer sets it in every frame (update_governor.h)
     std::string device = "cpu";  ///< of slhb: cuda = by kernels
     int light_paths = 256;       ///< of the methods vpl_*, as are the next
     std::string points = "1024"; ///< of an imperfect shadow map, or "30%" of its texels
@@ -25,8 +26,8 @@ struct Settings {
     int seed = 0;
     int reuse = 16; ///< frames of temporal reuse; 1 = none
     std::string denoise = "atrous";
-    bool share_eyes = true;    ///< an eye may take light that the other one found
-    bool share_endings = true; ///< while anything moves, paths may end in the radiance cache
+    bool share_eyes = true;     ///< an eye may take light that the other one found
+    bool radiance_cache = true; ///< while anything moves, paths may end in the radiance cache
     double exposure_ev = 0;
     std::string tone = "srgb";
     // Of the interactive loop
@@ -57,6 +58,8 @@ struct SettingKey {
 };
 std::span<SettingKey const> setting_keys();
 bool is_setting(std::string const& key);
+/// The key as it is now: recordings and scripts of before may have an older one.
+std::string current_key(std::string const& key);
 
 /// Throws InputError where the value is not of the key's type or range, or there is no such key.
 void set(Settings& settings, Change const& change);

@@ -41,7 +41,7 @@ public:
 
     ~Frames()
     {
-        if (source_ && !was_told_) tell_losses(source_->counts(), {}, report_);
+        if (source_ && !was_told_) report_losses(source_->counts(), {}, report_);
     }
     Frames(Frames const&) = delete;
     Frames& operator=(Frames const&) = delete;
@@ -56,7 +56,7 @@ public:
         while (!(frame = source_->next(std::chrono::milliseconds(200))))
             if (source_->state().kind != ar::SourceState::Kind::running) {
                 was_told_ = true;
-                tell_losses(source_->counts(), source_->state(), report_);
+                report_losses(source_->counts(), source_->state(), report_);
                 return std::nullopt;
             }
         if (!first_) first_ = frame->sequence;
@@ -140,7 +140,7 @@ public:
         if (stimulus_.show == ArShow::truth) p.rgb = read_truth(stimulus_, f.frame);
         if (stimulus_.show != ArShow::composite) return p;
         std::optional<ar::Pose> known;
-        if (!poses_.empty()) known = told_pose(poses_, f.time_s);
+        if (!poses_.empty()) known = recorded_pose(poses_, f.time_s);
         if (!known && !poses_.empty()) {
             p.rgb = ar::rgb_of(f.frame).clone(); // as in `ar run`
         } else {

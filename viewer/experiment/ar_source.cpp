@@ -76,7 +76,7 @@ std::shared_ptr<LiveFrame const> frame_of(ArPicture const& p, Settings const& se
         unsigned char const* const row = p.rgb.ptr(y);
         for (int k = 0; k < 3 * p.rgb.cols; ++k) *out++ = radiance[row[k]];
     }
-    ViewOrder order;
+    ViewCommand order;
     order.width = p.rgb.cols;
     order.height = p.rgb.rows;
     if (p.world_from_camera) {

@@ -4,7 +4,7 @@
 
 namespace viewer {
 
-using study::Wish;
+using study::ExperimenterAction;
 
 Experimenter::Experimenter(RemoteOptions const& remote, gi::Report& report)
 {
@@ -26,14 +26,14 @@ void Experimenter::note(double time_s, std::string kind, std::string text)
 
 void Experimenter::abort(std::string why)
 {
-    if (wish_ == Wish::abort) return;
-    wish_ = Wish::abort;
+    if (wish_ == ExperimenterAction::abort) return;
+    wish_ = ExperimenterAction::abort;
     why_aborted_ = std::move(why);
 }
 
 void Experimenter::check_aborted() const
 {
-    if (wish_ != Wish::abort) return;
+    if (wish_ != ExperimenterAction::abort) return;
     if (why_aborted_.empty()) throw study::Aborted();
     throw study::Aborted(why_aborted_);
 }
@@ -42,7 +42,7 @@ std::optional<nlohmann::json> Experimenter::handle(RemoteRequest const& r)
 {
     if (r.what == "ping") return nlohmann::json::object();
     if (r.what == "quit") {
-        wish_ = Wish::abort;
+        wish_ = ExperimenterAction::abort;
         return nlohmann::json::object();
     }
     if (r.what != "session")
@@ -62,7 +62,7 @@ std::optional<nlohmann::json> Experimenter::handle(RemoteRequest const& r)
         if (paused_) note(now_s_, "resume", text);
         paused_ = false;
     } else if (action == "skip" || action == "abort") {
-        wish_ = action == "skip" ? Wish::skip : Wish::abort;
+        wish_ = action == "skip" ? ExperimenterAction::skip : ExperimenterAction::abort;
         paused_ = false;
         note(now_s_, action, text);
     }

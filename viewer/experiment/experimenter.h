@@ -27,9 +27,12 @@ public:
 
     bool is_paused() const { return paused_; }
     /// Skip or abort were asked for and not yet taken.
-    bool wants_end() const { return wish_ == study::Wish::skip || wish_ == study::Wish::abort; }
-    study::Wish wish() const { return wish_; }
-    study::Wish take_wish() { return std::exchange(wish_, study::Wish::go_on); }
+    bool wants_end() const
+    {
+        return wish_ == study::ExperimenterAction::skip || wish_ == study::ExperimenterAction::abort;
+    }
+    study::ExperimenterAction action() const { return wish_; }
+    study::ExperimenterAction take_wish() { return std::exchange(wish_, study::ExperimenterAction::go_on); }
     std::vector<study::NoteTaken> take_notes() { return std::exchange(notes_, {}); }
     /// By a key of the participant's window, or what the machine saw.
     void note(double time_s, std::string kind, std::string text);
@@ -41,7 +44,7 @@ public:
 private:
     std::optional<nlohmann::json> handle(RemoteRequest const& request);
 
-    study::Wish wish_ = study::Wish::go_on;
+    study::ExperimenterAction wish_ = study::ExperimenterAction::go_on;
     std::string why_aborted_; ///< empty = the experimenter wanted it
     bool paused_ = false;
     std::vector<study::NoteTaken> notes_;

@@ -3,7 +3,7 @@
 // to two files between trials.
 
 #include "viewer/devices/gl/swap_timer.h"
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 #include <filesystem>
 #include <string>

@@ -118,10 +118,10 @@ gi::dmat4 HmdScreen::world_from_room() const
     return upright.world_from_room() * glm::translate(gi::dmat4(1), -start_.value_or(gi::dvec3{0}));
 }
 
-std::vector<ViewOrder> HmdScreen::own_views(gi::dmat4 const& world_from_camera, double)
+std::vector<ViewCommand> HmdScreen::own_views(gi::dmat4 const& world_from_camera, double)
 {
     world_from_camera_ = world_from_camera;
-    std::vector<ViewOrder> views;
+    std::vector<ViewCommand> views;
     if (frame_.views[0].width <= 0) return views; // nobody has looked yet
     for (std::size_t eye = 0; eye < 2; ++eye) {
         gi::Camera camera = frame_.views[eye].camera;
@@ -179,7 +179,7 @@ ScreenSwap HmdScreen::present(ScreenContent const& content)
     if (shown && shown->result.views.size() == 2) {
         if (taken_ != shown) eyes_.take(*shown);
         taken_ = shown;
-        std::vector<ViewOrder> const now = own_views(world_from_camera_, 0);
+        std::vector<ViewCommand> const now = own_views(world_from_camera_, 0);
         eyes_.draw(*shown, {now[0].camera, now[1].camera}, sizes, shown->settings.reproject,
                    tone_settings(shown->settings));
     } else {

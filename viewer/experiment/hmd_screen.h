@@ -24,7 +24,7 @@ public:
     std::vector<InputEvent> take_input() override;
     double take_longest_look_ms() override { return std::exchange(longest_look_ms_, 0); }
     bool has_own_views() const override { return true; }
-    std::vector<ViewOrder> own_views(gi::dmat4 const& world_from_camera, double steady_s) override;
+    std::vector<ViewCommand> own_views(gi::dmat4 const& world_from_camera, double steady_s) override;
 
 private:
     std::optional<HmdFrame> next_frame(HmdSession*& session);

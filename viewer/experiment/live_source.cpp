@@ -62,7 +62,7 @@ void LiveSource::prepare(StimulusSettings const& stimulus, StimulusView const& v
     stimulus_ = stimulus;
     view_ = view;
     renderer_->go_to(0);
-    renderer_->ask([this, name = stimulus.camera, plays = stimulus.settings.play](Session& session) {
+    renderer_->ask([this, name = stimulus.camera, plays = stimulus.settings.play](RenderSession& session) {
         std::lock_guard const lock(mutex_);
         if (!error_.empty()) return;
         try {

@@ -27,7 +27,7 @@ private:
 
     SceneAccess const& scenes_;
     SessionClock const& clock_;
-    Session session_;
+    RenderSession session_;
     Settings posted_;   ///< that the session has, or will have soon
     std::string scene_; ///< likewise
     bool edited_ = false;

@@ -59,7 +59,7 @@ bool prepare_stimulus(PreparedStimulus const& wanted, std::filesystem::path cons
     if (prepared_flaw(folder / key).empty()) return false;
     StimulusSettings const& s = wanted.stimulus;
     if (s.ar) return prepare_ar_stimulus(s, wanted.view, folder, key, stop, report);
-    Session session(scenes.load, threads, report);
+    RenderSession session(scenes.load, threads, report);
     for (SettingKey const& k : setting_keys())
         if (auto const value = get(s.settings, k.key); value != get(session.settings(), k.key))
             session.apply({k.key, value});
@@ -69,7 +69,7 @@ bool prepare_stimulus(PreparedStimulus const& wanted, std::filesystem::path cons
     bool const moves = s.path != StimulusPath::none || (s.settings.play && session.moves());
     int const frames = moves ? std::max(1, int(std::lround(wanted.view.duration_s * s.settings.rate_hz))) : 1;
     write_prepared(folder / key, [&](std::filesystem::path const& into) -> nlohmann::json {
-        FrameOrder order;
+        FrameCommand order;
         order.paths = s.settings.paths > 0 ? s.settings.paths : kPathsWithoutSetting;
         for (int f = -wanted.view.warmup_frames; f < frames; ++f) {
             if (stop.requested())
@@ -107,7 +107,7 @@ void PreparedSource::prepare(StimulusSettings const& stimulus, StimulusView cons
         frame->settings = stimulus.settings;
         for (int v = 0; v < views; ++v) {
             gi::Picture picture = gi::read_exr(folder / file_name(f, v));
-            ViewOrder order;
+            ViewCommand order;
             order.width = picture.width;
             order.height = picture.height;
             frame->order.views.push_back(order);

@@ -56,7 +56,7 @@ public:
     /// These views, as the heads are expected to be at a time.
     /// @param world_from_camera  the camera that the first user's head rests at; only its turn about the vertical
     /// counts @param steady_s  std::chrono::steady_clock
-    virtual std::vector<ViewOrder> own_views(gi::dmat4 const& world_from_camera, double steady_s) = 0;
+    virtual std::vector<ViewCommand> own_views(gi::dmat4 const& world_from_camera, double steady_s) = 0;
 };
 
 } // namespace viewer

@@ -25,8 +25,8 @@ StimulusPlace place_of(gi::World const& world, gi::Camera const& camera)
     return place;
 }
 
-std::vector<ViewOrder> stimulus_views(StimulusPlace const& place, StimulusSettings const& stimulus,
-                                      StimulusView const& view, double seconds)
+std::vector<ViewCommand> stimulus_views(StimulusPlace const& place, StimulusSettings const& stimulus,
+                                        StimulusView const& view, double seconds)
 {
     gi::Camera camera = place.camera;
     if (stimulus.path == StimulusPath::orbit) {

@@ -12,7 +12,7 @@ struct StimulusPlace {
 
 StimulusPlace place_of(gi::World const& world, gi::Camera const& camera);
 /// One view or those of two eyes, so long after the beginning; none where the place has no pixels.
-std::vector<ViewOrder> stimulus_views(StimulusPlace const& place, StimulusSettings const& stimulus,
-                                      StimulusView const& view, double seconds);
+std::vector<ViewCommand> stimulus_views(StimulusPlace const& place, StimulusSettings const& stimulus,
+                                        StimulusView const& view, double seconds);
 
 } // namespace viewer

@@ -15,7 +15,7 @@ struct StimulusView {
     double duration_s = 6; ///< of one round of a path
     int warmup_frames = 0;
     /// On walls: the views of all eyes from a camera, in place of size and stereo.
-    std::function<std::vector<ViewOrder>(gi::Camera const&)> on_walls;
+    std::function<std::vector<ViewCommand>(gi::Camera const&)> on_walls;
 };
 
 /// How scenes are read, and which camera of one is meant by a name (empty = its first). Both throw InputError.

@@ -63,7 +63,7 @@ TrialPresenter::Trial::Trial(TrialPresenter& presenter, study::TrialRequest cons
       level_(request.level)
 {
     for (char const letter : order_) {
-        if (std::any_of(known_.begin(), known_.end(), [&](Known const& k) { return k.letter == letter; }))
+        if (std::any_of(known_.begin(), known_.end(), [&](LoadedStimulus const& k) { return k.letter == letter; }))
             continue;
         std::size_t const at = letter == 'r' ? request.stimuli.size() : std::size_t(letter - 'a');
         study::Stimulus const& stimulus = letter == 'r' ? *request.reference : request.stimuli.at(at);
@@ -80,7 +80,7 @@ ScreenContent TrialPresenter::Trial::content(std::string const& letters)
     glm::ivec2 const px = p_.screen_->size_px();
     c.panes = panes_for(letters.size(), px, kTextLines * p_.options_.screen.font_px);
     for (std::size_t i = 0; i < letters.size(); ++i)
-        for (Known const& k : known_)
+        for (LoadedStimulus const& k : known_)
             if (k.letter == letters[i]) {
                 c.panes[i].frame = k.source->newest();
                 c.panes[i].stereo = k.stereo;
@@ -104,7 +104,7 @@ bool TrialPresenter::Trial::wait(double until_s, bool cross)
     return true;
 }
 
-bool TrialPresenter::Trial::get_ready(Known const& k)
+bool TrialPresenter::Trial::get_ready(LoadedStimulus const& k)
 {
     std::size_t const together = block_.is_sequential ? 1 : order_.size();
     StimulusView view = view_of(block_, k.settings, together, p_.screen_->size_px(), p_.options_.screen.font_px);
@@ -119,7 +119,7 @@ bool TrialPresenter::Trial::get_ready(Known const& k)
 /// One stimulus after the other, so that each has the machine for itself.
 bool TrialPresenter::Trial::get_all_ready()
 {
-    for (Known const& k : known_)
+    for (LoadedStimulus const& k : known_)
         if (!get_ready(k)) return false;
     return wait(p_.trial_end_s_ + 1e-3 * block_.timing.iti_ms, block_.is_sequential);
 }
@@ -128,7 +128,7 @@ bool TrialPresenter::Trial::get_all_ready()
 bool TrialPresenter::Trial::wait_between(std::size_t next)
 {
     double const until_s = p_.now() + 1e-3 * block_.timing.isi_ms;
-    for (Known const& k : known_)
+    for (LoadedStimulus const& k : known_)
         if (k.letter == order_[next] && order_.find(k.letter) < next && k.source->moves() && !get_ready(k))
             return false;
     return wait(until_s, true);
@@ -169,7 +169,7 @@ void TrialPresenter::Trial::adjust()
     double const low = to_scale(c.scale, c.low), high = to_scale(c.scale, c.high);
     double const moved = to_scale(c.scale, *level_) + steps * (high - low) / kAdjustSteps;
     level_ = study::from_scale(c.scale, std::clamp(moved, low, high));
-    for (Known& k : known_) {
+    for (LoadedStimulus& k : known_) {
         if (!k.stimulus.is_varied) continue;
         k.stimulus.level = level_;
         k.settings = stimulus_settings(*request_.script, block_, k.stimulus);
@@ -199,10 +199,10 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
 {
     bool const stays = !block_.timing.stimulus_ms && takes_answer;
     double const length_s = 1e-3 * block_.timing.stimulus_ms.value_or(0);
-    std::vector<Known*> seen;
-    for (Known& k : known_)
+    std::vector<LoadedStimulus*> seen;
+    for (LoadedStimulus& k : known_)
         if (letters.find(k.letter) != std::string::npos) seen.push_back(&k);
-    for (Known* const k : seen) k->source->at(0);
+    for (LoadedStimulus* const k : seen) k->source->at(0);
     heed(p_.screen_->take_input());                       // what was pressed before is no answer
     std::vector<std::shared_ptr<LiveFrame const>> frames; // that were seen
     std::vector<double> render;
@@ -234,7 +234,7 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
             take_answers();
             if (stays && has_ended()) break;
         }
-        for (Known* const k : seen) k->source->at(p_.now() - onset_s_);
+        for (LoadedStimulus* const k : seen) k->source->at(p_.now() - onset_s_);
         c = content(letters);
         int clicked = -1;
         if (stays) c.text = [&](glm::vec2 px) { clicked = response_.draw(px); };
@@ -253,7 +253,7 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
     double const end_s = p_.seconds(swap.time);
     dropped += dropped_between(p_.seconds(swap.seen) - last_s, p_.period_s_);
     add_rows("", swap, 0, c);
-    for (Known* const k : seen) k->source->rest();
+    for (LoadedStimulus* const k : seen) k->source->rest();
     longest_look_ms_ = std::max(longest_look_ms_, p_.screen_->take_longest_look_ms());
 
     double const p99_ms = render.empty() ? 0 : gi::quantile(render, 0.99);
@@ -270,7 +270,7 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
         s.render_ms_mean =
             std::accumulate(render.begin(), render.end(), 0.0) / std::max<double>(1, double(render.size()));
         s.render_ms_p99 = p99_ms;
-        for (Known const& k : known_)
+        for (LoadedStimulus const& k : known_)
             if (k.letter == letter) s.settings_sha256 = k.settings.sha256;
         done_.shown.push_back(std::move(s));
     }

@@ -18,7 +18,7 @@ public:
     study::TrialDone run();
 
 private:
-    struct Known {
+    struct LoadedStimulus {
         char letter;
         study::Stimulus stimulus;
         StimulusSettings settings;
@@ -26,7 +26,7 @@ private:
         StereoMode stereo;
     };
 
-    bool get_ready(Known const& k);
+    bool get_ready(LoadedStimulus const& k);
     bool get_all_ready();
     bool wait_between(std::size_t next);
     bool heed(std::vector<InputEvent> const& events);
@@ -47,7 +47,7 @@ private:
     std::string order_; ///< letters in the order of presentation; r = the reference
     Response response_;
     study::TrialDone done_;
-    std::vector<Known> known_; ///< each letter once
+    std::vector<LoadedStimulus> known_; ///< each letter once
     bool is_answered_ = false, is_lost_ = false;
     double onset_s_ = 0, onset_uncertainty_ms_ = 0; ///< of the last stimulus
     double longest_look_ms_ = 0;

@@ -74,7 +74,7 @@ std::vector<std::pair<std::string, std::string>> TrialPresenter::about() const
     return all;
 }
 
-std::function<std::vector<ViewOrder>(gi::Camera const&)> TrialPresenter::on_walls()
+std::function<std::vector<ViewCommand>(gi::Camera const&)> TrialPresenter::on_walls()
 {
     if (!screen_->has_own_views()) return {};
     // Seen about a refresh later.
@@ -172,7 +172,7 @@ bool TrialPresenter::is_confirm(InputEvent const& e) const
     return e.meant_for == InputFor::scene && keys_.given(e, {"confirm"}).has_value();
 }
 
-void TrialPresenter::keep_pose(double time_s, std::vector<ViewOrder> const& views)
+void TrialPresenter::keep_pose(double time_s, std::vector<ViewCommand> const& views)
 {
     study::Record const& record = script_.record;
     bool const is_due =
@@ -280,7 +280,7 @@ StimulusSource& TrialPresenter::source(std::size_t number, study::Stimuli kind, 
     return *live_[number];
 }
 
-study::Wish TrialPresenter::wish()
+study::ExperimenterAction TrialPresenter::action()
 {
     try {
         table_.flush();

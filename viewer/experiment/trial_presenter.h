@@ -47,7 +47,7 @@ public:
     study::StepDone walk(study::TrialRequest const& where, std::string const& prompt, double seconds) override;
     study::QuestionnaireDone ask(study::Questionnaire const& questionnaire, int step) override;
     study::TrialDone show(study::TrialRequest const& trial) override;
-    study::Wish wish() override;
+    study::ExperimenterAction action() override;
     std::vector<study::NoteTaken> notes() override;
 
 private:
@@ -60,7 +60,7 @@ private:
     void see_in(StimulusViewer viewer);
     void between_frames();
     /// Views of walls for a source; empty in a window.
-    std::function<std::vector<ViewOrder>(gi::Camera const&)> on_walls();
+    std::function<std::vector<ViewCommand>(gi::Camera const&)> on_walls();
     bool should_end() const { return experimenter_.wants_end(); }
     StimulusSource& source(std::size_t number, study::Stimuli kind, StimulusSettings const& stimulus);
     /// Until `done` says so, 30 times a second, or the experimenter ends it (false).
@@ -69,7 +69,7 @@ private:
     bool heed_window(InputEvent const& event);
     void end_early();
     /// Of the first view, as often as record.head_pose_hz says.
-    void keep_pose(double time_s, std::vector<ViewOrder> const& views);
+    void keep_pose(double time_s, std::vector<ViewCommand> const& views);
     bool is_confirm(InputEvent const& event) const;
     std::string confirm_hint(std::string const& what) const;
     double seconds(Clock::time_point t) const;

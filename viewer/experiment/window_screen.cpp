@@ -66,7 +66,7 @@ std::vector<std::pair<std::string, std::string>> WindowScreen::about() const
             {"opengl", first().window.gl().description()}};
 }
 
-std::vector<ViewOrder> WindowScreen::own_views(gi::dmat4 const& world_from_camera, double steady_s)
+std::vector<ViewCommand> WindowScreen::own_views(gi::dmat4 const& world_from_camera, double steady_s)
 {
     note_sizes(*display_, shown_);
     gi::dvec3 const rest = display_->users.empty() ? gi::dvec3{0} : resting_head(display_->users[0]).position;

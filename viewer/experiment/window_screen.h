@@ -25,7 +25,7 @@ public:
     std::vector<InputEvent> take_input() override;
     double take_longest_look_ms() override;
     bool has_own_views() const override { return display_.has_value(); }
-    std::vector<ViewOrder> own_views(gi::dmat4 const& world_from_camera, double steady_s) override;
+    std::vector<ViewCommand> own_views(gi::dmat4 const& world_from_camera, double steady_s) override;
 
 private:
     void look();

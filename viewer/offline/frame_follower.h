@@ -3,7 +3,7 @@
 #include "gi/methods/registry.h"
 #include "gi/scene/motion/moving_world.h"
 #include "viewer/engine/flat_triangles.h"
-#include "viewer/engine/lane.h"
+#include "viewer/engine/method_runner.h"
 
 namespace viewer {
 

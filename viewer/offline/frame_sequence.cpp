@@ -103,7 +103,7 @@ private:
     }
 
     /// The same, moved on from the frame before.
-    gi::World const& follow(int frame, gi::Report& report)
+    gi::World const& update_axes(int frame, gi::Report& report)
     {
         gi::StageTimer const timer(report, "world");
         double const time_s = f_.scene_time_s(o_, frame);
@@ -225,7 +225,7 @@ private:
     bool remember(int frame)
     {
         gi::Report report;
-        gi::World const& world = follow(frame, report);
+        gi::World const& world = update_axes(frame, report);
         auto const progress = [&](gi::RenderStatus const&) {
             bar_->update(double(rendered_) / missing_, fmt::format("frame {} again, for reuse", frame));
         };
@@ -261,7 +261,7 @@ private:
             moving.emplace(scene_, f_.scene_time_s(o_, frame), report);
         else if (o_.reuse == 1)
             own = world_of(frame, report);
-        gi::World const& world = blurs_ ? moving->world() : o_.reuse == 1 ? own : follow(frame, report);
+        gi::World const& world = blurs_ ? moving->world() : o_.reuse == 1 ? own : update_axes(frame, report);
         gi::Camera const camera = camera_of(world, frame);
         auto const progress = [&](gi::RenderStatus const& s) {
             bar_->update((rendered_ + s.fraction) / missing_,
@@ -274,10 +274,10 @@ private:
         } else if (o_.reuse == 1) {
             result = gi::find_method(o_.method).render(world, camera, settings_of(frame), stop_, progress, report);
         } else {
-            FrameFollower::Frame followed = follower_->render(camera, stop_, progress, report);
-            result = std::move(followed.result);
-            record.changes = followed.changes;
-            record.reuse = followed.counts;
+            FrameFollower::Frame updated = follower_->render(camera, stop_, progress, report);
+            result = std::move(updated.result);
+            record.changes = updated.changes;
+            record.reuse = updated.counts;
         }
         if (result.end == gi::RenderEnd::interrupted) return false;
         std::string const remark = denoise(result.picture, denoise_, report);

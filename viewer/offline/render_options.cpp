@@ -221,8 +221,9 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
     gi::SlhbSettings& s = o.slhb;
     slhb_number(c, "--axes", s.axes, 1, 64, "per bounce in a pass, streamed and temporal");
     slhb_number(c, "--fresh-axes", s.fresh_axes, 1, 64, "of these, replaced in a pass, temporal");
-    slhb_number(c, "--lamps", s.lamps, 1, 64, "points on lights that get a shadow map in a pass");
-    slhb_number(c, "--fresh-lamps", s.fresh_lamps, 1, 64,
+    slhb_number(c, "--light-samples,--lamps", s.light_samples, 1, 64,
+                "light samples that get a shadow map in a pass");
+    slhb_number(c, "--fresh-light-samples,--fresh-lamps", s.fresh_light_samples, 1, 64,
                 "of these, replaced in a pass (default: all; few in frames that follow each other)");
     slhb_number(c, "--shadow-map", s.shadow_resolution, 2, 8192, "texels of a shadow map on a side");
     slhb_number(c, "--interleave", s.interleave, 1, 16,
@@ -302,7 +303,8 @@ void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods
         throw gi::InputError("--directions with --axes or --fresh-axes",
                              "a set of directions is stored, and axes are drawn by the other schedules",
                              "leave one of them out");
-    for (auto const& [part, all] : {std::pair{"--fresh-axes", "--axes"}, std::pair{"--fresh-lamps", "--lamps"}})
+    for (auto const& [part, all] :
+         {std::pair{"--fresh-axes", "--axes"}, std::pair{"--fresh-light-samples", "--light-samples"}})
         if (given(part) && given(all) && command.get_option(part)->as<int>() > command.get_option(all)->as<int>())
             throw gi::InputError(std::string(part) + " is larger than " + all, "it is how many of these are new",
                                  fmt::format("give at most {}", command.get_option(all)->as<int>()));
@@ -330,7 +332,7 @@ void declare_slhb(CLI::App& c, RenderOptions& o)
         ->group(kSlhbGroup);
     c.add_option(
          "--shadows", o.shadows,
-         "maps: shadow maps of --lamps light samples, which all paths of a pass share;\nrays: exact rays to "
+         "maps: shadow maps of --light-samples samples, which all paths of a pass share;\nrays: exact rays to "
          "light samples of each path's own; auto: by the plan")
         ->check(CLI::IsMember({"auto", "maps", "rays"}))
         ->capture_default_str()

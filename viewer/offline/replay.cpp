@@ -81,7 +81,7 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     std::optional<TimedVideo> video;
     if (!o.video.empty()) video.emplace(o.video, o.size.value_or(largest_view(reader)), o.fps);
     RecordedScenes const scenes = load(header.settings.value("load", nlohmann::json::object()));
-    Session session(scenes.load, o.threads, report);
+    RenderSession session(scenes.load, o.threads, report);
     session.drive_bodies(scenes.drive);
     std::set<std::string> overridden;
     nlohmann::json const settings = header.settings.value("settings", nlohmann::json::object());
@@ -97,11 +97,11 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
             summary.interrupted = true;
             break;
         }
-        FrameOrder& order = frame->order;
+        FrameCommand& order = frame->order;
         for (Change const& c : order.changes)
             if (!overridden.contains(c.key)) session.apply(c);
         if (o.paths > 0) order.paths = o.paths;
-        for (ViewOrder& v : order.views)
+        for (ViewCommand& v : order.views)
             if (o.size) std::tie(v.width, v.height) = *o.size;
         SessionFrame const result = session.render(order, {});
         ++summary.frames;

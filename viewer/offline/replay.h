@@ -3,7 +3,7 @@
 
 #include "gi/core/progress.h"
 #include "viewer/devices/tracking/footsteps.h"
-#include "viewer/engine/session.h"
+#include "viewer/engine/render_session.h"
 #include "viewer/protocol/recording/recording.h"
 
 namespace viewer {

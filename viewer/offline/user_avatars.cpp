@@ -76,7 +76,7 @@ void put_avatars(nlohmann::json& load, std::vector<AvatarChoice> const& avatars)
 
 std::vector<AvatarChoice> avatars_of(nlohmann::json const& load)
 {
-    constexpr std::size_t kMost = OrderLimits::users + 1;
+    constexpr std::size_t kMost = CommandLimits::users + 1;
     auto const refuse = [](std::string const& why) {
         throw gi::InputError("the avatars of the recording cannot be read", why, "record the walk again");
     };
@@ -124,7 +124,7 @@ RecordedScenes scenes_with(RenderOptions const& options, std::vector<AvatarChoic
         return scene;
     };
     if (!all.empty())
-        s.drive = [all](gi::Scene const& scene, FrameOrder const& order, gi::Pose& pose) {
+        s.drive = [all](gi::Scene const& scene, FrameCommand const& order, gi::Pose& pose) {
             for (auto const& avatar : all) avatar->drive(scene, order, pose);
         };
     return s;

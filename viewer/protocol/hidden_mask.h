@@ -4,7 +4,7 @@
 //   {"points": [[x, y], ...], "triangles": [i, j, k, ...]}
 // where points are tangents as below; no triangles = nothing of that view is hidden.
 
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 namespace viewer {
 
@@ -16,7 +16,7 @@ struct HiddenMask {
     bool operator==(HiddenMask const&) const = default;
 };
 
-/// What a mask may hold at most, so that its text stays within OrderLimits::value_bytes.
+/// What a mask may hold at most, so that its text stays within CommandLimits::value_bytes.
 struct HiddenMaskLimits {
     static constexpr std::size_t points = 8192, triangles = 16384;
     static constexpr double tangent = 1e4;

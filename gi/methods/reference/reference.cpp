@@ -150,7 +150,7 @@ public:
         interleaving_.frame_ended();
         return result;
     }
-    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings,
+    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, VertexSharing,
                                     StopRequest const& stop) override
     {
         RenderProgress const silent;

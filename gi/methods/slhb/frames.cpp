@@ -44,13 +44,16 @@ public:
         if (!restart_) renderer_->changed(changes);
     }
 
-    void follow(int axes) override
+    void update_axes(int axes) override
     {
-        followed_ = std::uint32_t(axes);
-        if (renderer_) renderer_->follow(followed_); // else one that starts will
+        updated_axes_ = std::uint32_t(axes);
+        if (renderer_) renderer_->update_axes(updated_axes_); // else one that starts will
     }
 
-    Following following() const override { return renderer_ ? renderer_->following() : Following{}; }
+    DynamicUpdate dynamic_update() const override
+    {
+        return renderer_ ? renderer_->dynamic_update() : DynamicUpdate{};
+    }
 
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                        Moments const& moments) override
@@ -62,7 +65,8 @@ public:
         if constexpr (!kByKernels)
             if (!(settings_.budget_s > 0))
                 renderer_->forget(); // else a frame of so many paths is the same by itself
-        Endings const endings = settings_.slhb.cache == RadianceCaching::on ? Endings::cached : Endings::exact;
+        VertexSharing const sharing =
+            settings_.slhb.cache == RadianceCaching::on ? VertexSharing::cached : VertexSharing::exact;
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
             for (std::uint32_t i = 0; i < paths; ++i) {
                 if (moments) {
@@ -70,7 +74,7 @@ public:
                     changed(now.changes);
                     see(full_size(now.camera));
                 }
-                one_pass({&sums, 1}, endings);
+                one_pass({&sums, 1}, sharing);
             }
         });
         finish(result, earlier);
@@ -81,7 +85,7 @@ public:
         return result;
     }
 
-    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings endings,
+    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, VertexSharing sharing,
                                     StopRequest const& stop) override
     {
         auto const begun = std::chrono::steady_clock::now();
@@ -90,7 +94,7 @@ public:
         sums_.resize(views.size());
         for (std::size_t k = 0; k < views.size(); ++k) sums_[k].start(views[k].width, views[k].height);
         for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
-            on_threads(settings_.threads, [&] { renderer_->pass(passes_++, sums_, endings); });
+            on_threads(settings_.threads, [&] { renderer_->pass(passes_++, sums_, sharing); });
         std::vector<RenderResult> results(views.size());
         PathCounts lost;
         for (std::size_t k = 0; k < views.size(); ++k) {
@@ -122,14 +126,14 @@ public:
     }
 
 private:
-    void one_pass(std::span<Accumulator> sums, Endings endings)
+    void one_pass(std::span<Accumulator> sums, VertexSharing sharing)
     {
         if constexpr (kByKernels) {
-            renderer_->pass(passes_++, sums, endings);
+            renderer_->pass(passes_++, sums, sharing);
         } else {
             settings_.slhb.interleave = interleaving_->n();
             renderer_->interleave(settings_.slhb.interleave);
-            renderer_->pass(passes_++, sums, endings);
+            renderer_->pass(passes_++, sums, sharing);
             interleaving_->pass_ended(renderer_->indirect_share());
         }
     }
@@ -211,7 +215,7 @@ private:
                     see(view);
                 }
                 on_threads(settings_.threads, [&] {
-                    renderer_->pass(passes_, {&sums_[std::size_t(now)], 1}, Endings::own);
+                    renderer_->pass(passes_, {&sums_[std::size_t(now)], 1}, VertexSharing::none);
                 });
                 if (now == PairSide::with) renderer_->add_coverage(0, both.coverage, both.covered);
             }
@@ -268,7 +272,7 @@ private:
         if constexpr (!kByKernels)
             interleaving_.emplace(settings_.slhb.interleave, asked_.slhb.interleave == 0 ? settings_.budget_s : 0);
         renderer_.emplace(world, views, settings_, std::move(soup), world.static_triangles, report_);
-        renderer_->follow(followed_);
+        renderer_->update_axes(updated_axes_);
         restart_ = false;
         lost_ = refused_ = 0;
     }
@@ -281,7 +285,7 @@ private:
     std::optional<FrameInterleaving> interleaving_; ///< none by kernels
     std::vector<Accumulator> sums_;                 ///< of the views
     PairSums pair_sums_;
-    std::uint32_t passes_ = 0, followed_ = 0;
+    std::uint32_t passes_ = 0, updated_axes_ = 0;
     std::uint64_t lost_ = 0, refused_ = 0; ///< layers, and notes of the cache, that were reported
     bool restart_ = false;
     double start_s_ = 0; ///< that the first start took

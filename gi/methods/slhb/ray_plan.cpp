@@ -23,7 +23,7 @@ bool says_look_ups(SlhbSettings const& s)
 
 bool says_maps(SlhbSettings const& s)
 {
-    return s.lamps > 0 || s.fresh_lamps > 0 || s.shadow_resolution > 0 || s.exact.any() ||
+    return s.light_samples > 0 || s.fresh_light_samples > 0 || s.shadow_resolution > 0 || s.exact.any() ||
            s.space == Space::device;
 }
 

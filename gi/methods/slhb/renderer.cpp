@@ -93,13 +93,13 @@ void SlhbRenderer::make_axes()
 
 void SlhbRenderer::make_lamps()
 {
-    if (lamps_) earlier_maps_ += lamps_->maps_built();
-    lamps_.emplace(world_, grid_bounds_, soup_, cut_outs_,
-                   LampSettings{.count = std::uint32_t(shadow_maps_ ? slhb_.lamps : 0),
-                                .fresh = std::uint32_t(slhb_.fresh_lamps),
-                                .resolution = texels(slhb_.exact.shadows, slhb_.shadow_resolution),
-                                .seed = settings_.seed,
-                                .first_moving = first_moving_});
+    if (light_points_) earlier_maps_ += light_points_->maps_built();
+    light_points_.emplace(world_, grid_bounds_, soup_, cut_outs_,
+                          LightPointSettings{.count = std::uint32_t(shadow_maps_ ? slhb_.light_samples : 0),
+                                             .fresh = std::uint32_t(slhb_.fresh_light_samples),
+                                             .resolution = texels(slhb_.exact.shadows, slhb_.shadow_resolution),
+                                             .seed = settings_.seed,
+                                             .first_moving = first_moving_});
 }
 
 void SlhbRenderer::changed(Changes const& c)
@@ -131,7 +131,7 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
             make_axes();
             lights = true; // the maps of parallel light hold the same bounds
         }
-        lamps_->moved();
+        light_points_->moved();
     }
     if (lights) make_lamps();
 }
@@ -189,7 +189,7 @@ void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
     axes_.prepare(settings_.bounces + (to_the_end() ? 1 : 0), index);
     {
         StageTimer const timer(report_, "shadow maps");
-        lamps_->refresh(index);
+        light_points_->refresh(index);
     }
     StageTimer const timer(report_, "G-buffer");
     for (SeenView& v : views_) {
@@ -218,7 +218,7 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached)
     sky_.clear();
     if (walks && !slhb_.exact.directions) sky_ = sky_along(axes_.set(), world_);
     return {.axes = axes_.set(),
-            .lamps = *lamps_,
+            .light_points = *light_points_,
             .exact = exact_.get(),
             .index = index,
             .gather_axis = gathered,
@@ -230,11 +230,11 @@ SlhbTracer::Pass SlhbRenderer::tracing(std::uint32_t index, bool cached)
             .spread = spread_ && slhb_.look_ups == LookUps::none};
 }
 
-void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings)
+void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing)
 {
     prepare(index, Sides::one);
     StageTimer const timer(report_, "paths");
-    paths_.trace(tracing(index, endings == Endings::cached), views_, endings, sums);
+    paths_.trace(tracing(index, sharing == VertexSharing::cached), views_, sharing, sums);
     if (cache_) cache_->end_pass();
     for (Accumulator& s : sums) ++s.paths;
 }
@@ -249,7 +249,7 @@ void SlhbRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& co
     // The world stays as it is: look-ups pass by what moves.
     auto const show_moving = [&](bool shown) {
         axes_.set().show_moving(shown);
-        lamps_->show_moving(shown);
+        light_points_->show_moving(shown);
     };
     paths_.trace_pair(now, views_, show_moving, sums, counts);
 }
@@ -280,7 +280,7 @@ void SlhbRenderer::report_work() const
 {
     paths_.report_work();
     axes_.report_work();
-    report_.count("shadow maps built", double(earlier_maps_ + lamps_->maps_built()));
+    report_.count("shadow maps built", double(earlier_maps_ + light_points_->maps_built()));
     if (!cache_) return;
     report_.count("cells of the radiance cache", double(cache_->cells()));
     report_.count("bytes of the radiance cache", double(cache_->bytes()));

@@ -32,14 +32,14 @@ public:
     void changed(Changes const& changes);
     /// From the next frame on: of the stored axes of each bounce about `axes` follow what moves, others from frame
     /// to frame, and paths take no others; 0 = all.
-    void follow(std::uint32_t axes) { axes_.follow(axes); }
+    void update_axes(std::uint32_t axes) { axes_.update_axes(axes); }
     /// In the frame that ended last.
-    Following following() const { return axes_.following(); }
+    DynamicUpdate dynamic_update() const { return axes_.dynamic_update(); }
     /// From the next pass on. A view is what the view of the same index was in the frame before.
     void see(std::span<FrameView const> views);
     /// One more path for every pixel. @param index of the pass, which decides its random numbers
     /// @param sums  one per view
-    void pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings = Endings::exact);
+    void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::exact);
 
     /// A pass of one view with what moves and without it, by the same random numbers: of the latter only the paths
     /// that what moves may count in. Not with orthographic cameras, nor where something is asked exactly.
@@ -54,7 +54,7 @@ public:
     /// RenderResult::light_from of the passes since the sums were empty.
     std::span<std::uint32_t const> light_from(std::size_t view) const;
     /// From the next pass on: indirect light in one of n x n pixels, which others take from there where paths send
-    /// exact rays; where they share endings on layers, it counts n^2-fold.
+    /// exact rays; where they share vertices on layers, it counts n^2-fold.
     void interleave(int n)
     {
         settings_.slhb.interleave = n;
@@ -105,7 +105,7 @@ private:
     LightOrder light_order_;
     LightPool lights_;        ///< of a pass; empty where there are shadow maps
     bool shadow_maps_ = true; ///< else paths send shadow rays of their own
-    std::optional<Lamps> lamps_;
+    std::optional<LightPoints> light_points_;
     EarlierCorners earlier_;
     std::vector<SkyAlong> sky_;          ///< in a pass
     std::optional<RadianceCache> cache_; ///< none where it was declined

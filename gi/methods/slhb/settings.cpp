@@ -93,16 +93,17 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
         s.shadow_resolution =
             from_points ? 1024
                         : texels_for(sky && budget == double(kInf) ? 512 : 256, most_lamps, unless_few, map);
-    if (s.lamps == 0)
-        s.lamps = from_points ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), sky ? 8 : 1, most_lamps);
+    if (s.light_samples == 0)
+        s.light_samples =
+            from_points ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), sky ? 8 : 1, most_lamps);
     if (s.memory_mib == 0) s.memory_mib = int((physical_bytes() >> 20) / 4);
     auto const map_bytes = [&] { // cubes, which take the most
-        return 6.0 * s.lamps * s.shadow_resolution * s.shadow_resolution * sizeof(NearestTexel);
+        return 6.0 * s.light_samples * s.shadow_resolution * s.shadow_resolution * sizeof(NearestTexel);
     };
     while (s.shadow_resolution > kLeast && map_bytes() > double(s.memory_mib) * (1 << 20))
         s.shadow_resolution /= 2;
-    if (s.fresh_lamps == 0) s.fresh_lamps = s.lamps;
-    s.fresh_lamps = std::min(s.fresh_lamps, s.lamps);
+    if (s.fresh_light_samples == 0) s.fresh_light_samples = s.light_samples;
+    s.fresh_light_samples = std::min(s.fresh_light_samples, s.light_samples);
     return s;
 }
 
@@ -129,7 +130,7 @@ int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, int ax
                                                         : bounces;
     double const shadow = shadow_rays ? costs.shadow_ray : 0;
     double const fixed = (rays ? 0 : bounces * axes * costs.axis(s.resolution)) +
-                         (shadow_rays ? 0 : s.fresh_lamps * costs.map(s.shadow_resolution)) +
+                         (shadow_rays ? 0 : s.fresh_light_samples * costs.map(s.shadow_resolution)) +
                          pixels * (costs.direct + shadow),
                  indirect = pixels * after * (costs.bounce + (rays ? costs.ray : 0) + shadow);
     for (int const n : {1, 2, 4})
@@ -180,9 +181,10 @@ SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& wor
     // Few points on lamps are exchanged from pass to pass: each has the light of as many as a window of the
     // discontinuity filter has pixels.
     constexpr int kLamps = 16, kPasses = 4; // in which what choose_settings takes in one is exchanged
-    int const fresh = asked.slhb.fresh_lamps > 0 ? asked.slhb.fresh_lamps : std::max(1, s.lamps / kPasses);
-    if (asked.slhb.lamps == 0) s.lamps = std::max(s.lamps, kLamps);
-    s.fresh_lamps = std::min(fresh, s.lamps);
+    int const fresh = asked.slhb.fresh_light_samples > 0 ? asked.slhb.fresh_light_samples
+                                                         : std::max(1, s.light_samples / kPasses);
+    if (asked.slhb.light_samples == 0) s.light_samples = std::max(s.light_samples, kLamps);
+    s.fresh_light_samples = std::min(fresh, s.light_samples);
     return with_rays(asked, s, world, soup, camera, costs, true);
 }
 
@@ -190,14 +192,15 @@ std::string as_options(SlhbSettings const& s)
 {
     char const* const names[] = {"auto", "stored", "streamed", "temporal"};
     std::string text =
-        fmt::format("--schedule {} --hit-buffer {} --lamps {} --shadow-map {} --interleave {}",
-                    names[int(s.schedule)], s.resolution, s.lamps, s.shadow_resolution, s.interleave);
+        fmt::format("--schedule {} --hit-buffer {} --light-samples {} --shadow-map {} --interleave {}",
+                    names[int(s.schedule)], s.resolution, s.light_samples, s.shadow_resolution, s.interleave);
     if (s.schedule == Schedule::stored)
         text += " --directions " + s.directions;
     else
         text += fmt::format(" --axes {}", s.axes);
     if (s.schedule == Schedule::temporal) text += fmt::format(" --fresh-axes {}", s.fresh_axes);
-    if (s.fresh_lamps < s.lamps) text += fmt::format(" --fresh-lamps {}", s.fresh_lamps);
+    if (s.fresh_light_samples < s.light_samples)
+        text += fmt::format(" --fresh-light-samples {}", s.fresh_light_samples);
     if (s.most_layers > 0) text += fmt::format(" --max-layers {}", s.most_layers);
     text += fmt::format(" --look-ups {} --shadows {}", s.look_ups == LookUps::none ? "none" : "all",
                         s.shadows == Shadows::rays ? "rays" : "maps");
@@ -245,10 +248,10 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
                      : cached ? "time decides; it takes noise for a little blur"
                               : "it would leave a small error however long the render is; --radiance-cache on"});
     bool const lit = !world.light_select.empty(), rays = plan.shadows == Shadows::rays;
-    items.push_back(
-        {rays ? "shadow rays"
-              : fmt::format("{} shadow maps of {} x {}", s.lamps, s.shadow_resolution, s.shadow_resolution),
-         lit, lit ? plan.why_shadows : "nothing shines"});
+    items.push_back({rays ? "shadow rays"
+                          : fmt::format("{} shadow maps of {} x {}", s.light_samples, s.shadow_resolution,
+                                        s.shadow_resolution),
+                     lit, lit ? plan.why_shadows : "nothing shines"});
     bool const narrow = narrow_somewhere(world);
     items.push_back({"exact rays (Embree)", !walks || rays || narrow || camera.orthographic,
                      !walks                ? "in place of look-ups"

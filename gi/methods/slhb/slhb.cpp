@@ -31,10 +31,11 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
         world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report,
         chosen.slhb.look_ups == LookUps::none ? FirstSurfaces::by_rays : FirstSurfaces::by_raster, &stop);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb") : 0;
-    Endings const endings = chosen.slhb.cache == RadianceCaching::on ? Endings::cached : Endings::exact;
+    VertexSharing const sharing =
+        chosen.slhb.cache == RadianceCaching::on ? VertexSharing::cached : VertexSharing::exact;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
         for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
-            renderer.pass(loop.first_path() + sums.paths, {&sums, 1}, endings);
+            renderer.pass(loop.first_path() + sums.paths, {&sums, 1}, sharing);
     });
     renderer.report_work();
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());

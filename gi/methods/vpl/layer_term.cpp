@@ -66,7 +66,7 @@ void LayerTerm::build(Bounds const& bounds)
                                                       .first_moving = first_moving_});
     DirectionSet set = make_directions(slhb_.directions);
     axes_->store(set);
-    axes_->follow();
+    axes_->update_axes();
     for (std::size_t a = 0; a < set.axes.size(); ++a) set.axes[a] = dvec3(axes_->axis(a)); // turned by the seed
     nearest_ = make_direction_map(set, SphereMapping::octahedral, map_size(set.size()));
     directions_.clear();
@@ -79,7 +79,7 @@ void LayerTerm::world_changed()
     update_soup(world_, first_moving_, soup_);
     if (grow(bounds_, world_.bounds)) return build(bounds_);
     axes_->moved();
-    axes_->follow();
+    axes_->update_axes();
 }
 
 /// Adds the walk; false where its axis does not leave `from`.

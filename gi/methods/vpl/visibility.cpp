@@ -71,7 +71,7 @@ public:
         result.picture = loop.sums().picture(world_.world());
         return result;
     }
-    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, Endings,
+    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, VertexSharing,
                                     StopRequest const& stop) override
     {
         auto const begun = std::chrono::steady_clock::now();

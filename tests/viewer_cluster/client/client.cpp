@@ -16,16 +16,16 @@
 namespace viewer {
 namespace {
 
-FrameOrder order_of(std::uint64_t frame)
+FrameCommand order_of(std::uint64_t frame)
 {
-    FrameOrder o;
+    FrameCommand o;
     o.frame = frame;
     o.pose_s = double(frame) / 60;
     o.scene_s = double(frame) / 7;
     o.tracked.head = RoomPose{{0.1 * double(frame), 1.7, 0}, {1, 0, 0, 0}};
     if (frame % 5 == 0) o.changes.push_back({"exposure", double(frame) / 3});
     for (int k = 0; k < 8; ++k) {
-        ViewOrder v;
+        ViewCommand v;
         v.name = fmt::format("wall {}", k);
         v.width = v.height = 64;
         o.views.push_back(v);
@@ -33,7 +33,7 @@ FrameOrder order_of(std::uint64_t frame)
     return o;
 }
 
-std::uint64_t hash_of(FrameOrder const& order)
+std::uint64_t hash_of(FrameCommand const& order)
 {
     std::uint64_t h = 0;
     for (std::uint8_t const b : to_bytes(order)) h = gi::mix_bits(h + b + 1);
@@ -70,7 +70,7 @@ Call parse(int argc, char** argv)
 void show(Cluster& cluster, Call const& call, std::ofstream& log)
 {
     for (std::uint64_t frame = 0;; ++frame) {
-        FrameOrder order = order_of(frame);
+        FrameCommand order = order_of(frame);
         if (cluster.leads()) {
             if (frame == call.frames) break;
             cluster.send(order);

@@ -52,7 +52,7 @@ public:
     std::optional<std::pair<ar::Pose, double>> at(ar::Frame const& frame, double time_s)
     {
         if (!poses_.empty()) {
-            auto const pose = told_pose(poses_, time_s);
+            auto const pose = recorded_pose(poses_, time_s);
             if (!pose) return std::nullopt;
             return std::pair(*pose, 1.0);
         }
@@ -82,7 +82,7 @@ SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera con
                              "say how many to look at: --frames 300");
     FrameClock clock(session.frames.source, source->description(), false);
     SeenFrames seen;
-    KeptApart<AlbedoFrame> kept(std::size_t(a.views));
+    SpacedFrames<AlbedoFrame> kept(std::size_t(a.views));
     for (int n = 0; !stop.requested() && (a.frames == 0 || n < a.frames);) {
         std::optional<ar::Frame> const frame = source->next(std::chrono::milliseconds(200));
         if (!frame) {
@@ -111,7 +111,7 @@ SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera con
             report.lose("frames that could not be used", 1, e.what());
         }
     }
-    tell_losses(source->counts(), source->state(), report);
+    report_losses(source->counts(), source->state(), report);
     seen.refused += int(source->counts().refused);
     seen.kept = kept.take();
     return seen;

@@ -31,7 +31,7 @@ struct Variant {
     std::string schedule;
     int paths;
     std::unique_ptr<gi::Report> report = std::make_unique<gi::Report>();
-    std::unique_ptr<Session> session{};
+    std::unique_ptr<RenderSession> session{};
     std::vector<double> ms{}, following_ms{};
     double relmse = 0;
 };
@@ -41,14 +41,14 @@ std::vector<Change> changes_of(std::string const& text)
 {
     std::size_t const slash = text.find('/');
     if (slash == std::string::npos) return {{"schedule", text}};
-    int followed = 0;
+    int updated = 0;
     char const *const from = text.data() + slash + 1, *const to = text.data() + text.size();
-    auto const [end, error] = std::from_chars(from, to, followed);
+    auto const [end, error] = std::from_chars(from, to, updated);
     if (text.substr(0, slash) != "stored" || error != std::errc() || end != to)
         throw gi::InputError("'" + text + "' is no schedule",
                              "only of the stored directions a part can follow what moves",
                              "give stored, stored/16, temporal or streamed");
-    return {{"schedule", "auto"}, {"followed", followed}};
+    return {{"schedule", "auto"}, {"updated_axes", updated}};
 }
 
 constexpr int kFirstMeasured = 4; ///< those before build what lasts
@@ -101,13 +101,13 @@ public:
     }
 
 private:
-    FrameOrder order(int f, int paths) const
+    FrameCommand order(int f, int paths) const
     {
         auto const [width, height] = parse_size(o_.size);
         gi::Camera camera = start_;
         camera.world_from_camera =
             camera.world_from_camera * glm::translate(gi::dmat4(1), gi::dvec3{0.01 * f, 0, 0});
-        FrameOrder order;
+        FrameCommand order;
         order.frame = std::uint64_t(f);
         order.scene_s = f / o_.rate_hz;
         order.paths = paths;
@@ -121,7 +121,7 @@ private:
         double const s = seconds_of([&] { done = v.session->render(order(f, v.paths), {}); });
         if (f >= kFirstMeasured) {
             v.ms.push_back(1e3 * s);
-            v.following_ms.push_back(1e3 * done.following.seconds);
+            v.following_ms.push_back(1e3 * done.dynamic_update.seconds);
         }
         return *done.views[0].picture.find("color");
     }

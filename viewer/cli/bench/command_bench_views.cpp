@@ -28,7 +28,7 @@ struct ViewsOptions {
 };
 
 /// The views of a variant, seen from a camera.
-using Views = std::function<std::vector<ViewOrder>(gi::Camera const&)>;
+using Views = std::function<std::vector<ViewCommand>(gi::Camera const&)>;
 
 gi::Camera aside(gi::Camera camera, double m)
 {
@@ -47,9 +47,9 @@ gi::Camera inside(gi::Camera camera, gi::World const& world)
 }
 
 /// Left, right, below and before the eye, 90 degrees each.
-std::vector<ViewOrder> walls(gi::Camera const& eye, int size)
+std::vector<ViewCommand> walls(gi::Camera const& eye, int size)
 {
-    std::vector<ViewOrder> views;
+    std::vector<ViewCommand> views;
     auto const add = [&](char const* name, double angle, gi::dvec3 axis) {
         gi::Camera wall = eye;
         wall.world_from_camera = eye.world_from_camera * glm::rotate(gi::dmat4(1), angle, axis);
@@ -68,22 +68,22 @@ struct ViewVariant {
     Views views;
     bool in_cave = false;
     std::unique_ptr<gi::Report> report{};
-    std::unique_ptr<Session> session{};
+    std::unique_ptr<RenderSession> session{};
     std::vector<double> ms{};
     std::map<std::string, std::vector<double>> stages_ms{};
     SessionFrame last{};
 };
 
-void write_picture(gi::Layer const& color, ViewOrder const& view, std::filesystem::path const& file)
+void write_picture(gi::Layer const& color, ViewCommand const& view, std::filesystem::path const& file)
 {
     gi::write_png(file, view.width, view.height, gi::tone_map_bytes(color, {}));
 }
 
 /// relMSE of the last view of a frame against the reference from the same place; both are written as pictures.
-double error_of(Session const& session, FrameOrder const& order, SessionFrame const& frame, int paths,
+double error_of(RenderSession const& session, FrameCommand const& order, SessionFrame const& frame, int paths,
                 std::filesystem::path const& pictures, gi::Report& report)
 {
-    ViewOrder const& view = order.views.back();
+    ViewCommand const& view = order.views.back();
     gi::Layer const right = reference_of(session, view, paths, report);
     gi::Layer const& seen = *frame.views.back().picture.find("color");
     write_picture(seen, view, pictures.string() + ".png");
@@ -108,18 +108,18 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
     double const apart = o.eye_distance_m;
     std::vector<ViewVariant> variants;
     variants.push_back({"one view", [=](gi::Camera const& c) {
-                            return std::vector<ViewOrder>{{"left", c, w, h, -1}};
+                            return std::vector<ViewCommand>{{"left", c, w, h, -1}};
                         }});
     variants.push_back({"other eye alone", [=](gi::Camera const& c) {
-                            return std::vector<ViewOrder>{{"right", aside(c, apart), w, h, -1}};
+                            return std::vector<ViewCommand>{{"right", aside(c, apart), w, h, -1}};
                         }});
     for (int const partner : {0, -1})
         variants.push_back(
             {partner == 0 ? "two eyes" : "two eyes, no light shared", [=](gi::Camera const& c) {
-                 return std::vector<ViewOrder>{{"left", c, w, h, -1}, {"right", aside(c, apart), w, h, partner}};
+                 return std::vector<ViewCommand>{{"left", c, w, h, -1}, {"right", aside(c, apart), w, h, partner}};
              }});
     variants.push_back(
-        {"one wall", [=](gi::Camera const& c) { return std::vector<ViewOrder>{walls(c, h).back()}; }, true});
+        {"one wall", [=](gi::Camera const& c) { return std::vector<ViewCommand>{walls(c, h).back()}; }, true});
     variants.push_back({"four walls", [=](gi::Camera const& c) { return walls(c, h); }, true});
     std::vector<Change> settings;
     for (std::string const& text : o.settings) settings.push_back(parse_change(text));
@@ -131,7 +131,7 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
     gi::Camera const in_cave = inside(start, variants[0].session->world());
     double const step = 0.002 * double(variants[0].session->world().bounds.radius());
     auto const eye = [&](ViewVariant const& v, int f) { return aside(v.in_cave ? in_cave : start, step * f); };
-    FrameOrder order;
+    FrameCommand order;
     for (int f = 0; f < o.frames; ++f) // they take turns
         for (ViewVariant& v : variants) {
             order.frame = std::uint64_t(f);

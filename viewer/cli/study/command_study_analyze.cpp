@@ -40,7 +40,7 @@ int run_analyze(AnalyzeOptions const& o)
     return 0;
 }
 
-std::optional<study::Truth> truth_beside(std::filesystem::path const& dir)
+std::optional<study::SimulatedTruth> truth_beside(std::filesystem::path const& dir)
 {
     auto const file = study::truth_file(dir);
     if (!std::filesystem::exists(file)) return {};

@@ -41,7 +41,7 @@ std::string host_name()
 void check_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scenes)
 {
     gi::Report report; // what scenes lose counts when they are shown
-    Session session(scenes.load, 0, report);
+    RenderSession session(scenes.load, 0, report);
     std::stable_sort(stimuli.begin(), stimuli.end(),
                      [](auto const& a, auto const& b) { return a.settings.scene < b.settings.scene; });
     bool is_edited = false;

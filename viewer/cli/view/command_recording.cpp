@@ -26,15 +26,15 @@ Json describe(RecordingReader& reader)
 {
     FrameStatistics statistics;
     std::uint64_t changes = 0, hashes = 0, timed = 0;
-    std::optional<FrameOrder> first;
-    FrameOrder last;
+    std::optional<FrameCommand> first;
+    FrameCommand last;
     std::set<std::string> views;
     while (auto frame = reader.next()) {
         changes += frame->order.changes.size();
         hashes += frame->pixel_hash ? 1 : 0;
         timed += frame->times ? 1 : 0;
         if (frame->times) statistics.add(*frame->times);
-        for (ViewOrder const& v : frame->order.views)
+        for (ViewCommand const& v : frame->order.views)
             views.insert(fmt::format("{} {}x{}", v.name, v.width, v.height));
         if (!first) first = frame->order;
         last = std::move(frame->order);

@@ -8,7 +8,7 @@
 // still for kStill_s brings his feet together again. At more than kGlide_m_s, and after a jump, feet are below the
 // hips.
 
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 namespace viewer {
 

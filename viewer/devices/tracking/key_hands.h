@@ -1,7 +1,7 @@
 #pragma once
 // Hands of a user who has only keys: they hang before the hips, and rise beside the head while a key is held.
 
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 namespace viewer {
 

@@ -168,7 +168,7 @@ gi::AvatarJoints OwnAvatar::joints_in(gi::Scene const& scene) const
     return joints;
 }
 
-void OwnAvatar::drive(gi::Scene const& scene, FrameOrder const& order, gi::Pose& pose) const
+void OwnAvatar::drive(gi::Scene const& scene, FrameCommand const& order, gi::Pose& pose) const
 {
     std::int32_t const root = find_root(scene, root_);
     if (root < 0) return;

@@ -33,7 +33,7 @@ public:
     /// Puts the avatar where the order has its user. A head that is not tracked stands in the middle of the room;
     /// hands that are not hang down; feet that are not keep their places below the head. Scenes without the avatar
     /// are left as they are.
-    void drive(gi::Scene const& scene, FrameOrder const& order, gi::Pose& pose) const;
+    void drive(gi::Scene const& scene, FrameCommand const& order, gi::Pose& pose) const;
 
     PuppetMeasures const& measures() const { return measures_; }
     /// Where its feet are while it stands; none of an avatar without legs.

@@ -1,7 +1,7 @@
 #pragma once
 // Rotations as vectors and between poses.
 
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 namespace viewer {
 

@@ -6,7 +6,7 @@
 // on which samples came and not on their order.
 
 #include "viewer/devices/tracking/one_euro.h"
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 #include <cstdint>
 #include <vector>

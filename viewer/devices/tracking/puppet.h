@@ -2,7 +2,7 @@
 // Avatars as puppets of tracked people: from tracked head and hands to what gi::drive wants.
 
 #include "gi/scene/motion/avatar.h"
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 namespace viewer {
 

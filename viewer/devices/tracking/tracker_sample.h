@@ -1,7 +1,7 @@
 #pragma once
 // What a tracker said of one body at one moment.
 
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 // From a tracker's frame and units into the room: right-handed, m, +Y up, heads look along -Z.
 
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 namespace viewer {
 

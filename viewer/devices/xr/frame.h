@@ -3,7 +3,7 @@
 // floor at 0; heads, eyes and hands look along -Z. Times are seconds of std::chrono::steady_clock.
 
 #include "gi/scene/model/camera.h"
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 #include <array>
 #include <cstdint>

@@ -4,11 +4,11 @@
 
 namespace viewer {
 
-std::vector<ViewOrder> desktop_views(gi::Camera const& middle, DesktopStereo const& stereo, glm::ivec2 window,
-                                     glm::ivec2 size)
+std::vector<ViewCommand> desktop_views(gi::Camera const& middle, DesktopStereo const& stereo, glm::ivec2 window,
+                                       glm::ivec2 size)
 {
     if (!stereo.on || middle.orthographic) return {{"window", middle, window.x, window.y, -1}};
-    std::vector<ViewOrder> views;
+    std::vector<ViewCommand> views;
     double const top = std::tan(0.5 * middle.yfov_rad), right = top * window.x / window.y;
     for (double const side : {-1.0, 1.0}) {
         double const aside = 0.5 * side * stereo.eye_distance_m, shift = -aside / stereo.screen_distance_m;

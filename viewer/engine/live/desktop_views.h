@@ -1,5 +1,5 @@
 #pragma once
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 namespace viewer {
 
@@ -15,7 +15,7 @@ struct DesktopStereo {
 /// Each eye has the whole view, however few pixels: in halves of a window it is squeezed, as displays stretch it.
 /// An orthographic camera has one view, of the window's pixels, which say how wide it is.
 /// @param middle  camera between the eyes, symmetric   @param window, eye  of the whole and of one picture, pixels
-std::vector<ViewOrder> desktop_views(gi::Camera const& middle, DesktopStereo const& stereo, glm::ivec2 window,
-                                     glm::ivec2 eye);
+std::vector<ViewCommand> desktop_views(gi::Camera const& middle, DesktopStereo const& stereo, glm::ivec2 window,
+                                       glm::ivec2 eye);
 
 } // namespace viewer

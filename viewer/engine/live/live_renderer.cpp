@@ -9,30 +9,30 @@
 namespace viewer {
 namespace {
 
-double pixels_of(std::vector<ViewOrder> const& views)
+double pixels_of(std::vector<ViewCommand> const& views)
 {
     double sum = 0;
-    for (ViewOrder const& v : views) sum += double(v.width) * v.height;
+    for (ViewCommand const& v : views) sum += double(v.width) * v.height;
     return sum;
 }
 
-bool same_views(std::vector<ViewOrder> const& a, std::vector<ViewOrder> const& b)
+bool same_views(std::vector<ViewCommand> const& a, std::vector<ViewCommand> const& b)
 {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](ViewOrder const& x, ViewOrder const& y) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](ViewCommand const& x, ViewCommand const& y) {
         return x.camera == y.camera && x.name == y.name;
     });
 }
 
-bool same_sizes(std::vector<ViewOrder> const& a, std::vector<ViewOrder> const& b)
+bool same_sizes(std::vector<ViewCommand> const& a, std::vector<ViewCommand> const& b)
 {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](ViewOrder const& x, ViewOrder const& y) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](ViewCommand const& x, ViewCommand const& y) {
         return x.width == y.width && x.height == y.height;
     });
 }
 
 } // namespace
 
-LiveRenderer::LiveRenderer(Session& session, SessionClock const& clock, FrameLink* link, Hooks hooks)
+LiveRenderer::LiveRenderer(RenderSession& session, SessionClock const& clock, FrameLink* link, Hooks hooks)
     : session_(session), clock_(clock), link_(link), hooks_(std::move(hooks)), thread_([this] { run(); })
 {
 }
@@ -50,7 +50,7 @@ void LiveRenderer::stop()
     if (thread_.joinable()) thread_.join();
 }
 
-void LiveRenderer::ask(std::function<void(Session&)> question)
+void LiveRenderer::ask(std::function<void(RenderSession&)> question)
 {
     {
         std::lock_guard const lock(mutex_);
@@ -80,7 +80,7 @@ void LiveRenderer::post(Change change, std::function<void(std::string const&)> d
 
 void LiveRenderer::go_to(double scene_s)
 {
-    ask([this, scene_s](Session&) { scene_s_ = scene_s; });
+    ask([this, scene_s](RenderSession&) { scene_s_ = scene_s; });
 }
 
 void LiveRenderer::look(Viewpoint viewpoint)
@@ -194,18 +194,18 @@ void LiveRenderer::choose_followed(bool may_move)
 {
     Settings const& s = session_.settings();
     bool const is_governed = s.method == "slhb" && s.schedule == "auto";
-    int const followed = is_governed ? follow_governor_.next(may_move) : 0;
-    if (followed == s.followed) return;
-    Change const change{"followed", followed};
+    int const updated = is_governed ? follow_governor_.next(may_move) : 0;
+    if (updated == s.updated_axes) return;
+    Change const change{"updated_axes", updated};
     session_.apply(change);
     changes_.push_back(change);
 }
 
-FrameOrder LiveRenderer::make_order(Viewpoint const& now, bool still, FrameBudget& budget)
+FrameCommand LiveRenderer::make_order(Viewpoint const& now, bool still, FrameBudget& budget)
 {
     Settings const& s = session_.settings();
     budget = governor_.next(pixels_of(now.views), still, {s.paths, s.scale});
-    FrameOrder order;
+    FrameCommand order;
     order.frame = frame_++;
     order.pose_s = now.pose_s;
     order.display_s = now.display_s;
@@ -215,7 +215,7 @@ FrameOrder LiveRenderer::make_order(Viewpoint const& now, bool still, FrameBudge
     order.others = now.others;
     order.changes = std::exchange(changes_, {});
     order.views = now.views;
-    for (ViewOrder& v : order.views) {
+    for (ViewCommand& v : order.views) {
         v.width = std::max(1, int(std::lround(v.width * budget.scale)));
         v.height = std::max(1, int(std::lround(v.height * budget.scale)));
     }
@@ -256,7 +256,7 @@ void LiveRenderer::run_leading()
         }
         choose_followed(scene_may_move(now));
         FrameBudget budget;
-        FrameOrder order = make_order(now, still, budget);
+        FrameCommand order = make_order(now, still, budget);
         if (link_ != nullptr) link_->send(order);
         {
             std::lock_guard const lock(mutex_);
@@ -273,7 +273,7 @@ void LiveRenderer::run_leading()
 void LiveRenderer::run_following()
 {
     while (!quit_) {
-        std::optional<FrameOrder> order = link_->receive();
+        std::optional<FrameCommand> order = link_->receive();
         if (!order) return;
         for (Change const& c : order->changes) session_.apply(c);
         render(std::move(*order), {});
@@ -287,10 +287,10 @@ void LiveRenderer::measure(FrameWork const& work, FrameBudget const& budget)
     governor_.measured({last_.paths, budget.scale}, pixels_of(last_views_) / (budget.scale * budget.scale),
                        work.seconds, s.rate_hz);
     if (s.method == "slhb" && s.schedule == "auto")
-        follow_governor_.measured({work.following, work.moved, s.rate_hz});
+        follow_governor_.measured({work.dynamic_update, work.moved, s.rate_hz});
 }
 
-bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
+bool LiveRenderer::render(FrameCommand order, FrameBudget const& budget)
 {
     auto frame = std::make_shared<LiveFrame>();
     frame->begun_s = clock_.now_s();
@@ -324,14 +324,14 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
     last_ = order;
     has_last_ = true;
     frame->order = std::move(order);
-    FrameWork const own{frame->done_s - frame->begun_s, frame->result.following, frame->result.moved};
+    FrameWork const own{frame->done_s - frame->begun_s, frame->result.dynamic_update, frame->result.moved};
     if (done && link_ == nullptr) measure(own, budget);
-    if (!frame->result.views.empty()) stored_ = own.following.stored;
+    if (!frame->result.views.empty()) stored_ = own.dynamic_update.stored;
     if (Settings const& s = frame->settings; s.method == "slhb")
-        frame->schedule = schedule_sentence(s.schedule, s.followed, stored_, follow_governor_.share_of_all());
+        frame->schedule = schedule_sentence(s.schedule, s.updated_axes, stored_, follow_governor_.share_of_all());
     if (done && hooks_.finished) hooks_.finished(*frame);
     if (!done) return false;
-    FrameOrder const shown = frame->order;
+    FrameCommand const shown = frame->order;
     {
         std::lock_guard const lock(mutex_);
         newest_ = std::move(frame);
@@ -340,7 +340,7 @@ bool LiveRenderer::render(FrameOrder order, FrameBudget const& budget)
     if (hooks_.published) hooks_.published();
     if (link_ == nullptr) return true;
     FrameWork const slowest = link_->wait_for_all(shown, own);
-    if (shown.views.empty()) stored_ = slowest.following.stored; // this rank has no hit buffers of its own
+    if (shown.views.empty()) stored_ = slowest.dynamic_update.stored; // this rank has no hit buffers of its own
     if (link_->leads()) measure(slowest, budget);
     return true;
 }

@@ -6,9 +6,9 @@
 // has kConvergedPaths per pixel, and rests. A change of the point of view while it refines ends the frame at hand
 // after its next path.
 
-#include "viewer/engine/follow_governor.h"
 #include "viewer/engine/governor.h"
-#include "viewer/engine/session.h"
+#include "viewer/engine/render_session.h"
+#include "viewer/engine/update_governor.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -37,13 +37,13 @@ struct Viewpoint {
     double pose_s = 0, display_s = 0; ///< session clock
     gi::dmat4 world_from_room{1};
     Tracked tracked;
-    std::vector<Tracked> others;  ///< as in FrameOrder
-    std::vector<ViewOrder> views; ///< at full size
+    std::vector<Tracked> others;    ///< as in FrameCommand
+    std::vector<ViewCommand> views; ///< at full size
 };
 
 struct LiveFrame {
-    FrameOrder order;               ///< with the views that were rendered here
-    std::vector<ViewOrder> ordered; ///< where these are not all of them: all
+    FrameCommand order;               ///< with the views that were rendered here
+    std::vector<ViewCommand> ordered; ///< where these are not all of them: all
     SessionFrame result;
     FrameBudget budget;
     double begun_s = 0, done_s = 0; ///< session clock
@@ -57,7 +57,7 @@ inline constexpr std::uint32_t kConvergedPaths = 4096;
 /// What a frame was to those who rendered it.
 struct FrameWork {
     double seconds = 0;
-    gi::Following following{};
+    gi::DynamicUpdate dynamic_update{};
     bool moved = false; ///< something in the scene
 };
 
@@ -69,14 +69,14 @@ public:
     virtual void begin() = 0;
     virtual void end() = 0;
     virtual bool leads() const = 0;
-    virtual void send(FrameOrder const& order) = 0;
+    virtual void send(FrameCommand const& order) = 0;
     /// Empty at the end.
-    virtual std::optional<FrameOrder> receive() = 0;
+    virtual std::optional<FrameCommand> receive() = 0;
     /// While there is nothing to render, now and then: throws where a rank was lost that cannot be done without.
     virtual void check() = 0;
     /// Returns when all have drawn the frame and may swap. @param own  of this rank
     /// @return of the leader: of the ranks that took longest, for the whole and for what follows; else `own`
-    virtual FrameWork wait_for_all(FrameOrder const& order, FrameWork const& own) = 0;
+    virtual FrameWork wait_for_all(FrameCommand const& order, FrameWork const& own) = 0;
     /// From the thread that shows frames: it is drawn; returns when all may swap.
     virtual void drawn(std::uint64_t frame) = 0;
     virtual void swapped(std::uint64_t frame, double steady_s) = 0;
@@ -89,17 +89,17 @@ public:
         std::function<void(LiveFrame const&)> finished; ///< before anyone sees it
         std::function<void()> published;                ///< there is a newer frame
         std::function<void(std::string const&)> failed; ///< a frame could not be rendered; it goes on
-        std::function<std::vector<ViewOrder>(FrameOrder const&)> own_views; ///< of a rank; empty = as ordered
+        std::function<std::vector<ViewCommand>(FrameCommand const&)> own_views; ///< of a rank; empty = as ordered
     };
 
     /// @param session, clock, link  outlive it; link may be null
-    LiveRenderer(Session& session, SessionClock const& clock, FrameLink* link, Hooks hooks);
+    LiveRenderer(RenderSession& session, SessionClock const& clock, FrameLink* link, Hooks hooks);
     ~LiveRenderer();
 
     /// From any thread. `done` is called on the rendering thread with what was wrong, or empty.
     void post(Change change, std::function<void(std::string const& error)> done = {});
     /// Called with the session between two frames.
-    void ask(std::function<void(Session&)> question);
+    void ask(std::function<void(RenderSession&)> question);
     void look(Viewpoint viewpoint);
     /// One more frame, also where nothing has changed.
     void again();
@@ -125,11 +125,11 @@ private:
     bool anything_moves(Viewpoint const& now) const;
     void choose_followed(bool may_move);
     void measure(FrameWork const& work, FrameBudget const& budget);
-    FrameOrder make_order(Viewpoint const& now, bool still, FrameBudget& budget);
-    bool render(FrameOrder order, FrameBudget const& budget);
+    FrameCommand make_order(Viewpoint const& now, bool still, FrameBudget& budget);
+    bool render(FrameCommand order, FrameBudget const& budget);
     void wait_until(double time_s);
 
-    Session& session_;
+    RenderSession& session_;
     SessionClock const& clock_;
     FrameLink* link_;
     Hooks hooks_;
@@ -146,11 +146,11 @@ private:
 
     // Of the rendering thread
     Governor governor_;
-    FollowGovernor follow_governor_;
+    UpdateGovernor follow_governor_;
     int stored_ = 0; ///< directions, where a frame was measured last
     std::vector<Change> changes_;
-    FrameOrder last_;
-    std::vector<ViewOrder> last_views_; ///< all that were ordered
+    FrameCommand last_;
+    std::vector<ViewCommand> last_views_; ///< all that were ordered
     bool has_last_ = false;
     double scene_s_ = 0, last_begun_s_ = 0;
     std::uint64_t frame_ = 0;

@@ -50,7 +50,7 @@ private:
     double speed_m_s_ = 1;
     NavigationMode mode_ = NavigationMode::fly;
     std::shared_ptr<Ground const> ground_;
-    std::optional<Standing> standing_; ///< while walking, from the first step on
+    std::optional<WalkStance> standing_; ///< while walking, from the first step on
     double eye_height_m_ = 1.6;
 };
 

@@ -13,14 +13,14 @@ constexpr double kStep_m = 0.1, kAbove_m = 0.02, kHeadroom_m = 0.1, kDeepest_m =
 constexpr dvec3 kDown{0, -1, 0}, kUp{0, 1, 0};
 
 /// Heights of the body that meet walls: above what is climbed, and of the eyes.
-std::array<double, 3> heights(Standing const& s, WalkLimits const& limits)
+std::array<double, 3> heights(WalkStance const& s, WalkLimits const& limits)
 {
     double const knee = std::min(limits.climb_m + kAbove_m, s.eye_m);
     return {knee, 0.5 * (knee + s.eye_m), s.eye_m};
 }
 
 /// Away from walls that are nearer than the body is wide.
-dvec3 pushed_out(Ground const& ground, dvec3 foot, Standing const& body, WalkLimits const& limits)
+dvec3 pushed_out(Ground const& ground, dvec3 foot, WalkStance const& body, WalkLimits const& limits)
 {
     constexpr int kAround = 8;
     for (int k = 0; k < kAround; ++k) {
@@ -38,7 +38,7 @@ dvec3 pushed_out(Ground const& ground, dvec3 foot, Standing const& body, WalkLim
     return foot;
 }
 
-bool is_free(Ground const& ground, dvec3 from, dvec3 to, Standing const& body, WalkLimits const& limits)
+bool is_free(Ground const& ground, dvec3 from, dvec3 to, WalkStance const& body, WalkLimits const& limits)
 {
     double const far = glm::distance(from, to);
     if (far == 0) return true;
@@ -49,22 +49,22 @@ bool is_free(Ground const& ground, dvec3 from, dvec3 to, Standing const& body, W
 
 } // namespace
 
-std::optional<Standing> stand_below(Ground const& ground, dvec3 eyes, double eye_height_m)
+std::optional<WalkStance> stand_below(Ground const& ground, dvec3 eyes, double eye_height_m)
 {
     auto const floor = ground.touch(eyes, kDown, kDeepest_m);
     if (!floor) return std::nullopt;
-    Standing s{eyes + floor->distance_m * kDown, eye_height_m};
+    WalkStance s{eyes + floor->distance_m * kDown, eye_height_m};
     if (auto const ceiling = ground.touch(s.foot + 0.01 * kUp, kUp, eye_height_m + kHeadroom_m))
         s.eye_m = std::min(eye_height_m, std::max(0.5 * ceiling->distance_m, ceiling->distance_m - kHeadroom_m));
     return s;
 }
 
-Standing walk(Ground const& ground, Standing const& from, dvec3 way_m, WalkLimits const& limits)
+WalkStance walk(Ground const& ground, WalkStance const& from, dvec3 way_m, WalkLimits const& limits)
 {
     way_m.y = 0;
     double const far = glm::length(way_m);
     int const steps = int(std::ceil(far / kStep_m));
-    Standing now = from;
+    WalkStance now = from;
     for (int i = 0; i < steps; ++i) {
         dvec3 next = pushed_out(ground, now.foot + way_m / double(steps), now, limits);
         if (!is_free(ground, now.foot, next, now, limits)) break;

@@ -13,18 +13,18 @@ struct WalkLimits {
 };
 
 /// A body that stands.
-struct Standing {
+struct WalkStance {
     gi::dvec3 foot{0}; ///< on the floor, m, absolute
     double eye_m = 0;  ///< height of the eyes above it
 };
 
 /// The floor below a place, however far; none = nothing is below. Under a ceiling that is too low the eyes are 0.1
 /// m below it.
-std::optional<Standing> stand_below(Ground const& ground, gi::dvec3 eyes, double eye_height_m);
+std::optional<WalkStance> stand_below(Ground const& ground, gi::dvec3 eyes, double eye_height_m);
 
 /// One way on the level from there, in steps of 0.1 m: along walls where they are in the way, up and down what
 /// the limits allow, to the edge of what they do not; where the ceiling is lower than the body it ends too. Walls
 /// lower than climb_m are floor.
-Standing walk(Ground const& ground, Standing const& from, gi::dvec3 way_m, WalkLimits const& limits = {});
+WalkStance walk(Ground const& ground, WalkStance const& from, gi::dvec3 way_m, WalkLimits const& limits = {});
 
 } // namespace viewer

@@ -58,16 +58,16 @@ void Cluster::check()
     if (!alone()) state_->pump();
 }
 
-void Cluster::send(FrameOrder const& order)
+void Cluster::send(FrameCommand const& order)
 {
     if (alone()) return;
     std::vector<std::uint8_t> const bytes = to_bytes(order);
     state_->note_order(bytes);
     state_->pump();
-    state_->send_to_others(Writer(Say::order).append(bytes));
+    state_->send_to_others(Writer(MessageKind::order).append(bytes));
 }
 
-std::optional<FrameOrder> Cluster::receive()
+std::optional<FrameCommand> Cluster::receive()
 {
     if (alone()) return {};
     State& s = *state_;
@@ -80,7 +80,7 @@ std::optional<FrameOrder> Cluster::receive()
     std::vector<std::uint8_t> const bytes = std::move(s.orders.front());
     s.orders.pop_front();
     s.note_order(bytes);
-    return order_from_bytes(bytes);
+    return command_from_bytes(bytes);
 }
 
 std::vector<std::string> Cluster::wait(std::uint64_t frame, std::uint64_t check, std::string const& note)
@@ -90,7 +90,7 @@ std::vector<std::string> Cluster::wait(std::uint64_t frame, std::uint64_t check,
     std::uint64_t const mine = gi::mix_bits(s.orders_check ^ gi::mix_bits(check));
     std::string const what_for = fmt::format("before the swap of frame {}", frame);
     if (!leads()) {
-        Writer out(Say::arrived);
+        Writer out(MessageKind::arrived);
         s.last_go.answered_s = now_s();
         out.put(State::Arrival{frame, mine}).put(s.last_go).put(note);
         s.tell_swap(out);
@@ -116,7 +116,7 @@ std::vector<std::string> Cluster::wait(std::uint64_t frame, std::uint64_t check,
         else
             notes.push_back(std::move(s.peers[std::size_t(r)].note));
     }
-    s.send_to_others(Writer(Say::go).put(frame).put(now_s()));
+    s.send_to_others(Writer(MessageKind::go).put(frame).put(now_s()));
     return notes;
 }
 
@@ -143,7 +143,7 @@ void Cluster::give(std::vector<std::uint8_t> bytes)
     s.await([&s] { return s.wants > 0; }, [](int who) { return who == 0; }, s.settings.silence_s,
             "while it took what this rank had made");
     --s.wants;
-    s.send(0, std::move(Writer(Say::data).append(bytes)));
+    s.send(0, std::move(Writer(MessageKind::data).append(bytes)));
     s.await([&s] { return s.messenger->sent_all(0); }, [](int who) { return who == 0; }, s.settings.silence_s,
             "while it took what this rank had made");
 }
@@ -153,7 +153,7 @@ std::optional<std::vector<std::uint8_t>> Cluster::take(int from)
     State& s = *state_;
     State::Peer& p = s.peers[std::size_t(from)];
     if (!s.living(from)) return {};
-    s.send(from, Writer(Say::want));
+    s.send(from, Writer(MessageKind::want));
     s.await([&] { return !p.data.empty() || !s.living(from); }, [from](int who) { return who == from; },
             s.settings.silence_s, "while its part was waited for");
     if (p.data.empty()) return {};
@@ -168,15 +168,15 @@ void Cluster::finish()
     if (alone() || s.over) return;
     auto const others = s.other_ranks();
     if (leads()) {
-        s.send_to_others(Writer(Say::end));
+        s.send_to_others(Writer(MessageKind::end));
         auto const is_missing = [&s](int r) { return s.living(r) && !s.peers[std::size_t(r)].said_goodbye; };
         s.await([&] { return std::none_of(others.begin(), others.end(), is_missing); }, is_missing,
                 s.settings.silence_s, "at the end");
         // From here on nobody dies: the last message tells whether all may wait for each other in MPI_Finalize.
-        s.send_to_others(Writer(Say::go).put(std::uint64_t(s.others_living())).put(now_s()));
+        s.send_to_others(Writer(MessageKind::go).put(std::uint64_t(s.others_living())).put(now_s()));
     } else {
         s.await([&s] { return s.is_ended; }, [](int who) { return who == 0; }, s.settings.silence_s, "at the end");
-        Writer out(Say::goodbye);
+        Writer out(MessageKind::goodbye);
         s.tell_swap(out);
         s.gone.reset();
         s.is_leaving = true;
@@ -196,7 +196,7 @@ void Cluster::leave(std::string const& why)
     if (alone() || s.over) return;
     s.over = true;
     if (!s.broken.empty()) return; // they know, or have left
-    s.send_to_others(Writer(Say::leaves).put(why));
+    s.send_to_others(Writer(MessageKind::leaves).put(why));
     std::vector<int> rest;
     for (int r : s.other_ranks())
         if (s.living(r)) rest.push_back(r);

@@ -12,7 +12,7 @@
 //   follower   receive()    render  wait(frame)  swap  report_swap(frame, now_s())  ...  until receive() is empty
 
 #include "viewer/protocol/cluster/swap_log.h"
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 #include <functional>
 #include <memory>
@@ -75,9 +75,9 @@ public:
 
     // Frames.
     /// Leader: to all others.
-    void send(FrameOrder const& order);
+    void send(FrameCommand const& order);
     /// Follower: waits for the next order. Nothing: the leader has finished, and so have we.
-    std::optional<FrameOrder> receive();
+    std::optional<FrameCommand> receive();
     /// Before the swap: until all ranks are there. All orders so far are compared by a hash; a rank that got
     /// others is lost. @param check of what was made of them, where there is such a thing; compared likewise
     /// @param note  for the leader: bytes, as short as possible  @return of the leader: the notes of others

@@ -74,7 +74,7 @@ void Cluster::State::compare_identities()
     }
     if (problem.empty()) return;
     std::vector<int> const others = other_ranks();
-    send_to_others(Writer(Say::refused).put(problem).put(why).put(suggestion));
+    send_to_others(Writer(MessageKind::refused).put(problem).put(why).put(suggestion));
     messenger->flush(others, 0.5);
     broken = problem;
     throw gi::InputError(problem, why, suggestion);
@@ -86,7 +86,7 @@ void Cluster::State::measure_clocks()
     for (int r : other_ranks())
         for (int k = 0; k < kPings && living(r); ++k) {
             int const before = pongs;
-            send(r, Writer(Say::ping).put(now_s()));
+            send(r, Writer(MessageKind::ping).put(now_s()));
             await([&] { return pongs > before || !living(r); }, [r](int who) { return who == r; },
                   settings.silence_s, "while clocks were compared");
         }
@@ -96,7 +96,7 @@ void Cluster::State::start()
 {
     if (!messenger) return;
     if (!leads()) {
-        Writer out(Say::hello);
+        Writer out(MessageKind::hello);
         out.put(kWire).put(peers[std::size_t(rank)].host);
         put(out, here);
         send(0, std::move(out.put(identity.program).put(identity.work).put(identity.content)));
@@ -111,7 +111,7 @@ void Cluster::State::start()
         [this](int who) { return !peers[std::size_t(who)].there; }, settings.start_s, "while ranks started");
     compare_identities();
     measure_clocks();
-    Writer out(Say::started);
+    Writer out(MessageKind::started);
     for (Peer const& p : peers) {
         out.put(p.host);
         put(out, p.process);

@@ -95,8 +95,9 @@ void Cluster::State::lose(int r, std::string const& how)
     if (!leads() && is_leaving) return; // the leader knew that all was done
     if (!leads()) stop(text + "; it led, so nothing can go on");
     bool const stops = settings.on_loss == OnRankLoss::stop;
-    messenger->send(r, Writer(Say::stop).put(text + "; this one was left behind").take());
-    send_to_others(stops ? Writer(Say::stop).put(text) : Writer(Say::lost).put(std::int32_t(r)).put(text));
+    messenger->send(r, Writer(MessageKind::stop).put(text + "; this one was left behind").take());
+    send_to_others(stops ? Writer(MessageKind::stop).put(text)
+                         : Writer(MessageKind::lost).put(std::int32_t(r)).put(text));
     if (!stops) {
         news.push_back(text + "; the others go on");
         return;
@@ -136,9 +137,9 @@ void Cluster::State::show_life()
     if (now - lived_s < std::min(1.0, settings.silence_s / 5)) return;
     lived_s = now;
     if (leads())
-        send_to_others(Writer(Say::alive));
+        send_to_others(Writer(MessageKind::alive));
     else if (living(0))
-        send(0, Writer(Say::alive));
+        send(0, Writer(MessageKind::alive));
 }
 
 void Cluster::State::take_messages()
@@ -189,71 +190,71 @@ void Cluster::State::handle(Message const& message)
 {
     Reader in(message.bytes);
     Peer& from = peers[std::size_t(message.from)];
-    switch (in.get<Say>()) {
-    case Say::hello:
+    switch (in.get<MessageKind>()) {
+    case MessageKind::hello:
         return hello(message.from, in);
-    case Say::refused: {
+    case MessageKind::refused: {
         std::string const problem = in.text(), why = in.text(), suggestion = in.text();
         broken = problem;
         throw gi::InputError(problem, why, suggestion);
     }
-    case Say::started:
+    case MessageKind::started:
         return started(in);
-    case Say::ping: {
+    case MessageKind::ping: {
         Echo echo;
         echo.sent_s = in.get<double>();
         echo.received_s = echo.answered_s = now_s();
-        return send(0, Writer(Say::pong).put(echo));
+        return send(0, Writer(MessageKind::pong).put(echo));
     }
-    case Say::pong:
+    case MessageKind::pong:
         from.clock.add(in.get<Echo>(), now_s());
         ++pongs;
         return;
-    case Say::order: {
+    case MessageKind::order: {
         auto const bytes = in.rest();
         orders.emplace_back(bytes.begin(), bytes.end());
         return;
     }
-    case Say::arrived: {
+    case MessageKind::arrived: {
         from.arrival = in.get<Arrival>();
         Echo const echo = in.get<Echo>();
         if (echo.sent_s > 0) from.clock.add(echo, now_s());
         from.note = in.text();
         return swap_of(message.from, in);
     }
-    case Say::go:
+    case MessageKind::go:
         gone = in.get<std::uint64_t>();
         last_go = {in.get<double>(), now_s(), 0};
         return;
-    case Say::alive:
+    case MessageKind::alive:
         return;
-    case Say::want:
+    case MessageKind::want:
         ++wants;
         return;
-    case Say::data: {
+    case MessageKind::data: {
         auto const bytes = in.rest();
         from.data.emplace_back(bytes.begin(), bytes.end());
         return;
     }
-    case Say::lost: {
+    case MessageKind::lost: {
         peers.at(std::size_t(in.get<std::int32_t>())).lost = true;
         news.push_back(in.text() + "; the others go on");
         return;
     }
-    case Say::stop: {
-        Writer out(Say::goodbye);
+    case MessageKind::stop: {
+        Writer out(MessageKind::goodbye);
         tell_swap(out);
         send(message.from, std::move(out));
         int const to[] = {message.from};
         messenger->flush(to, 0.5);
         stop(in.text());
     }
-    case Say::leaves:
+    case MessageKind::leaves:
         return lose(message.from, "ended early: " + in.text());
-    case Say::end:
+    case MessageKind::end:
         is_ended = true;
         return;
-    case Say::goodbye:
+    case MessageKind::goodbye:
         from.said_goodbye = true;
         return swap_of(message.from, in);
     }

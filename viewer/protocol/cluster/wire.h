@@ -12,13 +12,13 @@
 
 namespace viewer {
 
-enum class Say : std::uint8_t {
+enum class MessageKind : std::uint8_t {
     hello,   ///< follower: who it is
     refused, ///< leader: it does not fit, and why
     started, ///< leader: all are there; their names
     ping,    ///< leader: Stamp
     pong,    ///< follower: Echo
-    order,   ///< leader: to_bytes of a FrameOrder
+    order,   ///< leader: to_bytes of a FrameCommand
     arrived, ///< follower: is ready to swap; and a note
     go,      ///< leader: all are ready to swap
     alive,   ///< somebody who waits or works
@@ -40,7 +40,7 @@ struct Echo {
 
 class Writer {
 public:
-    explicit Writer(Say kind) { put(kind); }
+    explicit Writer(MessageKind kind) { put(kind); }
     template <class T>
     Writer& put(T const& value)
     {

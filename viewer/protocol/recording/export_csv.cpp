@@ -97,7 +97,7 @@ private:
     std::string text_;
 };
 
-void add_view(Row& row, ViewOrder const& v)
+void add_view(Row& row, ViewCommand const& v)
 {
     gi::Camera const& c = v.camera;
     row.add(v.name);
@@ -122,7 +122,7 @@ void add_tracked(Row& row, Tracked const& tracked)
 
 std::string row_of(RecordedFrame const& f, Most const& most)
 {
-    FrameOrder const& o = f.order;
+    FrameCommand const& o = f.order;
     Row row;
     row.add(std::to_string(o.frame));
     for (double const t : {o.pose_s, o.display_s, o.scene_s}) row.add(t);
@@ -138,7 +138,7 @@ std::string row_of(RecordedFrame const& f, Most const& most)
     row.add(room.scale);
     add_tracked(row, o.tracked);
     for (std::size_t i = 0; i < most.others; ++i) add_tracked(row, i < o.others.size() ? o.others[i] : Tracked{});
-    for (ViewOrder const& v : o.views) add_view(row, v);
+    for (ViewCommand const& v : o.views) add_view(row, v);
     row.add_empty(int(most.views - o.views.size()) * 15);
     return row.text();
 }

@@ -9,7 +9,7 @@
 // number of frames, where the recording was closed in order. Frames count up. A file is read up to the first
 // record that is not whole: what a killed process leaves is a recording without a last record.
 
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 #include "viewer/protocol/recording/append_file.h"
 #include "viewer/protocol/recording/frame_times.h"
 
@@ -29,7 +29,7 @@ struct RecordingHeader {
 };
 
 struct RecordedFrame {
-    FrameOrder order;
+    FrameCommand order;
     std::optional<std::uint64_t> pixel_hash; ///< see pixel_hash.h
     std::optional<FrameTimes> times;
 
@@ -43,7 +43,7 @@ public:
     Recorder(std::filesystem::path const& file, RecordingHeader header, gi::Report& report);
     ~Recorder();
 
-    /// Does not wait for the disk. Throws InputError on an order that check_order refuses or whose number is not
+    /// Does not wait for the disk. Throws InputError on an order that check_command refuses or whose number is not
     /// above the one before.
     void append(RecordedFrame const& frame);
     /// Why nothing is recorded any more (a full disk); empty = all is well.

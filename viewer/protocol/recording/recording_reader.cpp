@@ -40,7 +40,7 @@ RecordedFrame frame_of(Bytes const& payload)
     if (flags > 3) throw BadBytes("a frame holds something unknown");
     if ((flags & 1) != 0) f.pixel_hash = from.u64();
     if ((flags & 2) != 0) f.times = get_frame_times(from);
-    f.order = order_from_bytes(from.take(from.left()));
+    f.order = command_from_bytes(from.take(from.left()));
     if (f.times) {
         f.times->frame = f.order.frame;
         f.times->pose_s = f.order.pose_s;

@@ -95,22 +95,22 @@ void AxisSet::build(std::vector<NewAxis> const& axes)
     moved_ = true;
 }
 
-void AxisSet::move(std::span<std::uint8_t const> followed)
+void AxisSet::move(std::span<std::uint8_t const> updated)
 {
     if (source_.first_moving >= source_.soup.count) return;
     bool const moved = std::exchange(moved_, false);
     if (source_.elsewhere) {
         if (moved) std::ranges::fill(stale_, 1);
         for (std::size_t a = 0; a < stale_.size(); ++a)
-            if (followed[a] != 0 && stale_[a] != 0) build_elsewhere(a);
+            if (updated[a] != 0 && stale_[a] != 0) build_elsewhere(a);
         return;
     }
     if (moved) moving_.moved();
     lost_ += moving_.append({source_.soup, source_.first_moving, source_.cut_outs, source_.most_layers},
-                            cut_seeds_, followed, pool_);
+                            cut_seeds_, updated, pool_);
 }
 
-void AxisSet::follow()
+void AxisSet::update_axes()
 {
     some_ = false;
     move(std::vector<std::uint8_t>(cut_seeds_.size(), 1));
@@ -122,12 +122,12 @@ std::size_t AxisSet::follow_some(std::uint32_t sequences, std::uint32_t count, s
     auto const parts = std::uint32_t(
         count == 0 ? 1 : std::max(n / std::min<std::size_t>(count, n), (n + FewAxes::kMost - 1) / FewAxes::kMost));
     if (parts == 1) {
-        follow();
+        update_axes();
         return cut_seeds_.size();
     }
     some_ = true;
     few_.assign(sequences, {});
-    std::vector<std::uint8_t> followed(n, 0);
+    std::vector<std::uint8_t> updated(n, 0);
     for (std::uint32_t s = 0; s < sequences; ++s) {
         // Every n-th axis: those of a subdivided solid are ordered by place, so each part is spread over all.
         std::vector<std::uint32_t> order(parts);
@@ -138,11 +138,11 @@ std::size_t AxisSet::follow_some(std::uint32_t sequences, std::uint32_t count, s
         for (std::size_t a = order[turn % parts]; a < n; a += parts) ++few.count;
         for (std::size_t k = 0, a = order[turn % parts]; a < n; a += parts, ++k) {
             few.set(k, tables_.axes[a], tables_.solid_angles[a] * float(parts * few.count) / (2 * kPi), a);
-            followed[a] = 1;
+            updated[a] = 1;
         }
     }
-    move(followed);
-    return std::size_t(std::ranges::count(followed, 1));
+    move(updated);
+    return std::size_t(std::ranges::count(updated, 1));
 }
 
 void AxisSet::store(DirectionSet const& directions)

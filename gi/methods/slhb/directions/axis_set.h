@@ -109,7 +109,7 @@ public:
     /// What moves is elsewhere: follow() puts it into the axes as it is now. Not with packed layers.
     void moved() { moved_ = true; }
     /// Puts what moves into all axes that there are, where they are new or something has moved.
-    void follow();
+    void update_axes();
     /// Of stored axes only some, and paths take no others: for each of `sequences` bounces one part of the set of
     /// about `count` axes (up to FewAxes::kMost), in random order all parts in successive turns. The mean over
     /// the parts is what all axes would bring. @param count  0 = all
@@ -155,7 +155,7 @@ private:
     };
     void build(std::vector<NewAxis> const& axes);
     void build_elsewhere(std::size_t axis);
-    void move(std::span<std::uint8_t const> followed);
+    void move(std::span<std::uint8_t const> updated);
 
     Source source_;
     std::vector<HitBuffer> buffers_;

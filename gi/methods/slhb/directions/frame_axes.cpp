@@ -14,7 +14,7 @@ void FrameAxes::make(AxisSet::Source source, bool walks)
 {
     if (set_) earlier_ = {earlier_.built + set_->built(), earlier_.layers + set_->layers(), lost()};
     walks_ = walks;
-    following_ = {};
+    dynamic_update_ = {};
     moves_ = source.first_moving < source.soup.count;
     // Streamed axes are built in every pass anyway, of all that there is.
     if (slhb_.schedule == Schedule::streamed) source.first_moving = source.soup.count;
@@ -56,14 +56,14 @@ void FrameAxes::prepare(int surfaces, std::uint32_t index)
             } catch (HitBuffersTooLarge const&) {
                 make_smaller();
             }
-        set_->follow();
+        set_->update_axes();
         return;
     }
     auto const begun = std::chrono::steady_clock::now();
-    std::size_t const axes = set_->follow_some(sequences, slhb_.gather ? 0 : followed_, frames_);
+    std::size_t const axes = set_->follow_some(sequences, slhb_.gather ? 0 : updated_axes_, frames_);
     double const s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-    if (!std::exchange(follows_, true)) following_ = {0, int(axes), int(sequences), 0};
-    following_.seconds += s;
+    if (!std::exchange(follows_, true)) dynamic_update_ = {0, int(axes), int(sequences), 0};
+    dynamic_update_.seconds += s;
 }
 
 void FrameAxes::end_frame()
@@ -80,9 +80,9 @@ void FrameAxes::report_work() const
     report_.count("layers per texel, mean", axes > 0 ? layers / axes / texels : 0);
 }
 
-Following FrameAxes::following() const
+DynamicUpdate FrameAxes::dynamic_update() const
 {
-    Following f = following_;
+    DynamicUpdate f = dynamic_update_;
     if (walks_ && stored()) f.stored = int(set_->tables().axes.size());
     return f;
 }

@@ -23,8 +23,8 @@ public:
     void end_frame();
 
     /// See SlhbRenderer.
-    void follow(std::uint32_t axes) { followed_ = axes; }
-    Following following() const;
+    void update_axes(std::uint32_t axes) { updated_axes_ = axes; }
+    DynamicUpdate dynamic_update() const;
 
     bool walks() const { return walks_; }
     AxisSet& set() { return *set_; }
@@ -44,10 +44,10 @@ private:
 
     std::optional<AxisSet::Source> source_;
     std::optional<AxisSet> set_;
-    bool walks_ = false, moves_ = false;      ///< something may move
-    std::uint32_t followed_ = 0, frames_ = 0; ///< axes of a bounce, 0 = all; so far
-    Following following_;                     ///< in this frame
-    bool follows_ = false;                    ///< and it has in this frame
+    bool walks_ = false, moves_ = false;          ///< something may move
+    std::uint32_t updated_axes_ = 0, frames_ = 0; ///< axes of a bounce, 0 = all; so far
+    DynamicUpdate dynamic_update_;                ///< in this frame
+    bool follows_ = false;                        ///< and it has in this frame
     struct {
         std::uint64_t built = 0, layers = 0, lost = 0;
     } earlier_;

@@ -86,8 +86,8 @@ struct Agreed {
 };
 
 /// Follows all starts along one axis. @return what they meet
-std::vector<Start> follow(std::vector<Start> const& starts, HitBuffer const& buffer, View<Surface const> surfaces,
-                          Agreed& sums)
+std::vector<Start> continue_paths(std::vector<Start> const& starts, HitBuffer const& buffer,
+                                  View<Surface const> surfaces, Agreed& sums)
 {
     AxisView const axis{{view(buffer), {}}};
     vec3 const along = buffer.grid.axis;
@@ -125,8 +125,8 @@ double look_up_agreement(World const& world, TriangleSoup const& soup, CameraRay
         std::ranges::nth_element(distances, middle);
         if (buffers[0].grid.texel > kLargeTexel * *middle) return 0;
     }
-    std::vector<Start> const met = follow(seen, buffers[0], view(world).surfaces, sums);
-    follow(met, buffers[1], view(world).surfaces, sums);
+    std::vector<Start> const met = continue_paths(seen, buffers[0], view(world).surfaces, sums);
+    continue_paths(met, buffers[1], view(world).surfaces, sums);
     return sums.asked > 0 ? double(sums.agreed) / double(sums.asked) : 1;
 }
 

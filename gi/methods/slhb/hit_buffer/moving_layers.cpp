@@ -60,12 +60,12 @@ void MovingLayers::merge(Source const& source, std::uint32_t cut_seed, AxisPool 
 }
 
 std::uint64_t MovingLayers::append(Source const& source, std::span<std::uint32_t const> cut_seeds,
-                                   std::span<std::uint8_t const> followed, AxisPool& pool)
+                                   std::span<std::uint8_t const> updated, AxisPool& pool)
 {
     axes_.resize(pool.size());
     bool changes = static_layers_ == kNone;
     for (std::size_t a = 0; a < axes_.size(); ++a)
-        changes |= !axes_[a].current && (followed[a] != 0 || !axes_[a].texels.empty());
+        changes |= !axes_[a].current && (updated[a] != 0 || !axes_[a].texels.empty());
     if (!changes) return 0;
     auto const set = [&](std::size_t a, std::size_t k, LayerRange r) {
         pool.ranges[pool.first_offset[a] + axes_[a].texels[k]] = r;
@@ -92,7 +92,7 @@ std::uint64_t MovingLayers::append(Source const& source, std::span<std::uint32_t
         Axis& axis = axes_[a];
         axis.lost = 0;
         if (axis.current) return;
-        axis.current = followed[a] != 0;
+        axis.current = updated[a] != 0;
         if (axis.current) {
             merge(source, cut_seeds[a], pool, a, axis);
         } else {

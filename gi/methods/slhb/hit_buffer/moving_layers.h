@@ -26,7 +26,7 @@ public:
     /// @return layers that were lost: beyond most_layers, in columns that something moving is in
     /// Throws InputError where 32-bit indices do not suffice.
     std::uint64_t append(Source const& source, std::span<std::uint32_t const> cut_seeds,
-                         std::span<std::uint8_t const> followed, AxisPool& pool);
+                         std::span<std::uint8_t const> updated, AxisPool& pool);
     /// No axis has it as it is now.
     void moved()
     {

@@ -76,15 +76,15 @@ void KernelRenderer<S>::make_axes()
 template <Space S>
 void KernelRenderer<S>::make_lamps()
 {
-    if (lamps_) earlier_maps_ += lamps_->maps_built();
+    if (light_points_) earlier_maps_ += light_points_->maps_built();
     scene_.forget_lamps();
-    lamps_.emplace(world_, grid_bounds_, soup_, cut_outs_,
-                   LampSettings{.count = std::uint32_t(slhb_.lamps),
-                                .fresh = std::uint32_t(slhb_.fresh_lamps),
-                                .resolution = std::uint32_t(slhb_.shadow_resolution),
-                                .seed = settings_.seed,
-                                .first_moving = first_moving_},
-                   [this](Lamps::Elsewhere const& now) { scene_.draw_lamps(now); });
+    light_points_.emplace(world_, grid_bounds_, soup_, cut_outs_,
+                          LightPointSettings{.count = std::uint32_t(slhb_.light_samples),
+                                             .fresh = std::uint32_t(slhb_.fresh_light_samples),
+                                             .resolution = std::uint32_t(slhb_.shadow_resolution),
+                                             .seed = settings_.seed,
+                                             .first_moving = first_moving_},
+                          [this](LightPoints::DeviceDraw const& now) { scene_.draw_light_points(now); });
 }
 
 template <Space S>
@@ -98,18 +98,18 @@ void KernelRenderer<S>::changed(Changes const& c)
         }
         scene_.update(world_, soup_, c);
     }
-    bool axes = axes_.walks() != walks(), lamps = changes_lamps(c);
+    bool axes = axes_.walks() != walks(), light_points = changes_lamps(c);
     if (c.geometry) {
         if (grow(grid_bounds_, world_.bounds)) {
             if (slhb_.schedule != Schedule::streamed) // which is built anew in every pass
                 report_.lose("frames that left the bounds of the hit buffers, which were built anew");
-            axes = lamps = true; // the maps of parallel light hold the same bounds
+            axes = light_points = true; // the maps of parallel light hold the same bounds
         }
         axes_.set().moved();
-        lamps_->moved();
+        light_points_->moved();
     }
     if (axes) make_axes();
-    if (lamps) make_lamps();
+    if (light_points) make_lamps();
 }
 
 template <Space S>
@@ -147,7 +147,7 @@ void KernelRenderer<S>::prepare(std::uint32_t index)
     axes_.prepare(settings_.bounces + (meets_light() ? 1 : 0), index);
     {
         StageTimer const timer(report_, "shadow maps");
-        lamps_->refresh(index);
+        light_points_->refresh(index);
     }
     StageTimer const timer(report_, "G-buffer");
     for (View& v : views_) {
@@ -161,12 +161,12 @@ void KernelRenderer<S>::prepare(std::uint32_t index)
 }
 
 template <Space S>
-void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, Endings)
+void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing)
 {
     prepare(index);
     StageTimer const timer(report_, "paths");
     bool const smooth = smooth_somewhere(world_);
-    scene_.start_pass(axes_.set(), lamps_->fixed() ? lamps_->chances() : AliasTableView{});
+    scene_.start_pass(axes_.set(), light_points_->fixed() ? light_points_->chances() : AliasTableView{});
     for (std::size_t k = 0; k < views_.size(); ++k) {
         View const& v = views_[k];
         Accumulator& to = sums[k];
@@ -215,7 +215,7 @@ void KernelRenderer<S>::report_work() const
         report_.count("share of pixels not rendered", double(hidden_) / double(pixels_));
     }
     axes_.report_work();
-    report_.count("shadow maps built", double(earlier_maps_ + lamps_->maps_built()));
+    report_.count("shadow maps built", double(earlier_maps_ + light_points_->maps_built()));
 }
 
 template class KernelRenderer<Space::host>;

@@ -5,7 +5,7 @@
 //
 // Hit buffers are built of all that there is: where something has moved, those that paths take are built anew
 // (what moves is not appended to what stays, as on the CPU), and so are all shadow maps. Views take no light from
-// each other, and paths share no endings. What paths lack is in path_kernel.h.
+// each other, and paths share no vertices. What paths lack is in path_kernel.h.
 
 #include "gi/methods/slhb/directions/frame_axes.h"
 #include "gi/methods/slhb/hit_buffer/motion.h"
@@ -29,12 +29,12 @@ public:
 
     void end_frame();
     void changed(Changes const& changes);
-    void follow(std::uint32_t axes) { axes_.follow(axes); }
-    Following following() const { return axes_.following(); }
+    void update_axes(std::uint32_t axes) { axes_.update_axes(axes); }
+    DynamicUpdate dynamic_update() const { return axes_.dynamic_update(); }
     /// Throws InputError on orthographic cameras.
     void see(std::span<FrameView const> views);
     /// @param endings  of no account: each path finds its own
-    void pass(std::uint32_t index, std::span<Accumulator> sums, Endings endings = Endings::own);
+    void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::none);
     void add_motion(std::size_t view, Picture& picture) const;
     /// None is taken from a partner.
     std::span<std::uint32_t const> light_from(std::size_t) const { return {}; }
@@ -72,7 +72,7 @@ private:
     KernelScene<S> scene_;
     Bounds grid_bounds_; ///< of the hit buffers
     FrameAxes axes_;
-    std::optional<Lamps> lamps_;
+    std::optional<LightPoints> light_points_;
     EarlierCorners earlier_;
     std::uint64_t queries_ = 0, shadow_lookups_ = 0;
     std::uint64_t hidden_ = 0, pixels_ = 0; ///< not traced, as nobody sees them; all, in all passes

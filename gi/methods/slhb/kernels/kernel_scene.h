@@ -5,7 +5,7 @@
 #include "gi/methods/slhb/directions/axis_set.h"
 #include "gi/methods/slhb/hit_buffer/build_hit_buffer.h"
 #include "gi/methods/slhb/kernels/path_kernel.h"
-#include "gi/methods/slhb/lights/lamps.h"
+#include "gi/methods/slhb/lights/light_points.h"
 #include "gi/raster/draw_nearest.h"
 #include "gi/scene/model/world_on.h"
 
@@ -39,37 +39,39 @@ public:
         return {axes_[a].layers.size(), axes_[a].lost};
     }
 
-    void draw_lamps(Lamps::Elsewhere const& now)
+    void draw_light_points(LightPoints::DeviceDraw const& now)
     {
-        maps_.resize(now.lamps.size());
+        maps_.resize(now.light_points.size());
         for (std::size_t const k : now.drawn) {
-            Lamp const& lamp = now.lamps[k];
+            LightPoint const& light_point = now.light_points[k];
             for (std::size_t f = 0; f < 6; ++f) {
-                bool const empty = lamp.view.parallel ? f > 0 : sees_only_dark(lamp.view, lamp.shadow.faces[f]);
-                maps_[k][f] = empty                ? Buffer<NearestTexel, S>()
-                              : lamp.view.parallel ? draw(lamp.shadow.grid, now.seed)
-                                                   : draw(lamp.shadow.faces[f], now.seed);
+                bool const empty = light_point.view.parallel
+                                       ? f > 0
+                                       : sees_only_dark(light_point.view, light_point.shadow.faces[f]);
+                maps_[k][f] = empty                       ? Buffer<NearestTexel, S>()
+                              : light_point.view.parallel ? draw(light_point.shadow.grid, now.seed)
+                                                          : draw(light_point.shadow.faces[f], now.seed);
             }
         }
-        std::vector<LampView> views(now.lamps.size());
+        std::vector<LightPointView> views(now.light_points.size());
         for (std::size_t k = 0; k < views.size(); ++k) {
-            Lamp const& lamp = now.lamps[k];
-            views[k].choice = lamp.choice;
-            views[k].u = lamp.u;
+            LightPoint const& light_point = now.light_points[k];
+            views[k].choice = light_point.choice;
+            views[k].u = light_point.u;
             ShadowMapView& shadow = views[k].shadow;
-            shadow.parallel = lamp.view.parallel;
-            shadow.grid = lamp.shadow.grid;
+            shadow.parallel = light_point.view.parallel;
+            shadow.grid = light_point.shadow.grid;
             for (std::size_t f = 0; f < 6; ++f) {
-                shadow.faces[f] = lamp.shadow.faces[f];
+                shadow.faces[f] = light_point.shadow.faces[f];
                 shadow.maps[f] = std::as_const(maps_[k][f]).view().data;
             }
         }
-        lamps_ = upload<S>(views);
+        light_points_ = upload<S>(views);
     }
     void forget_lamps()
     {
         maps_.clear();
-        lamps_ = {};
+        light_points_ = {};
     }
 
     template <class Grid>
@@ -108,7 +110,7 @@ public:
         paths.world = world_.view();
         paths.axes = std::as_const(axis_views_).view();
         paths.choice = choice_;
-        paths.lamps = std::as_const(lamps_).view();
+        paths.light_points = std::as_const(light_points_).view();
         paths.chances = {std::as_const(chances_).view()};
         paths.samples = samples_.view();
         paths.counts = counts.view();
@@ -141,7 +143,7 @@ private:
     Buffer<float, S> solid_angles_;
     AxisChoice choice_;
     std::vector<std::array<Buffer<NearestTexel, S>, 6>> maps_; ///< per lamp, its faces
-    Buffer<LampView, S> lamps_;
+    Buffer<LightPointView, S> light_points_;
     Buffer<PathSample, S> samples_;
     PathKernelCounts counts_;
 };

@@ -22,7 +22,7 @@
 namespace gi {
 
 /// A Lamp that kernels can see.
-struct LampView {
+struct LightPointView {
     LightChoice choice;
     vec2 u{0};
     ShadowMapView shadow;
@@ -43,7 +43,7 @@ struct TracePaths {
     std::uint32_t width;
     View<AxisView const> axes;
     AxisChoice choice;
-    View<LampView const> lamps;
+    View<LightPointView const> light_points;
     AliasTableView chances; ///< of the lamps; empty = equal
     int bounces;
     float roulette; ///< see SlhbSettings

@@ -44,12 +44,12 @@ GI_FN inline vec3 TracePaths::direct(State const& s, ShadingPoint const& at, vec
 {
     std::size_t k = 0;
     if (!chances.empty()) {
-        double u = double(s.random.sample(s.dimension(PathDimension::lamp)));
+        double u = double(s.random.sample(s.dimension(PathDimension::light_point)));
         k = chances.sample(u);
     } else {
-        k = s.random.turn(s.dimension(PathDimension::lamp)) % lamps.size();
+        k = s.random.turn(s.dimension(PathDimension::light_point)) % light_points.size();
     }
-    LampView const& l = lamps[k];
+    LightPointView const& l = light_points[k];
     LightSample const light = sample_light(world, l.choice, at.position, l.u);
     if (!(light.pdf > 0)) return vec3{0};
     vec3 const wi = at.frame.to_local(light.direction);
@@ -165,7 +165,8 @@ GI_FN inline void TracePaths::operator()(std::size_t i) const
         }
         vec3 const wo = at.frame.to_local(-s.direction);
         bool const narrow = has_narrow_lobe(at.bsdf);
-        if (!lamps.empty() && !only_delta(at.bsdf)) add(out, s.scatterings + 1, direct(s, at, wo, narrow, local));
+        if (!light_points.empty() && !only_delta(at.bsdf))
+            add(out, s.scatterings + 1, direct(s, at, wo, narrow, local));
         if (!leave(s, at, wo, narrow, local)) break;
     }
     for (int part = 0; part < 3; ++part)

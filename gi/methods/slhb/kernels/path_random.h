@@ -31,7 +31,7 @@ enum class PathDimension : std::uint32_t {
     lobe_u,
     lobe_v,
     roulette,
-    lamp,
+    light_point,
     lamp_pick,
     shadow, ///< this and what follows are noise, without any order
     cone,

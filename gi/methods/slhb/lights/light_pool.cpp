@@ -127,8 +127,8 @@ void LightPool::weigh(Group const& from, vec3 position, vec3 normal, float* weig
         float const squared = x * x + y * y + z * z, inverse = 1 / std::sqrt(squared + 1e-30f);
         float const cosine = (x * normal.x + y * normal.y + z * normal.z) * inverse;
         float const front = -(x * from.facing_x[k] + y * from.facing_y[k] + z * from.facing_z[k]) * inverse;
-        float const lamp = from.everywhere[k] + std::max(front, -front * from.back[k]);
-        float const w = from.power[k] * std::max(cosine, 0.0f) * std::max(lamp, 0.0f) *
+        float const light_point = from.everywhere[k] + std::max(front, -front * from.back[k]);
+        float const w = from.power[k] * std::max(cosine, 0.0f) * std::max(light_point, 0.0f) *
                         (near * inverse * inverse + (1 - near));
         weight[k] = w < 1e30f ? w : 0;
     }

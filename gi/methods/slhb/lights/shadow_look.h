@@ -91,9 +91,9 @@ GI_FN bool lit(Map const& map, ShadowPlace const& place, View<Surface const> sur
     Surface const& s = surfaces[place.texel->primitive];
     vec3 const normal = glm::cross(s.edge1, s.edge2);
     float const here = glm::dot(normal, position - s.corner);
-    float const lamp =
+    float const light_point =
         map.parallel ? -glm::dot(normal, map.grid.axis) : glm::dot(normal, map.faces[0].eye - s.corner);
-    if ((here < 0) == (lamp < 0) || std::abs(here) <= s.clearance * glm::length(normal)) return true;
+    if ((here < 0) == (light_point < 0) || std::abs(here) <= s.clearance * glm::length(normal)) return true;
     if (gap > kBumps * place.side) return false;
     vec3 const own = glm::cross(surfaces[triangle].edge1, surfaces[triangle].edge2);
     return glm::dot(own, normal) > kAlike * glm::length(own) * glm::length(normal);

@@ -5,7 +5,7 @@
 // glass and narrow lobes, and what only one of the two sees, are traced. The noise of the two pictures is then
 // the same on the same surfaces, as binocular fusion likes it. Error: light is sampled up to half a pixel aside.
 
-#include "gi/filter/taken_light.h"
+#include "gi/filter/reused_light.h"
 #include "gi/methods/slhb/lights/primary_map.h"
 #include "gi/render/accumulator.h"
 

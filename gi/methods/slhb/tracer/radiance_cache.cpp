@@ -89,9 +89,9 @@ std::size_t RadianceCache::least_level() const
     return level;
 }
 
-RadianceCache::Known RadianceCache::find(CacheKeys const& keys) const
+RadianceCache::CachedRadiance RadianceCache::find(CacheKeys const& keys) const
 {
-    Known known;
+    CachedRadiance known;
     std::size_t const least = least_level();
     for (std::size_t l = 0; l < CacheKeys::kLevels; ++l) {
         Cell const* const c = shard(keys.level[l]).find(keys.level[l]);

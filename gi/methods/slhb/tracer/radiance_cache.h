@@ -56,12 +56,12 @@ public:
     void prefetch(CacheKeys const& keys) const;
 
     /// What is known of a place.
-    struct Known {
+    struct CachedRadiance {
         vec3 radiance{0};
         float go_on = 1;          ///< chance with which a path goes on nevertheless, to teach; 1 = not known
         std::size_t to_teach = 1; ///< levels, from the widest
     };
-    Known find(CacheKeys const& keys) const;
+    CachedRadiance find(CacheKeys const& keys) const;
 
     /// The order of notes decides the last bits, how many threads do not.
     void learn(std::span<std::vector<CacheNote> const> notes);

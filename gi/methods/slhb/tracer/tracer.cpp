@@ -74,7 +74,7 @@ void SlhbTracer::add_exactly(Pass const& pass, std::span<Unshadowed const> direc
     thread_local std::vector<std::uint8_t> blocked;
     rays.clear();
     for (Unshadowed const& d : direct) {
-        LightSample const light = sample_light(world_, d.lamp->choice, d.position, d.lamp->u);
+        LightSample const light = sample_light(world_, d.light_point->choice, d.position, d.light_point->u);
         Surface const& surface = world_.surfaces[d.triangle];
         rays.push_back(shadow_ray(d.position, shading_detail::triangle_normal(surface), surface.clearance, light,
                                   hash_words(hash_words(pass.index, d.triangle), std::uint32_t(rays.size()))));
@@ -147,7 +147,7 @@ void SlhbTracer::add_lit(Pass const& pass, Direct& direct, SlhbCounts& counts) c
         add_exactly(pass, direct.maps);
     } else {
         for (Unshadowed const& d : direct.maps) {
-            if (d.lamp->shadow.lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
+            if (d.light_point->shadow.lit(d.place, world_.surfaces, d.position, d.triangle)) *d.to += d.radiance;
             std::uint32_t const caster = d.place.texel != nullptr ? d.place.texel->primitive : kNoPrimitive;
             if (caster != kNoPrimitive && caster >= pass.first_watched) d.sample->near_moving = true;
         }
@@ -200,7 +200,7 @@ void SlhbTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::ve
 }
 
 /// Whether it ends here, to share what is sent on from there.
-bool SlhbTracer::ends_shared(State& s, Vertex const& v, Ending& ending) const
+bool SlhbTracer::ends_shared(State& s, Vertex const& v, SharedVertex& shared) const
 {
     if (s.vertex != 1 || s.triangle == kNoPrimitive || !s.along_axis ||
         !bsdf_detail::is_matt(world_.bsdfs[world_.surfaces[s.triangle].material]))
@@ -212,12 +212,12 @@ bool SlhbTracer::ends_shared(State& s, Vertex const& v, Ending& ending) const
         at.position = s.position;
         add_emission(s, v, at);
     }
-    ending = {s.triangle, v.layer, v.origin.up, s.position, s.direction, s.throughput};
+    shared = {s.triangle, v.layer, v.origin.up, s.position, s.direction, s.throughput};
     return true;
 }
 
 void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
-                       std::span<Ending> endings, std::vector<CacheNote>& notes, PathCounts& paths,
+                       std::span<SharedVertex> shared_vertices, std::vector<CacheNote>& notes, PathCounts& paths,
                        SlhbCounts& counts) const
 {
     using Clock = std::chrono::steady_clock;
@@ -233,7 +233,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
     numbers.resize(starts.size());
     start_paths(pass, starts, samples, states, vertices);
     for (std::size_t k = 0; k < states.size(); ++k) states[k].u = &numbers[k];
-    for (Ending& e : endings) e.triangle = kNoLayerHit;
+    for (SharedVertex& e : shared_vertices) e.triangle = kNoLayerHit;
     std::size_t active = starts.size();
     while (active > 0) {
         std::size_t going = 0;
@@ -249,11 +249,11 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
         find_hits(pass, std::span(vertices).first(going), states, counts);
         active = going;
         if (pass.cache != nullptr) end_in_cells(pass, states, vertices, active, open, counts);
-        if (endings.empty()) continue;
+        if (shared_vertices.empty()) continue;
         active = 0;
         for (std::size_t k = 0; k < going; ++k) {
             Vertex const& v = vertices[k];
-            if (!ends_shared(states[v.path], v, endings[v.path])) vertices[active++] = v;
+            if (!ends_shared(states[v.path], v, shared_vertices[v.path])) vertices[active++] = v;
         }
     }
     for (Open const& o : open)

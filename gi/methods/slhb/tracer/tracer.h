@@ -11,7 +11,7 @@
 
 #include "gi/core/rqmc.h"
 #include "gi/methods/slhb/directions/axis_set.h"
-#include "gi/methods/slhb/lights/lamps.h"
+#include "gi/methods/slhb/lights/light_points.h"
 #include "gi/methods/slhb/tracer/radiance_cache.h"
 #include "gi/render/exact_visibility.h"
 #include "gi/render/interleaving.h"
@@ -38,7 +38,7 @@ struct PathStart {
 
 /// The rest of a path that ends on a matt surface: what is sent back from there is the same for all paths that met
 /// the same side of a layer.
-struct Ending {
+struct SharedVertex {
     std::uint32_t triangle = kNoLayerHit; ///< kNoLayerHit = the path does not end so
     std::uint32_t layer = kNoLayerHit;    ///< of the pool
     bool up = false;                      ///< the walk that met the layer
@@ -68,7 +68,7 @@ public:
     /// What stays the same over a pass. `exact` may be null where needs_exact_rays says that nothing asks it.
     struct Pass {
         AxisSet const& axes;
-        Lamps const& lamps;
+        LightPoints const& light_points;
         ExactVisibility const* exact;
         std::uint32_t index;       ///< of the path of each pixel
         std::uint32_t gather_axis; ///< taken by every first bounce; kNoPrimitive = by chance
@@ -104,7 +104,7 @@ public:
     /// @param endings empty, or one per start: paths end on the first matt layer and say so here
     /// @param notes   for the cache of the pass, appended
     void trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
-               std::span<Ending> endings, std::vector<CacheNote>& notes, PathCounts& paths,
+               std::span<SharedVertex> shared_vertices, std::vector<CacheNote>& notes, PathCounts& paths,
                SlhbCounts& counts) const;
 
 private:
@@ -143,7 +143,7 @@ private:
     void end_in_cells(Pass const& pass, std::span<State> states, std::vector<Vertex>& vertices,
                       std::size_t& active, std::vector<Open>& open, SlhbCounts& counts) const;
     CacheKeys cache_keys(Pass const& pass, State const& s) const;
-    bool ends_shared(State& s, Vertex const& v, Ending& ending) const;
+    bool ends_shared(State& s, Vertex const& v, SharedVertex& shared) const;
     /// By exact rays in place of shadow maps, see ExactParts.
     void add_exactly(Pass const& pass, std::span<Unshadowed const> direct) const;
 

@@ -41,7 +41,7 @@ void SlhbTracer::end_in_cells(Pass const& pass, std::span<State> states, std::ve
         if (keys[k].any()) {
             std::uint32_t const path = vertices[k].path;
             State& s = states[path];
-            RadianceCache::Known const known = pass.cache->find(keys[k]);
+            RadianceCache::CachedRadiance const known = pass.cache->find(keys[k]);
             if (!(s.random.noise2(s.dimension(PathDimension::cache)).x < known.go_on)) {
                 s.bucket(2) += s.throughput * known.radiance;
                 ++counts.cache_reads;

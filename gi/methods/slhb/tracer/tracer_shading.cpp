@@ -67,7 +67,7 @@ void SlhbTracer::aim_at_light(Pass const& pass, State const& s, Leaving const& f
     VertexNumbers const& u = *s.u;
     vec3 const normal = from.at.frame.normal;
     ChosenLight const chosen =
-        pass.lights->choose(from.at.position, normal, u[PathDimension::lamp], u[PathDimension::lamp_pick]);
+        pass.lights->choose(from.at.position, normal, u[PathDimension::light_point], u[PathDimension::lamp_pick]);
     if (chosen.light == nullptr) return;
     LightSample const light = chosen.light->seen_from(world_, from.at.position);
     vec3 const value = chosen.weight * unshadowed(from, light);
@@ -85,16 +85,16 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, Leaving const& fro
                             std::vector<Unshadowed>& direct) const
 {
     ShadingPoint const& at = from.at;
-    std::vector<Lamp> const& lamps = pass.lamps.lamps();
+    std::vector<LightPoint> const& light_points = pass.light_points.light_points();
     std::size_t k = 0;
-    if (pass.lamps.fixed()) {
-        double u = double((*s.u)[PathDimension::lamp]);
-        k = pass.lamps.chances().sample(u);
+    if (pass.light_points.fixed()) {
+        double u = double((*s.u)[PathDimension::light_point]);
+        k = pass.light_points.chances().sample(u);
     } else {
         // Lamps of successive numbers are spread well, and those that a strided choice would find are not.
-        k = s.random.turn(s.dimension(PathDimension::lamp)) % lamps.size();
+        k = s.random.turn(s.dimension(PathDimension::light_point)) % light_points.size();
     }
-    Lamp const& l = lamps[k];
+    LightPoint const& l = light_points[k];
     LightSample const light = l.light.pdf > 0 ? l.light : sample_light(world_, l.choice, at.position, l.u);
     vec3 const value = unshadowed(from, light);
     if (!(max_component(value) > 0)) return;

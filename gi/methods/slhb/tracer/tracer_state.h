@@ -64,7 +64,7 @@ struct SlhbTracer::ShadowRay {
 
 /// Direct light that waits for its shadow map.
 struct SlhbTracer::Unshadowed {
-    Lamp const* lamp;
+    LightPoint const* light_point;
     ShadowMap::Place place;
     vec3 position;
     std::uint32_t triangle;

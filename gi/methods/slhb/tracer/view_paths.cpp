@@ -92,7 +92,8 @@ void ViewPaths::trace_all(SlhbTracer::Pass const& pass, SlhbTracer const& tracer
                           std::span<PathStart const> starts, std::vector<CacheNote>& notes, Counts& counts)
 {
     std::span const samples(&samples_[first], starts.size());
-    std::span const ends = sharing ? std::span(&endings_[first], starts.size()) : std::span<Ending>();
+    std::span const ends =
+        sharing ? std::span(&shared_vertices_[first], starts.size()) : std::span<SharedVertex>();
     tracer.trace(pass, starts, samples, ends, notes, counts.paths, counts.slhb);
     for (std::size_t k = 0; k < ends.size(); ++k) shared_.note(std::uint32_t(first + k), ends[k]);
 }
@@ -121,7 +122,7 @@ void ViewPaths::trace_some(SlhbTracer::Pass const& pass, SlhbTracer const& trace
     }
     starts.resize(left);
     thread_local std::vector<PathSample> samples;
-    thread_local std::vector<Ending> ends;
+    thread_local std::vector<SharedVertex> ends;
     samples.resize(left);
     ends.resize(sharing ? left : 0);
     tracer.trace(pass, starts, samples, ends, notes, counts.paths, counts.slhb);
@@ -129,7 +130,7 @@ void ViewPaths::trace_some(SlhbTracer::Pass const& pass, SlhbTracer const& trace
         std::size_t const at = view.first + starts[k].stream;
         samples_[at] = samples[k];
         if (!sharing) continue;
-        endings_[at] = ends[k];
+        shared_vertices_[at] = ends[k];
         shared_.note(std::uint32_t(at), ends[k]);
     }
 }
@@ -178,21 +179,21 @@ void ViewPaths::trace_view(SlhbTracer::Pass const& pass, SeenViews const& views,
 }
 
 /// Whether paths of this pass end on the first matt layer and share what is sent on there.
-bool ViewPaths::start_sharing(SlhbTracer::Pass const& pass, Endings endings)
+bool ViewPaths::start_sharing(SlhbTracer::Pass const& pass, VertexSharing sharing)
 {
     SlhbSettings const& slhb = settings_.slhb;
     std::size_t const paths = samples_.size(), layers = pass.axes.first_bounce_layers();
-    bool const sharing = endings != Endings::own && pass.cache == nullptr && pass.look_ups && layers > 0 &&
-                         layers < paths && settings_.bounces > 0 && slhb.cone == 0;
-    shared_.start(paths, sharing ? layers : 0, pass.index);
-    endings_.resize(sharing ? paths : 0);
-    return sharing;
+    bool const shares = sharing != VertexSharing::none && pass.cache == nullptr && pass.look_ups && layers > 0 &&
+                        layers < paths && settings_.bounces > 0 && slhb.cone == 0;
+    shared_.start(paths, shares ? layers : 0, pass.index);
+    shared_vertices_.resize(shares ? paths : 0);
+    return shares;
 }
 
-/// From where paths ended that share their endings.
+/// From the shared vertices.
 void ViewPaths::send_on(SlhbTracer::Pass const& pass, SeenView const& view, Work& work)
 {
-    shared_.collect(endings_);
+    shared_.collect(shared_vertices_);
     SlhbTracer const tracer = tracer_of(view);
     work.in_blocks(shared_.starts().size(), [&](std::size_t first, std::size_t last, Counts& local) {
         thread_local std::vector<PathSample> sent;
@@ -219,7 +220,7 @@ void ViewPaths::add(SeenViews const& views, std::size_t index, bool sharing, std
         for (std::size_t p = first; p < last; ++p) {
             PathSample& sample = samples_[v.first + p];
             if (sharing && shared_.has(v.first + p))
-                sample.radiance[2] += endings_[v.first + p].throughput * shared_.radiance(v.first + p);
+                sample.radiance[2] += shared_vertices_[v.first + p].throughput * shared_.radiance(v.first + p);
             std::uint32_t const from = partner != nullptr ? taken_from_[v.first + p] : kOwnLight;
             if (from != kOwnLight) take_light(samples_[partner->first + from], sample);
             sums.add(p, sample, sums.paths);
@@ -235,23 +236,23 @@ void ViewPaths::add(SeenViews const& views, std::size_t index, bool sharing, std
     pixels_ += v.pixels();
 }
 
-void ViewPaths::trace(SlhbTracer::Pass const& pass, SeenViews const& views, Endings endings,
+void ViewPaths::trace(SlhbTracer::Pass const& pass, SeenViews const& views, VertexSharing sharing,
                       std::span<Accumulator> sums)
 {
     std::size_t const pixels = views.back().first + views.back().pixels();
     samples_.resize(pixels);
     taken_from_.assign(views.size() > 1 ? pixels : 0, kOwnLight);
     light_from_.resize(taken_from_.size());
-    bool const sharing = start_sharing(pass, endings);
+    bool const shares = start_sharing(pass, sharing);
     choose_block();
     Work work;
-    for (SeenView const& v : views) trace_view(pass, views, v, sharing, work);
+    for (SeenView const& v : views) trace_view(pass, views, v, shares, work);
     send_on(pass, views[0], work);
     if (pass.spread && settings_.slhb.interleave > 1)
         for (SeenView const& v : views)
             spread_indirect(std::span(samples_).subspan(v.first, v.pixels()), v.width,
                             {std::uint32_t(settings_.slhb.interleave)}, pass.index);
-    for (std::size_t k = 0; k < views.size(); ++k) add(views, k, sharing, sums, work);
+    for (std::size_t k = 0; k < views.size(); ++k) add(views, k, shares, sums, work);
     add_work(work, sums[0].counts);
 }
 
@@ -318,7 +319,7 @@ void ViewPaths::report_work() const
     report_.count("exact rays", double(done_.exact_rays));
     report_.count("shadow rays", double(done_.shadow_rays));
     report_.count("paths that ended in the radiance cache", double(done_.cache_reads));
-    report_.count("endings shaded for several paths", double(shared_.shaded()));
+    report_.count("shared vertices shaded for several paths", double(shared_.shaded()));
     if (taking_ > 0) report_.count("share of pixels lit by a partner view", double(taken_) / double(taking_));
     if (hidden_ > 0) {
         report_.count("pixels not rendered, as nobody sees them", double(hidden_));

@@ -5,7 +5,7 @@
 #include "gi/core/report.h"
 #include "gi/methods/slhb/tracer/partner_light.h"
 #include "gi/methods/slhb/tracer/seen_view.h"
-#include "gi/methods/slhb/tracer/shared_endings.h"
+#include "gi/methods/slhb/tracer/shared_vertices.h"
 #include "gi/methods/slhb/tracer/tracer.h"
 #include "gi/render/accumulator.h"
 #include "gi/render/pair_sums.h"
@@ -23,7 +23,8 @@ public:
     ViewPaths(World const& world, RenderSettings const& settings, Report& report);
 
     /// One more path for every pixel; G-buffers of the pass are there already. @param sums  one per view
-    void trace(SlhbTracer::Pass const& pass, SeenViews const& views, Endings endings, std::span<Accumulator> sums);
+    void trace(SlhbTracer::Pass const& pass, SeenViews const& views, VertexSharing sharing,
+               std::span<Accumulator> sums);
 
     /// A pass of the first view, with what moves and without it, by the same random numbers: of the latter only
     /// the paths that what moves may count in (Pass::first_watched).
@@ -51,7 +52,7 @@ private:
     struct Work;
     void choose_block();
     SlhbTracer tracer_of(SeenView const& view) const;
-    bool start_sharing(SlhbTracer::Pass const& pass, Endings endings);
+    bool start_sharing(SlhbTracer::Pass const& pass, VertexSharing sharing);
     void trace_view(SlhbTracer::Pass const& pass, SeenViews const& views, SeenView const& view, bool sharing,
                     Work& work);
     void trace_all(SlhbTracer::Pass const& pass, SlhbTracer const& tracer, std::size_t first, bool sharing,
@@ -67,10 +68,10 @@ private:
     RenderSettings const& settings_;
     Report& report_;
     std::size_t block_ = 0; ///< pixels whose paths advance together on one thread
-    SharedEndings shared_;
+    SharedVertices shared_;
     std::vector<std::vector<CacheNote>> notes_; ///< per block of pixels of a view
     std::vector<PathSample> samples_;           ///< of the pixels of all views
-    std::vector<Ending> endings_;               ///< the same
+    std::vector<SharedVertex> shared_vertices_; ///< the same
     std::vector<std::uint32_t> taken_from_;     ///< the same: pixel of the partner's view
     std::vector<std::uint32_t> light_from_;     ///< the same, of all passes of a frame
     std::vector<std::vector<std::uint32_t>>

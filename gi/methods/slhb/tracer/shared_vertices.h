@@ -6,17 +6,17 @@
 
 namespace gi {
 
-class SharedEndings {
+class SharedVertices {
 public:
     /// @param paths  of the pass  @param layers  that they may end on; 0 = nothing is shared in this pass
     void start(std::size_t paths, std::size_t layers, std::uint32_t pass);
     /// From several threads, once for every path.
-    void note(std::uint32_t path, Ending const& ending);
+    void note(std::uint32_t path, SharedVertex const& shared);
     /// For paths that have no ending to share.
     void note_none(std::uint32_t path) { start_of_[path] = kNone; }
     /// After all are noted: makes the starts, in an order that does not depend on threads.
     /// @param endings  of all paths; those of paths without one are not looked at
-    void collect(std::vector<Ending> const& endings);
+    void collect(std::vector<SharedVertex> const& shared_vertices);
 
     std::vector<PathStart> const& starts() const { return starts_; }
     /// What starts first.. have brought.

@@ -46,17 +46,17 @@ inline constexpr std::array kBodyMembers{&Tracked::head, &Tracked::left_hand, &T
                                          &Tracked::left_foot, &Tracked::right_foot};
 
 /// One picture of a frame: an eye before a wall, a window, a lens of a head-mounted display.
-struct ViewOrder {
+struct ViewCommand {
     std::string name;          ///< "left wall, right eye"
     gi::Camera camera;         ///< in the world
     int width = 0, height = 0; ///< pixels to render
     int partner = -1; ///< an earlier view of this frame that sees nearly the same: light found there is reused; -1
                       ///< = none
 
-    bool operator==(ViewOrder const&) const = default;
+    bool operator==(ViewCommand const&) const = default;
 };
 
-struct FrameOrder {
+struct FrameCommand {
     std::uint64_t frame = 0;
     double pose_s = 0;            ///< when the poses were taken, on the clock of the session, which starts at 0
     double display_s = 0;         ///< when it was expected to be seen, on the same clock
@@ -65,14 +65,14 @@ struct FrameOrder {
     Tracked tracked;              ///< of the first user
     std::vector<Tracked> others;  ///< of the users after him; nothing of those who have no avatar
     std::vector<Change> changes;  ///< since the frame before, in order
-    std::vector<ViewOrder> views;
+    std::vector<ViewCommand> views;
     int paths = 1; ///< per pixel
 
-    bool operator==(FrameOrder const&) const = default;
+    bool operator==(FrameCommand const&) const = default;
 };
 
 /// What an order may hold at most; whatever is read is held to it before memory is taken.
-struct OrderLimits {
+struct CommandLimits {
     static constexpr std::size_t views = 256, users = 64, changes = 65536, name_bytes = 4096,
                                  value_bytes = 1 << 20, bytes = 1 << 26;
     static constexpr int size_px = 16384, paths = 1 << 24, value_depth = 32;
@@ -80,13 +80,13 @@ struct OrderLimits {
 
 /// Throws InputError on an order that nothing can render: numbers that are not finite, a matrix that is not affine
 /// or flattens, rotations that are not unit, views without a size, a partner that is no earlier view, a lens that
-/// gi::check_lens refuses, or more than OrderLimits.
-void check_order(FrameOrder const& order);
+/// gi::check_lens refuses, or more than CommandLimits.
+void check_command(FrameCommand const& order);
 
 /// Every double in all its bits, what has its default value left out: about 150 bytes for a desktop's frame, 120
-/// more for each further view. The first byte is the version of the form. Throws InputError as check_order.
-std::vector<std::uint8_t> to_bytes(FrameOrder const& order);
+/// more for each further view. The first byte is the version of the form. Throws InputError as check_command.
+std::vector<std::uint8_t> to_bytes(FrameCommand const& order);
 /// The order that to_bytes was given. Throws InputError on anything else.
-FrameOrder order_from_bytes(std::span<std::uint8_t const> bytes);
+FrameCommand command_from_bytes(std::span<std::uint8_t const> bytes);
 
 } // namespace viewer

@@ -1,4 +1,4 @@
-#include "viewer/engine/session.h"
+#include "viewer/engine/render_session.h"
 
 #include "gi/core/error.h"
 #include "gi/filter/filter_names.h"
@@ -14,27 +14,27 @@ namespace {
 /// Settings that the structures of a method are built by.
 bool decides_method(std::string const& key)
 {
-    for (char const* const k : {"method", "device", "schedule", "directions", "resolution", "axes", "lamps",
-                                "light_paths", "points", "ao_radius", "bounces", "seed"})
+    for (char const* const k : {"method", "device", "schedule", "directions", "resolution", "axes",
+                                "light_samples", "light_paths", "points", "ao_radius", "bounces", "seed"})
         if (key == k) return true;
     return false;
 }
 
 } // namespace
 
-Session::Session(LoadScene load, int threads, gi::Report& report)
+RenderSession::RenderSession(LoadScene load, int threads, gi::Report& report)
     : load_(std::move(load)), threads_(threads), report_(report)
 {
 }
 
-bool Session::moves() const
+bool RenderSession::moves() const
 {
     return world_ && std::any_of(scene_->playbacks.begin(), scene_->playbacks.end(), [&](gi::Playback const& p) {
                return p.weight > 0 && p.speed != 0 && scene_->animations[std::size_t(p.animation)].duration_s > 0;
            });
 }
 
-void Session::apply(Change const& change)
+void RenderSession::apply(Change const& change)
 {
     if (change.key == "scene") return load(change);
     if (is_scene_edit(change.key)) {
@@ -51,17 +51,17 @@ void Session::apply(Change const& change)
     if (change.key == "device") gi::check_device(changed.device == "cuda" ? gi::Space::device : gi::Space::host);
     if (change.key == "denoise") gi::check_filter(denoise_settings(changed, 0));
     settings_ = std::move(changed);
-    if (decides_method(change.key)) restart();
+    if (decides_method(current_key(change.key))) restart();
     if (change.key == "compare") compared_.reset();
 }
 
-void Session::restart()
+void RenderSession::restart()
 {
     main_.reset();
     compared_.reset();
 }
 
-void Session::load(Change const& change)
+void RenderSession::load(Change const& change)
 {
     if (!change.value.is_string())
         throw gi::InputError("'scene' = " + change.value.dump(), "it takes a name",
@@ -75,7 +75,7 @@ void Session::load(Change const& change)
     malloc_trim(0); // the scene before is gone: a session may load many
 }
 
-void Session::rebuild(std::shared_ptr<gi::Scene const> scene)
+void RenderSession::rebuild(std::shared_ptr<gi::Scene const> scene)
 {
     auto world = std::make_unique<gi::MovingWorld>(scene, time_s_, report_);
     restart(); // lanes look at the world
@@ -85,7 +85,7 @@ void Session::rebuild(std::shared_ptr<gi::Scene const> scene)
     for (Change const& c : edits_) edit(*world_, c);
 }
 
-gi::dvec3 Session::position_of(std::string const& object) const
+gi::dvec3 RenderSession::position_of(std::string const& object) const
 {
     if (!world_)
         throw gi::InputError("there is no object '" + object + "'", "no scene is loaded", "load one first");
@@ -94,7 +94,7 @@ gi::dvec3 Session::position_of(std::string const& object) const
     return placed_object(*scene_, now, placed_, {"object." + object + ".scale", 1}).position;
 }
 
-void Session::place_object(Change const& change)
+void RenderSession::place_object(Change const& change)
 {
     gi::Pose now = gi::evaluate_pose(*scene_, time_s_);
     place(*scene_, placed_, now);
@@ -108,7 +108,7 @@ void Session::place_object(Change const& change)
     placed_.push_back(object);
 }
 
-gi::Changes Session::move_to(FrameOrder const& order)
+gi::Changes RenderSession::move_to(FrameCommand const& order)
 {
     time_s_ = order.scene_s;
     gi::Pose pose = gi::evaluate_pose(*scene_, time_s_);
@@ -119,7 +119,7 @@ gi::Changes Session::move_to(FrameOrder const& order)
     return changes;
 }
 
-SessionFrame Session::render(FrameOrder const& order, gi::StopRequest const& stop)
+SessionFrame RenderSession::render(FrameCommand const& order, gi::StopRequest const& stop)
 {
     if (!world_) throw gi::InputError("there is nothing to render", "no scene is loaded", "load one first");
     gi::Changes changes;
@@ -131,12 +131,13 @@ SessionFrame Session::render(FrameOrder const& order, gi::StopRequest const& sto
     frame.moved = changes.geometry;
     if (order.views.empty()) return frame;
     if (!main_)
-        main_ = std::make_unique<Lane>(settings_.method, *world_, settings_, threads_, order.views, report_);
+        main_ =
+            std::make_unique<MethodRunner>(settings_.method, *world_, settings_, threads_, order.views, report_);
     std::vector<HiddenPixels> hidden;
-    for (ViewOrder const& v : order.views) hidden.push_back(hidden_.pixels(v));
+    for (ViewCommand const& v : order.views) hidden.push_back(hidden_.pixels(v));
     std::vector<gi::RenderResult> results = main_->render(order, hidden, changes, settings_, stop);
     frame.still_frames = main_->still_frames();
-    frame.following = main_->following();
+    frame.dynamic_update = main_->dynamic_update();
     frame.options = results[0].options;
     frame.paths = int(results[0].paths);
     for (std::size_t k = 0; k < results.size(); ++k) {
@@ -145,8 +146,8 @@ SessionFrame Session::render(FrameOrder const& order, gi::StopRequest const& sto
     }
     if (!settings_.compare.empty() && settings_.compare != settings_.method) {
         if (!compared_)
-            compared_ =
-                std::make_unique<Lane>(settings_.compare, *world_, settings_, threads_, order.views, report_);
+            compared_ = std::make_unique<MethodRunner>(settings_.compare, *world_, settings_, threads_,
+                                                       order.views, report_);
         std::vector<gi::RenderResult> others = compared_->render(order, hidden, changes, settings_, stop);
         for (std::size_t k = 0; k < others.size(); ++k) {
             frame.rays += others[k].rays;

@@ -1,4 +1,4 @@
-#include "gi/filter/known_light.h"
+#include "gi/filter/filtered_light.h"
 
 #include "gi/filter/filtered_layers.h"
 
@@ -7,7 +7,7 @@
 
 namespace gi {
 
-Planes take_filtered(Picture& picture, TakenLight const& taken, FilterArea const& area, DenoiseReport& report)
+Planes take_filtered(Picture& picture, ReusedLight const& taken, FilterArea const& area, DenoiseReport& report)
 {
     int const width = picture.width;
     Layer const &l1 = needed_layer(*taken.partner, "L1"), &l2 = needed_layer(*taken.partner, "L2"),

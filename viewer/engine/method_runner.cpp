@@ -1,4 +1,4 @@
-#include "viewer/engine/lane.h"
+#include "viewer/engine/method_runner.h"
 
 #include "gi/filter/filter_names.h"
 
@@ -29,13 +29,13 @@ gi::SceneChange scene_change(gi::Changes const& c, bool camera_moved)
     return c.geometry || camera_moved ? gi::SceneChange::motion : gi::SceneChange::nothing;
 }
 
-Lane::Lane(std::string const& method, gi::MovingWorld const& world, Settings const& settings, int threads,
-           std::vector<ViewOrder> const& first, gi::Report& report)
+MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& world, Settings const& settings,
+                           int threads, std::vector<ViewCommand> const& first, gi::Report& report)
     : report_(report), threads_(threads)
 {
     gi::RenderSettings s = render_settings(settings, threads);
     double pixels = 0;
-    for (ViewOrder const& v : first) pixels += double(v.width) * v.height;
+    for (ViewCommand const& v : first) pixels += double(v.width) * v.height;
     s.width = std::max(1, int(std::sqrt(pixels))); // the plan counts pixels
     s.height = std::max(1, int(std::lround(pixels / s.width)));
     // One set of axes for all frames: what is seen moves, and fresh axes for every frame would flicker.
@@ -44,16 +44,16 @@ Lane::Lane(std::string const& method, gi::MovingWorld const& world, Settings con
     renderer_ = gi::find_method(method).frames(world, first.front().camera, s, report);
 }
 
-std::vector<gi::RenderResult> Lane::render(FrameOrder const& order, std::span<HiddenPixels const> hidden,
-                                           gi::Changes const& changes, Settings const& settings,
-                                           gi::StopRequest const& stop)
+std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& order, std::span<HiddenPixels const> hidden,
+                                                   gi::Changes const& changes, Settings const& settings,
+                                                   gi::StopRequest const& stop)
 {
     if (!first_) renderer_->changed(changes);
     bool anything_moved = first_ || seen_.size() != order.views.size() || changes.any();
     seen_.resize(order.views.size());
     std::vector<bool> moved(order.views.size());
     for (std::size_t k = 0; k < order.views.size(); ++k) {
-        ViewOrder const& now = order.views[k];
+        ViewCommand const& now = order.views[k];
         Seen& s = seen_[k];
         bool const same = s.reuse && s.name == now.name && s.width == now.width && s.height == now.height &&
                           s.most_frames == settings.reuse;
@@ -66,25 +66,26 @@ std::vector<gi::RenderResult> Lane::render(FrameOrder const& order, std::span<Hi
     still_ = anything_moved ? 1 : still_ + 1;
     std::vector<gi::FrameView> views;
     for (std::size_t k = 0; k < order.views.size(); ++k) {
-        ViewOrder const& v = order.views[k];
+        ViewCommand const& v = order.views[k];
         views.push_back(
             {v.camera, v.width, v.height, settings.share_eyes && still_ <= kSharedFrames ? v.partner : -1});
         if (hidden[k]) views.back().hidden = *hidden[k];
     }
     // Their blur would stay in the mean of a picture at rest.
-    auto const endings = settings.share_endings && anything_moved ? gi::Endings::cached : gi::Endings::exact;
-    renderer_->follow(settings.schedule == "auto" ? settings.followed : 0);
-    std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(order.paths), endings, stop);
+    auto const sharing =
+        settings.radiance_cache && anything_moved ? gi::VertexSharing::cached : gi::VertexSharing::exact;
+    renderer_->update_axes(settings.schedule == "auto" ? settings.updated_axes : 0);
+    std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(order.paths), sharing, stop);
     for (std::size_t k = 0; k < results.size(); ++k)
         finish(k, results, views[k].partner, scene_change(changes, moved[k]), settings);
     return results;
 }
 
-void Lane::finish(std::size_t view, std::vector<gi::RenderResult>& results, int partner, gi::SceneChange change,
-                  Settings const& settings)
+void MethodRunner::finish(std::size_t view, std::vector<gi::RenderResult>& results, int partner,
+                          gi::SceneChange change, Settings const& settings)
 {
     gi::RenderResult& result = results[view];
-    gi::TakenLight taken;
+    gi::ReusedLight taken;
     gi::TemporalReuse const* past = nullptr;
     if (!result.light_from.empty()) {
         taken = {&results[std::size_t(partner)].picture, result.light_from};

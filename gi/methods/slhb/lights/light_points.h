@@ -12,7 +12,7 @@
 
 namespace gi {
 
-struct Lamp {
+struct LightPoint {
     LightChoice choice;
     vec2 u{0}; ///< where on the light
     ShadowView view;
@@ -22,7 +22,7 @@ struct Lamp {
     TakenTexels taken;
 };
 
-struct LampSettings {
+struct LightPointSettings {
     std::uint32_t count = 1; ///< in a pass; where all lights are points or parallel and no more than this, all
     std::uint32_t fresh = 1; ///< of these, other points in every pass
     std::uint32_t resolution = 64; ///< texels of a shadow map on a side
@@ -30,19 +30,19 @@ struct LampSettings {
     std::size_t first_moving = ~std::size_t(0); ///< triangle
 };
 
-class Lamps {
+class LightPoints {
 public:
     /// @param bounds  of all that casts shadows
     /// @param elsewhere where it is not empty, shadow maps only get their grids here and are drawn there, of all
     /// that there is: of lamps that are new, and of all where something has moved
-    struct Elsewhere {
-        std::vector<Lamp> const& lamps;
+    struct DeviceDraw {
+        std::vector<LightPoint> const& light_points;
         std::vector<std::size_t> const& drawn; ///< of these
         std::uint32_t seed;                    ///< for the cut-outs
     };
-    using DrawElsewhere = std::function<void(Elsewhere const&)>;
-    Lamps(World const& world, Bounds const& bounds, TriangleSoup const& soup, CutOuts const& cut_outs,
-          LampSettings const& settings, DrawElsewhere elsewhere = {});
+    using DrawOnDevice = std::function<void(DeviceDraw const&)>;
+    LightPoints(World const& world, Bounds const& bounds, TriangleSoup const& soup, CutOuts const& cut_outs,
+                LightPointSettings const& settings, DrawOnDevice elsewhere = {});
 
     /// The triangles from LampSettings::first_moving on are elsewhere.
     void moved() { moved_ = true; }
@@ -50,24 +50,24 @@ public:
     void refresh(std::uint32_t pass);
     /// What moves casts shadows, or is taken off the maps until it is shown again, before the next refresh.
     void show_moving(bool shown);
-    std::vector<Lamp> const& lamps() const { return lamps_; }
-    bool none() const { return lamps_.empty(); }
+    std::vector<LightPoint> const& light_points() const { return light_points_; }
+    bool none() const { return light_points_.empty(); }
     /// Probability of picking lamp k for a path vertex; their sum is 1.
     AliasTableView chances() const { return view(chances_); }
     bool fixed() const { return fixed_; }
     std::uint64_t maps_built() const { return built_; }
 
 private:
-    void take_point(Lamp& lamp, std::uint64_t number);
-    void build(std::span<Lamp* const> fresh, std::uint32_t pass);
+    void take_point(LightPoint& light_point, std::uint64_t number);
+    void build(std::span<LightPoint* const> fresh, std::uint32_t pass);
 
     World const& world_;
-    LampSettings settings_;
+    LightPointSettings settings_;
     ShadowMapBuilder builder_;
     std::size_t first_moving_;
-    DrawElsewhere elsewhere_;
+    DrawOnDevice elsewhere_;
     bool fixed_ = false, moved_ = false;
-    std::vector<Lamp> lamps_;
+    std::vector<LightPoint> light_points_;
     AliasTable chances_; ///< where they are fixed
     LightOrder order_;   ///< else
     std::uint64_t built_ = 0;

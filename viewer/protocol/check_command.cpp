@@ -1,5 +1,5 @@
 #include "gi/core/error.h"
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,9 +20,9 @@ void check_number(double v, char const* name)
 
 void check_name(std::string const& name)
 {
-    if (name.size() > OrderLimits::name_bytes)
+    if (name.size() > CommandLimits::name_bytes)
         refuse(fmt::format("a name of {} bytes", name.size()),
-               fmt::format("{} are the most", OrderLimits::name_bytes));
+               fmt::format("{} are the most", CommandLimits::name_bytes));
 }
 
 void check_matrix(gi::dmat4 const& m, char const* name)
@@ -70,9 +70,9 @@ void check_change(Change const& c)
 {
     check_name(c.key);
     if (c.key.empty()) refuse("a change without a key", "nothing says what is set");
-    if (depth_of(c.value, OrderLimits::value_depth) > OrderLimits::value_depth)
+    if (depth_of(c.value, CommandLimits::value_depth) > CommandLimits::value_depth)
         refuse("a value of '" + c.key + "' nested too deep",
-               fmt::format("{} levels are the most", OrderLimits::value_depth));
+               fmt::format("{} levels are the most", CommandLimits::value_depth));
     if (c.value.is_binary() || c.value.is_discarded())
         refuse("a value of '" + c.key + "' of a type that JSON text has not", "it would not come back");
     if (!is_finite(c.value)) refuse("a value of '" + c.key + "' that is no finite number", "JSON has none");
@@ -99,28 +99,29 @@ void check_camera(gi::Camera const& c)
 
 } // namespace
 
-void check_order(FrameOrder const& o)
+void check_command(FrameCommand const& o)
 {
     for (double const t : {o.pose_s, o.display_s, o.scene_s}) check_number(t, "a time");
     check_matrix(o.world_from_room, "world from room");
     check_tracked(o.tracked);
-    if (o.others.size() > OrderLimits::users)
-        refuse(fmt::format("{} users", o.others.size()), fmt::format("{} are the most", OrderLimits::users));
+    if (o.others.size() > CommandLimits::users)
+        refuse(fmt::format("{} users", o.others.size()), fmt::format("{} are the most", CommandLimits::users));
     for (Tracked const& t : o.others) check_tracked(t);
-    if (o.paths < 1 || o.paths > OrderLimits::paths)
-        refuse(fmt::format("{} paths per pixel", o.paths), fmt::format("1 to {} can be", OrderLimits::paths));
-    if (o.changes.size() > OrderLimits::changes)
-        refuse(fmt::format("{} changes", o.changes.size()), fmt::format("{} are the most", OrderLimits::changes));
+    if (o.paths < 1 || o.paths > CommandLimits::paths)
+        refuse(fmt::format("{} paths per pixel", o.paths), fmt::format("1 to {} can be", CommandLimits::paths));
+    if (o.changes.size() > CommandLimits::changes)
+        refuse(fmt::format("{} changes", o.changes.size()),
+               fmt::format("{} are the most", CommandLimits::changes));
     for (Change const& c : o.changes) check_change(c);
-    if (o.views.size() > OrderLimits::views)
-        refuse(fmt::format("{} views", o.views.size()), fmt::format("{} are the most", OrderLimits::views));
+    if (o.views.size() > CommandLimits::views)
+        refuse(fmt::format("{} views", o.views.size()), fmt::format("{} are the most", CommandLimits::views));
     for (std::size_t i = 0; i < o.views.size(); ++i) {
-        ViewOrder const& v = o.views[i];
+        ViewCommand const& v = o.views[i];
         check_name(v.name);
         check_camera(v.camera);
-        if (std::min(v.width, v.height) < 1 || std::max(v.width, v.height) > OrderLimits::size_px)
+        if (std::min(v.width, v.height) < 1 || std::max(v.width, v.height) > CommandLimits::size_px)
             refuse(fmt::format("a view of {}x{} pixels", v.width, v.height),
-                   fmt::format("1 to {} each can be", OrderLimits::size_px));
+                   fmt::format("1 to {} each can be", CommandLimits::size_px));
         if (v.partner < -1 || v.partner >= int(i))
             refuse(fmt::format("view {} with partner {}", i, v.partner), "a partner is an earlier view, or -1");
     }

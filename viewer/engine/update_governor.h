@@ -2,8 +2,8 @@
 // How many of the stored directions follow what moves, where the schedule is left to the viewer.
 //
 // With the schedule stored, what moves is drawn anew in every frame for every direction: the same cost for any
-// number of paths and pixels, and more than all of them where much moves. Following fewer directions, others in
-// every frame (AxisSet::follow_some), costs that much less and a little noise, which temporal reuse averages;
+// number of paths and pixels, and more than all of them where much moves. DynamicUpdate fewer directions, others
+// in every frame (AxisSet::follow_some), costs that much less and a little noise, which temporal reuse averages;
 // nothing is built anew, and nothing that was reused is lost. The rule is measured:
 // docs/results/2026-11-22-schedules.md.
 //
@@ -22,11 +22,11 @@
 
 namespace viewer {
 
-class FollowGovernor {
+class UpdateGovernor {
 public:
     /// What a frame tells.
     struct Frame {
-        gi::Following following;
+        gi::DynamicUpdate dynamic_update;
         bool moved = false;  ///< something in the scene
         double rate_hz = 20; ///< frames that are aimed at
     };
@@ -42,13 +42,13 @@ private:
 
     std::deque<double> axis_s_;         ///< of the last frames in which something moved: for one axis
     double frame_s_ = 0;                ///< between frames
-    gi::Following following_;           ///< of the last of them
+    gi::DynamicUpdate dynamic_update_;  ///< of the last of them
     std::size_t level_ = 0, shown_ = 0; ///< where something moves; of the next frame
     int calm_ = 0, quiet_ = 0; ///< frames in succession: that had time for more; in which nothing moved that might
     bool may_move_ = true;     ///< in the frame at hand
 };
 
 /// The schedule in use and why, in a sentence. @param followed  as the setting of the frame has it
-std::string schedule_sentence(std::string const& schedule, int followed, int stored, double share_of_all);
+std::string schedule_sentence(std::string const& schedule, int updated, int stored, double share_of_all);
 
 } // namespace viewer

@@ -5,7 +5,7 @@
 // three ways to feed it.
 
 #include "viewer/engine/hidden_views.h"
-#include "viewer/engine/lane.h"
+#include "viewer/engine/method_runner.h"
 #include "viewer/engine/scene_edits.h"
 #include "viewer/engine/settings.h"
 
@@ -16,7 +16,7 @@ namespace viewer {
 /// Reads what a scene's name says, and lights it where it has no light.
 using LoadScene = std::function<std::shared_ptr<gi::Scene const>(std::string const& name, gi::Report&)>;
 /// Moves bodies in the scene as trackers say.
-using DriveBodies = std::function<void(gi::Scene const&, FrameOrder const&, gi::Pose&)>;
+using DriveBodies = std::function<void(gi::Scene const&, FrameCommand const&, gi::Pose&)>;
 
 struct ViewPicture {
     gi::Picture picture;
@@ -25,26 +25,26 @@ struct ViewPicture {
 };
 
 struct SessionFrame {
-    std::vector<ViewPicture> views; ///< as ordered
-    bool moved = false;             ///< something in the scene has, since the frame before
-    gi::Following following;        ///< of the method, not of the one it is compared with
-    int still_frames = 0;           ///< since anything moved or changed, this one counted
-    int paths = 0;                  ///< per pixel; fewer than ordered where it was stopped
-    double rays = 0;                ///< and look-ups
+    std::vector<ViewPicture> views;   ///< as ordered
+    bool moved = false;               ///< something in the scene has, since the frame before
+    gi::DynamicUpdate dynamic_update; ///< of the method, not of the one it is compared with
+    int still_frames = 0;             ///< since anything moved or changed, this one counted
+    int paths = 0;                    ///< per pixel; fewer than ordered where it was stopped
+    double rays = 0;                  ///< and look-ups
     std::map<std::string, double> stages_s;
     std::string options; ///< what the method chose
 };
 
-class Session {
+class RenderSession {
 public:
     /// @param report  gets losses and counts; outlives the session  @param threads  0 = all
-    Session(LoadScene load, int threads, gi::Report& report);
+    RenderSession(LoadScene load, int threads, gi::Report& report);
 
     /// Keys are those of Settings, of scene_edits.h, of hidden_mask.h, and "scene". Throws InputError and changes
     /// nothing where the value cannot be.
     void apply(Change const& change);
     /// Renders an order; its changes have been applied already. Throws InputError without a scene.
-    SessionFrame render(FrameOrder const& order, gi::StopRequest const& stop);
+    SessionFrame render(FrameCommand const& order, gi::StopRequest const& stop);
 
     /// Called for every frame from now on.
     void drive_bodies(DriveBodies drive) { drive_ = std::move(drive); }
@@ -62,7 +62,7 @@ private:
     void rebuild(std::shared_ptr<gi::Scene const> scene);
     void place_object(Change const& change);
     void restart();
-    gi::Changes move_to(FrameOrder const& order);
+    gi::Changes move_to(FrameCommand const& order);
 
     LoadScene load_;
     int threads_;
@@ -78,7 +78,7 @@ private:
     DriveBodies drive_;
     gi::Changes pending_; ///< edits since the last frame
     double time_s_ = 0;   ///< of the last frame
-    std::unique_ptr<Lane> main_, compared_;
+    std::unique_ptr<MethodRunner> main_, compared_;
 };
 
 } // namespace viewer

@@ -1,4 +1,4 @@
-#include "viewer/protocol/frame_order.h"
+#include "viewer/protocol/frame_command.h"
 
 #include "gi/core/error.h"
 #include "viewer/protocol/bytes.h"
@@ -58,7 +58,7 @@ void put(ByteWriter& to, gi::Camera const& c)
 gi::Camera get_camera(ByteReader& from)
 {
     gi::Camera c;
-    c.name = from.text(OrderLimits::name_bytes);
+    c.name = from.text(CommandLimits::name_bytes);
     std::uint8_t const flags = from.byte();
     if (flags > 3) throw BadBytes("a camera is of an unknown kind");
     c.orthographic = (flags & 1) != 0;
@@ -83,19 +83,19 @@ std::string text_of(Change const& c)
 {
     try {
         std::string text = c.value.dump();
-        if (text.size() <= OrderLimits::value_bytes) return text;
+        if (text.size() <= CommandLimits::value_bytes) return text;
     } catch (nlohmann::json::exception const& e) {
         throw gi::InputError("the value of '" + c.key + "' cannot be written", e.what(), "use UTF-8");
     }
     throw gi::InputError("the value of '" + c.key + "' is too long",
-                         fmt::format("{} bytes are the most", OrderLimits::value_bytes), "set it in parts");
+                         fmt::format("{} bytes are the most", CommandLimits::value_bytes), "set it in parts");
 }
 
 Change get_change(ByteReader& from)
 {
     Change c;
-    c.key = from.text(OrderLimits::name_bytes);
-    c.value = parse_json(from.text(OrderLimits::value_bytes), OrderLimits::value_depth);
+    c.key = from.text(CommandLimits::name_bytes);
+    c.value = parse_json(from.text(CommandLimits::value_bytes), CommandLimits::value_depth);
     return c;
 }
 
@@ -123,31 +123,31 @@ Tracked get_tracked(ByteReader& from, bool& another)
     return t;
 }
 
-FrameOrder get_order(ByteReader& from)
+FrameCommand get_order(ByteReader& from)
 {
     if (int const version = from.byte(); version != kVersion)
         throw BadBytes(fmt::format("they are of version {}, only {} is known", version, kVersion));
-    FrameOrder o;
+    FrameCommand o;
     o.frame = from.count(~std::uint64_t(0));
     for (double* const t : {&o.pose_s, &o.display_s, &o.scene_s}) *t = from.number();
-    o.paths = int(from.count(OrderLimits::paths));
+    o.paths = int(from.count(CommandLimits::paths));
     o.world_from_room = get_matrix(from);
     bool others = false;
     o.tracked = get_tracked(from, others);
     while (others) {
-        if (o.others.size() == OrderLimits::users) throw BadBytes("too many users are tracked");
+        if (o.others.size() == CommandLimits::users) throw BadBytes("too many users are tracked");
         o.others.push_back(get_tracked(from, others));
     }
-    auto const changes = from.count(OrderLimits::changes);
+    auto const changes = from.count(CommandLimits::changes);
     for (std::uint64_t i = 0; i < changes; ++i) o.changes.push_back(get_change(from));
-    auto const views = from.count(OrderLimits::views);
+    auto const views = from.count(CommandLimits::views);
     for (std::uint64_t i = 0; i < views; ++i) {
-        ViewOrder v;
-        v.name = from.text(OrderLimits::name_bytes);
+        ViewCommand v;
+        v.name = from.text(CommandLimits::name_bytes);
         v.camera = get_camera(from);
-        v.width = int(from.count(OrderLimits::size_px));
-        v.height = int(from.count(OrderLimits::size_px));
-        v.partner = int(from.count(OrderLimits::views)) - 1;
+        v.width = int(from.count(CommandLimits::size_px));
+        v.height = int(from.count(CommandLimits::size_px));
+        v.partner = int(from.count(CommandLimits::views)) - 1;
         o.views.push_back(std::move(v));
     }
     if (from.left() > 0) throw BadBytes(fmt::format("{} bytes follow it", from.left()));
@@ -156,9 +156,9 @@ FrameOrder get_order(ByteReader& from)
 
 } // namespace
 
-std::vector<std::uint8_t> to_bytes(FrameOrder const& o)
+std::vector<std::uint8_t> to_bytes(FrameCommand const& o)
 {
-    check_order(o);
+    check_command(o);
     ByteWriter to;
     to.put_byte(kVersion);
     to.put_count(o.frame);
@@ -173,28 +173,28 @@ std::vector<std::uint8_t> to_bytes(FrameOrder const& o)
         to.put_text(text_of(c));
     }
     to.put_count(o.views.size());
-    for (ViewOrder const& v : o.views) {
+    for (ViewCommand const& v : o.views) {
         to.put_text(v.name);
         put(to, v.camera);
         to.put_count(std::uint64_t(v.width));
         to.put_count(std::uint64_t(v.height));
         to.put_count(std::uint64_t(v.partner + 1));
     }
-    if (to.bytes().size() > OrderLimits::bytes)
+    if (to.bytes().size() > CommandLimits::bytes)
         throw gi::InputError(
             "a frame order is too long",
-            fmt::format("it has {} bytes, {} are the most", to.bytes().size(), OrderLimits::bytes),
+            fmt::format("it has {} bytes, {} are the most", to.bytes().size(), CommandLimits::bytes),
             "spread its changes over several frames");
     return to.take();
 }
 
-FrameOrder order_from_bytes(std::span<std::uint8_t const> bytes)
+FrameCommand command_from_bytes(std::span<std::uint8_t const> bytes)
 {
     try {
-        if (bytes.size() > OrderLimits::bytes) throw BadBytes("they are too many");
+        if (bytes.size() > CommandLimits::bytes) throw BadBytes("they are too many");
         ByteReader from(bytes);
-        FrameOrder order = get_order(from);
-        check_order(order);
+        FrameCommand order = get_order(from);
+        check_command(order);
         return order;
     } catch (BadBytes const& e) {
         throw gi::InputError(fmt::format("{} bytes are no frame order", bytes.size()), e.what(),

@@ -13,18 +13,18 @@ namespace viewer {
 /// What has happened between two frames, as temporal reuse sees it.
 gi::SceneChange scene_change(gi::Changes const& changes, bool camera_moved);
 
-class Lane {
+class MethodRunner {
 public:
     /// The world and the report outlive it. @param first  views whose size the plan counts with
-    Lane(std::string const& method, gi::MovingWorld const& world, Settings const& settings, int threads,
-         std::vector<ViewOrder> const& first, gi::Report& report);
+    MethodRunner(std::string const& method, gi::MovingWorld const& world, Settings const& settings, int threads,
+                 std::vector<ViewCommand> const& first, gi::Report& report);
 
     /// A picture per view. @param hidden  per view  @param changes  of the world since the last frame
-    std::vector<gi::RenderResult> render(FrameOrder const& order, std::span<HiddenPixels const> hidden,
+    std::vector<gi::RenderResult> render(FrameCommand const& order, std::span<HiddenPixels const> hidden,
                                          gi::Changes const& changes, Settings const& settings,
                                          gi::StopRequest const& stop);
     int still_frames() const { return still_; }
-    gi::Following following() const { return renderer_->following(); } ///< of the last frame
+    gi::DynamicUpdate dynamic_update() const { return renderer_->dynamic_update(); } ///< of the last frame
 
 private:
     struct Seen { ///< of a view

@@ -8,7 +8,7 @@
 
 namespace gi {
 
-struct KnownLight {
+struct FilteredLight {
     FilterArea area;
     /// Direct and indirect light as in namespace light, near what is wanted but not there; none = that of the
     /// picture stays as it is.
@@ -19,6 +19,6 @@ struct KnownLight {
 /// picture's.
 /// @param report  gets pixels that keep their values, as what they would take is not finite
 /// @return that light
-Planes take_filtered(Picture& picture, TakenLight const& taken, FilterArea const& area, DenoiseReport& report);
+Planes take_filtered(Picture& picture, ReusedLight const& taken, FilterArea const& area, DenoiseReport& report);
 
 } // namespace gi

@@ -11,7 +11,7 @@ namespace gi {
 /// Where a pixel takes its light from: a pixel of the partner's picture, else this.
 inline constexpr std::uint32_t kOwnLight = 0xffffffff;
 
-struct TakenLight {
+struct ReusedLight {
     /// As far on its way as the picture that takes is to be brought; null = none.
     Picture const* partner = nullptr;
     std::span<std::uint32_t const> from{}; ///< per pixel: a pixel of the partner, row by row, or kOwnLight

@@ -1,4 +1,4 @@
-#include "viewer/engine/follow_governor.h"
+#include "viewer/engine/update_governor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,33 +14,33 @@ constexpr double kShareToGrow = 0.6, kAtOnce = 0.5;
 constexpr int kFramesToGrow = 8, kFramesKept = 3, kQuiet = 8;
 
 /// The set is parted into so many; each bounce has one in a frame.
-int parts_of(int followed, int stored) { return followed == 0 ? 1 : std::max(1, stored / followed); }
+int parts_of(int updated, int stored) { return updated == 0 ? 1 : std::max(1, stored / updated); }
 
 /// Different axes of all bounces, which choose theirs by themselves.
-double axes_of(int followed, gi::Following const& f)
+double axes_of(int updated, gi::DynamicUpdate const& f)
 {
-    return f.stored * (1 - std::pow(1 - 1.0 / parts_of(followed, f.stored), f.bounces));
+    return f.stored * (1 - std::pow(1 - 1.0 / parts_of(updated, f.stored), f.bounces));
 }
 
 } // namespace
 
-double FollowGovernor::share(std::size_t level) const
+double UpdateGovernor::share(std::size_t level) const
 {
     if (axis_s_.empty()) return 0;
-    return std::ranges::min(axis_s_) * axes_of(kLevels[level], following_) / frame_s_;
+    return std::ranges::min(axis_s_) * axes_of(kLevels[level], dynamic_update_) / frame_s_;
 }
 
-double FollowGovernor::share_of_all() const { return share(0); }
+double UpdateGovernor::share_of_all() const { return share(0); }
 
-void FollowGovernor::measured(Frame const& f)
+void UpdateGovernor::measured(Frame const& f)
 {
     quiet_ = f.moved || !may_move_ ? 0 : quiet_ + 1;
-    if (!f.moved || !(f.following.seconds >= 0) || !(f.rate_hz > 0) || f.following.axes < 1) return;
-    following_ = f.following;
+    if (!f.moved || !(f.dynamic_update.seconds >= 0) || !(f.rate_hz > 0) || f.dynamic_update.axes < 1) return;
+    dynamic_update_ = f.dynamic_update;
     frame_s_ = 1 / f.rate_hz;
-    bool const at_once = following_.seconds > kAtOnce * frame_s_;
+    bool const at_once = dynamic_update_.seconds > kAtOnce * frame_s_;
     if (at_once) axis_s_.clear();
-    axis_s_.push_back(following_.seconds / following_.axes);
+    axis_s_.push_back(dynamic_update_.seconds / dynamic_update_.axes);
     if (axis_s_.size() > kFramesKept) axis_s_.pop_front();
     if (!at_once && axis_s_.size() < kFramesKept) return;
     while (level_ + 1 < std::size(kLevels) && share(level_) > kMost[level_]) ++level_;
@@ -50,7 +50,7 @@ void FollowGovernor::measured(Frame const& f)
     calm_ = 0;
 }
 
-int FollowGovernor::next(bool may_move)
+int UpdateGovernor::next(bool may_move)
 {
     may_move_ = may_move;
     if (may_move && quiet_ < kQuiet)
@@ -60,13 +60,13 @@ int FollowGovernor::next(bool may_move)
     return kLevels[shown_];
 }
 
-std::string schedule_sentence(std::string const& schedule, int followed, int stored, double share_of_all)
+std::string schedule_sentence(std::string const& schedule, int updated, int stored, double share_of_all)
 {
     if (schedule != "auto") return schedule + ", as it was set";
     if (stored == 0) return "none: light is not looked up along directions";
     std::string const share = fmt::format("{:.0f} % of the time between frames", 100 * share_of_all);
     if (!(share_of_all > 0)) return fmt::format("stored: all {} directions; nothing has moved so far", stored);
-    int const parts = parts_of(followed, stored);
+    int const parts = parts_of(updated, stored);
     if (parts == 1)
         return fmt::format("stored: all {} directions follow what moves, which takes {} where something does",
                            stored, share);

@@ -1,4 +1,4 @@
-#include "gi/methods/slhb/tracer/shared_endings.h"
+#include "gi/methods/slhb/tracer/shared_vertices.h"
 
 #include "gi/core/rng.h"
 
@@ -22,7 +22,7 @@ std::uint32_t path_of(std::uint32_t rank, std::uint32_t key) { return (rank * in
 
 } // namespace
 
-void SharedEndings::start(std::size_t paths, std::size_t layers, std::uint32_t pass)
+void SharedVertices::start(std::size_t paths, std::size_t layers, std::uint32_t pass)
 {
     order_key_ = std::uint32_t(mix_bits(pass)) & 0x7fffffff; // no path has the rank kNone
     slots_.assign(2 * layers, kNone);
@@ -30,7 +30,7 @@ void SharedEndings::start(std::size_t paths, std::size_t layers, std::uint32_t p
     starts_.clear();
 }
 
-void SharedEndings::note(std::uint32_t path, Ending const& e)
+void SharedVertices::note(std::uint32_t path, SharedVertex const& e)
 {
     if (e.triangle == kNoLayerHit) return note_none(path);
     std::size_t const at = 2 * std::size_t(e.layer) + (e.up ? 1 : 0);
@@ -42,13 +42,13 @@ void SharedEndings::note(std::uint32_t path, Ending const& e)
     }
 }
 
-void SharedEndings::collect(std::vector<Ending> const& endings)
+void SharedVertices::collect(std::vector<SharedVertex> const& shared_vertices)
 {
     if (slots_.empty()) return;
     for (std::uint32_t& slot : slots_) {
         if (slot == kNone) continue;
         std::uint32_t const path = path_of(slot, order_key_);
-        Ending const& e = endings[path];
+        SharedVertex const& e = shared_vertices[path];
         starts_.push_back({0x80000000u | path, e.triangle, {e.position, e.arrival}, true});
         slot = std::uint32_t(starts_.size() - 1);
     }
@@ -60,7 +60,7 @@ void SharedEndings::collect(std::vector<Ending> const& endings)
     shaded_ += starts_.size();
 }
 
-void SharedEndings::keep(std::size_t first, std::span<PathSample const> samples)
+void SharedVertices::keep(std::size_t first, std::span<PathSample const> samples)
 {
     for (std::size_t k = 0; k < samples.size(); ++k) radiance_[first + k] = samples[k].radiance[2];
 }
