@@ -1,6 +1,7 @@
 #include "ar/calibration/calibration_file.h"
 
-#include "ar/camera/yaml.h"
+#include "gi/core/file.h"
+#include "gi/core/yaml.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,24 +37,24 @@ struct Matrix {
     std::vector<double> values;
 };
 
-Matrix read_matrix(Yaml const& y)
+Matrix read_matrix(gi::Yaml const& y)
 {
     y.only_keys({"rows", "cols", "dt", "data"});
     Matrix m;
-    m.rows = y.at("rows", "3").integer(0, 4096);
-    m.cols = y.at("cols", "3").integer(0, 4096);
+    m.rows = y.needed("rows", "3").integer(0, 4096);
+    m.cols = y.needed("cols", "3").integer(0, 4096);
     if (y.has("dt")) {
-        Yaml const type = y.at("dt", "d");
+        gi::Yaml const type = y.needed("dt", "d");
         if (type.text() != "d" && type.text() != "f")
             throw type.error("values of type '" + type.text().substr(0, 16) + "'", "d and f are read",
                              "write dt: d");
     }
     auto const count = std::size_t(m.rows) * std::size_t(m.cols);
-    m.values = y.at("data", "[...]").numbers(count, -kLargest, kLargest);
+    m.values = y.needed("data", "[...]").numbers(count, -kLargest, kLargest);
     return m;
 }
 
-Matrix read_matrix(Yaml const& y, int rows, int cols)
+Matrix read_matrix(gi::Yaml const& y, int rows, int cols)
 {
     Matrix m = read_matrix(y);
     if (m.rows != rows || m.cols != cols)
@@ -62,25 +63,25 @@ Matrix read_matrix(Yaml const& y, int rows, int cols)
     return m;
 }
 
-LensModel lens_of(Yaml const& top, std::size_t coefficients)
+LensModel lens_of(gi::Yaml const& top, std::size_t coefficients)
 {
     if (top.has("lens_model")) {
-        Yaml const y = top.at("lens_model", "");
+        gi::Yaml const y = top.at("lens_model");
         auto const lens = lens_named(y.text());
         if (!lens)
             throw y.error("'" + y.text().substr(0, 64) + "' is no lens model", "its equation is not known",
                           "write pinhole, radial_tangential, rational or fisheye");
         return *lens;
     }
-    if (top.has("fisheye_model") && top.at("fisheye_model", "").text() == "1") return LensModel::fisheye;
+    if (top.has("fisheye_model") && top.at("fisheye_model").text() == "1") return LensModel::fisheye;
     return coefficients == 0   ? LensModel::pinhole
            : coefficients <= 5 ? LensModel::radial_tangential
                                : LensModel::rational;
 }
 
-void read_lens(Yaml const& top, CameraModel& c)
+void read_lens(gi::Yaml const& top, CameraModel& c)
 {
-    Yaml const k = top.at("camera_matrix", kMatrixExample);
+    gi::Yaml const k = top.needed("camera_matrix", kMatrixExample);
     Matrix const m = read_matrix(k, 3, 3);
     auto const& v = m.values;
     if (std::abs(v[1]) > 1e-9 * std::abs(v[0]) || v[3] != 0 || v[6] != 0 || v[7] != 0 || v[8] != 1)
@@ -93,27 +94,28 @@ void read_lens(Yaml const& top, CameraModel& c)
     std::string const name =
         !top.has("distortion_coefficients") && top.has("dist_coeffs") ? "dist_coeffs" : "distortion_coefficients";
     std::vector<double> d;
-    if (top.has(name)) d = read_matrix(top.at(name, "")).values;
+    if (top.has(name)) d = read_matrix(top.at(name)).values;
     c.lens = lens_of(top, d.size());
     // 4 of OpenCV's are k1 k2 p1 p2; 14 with zeros behind the eighth are the rational model.
     while (d.size() > 8 && d.back() == 0) d.pop_back();
     auto const needed = std::size_t(coefficient_count(c.lens));
     if (c.lens == LensModel::radial_tangential && d.size() == 4) d.push_back(0);
     if (d.size() != needed)
-        throw(top.has(name) ? top.at(name, "") : top)
+        throw(top.has(name) ? top.at(name) : top)
             .error(fmt::format("{} distortion coefficients for the lens model {}", d.size(), name_of(c.lens)),
                    fmt::format("it has {}", needed),
                    "0, 4, 5 and 8 are read, thin prisms and tilted sensors are not");
     std::copy(d.begin(), d.end(), c.distortion.begin());
 }
 
-glm::ivec2 read_size(Yaml const& top, std::optional<glm::ivec2> given)
+glm::ivec2 read_size(gi::Yaml const& top, std::optional<glm::ivec2> given)
 {
     constexpr int kMost = 65536;
     if (top.has("image_width") || top.has("image_height"))
-        return {top.at("image_width", "640").integer(1, kMost), top.at("image_height", "480").integer(1, kMost)};
+        return {top.needed("image_width", "640").integer(1, kMost),
+                top.needed("image_height", "480").integer(1, kMost)};
     if (top.has("image_size")) {
-        auto const v = top.at("image_size", "").numbers(2, 1, kMost);
+        auto const v = top.at("image_size").numbers(2, 1, kMost);
         return {int(v[0]), int(v[1])};
     }
     if (given) return *given;
@@ -121,10 +123,10 @@ glm::ivec2 read_size(Yaml const& top, std::optional<glm::ivec2> given)
                     "write image_width: 640 and image_height: 480");
 }
 
-Photometry read_photometry(Yaml const& top)
+Photometry read_photometry(gi::Yaml const& top)
 {
     Photometry p;
-    Yaml const y = top.at("response", kMatrixExample);
+    gi::Yaml const y = top.needed("response", kMatrixExample);
     Matrix const curve = read_matrix(y, 3, 256);
     for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t i = 0; i < 256; ++i) {
@@ -138,7 +140,7 @@ Photometry read_photometry(Yaml const& top)
     if (!(p.unit_of_byte[0][255] > 0 && p.unit_of_byte[1][255] > 0 && p.unit_of_byte[2][255] > 0))
         throw y.error("a response that is 0 everywhere", "all pictures would be black", "calibrate it again");
     if (top.has("vignetting")) {
-        Yaml const v = top.at("vignetting", "");
+        gi::Yaml const v = top.at("vignetting");
         Matrix const m = read_matrix(v, 1, 3);
         std::copy(m.values.begin(), m.values.end(), p.vignetting.begin());
         for (int i = 0; i <= 100; ++i) {
@@ -149,18 +151,18 @@ Photometry read_photometry(Yaml const& top)
         }
     }
     if (top.has("colour")) {
-        Yaml const y_colour = top.at("colour", "");
+        gi::Yaml const y_colour = top.at("colour");
         Matrix const m = read_matrix(y_colour, 3, 3);
         for (int i = 0; i < 9; ++i) p.colour.val[i] = float(m.values[std::size_t(i)]);
         if (!(std::abs(cv::determinant(p.colour)) > 1e-4f))
             throw y_colour.error("the colour matrix has no inverse", "colours would be lost",
                                  "calibrate it again");
     }
-    if (top.has("radiance_per_unit")) p.radiance_per_unit = top.at("radiance_per_unit", "").number(1e-9, 1e9);
+    if (top.has("radiance_per_unit")) p.radiance_per_unit = top.at("radiance_per_unit").number(1e-9, 1e9);
     if (top.has("reference_exposure")) {
-        Yaml const e = top.at("reference_exposure", "");
+        gi::Yaml const e = top.at("reference_exposure");
         e.only_keys({"time_s", "gain", "red_gain", "blue_gain"});
-        auto const number = [&](char const* key) { return e.has(key) ? e.at(key, "").number(0, 1e6) : 0.0; };
+        auto const number = [&](char const* key) { return e.has(key) ? e.at(key).number(0, 1e6) : 0.0; };
         p.reference = {number("time_s"), number("gain"), number("red_gain"), number("blue_gain")};
     }
     return p;
@@ -172,28 +174,28 @@ std::string number(double v) { return fmt::format("{}", v); }
 
 Calibration parse_calibration(std::string const& text, std::string const& file, std::optional<glm::ivec2> size_px)
 {
-    Yaml const top = Yaml::parse(text, file);
+    gi::Yaml const top = gi::Yaml::parse(text, file);
     top.keys(); // a map, each key once; files of others have keys of their own
     Calibration out;
     read_lens(top, out.camera);
     out.camera.size_px = read_size(top, size_px);
-    Place const at = top.at("camera_matrix", "").place();
+    gi::TextLocation const at = top.at("camera_matrix").place();
     check(out.camera, fmt::format("{}:{}:{}", at.file, at.line, at.column));
-    if (top.has("rms_px")) out.rms_px = top.at("rms_px", "").number(0, 1e6);
+    if (top.has("rms_px")) out.rms_px = top.at("rms_px").number(0, 1e6);
     if (top.has("covariance")) {
         int const n = 4 + coefficient_count(out.camera.lens);
-        Matrix const m = read_matrix(top.at("covariance", ""), n, n);
+        Matrix const m = read_matrix(top.at("covariance"), n, n);
         out.covariance = cv::Mat(m.values, true).reshape(1, n);
     }
     if (top.has("response")) out.photometry = read_photometry(top);
     if (top.has("noise")) {
-        Yaml const y = top.at("noise", "");
+        gi::Yaml const y = top.at("noise");
         y.only_keys({"read", "photon"});
-        out.noise = NoiseModel{y.at("read", "1e-6").number(0, 1e6), y.at("photon", "1e-4").number(0, 1e6)};
+        out.noise = NoiseModel{y.needed("read", "1e-6").number(0, 1e6), y.needed("photon", "1e-4").number(0, 1e6)};
     }
     if (top.has("provenance")) {
-        Yaml const y = top.at("provenance", "");
-        for (std::string const& key : y.keys()) out.provenance.emplace_back(key, y.at(key, "").text());
+        gi::Yaml const y = top.at("provenance");
+        for (std::string const& key : y.keys()) out.provenance.emplace_back(key, y.at(key).text());
     }
     return out;
 }
@@ -237,7 +239,7 @@ std::string format_calibration(Calibration const& c)
 
 Calibration read_calibration(std::filesystem::path const& file, std::optional<glm::ivec2> size_px)
 {
-    return parse_calibration(read_text(file), file.string(), size_px);
+    return parse_calibration(gi::read_text(file), file.string(), size_px);
 }
 
 void write_calibration(std::filesystem::path const& file, Calibration const& c)
@@ -248,11 +250,11 @@ void write_calibration(std::filesystem::path const& file, Calibration const& c)
                 return (ch >= 'a' && ch <= 'z') || (ch >= 'A' && ch <= 'Z') || (ch >= '0' && ch <= '9') ||
                        ch == '_';
             }))
-            throw InputError("'" + key + "' is no key of provenance", "keys are letters, digits and _",
-                             "rename it");
+            throw gi::InputError("'" + key + "' is no key of provenance", "keys are letters, digits and _",
+                                 "rename it");
     std::string const text = format_calibration(c);
     parse_calibration(text, file.string()); // nothing is written that would not be read
-    write_text(file, text);
+    gi::write_text(file, text);
 }
 
 } // namespace ar

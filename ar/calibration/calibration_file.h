@@ -26,16 +26,16 @@ struct Calibration {
 /// coefficients are a pinhole, 4 or 5 radial_tangential, 8 rational, unless lens_model or OpenCV's fisheye_model
 /// says otherwise; the picture's size may be image_width and image_height or image_size.
 /// @param file for messages
-/// @param size_px taken where the file says none. @throws InputError with file:line:column: not YAML, matrices of
-/// wrong sizes, numbers that are not finite, lens models that are unknown or do not fit the coefficients, curves
-/// that fall, cameras that `check` refuses
+/// @param size_px taken where the file says none. @throws gi::InputError with file:line:column: not YAML, matrices
+/// of wrong sizes, numbers that are not finite, lens models that are unknown or do not fit the coefficients,
+/// curves that fall, cameras that `check` refuses
 Calibration parse_calibration(std::string const& text, std::string const& file,
                               std::optional<glm::ivec2> size_px = std::nullopt);
 std::string format_calibration(Calibration const& calibration);
 
-/// @throws InputError
+/// @throws gi::InputError
 Calibration read_calibration(std::filesystem::path const& file, std::optional<glm::ivec2> size_px = std::nullopt);
-/// Whole, or as it was before. @throws InputError
+/// Whole, or as it was before. @throws gi::InputError
 void write_calibration(std::filesystem::path const& file, Calibration const& calibration);
 
 } // namespace ar

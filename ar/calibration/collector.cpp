@@ -1,6 +1,6 @@
 #include "ar/calibration/collector.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,8 +44,8 @@ Collector::Collector(glm::ivec2 size_px, ViewSource source, LensModel lens, int 
     : size_px_(size_px), source_(source), lens_(lens), wanted_(wanted)
 {
     if (size_px.x < 1 || size_px.y < 1)
-        throw InputError(fmt::format("pictures of {} x {} pixels", size_px.x, size_px.y),
-                         "there is nothing in them", "give the camera's size");
+        throw gi::InputError(fmt::format("pictures of {} x {} pixels", size_px.x, size_px.y),
+                             "there is nothing in them", "give the camera's size");
 }
 
 Collector::Features Collector::features_of(BoardView const& view) const
@@ -114,7 +114,7 @@ Offer Collector::offer(BoardView view)
     if (views_.size() >= 4 && tilted()) {
         try {
             live_ = calibrate_lens(views_, size_px_, lens_);
-        } catch (InputError const&) {
+        } catch (gi::InputError const&) {
             live_.reset(); // the next view may help
         }
     }

@@ -1,6 +1,6 @@
 #include "ar/calibration/lens.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "gi/core/quantile.h"
 
 #include <algorithm>
@@ -70,14 +70,14 @@ Fit fit(std::vector<BoardView const*> const& views, glm::ivec2 size_px, LensMode
             cv::calibrateCamera(board, pixels, size, k, distortion, turns, shifts, flags, until);
         }
     } catch (cv::Exception const& e) {
-        throw InputError("no " + name_of(lens) + " lens fits the views", e.err,
-                         "take more views, tilted and from different distances");
+        throw gi::InputError("no " + name_of(lens) + " lens fits the views", e.err,
+                             "take more views, tilted and from different distances");
     }
     out.camera = camera_of(lens, size_px, k, distortion);
     for (double const v : parameters_of(out.camera))
         if (!std::isfinite(v))
-            throw InputError("no " + name_of(lens) + " lens fits the views", "its parameters are not finite",
-                             "take more views, tilted and from different distances");
+            throw gi::InputError("no " + name_of(lens) + " lens fits the views", "its parameters are not finite",
+                                 "take more views, tilted and from different distances");
     for (std::size_t i = 0; i < views.size(); ++i) {
         cv::Mat turn, shift;
         turns[i].reshape(1, 3).convertTo(turn, CV_64F);
@@ -112,7 +112,7 @@ void add_warnings(LensCalibration& c, std::vector<BoardView> const& used)
         c.warnings.push_back(fmt::format("the focal length is known to {:.1f} % only", 100 * f_error));
     try {
         check(c.camera, "the calibration");
-    } catch (InputError const& e) {
+    } catch (gi::InputError const& e) {
         c.warnings.emplace_back(e.what());
     }
 }
@@ -229,9 +229,9 @@ LensCalibration calibrate_lens(std::vector<BoardView> const& views, glm::ivec2 s
     Fit best;
     for (std::size_t dropped = 0;; ++dropped) {
         if (used.size() < kFewestViews)
-            throw InputError(fmt::format("{} of {} views can be used", used.size(), views.size()),
-                             fmt::format("{} are needed, each with {} points", kFewestViews, kFewestPoints),
-                             "take more pictures of the board");
+            throw gi::InputError(fmt::format("{} of {} views can be used", used.size(), views.size()),
+                                 fmt::format("{} are needed, each with {} points", kFewestViews, kFewestPoints),
+                                 "take more pictures of the board");
         std::vector<BoardView const*> chosen;
         for (std::size_t i : used) chosen.push_back(&views[i]);
         best = fit(chosen, size_px, lens);

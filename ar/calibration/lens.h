@@ -37,7 +37,7 @@ struct LensOptions {
     double outlier_floor_px = 0.25;
 };
 
-/// @throws InputError fewer than three views with six points, or numbers that no lens fits
+/// @throws gi::InputError fewer than three views with six points, or numbers that no lens fits
 LensCalibration calibrate_lens(std::vector<BoardView> const& views, glm::ivec2 size_px, LensModel lens,
                                LensOptions const& options = {});
 

@@ -1,6 +1,6 @@
 #include "ar/calibration/lens_choice.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ LensTrial tried(LensModel lens, std::vector<BoardView> const& views, glm::ivec2 
             }
         }
         trial.validated_rms_px = std::sqrt(squares / count);
-    } catch (InputError const& e) {
+    } catch (gi::InputError const& e) {
         trial.failed = e.what();
     }
     return trial;
@@ -61,8 +61,8 @@ LensChoice choose_lens(std::vector<BoardView> const& views, glm::ivec2 size_px, 
                         name_of(t.lens), coefficient_count(t.lens), t.validated_rms_px, least);
         return choice;
     }
-    throw InputError("no lens model fits the views", choice.trials.front().failed,
-                     "take more pictures of the board");
+    throw gi::InputError("no lens model fits the views", choice.trials.front().failed,
+                         "take more pictures of the board");
 }
 
 } // namespace ar

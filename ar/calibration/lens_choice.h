@@ -20,7 +20,7 @@ struct LensChoice {
 };
 
 /// The model with the fewest coefficients whose validated error is within 2 % of the least.
-/// @throws InputError no model can be fitted
+/// @throws gi::InputError no model can be fitted
 LensChoice choose_lens(std::vector<BoardView> const& views, glm::ivec2 size_px, LensOptions const& options = {});
 
 } // namespace ar

@@ -1,31 +1,14 @@
 #include "ar/calibration/page.h"
 
+#include "gi/core/html.h"
 #include <algorithm>
 #include <fmt/format.h>
 
 namespace ar {
 
-std::string escaped(std::string const& s)
-{
-    std::string out;
-    for (char const c : s) {
-        if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '&')
-            out += "&amp;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += c;
-    }
-    return out;
-}
-
 std::string page_begin(std::string const& title)
 {
-    return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + escaped(title) +
+    return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + gi::escaped(title) +
            "</title><style>\nbody{font:15px sans-serif;max-width:960px;margin:2em "
            "auto;color:#222}table{border-collapse:collapse;margin-bottom:1em}\n"
            "td,th{padding:2px 10px;text-align:left;border-bottom:1px solid "
@@ -33,7 +16,7 @@ std::string page_begin(std::string const& title)
            "border:1px solid #ccc}\nsvg text{font:12px "
            "sans-serif;text-anchor:middle}.bar{height:10px;background:#1565c0}"
            ".out{background:#c62828}.warning{color:#b71c1c}\n</style></head><body>\n<h1>" +
-           escaped(title) + "</h1>\n";
+           gi::escaped(title) + "</h1>\n";
 }
 
 std::string page_end() { return "</body></html>\n"; }
@@ -55,7 +38,7 @@ std::string plot(std::vector<cv::Point2d> const& points, std::vector<cv::Point2d
     s += "<path d=\"" + path + "\" stroke=\"#c62828\" stroke-width=\"2\" fill=\"none\"/>";
     return s + fmt::format("<text x=\"256\" y=\"322\">{}, 0 to {:.3g}</text><text x=\"2\" y=\"-3\" "
                            "style=\"text-anchor:start\">{}, 0 to {:.3g}</text></svg>\n",
-                           escaped(across), most.x, escaped(up), most.y);
+                           gi::escaped(across), most.x, gi::escaped(up), most.y);
 }
 
 } // namespace ar

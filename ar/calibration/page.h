@@ -7,9 +7,6 @@
 
 namespace ar {
 
-/// As text of HTML and in attributes.
-std::string escaped(std::string const& text);
-
 /// Up to and with the heading. @param title plain text
 std::string page_begin(std::string const& title);
 std::string page_end();

@@ -1,7 +1,9 @@
 #include "ar/calibration/report.h"
 
 #include "ar/calibration/page.h"
-#include "ar/camera/yaml.h"
+#include "gi/core/base64.h"
+#include "gi/core/file.h"
+#include "gi/core/html.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,19 +14,6 @@
 namespace ar {
 namespace {
 
-std::string base64(std::vector<std::uint8_t> const& bytes)
-{
-    constexpr char const* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t v = std::uint32_t(bytes[i]) << 16;
-        if (i + 1 < bytes.size()) v |= std::uint32_t(bytes[i + 1]) << 8;
-        if (i + 2 < bytes.size()) v |= bytes[i + 2];
-        for (std::size_t k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : letters[(v >> (18 - 6 * k)) & 63];
-    }
-    return out;
-}
-
 std::string image_of(cv::Mat const& picture, glm::ivec2 size)
 {
     if (picture.empty()) return {};
@@ -33,7 +22,7 @@ std::string image_of(cv::Mat const& picture, glm::ivec2 size)
     std::vector<std::uint8_t> jpeg;
     cv::imencode(".jpg", bgr, jpeg, {cv::IMWRITE_JPEG_QUALITY, 80});
     return fmt::format("<image width=\"{}\" height=\"{}\" opacity=\"0.3\" href=\"data:image/jpeg;base64,{}\"/>",
-                       size.x, size.y, base64(jpeg));
+                       size.x, size.y, gi::encode_base64(jpeg));
 }
 
 /// Arrows from where points are seen, 50 times as long as what they are off; views left out are red.
@@ -53,7 +42,7 @@ std::string residual_drawing(CalibrationReport const& r)
         }
         s += fmt::format(
             "<path d=\"{}\" stroke=\"{}\" stroke-width=\"{:.2f}\" fill=\"none\"><title>{}</title></path>", path,
-            result.used ? "#1565c0" : "#c62828", stroke, escaped(result.name));
+            result.used ? "#1565c0" : "#c62828", stroke, gi::escaped(result.name));
     }
     return s + "</svg>\n<p>What each point is off, 50 times as long. Red: views that were left out.</p>\n";
 }
@@ -95,8 +84,8 @@ std::string view_table(LensCalibration const& lens)
         s += fmt::format(
             "<tr><td>{}</td><td>{}</td><td>{:.3f}</td><td><div class=\"bar{}\" style=\"width:{:.0f}px\"></div>"
             "</td><td>{:.3f}</td><td>{}</td></tr>\n",
-            escaped(v.name), v.residuals_px.size(), v.rms_px, v.used ? "" : " out", 200 * v.rms_px / most,
-            glm::length(v.camera_from_board.position_m), v.used ? "" : "left out: " + escaped(v.why));
+            gi::escaped(v.name), v.residuals_px.size(), v.rms_px, v.used ? "" : " out", 200 * v.rms_px / most,
+            glm::length(v.camera_from_board.position_m), v.used ? "" : "left out: " + gi::escaped(v.why));
     return s + "</table>\n";
 }
 
@@ -134,7 +123,7 @@ std::string to_html(CalibrationReport const& r)
                      "px.</p>\n",
                      c.size_px.x, c.size_px.y, name_of(c.lens), r.lens.used_views(), r.lens.views.size(),
                      r.lens.rms_px);
-    for (auto const& w : r.lens.warnings) s += "<p class=\"warning\">" + escaped(w) + "</p>\n";
+    for (auto const& w : r.lens.warnings) s += "<p class=\"warning\">" + gi::escaped(w) + "</p>\n";
     s += "<h2>Lens</h2>\n<table><tr><th></th><th>value</th><th>standard deviation</th></tr>\n";
     auto const values = parameters_of(c);
     for (std::size_t i = 0; i < values.size() && i < r.lens.standard_deviations.size(); ++i)
@@ -148,8 +137,8 @@ std::string to_html(CalibrationReport const& r)
                                                 name_of(t.lens), t.fitted_rms_px, t.validated_rms_px,
                                                 t.lens == r.choice->chosen ? "chosen" : "")
                                   : fmt::format("<tr><td>{}</td><td colspan=\"3\">{}</td></tr>\n", name_of(t.lens),
-                                                escaped(t.failed));
-        s += "</table>\n<p>" + escaped(r.choice->why) + "</p>\n";
+                                                gi::escaped(t.failed));
+        s += "</table>\n<p>" + gi::escaped(r.choice->why) + "</p>\n";
     }
     s += "<h2>Residuals</h2>\n" + residual_drawing(r) + "<h2>Coverage</h2>\n" + coverage_drawing(r);
     s += "<h2>Views</h2>\n" + view_table(r.lens);
@@ -163,7 +152,7 @@ std::string to_html(CalibrationReport const& r)
 
 void write_report(std::filesystem::path const& file, CalibrationReport const& report)
 {
-    write_text(file, to_html(report));
+    gi::write_text(file, to_html(report));
 }
 
 } // namespace ar

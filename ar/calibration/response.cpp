@@ -1,6 +1,6 @@
 #include "ar/calibration/response.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,7 +87,8 @@ std::size_t middle_of(Bracket const& b)
 void check(Bracket const& b, std::size_t fewest)
 {
     auto const refuse = [](std::string const& problem, std::string const& why) {
-        throw InputError("a bracket of exposures: " + problem, why, "take one scene several times from a tripod");
+        throw gi::InputError("a bracket of exposures: " + problem, why,
+                             "take one scene several times from a tripod");
     };
     if (b.rgb.size() < fewest || b.rgb.size() != b.exposures.size())
         refuse(fmt::format("{} pictures and {} exposures", b.rgb.size(), b.exposures.size()),
@@ -115,7 +116,7 @@ ResponseFit calibrate_response(Bracket const& b)
     for (std::size_t c = 0; c < 3; ++c) {
         ChannelFit const fit = fit_channel(b, light, int(c));
         if (fit.pairs < 200)
-            throw InputError(
+            throw gi::InputError(
                 fmt::format("{} pixels of channel {} are neither dark nor bright in two exposures", fit.pairs, c),
                 "the response is learned from them", "take exposures a factor of 2 to 4 apart");
         out.disagreement[c] = fit.disagreement;

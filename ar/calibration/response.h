@@ -13,8 +13,8 @@ struct Bracket {
     std::vector<Exposure> exposures; ///< with times; gains too, where they differ
 };
 
-/// @throws InputError fewer than two pictures, sizes, types or numbers that differ, exposures without a time, all
-/// the same
+/// @throws gi::InputError fewer than two pictures, sizes, types or numbers that differ, exposures without a time,
+/// all the same
 void check(Bracket const& bracket, std::size_t fewest = 2);
 
 struct ResponseFit {
@@ -30,7 +30,7 @@ struct ResponseFit {
 /// a pixel in two exposures differs by ln of their ratio: least squares over pairs of pixels (as Mitsunaga and
 /// Nayar 1999, in logarithms). cv::createCalibrateDebevec has 256 free values and was 9 to 90 % off at byte
 /// 250 of drawn brackets where this is 1 % (docs/results).
-/// @throws InputError as check(); too few pixels that are neither dark nor bright in two exposures
+/// @throws gi::InputError as check(); too few pixels that are neither dark nor bright in two exposures
 ResponseFit calibrate_response(Bracket const& bracket);
 
 struct MergedRadiance {
@@ -51,7 +51,7 @@ struct MergeOptions {
 /// variance (noise of the sensor, and rounding times the slope of the response; bytes that noise may have clipped
 /// do not count). Vignetting and colour of the photometry are applied. Where exposures disagree, that one alone
 /// counts which has the least variance.
-/// @throws InputError as check()
+/// @throws gi::InputError as check()
 MergedRadiance merge(Bracket const& bracket, Photometry const& photometry, MergeOptions const& options = {});
 
 } // namespace ar

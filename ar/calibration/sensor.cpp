@@ -1,6 +1,6 @@
 #include "ar/calibration/sensor.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,9 +29,9 @@ void check_pictures(std::span<cv::Mat const> rgb, std::string const& what)
 {
     for (cv::Mat const& p : rgb)
         if (p.empty() || p.type() != CV_8UC3 || p.size() != rgb[0].size())
-            throw InputError(what + ": a picture is of another kind or size", "pixels are compared one by one",
-                             "take RGB pictures of one camera");
-    if (rgb.empty()) throw InputError(what + ": there is no picture", "nothing can be learned", "take some");
+            throw gi::InputError(what + ": a picture is of another kind or size", "pixels are compared one by one",
+                                 "take RGB pictures of one camera");
+    if (rgb.empty()) throw gi::InputError(what + ": there is no picture", "nothing can be learned", "take some");
 }
 
 cv::Vec3d lab_of(cv::Vec3d const& linear)
@@ -78,13 +78,14 @@ VignettingFit vignetting_of_flat(std::span<cv::Mat const> rgb, Photometry const&
                     if (count > 0 && clipped == 0 && sum > 0) samples.push_back({r2 / count, sum / count, levels});
                 }
     if (samples.size() < 100)
-        throw InputError(fmt::format("{} parts of the flat field can be used", samples.size()),
-                         "the others are clipped", "expose it to the middle of the range");
+        throw gi::InputError(fmt::format("{} parts of the flat field can be used", samples.size()),
+                             "the others are clipped", "expose it to the middle of the range");
     double furthest = 0;
     for (Sample const& s : samples) furthest = std::max(furthest, std::sqrt(s.r2));
     if (furthest < 0.8)
-        throw InputError(fmt::format("what is not clipped of the flat field reaches to radius {:.2f}", furthest),
-                         "the curve is fitted up to 1, the corners", "expose it so that the corners are in range");
+        throw gi::InputError(
+            fmt::format("what is not clipped of the flat field reaches to radius {:.2f}", furthest),
+            "the curve is fitted up to 1, the corners", "expose it so that the corners are in range");
     // unit = level (1 + a r2 + b r4 + c r6): given the levels linear in a, b, c, and the other way round.
     VignettingFit fit;
     std::vector<double> level(std::size_t(levels), 0);
@@ -125,15 +126,15 @@ NoiseFit noise_of_pairs(std::span<cv::Mat const> rgb, Photometry const& response
 {
     check_pictures(rgb, "pairs of frames");
     if (rgb.size() % 2 != 0)
-        throw InputError(fmt::format("{} frames", rgb.size()), "they are compared in pairs", "leave out one");
+        throw gi::InputError(fmt::format("{} frames", rgb.size()), "they are compared in pairs", "leave out one");
     struct Bin {
         double sum = 0, squares = 0, rounding = 0;
         std::size_t count = 0;
     };
     for (std::size_t k = 0; k < rgb.size(); k += 2)
         if (cv::norm(rgb[k], rgb[k + 1], cv::NORM_INF) == 0)
-            throw InputError(fmt::format("the frames of pair {} do not differ", k / 2 + 1),
-                             "no sensor is without noise", "take two pictures, not one twice");
+            throw gi::InputError(fmt::format("the frames of pair {} do not differ", k / 2 + 1),
+                                 "no sensor is without noise", "take two pictures, not one twice");
     std::map<int, Bin> bins; // of the pair's mean byte in steps of two
     for (std::size_t k = 0; k < rgb.size(); k += 2)
         for (int y = 0; y < rgb[k].rows; ++y)
@@ -166,8 +167,8 @@ NoiseFit noise_of_pairs(std::span<cv::Mat const> rgb, Photometry const& response
     NoiseFit fit;
     NoiseModel& model = fit.noise;
     if (points.size() < 5)
-        throw InputError(fmt::format("the frames have {} brightnesses that occur often", points.size()),
-                         "noise is fitted over them", "take a scene with dark and bright parts, at rest");
+        throw gi::InputError(fmt::format("the frames have {} brightnesses that occur often", points.size()),
+                             "noise is fitted over them", "take a scene with dark and bright parts, at rest");
     for (int round = 0; round < 20; ++round) {
         cv::Matx22d normal = cv::Matx22d::zeros();
         cv::Vec2d right(0, 0);
@@ -210,8 +211,8 @@ std::array<cv::Vec3f, 24> const& chart_linear_rgb()
 ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f const> chart)
 {
     if (camera.size() < 6 || camera.size() != chart.size())
-        throw InputError(fmt::format("{} patches seen and {} known", camera.size(), chart.size()),
-                         "six or more are needed, each known", "give the positions of all patches");
+        throw gi::InputError(fmt::format("{} patches seen and {} known", camera.size(), chart.size()),
+                             "six or more are needed, each known", "give the positions of all patches");
     int const n = int(camera.size());
     cv::Mat seen(n, 3, CV_64F), known(n, 3, CV_64F);
     for (int i = 0; i < n; ++i)
@@ -221,8 +222,8 @@ ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f cons
         }
     cv::SVD const svd(seen, cv::SVD::NO_UV);
     if (!(svd.w.at<double>(2) > 5e-3 * svd.w.at<double>(0)))
-        throw InputError("the patches seen do not span colours", "a matrix cannot be told from them",
-                         "check the patches' positions");
+        throw gi::InputError("the patches seen do not span colours", "a matrix cannot be told from them",
+                             "check the patches' positions");
     cv::Mat transposed;
     cv::solve(seen, known, transposed, cv::DECOMP_SVD);
     // How bright the chart was lit is not the camera's: by brightness alone, least squares.
@@ -241,9 +242,9 @@ ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f cons
     }
     fit.delta_e_before = before;
     if (fit.mean_delta_e > 10)
-        throw InputError(fmt::format("the patches are off by delta E {:.0f} on the mean", fit.mean_delta_e),
-                         "no matrix makes the chart's colours of those seen",
-                         "check the patches' positions and order");
+        throw gi::InputError(fmt::format("the patches are off by delta E {:.0f} on the mean", fit.mean_delta_e),
+                             "no matrix makes the chart's colours of those seen",
+                             "check the patches' positions and order");
     fit.brightness = brightness;
     fit.largest_delta_e = *std::max_element(fit.delta_e.begin(), fit.delta_e.end());
     for (int c = 0; c < 3; ++c)
@@ -259,7 +260,7 @@ std::vector<cv::Point2d> chart_centres(std::array<cv::Point2d, 4> const& corners
     for (std::size_t i = 0; i < 4; ++i) {
         auto const d = direction_of(camera, {corners_px[i].x, corners_px[i].y});
         if (!d || d->z < 1e-3)
-            throw InputError(
+            throw gi::InputError(
                 fmt::format("the lens sees nothing at ({:.1f}, {:.1f})", corners_px[i].x, corners_px[i].y),
                 "a patch's centre has to be in the picture", "give pixels of this picture");
         seen[i] = cv::Point2f(float(d->x / d->z), float(d->y / d->z));
@@ -268,9 +269,9 @@ std::vector<cv::Point2d> chart_centres(std::array<cv::Point2d, 4> const& corners
         cv::Point2f const u = seen[(i + 1) % 4] - seen[i], v = seen[(i + 2) % 4] - seen[(i + 1) % 4];
         double const turn = u.cross(v);
         if (turn == 0 || turns * turn < 0)
-            throw InputError("the corner patches are not the corners of a chart",
-                             "they are given one after the other around it",
-                             "give dark skin, bluish green, black and white, in this order");
+            throw gi::InputError("the corner patches are not the corners of a chart",
+                                 "they are given one after the other around it",
+                                 "give dark skin, bluish green, black and white, in this order");
         turns = turn;
     }
     std::array<cv::Point2f, 4> const chart{
@@ -282,8 +283,8 @@ std::vector<cv::Point2d> chart_centres(std::array<cv::Point2d, 4> const& corners
             cv::Vec3d const p = seen_from_chart * cv::Vec3d(column, row, 1);
             auto const px = project(camera, {p[0] / p[2], p[1] / p[2], 1});
             if (!px)
-                throw InputError("the lens does not see the whole chart", "patches lie between the corners",
-                                 "check the corners");
+                throw gi::InputError("the lens does not see the whole chart", "patches lie between the corners",
+                                     "check the corners");
             centres.emplace_back(px->x, px->y);
         }
     return centres;
@@ -297,7 +298,7 @@ std::vector<cv::Vec3f> patch_units(cv::Mat const& rgb, std::span<cv::Point2d con
     std::vector<cv::Vec3f> out;
     for (cv::Point2d const& at : centres) {
         auto const fail = [&](std::string const& why) {
-            throw InputError(
+            throw gi::InputError(
                 fmt::format("patch {} at ({:.1f}, {:.1f}) cannot be read", out.size() + 1, at.x, at.y), why,
                 "check the position, its size and the exposure");
         };

@@ -19,8 +19,8 @@ struct VignettingFit {
 
 /// From pictures of something that is evenly bright: a lit wall through paper, an integrating sphere. The
 /// brightness of each picture is fitted, too. Clipped pixels do not count.
-/// @throws InputError no picture, another type, fewer than 100 parts that are not clipped, or none beyond a radius
-/// of 0.8
+/// @throws gi::InputError no picture, another type, fewer than 100 parts that are not clipped, or none beyond a
+/// radius of 0.8
 VignettingFit vignetting_of_flat(std::span<cv::Mat const> rgb, Photometry const& response);
 
 struct NoiseModel {
@@ -40,7 +40,7 @@ struct NoiseFit {
 /// From pairs of frames of a scene at rest with equal exposure: half the variance of the difference, by
 /// brightness, all channels (Healey and Kondepudy 1994, without the part that stays from frame to frame). The
 /// variance of rounding to bytes is taken off.
-/// @throws InputError an odd number, sizes that differ, a pair that does not differ, no brightnesses to fit
+/// @throws gi::InputError an odd number, sizes that differ, a pair that does not differ, no brightnesses to fit
 NoiseFit noise_of_pairs(std::span<cv::Mat const> rgb, Photometry const& response);
 
 struct ColourFit {
@@ -58,16 +58,17 @@ std::array<cv::Vec3f, 24> const& chart_linear_rgb();
 /// From units of patches (linear, by the response, vignetting taken off) and what they should be; least squares.
 /// How bright the chart was lit is not the camera's: the brightness that alone explains the patches best is
 /// divided out.
-/// @throws InputError fewer than six patches, patches that do not span colours, or whose mean ΔE stays above 10
+/// @throws gi::InputError fewer than six patches, patches that do not span colours, or whose mean ΔE stays above
+/// 10
 ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f const> chart);
 
 /// Where the 24 patches of a ColorChecker are seen: flat, so by perspective and the lens.
 /// @param corners_px centres of the four corner patches: dark skin (1), bluish green (6), black (24), white (19)
-/// @throws InputError corners that are not a convex quadrilateral, or of which the lens sees none
+/// @throws gi::InputError corners that are not a convex quadrilateral, or of which the lens sees none
 std::vector<cv::Point2d> chart_centres(std::array<cv::Point2d, 4> const& corners_px, CameraModel const& camera);
 
 /// Means of patches in a picture in linear units. @param centres_px as many as patches; @param half_px half the
-/// side of the square that is averaged. @throws InputError a square outside the picture or with clipped pixels
+/// side of the square that is averaged. @throws gi::InputError a square outside the picture or with clipped pixels
 std::vector<cv::Vec3f> patch_units(cv::Mat const& rgb, std::span<cv::Point2d const> centres_px, double half_px,
                                    Photometry const& photometry);
 

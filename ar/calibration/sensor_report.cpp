@@ -1,7 +1,7 @@
 #include "ar/calibration/sensor_report.h"
 
 #include "ar/calibration/page.h"
-#include "ar/camera/yaml.h"
+#include "gi/core/file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +82,7 @@ std::string to_html(SensorReport const& r)
 
 void write_report(std::filesystem::path const& file, SensorReport const& report)
 {
-    write_text(file, to_html(report));
+    gi::write_text(file, to_html(report));
 }
 
 } // namespace ar

@@ -17,7 +17,7 @@ struct SensorReport {
 
 std::string to_html(SensorReport const& report);
 
-/// @throws InputError the file cannot be written
+/// @throws gi::InputError the file cannot be written
 void write_report(std::filesystem::path const& file, SensorReport const& report);
 
 } // namespace ar

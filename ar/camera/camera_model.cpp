@@ -1,6 +1,6 @@
 #include "ar/camera/camera_model.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -160,7 +160,7 @@ cv::Mat remap_table(CameraModel const& to, CameraModel const& from)
 void check(CameraModel const& c, std::string const& where)
 {
     auto const refuse = [&](std::string const& problem, std::string const& why) {
-        throw InputError(where + ": " + problem, why, "calibrate the camera again");
+        throw gi::InputError(where + ": " + problem, why, "calibrate the camera again");
     };
     for (double v : {c.fx, c.fy, c.cx, c.cy})
         if (!std::isfinite(v)) refuse("a number of the camera's matrix is not finite", "no ray has a pixel");

@@ -52,8 +52,8 @@ CameraModel scaled(CameraModel const& camera, glm::ivec2 size_px);
 /// and looking the same way. Where `from` does not see it: (-1e4, -1e4).
 cv::Mat remap_table(CameraModel const& to, CameraModel const& from);
 
-/// @throws InputError not finite, no focal length, no size, a centre far outside, a lens that folds back within
-/// the picture; `where` begins the message
+/// @throws gi::InputError not finite, no focal length, no size, a centre far outside, a lens that folds back
+/// within the picture; `where` begins the message
 void check(CameraModel const& camera, std::string const& where);
 
 } // namespace ar

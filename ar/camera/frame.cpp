@@ -1,6 +1,6 @@
 #include "ar/camera/frame.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -17,12 +17,12 @@ cv::Mat decoded(Frame const& f, int mode)
                          bytes.data[0] == 0xff && bytes.data[1] == 0xd8 && bytes.data[2] == 0xff;
     cv::Mat const picture = is_jpeg ? cv::imdecode(bytes, mode) : cv::Mat();
     if (picture.empty())
-        throw InputError(fmt::format("frame {} is no JPEG that can be decoded", f.sequence), "it has no pixels",
-                         "count it as lost");
+        throw gi::InputError(fmt::format("frame {} is no JPEG that can be decoded", f.sequence),
+                             "it has no pixels", "count it as lost");
     if (picture.cols != f.size_px.x || picture.rows != f.size_px.y)
-        throw InputError(fmt::format("frame {} has {} x {} pixels in place of {} x {}", f.sequence, picture.cols,
-                                     picture.rows, f.size_px.x, f.size_px.y),
-                         "its rays are those of another calibration", "count it as lost");
+        throw gi::InputError(fmt::format("frame {} has {} x {} pixels in place of {} x {}", f.sequence,
+                                         picture.cols, picture.rows, f.size_px.x, f.size_px.y),
+                             "its rays are those of another calibration", "count it as lost");
     return picture;
 }
 

@@ -40,7 +40,7 @@ struct Frame {
 };
 
 /// RGB, CV_8UC3, of the frame's size. What is RGB already is not copied (then it lives as long as the frame). YUV
-/// is BT.601 of limited range; JPEG that cannot be decoded, or has another size, is @throws InputError
+/// is BT.601 of limited range; JPEG that cannot be decoded, or has another size, is @throws gi::InputError
 cv::Mat rgb_of(Frame const& frame);
 /// CV_8UC1, not copied where the format has a plane of luma.
 cv::Mat gray_of(Frame const& frame);

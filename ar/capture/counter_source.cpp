@@ -1,7 +1,7 @@
 #include "ar/capture/counter_source.h"
 
-#include "ar/camera/error.h"
 #include "ar/capture/clock.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <array>
@@ -91,17 +91,17 @@ CounterSource::CounterSource(CounterOptions const& options) : options_(options)
 {
     if (options.size_px.x < kLeastWidth || options.size_px.y < kLeastHeight || options.size_px.x > 16384 ||
         options.size_px.y > 16384)
-        throw InputError(fmt::format("a counter in {} x {} pixels", options.size_px.x, options.size_px.y),
-                         fmt::format("its cells need at least {} x {}, and 16384 are the most each way",
-                                     kLeastWidth, kLeastHeight),
-                         "choose another size");
+        throw gi::InputError(fmt::format("a counter in {} x {} pixels", options.size_px.x, options.size_px.y),
+                             fmt::format("its cells need at least {} x {}, and 16384 are the most each way",
+                                         kLeastWidth, kLeastHeight),
+                             "choose another size");
     if (!(options.frames_per_s > 0 && options.frames_per_s <= 10000))
-        throw InputError(fmt::format("{} frames per second", options.frames_per_s), "0 to 10000 are possible",
-                         "choose another rate");
+        throw gi::InputError(fmt::format("{} frames per second", options.frames_per_s), "0 to 10000 are possible",
+                             "choose another rate");
     if (options.format != PixelFormat::rgb8 && options.format != PixelFormat::gray8 &&
         options.format != PixelFormat::mjpeg)
-        throw InputError("a counter as " + name_of(options.format), "it is made as rgb8, gray8 or mjpeg",
-                         "choose one of these");
+        throw gi::InputError("a counter as " + name_of(options.format), "it is made as rgb8, gray8 or mjpeg",
+                             "choose one of these");
 }
 
 std::uint64_t CounterSource::number_due() const

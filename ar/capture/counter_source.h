@@ -25,7 +25,7 @@ struct CounterOptions {
 /// exactly (origin: sensor); what was not asked for in time is dropped.
 class CounterSource final : public FrameSource {
 public:
-    /// @throws InputError pictures too small for the row, a rate that is none
+    /// @throws gi::InputError pictures too small for the row, a rate that is none
     explicit CounterSource(CounterOptions const& options = {});
 
     std::optional<Frame> next(std::chrono::milliseconds wait) override;

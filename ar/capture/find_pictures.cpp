@@ -1,5 +1,5 @@
-#include "ar/camera/error.h"
 #include "ar/capture/picture_source.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <charconv>
@@ -28,7 +28,7 @@ struct Pattern {
 Pattern parse_pattern(std::string const& name)
 {
     auto const refuse = [&](std::string const& why) -> Pattern {
-        throw InputError("the pattern '" + name + "'", why, "write the number as %d or %04d");
+        throw gi::InputError("the pattern '" + name + "'", why, "write the number as %d or %04d");
     };
     Pattern p;
     std::size_t const percent = name.find('%');
@@ -67,8 +67,8 @@ std::vector<fs::path> files_in(fs::path const& folder)
     std::error_code error;
     fs::directory_iterator all(folder, error);
     if (error)
-        throw InputError("the folder '" + folder.string() + "' cannot be read", error.message(),
-                         "name a folder of pictures");
+        throw gi::InputError("the folder '" + folder.string() + "' cannot be read", error.message(),
+                             "name a folder of pictures");
     std::vector<fs::path> files;
     for (auto const& entry : all)
         if (!entry.is_directory(error)) files.push_back(entry.path());

@@ -1,6 +1,6 @@
 #include "ar/capture/frame_source.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -11,14 +11,15 @@ namespace {
 void check_positive(std::optional<double> value, char const* name)
 {
     if (value && !(std::isfinite(*value) && *value > 0))
-        throw InputError(fmt::format("{} = {}", name, *value), "it has to be a number above 0", "set another one");
+        throw gi::InputError(fmt::format("{} = {}", name, *value), "it has to be a number above 0",
+                             "set another one");
 }
 
 void check_not_both(std::optional<bool> automatic, bool by_hand, char const* name)
 {
     if (automatic.value_or(false) && by_hand)
-        throw InputError(fmt::format("{} is both automatic and given", name), "one would undo the other",
-                         "set one of them");
+        throw gi::InputError(fmt::format("{} is both automatic and given", name), "one would undo the other",
+                             "set one of them");
 }
 
 } // namespace
@@ -33,8 +34,8 @@ void check(Controls const& c)
     check_not_both(c.automatic_exposure, c.exposure_time_s || c.gain, "exposure");
     check_not_both(c.automatic_white_balance, c.red_gain || c.blue_gain, "white balance");
     if (c.red_gain.has_value() != c.blue_gain.has_value())
-        throw InputError("one gain of white balance without the other", "cameras take both at once",
-                         "give red_gain and blue_gain");
+        throw gi::InputError("one gain of white balance without the other", "cameras take both at once",
+                             "give red_gain and blue_gain");
 }
 
 std::string describe(SourceCounts const& c)

@@ -66,7 +66,8 @@ struct Controls {
     friend bool operator==(Controls const&, Controls const&) = default;
 };
 
-/// @throws InputError what is not finite, not positive, automatic and set at once, or one of the two colours alone
+/// @throws gi::InputError what is not finite, not positive, automatic and set at once, or one of the two colours
+/// alone
 void check(Controls const& controls);
 
 class FrameSource {
@@ -81,7 +82,7 @@ public:
     virtual SourceCounts counts() const = 0;
     /// From one of the next frames on; a frame's `exposure` says what it was taken with.
     /// @return what the device cannot do, a sentence each
-    /// @throws InputError see check(Controls)
+    /// @throws gi::InputError see check(Controls)
     virtual std::vector<std::string> set(Controls const& controls) = 0;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 // For libcamera_source.cpp only, the one place that knows libcamera.
 
-#include "ar/camera/error.h"
 #include "ar/capture/buffer_memory.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <chrono>
@@ -47,7 +47,7 @@ public:
         b.planes = memory_.map(planes);
         std::unique_ptr<lc::Request> request = camera_->createRequest(buffers_.size());
         if (!request || request->addBuffer(stream, buffer) != 0)
-            throw InputError("the camera takes no buffers", "its driver refuses them", "use another camera");
+            throw gi::InputError("the camera takes no buffers", "its driver refuses them", "use another camera");
         buffers_.push_back(std::move(b));
         requests_.push_back(std::move(request));
     }

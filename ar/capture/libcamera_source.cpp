@@ -1,12 +1,12 @@
 #include "ar/capture/libcamera_source.h"
 
-#include "ar/camera/error.h"
 #include "ar/capture/buffer_memory.h"
 #include "ar/capture/camera_pixels.h"
 #include "ar/capture/clock.h"
 #include "ar/capture/libcamera_controls.h"
 #include "ar/capture/libcamera_requests.h"
 #include "ar/capture/tally.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -32,8 +32,8 @@ std::shared_ptr<lc::CameraManager> manager()
         running = std::make_unique<lc::CameraManager>();
         if (int const error = running->start(); error != 0) {
             running.reset();
-            throw InputError("libcamera does not start", text_of_error(error),
-                             "use a device number or a video in its place");
+            throw gi::InputError("libcamera does not start", text_of_error(error),
+                                 "use a device number or a video in its place");
         }
     }
     ++users;
@@ -54,8 +54,8 @@ std::shared_ptr<lc::Camera> find_camera(lc::CameraManager const& manager, std::s
 {
     std::vector<std::shared_ptr<lc::Camera>> const all = manager.cameras();
     if (all.empty())
-        throw InputError("no camera", "libcamera " + lc::CameraManager::version() + " finds none",
-                         "plug one in, or name a video, pictures or a recorded session");
+        throw gi::InputError("no camera", "libcamera " + lc::CameraManager::version() + " finds none",
+                             "plug one in, or name a video, pictures or a recorded session");
     if (id.empty()) return all.front();
     std::vector<std::shared_ptr<lc::Camera>> named;
     std::string ids;
@@ -65,15 +65,16 @@ std::shared_ptr<lc::Camera> find_camera(lc::CameraManager const& manager, std::s
         ids += (ids.empty() ? "'" : ", '") + camera->id() + "'";
     }
     if (named.size() == 1) return named.front();
-    throw InputError(fmt::format("{} camera '{}'", named.empty() ? "no" : "more than one", id),
-                     "libcamera finds " + ids, "name one of them by its id");
+    throw gi::InputError(fmt::format("{} camera '{}'", named.empty() ? "no" : "more than one", id),
+                         "libcamera finds " + ids, "name one of them by its id");
 }
 
 /// The configuration's one stream, as near to what is wanted as the camera can.
 std::unique_ptr<lc::CameraConfiguration> configured(lc::Camera& camera, LibcameraOptions const& options)
 {
     auto const refuse = [&](std::string const& why) {
-        throw InputError("camera '" + camera.id() + "' cannot be used", why, "choose another format or camera");
+        throw gi::InputError("camera '" + camera.id() + "' cannot be used", why,
+                             "choose another format or camera");
     };
     std::unique_ptr<lc::CameraConfiguration> config = camera.generateConfiguration({lc::StreamRole::Viewfinder});
     if (!config || config->empty()) refuse("it has no stream of pictures");
@@ -106,8 +107,8 @@ public:
         : options_(options), manager_(manager()), camera_(find_camera(*manager_, options.id))
     {
         if (int const error = camera_->acquire(); error != 0)
-            throw InputError("camera '" + camera_->id() + "' cannot be opened", text_of_error(error),
-                             error == -EBUSY ? "close the program that uses it" : "use another camera");
+            throw gi::InputError("camera '" + camera_->id() + "' cannot be opened", text_of_error(error),
+                                 error == -EBUSY ? "close the program that uses it" : "use another camera");
         try {
             start();
         } catch (...) {
@@ -175,8 +176,8 @@ private:
         camera_->requestCompleted.connect(this, &LibcameraSource::complete);
         camera_->disconnected.connect(this, &LibcameraSource::unplug);
         if (int const error = camera_->start(); error != 0)
-            throw InputError("camera '" + camera_->id() + "' does not start", text_of_error(error),
-                             "plug it in again, or use another one");
+            throw gi::InputError("camera '" + camera_->id() + "' does not start", text_of_error(error),
+                                 "plug it in again, or use another one");
         is_started_ = true;
         pool_->queue_all();
     }
@@ -208,8 +209,8 @@ private:
             for (std::size_t const n : bytes) all += n;
             lc::SharedFD const file(make_memory_file(all));
             if (!file.isValid())
-                throw InputError("no memory for pictures of the camera", std::strerror(errno),
-                                 "choose smaller ones");
+                throw gi::InputError("no memory for pictures of the camera", std::strerror(errno),
+                                     "choose smaller ones");
             std::vector<lc::FrameBuffer::Plane> planes;
             std::size_t at = 0;
             for (std::size_t const n : bytes) {
@@ -331,8 +332,8 @@ std::unique_ptr<FrameSource> open_libcamera(LibcameraOptions const& options)
 {
     check(options.controls);
     if (options.size_px.x < 1 || options.size_px.y < 1)
-        throw InputError(fmt::format("pictures of {} x {} pixels", options.size_px.x, options.size_px.y),
-                         "a camera's have at least one", "choose another size");
+        throw gi::InputError(fmt::format("pictures of {} x {} pixels", options.size_px.x, options.size_px.y),
+                             "a camera's have at least one", "choose another size");
     return std::make_unique<LibcameraSource>(options);
 }
 

@@ -13,7 +13,7 @@ struct CameraEntry {
 };
 
 /// All that are plugged in now. Empty also where nothing was ever plugged in.
-/// @throws InputError libcamera does not start
+/// @throws gi::InputError libcamera does not start
 std::vector<CameraEntry> list_cameras();
 std::string libcamera_version();
 
@@ -30,7 +30,7 @@ struct LibcameraOptions {
 /// it. Planes are the camera's own memory where the format allows (see camera_pixels.h); the camera fills it again
 /// once the last copy of the frame is gone, and so loses frames while as many are kept as it has buffers. They
 /// stay readable after the camera was closed. An unplugged camera ends in the state lost.
-/// @throws InputError there is no camera, none of that name, it is in use, or has no format that is known here
+/// @throws gi::InputError there is no camera, none of that name, it is in use, or has no format that is known here
 std::unique_ptr<FrameSource> open_libcamera(LibcameraOptions const& options = {});
 
 } // namespace ar

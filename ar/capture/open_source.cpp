@@ -1,11 +1,11 @@
 #include "ar/capture/open_source.h"
 
-#include "ar/camera/error.h"
 #include "ar/capture/counter_source.h"
 #include "ar/capture/libcamera_source.h"
 #include "ar/capture/picture_source.h"
 #include "ar/capture/session_reader.h"
 #include "ar/capture/video_source.h"
+#include "gi/core/error.h"
 
 #include <charconv>
 
@@ -23,8 +23,8 @@ int device_number(std::string const& text)
     int number = -1;
     auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || end != text.data() + text.size() || number < 0)
-        throw InputError("device:" + text, "'" + text + "' is no number of a camera",
-                         "write device:0 for /dev/video0");
+        throw gi::InputError("device:" + text, "'" + text + "' is no number of a camera",
+                             "write device:0 for /dev/video0");
     return number;
 }
 

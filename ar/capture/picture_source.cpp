@@ -1,7 +1,7 @@
 #include "ar/capture/picture_source.h"
 
-#include "ar/camera/error.h"
 #include "ar/capture/whole_picture.h"
+#include "gi/core/error.h"
 
 #include <cstdio>
 #include <fmt/format.h>
@@ -34,15 +34,16 @@ PictureSource::PictureSource(std::filesystem::path const& what, PictureOptions c
     : name_(what.string()), options_(options), pictures_(find_pictures(what)), player_(options.pace)
 {
     if (!(options.frames_per_s > 0))
-        throw InputError(fmt::format("{} frames per second", options.frames_per_s), "no frame would ever be due",
-                         "choose a rate above 0");
+        throw gi::InputError(fmt::format("{} frames per second", options.frames_per_s),
+                             "no frame would ever be due", "choose a rate above 0");
     if (pictures_.empty())
-        throw InputError("no pictures in '" + name_ + "'", "there is nothing to play",
-                         "name a folder of pictures, or a pattern like frame_%04d.png");
+        throw gi::InputError("no pictures in '" + name_ + "'", "there is nothing to play",
+                             "name a folder of pictures, or a pattern like frame_%04d.png");
     while (at_ < pictures_.size() && (ready_ = decoded(pictures_[at_])).empty()) ++at_;
     if (ready_.empty())
-        throw InputError(fmt::format("none of the {} pictures of '{}' can be decoded", pictures_.size(), name_),
-                         counts().last_refusal, "look at the files");
+        throw gi::InputError(
+            fmt::format("none of the {} pictures of '{}' can be decoded", pictures_.size(), name_),
+            counts().last_refusal, "look at the files");
 }
 
 cv::Mat PictureSource::decoded(NumberedPicture const& p)

@@ -16,7 +16,7 @@ struct NumberedPicture {
 /// Of a folder: its pictures (.png .jpg .jpeg .bmp .tif .tiff .ppm .pgm .webp) in natural order (2 before 10),
 /// numbered from 0. Of a pattern like "shots/frame_%04d.png" (one %d, also with zeros and width): the files that
 /// have such a name, by their numbers.
-/// @throws InputError no such folder, a pattern that is none
+/// @throws gi::InputError no such folder, a pattern that is none
 std::vector<NumberedPicture> find_pictures(std::filesystem::path const& folder_or_pattern);
 
 /// "a2" before "a10"; equal numbers by their text.
@@ -32,7 +32,7 @@ struct PictureOptions {
 /// one channel) gray8; captured_s is when it is due, origin: file.
 class PictureSource final : public FrameSource {
 public:
-    /// @throws InputError there are no pictures, or none can be decoded
+    /// @throws gi::InputError there are no pictures, or none can be decoded
     explicit PictureSource(std::filesystem::path const& folder_or_pattern, PictureOptions const& options = {});
 
     std::optional<Frame> next(std::chrono::milliseconds wait) override;

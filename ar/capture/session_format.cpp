@@ -1,6 +1,7 @@
 #include "ar/capture/session_format.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/crc32.h"
+#include "gi/core/error.h"
 
 #include <array>
 #include <charconv>
@@ -9,7 +10,6 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <zlib.h>
 
 namespace ar {
 namespace {
@@ -147,9 +147,9 @@ IndexEntry frame_entry(Json const& json)
 }
 
 /// Line and column of a byte.
-Place place_of(std::string const& name, std::string const& text, std::size_t byte)
+gi::TextLocation place_of(std::string const& name, std::string const& text, std::size_t byte)
 {
-    Place place{name, 1, 1};
+    gi::TextLocation place{name, 1, 1};
     for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
         if (text[i] == '\n') {
             ++place.line;
@@ -162,10 +162,7 @@ Place place_of(std::string const& name, std::string const& text, std::size_t byt
 
 } // namespace
 
-std::uint32_t checksum(std::span<std::uint8_t const> bytes)
-{
-    return std::uint32_t(::crc32_z(0, bytes.data(), bytes.size()));
-}
+std::uint32_t checksum(std::span<std::uint8_t const> bytes) { return gi::crc32(bytes); }
 
 std::uint64_t packed_bytes(PixelFormat format, glm::ivec2 size)
 {
@@ -313,12 +310,12 @@ SessionHeader parse_session_header(std::string const& source, std::string const&
         }
         return h;
     } catch (Wrong const& e) {
-        throw InputError(name + ": no recorded session that can be read", e.what(), "name another folder");
+        throw gi::InputError(name + ": no recorded session that can be read", e.what(), "name another folder");
     } catch (Json::parse_error const& e) {
-        throw InputError(place_of(name, source, e.byte), "no JSON", "something else was expected here",
-                         "name another folder");
+        throw gi::InputError(place_of(name, source, e.byte), "no JSON", "something else was expected here",
+                             "name another folder");
     } catch (Json::exception const& e) {
-        throw InputError(name + ": no recorded session that can be read", e.what(), "name another folder");
+        throw gi::InputError(name + ": no recorded session that can be read", e.what(), "name another folder");
     }
 }
 

@@ -38,7 +38,7 @@ struct SessionHeader {
 };
 
 std::string to_json(SessionHeader const& header);
-/// @throws InputError with its place: no JSON, no session, one of another version
+/// @throws gi::InputError with its place: no JSON, no session, one of another version
 SessionHeader parse_session_header(std::string const& json, std::string const& name);
 
 /// A line of the index: a frame without its planes, or controls.

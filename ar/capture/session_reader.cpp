@@ -1,6 +1,6 @@
 #include "ar/capture/session_reader.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <fmt/format.h>
 #include <fstream>
@@ -16,8 +16,8 @@ SessionHeader read_header(fs::path const& folder)
     fs::path const file = folder / kSessionFile;
     std::ifstream in(file, std::ios::binary);
     if (!in)
-        throw InputError("'" + folder.string() + "' is no recorded session",
-                         "there is no " + std::string(kSessionFile), "name a folder that was recorded");
+        throw gi::InputError("'" + folder.string() + "' is no recorded session",
+                             "there is no " + std::string(kSessionFile), "name a folder that was recorded");
     std::stringstream text;
     text << in.rdbuf();
     return parse_session_header(text.str(), file.string());
@@ -108,11 +108,11 @@ SessionSource::SessionSource(fs::path const& folder, Pace pace)
 {
     if (ready_) return;
     auto const& counts = reader_.counts();
-    throw InputError("the session '" + folder.string() + "' has no frame",
-                     counts.refused > 0
-                         ? fmt::format("{} are damaged, the last: {}", counts.refused, counts.last_refusal)
-                         : reader_.end().reason,
-                     "record it again");
+    throw gi::InputError("the session '" + folder.string() + "' has no frame",
+                         counts.refused > 0
+                             ? fmt::format("{} are damaged, the last: {}", counts.refused, counts.last_refusal)
+                             : reader_.end().reason,
+                         "record it again");
 }
 
 std::optional<Frame> SessionSource::next(std::chrono::milliseconds wait)

@@ -12,7 +12,7 @@ namespace ar {
 
 class SessionReader {
 public:
-    /// @throws InputError it is no session
+    /// @throws gi::InputError it is no session
     explicit SessionReader(std::filesystem::path const& folder);
     /// @param frames_size bytes of `frames` from its beginning
     SessionReader(SessionHeader header, std::unique_ptr<std::istream> index, std::unique_ptr<std::istream> frames,
@@ -47,7 +47,7 @@ private:
 /// they are. Origin: file.
 class SessionSource final : public FrameSource {
 public:
-    /// @throws InputError it is no session, or has no frame
+    /// @throws gi::InputError it is no session, or has no frame
     explicit SessionSource(std::filesystem::path const& folder, Pace pace = Pace::own);
 
     std::optional<Frame> next(std::chrono::milliseconds wait) override;

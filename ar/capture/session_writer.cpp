@@ -1,6 +1,7 @@
 #include "ar/capture/session_writer.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/durable_file.h"
+#include "gi/core/error.h"
 
 #include <cerrno>
 #include <cmath>
@@ -16,8 +17,8 @@ int make_file(std::filesystem::path const& path)
 {
     int const file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file < 0)
-        throw InputError("cannot make '" + path.string() + "'", std::strerror(errno),
-                         "choose a folder that can be written");
+        throw gi::InputError("cannot make '" + path.string() + "'", std::strerror(errno),
+                             "choose a folder that can be written");
     return file;
 }
 
@@ -36,8 +37,8 @@ int write_all(int file, std::uint8_t const* bytes, std::size_t n)
 void check_frame(Frame const& f)
 {
     auto const refuse = [&](std::string const& why) {
-        throw InputError(fmt::format("frame {} cannot be recorded", f.sequence), why,
-                         "hand it over as the source gave it");
+        throw gi::InputError(fmt::format("frame {} cannot be recorded", f.sequence), why,
+                             "hand it over as the source gave it");
     };
     Exposure const& e = f.exposure;
     for (double const v : {f.captured_s, f.arrived_s, e.time_s, e.gain, e.red_gain, e.blue_gain})
@@ -95,9 +96,10 @@ SessionWriter::SessionWriter(std::filesystem::path const& folder, SessionHeader 
 {
     std::error_code error;
     if (!std::filesystem::create_directory(folder, error))
-        throw InputError("cannot make the folder '" + folder.string() + "'",
-                         error ? error.message() : "it exists, and what was recorded is never overwritten",
-                         error ? "choose a folder that can be written" : "choose another name, or move it away");
+        throw gi::InputError("cannot make the folder '" + folder.string() + "'",
+                             error ? error.message() : "it exists, and what was recorded is never overwritten",
+                             error ? "choose a folder that can be written"
+                                   : "choose another name, or move it away");
     header_.finished.reset();
     if (header_.created.empty()) header_.created = parse_session_header(to_json(header_), folder.string()).created;
     write_header();
@@ -115,25 +117,11 @@ SessionWriter::~SessionWriter()
 {
     try {
         finish();
-    } catch (InputError const&) { // what was recorded stays readable: it counts as cut off
+    } catch (gi::InputError const&) { // what was recorded stays readable: it counts as cut off
     }
 }
 
-/// Appears whole or not at all.
-void SessionWriter::write_header()
-{
-    auto const path = folder_ / kSessionFile, fresh = folder_ / (std::string(kSessionFile) + ".new");
-    std::string const text = to_json(header_);
-    ::unlink(fresh.c_str());
-    int const file = make_file(fresh);
-    int error = write_all(file, reinterpret_cast<std::uint8_t const*>(text.data()), text.size());
-    if (error == 0 && ::fdatasync(file) != 0) error = errno;
-    ::close(file);
-    if (error == 0 && ::rename(fresh.c_str(), path.c_str()) != 0) error = errno;
-    if (error != 0)
-        throw InputError("cannot write '" + path.string() + "'", std::strerror(error),
-                         "choose a folder that can be written");
-}
+void SessionWriter::write_header() { gi::write_durably(folder_ / kSessionFile, to_json(header_)); }
 
 bool SessionWriter::append(Frame const& frame)
 {

@@ -17,7 +17,7 @@ class SessionWriter {
 public:
     static constexpr std::size_t kMostWaiting = std::size_t(64) << 20; ///< bytes not yet written
 
-    /// @throws InputError the folder exists (nothing is overwritten) or cannot be made
+    /// @throws gi::InputError the folder exists (nothing is overwritten) or cannot be made
     SessionWriter(std::filesystem::path const& folder, SessionHeader header,
                   std::size_t most_waiting = kMostWaiting);
     ~SessionWriter();
@@ -26,7 +26,7 @@ public:
 
     /// Copies the bytes of the frame, so that the buffer of the camera is free.
     /// @return false if it was lost: too much is waiting, or nothing can be written any more (see `failure`)
-    /// @throws InputError planes that are not what format and size say, times that are not finite
+    /// @throws gi::InputError planes that are not what format and size say, times that are not finite
     bool append(Frame const& frame);
     /// What was set at this moment.
     bool append(Controls const& controls);

@@ -1,7 +1,7 @@
 #include "ar/capture/video_source.h"
 
-#include "ar/camera/error.h"
 #include "ar/capture/opencv/opencv_sources.h"
+#include "gi/core/error.h"
 
 #include <dlfcn.h>
 
@@ -18,8 +18,8 @@ OpenCvSources const& sources()
                            : nullptr;
     if (find != nullptr) return *find();
     char const* const why = dlerror();
-    throw InputError("videos and cameras cannot be opened", why != nullptr ? why : "their module is not there",
-                     "build all: scripts/build release");
+    throw gi::InputError("videos and cameras cannot be opened", why != nullptr ? why : "their module is not there",
+                         "build all: scripts/build release");
 }
 
 } // namespace

@@ -1,9 +1,9 @@
 #include "ar/capture/whole_picture.h"
 
+#include "gi/core/crc32.h"
 #include <algorithm>
 #include <array>
 #include <string_view>
-#include <zlib.h>
 
 namespace ar {
 namespace {
@@ -26,7 +26,7 @@ std::string missing_of_png(std::span<std::uint8_t const> png)
         if (png.size() - at < 12) return "the PNG ends before its last chunk";
         std::size_t const length = big_endian(&png[at]);
         if (length > png.size() - at - 12) return "the PNG ends within a chunk";
-        auto const sum = std::uint32_t(::crc32(0, &png[at + 4], uInt(length + 4)));
+        auto const sum = gi::crc32({&png[at + 4], length + 4});
         if (sum != big_endian(&png[at + 8 + length])) return "a chunk of the PNG was changed (checksum)";
         if (big_endian(&png[at + 4]) == 0x49454e44) return {}; // IEND
         at += 12 + length;

@@ -1,7 +1,7 @@
 #include "ar/composite/albedo.h"
 
-#include "ar/camera/error.h"
 #include "ar/composite/albedo_samples.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,8 +61,8 @@ AlbedoTexture fit_texture(std::span<AlbedoView const> views, int patch, cv::Size
                           AlbedoSettings const& settings)
 {
     if (texels.width < 1 || texels.height < 1 || texels.width > 16384 || texels.height > 16384)
-        throw InputError("an albedo texture without texels, or with more than 16384 each way",
-                         "there is nothing to fit", "choose its size by how many pixels show the patch");
+        throw gi::InputError("an albedo texture without texels, or with more than 16384 each way",
+                             "there is nothing to fit", "choose its size by how many pixels show the patch");
     AlbedoTexture texture{cv::Mat(texels, CV_32FC3), cv::Mat::zeros(texels, CV_32SC1)};
     AlbedoFit fit;
     std::vector<std::vector<AlbedoSample>> samples(std::size_t(texels.area()));

@@ -50,7 +50,7 @@ struct AlbedoFit {
 };
 
 /// Weighted medians, patch by patch and channel by channel. Patches without samples keep `unseen`.
-/// @throws InputError pictures of other types or sizes, numbers of surfaces beyond patch_count
+/// @throws gi::InputError pictures of other types or sizes, numbers of surfaces beyond patch_count
 AlbedoFit fit_albedo(std::span<AlbedoView const> views, int patch_count, AlbedoSettings const& settings = {},
                      cv::Vec3f unseen = {0.5f, 0.5f, 0.5f});
 

@@ -1,6 +1,6 @@
 #include "ar/composite/albedo_samples.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "gi/core/quantile.h"
 
 #include <algorithm>
@@ -57,10 +57,11 @@ void check(AlbedoView const& view, int patch_count, bool with_places)
     cv::Size const size = view.radiance.size();
     auto const require = [&](cv::Mat const& picture, int type, bool needed, char const* name) {
         if (picture.empty() ? !needed : picture.type() == type && picture.size() == size) return;
-        throw InputError(fmt::format("'{}' of a view for albedos has {} x {} pixels of type {}", name,
-                                     picture.cols, picture.rows, cv::typeToString(picture.type())),
-                         fmt::format("{} x {} of {} are needed", size.width, size.height, cv::typeToString(type)),
-                         "give all pictures of one frame at one size");
+        throw gi::InputError(
+            fmt::format("'{}' of a view for albedos has {} x {} pixels of type {}", name, picture.cols,
+                        picture.rows, cv::typeToString(picture.type())),
+            fmt::format("{} x {} of {} are needed", size.width, size.height, cv::typeToString(type)),
+            "give all pictures of one frame at one size");
     };
     require(view.radiance, CV_32FC3, true, "radiance");
     require(view.white, CV_32FC3, true, "white");
@@ -71,9 +72,9 @@ void check(AlbedoView const& view, int patch_count, bool with_places)
     double most = 0;
     cv::minMaxLoc(view.surface, nullptr, &most);
     if (most >= patch_count)
-        throw InputError(fmt::format("a surface has the number {}", most),
-                         fmt::format("there are {} patches, counted from 0", patch_count),
-                         "give the number of patches that the picture of surfaces was made with");
+        throw gi::InputError(fmt::format("a surface has the number {}", most),
+                             fmt::format("there are {} patches, counted from 0", patch_count),
+                             "give the number of patches that the picture of surfaces was made with");
 }
 
 void for_samples(AlbedoView const& view, AlbedoSettings const& settings, AlbedoFit& fit,

@@ -10,7 +10,7 @@ struct AlbedoSample {
     float weight;    ///< confidence times how well lit: noise of the ratio is the camera's over white
 };
 
-/// @throws InputError types or sizes
+/// @throws gi::InputError types or sizes
 void check(AlbedoView const& view, int patch_count, bool with_places);
 
 /// Calls back for each pixel that counts: (patch, y, x, sample). Others are counted in `fit`.

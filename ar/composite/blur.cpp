@@ -1,6 +1,6 @@
 #include "ar/composite/blur.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,8 +72,8 @@ RenderedPair defocused(RenderedPair const& pair, double sigma_px)
 {
     check(pair);
     if (!(sigma_px >= 0) || sigma_px > 20)
-        throw InputError("a blur with a sigma below 0 or above 20 pixels", "no calibrated camera is so",
-                         "estimate the sharpness again");
+        throw gi::InputError("a blur with a sigma below 0 or above 20 pixels", "no calibrated camera is so",
+                             "estimate the sharpness again");
     if (sigma_px == 0) return pair;
     cv::Mat const kernel = spread_kernel(sigma_px);
     cv::Mat layer = layer_of(pair);
@@ -89,8 +89,9 @@ RenderedPair motion_blurred(RenderedPair const& pair, cv::Mat const& velocity_px
     check(pair);
     cv::Size const size = pair.with.size();
     if (velocity_px.type() != CV_32FC2 || velocity_px.size() != size || !(longest_px > 0) || longest_px > 1000)
-        throw InputError("velocities of another size or type, or paths longer than 1000 pixels",
-                         "each pixel needs its own", "give CV_32FC2 of the pair's size, as image_velocity does");
+        throw gi::InputError("velocities of another size or type, or paths longer than 1000 pixels",
+                             "each pixel needs its own",
+                             "give CV_32FC2 of the pair's size, as image_velocity does");
     auto const path_at = [&](int x, int y) {
         cv::Vec2f v = velocity_px.at<cv::Vec2f>(y, x);
         if (!std::isfinite(v[0]) || !std::isfinite(v[1])) return cv::Vec2f(0, 0);
@@ -155,8 +156,9 @@ cv::Mat image_velocity(CameraModel const& camera, cv::Mat const& depth, Pose con
 {
     if (camera.lens != LensModel::pinhole || depth.type() != CV_32FC1 ||
         depth.size() != cv::Size(camera.size_px.x, camera.size_px.y))
-        throw InputError("velocities for a lens with distortion, or depth of another size or type",
-                         "rendered pictures are of pinholes", "give the pinhole and the depth that are rendered");
+        throw gi::InputError("velocities for a lens with distortion, or depth of another size or type",
+                             "rendered pictures are of pinholes",
+                             "give the pinhole and the depth that are rendered");
     cv::Mat velocity(depth.size(), CV_32FC2);
     Pose const before_from_after = inverse(before) * after;
     velocity.forEach<cv::Vec2f>([&](cv::Vec2f& v, int const* at) {

@@ -15,7 +15,7 @@ namespace ar {
 /// @param rendered_px  of the rendered picture: 0.289 (= 1 / sqrt(12)) for the mean over a pixel
 double missing_blur_px(double camera_px, double rendered_px = 0.289);
 
-/// Defocus. @param sigma_px  0 gives the pair itself; beyond 0..20 is @throws InputError
+/// Defocus. @param sigma_px  0 gives the pair itself; beyond 0..20 is @throws gi::InputError
 RenderedPair defocused(RenderedPair const& pair, double sigma_px);
 
 /// Motion while the shutter is open: the mean along each pixel's path (rows of Potmesil and Chakravarty 1983),
@@ -29,7 +29,7 @@ RenderedPair motion_blurred(RenderedPair const& pair, cv::Mat const& velocity_px
 /// CV_32FC2: how far what is shown at each pixel moves in the picture between two poses (from `before` to `after`,
 /// seen at `after`), for things that stand still. @param depth  CV_32FC1, metres along the axis, 0 = infinitely
 /// far
-/// @param pinhole  of the size of depth; @throws InputError another lens or size
+/// @param pinhole  of the size of depth; @throws gi::InputError another lens or size
 cv::Mat image_velocity(CameraModel const& pinhole, cv::Mat const& depth, Pose const& world_from_camera_before,
                        Pose const& world_from_camera_after);
 

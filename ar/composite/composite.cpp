@@ -1,6 +1,6 @@
 #include "ar/composite/composite.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,17 +103,18 @@ Compositor::Compositor(Photometry const& p, CompositeSettings const& settings)
     bool invertible = false;
     camera_colour_ = p.colour.inv(cv::DECOMP_LU, &invertible);
     if (!invertible)
-        throw InputError("the camera's colour matrix has no inverse", "radiance cannot be brought to its bytes",
-                         "calibrate colour again, or use the unit matrix");
+        throw gi::InputError("the camera's colour matrix has no inverse",
+                             "radiance cannot be brought to its bytes",
+                             "calibrate colour again, or use the unit matrix");
     if (!(p.radiance_per_unit > 0) || !std::isfinite(p.radiance_per_unit))
-        throw InputError(fmt::format("radiance_per_unit = {}", p.radiance_per_unit), "it must be positive",
-                         "give the radiance that has the unit 1");
+        throw gi::InputError(fmt::format("radiance_per_unit = {}", p.radiance_per_unit), "it must be positive",
+                             "give the radiance that has the unit 1");
     if (!(settings.largest_ratio >= 1))
-        throw InputError(fmt::format("largest_ratio = {}", settings.largest_ratio), "it must be 1 or more",
-                         "leave it at 8");
+        throw gi::InputError(fmt::format("largest_ratio = {}", settings.largest_ratio), "it must be 1 or more",
+                             "leave it at 8");
     for (std::size_t c = 0; c < 3; ++c)
         if (!(settings.noise.constant[c] >= 0) || !(settings.noise.per_unit[c] >= 0))
-            throw InputError("a variance of noise below 0", "there is no such noise", "measure it again");
+            throw gi::InputError("a variance of noise below 0", "there is no such noise", "measure it again");
     if (settings.noise.any()) noise_ = NoiseField(settings.noise);
 }
 
@@ -127,8 +128,8 @@ CompositeCounts Compositor::operator()(cv::Mat const& rgb, RenderedPair const& p
                                        cv::Mat& out, std::uint64_t frame_number)
 {
     if (rgb.type() != CV_8UC3 || rgb.empty())
-        throw InputError("the camera's frame is not RGB of 8 bits", "its bytes cannot be given a meaning",
-                         "convert it with rgb_of()");
+        throw gi::InputError("the camera's frame is not RGB of 8 bits", "its bytes cannot be given a meaning",
+                             "convert it with rgb_of()");
     check(pair, rgb.size());
     out.create(rgb.size(), CV_8UC3);
     if (photometry_.vignetting != std::array<double, 3>{} && vignetting_.size() != rgb.size()) {

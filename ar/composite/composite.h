@@ -57,14 +57,14 @@ struct CompositeCounts {
 
 class Compositor {
 public:
-    /// @throws InputError a colour matrix without inverse, settings out of range
+    /// @throws gi::InputError a colour matrix without inverse, settings out of range
     explicit Compositor(Photometry const& photometry, CompositeSettings const& settings = {});
 
     /// @param rgb      CV_8UC3 RGB, the camera's frame; not resampled
     /// @param pair     of the frame's size and lens (see Warp, upsampled)
     /// @param out      CV_8UC3; its memory is used again where it fits; may be `rgb` itself
     /// @param frame    number of the frame: chooses the noise
-    /// @throws InputError types or sizes
+    /// @throws gi::InputError types or sizes
     CompositeCounts operator()(cv::Mat const& rgb, RenderedPair const& pair, Exposure const& exposure,
                                cv::Mat& out, std::uint64_t frame = 0);
 

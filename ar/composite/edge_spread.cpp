@@ -1,6 +1,6 @@
 #include "ar/composite/edge_spread.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "gi/core/quantile.h"
 
 #include <algorithm>
@@ -98,8 +98,8 @@ Parameters minimised(Parameters p, std::vector<Sample> const& samples)
 std::optional<EdgeSpread> fit_edge(cv::Mat const& light, EdgeSegment const& edge, SpreadSettings const& settings)
 {
     if (light.type() != CV_32FC1)
-        throw InputError("edges are measured in pictures of one channel of floats", "the spread acts on light",
-                         "give a channel of radiance_of()");
+        throw gi::InputError("edges are measured in pictures of one channel of floats", "the spread acts on light",
+                             "give a channel of radiance_of()");
     std::vector<Sample> const samples = samples_of(light, edge, settings);
     if (samples.size() < 30) return std::nullopt;
     double side[2] = {0, 0};

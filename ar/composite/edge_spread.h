@@ -43,7 +43,7 @@ struct Sharpness {
     int refused = 0;
 };
 
-/// Nothing without an edge that counts. @throws InputError another type
+/// Nothing without an edge that counts. @throws gi::InputError another type
 std::optional<Sharpness> estimate_sharpness(cv::Mat const& light, std::span<EdgeSegment const> edges,
                                             SpreadSettings const& settings = {});
 

@@ -1,6 +1,6 @@
 #include "ar/composite/occlusion_matte.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@ namespace {
 void require(cv::Mat const& picture, int type, cv::Size size)
 {
     if (picture.type() == type && picture.size() == size && !picture.empty()) return;
-    throw InputError("pictures for a matte have other sizes or types", "each pixel needs all of them",
-                     "give coverages (CV_32FC1) and radiance (CV_32FC3) of the frame's size");
+    throw gi::InputError("pictures for a matte have other sizes or types", "each pixel needs all of them",
+                         "give coverages (CV_32FC1) and radiance (CV_32FC3) of the frame's size");
 }
 
 cv::Mat dilated(cv::Mat const& mask, int by)
@@ -68,8 +68,8 @@ cv::Mat refined_coverage(cv::Mat const& coverage, cv::Mat const& unoccluded, cv:
     require(coverage, CV_32FC1, size);
     require(unoccluded, CV_32FC1, size);
     if (settings.band_px < 1 || settings.radius_px <= settings.band_px)
-        throw InputError("a matte's windows must be larger than its band", "a model is fitted beside the band",
-                         "choose radius_px > band_px >= 1");
+        throw gi::InputError("a matte's windows must be larger than its band", "a model is fitted beside the band",
+                             "choose radius_px > band_px >= 1");
     cv::Mat result = coverage.clone();
     cv::Mat const object = unoccluded > 0.5f;
     cv::Mat const hidden = object & cv::Mat(coverage < 0.5f * unoccluded), shown = object & ~hidden;

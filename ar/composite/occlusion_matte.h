@@ -27,7 +27,7 @@ struct MatteCounts {
 /// are
 ///                    exact and stay
 /// @param camera      CV_32FC3: the frame's radiance
-/// @return the coverage. @throws InputError types or sizes
+/// @return the coverage. @throws gi::InputError types or sizes
 cv::Mat refined_coverage(cv::Mat const& coverage, cv::Mat const& unoccluded, cv::Mat const& camera,
                          MatteSettings const& settings = {}, MatteCounts* counts = nullptr);
 

@@ -1,6 +1,6 @@
 #include "ar/composite/rendered_pair.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <fmt/format.h>
 
@@ -11,10 +11,11 @@ void check(RenderedPair const& pair, cv::Size size)
     if (size.empty()) size = pair.with.size();
     auto const require = [&](cv::Mat const& picture, int type, char const* name) {
         if (picture.type() == type && picture.size() == size && !picture.empty()) return;
-        throw InputError(fmt::format("the rendered picture '{}' has {} x {} pixels of type {}", name, picture.cols,
-                                     picture.rows, cv::typeToString(picture.type())),
-                         fmt::format("{} x {} of {} are needed", size.width, size.height, cv::typeToString(type)),
-                         "render at the frame's size, or bring it there with upsampled() or Warp");
+        throw gi::InputError(
+            fmt::format("the rendered picture '{}' has {} x {} pixels of type {}", name, picture.cols,
+                        picture.rows, cv::typeToString(picture.type())),
+            fmt::format("{} x {} of {} are needed", size.width, size.height, cv::typeToString(type)),
+            "render at the frame's size, or bring it there with upsampled() or Warp");
     };
     require(pair.with, CV_32FC3, "with");
     require(pair.without, CV_32FC3, "without");

@@ -17,7 +17,8 @@ struct RenderedPair {
     cv::Mat direct = {};
 };
 
-/// @throws InputError where types or sizes are not those above, or (size not empty) not that of the camera's frame
+/// @throws gi::InputError where types or sizes are not those above, or (size not empty) not that of the camera's
+/// frame
 void check(RenderedPair const& pair, cv::Size size = {});
 
 } // namespace ar

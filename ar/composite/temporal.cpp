@@ -1,6 +1,6 @@
 #include "ar/composite/temporal.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -96,12 +96,12 @@ TemporalFilter::TemporalFilter(CameraModel const& camera, TemporalSettings const
     : camera_(camera), settings_(settings)
 {
     if (camera.lens != LensModel::pinhole)
-        throw InputError("a temporal filter for a lens with distortion", "rendered pictures are of pinholes",
-                         "filter before Warp");
+        throw gi::InputError("a temporal filter for a lens with distortion", "rendered pictures are of pinholes",
+                             "filter before Warp");
     if (!(settings.weight > 0) || !(settings.weight <= 1) || !(settings.gamma >= 0) || settings.radius_px < 1)
-        throw InputError(fmt::format("a temporal filter of weight {}, gamma {} and radius {}", settings.weight,
-                                     settings.gamma, settings.radius_px),
-                         "they must be in (0, 1], at least 0 and at least 1", "leave them as they are");
+        throw gi::InputError(fmt::format("a temporal filter of weight {}, gamma {} and radius {}", settings.weight,
+                                         settings.gamma, settings.radius_px),
+                             "they must be in (0, 1], at least 0 and at least 1", "leave them as they are");
 }
 
 void TemporalFilter::forget() { added_ = cv::Mat(); }
@@ -111,8 +111,9 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
     cv::Size const size(camera_.size_px.x, camera_.size_px.y);
     check(pair, size);
     if (depth.type() != CV_32FC1 || depth.size() != size)
-        throw InputError("depth for the temporal filter has another size or type", "surfaces cannot be followed",
-                         "give metres along the axis as floats, of the size of the pair");
+        throw gi::InputError("depth for the temporal filter has another size or type",
+                             "surfaces cannot be followed",
+                             "give metres along the axis as floats, of the size of the pair");
     Added const added = added_by(pair, settings_.radius_px);
     cv::Rect const where = added.where;
     counts_ = {};

@@ -32,13 +32,13 @@ struct TemporalCounts {
 class TemporalFilter {
 public:
     /// @param camera  pinhole; all pictures have its size
-    /// @throws InputError another lens, settings out of range
+    /// @throws gi::InputError another lens, settings out of range
     explicit TemporalFilter(CameraModel const& camera, TemporalSettings const& settings = {});
 
     /// @param pair    of this frame
     /// @param depth   CV_32FC1, metres along the axis, of what the pixel shows (objects or proxies); 0 =
     /// infinitely far
-    /// @return pair whose `without` and coverage are those given. @throws InputError types or sizes
+    /// @return pair whose `without` and coverage are those given. @throws gi::InputError types or sizes
     RenderedPair operator()(RenderedPair const& pair, cv::Mat const& depth, Pose const& world_from_camera);
     /// The next frame has no history: after cuts, changes of exposure or scene.
     void forget();

@@ -1,6 +1,6 @@
 #include "ar/composite/upsample.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <atomic>
@@ -15,10 +15,11 @@ void check(SurfaceGuides const& g, cv::Size size, SurfaceGuides const& other)
 {
     auto const require = [&](cv::Mat const& picture, int type, bool needed, char const* name) {
         if (picture.empty() ? !needed : picture.type() == type && picture.size() == size) return;
-        throw InputError(fmt::format("the guide '{}' has {} x {} pixels of type {}", name, picture.cols,
-                                     picture.rows, cv::typeToString(picture.type())),
-                         fmt::format("{} x {} of {} are needed", size.width, size.height, cv::typeToString(type)),
-                         "give each guide at both resolutions, or at none");
+        throw gi::InputError(
+            fmt::format("the guide '{}' has {} x {} pixels of type {}", name, picture.cols, picture.rows,
+                        cv::typeToString(picture.type())),
+            fmt::format("{} x {} of {} are needed", size.width, size.height, cv::typeToString(type)),
+            "give each guide at both resolutions, or at none");
     };
     require(g.normal, CV_32FC3, !other.normal.empty(), "normal");
     require(g.depth, CV_32FC1, !other.depth.empty(), "depth");

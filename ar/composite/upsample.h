@@ -34,7 +34,7 @@ struct UpsampleCounts {
 /// Output pixel (x, y) has its centre at ((x + 0.5) low / full - 0.5) of the low pictures.
 /// @param low         with, without, coverage at the low resolution; pixels that objects cover are left out, but
 /// for the part beside them where `direct` is given and a quarter or more is left
-/// @param low_guides  of the low resolution; empty pictures where `guides` has some are @throws InputError
+/// @param low_guides  of the low resolution; empty pictures where `guides` has some are @throws gi::InputError
 /// @param seen        its size is that of the result
 /// @return with = seen + (1 - a)(without + change), without, coverage: a pair for Compositor. Its `without` is the
 /// low one, stretched: good for differences; ratios need a full one, which `without_full` brings (may be empty).

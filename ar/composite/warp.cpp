@@ -1,6 +1,6 @@
 #include "ar/composite/warp.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,15 +13,16 @@ namespace ar {
 CameraModel covering_pinhole(CameraModel const& camera, double resolution)
 {
     if (!(resolution > 0) || !std::isfinite(resolution))
-        throw InputError(fmt::format("a resolution of {}", resolution), "it must be positive", "give 1");
+        throw gi::InputError(fmt::format("a resolution of {}", resolution), "it must be positive", "give 1");
     constexpr double kLeastCosine = 0.17364817766693041; // of 80 degrees
     glm::dvec2 least(std::numeric_limits<double>::infinity()), most(-least);
     auto const include = [&](double x, double y) {
         auto const d = direction_of(camera, {x, y});
         if (!d || d->z <= kLeastCosine)
-            throw InputError(fmt::format("the camera sees 80 degrees or more off its axis at ({:g}, {:g})", x, y),
-                             "a pinhole picture that covers it would be very large",
-                             "crop the frames, or render with a narrower lens");
+            throw gi::InputError(
+                fmt::format("the camera sees 80 degrees or more off its axis at ({:g}, {:g})", x, y),
+                "a pinhole picture that covers it would be very large",
+                "crop the frames, or render with a narrower lens");
         least = glm::min(least, glm::dvec2(*d) / d->z);
         most = glm::max(most, glm::dvec2(*d) / d->z);
     };
@@ -40,8 +41,9 @@ CameraModel covering_pinhole(CameraModel const& camera, double resolution)
     glm::dvec2 const last = glm::ceil(most * glm::dvec2(pinhole.fx, pinhole.fy)) + 1.0;
     glm::dvec2 const size = last - first + 1.0;
     if (std::max(size.x, size.y) > 16384)
-        throw InputError(fmt::format("a pinhole picture of {} x {} pixels would cover the lens", size.x, size.y),
-                         "at most 16384 each way are rendered", "ask for a lower resolution");
+        throw gi::InputError(
+            fmt::format("a pinhole picture of {} x {} pixels would cover the lens", size.x, size.y),
+            "at most 16384 each way are rendered", "ask for a lower resolution");
     pinhole.size_px = glm::ivec2(size);
     pinhole.cx = -first.x;
     pinhole.cy = -first.y;
@@ -65,9 +67,9 @@ Warp::Warp(CameraModel const& to, CameraModel const& from) : to_(to), from_(from
 cv::Mat Warp::remapped(cv::Mat const& picture, int interpolation) const
 {
     if (picture.size() != cv::Size(from_.size_px.x, from_.size_px.y))
-        throw InputError(fmt::format("a rendered picture of {} x {} pixels", picture.cols, picture.rows),
-                         fmt::format("the warp was made for {} x {}", from_.size_px.x, from_.size_px.y),
-                         "make another Warp");
+        throw gi::InputError(fmt::format("a rendered picture of {} x {} pixels", picture.cols, picture.rows),
+                             fmt::format("the warp was made for {} x {}", from_.size_px.x, from_.size_px.y),
+                             "make another Warp");
     if (same_) return picture;
     cv::Mat out;
     bool const nearest = interpolation == cv::INTER_NEAREST;

@@ -9,7 +9,8 @@ namespace ar {
 
 /// The smallest pinhole camera at the same place, looking the same way, that sees all that `camera` sees.
 /// @param resolution  its pixels per pixel of the camera, at the centre of the lens; > 0
-/// @throws InputError where the camera sees 80 degrees or more off its axis, or the picture passes 16384 pixels
+/// @throws gi::InputError where the camera sees 80 degrees or more off its axis, or the picture passes 16384
+/// pixels
 CameraModel covering_pinhole(CameraModel const& camera, double resolution = 1);
 
 /// The table is made once, for pictures of two cameras at one place.
@@ -20,7 +21,7 @@ public:
     Warp(CameraModel const& to, CameraModel const& from);
 
     /// Bilinear, to 1/32 of a pixel (cv::remap). Where `from` does not see: 0 in all pictures, hence the camera's
-    /// bytes. What is equal in `with` and `without` stays equal bit for bit. @throws InputError wrong size
+    /// bytes. What is equal in `with` and `without` stays equal bit for bit. @throws gi::InputError wrong size
     RenderedPair operator()(RenderedPair const& pair) const;
     /// Radiance, irradiance: bilinear.
     cv::Mat smooth(cv::Mat const& picture) const;

@@ -1,5 +1,5 @@
-#include "ar/camera/error.h"
 #include "ar/light/lat_long.h"
+#include "gi/core/error.h"
 
 #include <cmath>
 #include <numbers>
@@ -83,8 +83,8 @@ void solve(Level& level)
 FilledMap filled(PartialMap const& map)
 {
     if (map.weight.empty() || cv::countNonZero(map.weight > 0) == 0)
-        throw InputError("the environment map has no measured direction", "there is nothing to fill it from",
-                         "check where the ball or the camera is and which way it looks");
+        throw gi::InputError("the environment map has no measured direction", "there is nothing to fill it from",
+                             "check where the ball or the camera is and which way it looks");
     Level level{map.radiance.clone(), map.weight > 0};
     FilledMap out;
     out.filled_texels = int(level.known.total()) - cv::countNonZero(level.known);

@@ -1,5 +1,5 @@
-#include "ar/camera/error.h"
 #include "ar/light/mirror_ball.h"
+#include "gi/core/error.h"
 #include "gi/core/quantile.h"
 
 #include <algorithm>
@@ -128,17 +128,17 @@ BallSight find_ball(cv::Mat const& rgb, CameraModel const& camera, BallSight con
     for (double const width : {search, search / 3, search / 8}) { // edges in the ball must not pull at it
         Rim const rim = rim_points(grey, camera, ball, std::max(width, 0.02));
         if (int(rim.rays.size()) < kFewestPlaces)
-            throw InputError(
+            throw gi::InputError(
                 fmt::format("{} of {} places of the ball's rim show an edge", rim.rays.size(), kPlaces),
                 fmt::format("{} are needed to know where it is", kFewestPlaces),
                 "show the whole ball before a background unlike it, or give its circle");
         ball = fit_cone(rim, ball);
     }
     if (ball.rim_points < kFewestPlaces || !(ball.rms_px < 2))
-        throw InputError(fmt::format("the rim of the ball is {:.1f} px off a circle in {} places", ball.rms_px,
-                                     ball.rim_points),
-                         "it is something else or partly hidden",
-                         "give the circle that its rim is in the picture");
+        throw gi::InputError(fmt::format("the rim of the ball is {:.1f} px off a circle in {} places", ball.rms_px,
+                                         ball.rim_points),
+                             "it is something else or partly hidden",
+                             "give the circle that its rim is in the picture");
     return ball;
 }
 
@@ -160,13 +160,13 @@ BallSight find_ball(cv::Mat const& rgb, CameraModel const& camera)
         try {
             BallSight const b = find_ball(rgb, camera, ball_of_circle(camera, centre, circles[i][2] * to));
             if (!best || b.rim_points > best->rim_points) best = b;
-        } catch (InputError const&) {
+        } catch (gi::InputError const&) {
             continue; // not a ball; the next circle may be
         }
     }
     if (!best)
-        throw InputError(fmt::format("no ball in the picture, {} circles looked at", circles.size()),
-                         "none has the rim of a ball", "give the circle that its rim is in the picture");
+        throw gi::InputError(fmt::format("no ball in the picture, {} circles looked at", circles.size()),
+                             "none has the rim of a ball", "give the circle that its rim is in the picture");
     return *best;
 }
 

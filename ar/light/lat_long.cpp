@@ -1,6 +1,6 @@
 #include "ar/light/lat_long.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,7 +87,7 @@ cv::Mat resampled(cv::Mat const& map, cv::Size size, glm::dquat const& to_from)
 void check_map(cv::Mat const& map, std::string const& where)
 {
     auto const refuse = [&](std::string const& problem, std::string const& why) {
-        throw InputError(where + ": " + problem, why, "give a lat-long map of linear RGB radiance");
+        throw gi::InputError(where + ": " + problem, why, "give a lat-long map of linear RGB radiance");
     };
     if (map.empty()) refuse("the map is empty", "no light comes from nowhere");
     if (map.type() != CV_32FC3) refuse("the map is not of three floats per texel", "radiance is");

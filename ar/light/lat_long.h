@@ -31,7 +31,7 @@ cv::Vec3d integral(cv::Mat const& map);
 /// @param to_from takes directions of `map` to directions of the result
 cv::Mat resampled(cv::Mat const& map, cv::Size size, glm::dquat const& to_from = {1, 0, 0, 0});
 
-/// @throws InputError empty, not CV_32FC3, not 2 : 1, not finite, negative; `where` begins the message
+/// @throws gi::InputError empty, not CV_32FC3, not 2 : 1, not finite, negative; `where` begins the message
 void check_map(cv::Mat const& map, std::string const& where);
 
 /// What was measured of an environment: weight 0 = nothing there, else how well.
@@ -51,7 +51,7 @@ struct FilledMap {
 };
 /// Where nothing was measured: the solution of Laplace's equation on the sphere between what was, from coarse to
 /// fine.
-/// @throws InputError if nothing was measured at all
+/// @throws gi::InputError if nothing was measured at all
 FilledMap filled(PartialMap const& map);
 
 } // namespace ar

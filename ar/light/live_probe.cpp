@@ -1,7 +1,7 @@
 #include "ar/light/live_probe.h"
 
-#include "ar/camera/error.h"
 #include "ar/light/lamps.h"
+#include "gi/core/error.h"
 #include "gi/core/quantile.h"
 
 #include <algorithm>
@@ -33,8 +33,8 @@ LiveProbe::LiveProbe(cv::Mat const& prior, LiveProbeSettings const& settings)
 {
     auto const need = [](char const* name, double v) {
         if (!(v > 0 && std::isfinite(v)))
-            throw InputError(fmt::format("live probe: {} is {}", name, v), "it must be finite and more than 0",
-                             "leave it out for the default");
+            throw gi::InputError(fmt::format("live probe: {} is {}", name, v), "it must be finite and more than 0",
+                                 "leave it out for the default");
     };
     need("width", settings.size.width);
     need("height", settings.size.height);
@@ -194,7 +194,7 @@ ProbeUpdate LiveProbe::update(cv::Mat const& radiance, cv::Mat const& clipped, C
                       radiance.rows == camera.size_px.y &&
                       (clipped.empty() || (clipped.type() == CV_8UC1 && clipped.size() == radiance.size()));
     if (!fits || !std::isfinite(time_s))
-        throw InputError(
+        throw gi::InputError(
             "live probe: picture, clipped pixels and camera are not of one size, or the time is not finite",
             "pixels would have the wrong rays", "give the radiance of the camera's whole picture");
     set_camera(camera);

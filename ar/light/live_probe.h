@@ -49,14 +49,14 @@ struct ProbeUpdate {
 class LiveProbe {
 public:
     /// @param prior a lat-long map of any size, brought to settings.size; empty = grey of the mean of what is seen
-    /// @throws InputError as check_map, and settings that are not positive
+    /// @throws gi::InputError as check_map, and settings that are not positive
     explicit LiveProbe(cv::Mat const& prior = {}, LiveProbeSettings const& settings = {});
 
     /// @param radiance CV_32FC3 of the camera's size (ar::radiance_of with the frame's exposure)
     /// @param clipped CV_8UC1 of the same size, or empty: not 0 where a channel is clipped. A texel with clipped
     /// samples
     ///                does not fall below the scaled prior.
-    /// @throws InputError sizes that differ
+    /// @throws gi::InputError sizes that differ
     ProbeUpdate update(cv::Mat const& radiance, cv::Mat const& clipped, CameraModel const& camera,
                        glm::dquat const& world_from_camera, double time_s);
     /// CV_32FC3, settings.size.

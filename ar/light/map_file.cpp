@@ -1,8 +1,8 @@
 #include "ar/light/map_file.h"
 
-#include "ar/camera/error.h"
 #include "ar/camera/photometry.h"
 #include "ar/light/lat_long.h"
+#include "gi/core/error.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -22,8 +22,8 @@ constexpr double kMostPerByte = 512; ///< texels that a byte of a compressed fil
 
 [[noreturn]] void refuse(std::filesystem::path const& file, std::string const& problem, std::string const& why)
 {
-    throw InputError(fmt::format("'{}': {}", file.string(), problem), why,
-                     "give an OpenEXR, Radiance or PNG file of RGB");
+    throw gi::InputError(fmt::format("'{}': {}", file.string(), problem), why,
+                         "give an OpenEXR, Radiance or PNG file of RGB");
 }
 
 void check_size(std::filesystem::path const& file, std::int64_t width, std::int64_t height)
@@ -110,7 +110,7 @@ cv::Mat read_radiance(std::filesystem::path const& file)
 {
     try {
         return file.extension() == ".exr" ? read_exr(file) : read_by_opencv(file);
-    } catch (InputError const&) {
+    } catch (gi::InputError const&) {
         throw;
     } catch (std::exception const& e) { // what OpenEXR and OpenCV throw at damaged files
         refuse(file, "it cannot be decoded", e.what());
@@ -135,7 +135,7 @@ void write_map(std::filesystem::path const& file, cv::Mat const& map)
         cv::Mat out;
         cv::cvtColor(file.extension() == ".hdr" ? map : bytes_of(map, srgb_photometry()), out, cv::COLOR_RGB2BGR);
         if (!cv::imwrite(file.string(), out)) refuse(file, "it cannot be written", "the folder may be missing");
-    } catch (InputError const&) {
+    } catch (gi::InputError const&) {
         throw;
     } catch (std::exception const& e) {
         refuse(file, "it cannot be written", e.what());

@@ -1,7 +1,7 @@
 #include "ar/light/mirror_ball.h"
 
-#include "ar/camera/error.h"
 #include "ar/light/picture_sampling.h"
+#include "gi/core/error.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ BallSight ball_of_circle(CameraModel const& camera, glm::dvec2 centre_px, double
     for (std::size_t i = 0; i < 4; ++i) {
         rim[i] = direction_of(camera, centre_px + radius_px * sides[i]);
         if (!(radius_px > 0) || !rim[i])
-            throw InputError(
+            throw gi::InputError(
                 fmt::format("a ball of radius {} px at ({}, {})", radius_px, centre_px.x, centre_px.y),
                 "no rays go there", "give the circle that the ball's rim is in the picture");
         sum += *rim[i];
@@ -59,8 +59,8 @@ PartialMap unwrap_ball(cv::Mat const& radiance, CameraModel const& camera, glm::
 {
     for (double const r : settings.reflectivity.val)
         if (!(r > 0 && r <= 1))
-            throw InputError(fmt::format("a mirror ball that reflects {}", r), "it reflects between 0 and all",
-                             "give the share of each channel, 0.6 for steel");
+            throw gi::InputError(fmt::format("a mirror ball that reflects {}", r), "it reflects between 0 and all",
+                                 "give the share of each channel, 0.6 for steel");
     check_picture(radiance, camera, "picture of a mirror ball");
     double const s = std::sin(ball.half_angle_rad);
     double const unseen = std::numbers::pi - ball.half_angle_rad; // directions beyond: behind the ball

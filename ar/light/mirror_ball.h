@@ -26,7 +26,7 @@ struct BallSight {
 /// Of a ball of known radius at a known place. Nothing if it is behind the camera or the camera is in it.
 std::optional<BallSight> predicted_ball(Pose const& world_from_camera, glm::dvec3 centre_m, double radius_m);
 /// The ball whose rim a circle drawn on the picture roughly is.
-/// @throws InputError no radius, or not in the picture
+/// @throws gi::InputError no radius, or not in the picture
 BallSight ball_of_circle(CameraModel const& camera, glm::dvec2 centre_px, double radius_px);
 /// Distance of its centre, by its radius: R / sin a.
 double ball_distance_m(BallSight const& ball, double radius_m);
@@ -36,7 +36,7 @@ double ball_distance_m(BallSight const& ball, double radius_m);
 /// A perfect mirror before what it reflects at grazing angles has no rim: real ones are darker than their
 /// surround.
 /// @param rgb CV_8UC3 or CV_32FC3
-/// @throws InputError if fewer than 60 places agree
+/// @throws gi::InputError if fewer than 60 places agree
 BallSight find_ball(cv::Mat const& rgb, CameraModel const& camera, BallSight const& near, double search = 0.15);
 /// The same, beginning at the strongest circle of the picture (Hough), of a radius of at least 1/40 of its height.
 BallSight find_ball(cv::Mat const& rgb, CameraModel const& camera);
@@ -53,7 +53,7 @@ struct BallSettings {
 /// the camera is, and beyond the picture. Each texel is the mean of a grid of samples as dense as the picture.
 /// @param radiance CV_32FC3, of the camera's size
 /// @param world_from_camera its rotation is used
-/// @throws InputError sizes that differ, a reflectivity that is not in ]0, 1]
+/// @throws gi::InputError sizes that differ, a reflectivity that is not in ]0, 1]
 PartialMap unwrap_ball(cv::Mat const& radiance, CameraModel const& camera, glm::dquat const& world_from_camera,
                        BallSight const& ball, BallSettings const& settings = {});
 

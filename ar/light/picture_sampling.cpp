@@ -1,6 +1,6 @@
 #include "ar/light/picture_sampling.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +55,8 @@ PartialMap gather(cv::Mat const& radiance, cv::Size size, double pixels_per_texe
 void check_picture(cv::Mat const& radiance, CameraModel const& camera, std::string const& where)
 {
     auto const refuse = [&](std::string const& problem, std::string const& why) {
-        throw InputError(where + ": " + problem, why, "give the radiance of the whole picture, in three floats");
+        throw gi::InputError(where + ": " + problem, why,
+                             "give the radiance of the whole picture, in three floats");
     };
     if (radiance.type() != CV_32FC3 || radiance.cols < 2 || radiance.rows < 2)
         refuse("it is empty or not of three floats per pixel", "radiance is");

@@ -20,7 +20,7 @@ struct PictureSample {
 PartialMap gather(cv::Mat const& radiance, cv::Size size, double pixels_per_texel,
                   std::function<PictureSample(glm::dvec3)> const& look);
 
-/// @throws InputError not CV_32FC3 of the camera's size, or not finite, or negative
+/// @throws gi::InputError not CV_32FC3 of the camera's size, or not finite, or negative
 void check_picture(cv::Mat const& radiance, CameraModel const& camera, std::string const& where);
 
 } // namespace ar

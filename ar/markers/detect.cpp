@@ -1,7 +1,7 @@
 #include "ar/markers/detect.h"
 
-#include "ar/camera/error.h"
 #include "ar/markers/refine.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +17,8 @@ constexpr double kMarkerSigma_px = 0.15, kBoardSigma_px = 0.08, kUnrefinedSigma_
 void check_picture(cv::Mat const& gray)
 {
     if (gray.empty() || gray.type() != CV_8UC1)
-        throw InputError("markers are looked for in a picture that is not 8 bit grey",
-                         "their edges are in its luma", "hand over gray_of(frame)");
+        throw gi::InputError("markers are looked for in a picture that is not 8 bit grey",
+                             "their edges are in its luma", "hand over gray_of(frame)");
 }
 
 struct Found {

@@ -26,7 +26,7 @@ SearchSettings search_settings(DetectorSettings const& settings, cv::Size pictur
 
 /// The whole picture. Points are corners of markers and inner corners of boards (of boards nothing else, unless
 /// fewer than four of these are seen: then the corners of their markers).
-/// @param gray CV_8UC1. @throws InputError another type, an empty picture, a map that `check` refuses
+/// @param gray CV_8UC1. @throws gi::InputError another type, an empty picture, a map that `check` refuses
 Sighting detect(cv::Mat const& gray, MarkerMap const& map, DetectorSettings const& settings = {});
 
 /// Pictures of one camera one after another: looks where the markers were, and at the whole picture where that
@@ -34,10 +34,10 @@ Sighting detect(cv::Mat const& gray, MarkerMap const& map, DetectorSettings cons
 /// that is searched: a marker that is hardly seen may be found in one and not in the other.)
 class MarkerTracker {
 public:
-    /// @throws InputError a map that `check` refuses
+    /// @throws gi::InputError a map that `check` refuses
     explicit MarkerTracker(MarkerMap map, DetectorSettings settings = {});
 
-    /// @throws InputError as detect
+    /// @throws gi::InputError as detect
     Sighting next(cv::Mat const& gray);
     /// Forget where they were.
     void reset();

@@ -1,7 +1,8 @@
 #include "ar/markers/draw.h"
 
-#include "ar/camera/error.h"
 #include "ar/markers/aruco.h"
+#include "gi/core/crc32.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <array>
@@ -32,16 +33,6 @@ void add_marker(Sheet& sheet, PlacedMarker const& m)
         }
 }
 
-std::uint32_t crc32_of(std::string const& bytes)
-{
-    std::uint32_t crc = 0xffffffffu;
-    for (char const c : bytes) {
-        crc ^= std::uint8_t(c);
-        for (int i = 0; i < 8; ++i) crc = (crc >> 1) ^ ((crc & 1) != 0 ? 0xedb88320u : 0u);
-    }
-    return ~crc;
-}
-
 std::string big_endian(std::uint32_t v) { return {char(v >> 24), char(v >> 16), char(v >> 8), char(v)}; }
 
 } // namespace
@@ -52,8 +43,8 @@ Sheet sheet_of(MarkerMap const& map, int thing, double margin_m)
     for (PlacedMarker const& m : placed_markers(map))
         if (m.thing == thing) markers.push_back(m);
     if (markers.empty())
-        throw InputError(fmt::format("thing {} is not in the map", thing), "it is counted from 0",
-                         fmt::format("there are {}", count_of(map)));
+        throw gi::InputError(fmt::format("thing {} is not in the map", thing), "it is counted from 0",
+                             fmt::format("there are {}", count_of(map)));
     glm::dvec2 low(markers[0].corners_m[3]), high(markers[0].corners_m[1]);
     for (PlacedMarker const& m : markers) {
         low = glm::min(low, glm::dvec2(m.corners_m[3]));
@@ -89,8 +80,9 @@ cv::Mat draw(Sheet const& sheet, double dots_per_m)
 {
     double const width = sheet.width_m * dots_per_m, height = sheet.height_m * dots_per_m;
     if (!(width >= 1 && height >= 1 && width <= kMostDots && height <= kMostDots))
-        throw InputError(fmt::format("a drawing of {:g} x {:g} dots", width, height),
-                         fmt::format("1 to {} each way are possible", kMostDots), "choose other dots per metre");
+        throw gi::InputError(fmt::format("a drawing of {:g} x {:g} dots", width, height),
+                             fmt::format("1 to {} each way are possible", kMostDots),
+                             "choose other dots per metre");
     // A little less than a whole dot is no dot: 0.1 m at 10,000 dots per metre is 1000, not 1001.
     cv::Mat ink = cv::Mat::zeros(int(std::ceil(height - 1e-6)), int(std::ceil(width - 1e-6)), CV_32F);
     auto const covered = [](double low, double high, int dot) {
@@ -131,13 +123,13 @@ void write_png(std::filesystem::path const& file, cv::Mat const& drawing, double
     // After the signature (8 bytes) and IHDR (25): pHYs, dots per metre both ways.
     std::string const density = big_endian(std::uint32_t(std::lround(dots_per_m)));
     std::string const body = "pHYs" + density + density + '\1';
-    std::string const chunk = big_endian(9) + body + big_endian(crc32_of(body));
+    std::string const chunk = big_endian(9) + body + big_endian(gi::crc32(body));
     png.insert(png.begin() + 33, chunk.begin(), chunk.end());
     std::ofstream out(file, std::ios::binary);
     out.write(reinterpret_cast<char const*>(png.data()), std::streamsize(png.size()));
     if (!out.flush())
-        throw InputError("'" + file.string() + "' cannot be written", "its folder is missing or full",
-                         "choose another");
+        throw gi::InputError("'" + file.string() + "' cannot be written", "its folder is missing or full",
+                             "choose another");
 }
 
 } // namespace ar

@@ -25,12 +25,12 @@ Sheet sheet_of(MarkerMap const& map, int thing, double margin_m = -1);
 
 /// CV_8UC1, 0 and 255; where an edge passes through a dot, what is covered (so that edges are where they belong).
 /// The paper's upper left corner is the upper left edge of the first dot.
-/// @throws InputError more than 20,000 dots a side
+/// @throws gi::InputError more than 20,000 dots a side
 cv::Mat draw(Sheet const& sheet, double dots_per_m);
 /// Width and height in mm, so that it prints at its size.
 std::string to_svg(Sheet const& sheet);
 
-/// PNG with its dots per metre (pHYs). @throws InputError
+/// PNG with its dots per metre (pHYs). @throws gi::InputError
 void write_png(std::filesystem::path const& file, cv::Mat const& drawing, double dots_per_m);
 
 } // namespace ar

@@ -1,6 +1,6 @@
 #include "ar/markers/marker_map.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -71,7 +71,7 @@ public:
     }
     [[noreturn]] void refuse(std::string const& problem, std::string const& why, std::string const& do_this) const
     {
-        throw InputError(where_ + ": " + problem, why, do_this);
+        throw gi::InputError(where_ + ": " + problem, why, do_this);
     }
 
 private:

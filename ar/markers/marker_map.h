@@ -85,8 +85,8 @@ std::vector<glm::dvec3> inner_corners(CharucoBoard const& board);
 /// Whether the square in this column and row, from the upper left, is black.
 bool is_black(CharucoBoard const& board, int column, int row);
 
-/// @throws InputError unknown dictionary, an identifier that it has not, one identifier twice, lengths that are
-/// not positive and finite or markers larger than their squares, rotations that are none; `where` begins the
+/// @throws gi::InputError unknown dictionary, an identifier that it has not, one identifier twice, lengths that
+/// are not positive and finite or markers larger than their squares, rotations that are none; `where` begins the
 /// message
 void check(MarkerMap const& map, std::string const& where);
 

@@ -1,6 +1,7 @@
 #include "ar/markers/marker_map_file.h"
 
-#include "ar/camera/yaml.h"
+#include "gi/core/file.h"
+#include "gi/core/yaml.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -11,15 +12,15 @@ namespace {
 constexpr double kFar_m = 1000;
 constexpr int kMostIds = 100000;
 
-Pose read_pose(Yaml const& y)
+Pose read_pose(gi::Yaml const& y)
 {
     Pose p;
     if (y.has("position_m")) {
-        auto const v = y.at("position_m", "").numbers(3, -kFar_m, kFar_m);
+        auto const v = y.at("position_m").numbers(3, -kFar_m, kFar_m);
         p.position_m = {v[0], v[1], v[2]};
     }
     if (y.has("rotation_deg")) {
-        Yaml const r = y.at("rotation_deg", "");
+        gi::Yaml const r = y.at("rotation_deg");
         if (y.has("rotation_xyzw"))
             throw r.error(y.path() + " has rotation_deg and rotation_xyzw", "only one of them can count",
                           "remove one");
@@ -29,7 +30,7 @@ Pose read_pose(Yaml const& y)
                                     glm::angleAxis(glm::radians(v[0]), glm::dvec3(1, 0, 0)));
     }
     if (y.has("rotation_xyzw")) {
-        Yaml const r = y.at("rotation_xyzw", "");
+        gi::Yaml const r = y.at("rotation_xyzw");
         auto const v = r.numbers(4, -1.1, 1.1);
         glm::dquat const q(v[3], v[0], v[1], v[2]);
         if (!(std::abs(glm::length(q) - 1) < 1e-3))
@@ -40,9 +41,9 @@ Pose read_pose(Yaml const& y)
     return p;
 }
 
-std::string read_dictionary(Yaml const& y)
+std::string read_dictionary(gi::Yaml const& y)
 {
-    Yaml const d = y.at("dictionary", "DICT_4X4_50");
+    gi::Yaml const d = y.needed("dictionary", "DICT_4X4_50");
     std::string const name = d.text();
     if (dictionary_size(name) == 0)
         throw d.error(fmt::format("'{}' is no dictionary", name.substr(0, 64)), "its codes are not known",
@@ -50,19 +51,19 @@ std::string read_dictionary(Yaml const& y)
     return name;
 }
 
-double read_length(Yaml const& y, std::string const& key, std::string const& example)
+double read_length(gi::Yaml const& y, std::string const& key, std::string const& example)
 {
-    return y.at(key, example).number(1e-6, kFar_m);
+    return y.needed(key, example).number(1e-6, kFar_m);
 }
 
-int read_first_id(Yaml const& y) { return y.has("first_id") ? y.at("first_id", "").integer(0, kMostIds) : 0; }
+int read_first_id(gi::Yaml const& y) { return y.has("first_id") ? y.at("first_id").integer(0, kMostIds) : 0; }
 
 /// Where `check` finds something wrong with the map so far, it is what was read last.
 template <class Thing>
-void add(std::vector<Thing>& things, Thing thing, MarkerMap const& map, Yaml const& y)
+void add(std::vector<Thing>& things, Thing thing, MarkerMap const& map, gi::Yaml const& y)
 {
     things.push_back(std::move(thing));
-    Place const at = y.place();
+    gi::TextLocation const at = y.place();
     check(map, fmt::format("{}:{}:{}", at.file, at.line, at.column));
 }
 
@@ -81,39 +82,39 @@ std::string text_of(Pose const& p)
 MarkerMap parse_marker_map(std::string const& text, std::string const& file)
 {
     constexpr std::size_t kMostThings = 500;
-    Yaml const top = Yaml::parse(text, file);
+    gi::Yaml const top = gi::Yaml::parse(text, file);
     top.only_keys({"markers", "boards", "grids"});
     MarkerMap map;
     if (top.has("markers"))
-        for (Yaml const& y : top.at("markers", "").items(0, kMostThings)) {
+        for (gi::Yaml const& y : top.at("markers").items(0, kMostThings)) {
             y.only_keys({"dictionary", "id", "side_m", "position_m", "rotation_deg", "rotation_xyzw"});
             add(map.markers,
-                {read_dictionary(y), y.at("id", "0").integer(0, kMostIds), read_length(y, "side_m", "0.08"),
-                 read_pose(y)},
+                {read_dictionary(y), int(y.needed("id", "0").integer(0, kMostIds)),
+                 read_length(y, "side_m", "0.08"), read_pose(y)},
                 map, y);
         }
     if (top.has("boards"))
-        for (Yaml const& y : top.at("boards", "").items(0, kMostThings)) {
+        for (gi::Yaml const& y : top.at("boards").items(0, kMostThings)) {
             y.only_keys({"squares_x", "squares_y", "square_m", "marker_m", "dictionary", "first_id",
                          "legacy_pattern", "position_m", "rotation_deg", "rotation_xyzw"});
             CharucoBoard b;
-            b.squares_x = y.at("squares_x", "8").integer(2, kMostSquares);
-            b.squares_y = y.at("squares_y", "5").integer(2, kMostSquares);
+            b.squares_x = y.needed("squares_x", "8").integer(2, kMostSquares);
+            b.squares_y = y.needed("squares_y", "5").integer(2, kMostSquares);
             b.square_m = read_length(y, "square_m", "0.03");
             b.marker_m = read_length(y, "marker_m", "0.022");
             b.dictionary = read_dictionary(y);
             b.first_id = read_first_id(y);
-            if (y.has("legacy_pattern")) b.legacy_pattern = y.at("legacy_pattern", "").boolean();
+            if (y.has("legacy_pattern")) b.legacy_pattern = y.at("legacy_pattern").boolean();
             b.world_from_board = read_pose(y);
             add(map.boards, b, map, y);
         }
     if (top.has("grids"))
-        for (Yaml const& y : top.at("grids", "").items(0, kMostThings)) {
+        for (gi::Yaml const& y : top.at("grids").items(0, kMostThings)) {
             y.only_keys({"markers_x", "markers_y", "marker_m", "gap_m", "dictionary", "first_id", "position_m",
                          "rotation_deg", "rotation_xyzw"});
             MarkerGrid g;
-            g.markers_x = y.at("markers_x", "2").integer(1, kMostSquares);
-            g.markers_y = y.at("markers_y", "3").integer(1, kMostSquares);
+            g.markers_x = y.needed("markers_x", "2").integer(1, kMostSquares);
+            g.markers_y = y.needed("markers_y", "3").integer(1, kMostSquares);
             g.marker_m = read_length(y, "marker_m", "0.05");
             g.gap_m = read_length(y, "gap_m", "0.01");
             g.dictionary = read_dictionary(y);
@@ -150,13 +151,13 @@ std::string format_marker_map(MarkerMap const& map)
 
 MarkerMap read_marker_map(std::filesystem::path const& file)
 {
-    return parse_marker_map(read_text(file), file.string());
+    return parse_marker_map(gi::read_text(file), file.string());
 }
 
 void write_marker_map(std::filesystem::path const& file, MarkerMap const& map)
 {
     check(map, file.string());
-    write_text(file, format_marker_map(map));
+    gi::write_text(file, format_marker_map(map));
 }
 
 } // namespace ar

@@ -19,13 +19,13 @@
 
 namespace ar {
 
-/// @param file for messages. @throws InputError with file:line:column
+/// @param file for messages. @throws gi::InputError with file:line:column
 MarkerMap parse_marker_map(std::string const& text, std::string const& file);
 std::string format_marker_map(MarkerMap const& map);
 
-/// @throws InputError
+/// @throws gi::InputError
 MarkerMap read_marker_map(std::filesystem::path const& file);
-/// Whole, or not at all. @throws InputError
+/// Whole, or not at all. @throws gi::InputError
 void write_marker_map(std::filesystem::path const& file, MarkerMap const& map);
 
 } // namespace ar

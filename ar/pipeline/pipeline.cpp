@@ -1,6 +1,5 @@
 #include "ar/pipeline/pipeline.h"
 
-#include "ar/camera/error.h"
 #include "ar/capture/clock.h"
 #include "ar/pipeline/bridge.h"
 #include "ar/pipeline/pose_use.h"
@@ -128,7 +127,7 @@ ArResult ArPipeline::find(ar::Frame const& frame, double time_s, std::optional<a
                           std::optional<double> begun_s)
 {
     if (frame.size_px != camera_.model.size_px)
-        throw ar::InputError(
+        throw gi::InputError(
             fmt::format("frame {} has {} x {} pixels", frame.sequence, frame.size_px.x, frame.size_px.y),
             fmt::format("the calibration is of {} x {}", camera_.model.size_px.x, camera_.model.size_px.y),
             "set the camera to that size, or calibrate it at this one");

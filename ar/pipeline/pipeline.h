@@ -51,7 +51,7 @@ enum class CompositeBy {
 /// takes the frames in order.
 class ArPipeline {
 public:
-    /// Loads the scenes and the light. @throws gi::InputError, ar::InputError
+    /// Loads the scenes and the light. @throws gi::InputError
     /// @param prefix  of its counts in the report, where there are several
     ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers, gi::Report& report,
                std::string prefix = {});
@@ -60,7 +60,7 @@ public:
     /// @param time_s   since the first frame: of the virtual things' clips, the camera's motion and the light
     /// @param known    where the camera is, in place of what the frame says
     /// @param begun_s  steady clock, from when on its time counts; nothing = now
-    /// @throws ar::InputError the frame cannot be decoded or has another size than the calibration
+    /// @throws gi::InputError the frame cannot be decoded or has another size than the calibration
     ArResult find(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known = {},
                   std::optional<double> begun_s = {});
     /// The virtual things, where a camera was found.

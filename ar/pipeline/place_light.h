@@ -13,7 +13,7 @@ namespace viewer {
 
 class PlaceLight {
 public:
-    /// @throws ar::InputError the map cannot be read
+    /// @throws gi::InputError the map cannot be read
     explicit PlaceLight(ArSession const& session);
 
     /// As it was captured; null: there is no map.

@@ -1,6 +1,6 @@
 #include "ar/pose/candidates.h"
 
-#include "ar/camera/rotation_vector.h"
+#include "gi/core/rotation.h"
 
 #include <cmath>
 #include <opencv2/calib3d.hpp>
@@ -26,7 +26,7 @@ glm::dquat turn_z_to(glm::dvec3 direction)
     glm::dvec3 const axis = glm::cross(z, direction);
     double const sine = glm::length(axis), cosine = direction.z;
     if (sine < 1e-12) return cosine > 0 ? glm::dquat(1, 0, 0, 0) : glm::dquat(0, 1, 0, 0);
-    return exp_rotation(axis * (std::atan2(sine, cosine) / sine));
+    return gi::exp_rotation(axis * (std::atan2(sine, cosine) / sine));
 }
 
 AimedPoints aim(CameraModel const& camera, std::span<SightedPoint const> points, PointSet const& set)

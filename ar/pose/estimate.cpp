@@ -1,9 +1,9 @@
 #include "ar/pose/estimate.h"
 
-#include "ar/camera/rotation_vector.h"
 #include "ar/pose/candidates.h"
 #include "ar/pose/refine.h"
 #include "gi/core/quantile.h"
+#include "gi/core/rotation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -163,7 +163,7 @@ std::optional<Refined> second_pose(CameraModel const& camera, Agreed const& firs
     if (double const sine = glm::length(axis); sine > 1e-6) {
         double const tilt = std::asin(std::min(1.0, sine)) * (glm::dot(normal, sight) < 0 ? -1 : 1);
         // Turning the camera about the set by twice the tilt shows the plane tilted the other way.
-        glm::dquat const turn = exp_rotation(axis / sine * (-2 * tilt));
+        glm::dquat const turn = gi::exp_rotation(axis / sine * (-2 * tilt));
         starts.push_back({turn * chosen.rotation, set.centre_m + turn * (chosen.position_m - set.centre_m)});
     }
     std::optional<Refined> best;

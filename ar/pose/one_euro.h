@@ -1,44 +1,44 @@
 #pragma once
-// The one-euro filter (Casiez, Roussel, Vogel 2012, "1 Euro Filter: A Simple Speed-based Low-pass Filter for Noisy
-// Input in Interactive Systems", CHI) of a pose: a low-pass of first order whose cutoff rises with speed,
-//   fc = min_cutoff + beta |v|,  tau = 1 / (2 pi fc),  share = dt / (dt + tau),  value += share (input - value).
-// v comes from successive inputs, as in viewer/devices/tracking: it is that of the motion and serves to predict.
+// The one-euro filter of a pose (gi/core/one_euro.h), with prediction.
 
 #include "ar/camera/pose.h"
+#include "gi/core/one_euro.h"
+#include "gi/core/rotation.h"
 
 namespace ar {
 
-struct OneEuroSettings {
-    double min_cutoff_hz = 1;            ///< at rest: lower = steadier, slower
-    double beta = 5;                     ///< Hz per m/s, or per rad/s: higher = less lag in motion
-    double speed_cutoff_hz = 1;          ///< of the speed that the cutoffs follow
-    double velocity_min_cutoff_hz = 0.3; ///< of the velocity that predictions use, at rest
-    double velocity_beta = 5;            ///< its rise
-};
-
-/// The filter's memory for three numbers: a position, or the rotation vector from the pose `value` began with.
-struct OneEuroState {
-    glm::dvec3 velocity{0};      ///< per second, for predictions
-    glm::dvec3 slow_velocity{0}; ///< for the cutoff
-    double lag_s = 0;            ///< by which the value is behind a constant motion: tau
-};
-
 class OneEuroPose {
 public:
-    explicit OneEuroPose(OneEuroSettings const& position = {}, OneEuroSettings const& rotation = {});
+    explicit OneEuroPose(gi::OneEuroSettings const& position = {}, gi::OneEuroSettings const& rotation = {})
+        : position_settings_(position), rotation_settings_(rotation)
+    {
+    }
 
-    void restart(Pose const& pose);
+    void restart(Pose const& pose)
+    {
+        position_ = gi::start(pose.position_m);
+        rotation_ = gi::start(pose.rotation);
+    }
     /// @param dt_s since the input before, > 0
-    void step(Pose const& pose, double dt_s);
+    void step(Pose const& pose, double dt_s)
+    {
+        position_ = gi::step(position_settings_, position_, pose.position_m, dt_s);
+        rotation_ = gi::step(rotation_settings_, rotation_, pose.rotation, dt_s);
+    }
     /// The filtered pose moved on at constant velocity by `ahead_s`, and by its lag with it.
-    Pose moved_on(double ahead_s) const;
+    Pose moved_on(double ahead_s) const
+    {
+        return {
+            glm::normalize(rotation_.value * gi::exp_rotation((ahead_s + rotation_.lag_s) * rotation_.velocity)),
+            position_.value + (ahead_s + position_.lag_s) * position_.velocity};
+    }
     double speed_m_s() const { return glm::length(position_.velocity); }
     double speed_deg_s() const { return glm::degrees(glm::length(rotation_.velocity)); }
 
 private:
-    OneEuroSettings position_settings_, rotation_settings_;
-    OneEuroState position_, rotation_;
-    Pose input_, value_;
+    gi::OneEuroSettings position_settings_, rotation_settings_;
+    gi::OneEuroPosition position_;
+    gi::OneEuroRotation rotation_;
 };
 
 } // namespace ar

@@ -1,7 +1,7 @@
 #include "ar/pose/pose_file.h"
 
-#include "ar/camera/error.h"
-#include "ar/camera/rotation_vector.h"
+#include "gi/core/error.h"
+#include "gi/core/rotation.h"
 
 #include <algorithm>
 #include <array>
@@ -32,10 +32,10 @@ struct Line {
     std::string const& file;
     int number;
 
-    InputError error(std::string_view at, std::string const& problem, std::string const& why,
-                     std::string const& suggestion) const
+    gi::InputError error(std::string_view at, std::string const& problem, std::string const& why,
+                         std::string const& suggestion) const
     {
-        return {Place{file, number, int(at.data() - text.data()) + 1}, problem, why, suggestion};
+        return {gi::TextLocation{file, number, int(at.data() - text.data()) + 1}, problem, why, suggestion};
     }
 };
 
@@ -120,8 +120,8 @@ std::vector<TimedPose> parse_poses(std::string_view text, std::string const& fil
         poses.push_back(pose);
     }
     if (poses.empty())
-        throw InputError(Place{file, 0, 0}, "there are no poses", "the camera is nowhere",
-                         fmt::format("write lines of {}", fmt::join(kColumns, " ")));
+        throw gi::InputError(gi::TextLocation{file, 0, 0}, "there are no poses", "the camera is nowhere",
+                             fmt::format("write lines of {}", fmt::join(kColumns, " ")));
     return poses;
 }
 
@@ -131,11 +131,11 @@ std::vector<TimedPose> read_poses(std::filesystem::path const& file, CameraAxes 
     std::uintmax_t const size = std::filesystem::file_size(file, error);
     std::ifstream in(file, std::ios::binary);
     if (error || !in)
-        throw InputError(fmt::format("'{}' cannot be read", file.string()), "it is missing or not a file",
-                         "check the path");
+        throw gi::InputError(fmt::format("'{}' cannot be read", file.string()), "it is missing or not a file",
+                             "check the path");
     if (size > kLargestFile)
-        throw InputError(fmt::format("'{}' has {} bytes", file.string(), size), "at most 1 GiB is read",
-                         "cut it into parts");
+        throw gi::InputError(fmt::format("'{}' has {} bytes", file.string(), size), "at most 1 GiB is read",
+                             "cut it into parts");
     std::ostringstream text;
     text << in.rdbuf();
     return parse_poses(text.str(), file.string(), axes);
@@ -165,8 +165,8 @@ std::optional<Pose> pose_at(std::vector<TimedPose> const& poses, double time_s, 
     if (!(gap <= longest_gap_s)) return std::nullopt;
     double const s = (time_s - a.time_s) / gap;
     glm::dvec3 const turn =
-        log_rotation(glm::conjugate(a.world_from_camera.rotation) * b.world_from_camera.rotation);
-    return Pose{glm::normalize(a.world_from_camera.rotation * exp_rotation(s * turn)),
+        gi::log_rotation(glm::conjugate(a.world_from_camera.rotation) * b.world_from_camera.rotation);
+    return Pose{glm::normalize(a.world_from_camera.rotation * gi::exp_rotation(s * turn)),
                 glm::mix(a.world_from_camera.position_m, b.world_from_camera.position_m, s)};
 }
 

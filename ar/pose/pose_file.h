@@ -26,11 +26,11 @@ enum class CameraAxes {
 };
 
 /// @param file for messages
-/// @throws InputError with file:line:column: columns missing, not a number, not finite, not a quaternion of length
-/// 1 (within 5 %), times that do not rise, no poses
+/// @throws gi::InputError with file:line:column: columns missing, not a number, not finite, not a quaternion of
+/// length 1 (within 5 %), times that do not rise, no poses
 std::vector<TimedPose> parse_poses(std::string_view text, std::string const& file,
                                    CameraAxes axes = CameraAxes::vision);
-/// @throws InputError, also for files above 1 GiB or that cannot be read
+/// @throws gi::InputError, also for files above 1 GiB or that cannot be read
 std::vector<TimedPose> read_poses(std::filesystem::path const& file, CameraAxes axes = CameraAxes::vision);
 /// CSV, every number in all its digits.
 std::string format_poses(std::vector<TimedPose> const& poses);

@@ -1,6 +1,6 @@
 #include "ar/pose/refine.h"
 
-#include "ar/camera/rotation_vector.h"
+#include "gi/core/rotation.h"
 
 #include <cmath>
 
@@ -85,7 +85,7 @@ Equations equations(CameraModel const& camera, std::span<SightedPoint const> poi
 
 Pose moved(Pose const& p, Vec6 const& d)
 {
-    return {glm::normalize(p.rotation * exp_rotation({d[3], d[4], d[5]})),
+    return {glm::normalize(p.rotation * gi::exp_rotation({d[3], d[4], d[5]})),
             p.position_m + glm::dvec3(d[0], d[1], d[2])};
 }
 

@@ -1,7 +1,7 @@
 #include "ar/pose/still_camera.h"
 
-#include "ar/camera/rotation_vector.h"
 #include "gi/core/quantile.h"
+#include "gi/core/rotation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,10 +35,10 @@ Pose median(std::deque<PoseEstimate> const& kept)
     for (int k = 0; k < 3; ++k) {
         m.position_m[k] = middle([&](PoseEstimate const& e) { return e.world_from_camera.position_m[k]; });
         turn[k] = middle([&](PoseEstimate const& e) {
-            return log_rotation(glm::conjugate(about.rotation) * e.world_from_camera.rotation)[k];
+            return gi::log_rotation(glm::conjugate(about.rotation) * e.world_from_camera.rotation)[k];
         });
     }
-    m.rotation = glm::normalize(about.rotation * exp_rotation(turn));
+    m.rotation = glm::normalize(about.rotation * gi::exp_rotation(turn));
     return m;
 }
 
@@ -57,7 +57,7 @@ StillPose mean_of(StillSettings const& s, std::deque<PoseEstimate> const& kept)
         ++mean.averaged;
         double const m = 1 / (sigma_m(e) * sigma_m(e)), d = 1 / (sigma_deg(e) * sigma_deg(e));
         glm::dvec3 const by = e.world_from_camera.position_m - about.position_m;
-        glm::dvec3 const turn = log_rotation(glm::conjugate(about.rotation) * e.world_from_camera.rotation);
+        glm::dvec3 const turn = gi::log_rotation(glm::conjugate(about.rotation) * e.world_from_camera.rotation);
         weight_m += m;
         weight_deg += d;
         moved += m * by;
@@ -72,7 +72,7 @@ StillPose mean_of(StillSettings const& s, std::deque<PoseEstimate> const& kept)
     moved /= weight_m;
     turned /= weight_deg;
     double const n = double(mean.averaged);
-    mean.world_from_camera = {glm::normalize(about.rotation * exp_rotation(turned)), about.position_m + moved};
+    mean.world_from_camera = {glm::normalize(about.rotation * gi::exp_rotation(turned)), about.position_m + moved};
     for (int k = 0; k < 3; ++k)
         mean.position_sigma_m[k] = std::sqrt(std::max(0.0, moved2[k] / weight_m - moved[k] * moved[k]) / n);
     mean.rotation_sigma_deg =

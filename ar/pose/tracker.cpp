@@ -1,6 +1,6 @@
 #include "ar/pose/tracker.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +13,10 @@ void check(TrackerSettings const& s)
 {
     auto const need = [](char const* name, double v) {
         if (v > 0 && std::isfinite(v)) return;
-        throw InputError(fmt::format("tracking: {} is {}", name, v), "it must be finite and more than 0",
-                         "leave it out for the default");
+        throw gi::InputError(fmt::format("tracking: {} is {}", name, v), "it must be finite and more than 0",
+                             "leave it out for the default");
     };
-    for (OneEuroSettings const& f : {s.position, s.rotation}) {
+    for (gi::OneEuroSettings const& f : {s.position, s.rotation}) {
         need("min_cutoff_hz", f.min_cutoff_hz);
         need("speed_cutoff_hz", f.speed_cutoff_hz);
         need("velocity_min_cutoff_hz", f.velocity_min_cutoff_hz);

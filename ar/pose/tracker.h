@@ -20,10 +20,10 @@ enum class CameraMotion { moving, tripod };
 
 struct TrackerSettings {
     CameraMotion motion = CameraMotion::moving;
-    OneEuroSettings position{1, 5, 1, 0.3, 16}; ///< betas in Hz per m/s
-    OneEuroSettings rotation{1, 4, 1, 0.3, 13}; ///< in Hz per rad/s
-    double least_confidence = 0.1;              ///< below it an estimate counts as none
-    double fresh_s = 0.05;                      ///< as old an estimate may be for `tracked`
+    gi::OneEuroSettings position{1, 5, 1, 0.3, 16}; ///< betas in Hz per m/s
+    gi::OneEuroSettings rotation{1, 4, 1, 0.3, 13}; ///< in Hz per rad/s
+    double least_confidence = 0.1;                  ///< below it an estimate counts as none
+    double fresh_s = 0.05;                          ///< as old an estimate may be for `tracked`
     double predict_s = 0.1; ///< at constant velocity up to here past the newest estimate, then the pose stays
     double lost_after_s = 0.5;
     /// An estimate that is off the motion by more than this speed would explain (plus the floors) is a jump; it
@@ -53,7 +53,7 @@ struct TrackerCounts {
 
 class PoseTracker {
 public:
-    /// @throws InputError settings that are not finite or not positive
+    /// @throws gi::InputError settings that are not finite or not positive
     explicit PoseTracker(TrackerSettings const& settings = {});
 
     void add(double captured_s, PoseEstimate const& estimate);

@@ -1,11 +1,11 @@
 #include "ar/runtime/pass_through.h"
 
-#include "ar/camera/error.h"
 #include "ar/capture/clock.h"
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map_file.h"
 #include "ar/runtime/frame_clock.h"
 #include "ar/scene/tracked_pose.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -155,7 +155,7 @@ void PassThrough::run()
             ++counts_.frames;
             counts_.found += made->is_found;
             newest_ = made;
-        } catch (ar::InputError const& e) {
+        } catch (gi::InputError const& e) {
             report_.lose("frames that could not be used", 1, e.what());
             std::lock_guard const lock(mutex_);
             ++counts_.refused;

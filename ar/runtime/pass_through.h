@@ -41,7 +41,7 @@ struct PassThroughCounts {
 
 class PassThrough {
 public:
-    /// Opens cameras, loads scenes, begins. All arguments outlive it. @throws gi::InputError, ar::InputError
+    /// Opens cameras, loads scenes, begins. All arguments outlive it. @throws gi::InputError
     PassThrough(ArSession const& session, PassThroughOptions const& options, gi::Report& report);
     ~PassThrough();
 

@@ -98,7 +98,7 @@ void RunThreads::find_all()
         try {
             if (options_.taken) options_.taken(w.frame);
             w.result = found_in(w);
-        } catch (ar::InputError const& e) {
+        } catch (gi::InputError const& e) {
             refuse(e);
             continue;
         }
@@ -129,7 +129,7 @@ void RunThreads::add_all()
             try {
                 if (!options_.find_poses_only)
                     pipeline_.add(w->result, w->frame, w->time_s, ending_, options_.composite);
-            } catch (ar::InputError const& e) {
+            } catch (gi::InputError const& e) {
                 refuse(e);
                 continue;
             }
@@ -143,7 +143,7 @@ void RunThreads::add_all()
     }
 }
 
-void RunThreads::refuse(ar::InputError const& e)
+void RunThreads::refuse(gi::InputError const& e)
 {
     report_.lose("frames that could not be used", 1, e.what());
     std::lock_guard const lock(mutex_);

@@ -2,10 +2,10 @@
 // The two threads of a run that work ahead of the caller's: one takes frames and finds the camera, one adds what
 // is virtual.
 
-#include "ar/camera/error.h"
 #include "ar/runtime/frame_clock.h"
 #include "ar/runtime/hand_over.h"
 #include "ar/runtime/runner.h"
+#include "gi/core/error.h"
 
 #include <exception>
 #include <thread>
@@ -46,7 +46,7 @@ private:
     void find_all();
     ArResult found_in(FrameInFlight const& w);
     void add_all();
-    void refuse(ar::InputError const& e);
+    void refuse(gi::InputError const& e);
 
     ar::FrameSource& source_;
     ArPipeline& pipeline_;

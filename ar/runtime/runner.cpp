@@ -1,7 +1,6 @@
 #include "ar/runtime/runner.h"
 
 #include "ar/calibration/calibration_file.h"
-#include "ar/camera/error.h"
 #include "ar/capture/clock.h"
 #include "ar/markers/marker_map_file.h"
 #include "ar/runtime/run_threads.h"

@@ -1,7 +1,7 @@
 #include "ar/scene/albedo_file.h"
 
 #include "gi/core/file.h"
-#include "gi/scene/load/yaml_reader.h"
+#include "gi/core/yaml.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -27,14 +27,14 @@ std::string quoted(std::string const& text)
 
 std::vector<AlbedoEntry> parse_albedos(std::string const& text, std::filesystem::path const& file)
 {
-    gi::YamlReader const root = gi::YamlReader::parse(text, file.string(), "albedos");
+    gi::Yaml const root = gi::Yaml::parse(text, file.string(), "albedos");
     root.only_keys({"schema", "albedos"});
     if (!root.has("schema") || root.at("schema").text() != "ar-albedo/1")
         throw root.error("no 'schema: ar-albedo/1'", "this may be a file of another kind",
                          "make it with lightwell ar albedo");
     std::vector<AlbedoEntry> entries;
     if (!root.has("albedos")) return entries;
-    for (gi::YamlReader const& y : root.at("albedos").items()) {
+    for (gi::Yaml const& y : root.at("albedos").items()) {
         y.only_keys({"name", "albedo", "spread", "samples", "texture"});
         for (char const* key : {"name", "albedo"})
             if (!y.has(key)) throw y.error(fmt::format("no '{}'", key), "nothing can be done with it", "add it");

@@ -1,6 +1,5 @@
 #include "ar/calibration/calibration_file.h"
 #include "ar/camera/camera_model.h"
-#include "ar/camera/error.h"
 #include "ar/scene/proxy_mesh.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"

@@ -5,7 +5,7 @@
 namespace viewer {
 namespace {
 
-void read_turned(gi::YamlReader const& at, ar::Pose& pose)
+void read_turned(gi::Yaml const& at, ar::Pose& pose)
 {
     at.only_keys({"position_m", "rotation_deg", "rotation_xyzw"});
     ar::Pose const read = read_pose(at);
@@ -15,14 +15,14 @@ void read_turned(gi::YamlReader const& at, ar::Pose& pose)
 
 } // namespace
 
-ArHmd read_hmd(gi::YamlReader const& y, std::filesystem::path const& folder)
+ArHmd read_hmd(gi::Yaml const& y, std::filesystem::path const& folder)
 {
     y.only_keys({"head_from_camera", "plane_m", "right"});
     ArHmd hmd;
     if (y.has("head_from_camera")) read_turned(y.at("head_from_camera"), hmd.head_from_camera);
     if (y.has("plane_m")) hmd.plane_m = y.at("plane_m").number(0.05, 1e4);
     if (!y.has("right")) return hmd;
-    gi::YamlReader const r = y.at("right");
+    gi::Yaml const r = y.at("right");
     r.only_keys({"source", "camera", "left_from_right"});
     for (char const* needed : {"source", "camera", "left_from_right"})
         if (!r.has(needed))

@@ -2,7 +2,7 @@
 // Cameras that are fixed to a headset: key `hmd` of a session.
 
 #include "ar/camera/pose.h"
-#include "gi/scene/load/yaml_reader.h"
+#include "gi/core/yaml.h"
 
 #include <filesystem>
 #include <optional>
@@ -23,6 +23,6 @@ struct ArHmd {
 };
 
 /// @throws gi::InputError with file:line:column
-ArHmd read_hmd(gi::YamlReader const& hmd, std::filesystem::path const& folder);
+ArHmd read_hmd(gi::Yaml const& hmd, std::filesystem::path const& folder);
 
 } // namespace viewer

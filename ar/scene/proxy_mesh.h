@@ -9,7 +9,7 @@ namespace viewer {
 
 /// In world coordinates, with one material called by the proxy's name; of a mesh that keeps its materials: with
 /// those of its file. What is to be estimated is grey. Texture coordinates are those of `ProxySurface::texture`.
-/// @throws gi::InputError, ar::InputError files that cannot be read
+/// @throws gi::InputError files that cannot be read
 gi::Scene scene_of(ArProxy const& proxy, gi::Report& report);
 
 /// A map of depths as triangles, without a material. Pixels without a depth and triangles across jumps are left

@@ -8,14 +8,14 @@
 namespace viewer {
 namespace {
 
-using gi::YamlReader;
+using gi::Yaml;
 
 constexpr std::size_t kMostProxies = 10000;
 constexpr double kFar_m = 1e4;
 
 class RealReader {
 public:
-    RealReader(YamlReader const& real, std::filesystem::path const& folder) : real_(real), folder_(folder) {}
+    RealReader(Yaml const& real, std::filesystem::path const& folder) : real_(real), folder_(folder) {}
 
     ArReal read()
     {
@@ -36,10 +36,10 @@ public:
                                                "write albedo: estimate, or leave it out");
             out_.estimate_scene = true;
         }
-        read_all("planes", [&](YamlReader const& y) { return plane(y); });
-        read_all("boxes", [&](YamlReader const& y) { return box(y); });
-        read_all("meshes", [&](YamlReader const& y) { return mesh(y); });
-        read_all("depth", [&](YamlReader const& y) { return depth(y); });
+        read_all("planes", [&](Yaml const& y) { return plane(y); });
+        read_all("boxes", [&](Yaml const& y) { return box(y); });
+        read_all("meshes", [&](Yaml const& y) { return mesh(y); });
+        read_all("depth", [&](Yaml const& y) { return depth(y); });
         if (!real_.has("scene") && out_.proxies.empty())
             throw real_.error("nothing real", "there is nothing that could catch a shadow",
                               "give a scene, planes, boxes, meshes or depth; or leave 'real' out");
@@ -72,7 +72,7 @@ private:
         }
     }
 
-    ProxySurface surface(YamlReader const& y, AlbedoFrom unsaid) const
+    ProxySurface surface(Yaml const& y, AlbedoFrom unsaid) const
     {
         ProxySurface s;
         s.from = unsaid;
@@ -80,7 +80,7 @@ private:
             throw y.at("texture").error("albedo is there too", "only one of them can count",
                                         "remove one of the two");
         if (y.has("albedo")) {
-            YamlReader const a = y.at("albedo");
+            Yaml const a = y.at("albedo");
             s.from = AlbedoFrom::number;
             if (!a.is_text() || a.text() != "estimate")
                 s.albedo = a.vector_or_number(0, 1);
@@ -109,7 +109,7 @@ private:
         return s;
     }
 
-    ArProxy plane(YamlReader const& y) const
+    ArProxy plane(Yaml const& y) const
     {
         y.only_keys(with_surface(
             {"corner_m", "edge_u_m", "edge_v_m", "centre_m", "size_m", "rotation_deg", "rotation_xyzw"}));
@@ -143,7 +143,7 @@ private:
         return {"", surface(y, AlbedoFrom::number), p};
     }
 
-    ArProxy box(YamlReader const& y) const
+    ArProxy box(Yaml const& y) const
     {
         y.only_keys(with_surface({"size_m", "position_m", "rotation_deg", "rotation_xyzw"}));
         need(y, {"size_m"});
@@ -153,7 +153,7 @@ private:
         return {"", surface(y, AlbedoFrom::number), b};
     }
 
-    ArProxy mesh(YamlReader const& y) const
+    ArProxy mesh(Yaml const& y) const
     {
         y.only_keys(with_surface({"file", "at", "turn_deg", "scale"}));
         need(y, {"file"});
@@ -165,7 +165,7 @@ private:
         return {"", s, ProxyMesh{read_placed(y, "file", folder_)}};
     }
 
-    ArProxy depth(YamlReader const& y) const
+    ArProxy depth(Yaml const& y) const
     {
         y.only_keys(with_surface({"file", "camera", "position_m", "rotation_deg", "rotation_xyzw",
                                   "metres_per_unit", "jump", "step_px"}));
@@ -180,7 +180,7 @@ private:
         return {"", surface(y, AlbedoFrom::number), d};
     }
 
-    static void need(YamlReader const& y, std::vector<char const*> const& keys)
+    static void need(Yaml const& y, std::vector<char const*> const& keys)
     {
         for (char const* key : keys)
             if (!y.has(key))
@@ -188,16 +188,13 @@ private:
                               "add it");
     }
 
-    YamlReader const& real_;
+    Yaml const& real_;
     std::filesystem::path folder_;
     ArReal out_;
 };
 
 } // namespace
 
-ArReal read_real(YamlReader const& real, std::filesystem::path const& folder)
-{
-    return RealReader(real, folder).read();
-}
+ArReal read_real(Yaml const& real, std::filesystem::path const& folder) { return RealReader(real, folder).read(); }
 
 } // namespace viewer

@@ -10,7 +10,7 @@ bool is_device(std::string const& name)
            name.starts_with("gstreamer:");
 }
 
-ArPlaced read_placed(gi::YamlReader const& p, std::string const& file_key, std::filesystem::path const& folder)
+ArPlaced read_placed(gi::Yaml const& p, std::string const& file_key, std::filesystem::path const& folder)
 {
     ArPlaced placed;
     std::string const name = p.at(file_key).text();
@@ -25,7 +25,7 @@ ArPlaced read_placed(gi::YamlReader const& p, std::string const& file_key, std::
     return placed;
 }
 
-ar::Pose read_pose(gi::YamlReader const& p)
+ar::Pose read_pose(gi::Yaml const& p)
 {
     ar::Pose pose;
     if (p.has("position_m")) pose.position_m = p.at("position_m").vector(-1e4, 1e4);
@@ -39,7 +39,7 @@ ar::Pose read_pose(gi::YamlReader const& p)
                            glm::angleAxis(r.x, gi::dvec3(1, 0, 0)));
     }
     if (p.has("rotation_xyzw")) {
-        gi::YamlReader const at = p.at("rotation_xyzw");
+        gi::Yaml const at = p.at("rotation_xyzw");
         auto const q = at.items();
         if (q.size() != 4) throw at.error("not four numbers", "it is a quaternion", "write [x, y, z, w], w last");
         glm::dquat const rotation(q[3].number(-1.1, 1.1), q[0].number(-1.1, 1.1), q[1].number(-1.1, 1.1),

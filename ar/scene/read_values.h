@@ -2,7 +2,7 @@
 // Values that several parts of a session file have.
 
 #include "ar/scene/proxies.h"
-#include "gi/scene/load/yaml_reader.h"
+#include "gi/core/yaml.h"
 
 #include <utility>
 
@@ -10,7 +10,7 @@ namespace viewer {
 
 /// One of these words.
 template <class T>
-T choice(gi::YamlReader const& at, std::vector<std::pair<char const*, T>> const& words)
+T choice(gi::Yaml const& at, std::vector<std::pair<char const*, T>> const& words)
 {
     std::string const text = at.text();
     std::string known;
@@ -24,8 +24,8 @@ T choice(gi::YamlReader const& at, std::vector<std::pair<char const*, T>> const&
 /// A name that ar::open_source takes as it is, not a path.
 bool is_device(std::string const& source);
 /// Of the key `file_key`, relative to the folder, with `at`, `turn_deg` and `scale`; other keys are not looked at.
-ArPlaced read_placed(gi::YamlReader const& map, std::string const& file_key, std::filesystem::path const& folder);
+ArPlaced read_placed(gi::Yaml const& map, std::string const& file_key, std::filesystem::path const& folder);
 /// Of `position_m`, and `rotation_deg` (about x, then y, then z) or `rotation_xyzw`; as marker maps have them.
-ar::Pose read_pose(gi::YamlReader const& map);
+ar::Pose read_pose(gi::Yaml const& map);
 
 } // namespace viewer

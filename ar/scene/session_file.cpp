@@ -12,11 +12,11 @@ namespace viewer {
 namespace {
 
 namespace fs = std::filesystem;
-using gi::YamlReader;
+using gi::Yaml;
 
 class Reader {
 public:
-    Reader(YamlReader const& root, fs::path const& file) : root_(root), folder_(file.parent_path())
+    Reader(Yaml const& root, fs::path const& file) : root_(root), folder_(file.parent_path())
     {
         session_.file = file;
     }
@@ -44,9 +44,9 @@ public:
     }
 
 private:
-    fs::path path(YamlReader const& at) const { return folder_ / at.text(); }
+    fs::path path(Yaml const& at) const { return folder_ / at.text(); }
 
-    void read_frames(YamlReader const& f)
+    void read_frames(Yaml const& f)
     {
         f.only_keys({"source", "rate_hz", "size", "format"});
         if (!f.has("source"))
@@ -71,7 +71,7 @@ private:
         }
     }
 
-    void read_light(YamlReader const& l)
+    void read_light(Yaml const& l)
     {
         l.only_keys({"map", "turn_deg", "scale", "live"});
         if (l.has("live")) session_.live_light = int(l.at("live").integer(0, 100000));
@@ -83,14 +83,14 @@ private:
         if (l.has("scale")) session_.light_scale = l.at("scale").number(0, 1e9);
     }
 
-    ArPlaced virtual_things(YamlReader const& v) const
+    ArPlaced virtual_things(Yaml const& v) const
     {
         v.only_keys({"scene", "at", "turn_deg", "scale"});
         if (!v.has("scene")) throw v.error("no 'scene'", "there is nothing to place", "give a file of a scene");
         return read_placed(v, "scene", folder_);
     }
 
-    void read_render(YamlReader const& r)
+    void read_render(Yaml const& r)
     {
         r.only_keys({"paths", "resolution", "bounces", "denoise", "seed", "directions", "hit_buffer",
                      "light_samples", "fresh_light_samples", "lamps", "fresh_lamps", "shadow_map"});
@@ -110,7 +110,7 @@ private:
         if (r.has("seed")) session_.render.seed = std::uint64_t(r.at("seed").integer(0, INT64_MAX));
     }
 
-    static gi::DenoiseSettings filter(YamlReader const& at)
+    static gi::DenoiseSettings filter(Yaml const& at)
     {
         using gi::Denoiser;
         std::vector<std::pair<char const*, gi::DenoiseSettings>> words{{"true", {.denoiser = Denoiser::atrous}},
@@ -121,7 +121,7 @@ private:
         return chosen;
     }
 
-    static std::string directions(YamlReader const& at)
+    static std::string directions(Yaml const& at)
     {
         std::string const name = at.text();
         try {
@@ -133,7 +133,7 @@ private:
         return name;
     }
 
-    void read_composite(YamlReader const& c)
+    void read_composite(Yaml const& c)
     {
         c.only_keys(
             {"blend", "clipped", "largest_ratio", "smoothing", "upsample", "mattes", "match_blur", "noise"});
@@ -154,7 +154,7 @@ private:
     }
 
     /// Of markers, or of a tracker in their place.
-    void read_pose(YamlReader const& p)
+    void read_pose(Yaml const& p)
     {
         p.only_keys({"tripod", "smoothing", "predict_s", "display", "tracker", "camera_from_sensor",
                      "world_from_room", "offset_s"});
@@ -170,7 +170,7 @@ private:
         session_.tracked = read_tracked(p, folder_);
     }
 
-    void read_pose_use(YamlReader const& p)
+    void read_pose_use(Yaml const& p)
     {
         ArPoseUse& use = session_.pose;
         if (p.has("tripod") && p.at("tripod").boolean()) {
@@ -178,7 +178,7 @@ private:
             use.filtered = true;
         }
         if (p.has("smoothing")) {
-            YamlReader const s = p.at("smoothing");
+            Yaml const s = p.at("smoothing");
             bool const is_on = s.is_map() || s.boolean();
             bool const stands = use.tracker.motion == ar::CameraMotion::tripod;
             if (is_on && stands)
@@ -196,14 +196,14 @@ private:
         use.tracker.lost_after_s = std::max(use.tracker.lost_after_s, 2 * use.predict_s);
     }
 
-    static void read_one_euro(YamlReader const& y, ar::OneEuroSettings& s)
+    static void read_one_euro(Yaml const& y, gi::OneEuroSettings& s)
     {
         y.only_keys({"min_cutoff_hz", "beta"});
         if (y.has("min_cutoff_hz")) s.min_cutoff_hz = y.at("min_cutoff_hz").number(1e-3, 1e3);
         if (y.has("beta")) s.beta = y.at("beta").number(0, 1e4);
     }
 
-    YamlReader const& root_;
+    Yaml const& root_;
     fs::path folder_;
     ArSession session_;
 };
@@ -212,7 +212,7 @@ private:
 
 ArSession parse_ar_session(std::string const& text, fs::path const& file)
 {
-    YamlReader const root = YamlReader::parse(text, file.string(), "session");
+    Yaml const root = Yaml::parse(text, file.string(), "session");
     return Reader(root, file).read();
 }
 

@@ -10,7 +10,7 @@ namespace viewer {
 /// calibrations, markers, scenes (of a mesh sequence its folder's files), light, proxies, estimated albedos with
 /// their textures, and the tracker's display. Only names of what is not there; nothing of cameras and generated
 /// scenes. What scene files name themselves (textures, buffers) is not listed. In the same order every time.
-/// @throws gi::InputError, ar::InputError albedos, a display or a pattern that cannot be read
+/// @throws gi::InputError albedos, a display or a pattern that cannot be read
 std::vector<std::filesystem::path> files_read_by(ArSession const& session);
 
 /// Pictures of a folder or of a pattern of numbers, the files of a recording, or the video. Empty: a camera.

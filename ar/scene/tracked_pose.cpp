@@ -59,7 +59,7 @@ fs::path file_of(DisplayTracker const& tracker, fs::path const& display)
 
 } // namespace
 
-ArTracked read_tracked(gi::YamlReader const& p, fs::path const& folder)
+ArTracked read_tracked(gi::Yaml const& p, fs::path const& folder)
 {
     ArTracked t;
     auto const pose = [&](char const* key, ar::Pose& to) {

@@ -9,7 +9,7 @@
 #include "ar/camera/frame.h"
 #include "ar/pose/pose_file.h"
 #include "gi/core/report.h"
-#include "gi/scene/load/yaml_reader.h"
+#include "gi/core/yaml.h"
 
 #include <memory>
 
@@ -24,7 +24,7 @@ struct ArTracked {
 };
 
 /// @throws gi::InputError with file:line:column
-ArTracked read_tracked(gi::YamlReader const& pose, std::filesystem::path const& folder);
+ArTracked read_tracked(gi::Yaml const& pose, std::filesystem::path const& folder);
 
 /// What its tracker has recorded, by seconds since the first frame.
 /// @throws gi::InputError the tracker is live; as TrackedCamera

@@ -92,4 +92,10 @@ std::vector<unsigned char> read_bytes(fs::path const& file, std::size_t max_byte
     return bytes;
 }
 
+std::string read_text(fs::path const& file, std::size_t max_bytes)
+{
+    auto const bytes = read_bytes(file, max_bytes);
+    return {bytes.begin(), bytes.end()};
+}
+
 } // namespace gi

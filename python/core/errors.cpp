@@ -21,7 +21,7 @@ void translate_errors()
         try {
             std::rethrow_exception(raised);
         } catch (study::ScriptError const& e) {
-            set_error(error_class("ScriptError")(e.what(), e.problem(), e.why(), e.suggestion(), e.file(),
+            set_error(error_class("ScriptError")(e.what(), e.problem(), e.why(), e.suggestion(), e.where().file,
                                                  e.where().line, e.where().column));
         } catch (gi::InputError const& e) {
             set_error(error_class("InputError")(e.what()));

@@ -1,6 +1,6 @@
 #include "study/journal/entry_line.h"
 
-#include "study/journal/crc32.h"
+#include "gi/core/crc32.h"
 #include "study/journal/entry_fields.h"
 
 #include <cmath>
@@ -174,7 +174,7 @@ std::string entry_line(JournalEntry const& entry, int number)
         entry);
     std::string line = j.dump(-1, ' ', false, Json::error_handler_t::replace);
     line.pop_back(); // the brace
-    return line + fmt::format("{}{:08x}\"}}", kSum, crc32(line));
+    return line + fmt::format("{}{:08x}\"}}", kSum, gi::crc32(line));
 }
 
 bool has_checksum(std::string_view line)
@@ -187,7 +187,7 @@ JournalEntry entry_of_line(std::string_view line, int number)
 {
     if (!has_checksum(line)) throw BadLine("it has no checksum at its end", false);
     std::string_view const summed = line.substr(0, line.size() - kSumLength);
-    if (line.substr(line.size() - kSumLength + kSum.size()) != fmt::format("{:08x}\"}}", crc32(summed)))
+    if (line.substr(line.size() - kSumLength + kSum.size()) != fmt::format("{:08x}\"}}", gi::crc32(summed)))
         throw BadLine("its checksum is another: it was changed since it was written", false);
     Json const j = Json::parse(line, nullptr, false);
     if (!j.is_object()) throw BadLine("it is no JSON object", false);

@@ -1,6 +1,6 @@
 #include "study/journal/journal_file.h"
 
-#include "study/journal/durable_file.h"
+#include "gi/core/file.h"
 #include "study/journal/entry_line.h"
 #include "study/script/script_error.h"
 
@@ -43,7 +43,7 @@ JournalText parse_journal(std::string_view text, std::string const& name)
 
 JournalText read_journal(std::filesystem::path const& file)
 {
-    return parse_journal(read_whole(file), file.string());
+    return parse_journal(gi::read_text(file), file.string());
 }
 
 } // namespace study

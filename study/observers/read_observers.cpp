@@ -14,13 +14,13 @@ struct Number {
     double low, high;
 };
 
-void read_numbers(Yaml const& y, std::vector<Number> const& numbers)
+void read_numbers(gi::Yaml const& y, std::vector<Number> const& numbers)
 {
     for (Number const& n : numbers)
         if (y.has(n.key)) *n.value = y.at(n.key).number(n.low, n.high);
 }
 
-void read_all_numbers(Yaml const& y, std::vector<Number> const& numbers)
+void read_all_numbers(gi::Yaml const& y, std::vector<Number> const& numbers)
 {
     std::set<std::string> keys;
     for (Number const& n : numbers) keys.insert(n.key);
@@ -29,7 +29,8 @@ void read_all_numbers(Yaml const& y, std::vector<Number> const& numbers)
 }
 
 /// {factor: {level: number}}; levels that are not named have 0.
-void read_by_level(Yaml const& y, Script const& s, double low, double high, std::vector<std::vector<double>>& out)
+void read_by_level(gi::Yaml const& y, Script const& s, double low, double high,
+                   std::vector<std::vector<double>>& out)
 {
     for (auto const& [name, levels] : y.entries()) {
         int const factor = read_factor(name, s);
@@ -40,7 +41,7 @@ void read_by_level(Yaml const& y, Script const& s, double low, double high, std:
     }
 }
 
-void read_varied(Yaml const& y, ObserverModel& m)
+void read_varied(gi::Yaml const& y, ObserverModel& m)
 {
     std::vector<std::string> known;
     for (VariedModel const& v : m.varied) known.push_back(v.setting);
@@ -57,7 +58,7 @@ void read_varied(Yaml const& y, ObserverModel& m)
 ObserverModel read_observers(std::string const& text, std::string const& name, Script const& s)
 {
     ObserverModel m = usual_observers(s);
-    Yaml const y = Yaml::parse(text, name, "observer");
+    gi::Yaml const y = gi::Yaml::parse(text, name, "observer");
     std::vector<Number> const shares{{"between_sd", &m.between_sd, 0, 100},
                                      {"noise", &m.noise, 0, 100},
                                      {"lapse", &m.lapse, 0, 1},

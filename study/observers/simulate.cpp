@@ -1,6 +1,7 @@
 #include "study/observers/simulate.h"
 
-#include "study/journal/durable_file.h"
+#include "gi/core/durable_file.h"
+#include "gi/core/file.h"
 #include "study/journal/journal_file.h"
 #include "study/journal/moments.h"
 #include "study/observers/model_presenter.h"
@@ -19,9 +20,9 @@ void keep_truth(fs::path const& dir, std::string const& truth)
     fs::path const file = truth_file(dir);
     std::error_code ignored;
     if (!fs::exists(file, ignored)) {
-        make_folder(file.parent_path());
-        write_durably(file, truth);
-    } else if (read_whole(file) != truth) {
+        gi::make_folder(file.parent_path());
+        gi::write_durably(file, truth);
+    } else if (gi::read_text(file) != truth) {
         throw ScriptError(file.string(), {}, "other observers answered in this folder",
                           "one folder has one truth with which a report can be compared",
                           "use the observers and the seed of then, or another folder");

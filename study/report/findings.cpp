@@ -1,5 +1,6 @@
 #include "study/report/findings.h"
 
+#include "gi/core/html.h"
 #include "study/report/plot.h"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ std::string ranking_text(ScaleResult const& s)
                     is_told = d.p_holm < 0.05;
             text += is_told ? " &gt; " : " ~ ";
         }
-        text += escaped(s.items[std::size_t(order[k])].name);
+        text += gi::escaped(s.items[std::size_t(order[k])].name);
     }
     return text;
 }
@@ -46,7 +47,7 @@ std::string levels_text(ScaleResult const& s, bool is_log)
     for (ScaledItem const& i : s.items) {
         Uncertain u = i.score;
         if (is_log) u = {std::exp(u.value), {std::exp(u.interval.low), std::exp(u.interval.high)}, u.n};
-        text += (text.empty() ? "" : ", ") + escaped(i.name) + " " + interval_text(u);
+        text += (text.empty() ? "" : ", ") + gi::escaped(i.name) + " " + interval_text(u);
     }
     return "set to " + text;
 }
@@ -61,18 +62,18 @@ std::string cheapest_text(ScaleResult const& s)
         return fmt::format(
             "Nothing cheaper than <b>{}</b> ({} ms) is as good as {}: every cheaper one is significantly "
             "worse.",
-            escaped(item.name), short_number(item.render_ms.value),
+            gi::escaped(item.name), short_number(item.render_ms.value),
             c.is_reference ? "it, the reference"
                            : "it, the best of those judged (the reference was not among them)");
-    std::string text =
-        fmt::format("The cheapest that cannot be told from {} <b>{}</b> ({} ms) is <b>{}</b> ({} ms): difference "
-                    "{} {}, p = {:.3f} "
-                    "corrected for all pairs.",
-                    stand_in, escaped(against.name), short_number(against.render_ms.value), escaped(item.name),
-                    short_number(item.render_ms.value), interval_text(c.difference), escaped(s.unit), c.p_holm);
+    std::string text = fmt::format(
+        "The cheapest that cannot be told from {} <b>{}</b> ({} ms) is <b>{}</b> ({} ms): difference "
+        "{} {}, p = {:.3f} "
+        "corrected for all pairs.",
+        stand_in, gi::escaped(against.name), short_number(against.render_ms.value), gi::escaped(item.name),
+        short_number(item.render_ms.value), interval_text(c.difference), gi::escaped(s.unit), c.p_holm);
     if (std::isfinite(c.difference.interval.low) && c.difference.interval.low < 0)
         text += fmt::format(" Not to be told apart is not the same as equal: it may still be {} {} worse.",
-                            short_number(-c.difference.interval.low), escaped(s.unit));
+                            short_number(-c.difference.interval.low), gi::escaped(s.unit));
     return text;
 }
 
@@ -84,15 +85,15 @@ std::string findings(Analysis const& a)
     for (BlockResult const& b : a.blocks) {
         if (!b.scales.empty() && b.scales.front().refused.empty()) {
             ScaleResult const& s = b.scales.front();
-            html += fmt::format("<li><b>{}</b> ({} observers): {}. ", escaped(b.name), s.observers,
+            html += fmt::format("<li><b>{}</b> ({} observers): {}. ", gi::escaped(b.name), s.observers,
                                 b.task == "adjustment" ? levels_text(s, b.is_log) : ranking_text(s));
             html += (s.cheapest ? cheapest_text(s) : "") + "</li>\n";
         }
         for (CurveResult const& c : b.curves)
             if (c.refused.empty())
-                html += fmt::format("<li><b>{}</b>, {}: {:.0f} % right at {}.{}</li>\n", escaped(b.name),
-                                    escaped(c.cell), 100 * c.proportion, interval_text(c.threshold),
-                                    c.fit.note.empty() ? "" : " Doubtful: " + escaped(c.fit.note) + ".");
+                html += fmt::format("<li><b>{}</b>, {}: {:.0f} % right at {}.{}</li>\n", gi::escaped(b.name),
+                                    gi::escaped(c.cell), 100 * c.proportion, interval_text(c.threshold),
+                                    c.fit.note.empty() ? "" : " Doubtful: " + gi::escaped(c.fit.note) + ".");
     }
     if (html.empty()) return {};
     return "<h2>In short</h2>\n<ul class=\"findings\">\n" + html +

@@ -1,5 +1,6 @@
 #include "study/report/html.h"
 
+#include "gi/core/html.h"
 #include "study/report/plot.h"
 
 #include <fmt/format.h>
@@ -8,8 +9,8 @@ namespace study {
 
 std::string html_of(ResultTable const& t)
 {
-    std::string html = fmt::format("<h3>{}</h3>\n", escaped(t.title));
-    if (!t.note.empty()) html += fmt::format("<p class=\"note\">{}</p>\n", escaped(t.note));
+    std::string html = fmt::format("<h3>{}</h3>\n", gi::escaped(t.title));
+    if (!t.note.empty()) html += fmt::format("<p class=\"note\">{}</p>\n", gi::escaped(t.note));
     html += "<div class=\"scroll\"><table><thead><tr>";
     std::vector<bool> is_number(t.table.columns.size(), true);
     for (std::size_t c = 0; c < t.table.columns.size(); ++c)
@@ -22,14 +23,14 @@ std::string html_of(ResultTable const& t)
         for (char& letter : name)
             if (letter == '_') letter = ' ';
         html += fmt::format("<th scope=\"col\"{} title=\"{}\">{}</th>", is_number[c] ? " class=\"number\"" : "",
-                            escaped(column.description), escaped(name));
+                            gi::escaped(column.description), gi::escaped(name));
     }
     html += "</tr></thead><tbody>\n";
     for (auto const& row : t.table.rows) {
         html += "<tr>";
         for (std::size_t c = 0; c < row.size(); ++c)
             html += fmt::format("<td{}>{}</td>", is_number[c] ? " class=\"number\"" : "",
-                                escaped(shown_cell(t.table.columns[c], row[c])));
+                                gi::escaped(shown_cell(t.table.columns[c], row[c])));
         html += "</tr>\n";
     }
     return html + "</tbody></table></div>\n";

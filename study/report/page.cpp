@@ -1,5 +1,6 @@
 #include "study/report/page.h"
 
+#include "gi/core/html.h"
 #include "study/analysis/threshold_run.h"
 #include "study/report/figures.h"
 #include "study/report/findings.h"
@@ -164,11 +165,11 @@ std::string block_html(Script const& s, BlockResult const& r, Analysis const& a,
     Block const* const b = block_of(s, r.name);
     if (b == nullptr) return {};
     std::string html =
-        fmt::format("<section>\n<h2>{} <small>({})</small></h2>\n", escaped(r.name), escaped(r.task));
-    if (!r.prompt.empty()) html += fmt::format("<p>“{}”</p>\n", escaped(r.prompt));
+        fmt::format("<section>\n<h2>{} <small>({})</small></h2>\n", gi::escaped(r.name), gi::escaped(r.task));
+    if (!r.prompt.empty()) html += fmt::format("<p>“{}”</p>\n", gi::escaped(r.prompt));
     for (ScaleResult const& scale : r.scales)
         if (!scale.refused.empty())
-            html += fmt::format("<p>{}: no scale: {}</p>\n", escaped(scale.group), escaped(scale.refused));
+            html += fmt::format("<p>{}: no scale: {}</p>\n", gi::escaped(scale.group), gi::escaped(scale.refused));
     if (!r.scales.empty()) html += scales_html(s, *b, r, a, facts);
     html += thresholds_html(*b, r, facts);
     return html + "</section>\n";
@@ -220,13 +221,13 @@ std::string provenance(std::span<RecordedSession const> sessions, ReportFacts co
                 for (auto const& [key, value] : s->about) ++values[key][value];
             }
     std::string html = "<h2>Provenance</h2>\n<dl>\n";
-    html += fmt::format("<dt>report by</dt><dd>{}</dd>\n", escaped(facts.program));
+    html += fmt::format("<dt>report by</dt><dd>{}</dd>\n", gi::escaped(facts.program));
     for (auto const& [key, list] : values) {
-        html += "<dt>" + escaped(key) + "</dt><dd>";
+        html += "<dt>" + gi::escaped(key) + "</dt><dd>";
         std::size_t shown = 0;
         for (auto const& [value, n] : list) {
             if (++shown > 5) break;
-            html += (shown > 1 ? "; " : "") + escaped(value);
+            html += (shown > 1 ? "; " : "") + gi::escaped(value);
         }
         if (list.size() > 5) html += fmt::format("; and {} more", list.size() - 5);
         html += "</dd>\n";
@@ -243,16 +244,16 @@ std::string report_page(Script const& script, std::span<RecordedSession const> s
         fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
                     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
                     "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{}</title>\n<style>\n",
-                    escaped(a.title));
+                    gi::escaped(a.title));
     html += report_style();
     html += fmt::format(
         "</style>\n</head>\n<body>\n<header><h1>{}</h1>\n<p class=\"about\">Experiment {}: {} of {} "
         "participants, {} sessions, {} complete. Intervals of {:.0f} %, {} replicates of bootstraps.</p>\n",
-        escaped(a.title), escaped(a.experiment), a.participants, a.planned, a.sessions, a.complete,
+        gi::escaped(a.title), gi::escaped(a.experiment), a.participants, a.planned, a.sessions, a.complete,
         100 * a.settings.confidence, a.settings.replicates);
     if (!a.cautions.empty()) {
         html += "<ul class=\"cautions\">";
-        for (std::string const& c : a.cautions) html += "<li>" + escaped(c) + "</li>";
+        for (std::string const& c : a.cautions) html += "<li>" + gi::escaped(c) + "</li>";
         html += "</ul>\n";
     }
     html += "</header>\n<main>\n" + findings(a);

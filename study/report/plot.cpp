@@ -1,35 +1,11 @@
 #include "study/report/plot.h"
 
+#include "gi/core/html.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 namespace study {
-
-std::string escaped(std::string_view text)
-{
-    std::string out;
-    for (char const c : text) switch (c) {
-        case '&':
-            out += "&amp;";
-            break;
-        case '<':
-            out += "&lt;";
-            break;
-        case '>':
-            out += "&gt;";
-            break;
-        case '"':
-            out += "&quot;";
-            break;
-        case '\'':
-            out += "&#39;";
-            break;
-        default:
-            out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-        }
-    return out;
-}
 
 std::string short_number(double v)
 {
@@ -130,7 +106,7 @@ void Plot::y_axis(std::string const& label, int ticks)
         body_ += fmt::format(
             "<text class=\"label\" text-anchor=\"middle\" transform=\"translate(14 {:.1f}) rotate(-90)\">"
             "{}</text>",
-            (top() + bottom()) / 2, escaped(label));
+            (top() + bottom()) / 2, gi::escaped(label));
 }
 
 void Plot::line(double x1, double y1, double x2, double y2, char const* style)
@@ -159,7 +135,7 @@ void Plot::box(double bx, double by, double w, double h, char const* style)
 void Plot::text(double tx, double ty, std::string_view words, char const* anchor, char const* style)
 {
     body_ += fmt::format("<text class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>", style, tx,
-                         ty, anchor, escaped(words));
+                         ty, anchor, gi::escaped(words));
 }
 
 void Plot::polyline(std::vector<std::pair<double, double>> const& points, char const* style)
@@ -173,7 +149,7 @@ std::string Plot::svg(std::string const& title) const
 {
     return fmt::format("<svg role=\"img\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\">"
                        "<title>{2}</title>{3}</svg>",
-                       width_, height_, escaped(title), body_);
+                       width_, height_, gi::escaped(title), body_);
 }
 
 std::string Plot::figure(std::string const& title, std::string const& caption) const

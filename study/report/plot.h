@@ -7,8 +7,6 @@
 
 namespace study {
 
-/// As text or as a quoted attribute of HTML.
-std::string escaped(std::string_view text);
 /// Three digits, whole numbers up to seven: "0.05", "1250".
 std::string short_number(double value);
 /// About how wide a text is in the drawings' font of 12 px.

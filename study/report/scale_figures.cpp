@@ -1,3 +1,4 @@
+#include "gi/core/html.h"
 #include "study/report/figures.h"
 #include "study/report/plot.h"
 
@@ -112,7 +113,7 @@ std::string scale_figure(ScaleResult const& s, std::vector<double> const& truth,
         p.line(x, p.top() + row * (double(runs[k].first) + 0.6) - 6, x,
                p.top() + row * (double(runs[k].second) + 0.6) + 6, "equal");
     }
-    return p.figure(title + ": scores", fmt::format("<b>{}</b> {} observers, {} judgements", escaped(title),
+    return p.figure(title + ": scores", fmt::format("<b>{}</b> {} observers, {} judgements", gi::escaped(title),
                                                     s.observers, s.observations));
 }
 
@@ -155,20 +156,20 @@ std::string cost_figure(ScaleResult const& s, std::string const& title)
         taken.push_back(spot);
         p.text(spot.x1, spot.y2 - 3, words);
     }
-    return p.figure(title + ": score against time to render a frame", "<b>" + escaped(title) + "</b>");
+    return p.figure(title + ": score against time to render a frame", "<b>" + gi::escaped(title) + "</b>");
 }
 
 std::string wins_table(ScaleResult const& s, double level)
 {
     if (s.wins.empty() || !s.refused.empty()) return {};
     auto const order = by_score(s);
-    std::string html =
-        fmt::format("<figure><table class=\"matrix\"><caption>{}</caption><thead><tr><th></th>", escaped(s.group));
+    std::string html = fmt::format("<figure><table class=\"matrix\"><caption>{}</caption><thead><tr><th></th>",
+                                   gi::escaped(s.group));
     for (int const c : order)
-        html += "<th scope=\"col\"><span>" + escaped(s.items[std::size_t(c)].name) + "</span></th>";
+        html += "<th scope=\"col\"><span>" + gi::escaped(s.items[std::size_t(c)].name) + "</span></th>";
     html += "</tr></thead><tbody>";
     for (int const r : order) {
-        html += "<tr><th scope=\"row\">" + escaped(s.items[std::size_t(r)].name) + "</th>";
+        html += "<tr><th scope=\"row\">" + gi::escaped(s.items[std::size_t(r)].name) + "</th>";
         for (int const c : order) {
             double const won = s.wins[std::size_t(r)][std::size_t(c)],
                          lost = s.wins[std::size_t(c)][std::size_t(r)];
@@ -213,7 +214,7 @@ std::string spread_figure(ScaleResult const& s, RatingScale const& rating, std::
             p.line(p.x(item.score.interval.low), y, p.x(item.score.interval.high), y, "interval");
         p.dot(p.x(item.score.value), y, 4, "point");
     }
-    return p.figure(title + ": ratings", fmt::format("<b>{}</b> {} observers, {} ratings", escaped(title),
+    return p.figure(title + ": ratings", fmt::format("<b>{}</b> {} observers, {} ratings", gi::escaped(title),
                                                      s.observers, s.observations));
 }
 

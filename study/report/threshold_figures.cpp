@@ -1,3 +1,4 @@
+#include "gi/core/html.h"
 #include "study/report/figures.h"
 #include "study/report/plot.h"
 
@@ -46,9 +47,9 @@ std::string curve_figure(CurveResult const& c, BlockResult const& block, std::st
                                                 short_number(c.threshold.interval.high))
                                   : "";
     return p.figure("psychometric function, " + c.cell,
-                    fmt::format("<b>{}</b> {:.0f} % right at {}{}; {} observers{}", escaped(c.cell),
+                    fmt::format("<b>{}</b> {:.0f} % right at {}{}; {} observers{}", gi::escaped(c.cell),
                                 100 * c.proportion, short_number(c.threshold.value), range, c.observers,
-                                c.fit.note.empty() ? "" : ". Doubtful: " + escaped(c.fit.note)));
+                                c.fit.note.empty() ? "" : ". Doubtful: " + gi::escaped(c.fit.note)));
 }
 
 std::string tracks_figure(std::vector<ThresholdRun> const& runs, BlockResult const& block,
@@ -87,7 +88,7 @@ std::string tracks_figure(std::vector<ThresholdRun> const& runs, BlockResult con
     }
     std::string const more =
         runs.size() > kMost ? fmt::format(" The first {} of {} runs.", kMost, runs.size()) : "";
-    return "<figure class=\"wide\"><figcaption><b>" + escaped(title) +
+    return "<figure class=\"wide\"><figcaption><b>" + gi::escaped(title) +
            "</b> Filled: right, open: wrong; dashed: the run's estimate." + more +
            "</figcaption><div class=\"small\">" + html + "</div></figure>\n";
 }
@@ -117,7 +118,7 @@ std::string thresholds_figure(std::vector<ThresholdSummary> const& thresholds, B
         if (std::isfinite(t.level.value)) p.dot(p.x(t.level.value), y, 4, "point");
         if (k < truth.size() && std::isfinite(truth[k])) p.diamond(p.x(truth[k]), y, 6, "truth");
     }
-    return p.figure(title, "<b>" + escaped(title) + "</b>");
+    return p.figure(title, "<b>" + gi::escaped(title) + "</b>");
 }
 
 std::string detections_figure(std::vector<DetectionResult> const& detections, double guess,
@@ -138,7 +139,8 @@ std::string detections_figure(std::vector<DetectionResult> const& detections, do
         p.line(p.x(d.interval.low), y, p.x(d.interval.high), y, "interval");
         p.dot(p.x(d.correct / d.trials), y, 4, "point");
     }
-    return p.figure(title, "<b>" + escaped(title) + "</b> Wilson's intervals of all trials; dashed: guessing.");
+    return p.figure(title,
+                    "<b>" + gi::escaped(title) + "</b> Wilson's intervals of all trials; dashed: guessing.");
 }
 
 std::string histogram(std::vector<double> const& values, std::string const& label, std::string const& title)
@@ -167,7 +169,7 @@ std::string histogram(std::vector<double> const& values, std::string const& labe
         double const top = p.y(counts[std::size_t(b)]);
         p.box(p.x(from) + 0.5, top, p.x(to) - p.x(from) - 1, p.bottom() - top, "bar");
     }
-    return p.figure(title, fmt::format("<b>{}</b> {} values{}", escaped(title), known.size(),
+    return p.figure(title, fmt::format("<b>{}</b> {} values{}", gi::escaped(title), known.size(),
                                        beyond ? fmt::format(", {} beyond the drawing", beyond) : ""));
 }
 
@@ -178,11 +180,12 @@ std::string transitions_table(TransitionResult const& t)
     int most = 1;
     for (int const c : t.counts) most = std::max(most, c);
     std::string html = fmt::format("<figure><table class=\"matrix\"><caption>{}: {}</caption><thead><tr><th></th>",
-                                   escaped(t.block), escaped(t.subject));
-    for (std::string const& name : t.names) html += "<th scope=\"col\"><span>" + escaped(name) + "</span></th>";
+                                   gi::escaped(t.block), gi::escaped(t.subject));
+    for (std::string const& name : t.names)
+        html += "<th scope=\"col\"><span>" + gi::escaped(name) + "</span></th>";
     html += "</tr></thead><tbody>";
     for (std::size_t r = 0; r < n; ++r) {
-        html += "<tr><th scope=\"row\">" + escaped(t.names[r]) + "</th>";
+        html += "<tr><th scope=\"row\">" + gi::escaped(t.names[r]) + "</th>";
         for (std::size_t c = 0; c < n; ++c)
             html += fmt::format("<td style=\"--share:{:.0f}%\">{}</td>", 50.0 * t.counts[r * n + c] / most,
                                 t.counts[r * n + c]);

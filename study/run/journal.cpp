@@ -1,6 +1,6 @@
 #include "study/run/journal.h"
 
-#include "study/journal/durable_file.h"
+#include "gi/core/durable_file.h"
 #include "study/journal/entry_line.h"
 #include "study/script/script_error.h"
 
@@ -78,7 +78,7 @@ Journal Journal::create(std::filesystem::path const& file)
         throw cannot(file, "the journal cannot be made", std::strerror(errno),
                      "choose a folder that can be written");
     lock(fd, file);
-    sync_folder(file.parent_path());
+    gi::sync_folder(file.parent_path());
     return {file, fd};
 }
 

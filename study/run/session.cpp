@@ -1,12 +1,13 @@
 #include "study/run/session.h"
 
-#include "study/journal/durable_file.h"
+#include "gi/core/durable_file.h"
+#include "gi/core/file.h"
+#include "gi/core/sha256.h"
 #include "study/journal/moments.h"
 #include "study/journal/session_summary.h"
 #include "study/run/session_files.h"
 #include "study/run/stopwatch.h"
 #include "study/run/trial.h"
-#include "study/script/sha256.h"
 
 #include <chrono>
 #include <cmath>
@@ -33,7 +34,7 @@ std::map<std::string, std::string> read_texts(Script const& s, Plan const& plan,
 {
     std::map<std::string, std::string> texts;
     auto const add = [&](std::string const& text) {
-        if (is_text_file(text) && !texts.contains(text)) texts[text] = read_whole(folder / text);
+        if (is_text_file(text) && !texts.contains(text)) texts[text] = gi::read_text(folder / text);
     };
     add(s.participants.consent);
     for (PlanStep const& step : plan.steps) add(step.text);
@@ -99,10 +100,10 @@ private:
         e.session = settings_.session;
         e.version = settings_.version;
         e.git_hash = settings_.git_hash;
-        e.script_sha256 = sha256(settings_.script_text);
-        e.plan_sha256 = sha256(plan_text());
+        e.script_sha256 = gi::sha256(settings_.script_text);
+        e.plan_sha256 = gi::sha256(plan_text());
         e.seed = s_.seed;
-        if (!s_.participants.consent.empty()) e.consent_sha256 = sha256(text_of(s_.participants.consent));
+        if (!s_.participants.consent.empty()) e.consent_sha256 = gi::sha256(text_of(s_.participants.consent));
         e.is_simulated = settings_.is_simulated;
         return e;
     }
@@ -327,9 +328,9 @@ private:
     {
         auto const file = files_.folder / "plan.tsv";
         std::error_code ignored;
-        if (!std::filesystem::exists(file, ignored)) write_durably(file, plan_text());
+        if (!std::filesystem::exists(file, ignored)) gi::write_durably(file, plan_text());
     }
-    void write_summary() const { write_durably(files_.folder / "session.json", session_summary(record_)); }
+    void write_summary() const { gi::write_durably(files_.folder / "session.json", session_summary(record_)); }
 
     /// What follows from the journal's end, also where the process was killed before it came to that.
     void finish() const
@@ -337,7 +338,8 @@ private:
         std::string const summary = session_summary(record_);
         auto const file = files_.folder / "session.json";
         std::error_code ignored;
-        if (!std::filesystem::exists(file, ignored) || read_whole(file) != summary) write_durably(file, summary);
+        if (!std::filesystem::exists(file, ignored) || gi::read_text(file) != summary)
+            gi::write_durably(file, summary);
         if (settings_.on_ended) settings_.on_ended(files_.folder, record_);
     }
 

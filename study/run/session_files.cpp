@@ -1,8 +1,8 @@
 #include "study/run/session_files.h"
 
-#include "study/journal/durable_file.h"
+#include "gi/core/durable_file.h"
+#include "gi/core/sha256.h"
 #include "study/script/script_error.h"
-#include "study/script/sha256.h"
 
 #include <fmt/format.h>
 #include <fstream>
@@ -44,7 +44,7 @@ std::optional<SessionStarted> start_of(fs::path const& journal)
 /// Sessions of two scripts in one folder could not be analysed (read_dataset).
 void check_same_script(SessionSettings const& settings)
 {
-    std::string const hash = sha256(settings.script_text);
+    std::string const hash = gi::sha256(settings.script_text);
     for (fs::path const& journal : find_journals(settings.dir).files)
         if (auto const start = start_of(journal); start && start->script_sha256 != hash)
             throw ScriptError(
@@ -82,7 +82,7 @@ SessionFiles open_session(std::string const& id, SessionSettings const& settings
     }
     check_is_new(id, settings);
     fs::path const missing = first_missing(folder);
-    make_folder(folder);
+    gi::make_folder(folder);
     return {folder, Journal::create(file), {}, true, missing};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
+#include "gi/core/sha256.h"
 #include "study/script/condition.h"
-#include "study/script/sha256.h"
 
 namespace study {
 
@@ -10,7 +10,7 @@ inline std::string settings_hash(Patch const& settings)
 {
     std::string text;
     for (auto const& [key, value] : settings) text += key + "=" + value + "\n";
-    return sha256(text);
+    return gi::sha256(text);
 }
 
 } // namespace study

@@ -8,7 +8,7 @@ namespace study {
 namespace {
 
 /// Keys that other tasks have are told apart from those that none has.
-void check_block_keys(Yaml const& y, Task task)
+void check_block_keys(gi::Yaml const& y, Task task)
 {
     check_keys(y, "block");
     std::set<std::string> const known = block_keys(task);
@@ -18,7 +18,7 @@ void check_block_keys(Yaml const& y, Task task)
                             "it would be ignored", "remove it or choose another task");
 }
 
-Pairs read_pairs(Yaml const& y, Script const& s)
+Pairs read_pairs(gi::Yaml const& y, Script const& s)
 {
     check_keys(y, "pairs");
     Pairs p;
@@ -32,7 +32,7 @@ Pairs read_pairs(Yaml const& y, Script const& s)
         return p;
     }
     if (y.has("omit")) throw y.at("omit").error("both list and omit", "the list says which there are", "keep one");
-    for (Yaml const& item : y.at("list").items()) {
+    for (gi::Yaml const& item : y.at("list").items()) {
         auto const two = item.items();
         if (two.size() != 2)
             throw item.error(fmt::format("a pair of {}", two.size()), "two are compared", "[a, b]");
@@ -44,14 +44,14 @@ Pairs read_pairs(Yaml const& y, Script const& s)
     return p;
 }
 
-Compare read_compare(Yaml const& y, Script const& s)
+Compare read_compare(gi::Yaml const& y, Script const& s)
 {
     check_keys(y, "compare");
     Compare c;
     if (y.has("vary") == y.has("factor"))
         throw y.error("compare needs either vary or factor", "it says which stimuli there are",
                       "write vary: SETTING or factor: FACTOR");
-    Yaml const against = y.has("against") ? y.at("against") : y;
+    gi::Yaml const against = y.has("against") ? y.at("against") : y;
     if (y.has("against") && !against.is_text())
         c.against = read_choice(against, s);
     else if (y.has("against") && against.text() != "reference")
@@ -99,7 +99,7 @@ Compare read_compare(Yaml const& y, Script const& s)
     return c;
 }
 
-double read_vary_level(Yaml const& y, Compare const& c)
+double read_vary_level(gi::Yaml const& y, Compare const& c)
 {
     std::string const word = y.text();
     if (word == "easiest") return easiest(c);
@@ -109,7 +109,7 @@ double read_vary_level(Yaml const& y, Compare const& c)
     return y.number(c.low, c.high);
 }
 
-Catch read_catch(Yaml const& y, Block const& b, Script const& s)
+Catch read_catch(gi::Yaml const& y, Block const& b, Script const& s)
 {
     check_keys(y, "catch");
     Catch k;
@@ -139,7 +139,7 @@ Catch read_catch(Yaml const& y, Block const& b, Script const& s)
     return k;
 }
 
-void read_practice(Yaml const& y, Block& b)
+void read_practice(gi::Yaml const& y, Block& b)
 {
     check_keys(y, "practice");
     b.practice.trials = y.needed("trials", "4").integer(1, 10000);
@@ -158,20 +158,20 @@ void read_practice(Yaml const& y, Block& b)
 }
 
 /// cross, nest, only
-void read_conditions(Yaml const& y, Script const& s, Block& b)
+void read_conditions(gi::Yaml const& y, Script const& s, Block& b)
 {
     auto const is_crossed = [&](int f) { return std::find(b.cross.begin(), b.cross.end(), f) != b.cross.end(); };
     b.only.resize(s.factors.size());
     if (y.has("only"))
         for (auto const& [key, value] : y.at("only").entries()) {
             int const f = read_factor(key, s);
-            for (Yaml const& level : value.one_or_more())
+            for (gi::Yaml const& level : value.one_or_more())
                 b.only[std::size_t(f)].push_back(read_level(level, s, f));
             if (b.only[std::size_t(f)].empty())
                 throw value.error("no levels", "the block would be empty", "name one");
         }
     if (y.has("cross"))
-        for (Yaml const& name : y.at("cross").one_or_more()) {
+        for (gi::Yaml const& name : y.at("cross").one_or_more()) {
             int const f = read_factor(name, s);
             if (is_crossed(f))
                 throw name.error("'" + name.text() + "' is crossed twice", "once is all", "remove one");
@@ -182,7 +182,7 @@ void read_conditions(Yaml const& y, Script const& s, Block& b)
         check_keys(value, "nest");
         Nest n;
         n.factor = read_factor(key, s);
-        Yaml const in = value.needed("in", "scene");
+        gi::Yaml const in = value.needed("in", "scene");
         n.within = read_factor(in, s);
         if (!is_crossed(n.within) || is_crossed(n.factor) || !b.only[std::size_t(n.factor)].empty())
             throw key.error(fmt::format("'{}' cannot be nested in '{}'", key.text(), in.text()),
@@ -190,7 +190,7 @@ void read_conditions(Yaml const& y, Script const& s, Block& b)
                             fmt::format("write cross: [{}]", in.text()));
         n.levels.resize(s.factors[std::size_t(n.within)].levels.size());
         for (auto const& [outer, inner] : value.needed("levels", "{arches: [left, right]}").entries())
-            for (Yaml const& level : inner.one_or_more())
+            for (gi::Yaml const& level : inner.one_or_more())
                 n.levels[std::size_t(read_level(outer, s, n.within))].push_back(read_level(level, s, n.factor));
         for (int const outer : crossed_levels(s, b, n.within))
             if (n.levels[std::size_t(outer)].empty())
@@ -201,7 +201,7 @@ void read_conditions(Yaml const& y, Script const& s, Block& b)
     }
 }
 
-void read_stimuli(Yaml const& y, Script const& s, Block& b)
+void read_stimuli(gi::Yaml const& y, Script const& s, Block& b)
 {
     TaskFacts const& f = facts(b.task);
     bool const needs_one = f.takes_pairs || f.takes_compare;
@@ -215,7 +215,7 @@ void read_stimuli(Yaml const& y, Script const& s, Block& b)
     if (y.has("pairs")) b.pairs = read_pairs(y.at("pairs"), s);
     if (y.has("compare")) b.compare = read_compare(y.at("compare"), s);
     if (b.task == Task::ranking) {
-        Yaml const rank = y.needed("rank", "{factor: FACTOR}");
+        gi::Yaml const rank = y.needed("rank", "{factor: FACTOR}");
         check_keys(rank, "rank");
         b.rank = read_factor(rank.needed("factor", "visibility"), s);
         b.rank_levels = read_levels_of(rank, s, b.rank, 2);
@@ -252,7 +252,7 @@ void read_stimuli(Yaml const& y, Script const& s, Block& b)
                              : "write compare: {vary: SETTING}");
     if (y.has("procedure")) b.procedures.push_back(read_procedure(y.at("procedure"), *b.compare, b.task));
     if (y.has("interleave"))
-        for (Yaml const& item : y.at("interleave").items()) {
+        for (gi::Yaml const& item : y.at("interleave").items()) {
             b.procedures.push_back(read_procedure(item, *b.compare, b.task));
             for (std::size_t i = 0; i + 1 < b.procedures.size(); ++i)
                 if (b.procedures[i].name == b.procedures.back().name)
@@ -265,12 +265,12 @@ void read_stimuli(Yaml const& y, Script const& s, Block& b)
 
 } // namespace
 
-Block read_block(Yaml const& name, Yaml const& y, Script const& s)
+Block read_block(gi::Yaml const& name, gi::Yaml const& y, Script const& s)
 {
     Block b;
     b.name = name.name();
     b.place = name.place();
-    Yaml const task = y.needed("task", "rating");
+    gi::Yaml const task = y.needed("task", "rating");
     std::vector<std::string> names;
     for (Task const t : kTasks) names.emplace_back(facts(t).name);
     b.task = kTasks[std::size_t(task.one_of(names, "task"))];
@@ -306,7 +306,7 @@ Block read_block(Yaml const& name, Yaml const& y, Script const& s)
     if (y.has("catch")) b.catches = read_catch(y.at("catch"), b, s);
     if (y.has("practice")) read_practice(y.at("practice"), b);
     if (y.has("constraints"))
-        for (Yaml const& item : y.at("constraints").items()) b.constraints.push_back(read_constraint(item, s));
+        for (gi::Yaml const& item : y.at("constraints").items()) b.constraints.push_back(read_constraint(item, s));
     return b;
 }
 

@@ -8,7 +8,7 @@
 namespace study {
 namespace {
 
-void check_setting_key(Yaml const& key)
+void check_setting_key(gi::Yaml const& key)
 {
     std::string const s = key.name();
     if (!std::isalpha(static_cast<unsigned char>(s.front())) || s.back() == '.' ||
@@ -25,7 +25,7 @@ std::vector<std::string> names_of(std::vector<FactorLevel> const& levels)
 
 } // namespace
 
-Patch read_patch(Yaml const& y)
+Patch read_patch(gi::Yaml const& y)
 {
     Patch patch;
     for (auto const& [key, value] : y.entries()) {
@@ -39,7 +39,7 @@ Patch read_patch(Yaml const& y)
     return patch;
 }
 
-std::vector<Factor> read_factors(Yaml const& y)
+std::vector<Factor> read_factors(gi::Yaml const& y)
 {
     std::vector<Factor> factors;
     for (auto const& [key, value] : y.entries()) {
@@ -50,7 +50,7 @@ std::vector<Factor> read_factors(Yaml const& y)
                                 "choose another name");
         if (value.is_list()) {
             check_setting_key(key);
-            for (Yaml const& level : value.items())
+            for (gi::Yaml const& level : value.items())
                 factor.levels.push_back({level.name(), {{factor.name, level.name()}}});
         } else {
             for (auto const& [name, patch] : value.entries())
@@ -69,27 +69,27 @@ std::vector<Factor> read_factors(Yaml const& y)
     return factors;
 }
 
-int read_factor(Yaml const& name, Script const& s)
+int read_factor(gi::Yaml const& name, Script const& s)
 {
     std::vector<std::string> known;
     for (Factor const& f : s.factors) known.push_back(f.name);
     return name.one_of(known, "factor");
 }
 
-int read_level(Yaml const& name, Script const& s, int factor)
+int read_level(gi::Yaml const& name, Script const& s, int factor)
 {
     Factor const& f = s.factors[std::size_t(factor)];
     return name.one_of(names_of(f.levels), "level of factor '" + f.name + "'");
 }
 
-int read_questionnaire_name(Yaml const& name, Script const& s)
+int read_questionnaire_name(gi::Yaml const& name, Script const& s)
 {
     std::vector<std::string> known;
     for (Questionnaire const& q : s.questionnaires) known.push_back(q.name);
     return name.one_of(known, "questionnaire");
 }
 
-Choice read_choice(Yaml const& y, Script const& s)
+Choice read_choice(gi::Yaml const& y, Script const& s)
 {
     Choice choice;
     for (auto const& [key, value] : y.entries()) {
@@ -99,12 +99,12 @@ Choice read_choice(Yaml const& y, Script const& s)
     return choice;
 }
 
-std::vector<int> read_levels_of(Yaml const& y, Script const& s, int factor, std::size_t least)
+std::vector<int> read_levels_of(gi::Yaml const& y, Script const& s, int factor, std::size_t least)
 {
     Factor const& f = s.factors[std::size_t(factor)];
     std::vector<bool> omitted(f.levels.size());
     if (y.has("omit"))
-        for (Yaml const& name : y.at("omit").one_or_more())
+        for (gi::Yaml const& name : y.at("omit").one_or_more())
             omitted[std::size_t(read_level(name, s, factor))] = true;
     std::vector<int> levels;
     for (std::size_t i = 0; i < f.levels.size(); ++i)
@@ -116,7 +116,7 @@ std::vector<int> read_levels_of(Yaml const& y, Script const& s, int factor, std:
     return levels;
 }
 
-void read_trial_timing(Yaml const& y, TrialTiming& timing)
+void read_trial_timing(gi::Yaml const& y, TrialTiming& timing)
 {
     constexpr double kHour_ms = 3600000;
     if (y.has("warmup_frames")) timing.warmup_frames = y.at("warmup_frames").integer(0, 100000);
@@ -135,7 +135,7 @@ void read_trial_timing(Yaml const& y, TrialTiming& timing)
     optional("expected_response_ms", "usual", timing.expected_response_ms);
 }
 
-RatingScale read_scale(Yaml const& y)
+RatingScale read_scale(gi::Yaml const& y)
 {
     check_keys(y, "scale");
     RatingScale scale;
@@ -152,12 +152,12 @@ RatingScale read_scale(Yaml const& y)
     return scale;
 }
 
-Constraint read_constraint(Yaml const& y, Script const& s)
+Constraint read_constraint(gi::Yaml const& y, Script const& s)
 {
     check_keys(y, "constraint");
     Constraint c;
     c.place = y.place();
-    auto const subject = [&](Yaml const& name) {
+    auto const subject = [&](gi::Yaml const& name) {
         constexpr int kOthers = 3;
         std::vector<std::string> known{"pair", "answer", "procedure"};
         for (Factor const& f : s.factors) known.push_back(f.name);
@@ -185,7 +185,7 @@ Constraint read_constraint(Yaml const& y, Script const& s)
         c.count = y.at("min_gap").integer(1, 100000);
     }
     if (!is_after && !is_first) return c;
-    Yaml const map = y.at(is_after ? "never_after" : "not_first");
+    gi::Yaml const map = y.at(is_after ? "never_after" : "not_first");
     auto const entries = map.entries();
     if (entries.size() != 1)
         throw map.error("not one factor", "a rule is of one factor", "write one constraint for each");

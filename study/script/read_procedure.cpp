@@ -19,7 +19,7 @@ std::optional<double> parse_number(std::string_view s)
 }
 
 /// "a..b/n"
-std::vector<double> parse_range(Yaml const& y, Scale scale)
+std::vector<double> parse_range(gi::Yaml const& y, Scale scale)
 {
     std::string const s = y.text();
     auto const dots = s.find(".."), slash = s.find('/');
@@ -47,7 +47,7 @@ std::vector<double> parse_range(Yaml const& y, Scale scale)
 }
 
 /// The first of max_trials and trials.
-Stop read_stop(Yaml const& y, bool may_reverse)
+Stop read_stop(gi::Yaml const& y, bool may_reverse)
 {
     check_keys(y, "stop");
     Stop stop;
@@ -66,7 +66,7 @@ Stop read_stop(Yaml const& y, bool may_reverse)
     return stop;
 }
 
-void read_staircase(Yaml const& y, Compare const& c, Procedure& p)
+void read_staircase(gi::Yaml const& y, Compare const& c, Procedure& p)
 {
     check_keys(y, "staircase");
     if (y.has("target")) {
@@ -81,13 +81,13 @@ void read_staircase(Yaml const& y, Compare const& c, Procedure& p)
     if (p.start < c.low || p.start > c.high)
         throw y.at("start").error(fmt::format("the staircase starts at {:g}", p.start),
                                   fmt::format("its range is {:g} to {:g}", c.low, c.high), "start within");
-    for (Yaml const& step : y.needed("steps", "[2, 1, 0.5]").one_or_more())
+    for (gi::Yaml const& step : y.needed("steps", "[2, 1, 0.5]").one_or_more())
         p.steps.push_back(step.number(1e-9, kAny));
     if (p.steps.empty()) throw y.at("steps").error("no steps", "it could not move", "write [2, 1, 0.5]");
     p.stop = read_stop(y.needed("stop", "{reversals: 8, max_trials: 40}"), true);
 }
 
-void read_questplus(Yaml const& y, Compare const& c, Procedure& p)
+void read_questplus(gi::Yaml const& y, Compare const& c, Procedure& p)
 {
     check_keys(y, "questplus");
     p.threshold = read_grid(y.needed("threshold", "64..16384/33"), c.scale, c.low, c.high);
@@ -111,11 +111,11 @@ void read_questplus(Yaml const& y, Compare const& c, Procedure& p)
 
 } // namespace
 
-std::vector<double> read_grid(Yaml const& y, Scale scale, double low, double high)
+std::vector<double> read_grid(gi::Yaml const& y, Scale scale, double low, double high)
 {
     std::vector<double> grid;
     if (y.is_list())
-        for (Yaml const& item : y.items()) grid.push_back(item.number(-kAny, kAny));
+        for (gi::Yaml const& item : y.items()) grid.push_back(item.number(-kAny, kAny));
     else if (y.is_text() && parse_number(y.text()))
         grid.push_back(*parse_number(y.text()));
     else
@@ -133,7 +133,7 @@ std::vector<double> read_grid(Yaml const& y, Scale scale, double low, double hig
     return grid;
 }
 
-Procedure read_procedure(Yaml const& y, Compare const& c, Task task)
+Procedure read_procedure(gi::Yaml const& y, Compare const& c, Task task)
 {
     Procedure p;
     p.place = y.place();

@@ -7,7 +7,7 @@
 namespace study {
 namespace {
 
-QuestionnaireItem read_item(Yaml const& y, RatingScale const* usual)
+QuestionnaireItem read_item(gi::Yaml const& y, RatingScale const* usual)
 {
     check_keys(y, "item");
     QuestionnaireItem item;
@@ -29,7 +29,7 @@ QuestionnaireItem read_item(Yaml const& y, RatingScale const* usual)
             "it needs at least two values, the last of them max", "change max or step");
     if (y.has("labels")) {
         item.labels.clear();
-        for (Yaml const& label : y.at("labels").items()) item.labels.push_back(label.text());
+        for (gi::Yaml const& label : y.at("labels").items()) item.labels.push_back(label.text());
     }
     bool const fits =
         item.labels.empty() || item.labels.size() == 2 || double(item.labels.size()) == std::round(steps) + 1;
@@ -40,14 +40,15 @@ QuestionnaireItem read_item(Yaml const& y, RatingScale const* usual)
     return item;
 }
 
-Subscale read_subscale(Yaml const& name, Yaml const& y, Questionnaire const& q)
+Subscale read_subscale(gi::Yaml const& name, gi::Yaml const& y, Questionnaire const& q)
 {
     check_keys(y, "subscale");
     Subscale s;
     s.name = name.name();
     std::vector<std::string> ids;
     for (QuestionnaireItem const& item : q.items) ids.push_back(item.id);
-    for (Yaml const& id : y.needed("items", "[q1, q2]").one_or_more()) s.items.push_back(id.one_of(ids, "item"));
+    for (gi::Yaml const& id : y.needed("items", "[q1, q2]").one_or_more())
+        s.items.push_back(id.one_of(ids, "item"));
     if (s.items.empty()) throw y.error("scale '" + s.name + "' has no items", "it has no score", "name some");
     if (y.has("score")) s.combine = Combine(y.at("score").one_of({"sum", "mean", "count"}, "way to score"));
     if (y.has("weight")) s.weight = y.at("weight").number(-1e6, 1e6);
@@ -61,7 +62,7 @@ Subscale read_subscale(Yaml const& name, Yaml const& y, Questionnaire const& q)
 
 } // namespace
 
-std::vector<Questionnaire> read_questionnaires(Yaml const& y)
+std::vector<Questionnaire> read_questionnaires(gi::Yaml const& y)
 {
     std::vector<Questionnaire> all;
     for (auto const& [key, value] : y.entries()) {
@@ -78,7 +79,7 @@ std::vector<Questionnaire> read_questionnaires(Yaml const& y)
         std::optional<RatingScale> usual;
         if (value.has("scale")) usual = read_scale(value.at("scale"));
         std::set<std::string> ids;
-        for (Yaml const& item : value.needed("items", "[{id: q1, text: \"...\"}]").items()) {
+        for (gi::Yaml const& item : value.needed("items", "[{id: q1, text: \"...\"}]").items()) {
             q.items.push_back(read_item(item, usual ? &*usual : nullptr));
             if (!ids.insert(q.items.back().id).second)
                 throw item.error("item '" + q.items.back().id + "' twice", "tables could not tell them apart",

@@ -11,7 +11,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 /// BIDS allows letters and digits only in the label of a participant.
-void check_id_pattern(Yaml const& y)
+void check_id_pattern(gi::Yaml const& y)
 {
     std::string const s = y.text();
     auto const open = s.find('{'), close = s.find('}');
@@ -26,7 +26,7 @@ void check_id_pattern(Yaml const& y)
                       "it must have their number once and otherwise letters and digits only", "write \"P{n:03}\"");
 }
 
-Participants read_participants(Yaml const& y)
+Participants read_participants(gi::Yaml const& y)
 {
     check_keys(y, "participants");
     Participants p;
@@ -37,12 +37,12 @@ Participants read_participants(Yaml const& y)
         p.id = y.at("id").text();
     }
     if (y.has("ask"))
-        for (Yaml const& item : y.at("ask").one_or_more()) p.ask.push_back(item.name());
+        for (gi::Yaml const& item : y.at("ask").one_or_more()) p.ask.push_back(item.name());
     if (y.has("consent")) p.consent = y.at("consent").text();
     return p;
 }
 
-Timing read_timing(Yaml const& y)
+Timing read_timing(gi::Yaml const& y)
 {
     check_keys(y, "timing");
     Timing t;
@@ -56,7 +56,7 @@ Timing read_timing(Yaml const& y)
         t.on_bad_trial =
             BadTrial(y.at("on_bad_trial").one_of({"keep", "repeat_at_end"}, "way to treat bad trials"));
     if (y.has("sync_patch")) {
-        Yaml const patch = y.at("sync_patch");
+        gi::Yaml const patch = y.at("sync_patch");
         check_keys(patch, "sync_patch");
         t.sync_patch.emplace();
         Words const corners{"bottom_left", "bottom_right", "top_left", "top_right"};
@@ -64,7 +64,7 @@ Timing read_timing(Yaml const& y)
         if (patch.has("px")) t.sync_patch->px = patch.at("px").integer(1, 1000);
     }
     if (y.has("calibrate")) {
-        Yaml const calibrate = y.at("calibrate");
+        gi::Yaml const calibrate = y.at("calibrate");
         check_keys(calibrate, "calibrate");
         if (calibrate.has("frames")) t.calibrate.frames = calibrate.at("frames").integer(50, 100000);
         if (calibrate.has("max_sd_ms")) t.calibrate.max_sd_ms = calibrate.at("max_sd_ms").number(1e-3, 100);
@@ -76,7 +76,7 @@ Timing read_timing(Yaml const& y)
     return t;
 }
 
-Defaults read_defaults(Yaml const& y)
+Defaults read_defaults(gi::Yaml const& y)
 {
     check_keys(y, "defaults");
     Defaults d;
@@ -100,14 +100,14 @@ bool is_input(std::string const& s)
     return is_word && !has_slash && (kind == "key" || kind == "pad" || kind == "mouse");
 }
 
-std::vector<Device> read_devices(Yaml const& y)
+std::vector<Device> read_devices(gi::Yaml const& y)
 {
     Words const answers{"first", "second", "third", "same",    "different", "yes",
                         "no",    "up",     "down",  "confirm", "neither",   "pause"};
     std::vector<Device> devices;
     for (auto const& [key, value] : y.entries()) {
         Device d{answers[std::size_t(key.one_of(answers, "answer"))], {}, key.place()};
-        for (Yaml const& input : value.one_or_more()) {
+        for (gi::Yaml const& input : value.one_or_more()) {
             if (!is_input(input.text()))
                 throw input.error(fmt::format("'{}' is no input", input.text().substr(0, 64)),
                                   "a device and what is pressed on it are needed",
@@ -120,7 +120,7 @@ std::vector<Device> read_devices(Yaml const& y)
     return devices;
 }
 
-std::vector<Counterbalance> read_counterbalance(Yaml const& y, Script const& s)
+std::vector<Counterbalance> read_counterbalance(gi::Yaml const& y, Script const& s)
 {
     Words blocks;
     for (Block const& b : s.blocks) blocks.push_back(b.name);
@@ -131,7 +131,7 @@ std::vector<Counterbalance> read_counterbalance(Yaml const& y, Script const& s)
         c.name = key.name();
         c.place = key.place();
         Words const methods{"fixed", "alternate", "latin", "williams", "random", "between"};
-        Yaml const method = value.needed("method", "williams");
+        gi::Yaml const method = value.needed("method", "williams");
         c.method = Balance(method.one_of(methods, "way to counterbalance"));
         for (std::size_t f = 0; f < s.factors.size(); ++f)
             if (s.factors[f].name == c.name) c.factor = int(f);
@@ -144,7 +144,7 @@ std::vector<Counterbalance> read_counterbalance(Yaml const& y, Script const& s)
             if (std::find(blocks.begin(), blocks.end(), c.name) != blocks.end())
                 throw key.error("a group named as the block '" + c.name + "'", "the sequence could mean either",
                                 "rename one");
-            for (Yaml const& name : value.at("of").items()) {
+            for (gi::Yaml const& name : value.at("of").items()) {
                 int const b = name.one_of(blocks, "block");
                 if (std::find(c.blocks.begin(), c.blocks.end(), b) != c.blocks.end())
                     throw name.error("'" + name.text() + "' twice", "it has one place in the order", "remove one");
@@ -160,7 +160,7 @@ std::vector<Counterbalance> read_counterbalance(Yaml const& y, Script const& s)
     return all;
 }
 
-Record read_record(Yaml const& y)
+Record read_record(gi::Yaml const& y)
 {
     check_keys(y, "record");
     Record r;
@@ -170,7 +170,7 @@ Record read_record(Yaml const& y)
         if (!r.poses_by_frame) r.head_pose_hz = y.at("head_pose_hz").number(0, 1000);
     }
     if (y.has("markers"))
-        for (Yaml const& m : y.at("markers").one_or_more()) {
+        for (gi::Yaml const& m : y.at("markers").one_or_more()) {
             m.one_of({"lsl", "udp"}, "kind of marker");
             r.markers.push_back(m.text());
         }
@@ -178,22 +178,22 @@ Record read_record(Yaml const& y)
     return r;
 }
 
-Resume read_resume(Yaml const& y)
+Resume read_resume(gi::Yaml const& y)
 {
     check_keys(y, "resume");
     Resume r;
     if (y.has("max_gap_min")) r.max_gap_min = y.at("max_gap_min").number(0, 1e6);
     if (!y.has("repeat")) return r;
     r.instructions = r.practice = false;
-    for (Yaml const& what : y.at("repeat").one_or_more())
+    for (gi::Yaml const& what : y.at("repeat").one_or_more())
         (what.one_of({"instructions", "practice"}, "thing to repeat") == 0 ? r.instructions : r.practice) = true;
     return r;
 }
 
-Script read_script(Yaml const& y, std::string const& file)
+Script read_script(gi::Yaml const& y, std::string const& file)
 {
     check_keys(y, "study");
-    Yaml const schema = y.needed("schema", "study/1");
+    gi::Yaml const schema = y.needed("schema", "study/1");
     if (schema.text() != "study/1") throw schema.unknown("schema that is known here", {"study/1"});
     Script s;
     s.file = file;
@@ -225,9 +225,13 @@ Script read_script(Yaml const& y, std::string const& file)
 Script parse_script(std::string const& text, std::string const& name)
 {
     try {
-        Script s = read_script(Yaml::parse(text, name), name);
+        Script s = read_script(gi::Yaml::parse(text, name, "script"), name);
         check_design(s);
         return s;
+    } catch (ScriptError const&) {
+        throw;
+    } catch (gi::InputError const& e) {
+        throw ScriptError(e);
     } catch (YAML::Exception const& e) {
         throw ScriptError(name, {e.mark.line + 1, e.mark.column + 1}, "this YAML is not understood", e.msg,
                           "write it plainly");

@@ -6,7 +6,7 @@
 namespace study {
 namespace {
 
-SequenceItem read_name(Yaml const& y, Script const& s)
+SequenceItem read_name(gi::Yaml const& y, Script const& s)
 {
     SequenceItem item;
     item.place = y.place();
@@ -23,7 +23,7 @@ SequenceItem read_name(Yaml const& y, Script const& s)
     return item;
 }
 
-void read_free_walk(Yaml const& y, Script const& s, SequenceItem& item)
+void read_free_walk(gi::Yaml const& y, Script const& s, SequenceItem& item)
 {
     check_keys(y, "free_walk");
     item.kind = SequenceKind::free_walk;
@@ -32,7 +32,7 @@ void read_free_walk(Yaml const& y, Script const& s, SequenceItem& item)
     if (y.has("condition")) item.choice = read_choice(y.at("condition"), s);
 }
 
-void read_rest(Yaml const& y, SequenceItem& item)
+void read_rest(gi::Yaml const& y, SequenceItem& item)
 {
     item.kind = SequenceKind::rest;
     if (!y.is_map()) {
@@ -44,7 +44,7 @@ void read_rest(Yaml const& y, SequenceItem& item)
     if (y.has("prompt")) item.text = y.at("prompt").text();
 }
 
-SequenceItem read_item(Yaml const& y, Script const& s, int depth)
+SequenceItem read_item(gi::Yaml const& y, Script const& s, int depth)
 {
     if (y.is_text()) return read_name(y, s);
     check_keys(y, "sequence_item");
@@ -77,11 +77,11 @@ SequenceItem read_item(Yaml const& y, Script const& s, int depth)
 
 } // namespace
 
-std::vector<SequenceItem> read_sequence(Yaml const& y, Script const& s, int depth)
+std::vector<SequenceItem> read_sequence(gi::Yaml const& y, Script const& s, int depth)
 {
     if (depth > 8) throw y.error("'per' within 'per' more than 8 deep", "nobody could follow it", "nest less");
     std::vector<SequenceItem> items;
-    for (Yaml const& item : y.items()) items.push_back(read_item(item, s, depth));
+    for (gi::Yaml const& item : y.items()) items.push_back(read_item(item, s, depth));
     if (items.empty()) throw y.error("an empty sequence", "there is nothing to do", "name blocks");
     if (items.size() > 1000) throw y.error("more than 1000 steps", "a session has fewer", "use per and blocks");
     return items;

@@ -1,9 +1,9 @@
 #pragma once
-// What is wrong with an experiment's script, and where. The same grammar as everywhere in the program:
-// "file:line:column: problem (why it is a problem) suggestion".
+// What is wrong with an experiment's script, its records, or what is asked of them.
 
-#include <stdexcept>
-#include <string>
+#include "gi/core/error.h"
+
+#include <utility>
 
 namespace study {
 
@@ -11,26 +11,20 @@ namespace study {
 struct Place {
     int line = 0;
     int column = 0;
+
+    Place() = default;
+    Place(int l, int c) : line(l), column(c) {}
+    Place(gi::TextLocation const& at) : line(at.line), column(at.column) {}
 };
 
-/// The script, or what is asked of it, is wrong (exit code 2).
-class ScriptError : public std::runtime_error {
+class ScriptError : public gi::InputError {
 public:
-    /// @param problem    what is wrong, naming the offending thing
-    /// @param why        why that is a problem
-    /// @param suggestion what to do instead
-    ScriptError(std::string file, Place where, std::string problem, std::string why, std::string suggestion);
-
-    std::string const& file() const { return file_; }
-    Place where() const { return where_; }
-    std::string const& problem() const { return problem_; }
-    std::string const& why() const { return why_; }
-    std::string const& suggestion() const { return suggestion_; }
-
-private:
-    std::string file_;
-    Place where_;
-    std::string problem_, why_, suggestion_;
+    explicit ScriptError(gi::InputError const& e) : InputError(e) {}
+    ScriptError(std::string file, Place where, std::string problem, std::string why, std::string suggestion)
+        : InputError(gi::TextLocation{std::move(file), where.line, where.column}, std::move(problem),
+                     std::move(why), std::move(suggestion))
+    {
+    }
 };
 
 } // namespace study

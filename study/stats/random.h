@@ -4,6 +4,8 @@
 // 1964, CACM 7(7):420). Standard libraries differ in their distributions and shuffles; integers, uniform() and
 // shuffle() here are the same on every compiler, so that a seed and a participant's number make an order again.
 
+#include "gi/core/rng.h"
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -17,29 +19,17 @@ class Random {
 public:
     /// @param stream only its lower 63 bits count. The states of two streams of one seed differ by what only their
     /// numbers decide: for many of them take part().
-    explicit Random(std::uint64_t seed, std::uint64_t stream = 0) : increment_((stream << 1) | 1)
-    {
-        next();
-        state_ += seed;
-        next();
-    }
+    explicit Random(std::uint64_t seed, std::uint64_t stream = 0) : engine_(seed, stream) {}
 
     /// The numbers of one part of many: a participant, a simulation. Seed and index are hashed, so that neighbours
     /// are independent of each other.
     static Random part(std::uint64_t seed, std::uint64_t index)
     {
-        std::uint64_t const hashed = mix(index + mix(seed + kGolden));
-        return Random(hashed, mix(hashed + kGolden));
+        std::uint64_t const hashed = gi::mix_bits(index + gi::mix_bits(seed + kGolden));
+        return Random(hashed, gi::mix_bits(hashed + kGolden));
     }
 
-    std::uint32_t next()
-    {
-        std::uint64_t const old = state_;
-        state_ = old * 6364136223846793005ULL + increment_;
-        auto const shifted = std::uint32_t(((old >> 18) ^ old) >> 27);
-        auto const rotation = std::uint32_t(old >> 59);
-        return (shifted >> rotation) | (shifted << ((32 - rotation) & 31));
-    }
+    std::uint32_t next() { return engine_.next(); }
 
     /// Uniform in {0, ..., n - 1}, each exactly as likely. @throws std::invalid_argument n = 0
     std::uint32_t below(std::uint32_t n)
@@ -52,11 +42,7 @@ public:
     }
 
     /// Uniform in [0, 1), a multiple of 2^-53.
-    double uniform()
-    {
-        std::uint64_t const high = next() >> 6;
-        return double((high << 27) | (next() >> 5)) * 0x1p-53;
-    }
+    double uniform() { return engine_.uniform_double(); }
 
     /// Standard normal (Box and Muller 1958). Its last bits depend on the mathematical library.
     double normal()
@@ -82,15 +68,7 @@ public:
 
 private:
     static constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15ULL;
-    /// The finaliser of SplitMix64 (Steele et al. 2014): a bijection with full avalanche.
-    static std::uint64_t mix(std::uint64_t v)
-    {
-        v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9ULL;
-        v = (v ^ (v >> 27)) * 0x94d049bb133111ebULL;
-        return v ^ (v >> 31);
-    }
-
-    std::uint64_t state_ = 0, increment_;
+    gi::Pcg32 engine_;
 };
 
 } // namespace study

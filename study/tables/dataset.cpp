@@ -1,10 +1,10 @@
 #include "study/tables/dataset.h"
 
-#include "study/journal/durable_file.h"
+#include "gi/core/file.h"
+#include "gi/core/sha256.h"
 #include "study/journal/journal_file.h"
 #include "study/journal/journal_folders.h"
 #include "study/script/script_file.h"
-#include "study/script/sha256.h"
 
 #include <fmt/format.h>
 
@@ -30,10 +30,10 @@ struct Text {
 
 Text script_of(fs::path const& dir, fs::path const& named, std::string const& hash)
 {
-    if (!named.empty()) return {named.string(), read_whole(named)};
+    if (!named.empty()) return {named.string(), gi::read_text(named)};
     for (fs::path const& file : names_in(dir / "code", ""))
         if (file.extension() == ".yaml")
-            if (std::string text = read_whole(file); sha256(text) == hash) return {file.string(), text};
+            if (std::string text = gi::read_text(file); gi::sha256(text) == hash) return {file.string(), text};
     throw ScriptError((dir / "code").string(), {}, "the script of the sessions is not there",
                       "trials cannot be understood without it", "name it with --script");
 }
@@ -82,7 +82,7 @@ Dataset read_dataset(fs::path const& dir, fs::path const& script)
             Text const text = script_of(dir, script, start.script_sha256);
             d.script = parse_script(text.text, text.file);
             d.script_text = text.text;
-            hash = sha256(text.text);
+            hash = gi::sha256(text.text);
         }
         if (start.script_sha256 != hash)
             throw ScriptError(file.string(), {}, "the session was recorded with another script",
@@ -92,7 +92,7 @@ Dataset read_dataset(fs::path const& dir, fs::path const& script)
             throw ScriptError(file.string(), {}, fmt::format("participant {}", start.participant),
                               "the script has no such participant", "name the right script with --script");
         Plan plan = make_plan(d.script, start.participant);
-        if (!start.plan_sha256.empty() && start.plan_sha256 != sha256(plan_table(d.script, plan)))
+        if (!start.plan_sha256.empty() && start.plan_sha256 != gi::sha256(plan_table(d.script, plan)))
             throw ScriptError(file.string(), {}, "the session was planned otherwise",
                               fmt::format("version {} made another plan of this script", start.version),
                               "use that version of the program");

@@ -1,7 +1,7 @@
 #include "ar/camera/camera_model.h"
 
-#include "ar/camera/error.h"
 #include "ar/camera/pose.h"
+#include "gi/core/error.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -98,7 +98,7 @@ TEST(CameraModels, ThatCannotBeAreRefused)
     auto const refused = [](auto const& change) {
         CameraModel c = camera(LensModel::radial_tangential);
         change(c);
-        EXPECT_THROW(check(c, "c.yaml"), InputError);
+        EXPECT_THROW(check(c, "c.yaml"), gi::InputError);
     };
     refused([](CameraModel& c) { c.fx = 0; });
     refused([](CameraModel& c) { c.fy = -500; });

@@ -1,7 +1,7 @@
 #include "ar/camera/photometry.h"
 
-#include "ar/camera/error.h"
 #include "ar/camera/frame.h"
+#include "gi/core/error.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -138,10 +138,10 @@ TEST(Frames, OfAllFormatsHaveColour)
 TEST(Frames, ThatAreTruncatedAreRefused)
 {
     cv::Mat const nothing(1, 20, CV_8UC1, cv::Scalar(7));
-    EXPECT_THROW(rgb_of(frame(PixelFormat::mjpeg, nothing)), InputError);
+    EXPECT_THROW(rgb_of(frame(PixelFormat::mjpeg, nothing)), gi::InputError);
     std::vector<uchar> jpeg;
     cv::imencode(".jpg", cv::Mat(8, 8, CV_8UC3, cv::Scalar::all(9)), jpeg);
-    EXPECT_THROW(gray_of(frame(PixelFormat::mjpeg, cv::Mat(jpeg, true).reshape(1, 1))), InputError)
+    EXPECT_THROW(gray_of(frame(PixelFormat::mjpeg, cv::Mat(jpeg, true).reshape(1, 1))), gi::InputError)
         << "another size";
 }
 

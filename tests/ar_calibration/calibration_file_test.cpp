@@ -1,6 +1,6 @@
 #include "ar/calibration/calibration_file.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "tests/ar_calibration/synthetic_camera.h"
 
 #include <filesystem>
@@ -127,15 +127,15 @@ TEST(CalibrationFile, SaysWhatIsWrongAndWhere)
         try {
             parse_calibration(text, "c.yaml");
             ADD_FAILURE() << c.to;
-        } catch (InputError const& e) {
+        } catch (gi::InputError const& e) {
             EXPECT_NE(std::string(e.what()).find(c.message), std::string::npos) << e.what();
         }
     }
-    EXPECT_THROW(read_calibration("/no/such/file.yaml"), InputError);
+    EXPECT_THROW(read_calibration("/no/such/file.yaml"), gi::InputError);
     Calibration wrong = full(LensModel::pinhole);
     wrong.photometry->unit_of_byte[1][7] = 2;
     auto const file = own_file("wrong");
-    EXPECT_THROW(write_calibration(file, wrong), InputError);
+    EXPECT_THROW(write_calibration(file, wrong), gi::InputError);
     EXPECT_FALSE(std::filesystem::exists(file));
 }
 

@@ -1,6 +1,6 @@
 #include "ar/calibration/lens_choice.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -107,7 +107,7 @@ TEST(Lens, NamesViewsThatAreWrong)
     EXPECT_GT(c.views[4].rms_px, 1);
     EXPECT_NE(c.views[11].why.find("4 points"), std::string::npos);
     EXPECT_NEAR(c.camera.fx, truth.fx, 0.002 * truth.fx);
-    EXPECT_THROW(calibrate_lens({views[0], views[1]}, truth.size_px, truth.lens), InputError);
+    EXPECT_THROW(calibrate_lens({views[0], views[1]}, truth.size_px, truth.lens), gi::InputError);
 }
 
 TEST(Lens, WarnsOfPoorViews)

@@ -1,7 +1,7 @@
 #include "ar/calibration/response.h"
 #include "ar/calibration/sensor.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "tests/ar_calibration/synthetic_camera.h"
 
 #include <fmt/format.h>
@@ -91,18 +91,18 @@ TEST(Merge, RefusesWhatIsNoBracket)
     Bracket b = bracket_of(scene({32, 20}), film_photometry(), {}, 3);
     EXPECT_NO_THROW(check(b));
     b.exposures[1].time_s = 0;
-    EXPECT_THROW(merge(b, srgb_photometry()), InputError);
+    EXPECT_THROW(merge(b, srgb_photometry()), gi::InputError);
     b.exposures = {{1, 1, 0, 0}, {1, 1, 0, 0}, {1, 1, 0, 0}};
-    EXPECT_THROW(merge(b, srgb_photometry()), InputError);
+    EXPECT_THROW(merge(b, srgb_photometry()), gi::InputError);
     b.exposures.pop_back();
-    EXPECT_THROW(merge(b, srgb_photometry()), InputError);
-    EXPECT_THROW(merge({}, srgb_photometry()), InputError);
+    EXPECT_THROW(merge(b, srgb_photometry()), gi::InputError);
+    EXPECT_THROW(merge({}, srgb_photometry()), gi::InputError);
     Bracket black;
     for (double t : {1., 2., 4.}) {
         black.rgb.emplace_back(20, 20, CV_8UC3, cv::Scalar::all(0));
         black.exposures.push_back({t, 1, 0, 0});
     }
-    EXPECT_THROW(calibrate_response(black), InputError);
+    EXPECT_THROW(calibrate_response(black), gi::InputError);
 }
 
 TEST(Vignetting, IsThatOfFlatFields)
@@ -131,10 +131,10 @@ TEST(Vignetting, IsThatOfFlatFields)
     EXPECT_EQ(flat.points.size(), 2u * 3 * 24 * 24);
     for (cv::Point2d const& p : flat.points)
         EXPECT_NEAR(p.y / (1 + p.x * p.x * (-0.35 + p.x * p.x * (0.12 - 0.08 * p.x * p.x))), 1, 0.02);
-    EXPECT_THROW(vignetting_of_flat({}, truth), InputError);
+    EXPECT_THROW(vignetting_of_flat({}, truth), gi::InputError);
     // Of the corners nothing is known where they are black.
     cv::circle(flats[0], {160, 120}, 190, cv::Scalar::all(0), 160);
-    EXPECT_THROW(vignetting_of_flat(std::span(flats).first(1), truth), InputError);
+    EXPECT_THROW(vignetting_of_flat(std::span(flats).first(1), truth), gi::InputError);
 }
 
 TEST(Noise, IsThatOfTheSensor)
@@ -153,11 +153,11 @@ TEST(Noise, IsThatOfTheSensor)
                "line {:.3f}\n",
                m.read, noise.read, m.photon, noise.photon, 100 * most, fit.rms);
     EXPECT_LT(most, 0.05);
-    EXPECT_THROW(noise_of_pairs(std::span(frames).first(3), truth), InputError);
+    EXPECT_THROW(noise_of_pairs(std::span(frames).first(3), truth), gi::InputError);
     frames.resize(2);
     frames[0].setTo(50);
     frames[1].setTo(50);
-    EXPECT_THROW(noise_of_pairs(frames, truth), InputError);
+    EXPECT_THROW(noise_of_pairs(frames, truth), gi::InputError);
 }
 
 TEST(Colour, MatrixIsFoundFromAChart)
@@ -207,9 +207,9 @@ TEST(Colour, MatrixIsFoundFromAChart)
         EXPECT_NEAR(found[std::size_t(i)].y, on_chart(i).y, 0.01) << i;
     }
     std::swap(corners[1], corners[2]);
-    EXPECT_THROW(chart_centres(corners, camera), InputError);
-    EXPECT_THROW(patch_units(picture, std::vector<cv::Point2d>{{1, 1}}, 15, truth), InputError);
-    EXPECT_THROW(fit_colour(std::vector<cv::Vec3f>(24, {0.1f, 0.1f, 0.1f}), chart), InputError);
+    EXPECT_THROW(chart_centres(corners, camera), gi::InputError);
+    EXPECT_THROW(patch_units(picture, std::vector<cv::Point2d>{{1, 1}}, 15, truth), gi::InputError);
+    EXPECT_THROW(fit_colour(std::vector<cv::Vec3f>(24, {0.1f, 0.1f, 0.1f}), chart), gi::InputError);
 }
 
 } // namespace

@@ -1,6 +1,6 @@
-#include "ar/camera/error.h"
 #include "ar/capture/clock.h"
 #include "ar/capture/counter_source.h"
+#include "gi/core/error.h"
 #include "tests/ar_capture/temporary_folder.h"
 
 #include <opencv2/imgcodecs.hpp>
@@ -134,15 +134,15 @@ TEST(CounterSource, DoesNotWaitLongerThanAllowed)
 
 TEST(CounterSource, RefusesWhatCannotBe)
 {
-    EXPECT_THROW(CounterSource({.size_px = {100, 100}}), InputError);
-    EXPECT_THROW(CounterSource({.frames_per_s = 0}), InputError);
-    EXPECT_THROW(CounterSource({.format = PixelFormat::nv12}), InputError);
+    EXPECT_THROW(CounterSource({.size_px = {100, 100}}), gi::InputError);
+    EXPECT_THROW(CounterSource({.frames_per_s = 0}), gi::InputError);
+    EXPECT_THROW(CounterSource({.format = PixelFormat::nv12}), gi::InputError);
     CounterSource source;
     EXPECT_EQ(source.set({.gain = 2, .frame_duration_s = 0.1}).size(), 2u);
     EXPECT_TRUE(source.set({}).empty());
-    EXPECT_THROW(source.set({.gain = -1}), InputError);
-    EXPECT_THROW(source.set({.automatic_exposure = true, .exposure_time_s = 0.01}), InputError);
-    EXPECT_THROW(source.set({.red_gain = 1}), InputError);
+    EXPECT_THROW(source.set({.gain = -1}), gi::InputError);
+    EXPECT_THROW(source.set({.automatic_exposure = true, .exposure_time_s = 0.01}), gi::InputError);
+    EXPECT_THROW(source.set({.red_gain = 1}), gi::InputError);
 }
 
 TEST(DriverClock, IsFoundByWhatIsNotInTheFuture)

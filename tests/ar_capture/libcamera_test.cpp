@@ -1,6 +1,6 @@
 // The libcamera that this program was built with, on whatever machine this is.
-#include "ar/camera/error.h"
 #include "ar/capture/libcamera_source.h"
+#include "gi/core/error.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ std::string message(LibcameraOptions const& options)
 {
     try {
         open_libcamera(options);
-    } catch (InputError const& e) {
+    } catch (gi::InputError const& e) {
         return e.what();
     }
     return "none";

@@ -1,7 +1,7 @@
-#include "ar/camera/error.h"
 #include "ar/capture/counter_source.h"
 #include "ar/capture/open_source.h"
 #include "ar/capture/session_writer.h"
+#include "gi/core/error.h"
 #include "tests/ar_capture/temporary_folder.h"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ TEST(OpenSource, SaysWhatIsNotThere)
 {
     for (char const* name : {"device:x", "device:-1", "device:1234", "gstreamer:nothing", "/missing",
                              "/missing/%d.png", "", "camera:no such camera"})
-        EXPECT_THROW(open_source(name), InputError) << name;
+        EXPECT_THROW(open_source(name), gi::InputError) << name;
 }
 
 /// What a recording costs in order and latency: the numbers in the pictures are those of the frames.

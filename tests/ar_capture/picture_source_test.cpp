@@ -1,6 +1,6 @@
-#include "ar/camera/error.h"
 #include "ar/capture/picture_source.h"
 #include "ar/capture/whole_picture.h"
+#include "gi/core/error.h"
 #include "tests/ar_capture/temporary_folder.h"
 
 #include <fmt/format.h>
@@ -58,9 +58,9 @@ TEST(Pictures, OfAPatternHaveTheirNumbersAndGapsAreDropped)
     EXPECT_EQ(source.description().format, PixelFormat::gray8);
     EXPECT_EQ(play(source), (std::vector<std::uint64_t>{3, 4, 7, 12}));
     EXPECT_EQ(source.counts(), (SourceCounts{.delivered = 4, .dropped = 6}));
-    EXPECT_THROW(find_pictures(folder / "f_%s.png"), InputError);
-    EXPECT_THROW(find_pictures(folder / "f_%d_%d.png"), InputError);
-    EXPECT_THROW(find_pictures(folder / "f_%"), InputError);
+    EXPECT_THROW(find_pictures(folder / "f_%s.png"), gi::InputError);
+    EXPECT_THROW(find_pictures(folder / "f_%d_%d.png"), gi::InputError);
+    EXPECT_THROW(find_pictures(folder / "f_%"), gi::InputError);
 }
 
 TEST(Pictures, ThatAreSpoiltAreRefusedAndNamed)
@@ -109,13 +109,13 @@ TEST(Pictures, ThatVanishMeanwhileAreRefused)
 TEST(Pictures, WithoutAnyThatIsGoodAreAnInputError)
 {
     TemporaryFolder folder;
-    EXPECT_THROW(PictureSource(folder.path()), InputError);
-    EXPECT_THROW(PictureSource(folder / "missing"), InputError);
+    EXPECT_THROW(PictureSource(folder.path()), gi::InputError);
+    EXPECT_THROW(PictureSource(folder / "missing"), gi::InputError);
     write_file(folder / "0.jpg", "no picture");
     try {
         PictureSource source(folder.path());
         FAIL();
-    } catch (InputError const& e) {
+    } catch (gi::InputError const& e) {
         EXPECT_NE(std::string(e.what()).find("0.jpg: it is no picture that is known here"), std::string::npos)
             << e.what();
     }

@@ -1,7 +1,7 @@
-#include "ar/camera/error.h"
 #include "ar/capture/counter_source.h"
 #include "ar/capture/session_reader.h"
 #include "ar/capture/session_writer.h"
+#include "gi/core/error.h"
 #include "tests/ar_capture/temporary_folder.h"
 
 #include <csignal>
@@ -123,8 +123,8 @@ TEST(Session, NothingIsOverwritten)
 {
     TemporaryFolder folder;
     record(folder / "s");
-    EXPECT_THROW(SessionWriter(folder / "s", header_of()), InputError);
-    EXPECT_THROW(SessionWriter(folder / "missing/s", header_of()), InputError);
+    EXPECT_THROW(SessionWriter(folder / "s", header_of()), gi::InputError);
+    EXPECT_THROW(SessionWriter(folder / "missing/s", header_of()), gi::InputError);
     SessionReader reader(folder / "s");
     EXPECT_TRUE(reader.next());
 }
@@ -161,13 +161,13 @@ TEST(Session, PlanesThatAreNotWhatTheFrameSaysAreRefused)
     SessionWriter writer(folder / "s", header_of());
     Frame f = make_frame(PixelFormat::nv12, 0);
     f.planes[1] = cv::Mat();
-    EXPECT_THROW(writer.append(f), InputError);
+    EXPECT_THROW(writer.append(f), gi::InputError);
     f = make_frame(PixelFormat::rgb8, 0);
     f.size_px = {9, 6};
-    EXPECT_THROW(writer.append(f), InputError);
+    EXPECT_THROW(writer.append(f), gi::InputError);
     f = make_frame(PixelFormat::rgb8, 0);
     f.captured_s = std::nan("");
-    EXPECT_THROW(writer.append(f), InputError);
+    EXPECT_THROW(writer.append(f), gi::InputError);
 }
 
 TEST(Session, OfAKilledProcessIsWholeUpToItsLastFrame)
@@ -225,7 +225,7 @@ TEST(Session, TruncatedAtAnyByteItEndsWell)
     std::string const whole = file_text(folder / "s/session.json");
     for (std::size_t n = 0; n + 2 < whole.size(); ++n) {
         write_file(folder / "s/session.json", whole.substr(0, n));
-        EXPECT_THROW(SessionReader(folder / "s"), InputError) << n;
+        EXPECT_THROW(SessionReader(folder / "s"), gi::InputError) << n;
     }
 }
 
@@ -259,7 +259,7 @@ TEST(Session, ErrorsNameTheirPlace)
     auto const message = [&] {
         try {
             SessionSource source(folder / "s");
-        } catch (InputError const& e) {
+        } catch (gi::InputError const& e) {
             return std::string(e.what());
         }
         return std::string("none");

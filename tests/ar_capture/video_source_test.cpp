@@ -1,6 +1,6 @@
-#include "ar/camera/error.h"
 #include "ar/capture/counter_source.h"
 #include "ar/capture/video_source.h"
+#include "gi/core/error.h"
 #include "tests/ar_capture/temporary_folder.h"
 
 #include <fmt/format.h>
@@ -77,7 +77,7 @@ TEST(Video, TruncatedItSaysWhatIsMissing)
                 EXPECT_EQ(counts.delivered + counts.refused, 20u) << part;
             }
             ++opened;
-        } catch (InputError const&) {
+        } catch (gi::InputError const&) {
         }
     }
     EXPECT_GT(opened, 10);
@@ -107,15 +107,15 @@ TEST(Video, ThatIsNoneIsAnInputError)
     write_file(folder / "empty.avi", "");
     write_file(folder / "text.mp4", "no video at all");
     for (char const* name : {"empty.avi", "text.mp4", "missing.avi"})
-        EXPECT_THROW(open_video(folder / name), InputError) << name;
-    EXPECT_THROW(open_video(folder.path()), InputError);
+        EXPECT_THROW(open_video(folder / name), gi::InputError) << name;
+    EXPECT_THROW(open_video(folder.path()), gi::InputError);
 }
 
 TEST(Device, ThatIsNotThereIsAnInputError)
 {
-    EXPECT_THROW(open_device(-1), InputError);
-    EXPECT_THROW(open_device(999), InputError);
-    EXPECT_THROW(open_device(0, {.format = PixelFormat::nv12}), InputError);
+    EXPECT_THROW(open_device(-1), gi::InputError);
+    EXPECT_THROW(open_device(999), gi::InputError);
+    EXPECT_THROW(open_device(0, {.format = PixelFormat::nv12}), gi::InputError);
 }
 
 class Pipeline : public ::testing::Test {
@@ -185,8 +185,8 @@ TEST_F(Pipeline, ThatBreaksOffIsLost)
 
 TEST_F(Pipeline, ThatCannotBeBuiltIsAnInputError)
 {
-    EXPECT_THROW(open_pipeline("nosuchelement ! appsink"), InputError);
-    EXPECT_THROW(open_pipeline("videotestsrc num-buffers=0 ! appsink"), InputError);
+    EXPECT_THROW(open_pipeline("nosuchelement ! appsink"), gi::InputError);
+    EXPECT_THROW(open_pipeline("videotestsrc num-buffers=0 ! appsink"), gi::InputError);
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 #include "ar/composite/albedo.h"
 
-#include "ar/camera/error.h"
 #include "ar/camera/photometry.h"
+#include "gi/core/error.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -123,9 +123,9 @@ TEST(Albedo, IsClampedAndCounted)
     EXPECT_EQ(fit.patches[0].albedo[0], 0.98f);
     EXPECT_EQ(fit.not_finite, 4u);
     EXPECT_EQ(fit.dark, 4u * 5 * 120);
-    EXPECT_THROW(fit_albedo(views, 3), InputError);
+    EXPECT_THROW(fit_albedo(views, 3), gi::InputError);
     views[0].white = cv::Mat();
-    EXPECT_THROW(fit_albedo(views, kPatches), InputError);
+    EXPECT_THROW(fit_albedo(views, kPatches), gi::InputError);
 }
 
 TEST(AlbedoTexture, ComesBackTexelByTexel)
@@ -152,7 +152,7 @@ TEST(AlbedoTexture, ComesBackTexelByTexel)
     EXPECT_EQ(found.filled, 16u);
     EXPECT_EQ(found.albedo.at<cv::Vec3f>(3, 7), fit.patches[0].albedo);
     EXPECT_GT(found.samples.at<int>(3, 3), 50);
-    EXPECT_THROW(fit_texture(views, 0, {0, 8}, fit.patches[0]), InputError);
+    EXPECT_THROW(fit_texture(views, 0, {0, 8}, fit.patches[0]), gi::InputError);
 }
 
 } // namespace

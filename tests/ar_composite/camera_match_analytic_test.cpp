@@ -1,9 +1,9 @@
 // What virtual pixels share with the camera: spread of edges, motion, noise; measured as a camera's is.
 
-#include "ar/camera/error.h"
 #include "ar/composite/blur.h"
 #include "ar/composite/composite.h"
 #include "ar/composite/edge_spread.h"
+#include "gi/core/error.h"
 #include "tests/ar_composite/test_pictures.h"
 
 #include <cmath>
@@ -88,7 +88,7 @@ TEST(EdgeSpread, RefusesWhatIsNoEdge)
     EXPECT_FALSE(estimate_sharpness(texture, square.edges()));
     EXPECT_FALSE(fit_edge(marker(square, 1), {{5, 5}, {8, 5}})) << "too short";
     EXPECT_FALSE(fit_edge(marker(square, 1), {{-900, -500}, {-800, -500}}));
-    EXPECT_THROW(fit_edge(cv::Mat(9, 9, CV_8UC1), {{1, 1}, {8, 8}}), InputError);
+    EXPECT_THROW(fit_edge(cv::Mat(9, 9, CV_8UC1), {{1, 1}, {8, 8}}), gi::InputError);
 }
 
 /// A virtual marker, drawn as a renderer does: the mean over each pixel. The place behind is 0.8 everywhere.
@@ -135,7 +135,7 @@ TEST(Defocus, MakesVirtualMarkersAsSharpAsRealOnes)
     }
     EXPECT_EQ(defocused(sharp, 0).with.data, sharp.with.data);
     EXPECT_EQ(missing_blur_px(0.2), 0);
-    EXPECT_THROW(defocused(sharp, -1), InputError);
+    EXPECT_THROW(defocused(sharp, -1), gi::InputError);
 }
 
 TEST(Defocus, KeepsNothingNothing)
@@ -171,7 +171,7 @@ TEST(MotionBlur, IsTheMeanAlongThePath)
     std::cout << "ramp of a moving border: off by at most " << worst << "\n";
     EXPECT_LT(worst, 0.07);
     EXPECT_EQ(motion_blurred(pair, cv::Mat(20, 60, CV_32FC2, cv::Scalar(0, 0))).with.data, pair.with.data);
-    EXPECT_THROW(motion_blurred(pair, cv::Mat()), InputError);
+    EXPECT_THROW(motion_blurred(pair, cv::Mat()), gi::InputError);
 }
 
 TEST(ImageVelocity, IsThatOfStandingThings)

@@ -1,6 +1,6 @@
 #include "ar/composite/composite.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "tests/ar_composite/test_pictures.h"
 
 #include <cmath>
@@ -186,13 +186,13 @@ TEST(Composite, RefusesWhatDoesNotFit)
     Compositor composite(srgb_photometry());
     cv::Mat out;
     RenderedPair pair = unchanged_pair({8, 6});
-    EXPECT_THROW(composite(camera_frame({9, 6}), pair, {}, out), InputError);
-    EXPECT_THROW(composite(cv::Mat(6, 8, CV_8UC1), pair, {}, out), InputError);
+    EXPECT_THROW(composite(camera_frame({9, 6}), pair, {}, out), gi::InputError);
+    EXPECT_THROW(composite(cv::Mat(6, 8, CV_8UC1), pair, {}, out), gi::InputError);
     pair.coverage = cv::Mat();
-    EXPECT_THROW(composite(camera_frame({8, 6}), pair, {}, out), InputError);
+    EXPECT_THROW(composite(camera_frame({8, 6}), pair, {}, out), gi::InputError);
     Photometry p = srgb_photometry();
     p.colour = cv::Matx33f::zeros();
-    EXPECT_THROW(Compositor{p}, InputError);
+    EXPECT_THROW(Compositor{p}, gi::InputError);
 }
 
 TEST(ResponseTables, FindTheNearestByte)

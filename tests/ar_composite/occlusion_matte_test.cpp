@@ -1,7 +1,7 @@
 #include "ar/composite/occlusion_matte.h"
 
-#include "ar/camera/error.h"
 #include "ar/composite/composite.h"
+#include "gi/core/error.h"
 #include "tests/ar_composite/test_pictures.h"
 
 #include <cmath>
@@ -129,8 +129,8 @@ TEST(OcclusionMatte, OfNothingHiddenChangesNothing)
     cv::Mat const camera = camera_radiance({1, 0, 0}, {0, 1, 0}), disc = object();
     EXPECT_TRUE(equal(refined_coverage(disc, disc, camera, {}, &counts), disc));
     EXPECT_EQ(counts.band, 0u);
-    EXPECT_THROW(refined_coverage(disc, disc, cv::Mat(), {}), InputError);
-    EXPECT_THROW(refined_coverage(disc, disc, camera, {.band_px = 8, .radius_px = 8}), InputError);
+    EXPECT_THROW(refined_coverage(disc, disc, cv::Mat(), {}), gi::InputError);
+    EXPECT_THROW(refined_coverage(disc, disc, camera, {.band_px = 8, .radius_px = 8}), gi::InputError);
 }
 
 } // namespace

@@ -1,8 +1,8 @@
 #pragma once
 // Where virtual objects changed a picture, and errors there and elsewhere.
 
-#include "ar/camera/error.h"
 #include "ar/composite/rendered_pair.h"
+#include "gi/core/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,13 +53,13 @@ struct CompositeError {
     RegionError inside, outside;
 };
 
-/// @param a, b  CV_8UC3 @param region  CV_8UC1. @throws InputError types or sizes
+/// @param a, b  CV_8UC3 @param region  CV_8UC1. @throws gi::InputError types or sizes
 inline CompositeError errors_of(cv::Mat const& a, cv::Mat const& b, cv::Mat const& region)
 {
     if (a.type() != CV_8UC3 || b.type() != CV_8UC3 || region.type() != CV_8UC1 || a.size() != b.size() ||
         a.size() != region.size())
-        throw InputError("pictures to compare have other sizes or types", "errors are of pixels",
-                         "give two of RGB bytes and a mask, all of one size");
+        throw gi::InputError("pictures to compare have other sizes or types", "errors are of pixels",
+                             "give two of RGB bytes and a mask, all of one size");
     CompositeError e;
     for (int y = 0; y < a.rows; ++y)
         for (int x = 0; x < a.cols; ++x) {

@@ -37,7 +37,7 @@ TEST(RegionErrors, AreApart)
     EXPECT_EQ(e.inside.differing, 1u);
     EXPECT_NEAR(e.inside.rms, 4 / std::sqrt(900.0), 1e-12);
     EXPECT_NEAR(e.outside.mean_absolute, 1 / 2700.0, 1e-12);
-    EXPECT_THROW(errors_of(a, b, cv::Mat()), InputError);
+    EXPECT_THROW(errors_of(a, b, cv::Mat()), gi::InputError);
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 #include "ar/composite/temporal.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "tests/ar_composite/test_pictures.h"
 
 #include <cmath>
@@ -141,10 +141,10 @@ TEST(TemporalFilter, RefusesWhatDoesNotFit)
 {
     CameraModel lens = kCamera;
     lens.lens = LensModel::fisheye;
-    EXPECT_THROW(TemporalFilter{lens}, InputError);
-    EXPECT_THROW(TemporalFilter(kCamera, {.weight = 0}), InputError);
+    EXPECT_THROW(TemporalFilter{lens}, gi::InputError);
+    EXPECT_THROW(TemporalFilter(kCamera, {.weight = 0}), gi::InputError);
     TemporalFilter filter(kCamera);
-    EXPECT_THROW(filter(unchanged_pair(kFrameSize), cv::Mat(), {}), InputError);
+    EXPECT_THROW(filter(unchanged_pair(kFrameSize), cv::Mat(), {}), gi::InputError);
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 #include "ar/composite/upsample.h"
 
-#include "ar/camera/error.h"
 #include "ar/composite/composite.h"
+#include "gi/core/error.h"
 #include "tests/ar_composite/test_pictures.h"
 
 #include <cmath>
@@ -108,9 +108,9 @@ TEST(Upsampling, RefusesGuidesOfOneResolution)
     cv::Size const full(64, 48);
     Scene const truth = scene(full), low = scene({32, 24});
     DirectlySeen const nothing{cv::Mat::zeros(full, CV_32FC3), cv::Mat::zeros(full, CV_32FC1)};
-    EXPECT_THROW(upsampled(low.pair, {}, nothing, truth.guides), InputError);
-    EXPECT_THROW(upsampled(low.pair, low.guides, nothing, {}), InputError);
-    EXPECT_THROW(upsampled(low.pair, truth.guides, nothing, truth.guides), InputError);
+    EXPECT_THROW(upsampled(low.pair, {}, nothing, truth.guides), gi::InputError);
+    EXPECT_THROW(upsampled(low.pair, low.guides, nothing, {}), gi::InputError);
+    EXPECT_THROW(upsampled(low.pair, truth.guides, nothing, truth.guides), gi::InputError);
 }
 
 } // namespace

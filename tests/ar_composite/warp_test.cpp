@@ -1,7 +1,7 @@
 #include "ar/composite/warp.h"
 
-#include "ar/camera/error.h"
 #include "ar/composite/composite.h"
+#include "gi/core/error.h"
 #include "tests/ar_composite/test_pictures.h"
 
 #include <cmath>
@@ -86,15 +86,15 @@ TEST(Warp, SaysWhatIsNotSeen)
     EXPECT_LT(warp.unseen_px(), 160 * 120 / 3);
     cv::Mat const ones(120, 160, CV_32FC1, cv::Scalar(1));
     EXPECT_EQ(warp.nearest(ones).at<float>(0, 0), 0);
-    EXPECT_THROW(warp.smooth(ones.colRange(0, 100)), InputError);
+    EXPECT_THROW(warp.smooth(ones.colRange(0, 100)), gi::InputError);
 }
 
 TEST(CoveringPinhole, RefusesWhatNoPlaneHolds)
 {
     CameraModel c{LensModel::fisheye, {640, 480}, 200, 200, 320, 240, {}};
-    EXPECT_THROW(covering_pinhole(c), InputError);
-    EXPECT_THROW(covering_pinhole(camera(LensModel::pinhole), 0), InputError);
-    EXPECT_THROW(covering_pinhole(camera(LensModel::pinhole), 200), InputError);
+    EXPECT_THROW(covering_pinhole(c), gi::InputError);
+    EXPECT_THROW(covering_pinhole(camera(LensModel::pinhole), 0), gi::InputError);
+    EXPECT_THROW(covering_pinhole(camera(LensModel::pinhole), 200), gi::InputError);
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 #include "ar/light/lat_long.h"
 
-#include "ar/camera/error.h"
-#include "ar/camera/rotation_vector.h"
+#include "gi/core/error.h"
+#include "gi/core/rotation.h"
 #include "tests/ar_light/environments.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(LatLong, SolidAnglesSumToASphere)
 TEST(LatLong, TurningKeepsTheLightAndTheDirections)
 {
     cv::Mat const map = drawn({256, 128}, kRoom);
-    glm::dquat const turn = exp_rotation({0.3, 1.1, -0.4});
+    glm::dquat const turn = gi::exp_rotation({0.3, 1.1, -0.4});
     cv::Mat const turned = resampled(map, {256, 128}, turn);
     cv::Vec3d const a = integral(map), b = integral(turned);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(b[c] / a[c], 1, 0.005);
@@ -72,8 +72,8 @@ TEST(LatLong, HolesAreFilledSmoothlyAndCounted)
     EXPECT_NEAR(middle[0], 2, 1e-4);
     EXPECT_NEAR(middle[2], 1, 1e-4);
     map.weight.setTo(0);
-    EXPECT_THROW(filled(map), InputError);
-    EXPECT_THROW(filled({}), InputError);
+    EXPECT_THROW(filled(map), gi::InputError);
+    EXPECT_THROW(filled({}), gi::InputError);
 }
 
 TEST(LatLong, MergesByWeight)
@@ -94,13 +94,13 @@ TEST(LatLong, OfWhatIsNoMapIsRefused)
 {
     cv::Mat const good(8, 16, CV_32FC3, cv::Scalar(1, 1, 1));
     EXPECT_NO_THROW(check_map(good, "map"));
-    EXPECT_THROW(check_map({}, "map"), InputError);
-    EXPECT_THROW(check_map(cv::Mat(8, 15, CV_32FC3, cv::Scalar(1, 1, 1)), "map"), InputError);
-    EXPECT_THROW(check_map(cv::Mat(8, 16, CV_8UC3, cv::Scalar(1, 1, 1)), "map"), InputError);
+    EXPECT_THROW(check_map({}, "map"), gi::InputError);
+    EXPECT_THROW(check_map(cv::Mat(8, 15, CV_32FC3, cv::Scalar(1, 1, 1)), "map"), gi::InputError);
+    EXPECT_THROW(check_map(cv::Mat(8, 16, CV_8UC3, cv::Scalar(1, 1, 1)), "map"), gi::InputError);
     for (float const bad : {-1e-3f, std::nanf(""), HUGE_VALF}) {
         cv::Mat m = good.clone();
         m.at<cv::Vec3f>(3, 4)[1] = bad;
-        EXPECT_THROW(check_map(m, "map"), InputError);
+        EXPECT_THROW(check_map(m, "map"), gi::InputError);
     }
 }
 

@@ -1,8 +1,8 @@
 #include "ar/light/live_probe.h"
 
-#include "ar/camera/error.h"
 #include "ar/camera/photometry.h"
-#include "ar/camera/rotation_vector.h"
+#include "gi/core/error.h"
+#include "gi/core/rotation.h"
 #include "tests/ar_light/environments.h"
 #include "tests/ar_light/irradiance_maps.h"
 
@@ -22,8 +22,8 @@ CameraModel camera()
 
 glm::dquat looking(double turn_deg, double up_deg)
 {
-    return exp_rotation({0, glm::radians(turn_deg), 0}) * glm::dquat(0, 1, 0, 0) *
-           exp_rotation({glm::radians(up_deg), 0, 0});
+    return gi::exp_rotation({0, glm::radians(turn_deg), 0}) * glm::dquat(0, 1, 0, 0) *
+           gi::exp_rotation({glm::radians(up_deg), 0, 0});
 }
 
 cv::Mat seen(Environment const& light, glm::dquat const& world_from_camera, double scale = 1)
@@ -191,13 +191,13 @@ TEST(LiveProbe, RefusesWhatDoesNotFitAndCountsWhatIsNotFinite)
 {
     LiveProbe probe;
     cv::Mat picture = seen(kRoom, looking(0, 0));
-    EXPECT_THROW(probe.update(picture.colRange(0, 100), {}, camera(), looking(0, 0), 0), InputError);
-    EXPECT_THROW(probe.update(picture, cv::Mat::zeros(3, 3, CV_8UC1), camera(), looking(0, 0), 0), InputError);
-    EXPECT_THROW(probe.update(picture, {}, camera(), looking(0, 0), NAN), InputError);
-    EXPECT_THROW(LiveProbe(cv::Mat(3, 3, CV_32FC3, cv::Scalar(1, 1, 1))), InputError);
+    EXPECT_THROW(probe.update(picture.colRange(0, 100), {}, camera(), looking(0, 0), 0), gi::InputError);
+    EXPECT_THROW(probe.update(picture, cv::Mat::zeros(3, 3, CV_8UC1), camera(), looking(0, 0), 0), gi::InputError);
+    EXPECT_THROW(probe.update(picture, {}, camera(), looking(0, 0), NAN), gi::InputError);
+    EXPECT_THROW(LiveProbe(cv::Mat(3, 3, CV_32FC3, cv::Scalar(1, 1, 1))), gi::InputError);
     LiveProbeSettings none;
     none.step_px = 0;
-    EXPECT_THROW(LiveProbe({}, none), InputError);
+    EXPECT_THROW(LiveProbe({}, none), gi::InputError);
     picture.setTo(cv::Scalar(NAN, 1, 1));
     picture.at<cv::Vec3f>(2, 2) = {1, 1, 1};
     ProbeUpdate const u = probe.update(picture, {}, camera(), looking(0, 0), 0);

@@ -1,6 +1,6 @@
 #include "ar/light/map_file.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "tests/ar_light/environments.h"
 
 #include <filesystem>
@@ -39,24 +39,24 @@ TEST_F(MapFile, ComesBackAsWellAsItsFormatCan)
 
 TEST_F(MapFile, ThatIsNoMapIsRefused)
 {
-    EXPECT_THROW(read_map(folder / "missing.exr"), InputError);
-    EXPECT_THROW(read_map(folder / "missing.hdr"), InputError);
+    EXPECT_THROW(read_map(folder / "missing.exr"), gi::InputError);
+    EXPECT_THROW(read_map(folder / "missing.hdr"), gi::InputError);
     for (char const* name : {"a.exr", "a.hdr", "a.png", "a.txt"}) {
         std::ofstream(folder / name) << "not a picture";
-        EXPECT_THROW(read_map(folder / name), InputError) << name;
+        EXPECT_THROW(read_map(folder / name), gi::InputError) << name;
     }
     cv::Mat const map = drawn({32, 16}, kRoom);
     for (char const* name : {"b.exr", "b.hdr", "b.png"}) {
         write_map(folder / name, map);
         fs::resize_file(folder / name, 60);
-        EXPECT_THROW(read_map(folder / name), InputError) << name;
-        EXPECT_THROW(write_map(folder / "no" / "folder" / name, map), InputError) << name;
+        EXPECT_THROW(read_map(folder / name), gi::InputError) << name;
+        EXPECT_THROW(write_map(folder / "no" / "folder" / name, map), gi::InputError) << name;
     }
     cv::Mat bad = map.clone();
     bad.at<cv::Vec3f>(0, 0)[0] = -1;
-    EXPECT_THROW(write_map(folder / "c.exr", bad), InputError);
-    EXPECT_THROW(write_map(folder / "c.exr", map.rowRange(0, 8)), InputError);
-    EXPECT_THROW(write_map(folder / "c.xyz", map), InputError);
+    EXPECT_THROW(write_map(folder / "c.exr", bad), gi::InputError);
+    EXPECT_THROW(write_map(folder / "c.exr", map.rowRange(0, 8)), gi::InputError);
+    EXPECT_THROW(write_map(folder / "c.xyz", map), gi::InputError);
 }
 
 } // namespace

@@ -1,8 +1,8 @@
 #include "ar/light/mirror_ball.h"
 
-#include "ar/camera/error.h"
-#include "ar/camera/rotation_vector.h"
 #include "ar/light/lamps.h"
+#include "gi/core/error.h"
+#include "gi/core/rotation.h"
 #include "tests/ar_light/environments.h"
 #include "tests/ar_light/irradiance_maps.h"
 
@@ -30,7 +30,7 @@ Shot shot(double distance, double turn_rad, LensModel lens = LensModel::radial_t
     if (lens == LensModel::radial_tangential) s.camera.distortion = {-0.1, 0.03, 0.0005, -0.0004, 0};
     // OpenCV's axes in a world with y up, seen from the south, turned about y; the ball is a little aside.
     glm::dquat const level(0, 1, 0, 0);
-    s.world_from_camera.rotation = exp_rotation({0, turn_rad, 0}) * level * exp_rotation({0.05, 0, 0.1});
+    s.world_from_camera.rotation = gi::exp_rotation({0, turn_rad, 0}) * level * gi::exp_rotation({0.05, 0, 0.1});
     auto const aside = direction_of(s.camera, {245, 140});
     s.world_from_camera.position_m = -(s.world_from_camera.rotation * (distance * *aside));
     return s;
@@ -195,18 +195,18 @@ TEST(MirrorBall, ThatIsNotThereIsAnError)
 {
     Shot const s = shot(1, 0);
     cv::Mat const flat(320, 420, CV_32FC3, cv::Scalar(0.5, 0.5, 0.5));
-    EXPECT_THROW(find_ball(flat, s.camera), InputError);
-    EXPECT_THROW(find_ball(flat, s.camera, truth(s)), InputError);
-    EXPECT_THROW(ball_of_circle(s.camera, {100, 100}, -3), InputError);
+    EXPECT_THROW(find_ball(flat, s.camera), gi::InputError);
+    EXPECT_THROW(find_ball(flat, s.camera, truth(s)), gi::InputError);
+    EXPECT_THROW(ball_of_circle(s.camera, {100, 100}, -3), gi::InputError);
     EXPECT_FALSE(predicted_ball(s.world_from_camera, {0, 0, 0}, 3));
     EXPECT_FALSE(predicted_ball(s.world_from_camera, 3.0 * s.world_from_camera.position_m, kRadius));
     BallSettings black;
     black.reflectivity[1] = 0;
-    EXPECT_THROW(unwrap_ball(flat, s.camera, {1, 0, 0, 0}, truth(s), black), InputError);
-    EXPECT_THROW(unwrap_ball(cv::Mat(), s.camera, {1, 0, 0, 0}, truth(s)), InputError);
+    EXPECT_THROW(unwrap_ball(flat, s.camera, {1, 0, 0, 0}, truth(s), black), gi::InputError);
+    EXPECT_THROW(unwrap_ball(cv::Mat(), s.camera, {1, 0, 0, 0}, truth(s)), gi::InputError);
     cv::Mat bad = flat.clone();
     bad.at<cv::Vec3f>(2, 2)[0] = std::nanf("");
-    EXPECT_THROW(unwrap_ball(bad, s.camera, {1, 0, 0, 0}, truth(s)), InputError);
+    EXPECT_THROW(unwrap_ball(bad, s.camera, {1, 0, 0, 0}, truth(s)), gi::InputError);
 }
 
 TEST(MirrorBall, PartlyOutsideThePictureCoversLess)

@@ -1,11 +1,11 @@
 // Light of a real place: a captured map, pictures made from it by others, and what this room makes of them.
 
 #include "ar/camera/photometry.h"
-#include "ar/camera/rotation_vector.h"
 #include "ar/light/lamps.h"
 #include "ar/light/live_probe.h"
 #include "ar/light/map_file.h"
 #include "ar/light/mirror_ball.h"
+#include "gi/core/rotation.h"
 #include "tests/ar_light/irradiance_maps.h"
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "ar/markers/detect.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "tests/ar_markers/drawn_view.h"
 #include "tests/ar_markers/refinement_name.h"
 
@@ -99,9 +99,9 @@ TEST(Detect, CountsWhatTheMapDoesNotKnow)
     EXPECT_EQ(s.markers_seen, 3);
     EXPECT_EQ(s.markers_ambiguous, 2);
     EXPECT_EQ(s.points.size(), 12u);
-    EXPECT_THROW(detect(cv::Mat(), world.map()), InputError);
-    EXPECT_THROW(detect(cv::Mat(9, 9, CV_8UC3), world.map()), InputError);
-    EXPECT_THROW(detect(picture, {}), InputError);
+    EXPECT_THROW(detect(cv::Mat(), world.map()), gi::InputError);
+    EXPECT_THROW(detect(cv::Mat(9, 9, CV_8UC3), world.map()), gi::InputError);
+    EXPECT_THROW(detect(picture, {}), gi::InputError);
     for (int side : {1, 2, 3, 7, 20})
         EXPECT_EQ(detect(cv::Mat(side, side, CV_8U, cv::Scalar(99)), world.map()).markers_seen, 0);
 }

@@ -1,6 +1,6 @@
 #include "ar/markers/draw.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <filesystem>
 #include <fstream>
@@ -27,9 +27,9 @@ TEST(Draw, HasTheRightScale)
     double const black = double(cv::sum(255 - odd)[0]) / 255 / (1234.5 * 1234.5);
     double const black_of_mm = double(cv::sum(255 - picture)[0]) / 255 / 1e6;
     EXPECT_NEAR(black, black_of_mm, 1e-5 * black_of_mm + 2e-6);
-    EXPECT_THROW(draw(sheet, 1e7), InputError);
-    EXPECT_THROW(draw(sheet, std::nan("")), InputError);
-    EXPECT_THROW(sheet_of(map, 1), InputError);
+    EXPECT_THROW(draw(sheet, 1e7), gi::InputError);
+    EXPECT_THROW(draw(sheet, std::nan("")), gi::InputError);
+    EXPECT_THROW(sheet_of(map, 1), gi::InputError);
 }
 
 TEST(Draw, SvgIsInMillimetres)
@@ -56,7 +56,7 @@ TEST(Draw, PngKnowsItsDensity)
     EXPECT_EQ(bytes.substr(37, 4), "pHYs");
     EXPECT_EQ(bytes.substr(41, 4), std::string("\0\0\x17\x12", 4)); // 5906
     std::filesystem::remove(file);
-    EXPECT_THROW(write_png("/no/such/folder/a.png", picture, 5906), InputError);
+    EXPECT_THROW(write_png("/no/such/folder/a.png", picture, 5906), gi::InputError);
 }
 
 } // namespace

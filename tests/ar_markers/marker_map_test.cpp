@@ -1,6 +1,6 @@
 #include "ar/markers/marker_map_file.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ std::string message_of(std::string const& text)
 {
     try {
         parse_marker_map(text, "m.yaml");
-    } catch (InputError const& e) {
+    } catch (gi::InputError const& e) {
         return e.what();
     }
     return "no error";

@@ -146,7 +146,7 @@ TEST(Pose, OfASmallFarMarkerIsSaidToBeAmbiguousAndTheLastPoseDecides)
         Sighting const s = sight(one_marker(0.05), camera_640(), truth, 0.15, random);
         PoseEstimate const alone = estimate_pose(s, camera_640());
         ASSERT_TRUE(alone.found());
-        Pose const last{glm::normalize(truth.rotation * exp_rotation({0.02, -0.02, 0.01})),
+        Pose const last{glm::normalize(truth.rotation * gi::exp_rotation({0.02, -0.02, 0.01})),
                         truth.position_m + glm::dvec3(0.02, 0.01, -0.03)};
         PoseEstimate const with = estimate_pose(s, camera_640(), last);
         if (alone.ambiguous) {

@@ -1,7 +1,7 @@
 #include "ar/pose/pose_file.h"
 
-#include "ar/camera/error.h"
-#include "ar/camera/rotation_vector.h"
+#include "gi/core/error.h"
+#include "gi/core/rotation.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ std::string refusal(std::string const& text)
 {
     try {
         parse_poses(text, "walk.txt");
-    } catch (InputError const& e) {
+    } catch (gi::InputError const& e) {
         return e.what();
     }
     return "";
@@ -49,17 +49,17 @@ TEST(PoseFile, SaysWhereItIsWrong)
     EXPECT_EQ(refusal("time_s,x_m,y_m,z,qx,qy,qz,qw\n").substr(0, 14), "walk.txt:1:16:");
     EXPECT_EQ(refusal("time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0,,0,0,0,0,0,1\n").substr(0, 13), "walk.txt:2:3:");
     EXPECT_NE(refusal("# nothing\n"), "");
-    EXPECT_THROW(read_poses("/nowhere/walk.txt"), InputError);
-    EXPECT_THROW(read_poses("/tmp"), InputError);
+    EXPECT_THROW(read_poses("/nowhere/walk.txt"), gi::InputError);
+    EXPECT_THROW(read_poses("/tmp"), gi::InputError);
 }
 
 TEST(PoseFile, IsReadBetweenItsTimes)
 {
     std::vector<TimedPose> const poses{{0, {{1, 0, 0, 0}, {0, 0, 0}}},
-                                       {0.4, {exp_rotation({0, 0.8, 0}), {4, 0, 0}}},
-                                       {2, {exp_rotation({0, 0.8, 0}), {8, 0, 0}}}};
+                                       {0.4, {gi::exp_rotation({0, 0.8, 0}), {4, 0, 0}}},
+                                       {2, {gi::exp_rotation({0, 0.8, 0}), {8, 0, 0}}}};
     EXPECT_NEAR(pose_at(poses, 0.1)->position_m.x, 1, 1e-12);
-    EXPECT_NEAR(log_rotation(pose_at(poses, 0.1)->rotation).y, 0.2, 1e-12);
+    EXPECT_NEAR(gi::log_rotation(pose_at(poses, 0.1)->rotation).y, 0.2, 1e-12);
     EXPECT_EQ(pose_at(poses, 0.4)->position_m.x, 4);
     EXPECT_FALSE(pose_at(poses, -0.01));
     EXPECT_FALSE(pose_at(poses, 2.01));

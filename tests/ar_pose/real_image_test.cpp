@@ -1,8 +1,8 @@
 // Poses from corners that others found in photographs, beside the poses that OpenCV gives.
 
-#include "ar/camera/rotation_vector.h"
 #include "ar/pose/estimate.h"
 #include "gi/core/quantile.h"
+#include "gi/core/rotation.h"
 
 #include <algorithm>
 #include <filesystem>

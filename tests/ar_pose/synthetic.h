@@ -3,8 +3,8 @@
 
 #include "ar/camera/camera_model.h"
 #include "ar/camera/pose.h"
-#include "ar/camera/rotation_vector.h"
 #include "ar/camera/sighting.h"
+#include "gi/core/rotation.h"
 
 #include <cmath>
 #include <random>
@@ -49,7 +49,7 @@ inline Pose looking(glm::dvec3 eye, glm::dvec3 target, double roll_rad = 0)
     glm::dvec3 const up = std::abs(z.y) < 0.99 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
     glm::dvec3 const x = glm::normalize(glm::cross(z, up));
     glm::dmat3 const m(x, glm::cross(z, x), z);
-    return {glm::normalize(glm::quat_cast(m) * exp_rotation({0, 0, roll_rad})), eye};
+    return {glm::normalize(glm::quat_cast(m) * gi::exp_rotation({0, 0, roll_rad})), eye};
 }
 
 /// About `distance_m` from the origin, in the upper half, at most 60 degrees from its pole.

@@ -1,7 +1,7 @@
 #include "ar/pose/tracker.h"
 
-#include "ar/camera/error.h"
-#include "ar/camera/rotation_vector.h"
+#include "gi/core/error.h"
+#include "gi/core/rotation.h"
 #include "tests/ar_pose/synthetic.h"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ struct Noise {
     Pose on(Pose const& p, double m, double deg)
     {
         double const r = glm::radians(deg);
-        return {glm::normalize(p.rotation * exp_rotation(r * glm::dvec3(n(random), n(random), n(random)))),
+        return {glm::normalize(p.rotation * gi::exp_rotation(r * glm::dvec3(n(random), n(random), n(random)))),
                 p.position_m + m * glm::dvec3(n(random), n(random), n(random))};
     }
 };
@@ -41,7 +41,7 @@ struct Noise {
 Pose walk(double t)
 {
     double const w = 2 * std::numbers::pi / 4;
-    return {exp_rotation({0.1 * std::sin(w * t), 0.35 * std::sin(0.7 * w * t), 0}),
+    return {gi::exp_rotation({0.1 * std::sin(w * t), 0.35 * std::sin(0.7 * w * t), 0}),
             {0.25 * std::sin(w * t), 1.5 + 0.03 * std::sin(2 * w * t), 0.15 * std::cos(w * t)}};
 }
 
@@ -56,7 +56,7 @@ TEST(Tracker, SteadiesAtRest)
 {
     Noise noise;
     PoseTracker tracker;
-    Pose const truth{exp_rotation({0.1, 0.2, 0}), {1, 2, 3}};
+    Pose const truth{gi::exp_rotation({0.1, 0.2, 0}), {1, 2, 3}};
     std::vector<double> in_mm, out_mm, in_deg, out_deg;
     for (int i = 0; i < 600; ++i) {
         Pose const seen = noise.on(truth, 0.001, 0.05);
@@ -158,7 +158,7 @@ TEST(Tracker, PredictsOnlySoFarAndThenIsLost)
 TEST(Tracker, BelievesAJumpOnlyWhenItLasts)
 {
     PoseTracker tracker;
-    Pose const here{{1, 0, 0, 0}, {0, 1, 0}}, there{exp_rotation({0, 1, 0}), {2, 1, 0}};
+    Pose const here{{1, 0, 0, 0}, {0, 1, 0}}, there{gi::exp_rotation({0, 1, 0}), {2, 1, 0}};
     int i = 0;
     for (; i < 20; ++i) tracker.add(i / 30.0, found(here));
     tracker.add(i++ / 30.0, found(there));
@@ -177,7 +177,8 @@ TEST(Tracker, OfATripodAveragesAndNoticesThatItWasMoved)
     TrackerSettings settings;
     settings.motion = CameraMotion::tripod;
     PoseTracker tracker(settings);
-    Pose const first{exp_rotation({0.1, 0.5, 0}), {1, 2, 3}}, second{exp_rotation({0.1, 0.51, 0}), {1.02, 2, 3}};
+    Pose const first{gi::exp_rotation({0.1, 0.5, 0}), {1, 2, 3}},
+        second{gi::exp_rotation({0.1, 0.51, 0}), {1.02, 2, 3}};
     double t = 0;
     for (int i = 0; i < 300; ++i, t += 1 / 30.0) {
         bool const wrong = i % 10 == 9; // an estimate in ten is far off
@@ -202,10 +203,10 @@ TEST(Tracker, RefusesSettingsThatMeanNothing)
 {
     TrackerSettings s;
     s.lost_after_s = 0;
-    EXPECT_THROW(PoseTracker{s}, InputError);
+    EXPECT_THROW(PoseTracker{s}, gi::InputError);
     s = {};
     s.position.min_cutoff_hz = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THROW(PoseTracker{s}, InputError);
+    EXPECT_THROW(PoseTracker{s}, gi::InputError);
 }
 
 } // namespace

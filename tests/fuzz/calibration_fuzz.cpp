@@ -1,7 +1,7 @@
 // Any text as a calibration: one whose camera has rays and that comes back as it was, or an InputError.
 
 #include "ar/calibration/calibration_file.h"
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <cmath>
 
@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
         ar::Calibration const again = ar::parse_calibration(ar::format_calibration(plain), "again");
         if (!(again.camera == c.camera) || again.photometry.has_value() != c.photometry.has_value())
             __builtin_trap();
-    } catch (ar::InputError const&) {
+    } catch (gi::InputError const&) {
     }
     return 0;
 }

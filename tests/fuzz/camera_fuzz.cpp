@@ -1,9 +1,9 @@
 // Any bytes as what a camera wrote into its buffer, of any format it has, of a size and a stride that the first
 // bytes say: planes that lie within the buffer, or a reason why not.
 
-#include "ar/camera/error.h"
 #include "ar/capture/camera_pixels.h"
 #include "ar/capture/whole_picture.h"
+#include "gi/core/error.h"
 
 #include <cstdlib>
 #include <vector>
@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
             if (!m.empty() && cv::sum(m)[0] < 0) std::abort();
         try {
             if (rgb_of(f).size() != cv::Size(size_px.x, size_px.y)) std::abort();
-        } catch (ar::InputError const&) { // a JPEG
+        } catch (gi::InputError const&) { // a JPEG
         } catch (cv::Exception const&) {
             if (f.format != ar::PixelFormat::mjpeg) throw;
         }

@@ -2,7 +2,7 @@
 // nothing would pass it. What was read is written as the same entries, and a session takes them up or says why it
 // cannot.
 
-#include "study/journal/crc32.h"
+#include "gi/core/crc32.h"
 #include "study/journal/entry_line.h"
 #include "study/journal/journal_file.h"
 #include "study/journal/moments.h"
@@ -48,7 +48,7 @@ std::string summed(std::string_view text)
     for (std::size_t at = 0, end = 0; (end = text.find('\n', at)) != std::string_view::npos; at = end + 1) {
         std::string_view const line = text.substr(at, end - at);
         char sum[32];
-        std::snprintf(sum, sizeof sum, ",\"crc32\":\"%08x\"}", study::crc32(line));
+        std::snprintf(sum, sizeof sum, ",\"crc32\":\"%08x\"}", gi::crc32(line));
         out += std::string(line) + sum + "\n";
     }
     return out + std::string(text.substr(text.rfind('\n') == std::string_view::npos ? 0 : text.rfind('\n') + 1));

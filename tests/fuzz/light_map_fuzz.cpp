@@ -1,8 +1,8 @@
 // Any bytes as an environment map, the first says which format: a map or an InputError, never anything else.
 
-#include "ar/camera/error.h"
 #include "ar/light/lat_long.h"
 #include "ar/light/map_file.h"
+#include "gi/core/error.h"
 
 #include <fstream>
 #include <unistd.h>
@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
     try {
         cv::Mat const map = ar::read_map(file);
         ar::check_map(map, "again");
-    } catch (ar::InputError const&) {
+    } catch (gi::InputError const&) {
     }
     std::filesystem::remove(file);
     return 0;

@@ -1,8 +1,8 @@
 // Any bytes as a recording: frames and an end, or an InputError. Checksums are made right, since chance never
 // would.
 
+#include "gi/core/crc32.h"
 #include "gi/core/error.h"
-#include "viewer/protocol/recording/crc32.h"
 #include "viewer/protocol/recording/recording.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ void mend_checksums(std::vector<std::uint8_t>& bytes)
         std::uint32_t length = 0;
         std::memcpy(&length, &bytes[at], 4);
         if (length > bytes.size() - at - 9) return;
-        std::uint32_t const sum = viewer::crc32(std::span(bytes).subspan(at, 5 + length));
+        std::uint32_t const sum = gi::crc32(std::span(bytes).subspan(at, 5 + length));
         std::memcpy(&bytes[at + 5 + length], &sum, 4);
         at += 9 + length;
     }

@@ -1,7 +1,7 @@
 // Any text as a map of markers: a map that comes back as it was, or an InputError.
 
-#include "ar/camera/error.h"
 #include "ar/markers/marker_map_file.h"
+#include "gi/core/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t size)
 {
@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
         if (ar::placed_markers(map).empty()) __builtin_trap();
         for (int i = 0; i < ar::count_of(map); ++i)
             if (ar::describe(map, i).empty()) __builtin_trap();
-    } catch (ar::InputError const&) {
+    } catch (gi::InputError const&) {
     }
     return 0;
 }

@@ -1,7 +1,7 @@
 // Any text as poses of a camera: poses or an InputError, never anything else.
 
-#include "ar/camera/error.h"
 #include "ar/pose/pose_file.h"
+#include "gi/core/error.h"
 
 #include <cmath>
 
@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
         for (auto const& p : poses)
             if (!(std::abs(glm::length(p.world_from_camera.rotation) - 1) < 1e-9)) __builtin_trap();
         ar::pose_at(poses, 0.5 * (poses.front().time_s + poses.back().time_s), 1e16);
-    } catch (ar::InputError const&) {
+    } catch (gi::InputError const&) {
     }
     return 0;
 }

@@ -2,8 +2,8 @@
 // that are as large as they say, or an InputError. Lines get the checksum that fits them, or nothing would pass
 // it.
 
-#include "ar/camera/error.h"
 #include "ar/capture/session_reader.h"
+#include "gi/core/error.h"
 
 #include <cstdlib>
 #include <sstream>
@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
         header = ar::parse_session_header(json, "fuzz");
         std::string const again = ar::to_json(header);
         if (ar::to_json(ar::parse_session_header(again, "fuzz")) != again) std::abort();
-    } catch (ar::InputError const&) {
+    } catch (gi::InputError const&) {
     }
     for (std::string const& text : {index, mended(index)}) {
         ar::SessionReader reader(header, std::make_unique<std::istringstream>(text),

@@ -246,7 +246,7 @@ TEST(ScriptErrors, OfTextFilesThatAreNotThere)
         EXPECT_EQ(e.where().line, 7);
         EXPECT_EQ(e.where().column, 5);
         EXPECT_EQ(e.problem(), "there is no file 'nowhere.md'");
-        EXPECT_EQ(e.file(), "t.yaml");
+        EXPECT_EQ(e.where().file, "t.yaml");
     }
 }
 

@@ -1,8 +1,9 @@
-#include "study/journal/crc32.h"
-#include "study/journal/durable_file.h"
+#include "gi/core/crc32.h"
+#include "gi/core/durable_file.h"
+#include "gi/core/file.h"
+#include "gi/core/sha256.h"
 #include "study/journal/moments.h"
 #include "study/script/script_error.h"
-#include "study/script/sha256.h"
 #include "tests/study_record/samples.h"
 #include "tests/viewer/run_program.h"
 
@@ -16,15 +17,15 @@ using viewer::test::TemporaryFolder;
 
 TEST(Sha256, OfThePublishedExamples)
 {
-    EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-    EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-    EXPECT_EQ(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+    EXPECT_EQ(gi::sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    EXPECT_EQ(gi::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    EXPECT_EQ(gi::sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
               "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
-    EXPECT_EQ(sha256(std::string(1000000, 'a')),
+    EXPECT_EQ(gi::sha256(std::string(1000000, 'a')),
               "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-TEST(Crc32, OfThePublishedExample) { EXPECT_EQ(crc32("123456789"), 0xcbf43926u); }
+TEST(Crc32, OfThePublishedExample) { EXPECT_EQ(gi::crc32("123456789"), 0xcbf43926u); }
 
 TEST(Moments, OfTheCalendar)
 {
@@ -55,33 +56,33 @@ TEST(Moments, TheLastOneIsThatOfTheLastPart)
 TEST(DurableFiles, AppearWholeOrNotAtAll)
 {
     TemporaryFolder const folder;
-    make_folder(folder / "a/b/c");
-    make_folder(folder / "a/b/c");
-    write_durably(folder / "a/b/c/x.txt", "one");
-    write_durably(folder / "a/b/c/x.txt", "two");
-    EXPECT_EQ(read_whole(folder / "a/b/c/x.txt"), "two");
+    gi::make_folder(folder / "a/b/c");
+    gi::make_folder(folder / "a/b/c");
+    gi::write_durably(folder / "a/b/c/x.txt", "one");
+    gi::write_durably(folder / "a/b/c/x.txt", "two");
+    EXPECT_EQ(gi::read_text(folder / "a/b/c/x.txt"), "two");
 
     rlimit old{};
     getrlimit(RLIMIT_FSIZE, &old);
     rlimit const small{1000, old.rlim_max};
     auto const handler = std::signal(SIGXFSZ, SIG_IGN);
     setrlimit(RLIMIT_FSIZE, &small);
-    EXPECT_THROW(write_durably(folder / "a/b/c/x.txt", std::string(5000, 'x')), ScriptError);
+    EXPECT_THROW(gi::write_durably(folder / "a/b/c/x.txt", std::string(5000, 'x')), gi::InputError);
     setrlimit(RLIMIT_FSIZE, &old);
     std::signal(SIGXFSZ, handler);
-    EXPECT_EQ(read_whole(folder / "a/b/c/x.txt"), "two");
+    EXPECT_EQ(gi::read_text(folder / "a/b/c/x.txt"), "two");
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "a/b/c"), {}), 1);
 }
 
 TEST(DurableFiles, SayWhatIsInTheWay)
 {
     TemporaryFolder const folder;
-    write_durably(folder / "x", "");
-    EXPECT_THROW(make_folder(folder / "x/y"), ScriptError);
-    EXPECT_THROW(make_folder(folder / "x"), ScriptError);
-    EXPECT_THROW(read_whole(folder / "none"), ScriptError);
-    EXPECT_THROW(read_whole(folder.path()), ScriptError);
-    EXPECT_THROW(write_durably(folder / "none/x", "a"), ScriptError);
+    gi::write_durably(folder / "x", "");
+    EXPECT_THROW(gi::make_folder(folder / "x/y"), gi::InputError);
+    EXPECT_THROW(gi::make_folder(folder / "x"), gi::InputError);
+    EXPECT_THROW(gi::read_text(folder / "none"), gi::InputError);
+    EXPECT_THROW(gi::read_text(folder.path()), gi::InputError);
+    EXPECT_THROW(gi::write_durably(folder / "none/x", "a"), gi::InputError);
 }
 
 } // namespace

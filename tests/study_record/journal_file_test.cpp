@@ -1,6 +1,6 @@
 #include "study/journal/journal_file.h"
 
-#include "study/journal/crc32.h"
+#include "gi/core/crc32.h"
 #include "study/journal/entry_fields.h"
 #include "study/journal/entry_line.h"
 #include "study/script/script_error.h"
@@ -38,7 +38,7 @@ std::string with_sum(std::string line)
 {
     line.resize(line.rfind(",\"crc32\""));
     char sum[32];
-    std::snprintf(sum, sizeof sum, ",\"crc32\":\"%08x\"}", crc32(line));
+    std::snprintf(sum, sizeof sum, ",\"crc32\":\"%08x\"}", gi::crc32(line));
     return line + sum;
 }
 

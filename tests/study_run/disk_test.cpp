@@ -1,6 +1,6 @@
 // Disks that are full, read-only, or must be left in peace.
 
-#include "study/journal/durable_file.h"
+#include "gi/core/durable_file.h"
 #include "tests/study_run/support.h"
 
 #include <fcntl.h>
@@ -125,7 +125,7 @@ TEST(Disk, OfATmpfsThatIsFullLosesNothing)
     } const unmount{dir / "small"};
     Script const s = adaptive_script();
     auto const expected = undisturbed(s, dir / "whole");
-    write_durably(dir / "small/ballast", std::string(40000, 'x'));
+    gi::write_durably(dir / "small/ballast", std::string(40000, 'x'));
     ChildResult const cut = run_in_child(s, settings_in(dir / "small"), [] {});
     EXPECT_NE(cut.message.find("No space left on device"), std::string::npos) << cut.message;
     EXPECT_GT(cut.kept.size(), 3u);

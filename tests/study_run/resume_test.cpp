@@ -1,6 +1,6 @@
 // Sessions that were cut off, and what they must not go on with.
 
-#include "study/journal/durable_file.h"
+#include "gi/core/durable_file.h"
 #include "tests/study_run/support.h"
 
 namespace study::test {
@@ -72,8 +72,8 @@ TEST(Resume, BeginsWhereNothingIsThereToGoOnWith)
 {
     TemporaryFolder const dir;
     TestPresenter p;
-    make_folder(session_folder(dir.path(), "P001", 1));
-    write_durably(journal_in(dir.path()), ""); // killed before the first entry
+    gi::make_folder(session_folder(dir.path(), "P001", 1));
+    gi::write_durably(journal_in(dir.path()), ""); // killed before the first entry
     EXPECT_NE(refusal(rating_script(), p, settings_in(dir.path())), "");
     EXPECT_TRUE(run_session(rating_script(), 1, p, settings_in(dir.path(), SessionStart::go_on)).is_complete);
     EXPECT_TRUE(run_session(rating_script(), 2, p, settings_in(dir.path(), SessionStart::go_on)).is_complete);
@@ -99,8 +99,8 @@ TEST(Resume, CutAnywhereGoesOnAsIfItHadNotBeen)
 
     for (std::size_t size = 1; size < text.size(); size += 1499) {
         fs::path const at = dir / ("cut" + std::to_string(size));
-        make_folder(session_folder(at, "P001", 1));
-        write_durably(journal_in(at), text.substr(0, size));
+        gi::make_folder(session_folder(at, "P001", 1));
+        gi::write_durably(journal_in(at), text.substr(0, size));
         TestPresenter p;
         p.on_show = answers;
         SessionSettings settings = settings_in(at, SessionStart::go_on);
@@ -162,7 +162,7 @@ TEST(Resume, OfWhatWasCompleteMakesTheSummaryThatWasMissing)
     Script const s = rating_script();
     SessionOutcome const o = run_session(s, 1, p, settings_in(dir.path()));
     std::string const summary = file_text(o.folder / "session.json");
-    write_durably(o.folder / "session.json", "{}"); // as after a kill between the journal's last line and this
+    gi::write_durably(o.folder / "session.json", "{}"); // as after a kill between the journal's last line and this
     SessionSettings settings = settings_in(dir.path(), SessionStart::go_on);
     int tables = 0;
     settings.on_ended = [&](auto const&, auto const&) { ++tables; };
@@ -181,7 +181,7 @@ TEST(Resume, RefusesAJournalThatWasChanged)
     std::string text = file_text(journal_in(dir.path()));
     auto const line = text.find('\n', text.find("trial_done")) + 1; // the second trial goes
     std::string const without = text.substr(0, line) + text.substr(text.find('\n', line) + 1);
-    write_durably(journal_in(dir.path()), without);
+    gi::write_durably(journal_in(dir.path()), without);
     std::string const why = refusal(s, p, settings_in(dir.path(), SessionStart::go_on));
     EXPECT_NE(why.find("lines are missing"), std::string::npos) << why;
     EXPECT_EQ(file_text(journal_in(dir.path())), without);

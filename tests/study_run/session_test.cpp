@@ -1,5 +1,5 @@
-#include "study/journal/durable_file.h"
-#include "study/script/sha256.h"
+#include "gi/core/durable_file.h"
+#include "gi/core/sha256.h"
 #include "tests/study_run/support.h"
 
 #include <nlohmann/json.hpp>
@@ -31,8 +31,8 @@ TEST(Session, LeavesPlanJournalAndSummary)
     auto const journal = journal_in(dir / "data");
     auto const started = entries_of<SessionStarted>(journal);
     ASSERT_EQ(started.size(), 1u);
-    EXPECT_EQ(started[0].script_sha256, sha256("script"));
-    EXPECT_EQ(started[0].plan_sha256, sha256(plan_table(s, make_plan(s, 1))));
+    EXPECT_EQ(started[0].script_sha256, gi::sha256("script"));
+    EXPECT_EQ(started[0].plan_sha256, gi::sha256(plan_table(s, make_plan(s, 1))));
     EXPECT_EQ(started[0].about[0].second, "test");
     auto const trials = entries_of<TrialDone>(journal);
     EXPECT_EQ(trials.size(), p.shown.size());
@@ -126,7 +126,7 @@ TEST(Session, RefusesAFolderOfAnotherScript)
                 ADD_FAILURE() << "participant " << participant;
             } catch (ScriptError const& e) {
                 EXPECT_EQ(e.problem(), "the folder has sessions of another script");
-                EXPECT_EQ(e.file(), journal_in(dir.path()).string());
+                EXPECT_EQ(e.where().file, journal_in(dir.path()).string());
             }
         }
     EXPECT_EQ(all_files(dir.path()), before);
@@ -134,7 +134,7 @@ TEST(Session, RefusesAFolderOfAnotherScript)
     SessionSettings edited = settings_in(dir.path());
     edited.script_text = "edited";
     EXPECT_EQ(refusal(s, p, edited).find("--session"), std::string::npos) << "that would be refused too";
-    write_durably(journal_in(dir.path()), ""); // it had not begun
+    gi::write_durably(journal_in(dir.path()), ""); // it had not begun
     EXPECT_TRUE(run_session(s, 2, p, edited).is_complete);
 }
 
@@ -142,8 +142,8 @@ TEST(Session, RefusesAFolderWithOtherThings)
 {
     TemporaryFolder const dir;
     TestPresenter p;
-    make_folder(session_folder(dir.path(), "P001", 1));
-    write_durably(session_folder(dir.path(), "P001", 1) / "events.tsv", "data");
+    gi::make_folder(session_folder(dir.path(), "P001", 1));
+    gi::write_durably(session_folder(dir.path(), "P001", 1) / "events.tsv", "data");
     EXPECT_NE(refusal(rating_script(), p, settings_in(dir.path())), "");
     EXPECT_NE(refusal(rating_script(), p, settings_in(dir.path(), SessionStart::go_on)), "");
 }
@@ -174,7 +174,7 @@ TEST(Session, RequiresADisplayThatPassesItsTestOrLabelsIt)
 TEST(Session, AsksForConsentFirstAndOnceAndKeepsNothingWithoutIt)
 {
     TemporaryFolder const dir;
-    write_durably(dir / "consent.md", "I agree.");
+    gi::write_durably(dir / "consent.md", "I agree.");
     Script const s =
         parse("timing: {vsync: record}\nfactors: {scene: [a, b]}\nsequence: [{free_walk: {duration_s: 3, "
               "condition: {scene: a}}}, w]\nblocks: {w: {task: free_walk, cross: [scene]}}\n",
@@ -198,7 +198,7 @@ TEST(Session, AsksForConsentFirstAndOnceAndKeepsNothingWithoutIt)
     EXPECT_EQ(p.consents, 2);
     EXPECT_EQ(p.asked, 1);
     for (SessionStarted const& started : entries_of<SessionStarted>(journal_in(dir / "data")))
-        EXPECT_EQ(started.consent_sha256, sha256("I agree."));
+        EXPECT_EQ(started.consent_sha256, gi::sha256("I agree."));
 }
 
 TEST(Session, DoesWhatTheExperimenterWishes)

@@ -1,9 +1,9 @@
-#include "study/journal/durable_file.h"
+#include "gi/core/durable_file.h"
+#include "gi/core/sha256.h"
 #include "study/journal/entry_line.h"
 #include "study/journal/journal_folders.h"
 #include "study/script/script_error.h"
 #include "study/script/script_file.h"
-#include "study/script/sha256.h"
 #include "study/tables/dataset.h"
 #include "tests/study_tables/recorded.h"
 #include "tests/viewer/run_program.h"
@@ -30,19 +30,19 @@ protected:
     Datasets()
     {
         Script const s = parse_script(kText, "t.yaml");
-        make_folder(dir / "code");
-        write_durably(dir / "code/t.yaml", kText);
+        gi::make_folder(dir / "code");
+        gi::write_durably(dir / "code/t.yaml", kText);
         for (int const participant : {1, 2}) {
             RecordedSession r =
                 record_session(s, participant, [](auto const&, TrialDone& t) { t.response = "first"; });
             auto& start = std::get<SessionStarted>(r.record.entries.front());
-            start.script_sha256 = sha256(kText);
+            start.script_sha256 = gi::sha256(kText);
             std::string text;
             int line = 0;
             for (JournalEntry const& e : r.record.entries) text += entry_line(e, ++line) + "\n";
             fs::path const folder = session_folder(dir.path(), start.participant_id, 1);
-            make_folder(folder);
-            write_durably(folder / "journal.jsonl", text);
+            gi::make_folder(folder);
+            gi::write_durably(folder / "journal.jsonl", text);
         }
     }
     Dataset read() const { return read_dataset(dir.path(), {}); }
@@ -82,7 +82,7 @@ TEST_F(Datasets, DoNotCountACopyTwice)
 TEST_F(Datasets, SayWhoIsLeftOut)
 {
     fs::remove(dir / "sub-P002/ses-01/beh/journal.jsonl");
-    make_folder(dir / "sub-P003");
+    gi::make_folder(dir / "sub-P003");
     Dataset const d = read();
     EXPECT_EQ(d.sessions.size(), 1u);
     ASSERT_EQ(d.remarks.size(), 2u);

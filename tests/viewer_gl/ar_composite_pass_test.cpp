@@ -1,7 +1,7 @@
 #include "tests/viewer_gl/surfaceless.h"
 #include "viewer/devices/gl/ar_composite_pass.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 
 #include <chrono>
 #include <cmath>
@@ -109,11 +109,11 @@ TEST_F(ArCompositing, RefusesTargetsOfAnotherSize)
 {
     ArCompositePass pass{ar::Compositor(ar::srgb_photometry())};
     TextureTarget const target(TextureTarget::Format::bytes, {20, 10});
-    EXPECT_THROW(pass.draw(target.target(), {}), ar::InputError) << "nothing uploaded";
+    EXPECT_THROW(pass.draw(target.target(), {}), gi::InputError) << "nothing uploaded";
     Input const in = random_input({21, 10});
     pass.upload(in.camera, in.pair);
-    EXPECT_THROW(pass.draw(target.target(), {}), ar::InputError);
-    EXPECT_THROW(pass.upload(in.camera.rowRange(0, 9), in.pair), ar::InputError);
+    EXPECT_THROW(pass.draw(target.target(), {}), gi::InputError);
+    EXPECT_THROW(pass.upload(in.camera.rowRange(0, 9), in.pair), gi::InputError);
 }
 
 TEST_F(ArCompositing, TimesAreStated)

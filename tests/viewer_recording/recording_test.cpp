@@ -1,7 +1,7 @@
+#include "gi/core/crc32.h"
 #include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
 #include "tests/viewer_recording/walk.h"
-#include "viewer/protocol/recording/crc32.h"
 #include "viewer/protocol/recording/pixel_hash.h"
 
 #include <sys/resource.h>
@@ -37,8 +37,8 @@ std::vector<std::uint8_t> bytes_of(std::string_view text) { return {text.begin()
 
 TEST(Checksums, AreThePublishedOnes)
 {
-    EXPECT_EQ(crc32(bytes_of("123456789")), 0xCBF43926u);
-    EXPECT_EQ(crc32(bytes_of("6789"), crc32(bytes_of("12345"))), 0xCBF43926u);
+    EXPECT_EQ(gi::crc32(bytes_of("123456789")), 0xCBF43926u);
+    EXPECT_EQ(gi::crc32(bytes_of("6789"), gi::crc32(bytes_of("12345"))), 0xCBF43926u);
     auto const hash = [](std::string_view text) { return pixel_hash(std::as_bytes(std::span(text))); };
     EXPECT_EQ(hash(""), 0xEF46DB3751D8E999u);
     EXPECT_EQ(hash("a"), 0xD24EC4F1A98C6E5Bu);

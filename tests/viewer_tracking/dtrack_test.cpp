@@ -26,9 +26,9 @@ TEST(DTrack, ReadsTheManualsExample)
     EXPECT_DOUBLE_EQ(*s.measured_s, 39596.024831);
     EXPECT_LT(glm::distance(s.pose.position, {0.261103, 0.116520, 0.041085}), 1e-12);
     // R = Rx(eta) Ry(theta) Rz(phi): the angles say the same as the matrix read column by column.
-    gi::dquat const angles = exp_rotation({glm::radians(19.6522), 0, 0}) *
-                             exp_rotation({0, glm::radians(-57.3530), 0}) *
-                             exp_rotation({0, 0, glm::radians(116.5992)});
+    gi::dquat const angles = gi::exp_rotation({glm::radians(19.6522), 0, 0}) *
+                             gi::exp_rotation({0, glm::radians(-57.3530), 0}) *
+                             gi::exp_rotation({0, 0, glm::radians(116.5992)});
     EXPECT_LT(glm::degrees(angle_between(angles, s.pose.rotation)), 1e-3);
 }
 
@@ -73,10 +73,10 @@ TEST(DTrack, WritesWhatItReads)
 {
     TrackerSample body, flystick;
     body.body = "4";
-    body.pose = {{0.1, 1.7, -2.25}, exp_rotation({0.3, -0.7, 1.1})};
+    body.pose = {{0.1, 1.7, -2.25}, gi::exp_rotation({0.3, -0.7, 1.1})};
     body.measured_s = 12.5;
     flystick.body = "flystick1";
-    flystick.pose = {{-1, 0.5, 3}, exp_rotation({-2, 0.1, 0})};
+    flystick.pose = {{-1, 0.5, 3}, gi::exp_rotation({-2, 0.1, 0})};
     flystick.buttons = 0x80000001u;
     flystick.measured_s = 12.5;
     TrackerPacket const p = parse_dtrack(format_dtrack({body, flystick}, 99));

@@ -1,10 +1,10 @@
 // One-euro filter, rotations as vectors, clock, latency.
 
+#include "gi/core/one_euro.h"
 #include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/devices/tracking/arrival_clock.h"
 #include "viewer/devices/tracking/clock_offset.h"
 #include "viewer/devices/tracking/latency.h"
-#include "viewer/devices/tracking/one_euro.h"
 #include "viewer/devices/tracking/pose_math.h"
 
 #include <algorithm>
@@ -21,10 +21,10 @@ TEST(PoseMath, LogAndExpAreInverse)
     for (int i = 0; i < 1000; ++i) {
         gi::dvec3 const axis = glm::normalize(gi::dvec3(normal(rng), normal(rng), normal(rng)));
         double const angle = i < 10 ? 1e-13 * i : 3.14 * i / 1000.0;
-        EXPECT_LT(glm::distance(log_rotation(exp_rotation(angle * axis)), angle * axis), 1e-9) << angle;
-        EXPECT_LT(glm::distance(log_rotation(-exp_rotation(angle * axis)), angle * axis), 1e-9) << angle;
+        EXPECT_LT(glm::distance(gi::log_rotation(gi::exp_rotation(angle * axis)), angle * axis), 1e-9) << angle;
+        EXPECT_LT(glm::distance(gi::log_rotation(-gi::exp_rotation(angle * axis)), angle * axis), 1e-9) << angle;
     }
-    RoomPose const a{{1, 2, 3}, exp_rotation({0.3, 2, -1})};
+    RoomPose const a{{1, 2, 3}, gi::exp_rotation({0.3, 2, -1})};
     RoomPose const same = compose(a, inverted(a));
     EXPECT_LT(glm::length(same.position), 1e-12);
     EXPECT_LT(angle_between(same.rotation, {1, 0, 0, 0}), 1e-12);
@@ -33,44 +33,44 @@ TEST(PoseMath, LogAndExpAreInverse)
 TEST(OneEuro, StepResponseIsThatOfALowPass)
 {
     // beta = 0: y_n = 1 - (1 - alpha)^n with alpha = dt / (dt + tau), tau = 1 / (2 pi fc).
-    OneEuroSettings const s{2, 0, 1, 1, 6};
+    gi::OneEuroSettings const s{2, 0, 1, 1, 6};
     double const dt = 0.01, tau = 1 / (2 * 3.14159265358979 * 2), alpha = dt / (dt + tau);
-    OneEuroPosition p = start(gi::dvec3(0));
-    OneEuroRotation r = start(gi::dquat(1, 0, 0, 0));
+    gi::OneEuroPosition p = start(gi::dvec3(0));
+    gi::OneEuroRotation r = start(gi::dquat(1, 0, 0, 0));
     for (int n = 1; n < 50; ++n) {
         p = step(s, p, {1, -2, 3}, dt);
-        r = step(s, r, exp_rotation({0, 1, 0}), dt);
+        r = step(s, r, gi::exp_rotation({0, 1, 0}), dt);
         double const expected = 1 - std::pow(1 - alpha, n);
         EXPECT_NEAR(p.value.z, 3 * expected, 1e-12);
-        EXPECT_NEAR(log_rotation(r.value).y, expected, 1e-12);
+        EXPECT_NEAR(gi::log_rotation(r.value).y, expected, 1e-12);
     }
 }
 
 TEST(OneEuro, LagOfAConstantMotionIsTau)
 {
-    OneEuroSettings const s{1.5, 4, 1, 1, 6};
+    gi::OneEuroSettings const s{1.5, 4, 1, 1, 6};
     gi::dvec3 const v{0.5, 0, -1.2}, turn{0, 1.5, 0};
-    OneEuroPosition p = start(gi::dvec3(0));
-    OneEuroRotation r = start(gi::dquat(1, 0, 0, 0));
+    gi::OneEuroPosition p = start(gi::dvec3(0));
+    gi::OneEuroRotation r = start(gi::dquat(1, 0, 0, 0));
     double t = 0;
     for (int i = 0; i < 600; ++i) {
         t += 1 / 60.0;
         p = step(s, p, v * t, 1 / 60.0);
-        r = step(s, r, exp_rotation(turn * t), 1 / 60.0);
+        r = step(s, r, gi::exp_rotation(turn * t), 1 / 60.0);
     }
     EXPECT_LT(glm::distance(p.velocity, v), 1e-6);
     EXPECT_LT(glm::distance(r.velocity, turn), 1e-6);
     EXPECT_LT(glm::distance(p.value + v * p.lag_s, v * t), 1e-6) << "value plus lag is the motion";
-    EXPECT_LT(angle_between(r.value * exp_rotation(r.velocity * r.lag_s), exp_rotation(turn * t)), 1e-6);
+    EXPECT_LT(angle_between(r.value * gi::exp_rotation(r.velocity * r.lag_s), gi::exp_rotation(turn * t)), 1e-6);
     EXPECT_NEAR(p.lag_s, 1 / (2 * 3.14159265358979 * (1.5 + 4 * 1.3)), 1e-6);
 }
 
 TEST(OneEuro, RestIsQuietAndMotionIsQuick)
 {
-    OneEuroSettings const s{1, 4, 1, 1, 6};
+    gi::OneEuroSettings const s{1, 4, 1, 1, 6};
     std::mt19937 rng(7);
     std::normal_distribution<double> noise(0, 0.001);
-    OneEuroPosition p = start(gi::dvec3(0));
+    gi::OneEuroPosition p = start(gi::dvec3(0));
     double in = 0, out = 0;
     for (int i = 0; i < 6000; ++i) {
         double const x = noise(rng);

@@ -18,7 +18,7 @@ constexpr double kStep_s = 0.01;
 Tracked head_at(dvec3 position, double yaw_rad = 0)
 {
     Tracked t;
-    t.head = RoomPose{position, exp_rotation({0, yaw_rad, 0})};
+    t.head = RoomPose{position, gi::exp_rotation({0, yaw_rad, 0})};
     return t;
 }
 
@@ -58,9 +58,9 @@ struct Walker {
     double stray(dvec3 head, double yaw_rad = 0) const
     {
         Stance const s;
-        dvec3 const joint = head + exp_rotation({0, yaw_rad, 0}) * s.head_joint_in_head;
+        dvec3 const joint = head + gi::exp_rotation({0, yaw_rad, 0}) * s.head_joint_in_head;
         auto const far = [&](RoomPose const& foot, dvec3 below) {
-            dvec3 const way = foot.position - joint - exp_rotation({0, yaw_rad, 0}) * below;
+            dvec3 const way = foot.position - joint - gi::exp_rotation({0, yaw_rad, 0}) * below;
             return glm::length(dvec3{way.x, 0, way.z});
         };
         return std::max(far(*body.left_foot, s.left_foot), far(*body.right_foot, s.right_foot));
@@ -110,7 +110,7 @@ TEST(Footsteps, WhoTurnsTurnsHisFeet)
     EXPECT_GT(w.steps, 8);
     for (int i = 0; i < 200; ++i) w.to(head_at({0, 1.7, 0}, yaw));
     for (auto const foot : {w.body.left_foot, w.body.right_foot})
-        EXPECT_LT(angle_between(foot->rotation, exp_rotation({0, yaw, 0})), 0.15);
+        EXPECT_LT(angle_between(foot->rotation, gi::exp_rotation({0, yaw, 0})), 0.15);
 }
 
 /// Between two looks nothing jumps: a swing of a metre in 0.1 s is 17 m/s in its middle.
@@ -134,7 +134,7 @@ TEST(Footsteps, FeetMoveSmoothly)
 TEST(Footsteps, RoomsThatMoveAreWalkedThrough)
 {
     Walker w;
-    gi::dmat4 const turned = glm::mat4_cast(exp_rotation({0, 0.8, 0}));
+    gi::dmat4 const turned = glm::mat4_cast(gi::exp_rotation({0, 0.8, 0}));
     std::array<std::optional<dvec3>, 2> stood; // in the world
     for (int i = 0; i < 400; ++i) {
         w.world = turned * 2.0; // twice as large
@@ -171,7 +171,7 @@ TEST(Footsteps, TrackedFeetAreKept)
     Walker w;
     for (int i = 0; i < 100; ++i) {
         Tracked t = head_at({0, 1.7, -0.01 * i});
-        t.left_foot = RoomPose{{-0.2, 0.05, 0.4}, exp_rotation({0.3, 0.2, 0})};
+        t.left_foot = RoomPose{{-0.2, 0.05, 0.4}, gi::exp_rotation({0.3, 0.2, 0})};
         w.feet.step(t, gi::dmat4(1), kStep_s);
         EXPECT_EQ(t.left_foot->position, (dvec3{-0.2, 0.05, 0.4}));
         EXPECT_TRUE(t.right_foot);

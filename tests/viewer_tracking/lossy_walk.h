@@ -40,7 +40,7 @@ inline std::vector<Packet> through(Network const& n, Motion const& motion, doubl
         p.pose = motion(p.sent_s);
         p.pose.position += n.noise_m * gi::dvec3(normal(rng), normal(rng), normal(rng));
         p.pose.rotation =
-            p.pose.rotation * exp_rotation(n.noise_rad * gi::dvec3(normal(rng), normal(rng), normal(rng)));
+            p.pose.rotation * gi::exp_rotation(n.noise_rad * gi::dvec3(normal(rng), normal(rng), normal(rng)));
         p.arrives_s = p.sent_s + n.jitter_s * uniform(rng);
         if (uniform(rng) >= n.loss) packets.push_back(p);
     }
@@ -61,7 +61,7 @@ public:
     void note(RoomPose const& shown, RoomPose const& truth)
     {
         errors_.push_back(
-            {shown.position - truth.position, log_rotation(glm::inverse(truth.rotation) * shown.rotation)});
+            {shown.position - truth.position, gi::log_rotation(glm::inverse(truth.rotation) * shown.rotation)});
     }
     Steadiness result() const
     {

@@ -131,7 +131,7 @@ TEST(Osc, WritesWhatItReads)
 {
     TrackerSample s;
     s.body = "left_hand";
-    s.pose = {{0.1, 1.7, -2.25}, exp_rotation({0.3, -0.7, 1.1})};
+    s.pose = {{0.1, 1.7, -2.25}, gi::exp_rotation({0.3, -0.7, 1.1})};
     s.measured_s = 1234567.125;
     s.buttons = 0x80000001u;
     TrackerPacket const p = parse_osc(format_osc({s}, 1234567890123ull));

@@ -91,7 +91,7 @@ struct Driven {
 
 gi::dmat4 elsewhere()
 {
-    gi::dmat4 world = glm::mat4_cast(exp_rotation({0, 1.1, 0}));
+    gi::dmat4 world = glm::mat4_cast(gi::exp_rotation({0, 1.1, 0}));
     world[3] = {3, 0.4, -2, 1};
     return world;
 }
@@ -152,8 +152,8 @@ void expect_clear_view(std::string const& name)
         for (double const pitch : {-0.6, 0.0, 0.6})
             for (double const roll : {-0.3, 0.3}) {
                 RoomPose const head{{0.4, 1.6, -0.2},
-                                    exp_rotation({0, yaw, 0}) * exp_rotation({pitch, 0, 0}) *
-                                        exp_rotation({0, 0, roll})};
+                                    gi::exp_rotation({0, yaw, 0}) * gi::exp_rotation({pitch, 0, 0}) *
+                                        gi::exp_rotation({0, 0, roll})};
                 Tracked t;
                 t.head = head;
                 d.to(t, elsewhere());
@@ -176,7 +176,7 @@ void expect_hanging_arms(std::string const& name)
     SCOPED_TRACE(name);
     Driven d(name);
     Tracked t;
-    t.head = RoomPose{{0, 1.65, 0}, exp_rotation({0, 0.8, 0})};
+    t.head = RoomPose{{0, 1.65, 0}, gi::exp_rotation({0, 0.8, 0})};
     d.to(t, elsewhere());
     for (gi::ArmJoints const& arm : {d.joints.left, d.joints.right})
         EXPECT_LT(d.at(arm.hand).y, d.at(arm.upper).y - 0.9 * d.reach(arm).first);
@@ -197,7 +197,7 @@ void expect_walks(std::string const& name)
         double const t = 0.03 * i;
         Tracked user;
         user.head =
-            RoomPose{{0.3, 1.65 - 0.25 * (1 - std::cos(0.7 * t)), -0.8 * t}, exp_rotation({0, 0.3 * t, 0})};
+            RoomPose{{0.3, 1.65 - 0.25 * (1 - std::cos(0.7 * t)), -0.8 * t}, gi::exp_rotation({0, 0.3 * t, 0})};
         feet.step(user, elsewhere(), 0.03);
         d.to(user, elsewhere());
         gi::AvatarTargets const targets = puppet_targets(user, elsewhere(), d.avatar.measures());
@@ -294,11 +294,11 @@ TEST(OwnAvatar, FingersPointWhereTheirTrackersDo)
     Tracked t;
     t.head = RoomPose{{0, 1.65, 0}, {1, 0, 0, 0}};
     for (dvec3 const turn : {dvec3{0, 0, 0}, dvec3{1.5, 0, 0}, dvec3{-1.5, 0, 0}, dvec3{0.4, -0.9, 0.7}}) {
-        t.left_hand = RoomPose{{-0.3, 1.2, -0.3}, exp_rotation(turn)};
-        t.right_hand = RoomPose{{0.3, 1.2, -0.3}, exp_rotation(turn)};
+        t.left_hand = RoomPose{{-0.3, 1.2, -0.3}, gi::exp_rotation(turn)};
+        t.right_hand = RoomPose{{0.3, 1.2, -0.3}, gi::exp_rotation(turn)};
         d.to(t);
         for (std::int32_t const hand : {d.joints.left.hand, d.joints.right.hand})
-            EXPECT_GT(glm::dot(fingers(hand), exp_rotation(turn) * dvec3{0, 0, -1}), 0.9);
+            EXPECT_GT(glm::dot(fingers(hand), gi::exp_rotation(turn) * dvec3{0, 0, -1}), 0.9);
     }
 }
 
@@ -348,7 +348,7 @@ TEST(OwnAvatar, EveryUserMovesHisOwn)
     FrameCommand order;
     order.tracked.head = RoomPose{{0.5, 1.6, 0}, {1, 0, 0, 0}};
     order.others.resize(2);
-    order.others[1].head = RoomPose{{-0.5, 1.5, 0.3}, exp_rotation({0, 1, 0})};
+    order.others[1].head = RoomPose{{-0.5, 1.5, 0.3}, gi::exp_rotation({0, 1, 0})};
     order.others[1].left_foot = RoomPose{{-0.6, 0, 0.3}, {1, 0, 0, 0}};
     gi::Pose pose = gi::evaluate_pose(scene, 0);
     first.drive(scene, order, pose);
@@ -375,7 +375,7 @@ TEST(OwnAvatar, ModelsWithoutABodyAreRefused)
 
 TEST(KeyHands, RiseWhileTheyAreHeldAndSinkAgain)
 {
-    RoomPose const head{{0.2, 1.6, 0.1}, exp_rotation({0, 0.7, 0}) * exp_rotation({-0.5, 0, 0})};
+    RoomPose const head{{0.2, 1.6, 0.1}, gi::exp_rotation({0, 0.7, 0}) * gi::exp_rotation({-0.5, 0, 0})};
     KeyHands hands;
     Tracked const down = hands.with_head(head);
     EXPECT_EQ(down.head, head);
@@ -391,7 +391,7 @@ TEST(KeyHands, RiseWhileTheyAreHeldAndSinkAgain)
     }
     EXPECT_GT(before.right_hand->position.y, 1.6);
     // To the right of the way it faces, however the head nods.
-    dvec3 const side = exp_rotation({0, 0.7, 0}) * dvec3{1, 0, 0};
+    dvec3 const side = gi::exp_rotation({0, 0.7, 0}) * dvec3{1, 0, 0};
     EXPECT_GT(glm::dot(before.right_hand->position - head.position, side), 0.2);
     EXPECT_LT(glm::dot(before.left_hand->position - head.position, side), -0.2);
     hands.step(false, false, 5);

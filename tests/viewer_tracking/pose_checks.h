@@ -21,7 +21,7 @@ inline gi::dmat4 to_matrix(RoomPose const& pose)
 /// Angle between two orientations, rad, 0..pi.
 inline double angle_between(gi::dquat const& a, gi::dquat const& b)
 {
-    return glm::length(log_rotation(glm::inverse(a) * b));
+    return glm::length(gi::log_rotation(glm::inverse(a) * b));
 }
 
 } // namespace viewer::test

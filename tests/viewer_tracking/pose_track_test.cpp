@@ -12,7 +12,7 @@
 namespace viewer::test {
 namespace {
 
-RoomPose moving(double t) { return {{0.8 * t, 1.7, -0.3 * t}, exp_rotation({0, 0.9 * t, 0})}; }
+RoomPose moving(double t) { return {{0.8 * t, 1.7, -0.3 * t}, gi::exp_rotation({0, 0.9 * t, 0})}; }
 
 PoseTrack moved(double seconds)
 {

@@ -39,9 +39,9 @@ gi::dvec3 place(gi::Pose const& pose, std::int32_t joint) { return pose.world_fr
 TEST(Puppet, TargetsAreInTheWorldAndRigid)
 {
     Tracked t;
-    t.head = RoomPose{{1, 1.7, 0}, exp_rotation({0, 0.5 * 3.14159265358979, 0})}; // looks along -x
+    t.head = RoomPose{{1, 1.7, 0}, gi::exp_rotation({0, 0.5 * 3.14159265358979, 0})}; // looks along -x
     t.left_hand = RoomPose{{0.6, 1, 0.2}, {1, 0, 0, 0}};
-    gi::dmat4 world = glm::mat4_cast(exp_rotation({0, 0.5, 0}));
+    gi::dmat4 world = glm::mat4_cast(gi::exp_rotation({0, 0.5, 0}));
     world *= 2.0; // twice as large
     world[3] = {10, 0, 5, 1};
     PuppetMeasures m;
@@ -50,7 +50,7 @@ TEST(Puppet, TargetsAreInTheWorldAndRigid)
     EXPECT_LT(glm::distance(gi::dvec3((*targets.head)[3]), gi::dvec3(world * glm::dvec4(1.09, 1.62, 0, 1))),
               1e-12);
     EXPECT_NEAR(glm::determinant(glm::dmat3(*targets.head)), 1, 1e-12);
-    EXPECT_LT(glm::distance(-gi::dvec3((*targets.head)[2]), exp_rotation({0, 0.5, 0}) * gi::dvec3(-1, 0, 0)),
+    EXPECT_LT(glm::distance(-gi::dvec3((*targets.head)[2]), gi::exp_rotation({0, 0.5, 0}) * gi::dvec3(-1, 0, 0)),
               1e-12);
     EXPECT_FALSE(targets.right_hand);
     EXPECT_FALSE(puppet_targets({}, world, m).head);
@@ -71,7 +71,7 @@ void expect_puppet_follows(std::string const& name)
     gi::Pose const rest = gi::evaluate_pose(p.scene, std::nullopt);
     PuppetMeasures m;
     m.avatar_per_user = height_scale(p.scene, p.avatar, 1.65, m);
-    gi::dmat4 world = glm::mat4_cast(exp_rotation({0, 1, 0}));
+    gi::dmat4 world = glm::mat4_cast(gi::exp_rotation({0, 1, 0}));
     world[3] = {3, 0, -2, 1};
 
     // Standing upright at eye height: the head joint is as high as the avatar's own at rest.

@@ -18,7 +18,7 @@ constexpr double kFrame_s = 1.0 / 60,
 constexpr double kSettle_s = 2;
 
 RoomPose walk(double t) { return *known_walk(t).head; }
-RoomPose stand(double) { return {{0.3, 1.7, -0.2}, exp_rotation({0.1, 0.7, 0})}; }
+RoomPose stand(double) { return {{0.3, 1.7, -0.2}, gi::exp_rotation({0.1, 0.7, 0})}; }
 
 /// A source that is handed its samples.
 class SteadyTracker : public Tracker {

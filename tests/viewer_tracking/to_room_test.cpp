@@ -33,13 +33,13 @@ TEST(TrackerToRoom, PlacesAndTurnsMeanTheSameInAllAxes)
         EXPECT_LT(glm::distance(to_room(t, {place, {1, 0, 0, 0}}).position, {1, 2, -3}), 1e-12);
         // A person who turns to look right. In the tracker's own algebra that takes forward to right.
         double const handed = glm::dot(glm::cross(c.right, c.up), c.forward); // -1: right-handed
-        gi::dquat const turn = exp_rotation(c.up * (handed * 0.5 * 3.14159265358979));
+        gi::dquat const turn = gi::exp_rotation(c.up * (handed * 0.5 * 3.14159265358979));
         EXPECT_LT(glm::distance(turn * c.forward, c.right), 1e-9) << "the test's own turn";
         gi::dquat const room = to_room(t, {place, turn}).rotation;
         EXPECT_LT(glm::distance(room * gi::dvec3(0, 0, -1), {1, 0, 0}), 1e-9);
         EXPECT_LT(glm::distance(room * gi::dvec3(0, 1, 0), {0, 1, 0}), 1e-9);
         // And looks up.
-        gi::dquat const up = exp_rotation(c.right * (-handed * 0.5 * 3.14159265358979));
+        gi::dquat const up = gi::exp_rotation(c.right * (-handed * 0.5 * 3.14159265358979));
         EXPECT_LT(glm::distance(up * c.forward, c.up), 1e-9) << "the test's own turn";
         EXPECT_LT(glm::distance(to_room(t, {place, up}).rotation * gi::dvec3(0, 0, -1), {0, 1, 0}), 1e-9);
     }
@@ -51,8 +51,8 @@ TEST(TrackerToRoom, TransformIsAppliedOnceAfterAxesAndUnits)
     t.axes = TrackerAxes::z_up;
     t.metres_per_unit = 0.01;
     t.room_from_tracker = {{5, 0, 0},
-                           exp_rotation({0, 0.5 * 3.14159265358979, 0})}; // its forward is the room's -x
-    RoomPose const p = to_room(t, {{0, 100, 170}, {1, 0, 0, 0}});         // 1 m ahead, 1.7 m up
+                           gi::exp_rotation({0, 0.5 * 3.14159265358979, 0})}; // its forward is the room's -x
+    RoomPose const p = to_room(t, {{0, 100, 170}, {1, 0, 0, 0}});             // 1 m ahead, 1.7 m up
     EXPECT_LT(glm::distance(p.position, {4, 1.7, 0}), 1e-9);
     EXPECT_LT(glm::distance(p.rotation * gi::dvec3(0, 0, -1), {-1, 0, 0}), 1e-9);
     RoomPose const eyes = to_room(t, {{0, 100, 170}, {1, 0, 0, 0}}, {{0, -0.1, -0.05}, {1, 0, 0, 0}});

@@ -154,7 +154,7 @@ TEST(TrackerHub, PositionsAndRotationsMayComeApart)
     TrackerSample p = sample("head", {1, 2, 3}, 1), r = sample("head", {}, 1.0001);
     p.parts = SampleParts::position;
     r.parts = SampleParts::rotation;
-    r.pose.rotation = exp_rotation({0, 1, 0});
+    r.pose.rotation = gi::exp_rotation({0, 1, 0});
     g.send(p);
     g.send(r);
     auto const pose = g.hub->at(1.0001).tracked.head;

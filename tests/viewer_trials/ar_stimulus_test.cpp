@@ -1,6 +1,6 @@
 // Stimuli from AR sessions, without a window: what is shown is known byte by byte.
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "study/script/script_file.h"
 #include "study/script/setting_place.h"
 #include "tests/viewer/run_program.h"

@@ -42,14 +42,6 @@ void check_folder(std::string const& folder)
         throw cannot("'" + there.string() + "' is read-only", "choose another --out");
 }
 
-void make_folder(std::string const& folder)
-{
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error)
-        throw gi::InputError("cannot make the folder '" + folder + "'", error.message(), "choose another --out");
-}
-
 void show(BenchTable const& table, std::string const& folder, bool json)
 {
     if (json) {

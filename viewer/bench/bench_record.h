@@ -10,7 +10,6 @@ BenchTable start_table(std::string const& name, std::string const& title, std::v
 
 /// Throws InputError unless the folder is there, or can be made, and tables can be written to it. Makes nothing.
 void check_folder(std::string const& folder);
-void make_folder(std::string const& folder);
 
 /// On stdout: the rows and the names of their files, or all of it as JSON.
 void show(BenchTable const& table, std::string const& folder, bool json);

@@ -1,5 +1,6 @@
 #include "viewer/bench/dynamic.h"
 
+#include "gi/core/durable_file.h"
 #include "gi/core/quantile.h"
 #include "gi/filter/tone_map.h"
 #include "gi/image_io/picture_file.h"
@@ -253,7 +254,7 @@ DynamicResult run_dynamic(DynamicOptions const& o, Report& report)
 {
     check_folder(o.out);
     for (std::string const& s : o.structures) find_structure(s);
-    make_folder(o.out);
+    gi::make_folder(o.out);
     Dynamic bench(o, report);
     for (std::string const& scene : o.scenes) {
         RenderOptions options = o.render;

@@ -1,5 +1,6 @@
 #include "viewer/bench/pictures.h"
 
+#include "gi/core/durable_file.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "viewer/base/interrupt.h"
@@ -333,7 +334,7 @@ PicturesResult run_pictures(PicturesOptions const& o)
 {
     PicturesPlan const plan = plan_pictures(o);
     PicturesResult result{start_pictures(o, plan), {}, false};
-    make_folder(o.out);
+    gi::make_folder(o.out);
     for (Skipped const& s : plan.skipped) skip(s, result.pictures);
     gi::Report report;
     gi::StopRequest stop;

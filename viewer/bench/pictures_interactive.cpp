@@ -1,5 +1,6 @@
 // `lightwell bench pictures --interactive`: what people see while something moves, method against method.
 
+#include "gi/core/durable_file.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "viewer/base/arguments.h"
@@ -224,7 +225,7 @@ PicturesResult run_interactive_pictures(PicturesOptions const& o)
                                       {"frames", std::to_string(o.frames)},
                                       {"frames per second", fmt::format("{}", o.fps)}})
         result.pictures.facts.emplace_back(what, value);
-    make_folder(o.out);
+    gi::make_folder(o.out);
     for (Skipped const& s : plan.skipped) skip(s, result.pictures);
     gi::Report report;
     gi::StopRequest stop;

@@ -2,7 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/core/file.h"
-#include "gi/scene/load/yaml_reader.h"
+#include "gi/core/yaml.h"
 
 #include <algorithm>
 #include <array>
@@ -34,7 +34,7 @@ class ListReader {
 public:
     ListReader(fs::path const& folder, RenderOptions const& common) : folder_(folder), common_(common) {}
 
-    ListedScene read(gi::YamlReader const& s) const
+    ListedScene read(gi::Yaml const& s) const
     {
         s.only_keys({"name", "file", "built_in", "camera", "look_from", "look_at", "fov", "time", "envmap",
                      "envmap_rotate", "envmap_scale", "camera_path"});
@@ -62,14 +62,14 @@ public:
     }
 
 private:
-    std::string path(gi::YamlReader const& at, ListedScene& scene) const
+    std::string path(gi::Yaml const& at, ListedScene& scene) const
     {
         fs::path const file = (folder_ / at.text()).lexically_normal();
         std::error_code error;
         if (scene.missing.empty() && !fs::exists(file, error)) scene.missing = file.string();
         return file.string();
     }
-    static std::string built_in(gi::YamlReader const& at)
+    static std::string built_in(gi::Yaml const& at)
     {
         if (is_built_in(at.text())) return at.text();
         throw at.error("there is no built-in scene '" + at.text().substr(0, 64) + "'", "it cannot be generated",
@@ -86,8 +86,7 @@ std::vector<ListedScene> read_scene_list(fs::path const& file, RenderOptions con
 {
     constexpr std::size_t kMostBytes = std::size_t(1) << 20;
     std::vector<unsigned char> const bytes = gi::read_bytes(file, kMostBytes);
-    gi::YamlReader const root =
-        gi::YamlReader::parse(std::string(bytes.begin(), bytes.end()), file.string(), "list");
+    gi::Yaml const root = gi::Yaml::parse(std::string(bytes.begin(), bytes.end()), file.string(), "list");
     root.only_keys({"scenes", "sequences"});
     std::string const key = which == Listed::scenes ? "scenes" : "sequences";
     if (!root.has(key))
@@ -96,7 +95,7 @@ std::vector<ListedScene> read_scene_list(fs::path const& file, RenderOptions con
     fs::path const folder = file.parent_path();
     ListReader const reader(folder, common);
     std::vector<ListedScene> list;
-    for (gi::YamlReader const& item : root.at(key).items()) {
+    for (gi::Yaml const& item : root.at(key).items()) {
         list.push_back(reader.read(item));
         if (which == Listed::scenes && item.has("camera_path"))
             throw item.at("camera_path")

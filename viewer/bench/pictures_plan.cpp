@@ -1,5 +1,6 @@
 #include "viewer/bench/pictures_plan.h"
 
+#include "gi/core/durable_file.h"
 #include "gi/core/error.h"
 #include "viewer/base/arguments.h"
 #include "viewer/bench/bench_record.h"
@@ -85,7 +86,7 @@ std::filesystem::path reference_folder(PicturesOptions const& o)
 {
     std::filesystem::path const folder =
         o.references.empty() ? std::filesystem::path(o.out) / "references" : std::filesystem::path(o.references);
-    make_folder(folder.string());
+    gi::make_folder(folder.string());
     return folder;
 }
 

@@ -1,5 +1,6 @@
 #include "viewer/bench/sweep.h"
 
+#include "gi/core/durable_file.h"
 #include "gi/filter/denoise.h"
 #include "gi/filter/tone_map.h"
 #include "gi/image_io/picture_file.h"
@@ -212,7 +213,7 @@ SweepResult run_sweep(SweepOptions const& o)
 {
     gi::Report report;
     SweepPlan const plan = plan_sweep(o, report);
-    make_folder(o.out);
+    gi::make_folder(o.out);
     SweepResult result{empty_table(o, plan)};
     gi::StopRequest stop;
     InterruptGuard const guard(stop);

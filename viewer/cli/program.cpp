@@ -1,10 +1,8 @@
 #include "viewer/cli/program.h"
 
-#include "ar/camera/error.h"
 #include "gi/core/edit_distance.h"
 #include "gi/core/error.h"
 #include "gi/core/progress.h"
-#include "study/script/script_error.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/version.h"
 #include "viewer/cli/command_table.h"
@@ -145,12 +143,6 @@ Who ends view by Ctrl-C leaves it in order: 0.)");
             stderr);
         return 2;
     } catch (gi::InputError const& e) {
-        std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
-        return 2;
-    } catch (study::ScriptError const& e) {
-        std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
-        return 2;
-    } catch (ar::InputError const& e) {
         std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
         return 2;
     } catch (gi::Interrupted const&) {

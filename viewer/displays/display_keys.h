@@ -1,5 +1,5 @@
 #pragma once
-#include "gi/scene/load/yaml_reader.h"
+#include "gi/core/yaml.h"
 
 #include <map>
 #include <set>
@@ -10,9 +10,6 @@ namespace viewer {
 /// The keys of every kind of mapping in a display file, by the name that data/display.schema.json gives to it.
 std::map<std::string, std::set<std::string>> const& display_keys();
 /// Throws unless all keys of the mapping belong to its kind.
-inline void check_display_keys(gi::YamlReader const& map, char const* kind)
-{
-    map.only_keys(display_keys().at(kind));
-}
+inline void check_display_keys(gi::Yaml const& map, char const* kind) { map.only_keys(display_keys().at(kind)); }
 
 } // namespace viewer

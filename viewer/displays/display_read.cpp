@@ -8,11 +8,11 @@
 namespace viewer {
 namespace {
 
-using gi::YamlReader;
+using gi::Yaml;
 
 constexpr double kAny = 1e9; ///< what is read is judged in check.cpp
 
-YamlReader needed(YamlReader const& map, char const* key, char const* example)
+Yaml needed(Yaml const& map, char const* key, char const* example)
 {
     if (!map.has(key))
         throw map.error(fmt::format("{} is missing", key), "it has no usual value",
@@ -20,19 +20,19 @@ YamlReader needed(YamlReader const& map, char const* key, char const* example)
     return map.at(key);
 }
 
-std::vector<double> numbers(YamlReader const& list, std::size_t count, double low, double high)
+std::vector<double> numbers(Yaml const& list, std::size_t count, double low, double high)
 {
     auto const items = list.items();
     if (items.size() != count)
         throw list.error(fmt::format("{} numbers, not {}", items.size(), count), "each has its meaning",
                          fmt::format("write a list of {}", count));
     std::vector<double> out;
-    for (YamlReader const& item : items) out.push_back(item.number(low, high));
+    for (Yaml const& item : items) out.push_back(item.number(low, high));
     return out;
 }
 
 template <typename Part>
-int index_of(std::vector<Part> const& parts, YamlReader const& name, char const* list)
+int index_of(std::vector<Part> const& parts, Yaml const& name, char const* list)
 {
     std::string const wanted = name.text();
     std::string known;
@@ -44,19 +44,19 @@ int index_of(std::vector<Part> const& parts, YamlReader const& name, char const*
                      parts.empty() ? fmt::format("add {}", list) : "there are: " + known);
 }
 
-WallMesh read_mesh(YamlReader const& y)
+WallMesh read_mesh(Yaml const& y)
 {
     WallMesh mesh;
     mesh.columns = int(needed(y, "columns", "2").integer(2, kMostWarpNodes));
     mesh.rows = int(needed(y, "rows", "2").integer(2, kMostWarpNodes));
-    for (YamlReader const& node : needed(y, "nodes", "[[0, 0, 0, 0], ...]").items()) {
+    for (Yaml const& node : needed(y, "nodes", "[[0, 0, 0, 0], ...]").items()) {
         auto const v = numbers(node, 4, -kAny, kAny);
         mesh.nodes.push_back({{v[0], v[1]}, {v[2], v[3]}});
     }
     return mesh;
 }
 
-void read_warp(Wall& wall, YamlReader const& y, std::filesystem::path const& folder)
+void read_warp(Wall& wall, Yaml const& y, std::filesystem::path const& folder)
 {
     check_display_keys(y, "warp");
     if (!y.has("file")) {
@@ -68,14 +68,14 @@ void read_warp(Wall& wall, YamlReader const& y, std::filesystem::path const& fol
     wall.warp_file = y.at("file").text();
     auto const path = folder / wall.warp_file;
     auto const bytes = gi::read_bytes(path, std::size_t(1) << 20);
-    YamlReader const mesh = YamlReader::parse({bytes.begin(), bytes.end()}, path.string(), "warp");
+    Yaml const mesh = Yaml::parse({bytes.begin(), bytes.end()}, path.string(), "warp");
     mesh.only_keys({"columns", "rows", "nodes"});
     wall.warp = read_mesh(mesh);
     if (auto const fault = find_fault(*wall.warp))
         throw mesh.error(*fault, "the picture would be torn", "export the mesh again, row by row from below");
 }
 
-WallBlend read_blend(YamlReader const& y)
+WallBlend read_blend(Yaml const& y)
 {
     check_display_keys(y, "blend");
     WallBlend blend;
@@ -89,7 +89,7 @@ WallBlend read_blend(YamlReader const& y)
     return blend;
 }
 
-Wall read_wall(YamlReader const& y, Display const& d, std::filesystem::path const& folder)
+Wall read_wall(Yaml const& y, Display const& d, std::filesystem::path const& folder)
 {
     check_display_keys(y, "wall");
     Wall wall;
@@ -135,12 +135,12 @@ Wall read_wall(YamlReader const& y, Display const& d, std::filesystem::path cons
     return wall;
 }
 
-DisplayWindow read_window(YamlReader const& y)
+DisplayWindow read_window(Yaml const& y)
 {
     check_display_keys(y, "window");
     DisplayWindow window;
     window.name = needed(y, "name", "front").text();
-    auto const pair = [](YamlReader const& list, std::int64_t low, std::int64_t high) {
+    auto const pair = [](Yaml const& list, std::int64_t low, std::int64_t high) {
         auto const items = list.items();
         if (items.size() != 2) throw list.error("not two numbers", "pixels count across and down", "[1920, 1080]");
         return std::pair{int(items[0].integer(low, high)), int(items[1].integer(low, high))};
@@ -152,7 +152,7 @@ DisplayWindow read_window(YamlReader const& y)
     return window;
 }
 
-User read_user(YamlReader const& y, Display const& d, std::filesystem::path const& folder)
+User read_user(Yaml const& y, Display const& d, std::filesystem::path const& folder)
 {
     check_display_keys(y, "user");
     User user;
@@ -173,7 +173,7 @@ User read_user(YamlReader const& y, Display const& d, std::filesystem::path cons
     return user;
 }
 
-TrackerFilter read_filter(YamlReader const& y)
+TrackerFilter read_filter(Yaml const& y)
 {
     check_display_keys(y, "filter");
     TrackerFilter filter;
@@ -187,7 +187,7 @@ TrackerFilter read_filter(YamlReader const& y)
     return filter;
 }
 
-DisplayTracker read_tracker(YamlReader const& y)
+DisplayTracker read_tracker(Yaml const& y)
 {
     check_display_keys(y, "tracker");
     DisplayTracker tracker;
@@ -205,7 +205,7 @@ DisplayTracker read_tracker(YamlReader const& y)
         if (y.has(b.key)) tracker.*b.body = y.at(b.key).text();
     if (y.has("file")) tracker.file = y.at("file").text();
     if (y.has("room_from_tracker")) {
-        YamlReader const r = y.at("room_from_tracker");
+        Yaml const r = y.at("room_from_tracker");
         check_display_keys(r, "room_from_tracker");
         if (r.has("translation_m"))
             tracker.room_from_tracker.translation_m = r.at("translation_m").vector(-kAny, kAny);
@@ -218,11 +218,11 @@ DisplayTracker read_tracker(YamlReader const& y)
 }
 
 /// The error at the place that the fault names, or as near as the file has it.
-gi::InputError error_of(DisplayFault const& f, YamlReader const& root)
+gi::InputError error_of(DisplayFault const& f, Yaml const& root)
 {
     if (f.list.empty()) return root.error(f.problem, f.why, f.suggestion);
-    YamlReader const part = root.at(f.list).items().at(f.index);
-    YamlReader const at = part.has(f.key) ? part.at(f.key) : part;
+    Yaml const part = root.at(f.list).items().at(f.index);
+    Yaml const at = part.has(f.key) ? part.at(f.key) : part;
     return at.error(f.problem, f.why, f.suggestion);
 }
 
@@ -230,22 +230,22 @@ gi::InputError error_of(DisplayFault const& f, YamlReader const& root)
 
 Display parse_display(std::string const& text, std::string const& name, gi::Report& report)
 {
-    YamlReader const root = YamlReader::parse(text, name, "display");
+    Yaml const root = Yaml::parse(text, name, "display");
     check_display_keys(root, "display");
     Display d;
     if (root.has("name")) d.name = root.at("name").text();
     auto const each = [&](char const* list, char const* example, auto const& read) {
-        for (YamlReader const& item : needed(root, list, example).items()) read(item);
+        for (Yaml const& item : needed(root, list, example).items()) read(item);
     };
     if (root.has("trackers"))
-        each("trackers", "[...]", [&](YamlReader const& y) { d.trackers.push_back(read_tracker(y)); });
+        each("trackers", "[...]", [&](Yaml const& y) { d.trackers.push_back(read_tracker(y)); });
     each("windows", "[{name: front, size_px: [1920, 1080]}]",
-         [&](YamlReader const& y) { d.windows.push_back(read_window(y)); });
+         [&](Yaml const& y) { d.windows.push_back(read_window(y)); });
     auto const folder = std::filesystem::path(name).parent_path();
     each("users", "[{name: visitor, head_position_m: [0, 1.7, 0]}]",
-         [&](YamlReader const& y) { d.users.push_back(read_user(y, d, folder)); });
+         [&](Yaml const& y) { d.users.push_back(read_user(y, d, folder)); });
     each("walls", "[{name: front, window: front, lower_left_m: [-1.5, 0, -1.5], ...}]",
-         [&](YamlReader const& y) { d.walls.push_back(read_wall(y, d, folder)); });
+         [&](Yaml const& y) { d.walls.push_back(read_wall(y, d, folder)); });
     if (auto const fault = find_fault(d)) throw error_of(*fault, root);
     report_doubts(d, report);
     return d;

@@ -2,7 +2,7 @@
 // PlanarProjection: a plane 10 m from the room's origin unless `distance` says otherwise, turned by yaw to the
 // right, pitch upward and roll to the right; left and down angles are positive.
 
-#include "gi/scene/load/yaml_reader.h"
+#include "gi/core/yaml.h"
 #include "viewer/displays/import.h"
 #include "viewer/displays/import_common.h"
 
@@ -16,7 +16,7 @@
 namespace viewer {
 namespace {
 
-using gi::YamlReader;
+using gi::Yaml;
 
 struct SgctContext {
     Display display;
@@ -24,32 +24,28 @@ struct SgctContext {
     gi::Report& report;
 };
 
-void lose_others(YamlReader const& map, std::set<std::string> const& known, std::string const& path,
-                 SgctContext& c)
+void lose_others(Yaml const& map, std::set<std::string> const& known, std::string const& path, SgctContext& c)
 {
     for (std::string const& key : map.keys())
         if (!known.contains(key)) c.report.lose("SGCT " + path + key.substr(0, 64) + ": not imported", 1, c.file);
 }
 
-double number(YamlReader const& y) { return y.number(-1e12, 1e12); }
-double number_or(YamlReader const& map, char const* key, double otherwise)
+double number(Yaml const& y) { return y.number(-1e12, 1e12); }
+double number_or(Yaml const& map, char const* key, double otherwise)
 {
     return map.has(key) ? number(map.at(key)) : otherwise;
 }
 
-YamlReader needed(YamlReader const& map, char const* key)
+Yaml needed(Yaml const& map, char const* key)
 {
     if (!map.is_map() || !map.has(key))
         throw map.error(std::string(key) + " is missing", "SGCT cannot do without it", "is this a file of SGCT?");
     return map.at(key);
 }
 
-gi::dvec3 point(YamlReader const& y)
-{
-    return {number(needed(y, "x")), number(needed(y, "y")), number(needed(y, "z"))};
-}
+gi::dvec3 point(Yaml const& y) { return {number(needed(y, "x")), number(needed(y, "y")), number(needed(y, "z"))}; }
 
-bool flag(YamlReader const& map, char const* key) { return map.has(key) && map.at(key).boolean(); }
+bool flag(Yaml const& map, char const* key) { return map.has(key) && map.at(key).boolean(); }
 
 struct Stereo {
     StereoMode mode = StereoMode::off;
@@ -57,7 +53,7 @@ struct Stereo {
 };
 
 /// SGCT's interlaced modes count rows from below and put the left eye on row 0.
-Stereo read_stereo(YamlReader const& y, int height_px, SgctContext& c)
+Stereo read_stereo(Yaml const& y, int height_px, SgctContext& c)
 {
     std::string const name = y.text();
     std::string const plain = name.substr(0, name.find("_inverted"));
@@ -73,7 +69,7 @@ Stereo read_stereo(YamlReader const& y, int height_px, SgctContext& c)
     return {};
 }
 
-gi::dquat orientation(YamlReader const& y)
+gi::dquat orientation(Yaml const& y)
 {
     if (y.has("w")) {
         gi::dvec3 const v = point(y);
@@ -89,10 +85,10 @@ gi::dquat orientation(YamlReader const& y)
     return about("yaw", -1, {0, 1, 0}) * about("pitch", 1, {1, 0, 0}) * about("roll", -1, {0, 0, 1});
 }
 
-WallCorners planar(YamlReader const& p, SgctContext& c)
+WallCorners planar(Yaml const& p, SgctContext& c)
 {
     lose_others(p, {"type", "fov", "distance", "orientation", "offset"}, "projection.", c);
-    YamlReader const fov = needed(p, "fov");
+    Yaml const fov = needed(p, "fov");
     double const across = number_or(fov, "hfov", 0) / 2, upward = number_or(fov, "vfov", 0) / 2;
     double const distance = number_or(p, "distance", 10);
     auto const at = [&](char const* key, double otherwise) {
@@ -106,7 +102,7 @@ WallCorners planar(YamlReader const& p, SgctContext& c)
     return {corner(left, bottom), corner(right, bottom), corner(left, top)};
 }
 
-WallCorners plane(YamlReader const& p, SgctContext& c)
+WallCorners plane(Yaml const& p, SgctContext& c)
 {
     lose_others(p, {"type", "lowerleft", "upperleft", "upperright"}, "projection.", c);
     gi::dvec3 const ll = point(needed(p, "lowerleft")), ul = point(needed(p, "upperleft")),
@@ -114,11 +110,11 @@ WallCorners plane(YamlReader const& p, SgctContext& c)
     return {ll, ll + ur - ul, ul};
 }
 
-void read_viewport(YamlReader const& v, int window, int rank, Stereo stereo, std::string const& default_user,
+void read_viewport(Yaml const& v, int window, int rank, Stereo stereo, std::string const& default_user,
                    std::map<std::string, int> const& users, SgctContext& c)
 {
     lose_others(v, {"pos", "size", "projection", "user"}, "viewport.", c);
-    YamlReader const p = needed(v, "projection");
+    Yaml const p = needed(v, "projection");
     std::string const type = needed(p, "type").text();
     if (type != "ProjectionPlane" && type != "PlanarProjection") {
         c.report.lose("SGCT viewports with a " + type.substr(0, 64) + " skipped: only flat walls are imported", 1,
@@ -152,13 +148,13 @@ void read_viewport(YamlReader const& v, int window, int rank, Stereo stereo, std
     c.display.walls.push_back(wall);
 }
 
-void read_window(YamlReader const& w, int rank, std::map<std::string, int> const& users, SgctContext& c)
+void read_window(Yaml const& w, int rank, std::map<std::string, int> const& users, SgctContext& c)
 {
     lose_others(w, {"name", "id", "pos", "size", "fullscreen", "monitor", "stereo", "viewports"}, "window.", c);
     DisplayWindow window;
     window.name = free_name(c.display.windows, w.has("name") ? w.at("name").text() : "window");
-    auto const pixel = [](YamlReader const& y) { return int(y.integer(-1000000, 1000000)); };
-    YamlReader const size = needed(w, "size");
+    auto const pixel = [](Yaml const& y) { return int(y.integer(-1000000, 1000000)); };
+    Yaml const size = needed(w, "size");
     window.width_px = pixel(needed(size, "x"));
     window.height_px = pixel(needed(size, "y"));
     if (w.has("pos")) {
@@ -171,16 +167,16 @@ void read_window(YamlReader const& w, int rank, std::map<std::string, int> const
     c.display.windows.push_back(window);
     std::size_t const walls = c.display.walls.size();
     if (w.has("viewports"))
-        for (YamlReader const& v : w.at("viewports").items())
+        for (Yaml const& v : w.at("viewports").items())
             read_viewport(v, int(c.display.windows.size()) - 1, rank, stereo, users.begin()->first, users, c);
     if (c.display.walls.size() == walls) c.display.windows.pop_back();
 }
 
-std::map<std::string, int> read_users(YamlReader const& root, SgctContext& c)
+std::map<std::string, int> read_users(Yaml const& root, SgctContext& c)
 {
     std::map<std::string, int> users;
     if (root.has("users"))
-        for (YamlReader const& u : root.at("users").items()) {
+        for (Yaml const& u : root.at("users").items()) {
             lose_others(u, {"name", "eyeseparation", "pos"}, "user.", c);
             User user;
             std::string const name = u.has("name") ? u.at("name").text() : "default";
@@ -199,10 +195,10 @@ std::map<std::string, int> read_users(YamlReader const& root, SgctContext& c)
     return users;
 }
 
-YamlReader parse_json(std::string const& text, std::string const& file)
+Yaml parse_json(std::string const& text, std::string const& file)
 {
     try {
-        return YamlReader::parse(text, file, "SGCT");
+        return Yaml::parse(text, file, "SGCT");
     } catch (gi::InputError const&) { // speaks of YAML, which nobody meant to write
         try {
             [[maybe_unused]] auto const json = nlohmann::json::parse(text);
@@ -223,17 +219,17 @@ YamlReader parse_json(std::string const& text, std::string const& file)
 
 Display parse_sgct(std::string const& text, std::string const& name, gi::Report& report)
 {
-    YamlReader const root = parse_json(text, name);
+    Yaml const root = parse_json(text, name);
     SgctContext c{{}, name, report};
     lose_others(root, {"version", "masteraddress", "nodes", "users", "$schema", "title", "description", "author"},
                 "", c);
-    YamlReader const nodes = needed(root, "nodes");
+    Yaml const nodes = needed(root, "nodes");
     std::map<std::string, int> const users = read_users(root, c);
     int rank = 0;
-    for (YamlReader const& node : nodes.items()) {
+    for (Yaml const& node : nodes.items()) {
         lose_others(node, {"address", "port", "windows"}, "node.", c);
         if (node.has("windows"))
-            for (YamlReader const& window : node.at("windows").items()) read_window(window, rank, users, c);
+            for (Yaml const& window : node.at("windows").items()) read_window(window, rank, users, c);
         ++rank;
     }
     return finished(std::move(c.display), name, report);

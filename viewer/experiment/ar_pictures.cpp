@@ -1,6 +1,5 @@
 #include "viewer/experiment/ar_pictures.h"
 
-#include "ar/camera/error.h"
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map_file.h"
 #include "ar/pose/pose_file.h"
@@ -8,6 +7,7 @@
 #include "ar/runtime/runner.h"
 #include "ar/runtime/source_losses.h"
 #include "ar/scene/read_values.h"
+#include "gi/core/error.h"
 #include "viewer/experiment/screen.h"
 
 #include <algorithm>
@@ -114,7 +114,7 @@ std::vector<ar::TimedPose> read_poses(ArStimulus const& s)
 {
     try {
         return ar::read_poses(s.poses);
-    } catch (ar::InputError const& e) {
+    } catch (gi::InputError const& e) {
         throw ArSettingError("ar.poses", s.poses.filename().string(), "the camera's poses", e.what(),
                              "name a CSV or TUM file");
     }

@@ -16,7 +16,7 @@ struct ArPicture {
     std::optional<ar::Pose> world_from_camera;
 };
 
-/// One picture, or those of `view.duration_s`, or as many as there are. @throws gi::InputError, ar::InputError
+/// One picture, or those of `view.duration_s`, or as many as there are. @throws gi::InputError
 /// there is no such frame or moment, the camera is not found in the only frame, what the session names cannot be
 /// read
 std::vector<ArPicture> make_ar_pictures(ArStimulus const& stimulus, StimulusView const& view,

@@ -1,7 +1,7 @@
 #include "viewer/experiment/ar_source.h"
 
-#include "ar/camera/error.h"
 #include "ar/pipeline/bridge.h"
+#include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "viewer/experiment/prepared.h"
 #include "viewer/experiment/prepared_files.h"

@@ -2,7 +2,7 @@
 
 #include "ar/scene/session_inputs.h"
 #include "gi/core/file.h"
-#include "study/script/sha256.h"
+#include "gi/core/sha256.h"
 
 #include <algorithm>
 #include <charconv>
@@ -115,7 +115,7 @@ std::string hash_of_file(fs::path const& file)
     auto& hash = known[{file.string(), fs::last_write_time(file)}];
     if (hash.empty()) {
         auto const bytes = gi::read_bytes(file);
-        hash = study::sha256({reinterpret_cast<char const*>(bytes.data()), bytes.size()});
+        hash = gi::sha256({reinterpret_cast<char const*>(bytes.data()), bytes.size()});
     }
     return hash;
 }
@@ -189,7 +189,7 @@ std::string content_hash(ArStimulus const& s)
     for (fs::path const& file : files_read_by(session_of(s))) add_hash(file, all);
     if (!s.poses.empty()) add_hash(s.poses, all);
     if (s.show == ArShow::truth) add_hash(s.truth, all);
-    return study::sha256(all);
+    return gi::sha256(all);
 }
 
 } // namespace viewer

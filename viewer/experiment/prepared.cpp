@@ -2,8 +2,8 @@
 
 #include "gi/core/error.h"
 #include "gi/core/file.h"
+#include "gi/core/sha256.h"
 #include "gi/image_io/picture_file.h"
-#include "study/script/sha256.h"
 #include "viewer/experiment/ar_source.h"
 #include "viewer/experiment/prepared_files.h"
 #include "viewer/experiment/stimulus_place.h"
@@ -26,7 +26,7 @@ std::string scene_hash(std::string const& scene)
     auto& hash = known[{scene, std::filesystem::last_write_time(scene)}];
     if (hash.empty()) {
         auto const bytes = gi::read_bytes(scene);
-        hash = study::sha256({reinterpret_cast<char const*>(bytes.data()), bytes.size()});
+        hash = gi::sha256({reinterpret_cast<char const*>(bytes.data()), bytes.size()});
     }
     return hash;
 }
@@ -47,10 +47,10 @@ gi::Picture shown_part(gi::Picture const& picture)
 
 std::string prepared_key(PreparedStimulus const& w, std::string const& version)
 {
-    return study::sha256(fmt::format("{} {} {}x{} {} {:.6g} {} {}", w.stimulus.sha256,
-                                     w.stimulus.ar ? content_hash(*w.stimulus.ar) : scene_hash(w.stimulus.scene),
-                                     w.view.size_px.x, w.view.size_px.y, name_of(w.view.stereo), w.view.duration_s,
-                                     w.view.warmup_frames, version));
+    return gi::sha256(fmt::format("{} {} {}x{} {} {:.6g} {} {}", w.stimulus.sha256,
+                                  w.stimulus.ar ? content_hash(*w.stimulus.ar) : scene_hash(w.stimulus.scene),
+                                  w.view.size_px.x, w.view.size_px.y, name_of(w.view.stereo), w.view.duration_s,
+                                  w.view.warmup_frames, version));
 }
 
 bool prepare_stimulus(PreparedStimulus const& wanted, std::filesystem::path const& folder, std::string const& key,

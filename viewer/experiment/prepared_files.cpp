@@ -1,8 +1,8 @@
 #include "viewer/experiment/prepared_files.h"
 
+#include "gi/core/durable_file.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
-#include "study/journal/durable_file.h"
 
 #include <fmt/format.h>
 #include <fstream>
@@ -68,7 +68,7 @@ nlohmann::json read_prepared(fs::path const& folder)
 void write_prepared(fs::path const& folder, std::function<nlohmann::json(fs::path const& into)> const& write)
 {
     fs::path const making = fmt::format("{}.{}", folder.string(), getpid());
-    study::make_folder(making);
+    gi::make_folder(making);
     try {
         nlohmann::json about = write(making);
         about["files"] = lengths_in(making);

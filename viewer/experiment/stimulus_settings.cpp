@@ -1,8 +1,8 @@
 #include "viewer/experiment/stimulus_settings.h"
 
 #include "gi/core/error.h"
+#include "gi/core/sha256.h"
 #include "gi/filter/filter_names.h"
-#include "study/script/sha256.h"
 #include "viewer/engine/scene_edits.h"
 
 #include <algorithm>
@@ -116,7 +116,7 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
         s.ar = ar_stimulus(patch, folder);
         check_beside_ar(patch, camera);
         s.view = StimulusViewer::window;
-        s.sha256 = study::sha256(text_of(s));
+        s.sha256 = gi::sha256(text_of(s));
         return s;
     }
     constexpr std::string_view kPath = "path:", kGi = "gi.";
@@ -153,7 +153,7 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
     if (s.scene.empty())
         throw gi::InputError("a stimulus without a scene", "there would be nothing to show",
                              "give a factor or defaults.settings the setting `scene`, or `ar` for an AR session");
-    s.sha256 = study::sha256(text_of(s)); // with the scene's name as it is written, wherever the script lies
+    s.sha256 = gi::sha256(text_of(s)); // with the scene's name as it is written, wherever the script lies
     s.scene = scene_file(folder, s.scene);
     return s;
 }

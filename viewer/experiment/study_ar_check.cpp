@@ -1,4 +1,4 @@
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "study/script/condition.h"
 #include "study/script/setting_place.h"
 #include "viewer/experiment/ar_pictures.h"
@@ -85,9 +85,6 @@ void ArStimulusCheck::check() const
         } catch (ArSettingError const& e) {
             at_setting(e.key, e);
         } catch (gi::InputError const& e) {
-            if (has_place(e.what())) throw;
-            at_setting("ar", e);
-        } catch (ar::InputError const& e) {
             if (has_place(e.what())) throw;
             at_setting("ar", e);
         }

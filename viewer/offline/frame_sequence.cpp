@@ -103,7 +103,7 @@ private:
     }
 
     /// The same, moved on from the frame before.
-    gi::World const& update_axes(int frame, gi::Report& report)
+    gi::World const& advance(int frame, gi::Report& report)
     {
         gi::StageTimer const timer(report, "world");
         double const time_s = f_.scene_time_s(o_, frame);
@@ -225,7 +225,7 @@ private:
     bool remember(int frame)
     {
         gi::Report report;
-        gi::World const& world = update_axes(frame, report);
+        gi::World const& world = advance(frame, report);
         auto const progress = [&](gi::RenderStatus const&) {
             bar_->update(double(rendered_) / missing_, fmt::format("frame {} again, for reuse", frame));
         };
@@ -261,7 +261,7 @@ private:
             moving.emplace(scene_, f_.scene_time_s(o_, frame), report);
         else if (o_.reuse == 1)
             own = world_of(frame, report);
-        gi::World const& world = blurs_ ? moving->world() : o_.reuse == 1 ? own : update_axes(frame, report);
+        gi::World const& world = blurs_ ? moving->world() : o_.reuse == 1 ? own : advance(frame, report);
         gi::Camera const camera = camera_of(world, frame);
         auto const progress = [&](gi::RenderStatus const& s) {
             bar_->update((rendered_ + s.fraction) / missing_,

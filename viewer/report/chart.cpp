@@ -1,5 +1,6 @@
 #include "viewer/report/chart.h"
 
+#include "gi/core/html.h"
 #include "viewer/report/html.h"
 #include "viewer/report/log_axis.h"
 
@@ -27,7 +28,7 @@ struct Frame {
 
 std::string text(double x, double y, char const* css, std::string const& words)
 {
-    return fmt::format("<text class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", css, x, y, escaped(words));
+    return fmt::format("<text class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", css, x, y, gi::escaped(words));
 }
 
 std::string line(char const* css, double x0, double y0, double x1, double y1)
@@ -40,7 +41,7 @@ std::string line(char const* css, double x0, double y0, double x1, double y1)
 std::string marker(std::size_t curve, double x, double y, std::string const& note)
 {
     double const r = kMarker;
-    std::string const title = note.empty() ? "" : "<title>" + escaped(note) + "</title>";
+    std::string const title = note.empty() ? "" : "<title>" + gi::escaped(note) + "</title>";
     if (curve % 3 == 0)
         return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\">{}</circle>\n", x, y, r, title);
     std::string const corners = curve % 3 == 1
@@ -66,7 +67,7 @@ std::string axes(Chart const& chart, Frame const& f)
     svg += line("axis", kLeft, bottom, right, bottom) + line("axis", kLeft, kTop, kLeft, bottom);
     svg += text(0.5 * (kLeft + right), kHeight - 10, "label middle", chart.x_label);
     svg += fmt::format("<text class=\"label middle\" transform=\"translate(16 {:.1f}) rotate(-90)\">{}</text>\n",
-                       0.5 * (kTop + bottom), escaped(chart.y_label));
+                       0.5 * (kTop + bottom), gi::escaped(chart.y_label));
     return svg;
 }
 
@@ -139,7 +140,7 @@ std::string to_svg(Chart const& chart)
     if (!ys.empty() && chart.level * kNear > *std::min_element(ys.begin(), ys.end())) ys.push_back(chart.level);
     Frame const frame{make_axis(xs), make_axis(ys)};
     std::string svg = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n", kWidth, kHeight,
-                                  escaped(chart.title));
+                                  gi::escaped(chart.title));
     svg += axes(chart, frame);
     if (chart.level > 0 && chart.level >= frame.y.low && chart.level <= frame.y.high) {
         double const y = frame.py(chart.level);

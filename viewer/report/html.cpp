@@ -1,7 +1,9 @@
 #include "viewer/report/html.h"
 
+#include "gi/core/base64.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
+#include "gi/core/html.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -9,20 +11,6 @@
 
 namespace viewer {
 namespace {
-
-std::string base64(std::span<unsigned char const> bytes)
-{
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::size_t const there = std::min<std::size_t>(3, bytes.size() - i);
-        std::uint32_t group = 0;
-        for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < there ? bytes[i + k] : 0u);
-        for (std::size_t k = 0; k < 4; ++k) text += k <= there ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-    }
-    return text;
-}
 
 constexpr char const* kNotMarked = "something else";
 
@@ -42,36 +30,9 @@ std::string read_marked(std::filesystem::path const& file, std::string_view mark
     return marked ? "" : kNotMarked;
 }
 
-std::string missing(std::string const& words) { return "<p class=\"missing\">" + escaped(words) + "</p>"; }
+std::string missing(std::string const& words) { return "<p class=\"missing\">" + gi::escaped(words) + "</p>"; }
 
 } // namespace
-
-std::string escaped(std::string_view text)
-{
-    std::string out;
-    for (char const c : text) {
-        switch (c) {
-        case '&':
-            out += "&amp;";
-            break;
-        case '<':
-            out += "&lt;";
-            break;
-        case '>':
-            out += "&gt;";
-            break;
-        case '"':
-            out += "&quot;";
-            break;
-        case '\'':
-            out += "&#39;";
-            break;
-        default:
-            out += c;
-        }
-    }
-    return out;
-}
 
 std::string readable(std::string const& column_name)
 {
@@ -95,13 +56,13 @@ std::string embedded_png(std::filesystem::path const& file, std::string const& d
     };
     return fmt::format(
         "<img tabindex=\"0\" width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">", word(kSize),
-        word(kSize + 4), escaped(description), base64(bytes));
+        word(kSize + 4), gi::escaped(description), gi::encode_base64(bytes));
 }
 
 std::string linked_png(std::filesystem::path const& file, std::string const& description)
 {
-    return fmt::format("<img tabindex=\"0\" loading=\"lazy\" alt=\"{}\" src=\"{}\">", escaped(description),
-                       escaped(file.filename().string()));
+    return fmt::format("<img tabindex=\"0\" loading=\"lazy\" alt=\"{}\" src=\"{}\">", gi::escaped(description),
+                       gi::escaped(file.filename().string()));
 }
 
 std::string embedded_video(std::filesystem::path const& file, std::string const& description)
@@ -112,7 +73,7 @@ std::string embedded_video(std::filesystem::path const& file, std::string const&
                                          : why);
     return fmt::format("<video controls loop autoplay muted playsinline title=\"{}\" "
                        "src=\"data:video/mp4;base64,{}\"></video>",
-                       escaped(description), base64(bytes));
+                       gi::escaped(description), gi::encode_base64(bytes));
 }
 
 } // namespace viewer

@@ -5,8 +5,6 @@
 
 namespace viewer {
 
-/// As text or as a quoted attribute of HTML.
-std::string escaped(std::string_view text);
 /// "frame, s" of "frame_s".
 std::string readable(std::string const& column_name);
 /// An <img> that holds the PNG itself, or words that say that it is missing.

@@ -1,5 +1,6 @@
 #include "viewer/report/page.h"
 
+#include "gi/core/html.h"
 #include "viewer/report/html.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ namespace {
 
 std::string cell_html(Cell const& cell)
 {
-    if (std::holds_alternative<std::string>(cell)) return "<td>" + escaped(to_text(cell)) + "</td>";
+    if (std::holds_alternative<std::string>(cell)) return "<td>" + gi::escaped(to_text(cell)) + "</td>";
     auto const* m = std::get_if<Measured>(&cell);
     std::string spread;
     if (m != nullptr) {
@@ -32,7 +33,7 @@ std::string rows_html(BenchTable const& t)
     for (std::size_t c = 0; c < t.columns.size(); ++c)
         if (!names_file(t.columns[c]))
             html += fmt::format("<th scope=\"col\"{}>{}</th>", holds_text(t, c) ? "" : " class=\"number\"",
-                                escaped(readable(t.columns[c])));
+                                gi::escaped(readable(t.columns[c])));
     html += "</tr></thead>\n<tbody>\n";
     for (auto const& row : t.rows) {
         html += "<tr>";
@@ -56,20 +57,21 @@ bool has_spread(BenchTable const& t)
 std::string origin_html(BenchTable const& t)
 {
     std::string html =
-        "<details>\n<summary>how it was measured: " + escaped(to_text(t.machine)) + "</summary>\n<dl>\n";
+        "<details>\n<summary>how it was measured: " + gi::escaped(to_text(t.machine)) + "</summary>\n<dl>\n";
     auto const entry = [&](std::string const& what, std::string const& value) {
-        html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(what), escaped(value));
+        html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", gi::escaped(what), gi::escaped(value));
     };
     entry("machine", to_text(t.machine));
     entry("program", t.program);
     entry("date", t.date);
     for (auto const& [what, value] : t.facts) entry(what, value);
-    return html + "</dl>\n<p>To repeat it:</p>\n<pre><code>" + escaped(t.command) + "</code></pre>\n</details>\n";
+    return html + "</dl>\n<p>To repeat it:</p>\n<pre><code>" + gi::escaped(t.command) +
+           "</code></pre>\n</details>\n";
 }
 
 std::string section(BenchTable const& t, std::filesystem::path const& folder, PagePictures pictures)
 {
-    std::string html = fmt::format("<section>\n<h2>{}</h2>\n", escaped(t.title.empty() ? t.name : t.title));
+    std::string html = fmt::format("<section>\n<h2>{}</h2>\n", gi::escaped(t.title.empty() ? t.name : t.title));
     std::string const figures = sweep_figures(t, folder) + picture_grids(t, folder, pictures);
     html +=
         origin_html(t) + figures + (figures.empty() ? "<h3>Rows</h3>\n" : "<details>\n<summary>rows</summary>\n");
@@ -82,20 +84,21 @@ std::string section(BenchTable const& t, std::filesystem::path const& folder, Pa
 
 std::string make_page(Page const& page)
 {
-    std::string const title = escaped(page.title);
+    std::string const title = gi::escaped(page.title);
     std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
                        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
                        "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
                        title + "</title>\n<style>\n";
     html += page_style();
     html += "</style>\n</head>\n<body>\n<header><h1>" + title + "</h1></header>\n<main>\n";
-    if (!page.lead.empty()) html += "<p>" + escaped(page.lead) + "</p>\n";
+    if (!page.lead.empty()) html += "<p>" + gi::escaped(page.lead) + "</p>\n";
     for (BenchFolder const& folder : page.folders) html += render_figures(folder);
     for (BenchFolder const& folder : page.folders)
         for (BenchTable const& table : folder.tables) html += section(table, folder.path, page.pictures);
     if (!page.next.empty()) {
         html += "<section>\n<h2>Next</h2>\n";
-        for (std::string const& command : page.next) html += "<pre><code>" + escaped(command) + "</code></pre>\n";
+        for (std::string const& command : page.next)
+            html += "<pre><code>" + gi::escaped(command) + "</code></pre>\n";
         html += "</section>\n";
     }
     return html + "</main>\n</body>\n</html>\n";

@@ -1,3 +1,4 @@
+#include "gi/core/html.h"
 #include "viewer/report/html.h"
 #include "viewer/report/page.h"
 #include "viewer/report/picture_summary.h"
@@ -42,7 +43,7 @@ public:
 
     std::string group(PictureGroup const& g) const
     {
-        std::string html = fmt::format("<h3>{}, {}</h3>\n", escaped(g.scene), escaped(g.budget));
+        std::string html = fmt::format("<h3>{}, {}</h3>\n", gi::escaped(g.scene), gi::escaped(g.budget));
         if (g.worst > 0)
             html += fmt::format("<p class=\"note\">largest error, relative to the method reference: {:.3g}</p>\n",
                                 g.worst);
@@ -54,7 +55,7 @@ public:
             if (std::string const f = text(*row, "filter"); std::ranges::find(filters, f) == filters.end())
                 filters.push_back(f);
         for (std::string const& f : filters) {
-            html += "<h4>filter " + escaped(f) + "</h4>\n<div class=\"strip\">\n";
+            html += "<h4>filter " + gi::escaped(f) + "</h4>\n<div class=\"strip\">\n";
             for (auto const* row : g.rows)
                 if (text(*row, "filter") == f) html += figure(*row);
             html += "</div>\n";
@@ -87,8 +88,8 @@ private:
                fmt::format(
                    "<figcaption><strong>{}</strong>, {:.3g} paths, {:.3g} s<br>relMSE {:.3g}, FLIP {:.3g}<br>"
                    "correlation {:.2f}</figcaption>\n</figure>\n",
-                   escaped(text(row, "method")), value(row, "paths"), value(row, "total_s"), value(row, "relmse"),
-                   value(row, "flip"), value(row, "neighbour_correlation"));
+                   gi::escaped(text(row, "method")), value(row, "paths"), value(row, "total_s"),
+                   value(row, "relmse"), value(row, "flip"), value(row, "neighbour_correlation"));
     }
 
     BenchTable const& t_;

@@ -1,3 +1,4 @@
+#include "gi/core/html.h"
 #include "viewer/report/html.h"
 #include "viewer/report/page.h"
 
@@ -32,8 +33,8 @@ std::string cost_sentence(RenderStats const& r)
 
 std::string captioned(std::string const& inside, std::string const& title, RenderStats const& r)
 {
-    return "<figure>\n" + inside + "\n<figcaption><strong>" + escaped(title) + "</strong><br>" +
-           escaped(made_how(r) + "; " + cost_sentence(r)) + "</figcaption>\n</figure>\n";
+    return "<figure>\n" + inside + "\n<figcaption><strong>" + gi::escaped(title) + "</strong><br>" +
+           gi::escaped(made_how(r) + "; " + cost_sentence(r)) + "</figcaption>\n</figure>\n";
 }
 
 std::string pair_html(BenchFolder const& folder, RenderStats const& left, RenderStats const& right)
@@ -47,7 +48,7 @@ std::string pair_html(BenchFolder const& folder, RenderStats const& left, Render
     std::string words = fmt::format("One moment from two places {:.3g} mm apart, through one virtual screen",
                                     1000 * left.eye_distance_m);
     if (left.screen_distance_m > 0) words += fmt::format(" {:.3g} m away", left.screen_distance_m);
-    html += "<p class=\"note\">" + escaped(words) + ".</p>\n";
+    html += "<p class=\"note\">" + gi::escaped(words) + ".</p>\n";
     if (left.anaglyph.empty()) return html;
     return html + "<details>\n<summary>the pair for red and cyan glasses</summary>\n" +
            embedded_png(folder.path / left.anaglyph, "anaglyph of both eyes") + "\n</details>\n";
@@ -62,7 +63,7 @@ std::string number_cell(double value, char const* form)
 std::string cost_row(RenderStats const& r)
 {
     constexpr double kMiB = 1024.0 * 1024;
-    return "<tr><td>" + escaped(r.name) + "</td><td>" + escaped(made_how(r)) + "</td>" +
+    return "<tr><td>" + gi::escaped(r.name) + "</td><td>" + gi::escaped(made_how(r)) + "</td>" +
            number_cell(r.structures_s, "{:.2f}") + number_cell(r.trace_s, "{:.2f}") +
            number_cell(r.denoise_s, "{:.2f}") + number_cell(r.whole_s, "{:.2f}") +
            number_cell(r.frame_s, "{:.2f}") + number_cell(r.frame_p95_s, "{:.2f}") +
@@ -73,7 +74,7 @@ std::string costs_html(std::vector<RenderStats const*> const& renders)
 {
     std::string html = "<h3>What they cost</h3>\n";
     if (std::string const& machine = renders.front()->machine; !machine.empty())
-        html += "<p class=\"note\">" + escaped(machine + "; " + renders.front()->program) + "</p>\n";
+        html += "<p class=\"note\">" + gi::escaped(machine + "; " + renders.front()->program) + "</p>\n";
     html += "<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\">file</th><th scope=\"col\">what</th>";
     for (char const* column : {"structures, s", "tracing, s", "filter, s", "whole, s", "median of frames, s",
                                "95 % of frames, s", "estimated relMSE, unfiltered", "most memory, MiB"})
@@ -81,7 +82,7 @@ std::string costs_html(std::vector<RenderStats const*> const& renders)
     html += "</tr></thead>\n<tbody>\n";
     for (RenderStats const* const r : renders) html += cost_row(*r);
     html += "</tbody></table></div>\n<details>\n<summary>to repeat them</summary>\n<pre><code>";
-    for (RenderStats const* const r : renders) html += escaped(r->command) + "\n";
+    for (RenderStats const* const r : renders) html += gi::escaped(r->command) + "\n";
     return html + "</code></pre>\n</details>\n";
 }
 

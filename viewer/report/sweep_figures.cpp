@@ -1,3 +1,4 @@
+#include "gi/core/html.h"
 #include "viewer/report/chart.h"
 #include "viewer/report/html.h"
 #include "viewer/report/page.h"
@@ -57,7 +58,7 @@ std::string chart_html(BenchTable const& t, Group const& scene, std::string cons
         chart.level = noise;
         chart.level_label = "noise of the reference";
     }
-    return fmt::format("<figure>\n<figcaption>{}</figcaption>\n{}</figure>\n", escaped(chart.title),
+    return fmt::format("<figure>\n<figcaption>{}</figcaption>\n{}</figure>\n", gi::escaped(chart.title),
                        to_svg(chart));
 }
 
@@ -90,7 +91,7 @@ std::string pictures_html(BenchTable const& t, Group const& scene, std::filesyst
         picture_html(t, *scene.rows.front(), "reference_file", folder, scene.value + ", reference") +
         "</figure>\n</div>\n<div>\n";
     for (Group const& method : group_by(t, scene.rows, "method")) {
-        html += "<h4>" + escaped(method.value) + "</h4>\n<div class=\"strip\">\n";
+        html += "<h4>" + gi::escaped(method.value) + "</h4>\n<div class=\"strip\">\n";
         for (Row const* row : method.rows)
             html += picture_figure(t, *row, folder, scene.value + ", " + method.value);
         html += "</div>\n";
@@ -110,7 +111,7 @@ std::string sweep_figures(BenchTable const& table, std::filesystem::path const& 
     for (Row const& row : table.rows) all.push_back(&row);
     std::string html;
     for (Group const& scene : group_by(table, all, "scene"))
-        html += "<h3>" + escaped(scene.value) + "</h3>\n<div class=\"charts\">\n" +
+        html += "<h3>" + gi::escaped(scene.value) + "</h3>\n<div class=\"charts\">\n" +
                 chart_html(table, scene, "relmse", "relMSE") + chart_html(table, scene, "flip", "FLIP") +
                 "</div>\n" + pictures_html(table, scene, folder);
     return html;

@@ -1,6 +1,6 @@
 #include "viewer/study/study_records.h"
 
-#include "study/journal/durable_file.h"
+#include "gi/core/durable_file.h"
 #include "study/tables/bids.h"
 #include "viewer/base/version.h"
 
@@ -19,8 +19,8 @@ void write_files(std::filesystem::path const& folder, std::vector<study::TextFil
 {
     for (study::TextFile const& f : files) {
         std::filesystem::path const file = folder / f.path;
-        study::make_folder(file.parent_path());
-        study::write_durably(file, f.text);
+        gi::make_folder(file.parent_path());
+        gi::write_durably(file, f.text);
     }
 }
 

@@ -1,10 +1,10 @@
 // Devices and pipelines, which do not wait: a thread takes their frames as they come.
 
-#include "ar/camera/error.h"
 #include "ar/capture/clock.h"
 #include "ar/capture/opencv/opencv_sources.h"
 #include "ar/capture/tally.h"
 #include "ar/capture/whole_picture.h"
+#include "gi/core/error.h"
 
 #include <cmath>
 #include <condition_variable>
@@ -28,8 +28,8 @@ public:
         while (waiting_.empty() && read_one()) {
         }
         if (waiting_.empty())
-            throw InputError("'" + name_ + "' gives no frame", "it was opened, but nothing came of it",
-                             "look whether another program uses it");
+            throw gi::InputError("'" + name_ + "' gives no frame", "it was opened, but nothing came of it",
+                                 "look whether another program uses it");
         size_px_ = waiting_.front().size_px;
         format_ = waiting_.front().format;
         frames_per_s_ = capture_.get(cv::CAP_PROP_FPS);
@@ -254,8 +254,8 @@ void check_options(LiveOptions const& o)
     check(o.controls);
     if (o.format && *o.format != PixelFormat::yuyv && *o.format != PixelFormat::mjpeg &&
         *o.format != PixelFormat::bgr8)
-        throw InputError("frames of a device as " + name_of(*o.format), "OpenCV gives yuyv, mjpeg or bgr8",
-                         "choose one of these");
+        throw gi::InputError("frames of a device as " + name_of(*o.format), "OpenCV gives yuyv, mjpeg or bgr8",
+                             "choose one of these");
 }
 
 } // namespace
@@ -267,11 +267,11 @@ std::unique_ptr<FrameSource> open_device(int number, LiveOptions const& o)
     std::string const name = fmt::format("/dev/video{}", number);
     std::error_code error;
     if (number < 0 || !std::filesystem::exists(name, error))
-        throw InputError(fmt::format("no camera {}", number), "there is no " + name,
-                         "plug it in, or name another number");
+        throw gi::InputError(fmt::format("no camera {}", number), "there is no " + name,
+                             "plug it in, or name another number");
     if (!capture.open(number, cv::CAP_V4L2))
-        throw InputError("'" + name + "' cannot be opened", "it is no camera, or another program uses it",
-                         "close that program, or name another number");
+        throw gi::InputError("'" + name + "' cannot be opened", "it is no camera, or another program uses it",
+                             "close that program, or name another number");
     if (o.format == PixelFormat::mjpeg)
         capture.set(cv::CAP_PROP_FOURCC, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'));
     if (o.format == PixelFormat::yuyv)
@@ -290,9 +290,9 @@ std::unique_ptr<FrameSource> open_pipeline(std::string const& pipeline, LiveOpti
     check_options(o);
     cv::VideoCapture capture;
     if (!capture.open(pipeline, cv::CAP_GSTREAMER))
-        throw InputError("the GStreamer pipeline '" + pipeline + "' cannot be built",
-                         "an element of it is unknown, or it does not end in an appsink",
-                         "try it with gst-launch-1.0, fakesink in place of appsink");
+        throw gi::InputError("the GStreamer pipeline '" + pipeline + "' cannot be built",
+                             "an element of it is unknown, or it does not end in an appsink",
+                             "try it with gst-launch-1.0, fakesink in place of appsink");
     LiveOptions as_it_comes = o;
     as_it_comes.format.reset();
     return std::make_unique<LiveSource>(Kind::pipeline, pipeline, capture, as_it_comes);

@@ -1,8 +1,8 @@
 #include "ar/capture/opencv/opencv_sources.h"
 
-#include "ar/camera/error.h"
 #include "ar/capture/player.h"
 #include "ar/capture/tally.h"
+#include "gi/core/error.h"
 
 #include <fmt/format.h>
 #include <opencv2/videoio.hpp>
@@ -16,13 +16,13 @@ public:
     {
         std::error_code error;
         if (!std::filesystem::exists(file, error))
-            throw InputError("no video '" + name_ + "'", error ? error.message() : "there is no such file",
-                             "name another file");
+            throw gi::InputError("no video '" + name_ + "'", error ? error.message() : "there is no such file",
+                                 "name another file");
         // As text that begins with a path, so that nothing in the name is read as the address of a stream.
         std::string const path = std::filesystem::absolute(file).string();
         if (!capture_.open(path, cv::CAP_FFMPEG) || !grab())
-            throw InputError("'" + name_ + "' has no frame", "it is no video, or nothing of it can be decoded",
-                             "name another file");
+            throw gi::InputError("'" + name_ + "' has no frame", "it is no video, or nothing of it can be decoded",
+                                 "name another file");
         frames_per_s_ = capture_.get(cv::CAP_PROP_FPS);
         if (!(frames_per_s_ > 0 && frames_per_s_ < 1e5)) frames_per_s_ = 0;
         size_px_ = {ready_.cols, ready_.rows};

@@ -1,16 +1,16 @@
 // Camera paths in YAML: data/camera_path.yaml is the example.
 
 #include "gi/core/file.h"
+#include "gi/core/yaml.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/load/rotation_value.h"
-#include "gi/scene/load/yaml_reader.h"
 
 #include <fmt/format.h>
 
 namespace gi {
 namespace {
 
-CameraKey read_key(YamlReader const& k)
+CameraKey read_key(Yaml const& k)
 {
     k.only_keys({"time_s", "from", "at", "rotation", "fov"});
     for (char const* needed : {"time_s", "from"})
@@ -38,12 +38,12 @@ CameraKey read_key(YamlReader const& k)
 
 CameraPath parse_camera_path(std::string const& text, std::string const& name)
 {
-    YamlReader const root = YamlReader::parse(text, name, "path");
+    Yaml const root = Yaml::parse(text, name, "path");
     root.only_keys({"keys"});
     if (!root.has("keys"))
         throw root.error("the camera path has no keys", "it is not known where it goes", "start with keys:");
     CameraPath path;
-    for (YamlReader const& item : root.at("keys").items()) {
+    for (Yaml const& item : root.at("keys").items()) {
         CameraKey const key = read_key(item);
         if (!path.keys.empty()) {
             CameraKey const& before = path.keys.back();

@@ -6,7 +6,7 @@
 
 namespace gi {
 
-dmat4 read_rotation(YamlReader const& r)
+dmat4 read_rotation(Yaml const& r)
 {
     if (r.is_list()) {
         dvec3 const a = glm::radians(r.vector(-1e6, 1e6));

@@ -2,6 +2,7 @@
 // data/scene.schema.json.
 
 #include "gi/core/file.h"
+#include "gi/core/yaml.h"
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/load/rotation_value.h"
@@ -9,7 +10,6 @@
 #include "gi/scene/load/scene_file_keys.h"
 #include "gi/scene/load/scene_file_light.h"
 #include "gi/scene/load/scene_file_material.h"
-#include "gi/scene/load/yaml_reader.h"
 #include "gi/scene/model/sky.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ struct DepthGuard {
 
 class SceneFileReader {
 public:
-    SceneFileReader(YamlReader const& root, fs::path const& folder, Report& report)
+    SceneFileReader(Yaml const& root, fs::path const& folder, Report& report)
         : root_(root), folder_(folder), report_(report)
     {
     }
@@ -50,14 +50,14 @@ public:
     {
         check_keys(root_, "scene");
         if (root_.has("models"))
-            for (YamlReader const& item : root_.at("models").items()) add_model(item);
+            for (Yaml const& item : root_.at("models").items()) add_model(item);
         if (root_.has("environment")) set_environment(root_.at("environment"));
         if (root_.has("background")) scene_.background = read_background(root_.at("background"));
         if (root_.has("lights"))
-            for (YamlReader const& item : root_.at("lights").items()) add_scene_file_light(item, scene_);
+            for (Yaml const& item : root_.at("lights").items()) add_scene_file_light(item, scene_);
         if (root_.has("cameras")) add_cameras(root_.at("cameras"));
         if (root_.has("materials"))
-            for (YamlReader const& item : root_.at("materials").items()) override_material(item);
+            for (Yaml const& item : root_.at("materials").items()) override_material(item);
         return std::move(scene_);
     }
 
@@ -67,7 +67,7 @@ private:
         std::size_t first_material, end_material;
     };
 
-    fs::path find_file(YamlReader const& at, std::string const& suggestion) const
+    fs::path find_file(Yaml const& at, std::string const& suggestion) const
     {
         if (folder_.empty())
             throw at.error("no files may be read here", "the scene comes from memory", "use generate");
@@ -79,7 +79,7 @@ private:
     }
 
     /// Throws unless there is such a kind that reads all keys that are given.
-    static void check_kind(YamlReader const& g, std::string const& kind)
+    static void check_kind(Yaml const& g, std::string const& kind)
     {
         auto const known = keys_of_generated().find(kind);
         if (known == keys_of_generated().end())
@@ -91,7 +91,7 @@ private:
                 throw g.at(key).error(kind + " has no key '" + key + "'", "it would be ignored", "remove it");
     }
 
-    Scene generate(YamlReader const& g) const
+    Scene generate(Yaml const& g) const
     {
         check_keys(g, "generate");
         if (!g.has("kind")) throw g.error("generate has no kind", "it is not known what to make", "kind: atrium");
@@ -120,7 +120,7 @@ private:
         return generate_atrium(o);
     }
 
-    void add_model(YamlReader const& m)
+    void add_model(Yaml const& m)
     {
         check_keys(m, "model");
         if (++t_models > kMostModels)
@@ -156,7 +156,7 @@ private:
         models_.push_back({name, first, scene_.materials.size()});
     }
 
-    fs::path find_model(YamlReader const& at) const
+    fs::path find_model(Yaml const& at) const
     {
         bool const is_built_in = keys_of_generated().contains(at.text());
         fs::path const file = find_file(
@@ -185,7 +185,7 @@ private:
         part.material_names.push_back("default");
     }
 
-    static SkinningMethod skinning_method(YamlReader const& s)
+    static SkinningMethod skinning_method(Yaml const& s)
     {
         std::string const method = s.text();
         if (method == "linear") return SkinningMethod::linear;
@@ -194,7 +194,7 @@ private:
                       "choose linear or dual_quaternion");
     }
 
-    static Background read_background(YamlReader const& b)
+    static Background read_background(Yaml const& b)
     {
         if (b.is_list()) return {BackgroundKind::color, vec3(b.vector(0, 1e9))};
         std::string const kind = b.text();
@@ -204,7 +204,7 @@ private:
                       "choose map, transparent or a colour: [0.1, 0.2, 0.3]");
     }
 
-    EnvironmentMap make_sky(YamlReader const& s) const
+    EnvironmentMap make_sky(Yaml const& s) const
     {
         check_keys(s, "sky");
         SkyOptions o;
@@ -228,7 +228,7 @@ private:
         return sky_map(o);
     }
 
-    void set_environment(YamlReader const& e)
+    void set_environment(Yaml const& e)
     {
         check_keys(e, "environment");
         if (int(e.has("file")) + int(e.has("color")) + int(e.has("sky")) != 1)
@@ -251,7 +251,7 @@ private:
         scene_.environment = std::move(map);
     }
 
-    static void add_lens(YamlReader const& c, Camera& camera)
+    static void add_lens(Yaml const& c, Camera& camera)
     {
         if (c.has("aperture_radius")) camera.aperture_radius_m = c.at("aperture_radius").number(0, kWidestLens_m);
         if (c.has("focus_distance")) {
@@ -270,10 +270,10 @@ private:
     }
 
     /// The file's own cameras come first: they are what its author wants to see.
-    void add_cameras(YamlReader const& list)
+    void add_cameras(Yaml const& list)
     {
         std::vector<Node> nodes;
-        for (YamlReader const& c : list.items()) {
+        for (Yaml const& c : list.items()) {
             check_keys(c, "camera");
             for (char const* key : {"name", "from", "at"})
                 if (!c.has(key))
@@ -311,7 +311,7 @@ private:
         scene_.nodes.insert(scene_.nodes.begin(), nodes.begin(), nodes.end());
     }
 
-    void override_material(YamlReader const& o)
+    void override_material(Yaml const& o)
     {
         check_keys(o, "material");
         if (!o.has("match"))
@@ -341,7 +341,7 @@ private:
         throw o.at("match").error("no material matches '" + pattern.substr(0, 64) + "'", "nothing would change",
                                   known.empty() ? "there are none" : "some that exist: " + known);
     }
-    YamlReader const& root_;
+    Yaml const& root_;
     fs::path const& folder_;
     Report& report_;
     Scene scene_;
@@ -353,7 +353,7 @@ private:
 Scene parse_scene_file(std::string const& text, fs::path const& folder, std::string const& name, Report& report)
 {
     DepthGuard const guard;
-    YamlReader const root = YamlReader::parse(text, name);
+    Yaml const root = Yaml::parse(text, name, "scene");
     if (!root.is_map())
         throw root.error("'" + name + "' is no scene file", "it has no keys", "start with models:");
     try {

@@ -5,7 +5,7 @@
 namespace gi {
 namespace {
 
-std::int32_t find_clip(YamlReader const& at, std::string const& name, Scene const& part)
+std::int32_t find_clip(Yaml const& at, std::string const& name, Scene const& part)
 {
     std::int32_t found = -1;
     std::string known;
@@ -19,7 +19,7 @@ std::int32_t find_clip(YamlReader const& at, std::string const& name, Scene cons
     return found;
 }
 
-Playback read_playback(YamlReader const& a, Scene const& part)
+Playback read_playback(Yaml const& a, Scene const& part)
 {
     Playback playback;
     if (a.is_text()) {
@@ -45,11 +45,11 @@ Playback read_playback(YamlReader const& a, Scene const& part)
 
 } // namespace
 
-void choose_animation(YamlReader const& animation, Scene& part)
+void choose_animation(Yaml const& animation, Scene& part)
 {
     std::vector<Playback> playbacks;
     if (animation.is_list()) {
-        for (YamlReader const& item : animation.items()) playbacks.push_back(read_playback(item, part));
+        for (Yaml const& item : animation.items()) playbacks.push_back(read_playback(item, part));
     } else if (!animation.is_text() || animation.text() != "none") {
         playbacks.push_back(read_playback(animation, part));
     }

@@ -1,5 +1,5 @@
 #pragma once
-#include "gi/scene/load/yaml_reader.h"
+#include "gi/core/yaml.h"
 
 #include <map>
 #include <set>
@@ -12,6 +12,6 @@ std::map<std::string, std::set<std::string>> const& scene_file_keys();
 /// The keys that `generate` has for each kind of scene.
 std::map<std::string, std::set<std::string>> const& keys_of_generated();
 /// Throws unless all keys of the mapping belong to its kind.
-inline void check_keys(YamlReader const& map, char const* kind) { map.only_keys(scene_file_keys().at(kind)); }
+inline void check_keys(Yaml const& map, char const* kind) { map.only_keys(scene_file_keys().at(kind)); }
 
 } // namespace gi

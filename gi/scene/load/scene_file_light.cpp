@@ -8,7 +8,7 @@ namespace gi {
 namespace {
 
 /// Unit; down where nothing is said.
-dvec3 read_direction(YamlReader const& l, dvec3 position)
+dvec3 read_direction(Yaml const& l, dvec3 position)
 {
     if (l.has("direction") && l.has("target"))
         throw l.error("a light has both direction and target", "they contradict each other", "keep one");
@@ -25,7 +25,7 @@ struct Rectangle {
 };
 
 /// By its corner and edges, or by its centre, size and direction (then the first edge is level).
-Rectangle read_rectangle(YamlReader const& l)
+Rectangle read_rectangle(Yaml const& l)
 {
     auto const need = [&](char const* key) {
         if (!l.has(key))
@@ -58,7 +58,7 @@ Rectangle read_rectangle(YamlReader const& l)
 }
 
 /// An emissive quad that shines to the side of u x v.
-void add_rectangle(YamlReader const& l, Scene& scene)
+void add_rectangle(Yaml const& l, Scene& scene)
 {
     check_keys(l, "rectangle_light");
     auto const [corner, u, v] = read_rectangle(l);
@@ -85,7 +85,7 @@ void add_rectangle(YamlReader const& l, Scene& scene)
 
 } // namespace
 
-void add_scene_file_light(YamlReader const& l, Scene& scene)
+void add_scene_file_light(Yaml const& l, Scene& scene)
 {
     if (!l.is_map() || !l.has("type"))
         throw l.error("a light needs a type", "it is not known what it is", "type: point");

@@ -1,10 +1,10 @@
 #pragma once
-#include "gi/scene/load/yaml_reader.h"
+#include "gi/core/yaml.h"
 #include "gi/scene/model/scene.h"
 
 namespace gi {
 
 /// A punctual light with its node, or for a rectangle an emissive mesh.
-void add_scene_file_light(YamlReader const& light, Scene& scene);
+void add_scene_file_light(Yaml const& light, Scene& scene);
 
 } // namespace gi

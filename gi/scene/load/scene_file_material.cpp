@@ -4,7 +4,7 @@
 
 namespace gi {
 
-void change_material(YamlReader const& o, Material& m)
+void change_material(Yaml const& o, Material& m)
 {
     auto const number = [&](char const* key, float& to, double low, double high) {
         if (o.has(key)) to = float(o.at(key).number(low, high));
@@ -23,7 +23,7 @@ void change_material(YamlReader const& o, Material& m)
     if (o.has("double_sided")) m.double_sided = o.at("double_sided").boolean();
     if (o.has("thin")) m.thin = o.at("thin").boolean();
     if (o.has("phong")) {
-        YamlReader const p = o.at("phong");
+        Yaml const p = o.at("phong");
         check_keys(p, "phong");
         m.model = MaterialModel::phong;
         if (p.has("specular")) m.phong_specular = vec3(p.at("specular").vector_or_number(0, 1));

@@ -116,7 +116,7 @@ void refusals()
         try {
             action();
             return std::string("none");
-        } catch (ar::InputError const& e) {
+        } catch (gi::InputError const& e) {
             return std::string(e.what());
         }
     };

@@ -1,6 +1,5 @@
 #include "viewer/cli/ar/ar_arguments.h"
 
-#include "ar/camera/error.h"
 #include "ar/capture/whole_picture.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
@@ -120,7 +119,7 @@ cv::Mat read_rgb(std::string const& file)
         if (problem.empty() && picture.empty()) problem = "it cannot be decoded";
     }
     if (!problem.empty())
-        throw ar::InputError("cannot read '" + file + "'", problem, "give PNG, JPEG or TIFF, 8 bits a channel");
+        throw gi::InputError("cannot read '" + file + "'", problem, "give PNG, JPEG or TIFF, 8 bits a channel");
     cv::cvtColor(picture, picture, cv::COLOR_BGR2RGB);
     return picture;
 }

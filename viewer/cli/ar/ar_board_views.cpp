@@ -1,8 +1,8 @@
 #include "viewer/cli/ar/ar_board_views.h"
 
 #include "ar/calibration/calibration_file.h"
-#include "ar/camera/error.h"
 #include "ar/markers/draw.h"
+#include "gi/core/error.h"
 #include "gi/core/file.h"
 
 #include <cmath>
@@ -53,7 +53,7 @@ void write_board_views(std::filesystem::path const& folder, ar::CharucoBoard boa
 {
     std::error_code error;
     if (!std::filesystem::create_directory(folder, error))
-        throw ar::InputError("cannot make the folder '" + folder.string() + "'",
+        throw gi::InputError("cannot make the folder '" + folder.string() + "'",
                              error ? error.message() : "it exists", "choose another name");
     board.world_from_board = {};
     ar::Sheet const sheet = ar::sheet_of({{}, {board}, {}}, 0);

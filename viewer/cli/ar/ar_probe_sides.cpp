@@ -1,9 +1,9 @@
 #include "viewer/cli/ar/ar_probe_sides.h"
 
 #include "ar/calibration/response.h"
-#include "ar/camera/error.h"
 #include "ar/markers/detect.h"
 #include "ar/pose/estimate.h"
+#include "gi/core/error.h"
 #include "viewer/cli/ar/ar_arguments.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ ar::Pose camera_of(std::vector<cv::Mat> const& rgb, ar::MarkerMap const& map, ar
     }
     ar::PoseEstimate const pose = ar::estimate_pose(best, camera);
     if (!pose.found())
-        throw ar::InputError(
+        throw gi::InputError(
             "the camera is not found in " + name,
             fmt::format("{} points of markers are seen: {}", best.points.size(), name_of(pose.failure)),
             "have the markers in the picture, lit and sharp");
@@ -43,7 +43,7 @@ std::vector<ProbeSide> read_probe_sides(std::vector<std::string> const& pictures
 {
     std::size_t const each = std::max<std::size_t>(1, seconds.size());
     if (pictures.size() % each != 0)
-        throw ar::InputError(fmt::format("{} pictures and {} exposures", pictures.size(), seconds.size()),
+        throw gi::InputError(fmt::format("{} pictures and {} exposures", pictures.size(), seconds.size()),
                              "each side needs a picture of each exposure",
                              "give all pictures of one side, then all of the next");
     ar::Photometry photometry = calibration.photometry ? *calibration.photometry : ar::srgb_photometry();
@@ -63,7 +63,7 @@ std::vector<ProbeSide> read_probe_sides(std::vector<std::string> const& pictures
             bracket.rgb.push_back(read_rgb(pictures[first + i]));
             glm::ivec2 const is(bracket.rgb.back().cols, bracket.rgb.back().rows);
             if (is != calibration.camera.size_px)
-                throw ar::InputError(fmt::format("{} has {} x {} px", pictures[first + i], is.x, is.y),
+                throw gi::InputError(fmt::format("{} has {} x {} px", pictures[first + i], is.x, is.y),
                                      fmt::format("the calibration is of {} x {}", calibration.camera.size_px.x,
                                                  calibration.camera.size_px.y),
                                      "give pictures as they came from that camera");

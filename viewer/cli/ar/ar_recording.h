@@ -25,7 +25,7 @@ public:
     /// Makes the folder of pictures; nothing else before `begin`. @throws gi::InputError
     explicit ArRecording(ArRecordingSettings settings);
 
-    /// @throws gi::InputError, ar::InputError the video or the session cannot be made
+    /// @throws gi::InputError the video or the session cannot be made
     void begin(ar::SourceDescription const& source);
     /// By the thread that takes frames.
     void add_input(ar::Frame const& frame);

@@ -1,4 +1,3 @@
-#include "ar/camera/error.h"
 #include "ar/markers/marker_map_file.h"
 #include "ar/pipeline/estimate_albedo.h"
 #include "ar/pose/pose_file.h"
@@ -104,9 +103,9 @@ SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera con
             }
             cv::Mat const rgb = ar::rgb_of(*frame);
             if (rgb.size() != cv::Size(camera.model.size_px.x, camera.model.size_px.y))
-                throw ar::InputError("a frame of another size", "the calibration is not of it", "calibrate again");
+                throw gi::InputError("a frame of another size", "the calibration is not of it", "calibrate again");
             kept.add({rgb.clone(), frame->exposure, pose->first, pose->second});
-        } catch (ar::InputError const& e) {
+        } catch (gi::InputError const& e) {
             ++seen.refused;
             report.lose("frames that could not be used", 1, e.what());
         }

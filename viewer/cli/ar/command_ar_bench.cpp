@@ -3,6 +3,7 @@
 #include "ar/pipeline/plain_composite.h"
 #include "ar/pipeline/synthesize.h"
 #include "ar/runtime/measured_run.h"
+#include "gi/core/durable_file.h"
 #include "gi/core/error.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/interrupt.h"
@@ -237,7 +238,7 @@ int run(BenchArguments const& a)
 {
     if (!a.out.empty()) {
         check_folder(a.out);
-        make_folder(a.out);
+        gi::make_folder(a.out);
     }
     return a.counter ? run_counter(a) : run_bench(a);
 }

@@ -1,7 +1,7 @@
-#include "ar/camera/error.h"
-#include "ar/camera/yaml.h"
 #include "ar/markers/draw.h"
 #include "ar/markers/marker_map_file.h"
+#include "gi/core/error.h"
+#include "gi/core/file.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/validators.h"
 #include "viewer/cli/ar/ar_arguments.h"
@@ -33,12 +33,12 @@ int run_board(BoardOptions const& o)
     ar::Sheet const sheet = ar::sheet_of(map, 0, o.margin_m);
     std::filesystem::path const out = o.out;
     if (out.extension() == ".svg") {
-        ar::write_text(out, ar::to_svg(sheet));
+        gi::write_text(out, ar::to_svg(sheet));
     } else if (out.extension() == ".png") {
         double const dots_per_m = o.dpi / 0.0254;
         ar::write_png(out, ar::draw(sheet, dots_per_m), dots_per_m);
     } else {
-        throw ar::InputError("--out '" + o.out + "' is of an unknown kind", "its ending says what is written",
+        throw gi::InputError("--out '" + o.out + "' is of an unknown kind", "its ending says what is written",
                              "end it with .svg or .png");
     }
     if (!o.markers.empty()) ar::write_marker_map(o.markers, map);

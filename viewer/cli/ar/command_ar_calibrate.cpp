@@ -1,9 +1,9 @@
 #include "ar/calibration/collector.h"
 #include "ar/calibration/lens_choice.h"
 #include "ar/calibration/report.h"
-#include "ar/camera/error.h"
 #include "ar/markers/detect.h"
 #include "ar/markers/marker_map_file.h"
+#include "gi/core/error.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/validators.h"
@@ -38,12 +38,12 @@ Finder finder(CalibrateOptions const& o)
 {
     int const given = int(!o.markers.empty()) + int(!o.chessboard.empty()) + int(!o.board.squares.empty());
     if (given != 1)
-        throw ar::InputError("it is not clear what the pictures show", "the board has to be known",
+        throw gi::InputError("it is not clear what the pictures show", "the board has to be known",
                              "give one of --markers FILE, --squares 7x5 and --chessboard 9x6");
     if (!o.chessboard.empty()) {
         glm::ivec2 const n = parse_squares("--chessboard", o.chessboard);
         if (n.x < 3 || n.y < 3)
-            throw ar::InputError("--chessboard " + o.chessboard, "3 inner corners each way are the fewest",
+            throw gi::InputError("--chessboard " + o.chessboard, "3 inner corners each way are the fewest",
                                  "count corners where four squares meet");
         return [n, square_m = o.board.square_m](cv::Mat const& gray, std::string const& name) {
             return ar::find_chessboard(gray, n.x, n.y, square_m, name).value_or(ar::BoardView{name, {}, {}});
@@ -52,7 +52,7 @@ Finder finder(CalibrateOptions const& o)
     ar::MarkerMap const map =
         o.markers.empty() ? ar::MarkerMap{{}, {board_of(o.board)}, {}} : ar::read_marker_map(o.markers);
     if (map.boards.empty())
-        throw ar::InputError("there is no board in " + o.markers, "lenses are calibrated by flat boards",
+        throw gi::InputError("there is no board in " + o.markers, "lenses are calibrated by flat boards",
                              "add it under boards:, see lightwell ar board --help");
     return [map](cv::Mat const& gray, std::string const& name) {
         ar::Sighting const sighting = ar::detect(gray, map);
@@ -84,7 +84,7 @@ Search search(ar::FrameSource& source, ar::Collector& collector, Finder const& f
         cv::Mat gray;
         try {
             gray = ar::gray_of(*frame);
-        } catch (ar::InputError const&) {
+        } catch (gi::InputError const&) {
             ++s.refused;
             continue;
         }
@@ -173,7 +173,7 @@ int run_calibrate(CalibrateOptions const& o)
         report.lens =
             ar::calibrate_lens(report.views, source->description().size_px, lens ? *lens : report.choice->chosen);
         ar::check(report.lens.camera, o.out);
-    } catch (ar::InputError const& e) {
+    } catch (gi::InputError const& e) {
         return too_few(e.what());
     }
     say_what_is_kept(calibration, report.lens.camera.size_px, o.out);

@@ -1,10 +1,10 @@
 #include "ar/calibration/calibration_file.h"
-#include "ar/camera/error.h"
 #include "ar/light/irradiance.h"
 #include "ar/light/lamps.h"
 #include "ar/light/map_file.h"
 #include "ar/light/mirror_ball.h"
 #include "ar/markers/marker_map_file.h"
+#include "gi/core/error.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/validators.h"
@@ -59,7 +59,7 @@ ar::BallSight find_ball(ProbeSide const& side, ProbeOptions const& o, ar::Marker
         return ar::find_ball(side.radiance, camera, ar::find_ball(without_markers(side, map, camera), camera));
     auto const near = ar::predicted_ball(side.world_from_camera, parse_point("--ball", o.ball), o.radius_m);
     if (!near)
-        throw ar::InputError("--ball " + o.ball, "it is not ahead of the camera",
+        throw gi::InputError("--ball " + o.ball, "it is not ahead of the camera",
                              "give its centre in the markers' world, in m");
     return ar::find_ball(side.radiance, camera, *near);
 }
@@ -71,14 +71,14 @@ ar::PartialMap unwrapped(ProbeSide const& side, ProbeOptions const& o, ar::Marke
     ar::BallSight ball;
     try {
         ball = find_ball(side, o, markers, camera);
-    } catch (ar::InputError const& e) {
-        throw ar::InputError("no ball is found in " + side.name, e.what(),
+    } catch (gi::InputError const& e) {
+        throw gi::InputError("no ball is found in " + side.name, e.what(),
                              o.ball.empty() ? "give --ball X,Y,Z" : "measure --ball and --ball-radius again");
     }
     glm::dvec3 const at = side.world_from_camera * (ar::ball_distance_m(ball, o.radius_m) * ball.axis);
     if (!ball_m) ball_m = at;
     if (double const off_m = glm::distance(at, *ball_m); off_m > 0.5 * o.radius_m)
-        throw ar::InputError(
+        throw gi::InputError(
             fmt::format("{} shows the ball {:.0f} mm from where the first side does", side.name, 1e3 * off_m),
             "something else was taken for it, or it was moved", "give --ball X,Y,Z");
     ar::BallSettings settings;
@@ -121,7 +121,7 @@ int run_probe(ProbeOptions const& o)
     inputs.insert(inputs.end(), {o.calibration, o.markers});
     check_outputs({o.out}, inputs);
     if (o.size % 2 != 0)
-        throw ar::InputError(fmt::format("--size {}", o.size), "maps are twice as wide as high",
+        throw gi::InputError(fmt::format("--size {}", o.size), "maps are twice as wide as high",
                              "give an even one");
     ar::Calibration const calibration = ar::read_calibration(o.calibration);
     ar::MarkerMap const markers = ar::read_marker_map(o.markers);

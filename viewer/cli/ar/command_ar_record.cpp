@@ -1,8 +1,8 @@
 #include "ar/calibration/calibration_file.h"
-#include "ar/camera/error.h"
 #include "ar/capture/clock.h"
 #include "ar/capture/libcamera_source.h"
 #include "ar/capture/session_writer.h"
+#include "gi/core/error.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/report_json.h"
 #include "viewer/base/validators.h"
@@ -49,7 +49,7 @@ void check_calibration(RecordOptions const& o, ar::SourceDescription const& came
     if (o.calibration.empty()) return;
     glm::ivec2 const is = camera.size_px, was = ar::read_calibration(o.calibration, is).camera.size_px;
     if (is != was)
-        throw ar::InputError(fmt::format("{} is of pictures of {} x {} px", o.calibration, was.x, was.y),
+        throw gi::InputError(fmt::format("{} is of pictures of {} x {} px", o.calibration, was.x, was.y),
                              fmt::format("{} gives {} x {}", o.source.source, is.x, is.y),
                              "record at that size, or without --calibration");
 }

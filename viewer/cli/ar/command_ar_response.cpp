@@ -1,6 +1,6 @@
 #include "ar/calibration/calibration_file.h"
 #include "ar/calibration/response.h"
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "viewer/base/outputs.h"
 #include "viewer/cli/ar/ar_arguments.h"
 #include "viewer/cli/commands.h"
@@ -23,7 +23,7 @@ int run_response(ResponseOptions const& o)
     ar::Calibration calibration = ar::read_calibration(o.calibration);
     auto const seconds = parse_exposures(o.exposures);
     if (seconds.size() != o.pictures.size())
-        throw ar::InputError(fmt::format("{} pictures and {} exposures", o.pictures.size(), seconds.size()),
+        throw gi::InputError(fmt::format("{} pictures and {} exposures", o.pictures.size(), seconds.size()),
                              "each picture has one", "give --exposures in the order of the pictures");
     ar::Bracket bracket;
     for (std::size_t i = 0; i < seconds.size(); ++i) {

@@ -2,7 +2,7 @@
 
 #include "ar/calibration/calibration_file.h"
 #include "ar/calibration/sensor_report.h"
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "viewer/base/outputs.h"
 #include "viewer/cli/ar/ar_arguments.h"
 #include "viewer/cli/commands.h"
@@ -45,7 +45,7 @@ struct SensorSession {
         for (std::string const& file : o.pictures) {
             rgb.push_back(read_rgb(file));
             if (rgb.back().cols != size.x || rgb.back().rows != size.y)
-                throw ar::InputError(fmt::format("{} has {} x {} pixels, {} is of {} x {}", file, rgb.back().cols,
+                throw gi::InputError(fmt::format("{} has {} x {} pixels, {} is of {} x {}", file, rgb.back().cols,
                                                  rgb.back().rows, o.calibration, size.x, size.y),
                                      "both have to be of one camera, neither scaled nor cut",
                                      "take the pictures as the camera gives them");
@@ -113,7 +113,7 @@ cv::Point2d parse_pixel(std::string const& text)
         auto const y = std::from_chars(x.ptr + 1, end, p.y);
         if (y.ec == std::errc() && y.ptr == end && std::isfinite(p.x) && std::isfinite(p.y)) return p;
     }
-    throw ar::InputError("--patches " + text,
+    throw gi::InputError("--patches " + text,
                          "a patch's centre is two numbers of pixels, from 0,0 at the upper left",
                          "write it as 120,85.5");
 }
@@ -124,7 +124,7 @@ std::vector<cv::Point2d> patch_centres(SensorOptions const& o, ar::CameraModel c
     for (std::string const& text : o.centres) given.push_back(parse_pixel(text));
     if (given.size() == ar::chart_linear_rgb().size()) return given;
     if (given.size() == 4) return ar::chart_centres({given[0], given[1], given[2], given[3]}, camera);
-    throw ar::InputError(fmt::format("--patches has {} centres", given.size()),
+    throw gi::InputError(fmt::format("--patches has {} centres", given.size()),
                          "the chart has 24 patches, 4 at its corners",
                          "give dark skin, bluish green, black and white, or all 24 row by row");
 }

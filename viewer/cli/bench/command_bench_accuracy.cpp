@@ -2,6 +2,7 @@
 // whether look-ups or exact rays answer, and whether paths take axes or directions of their own. So the difference
 // of two means has far less noise than either, and seeds give its standard error.
 
+#include "gi/core/durable_file.h"
 #include "gi/methods/registry.h"
 #include "gi/metrics/metrics.h"
 #include "viewer/base/report_json.h"
@@ -239,7 +240,7 @@ void Bench::add_rows(char const* schedule, std::string const& directions)
 int run(AccuracyOptions& o)
 {
     check_folder(o.out);
-    make_folder(o.out);
+    gi::make_folder(o.out);
     BenchTable table =
         start_table("accuracy", "Bias of slhb, by paired differences",
                     {"scene", "schedule", "directions", "hit_buffer", "bias_direct", "bias_direct_error",

@@ -1,3 +1,4 @@
+#include "gi/core/durable_file.h"
 #include "gi/core/rng.h"
 #include "gi/methods/slhb/hit_buffer/hit_buffer.h"
 #include "gi/render/exact_visibility.h"
@@ -250,7 +251,7 @@ void measure_macro(RasterOptions const& o, BenchTable& table)
 int run(RasterOptions const& o)
 {
     check_folder(o.out);
-    make_folder(o.out);
+    gi::make_folder(o.out);
     BenchTable table = start_table("raster", "The deep rasteriser: exact, and how fast",
                                    {"what", "unit", "value", "also", "second"});
     check_watertight(o, table);

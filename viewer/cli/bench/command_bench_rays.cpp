@@ -1,3 +1,4 @@
+#include "gi/core/durable_file.h"
 #include "gi/core/error.h"
 #include "gi/core/rng.h"
 #include "gi/methods/slhb/directions/directions.h"
@@ -217,7 +218,7 @@ void measure_scene(RaysOptions const& o, std::string const& scene, BenchTable& t
 int run(RaysOptions const& o)
 {
     check_folder(o.out);
-    make_folder(o.out);
+    gi::make_folder(o.out);
     tbb::global_control const one_core(tbb::global_control::max_allowed_parallelism, 1);
     BenchTable table = start_table("rays", "Indirect rays: look-ups against ray tracing, one core",
                                    {"scene", "triangles", "query", "queries", "each_ns", "M_per_s",

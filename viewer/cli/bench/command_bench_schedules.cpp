@@ -1,3 +1,4 @@
+#include "gi/core/durable_file.h"
 #include "gi/core/error.h"
 #include "gi/metrics/metrics.h"
 #include "viewer/base/arguments.h"
@@ -143,7 +144,7 @@ int run(SchedulesOptions const& o)
         for (Change const& change : changes_of(schedule)) set(settings, change);
     }
     check_folder(o.out);
-    make_folder(o.out);
+    gi::make_folder(o.out);
     BenchTable table = start_table("schedules", "Schedules of the hit buffers where things move",
                                    {"scene", "schedule", "paths_per_pixel", "frame_ms", "following_ms", "relmse"});
     table.facts = {{"size", o.size},

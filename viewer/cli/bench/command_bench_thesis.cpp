@@ -1,3 +1,4 @@
+#include "gi/core/durable_file.h"
 #include "gi/methods/registry.h"
 #include "gi/metrics/metrics.h"
 #include "gi/scene/generate/generate.h"
@@ -124,7 +125,7 @@ private:
 int run(ThesisOptions const& o)
 {
     check_folder(o.out);
-    make_folder(o.out);
+    gi::make_folder(o.out);
     Thesis thesis(o);
     thesis.run();
     show(thesis.table(), o.out, o.json);

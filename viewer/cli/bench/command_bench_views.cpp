@@ -1,3 +1,4 @@
+#include "gi/core/durable_file.h"
 #include "gi/core/error.h"
 #include "gi/filter/tone_map.h"
 #include "gi/image_io/picture_file.h"
@@ -165,7 +166,7 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
 int run(ViewsOptions const& o)
 {
     check_folder(o.out);
-    make_folder(o.out);
+    gi::make_folder(o.out);
     BenchTable table = start_table(
         "views", "What further views of a frame cost",
         {"scene", "views", "count", "size", "frame_ms", "each_further_over_first", "relmse_of_last_view"});

@@ -1,5 +1,5 @@
+#include "gi/core/durable_file.h"
 #include "gi/core/error.h"
-#include "study/journal/durable_file.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
@@ -33,7 +33,7 @@ int run(PrepareOptions const& o)
     if (list.empty())
         throw gi::InputError("nothing to prepare in " + o.script, "no block has stimuli: prepared",
                              "write it in the block, or run with live stimuli");
-    study::make_folder(o.out);
+    gi::make_folder(o.out);
     Cluster cluster(
         {version_text(), "study prepare " + o.size, Cluster::started_by_mpirun() ? file_hash(o.script) : 0},
         cluster_settings(o.ranks));

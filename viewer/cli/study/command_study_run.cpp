@@ -1,4 +1,5 @@
 #include "gi/core/error.h"
+#include "gi/core/host_name.h"
 #include "study/plan/plan.h"
 #include "study/run/session.h"
 #include "viewer/base/arguments.h"
@@ -30,12 +31,6 @@ struct RunOptions {
     double font_px = 22;
     bool hmd = false, seated = false, resume = false, no_vsync = false, json = false;
 };
-
-std::string host_name()
-{
-    char name[256] = {};
-    return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
-}
 
 /// Before anybody sits down: everything that will be shown can be set, read, and seen from its camera.
 void check_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scenes)
@@ -159,7 +154,7 @@ int run(RunOptions const& o)
     trials.prepared = o.prepared;
     trials.version = version_text();
     trials.stop = &stop;
-    trials.about = {{"host", host_name()}, {"program", version_text()}};
+    trials.about = {{"host", gi::host_name()}, {"program", version_text()}};
 
     study::SessionOutcome outcome;
     {

@@ -1,6 +1,6 @@
 #include "viewer/devices/gl/ar_composite_pass.h"
 
-#include "ar/camera/error.h"
+#include "gi/core/error.h"
 #include "viewer/devices/gl/fill_texture.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ ArCompositePass::ArCompositePass(ar::Compositor const& compositor)
 void ArCompositePass::upload(cv::Mat const& rgb, ar::RenderedPair const& pair)
 {
     if (rgb.type() != CV_8UC3 || rgb.empty())
-        throw ar::InputError("the camera's frame is not RGB of 8 bits", "its bytes cannot be given a meaning",
+        throw gi::InputError("the camera's frame is not RGB of 8 bits", "its bytes cannot be given a meaning",
                              "convert it with rgb_of()");
     ar::check(pair, rgb.size());
     if (glm::ivec2 const size(rgb.cols, rgb.rows); size != size_px_) {
@@ -81,7 +81,7 @@ void ArCompositePass::upload(cv::Mat const& rgb, ar::RenderedPair const& pair)
 void ArCompositePass::draw(DrawTarget const& target, ar::Exposure const& exposure, std::uint64_t frame) const
 {
     if (size_px_.x == 0 || target.size_px != size_px_)
-        throw ar::InputError(fmt::format("a composite of {} x {} pixels for a target of {} x {}", size_px_.x,
+        throw gi::InputError(fmt::format("a composite of {} x {} pixels for a target of {} x {}", size_px_.x,
                                          size_px_.y, target.size_px.x, target.size_px.y),
                              "the camera's pixels are not resampled",
                              "upload first, draw into a texture of the frame's size, and show that");

@@ -16,9 +16,9 @@ class ArCompositePass {
 public:
     explicit ArCompositePass(ar::Compositor const& compositor);
 
-    /// Takes the place of the frame before. @param rgb CV_8UC3. Throws ar::InputError on types and sizes.
+    /// Takes the place of the frame before. @param rgb CV_8UC3. Throws gi::InputError on types and sizes.
     void upload(cv::Mat const& rgb, ar::RenderedPair const& pair);
-    /// Fills the target, which has the frame's size (throws ar::InputError otherwise). No counts: those are the
+    /// Fills the target, which has the frame's size (throws gi::InputError otherwise). No counts: those are the
     /// CPU's.
     /// @param frame number of the frame: chooses the noise
     void draw(DrawTarget const& target, ar::Exposure const& exposure, std::uint64_t frame = 0) const;

@@ -27,7 +27,7 @@ double swing_s(double speed_m_s)
     return std::clamp(kHalfStride_m / std::max(speed_m_s, 1e-9), kLeast_s, Footsteps::kSwing_s);
 }
 
-gi::dquat turned(double yaw_rad) { return exp_rotation({0, yaw_rad, 0}); }
+gi::dquat turned(double yaw_rad) { return gi::exp_rotation({0, yaw_rad, 0}); }
 
 double yaw_of(gi::dvec3 forward) { return std::atan2(-forward.x, -forward.z); }
 
@@ -56,7 +56,7 @@ RoomPose Footsteps::swinging(Print const& from, Print const& to, double phase)
     // Forwards, the heel leaves the floor first and comes back first.
     double const pitch =
         -kMostPitch_rad * std::clamp(ahead / kHalfStride_m, 0.0, 1.0) * std::sin(2 * std::numbers::pi * phase);
-    return {at, turned(yaw) * exp_rotation({phase < 0.5 ? pitch : 0.5 * pitch, 0, 0})};
+    return {at, turned(yaw) * gi::exp_rotation({phase < 0.5 ? pitch : 0.5 * pitch, 0, 0})};
 }
 
 void Footsteps::stand_at(Foot& foot, Print const& in_room, gi::dmat4 const& world_from_room) const

@@ -12,14 +12,14 @@ Tracked known_walk(double t)
     double const radius = 1.5, along = 1.2 / radius * t;
     double const step = kTurn * 1.9 * t;
     RoomPose body{{radius * std::cos(along), 1.7 + 0.03 * std::sin(step), -radius * std::sin(along)},
-                  exp_rotation({0, along, 0})}; // walks along -Z where along = 0
+                  gi::exp_rotation({0, along, 0})}; // walks along -Z where along = 0
     body.position += body.rotation * gi::dvec3{0.02 * std::sin(0.5 * step), 0, 0};
     double const yaw = glm::radians(40.0) * std::sin(kTurn * 0.35 * t),
                  pitch = glm::radians(10.0) * std::sin(kTurn * 0.2 * t);
     double const roll = glm::radians(2.0) * std::sin(0.5 * step), swing = 0.25 * std::sin(0.5 * step);
     Tracked tracked;
-    tracked.head = RoomPose{body.position, body.rotation * exp_rotation({0, yaw, 0}) *
-                                               exp_rotation({pitch, 0, 0}) * exp_rotation({0, 0, roll})};
+    tracked.head = RoomPose{body.position, body.rotation * gi::exp_rotation({0, yaw, 0}) *
+                                               gi::exp_rotation({pitch, 0, 0}) * gi::exp_rotation({0, 0, roll})};
     tracked.left_hand = compose(body, {{-0.25, -0.75, -0.1 + swing}, {1, 0, 0, 0}});
     tracked.right_hand = compose(body, {{0.25, -0.75, -0.1 - swing}, {1, 0, 0, 0}});
     return tracked;

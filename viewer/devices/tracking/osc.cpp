@@ -183,8 +183,8 @@ std::optional<TrackerSample> read_sample(Message const& m, OscPattern const& pat
         sample.pose.rotation = glm::normalize(gi::dquat(q.w, q.x, q.y, q.z));
     }
     if (has_angles)
-        sample.pose.rotation =
-            exp_rotation({0, angles[0], 0}) * exp_rotation({angles[1], 0, 0}) * exp_rotation({0, 0, angles[2]});
+        sample.pose.rotation = gi::exp_rotation({0, angles[0], 0}) * gi::exp_rotation({angles[1], 0, 0}) *
+                               gi::exp_rotation({0, 0, angles[2]});
     bool const has_rotation = has_quaternion || has_angles;
     sample.parts = has_position && has_rotation ? SampleParts::pose
                    : has_position               ? SampleParts::position

@@ -1,14 +1,11 @@
 #pragma once
-// Rotations as vectors and between poses.
+// Arithmetic of poses.
 
+#include "gi/core/rotation.h"
 #include "viewer/protocol/frame_command.h"
 
 namespace viewer {
 
-/// Rotation vector (axis times angle, rad) of a unit quaternion; the shorter way, so at most pi long.
-gi::dvec3 log_rotation(gi::dquat rotation);
-/// The unit quaternion of a rotation vector.
-gi::dquat exp_rotation(gi::dvec3 vector_rad);
 /// Position and rotation on the straight way from a (t = 0) to b (t = 1).
 RoomPose between(RoomPose const& a, RoomPose const& b, double t);
 /// a after b: room from b's frame.

@@ -68,7 +68,7 @@ void PoseTrack::add(double time_s, RoomPose const& pose, double now_s)
     if (smooth) {
         RoomPose const after = uncorrected(now_s);
         correction_m_ = before.position - after.position;
-        correction_rad_ = log_rotation(glm::inverse(after.rotation) * before.rotation);
+        correction_rad_ = gi::log_rotation(glm::inverse(after.rotation) * before.rotation);
         correction_s_ = now_s;
     }
 }
@@ -95,7 +95,7 @@ RoomPose PoseTrack::shown(Entry const& e, double ahead_s) const
     double const position_s = trust_ * (ahead_s + (filter_.enabled ? e.position.lag_s : 0));
     double const rotation_s = trust_ * (ahead_s + (filter_.enabled ? e.rotation.lag_s : 0));
     return {base.position + e.position.velocity * position_s,
-            glm::normalize(base.rotation * exp_rotation(e.rotation.velocity * rotation_s))};
+            glm::normalize(base.rotation * gi::exp_rotation(e.rotation.velocity * rotation_s))};
 }
 
 RoomPose PoseTrack::uncorrected(double time_s) const
@@ -115,7 +115,7 @@ RoomPose PoseTrack::corrected(double time_s) const
     if (!(prediction_.smooth_s > 0)) return pose;
     double const left = std::exp(-std::max(0.0, time_s - correction_s_) / prediction_.smooth_s);
     pose.position += left * correction_m_;
-    pose.rotation = glm::normalize(pose.rotation * exp_rotation(left * correction_rad_));
+    pose.rotation = glm::normalize(pose.rotation * gi::exp_rotation(left * correction_rad_));
     return pose;
 }
 

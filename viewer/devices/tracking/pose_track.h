@@ -5,7 +5,7 @@
 // A late sample takes its place among the others and the filter runs again from there, so that the result depends
 // on which samples came and not on their order.
 
-#include "viewer/devices/tracking/one_euro.h"
+#include "gi/core/one_euro.h"
 #include "viewer/protocol/frame_command.h"
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 namespace viewer {
 
 struct FilterSettings {
-    bool enabled = true;                        ///< false: samples as they are, velocities still from the filter
-    OneEuroSettings position{1, 5, 1, 0.3, 16}; ///< betas in Hz per m/s
-    OneEuroSettings rotation{1, 4, 1, 0.3, 13}; ///< betas in Hz per rad/s
+    bool enabled = true; ///< false: samples as they are, velocities still from the filter
+    gi::OneEuroSettings position{1, 5, 1, 0.3, 16}; ///< betas in Hz per m/s
+    gi::OneEuroSettings rotation{1, 4, 1, 0.3, 13}; ///< betas in Hz per rad/s
 
     bool operator==(FilterSettings const&) const = default;
 };
@@ -74,8 +74,8 @@ private:
     struct Entry {
         double time_s = 0;
         RoomPose raw;
-        OneEuroPosition position;
-        OneEuroRotation rotation;
+        gi::OneEuroPosition position;
+        gi::OneEuroRotation rotation;
     };
 
     void filter_from(std::size_t first);

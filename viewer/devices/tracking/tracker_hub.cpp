@@ -141,7 +141,7 @@ std::array<BodySettings, kBodies> bodies_of(TrackerSettings const& s)
     throw gi::InputError("tracker '" + s.name + "': " + problem, why, suggestion);
 }
 
-void check_filter(TrackerSettings const& s, OneEuroSettings const& f, char const* what)
+void check_filter(TrackerSettings const& s, gi::OneEuroSettings const& f, char const* what)
 {
     auto const is_cutoff = [](double hz) { return hz > 0 && hz <= 1e4; };
     bool const good = is_cutoff(f.min_cutoff_hz) && is_cutoff(f.speed_cutoff_hz) &&

@@ -1,6 +1,7 @@
 #include "viewer/protocol/cluster/cluster_state.h"
 
 #include "gi/core/error.h"
+#include "gi/core/host_name.h"
 #include "gi/core/rng.h"
 
 #include <algorithm>
@@ -12,13 +13,6 @@
 
 namespace viewer {
 namespace {
-
-std::string host_name()
-{
-    std::array<char, 256> name{};
-    gethostname(name.data(), name.size() - 1);
-    return name.data();
-}
 
 /// Gives way to other processes of this machine at first, and later sleeps: the wait for others is short while
 /// frames follow each other.
@@ -46,7 +40,7 @@ Cluster::State::State(ClusterIdentity of, ClusterSettings with) : identity(std::
     peers.resize(std::size_t(size));
     identities.resize(std::size_t(size));
     Peer& self = peers[std::size_t(rank)];
-    self.host = host_name();
+    self.host = gi::host_name();
     self.process = here;
     self.there = true;
     identities[std::size_t(rank)] = identity;

@@ -1,5 +1,6 @@
 #include "viewer/protocol/recording/append_file.h"
 
+#include "gi/core/durable_file.h"
 #include "gi/core/error.h"
 
 #include <cerrno>
@@ -21,22 +22,12 @@ int make_file(std::filesystem::path const& path)
                          exists ? "choose another name, or move it away" : "choose a folder that can be written");
 }
 
-/// So that the name of the new file survives a loss of power too; no harm where that cannot be had.
-void sync_folder_of(std::filesystem::path const& path)
-{
-    auto const parent = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-    int const folder = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder < 0) return;
-    ::fsync(folder);
-    ::close(folder);
-}
-
 } // namespace
 
 AppendFile::AppendFile(std::filesystem::path const& file, std::string what, gi::Report& report)
     : path_(file), what_(std::move(what)), report_(report), file_(make_file(file))
 {
-    sync_folder_of(file);
+    gi::sync_folder(file.has_parent_path() ? file.parent_path() : "."); // its name survives a loss of power too
     writer_ = std::thread([this] { write_waiting(); });
     syncer_ = std::thread([this] { sync_every_second(); });
 }

@@ -1,6 +1,6 @@
+#include "gi/core/crc32.h"
 #include "gi/core/error.h"
 #include "viewer/protocol/json_text.h"
-#include "viewer/protocol/recording/crc32.h"
 #include "viewer/protocol/recording/record_format.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ void put_record(ByteWriter& to, RecordType type, Bytes const& payload)
     head.put_byte(type);
     to.put_raw(head.bytes());
     to.put_raw(payload);
-    to.put_u32(crc32(payload, crc32(head.bytes())));
+    to.put_u32(gi::crc32(payload, gi::crc32(head.bytes())));
 }
 
 Bytes header_bytes(RecordingHeader const& h)

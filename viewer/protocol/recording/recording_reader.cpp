@@ -1,6 +1,6 @@
+#include "gi/core/crc32.h"
 #include "gi/core/error.h"
 #include "viewer/protocol/json_text.h"
-#include "viewer/protocol/recording/crc32.h"
 #include "viewer/protocol/recording/record_format.h"
 
 #include <algorithm>
@@ -79,7 +79,7 @@ RecordingReader::Record RecordingReader::read_record()
     Bytes tail(kRecordTail);
     in_->read(reinterpret_cast<char*>(tail.data()), kRecordTail);
     if (!*in_) throw Cut("it cannot be read to its end");
-    if (ByteReader(tail).u32() != crc32(record.payload, crc32(head)))
+    if (ByteReader(tail).u32() != gi::crc32(record.payload, gi::crc32(head)))
         throw BadBytes("the checksum of a record is wrong");
     at_ += kRecordHead + length + kRecordTail;
     return record;

@@ -1,5 +1,6 @@
 #include "gi/scene/load/gltf/gltf_document.h"
 
+#include "gi/core/base64.h"
 #include "gi/core/file.h"
 #include "gi/scene/load/gltf/gltf_meshopt.h"
 #include "gi/scene/load/gltf/uri.h"

@@ -8,7 +8,7 @@
 
 #include "gi/core/math.h"
 
-namespace viewer {
+namespace gi {
 
 struct OneEuroSettings {
     double min_cutoff_hz = 1;          ///< at rest: lower = steadier, slower
@@ -22,26 +22,25 @@ struct OneEuroSettings {
 
 /// The filter's memory, a plain value: late samples take it back to where they belong.
 struct OneEuroPosition {
-    gi::dvec3 raw{0}, value{0}; ///< m
-    gi::dvec3 velocity{0};      ///< m/s, for predictions
-    gi::dvec3 slow_velocity{0}; ///< m/s, for the cutoff
-    double lag_s = 0;           ///< by which value is behind a constant motion: tau
+    dvec3 raw{0}, value{0}; ///< m
+    dvec3 velocity{0};      ///< m/s, for predictions
+    dvec3 slow_velocity{0}; ///< m/s, for the cutoff
+    double lag_s = 0;       ///< by which value is behind a constant motion: tau
 };
 
 /// Rotations in the log map: x - y is the rotation vector from the output to the input, in the body's frame.
 struct OneEuroRotation {
-    gi::dquat raw{1, 0, 0, 0}, value{1, 0, 0, 0};
-    gi::dvec3 velocity{0};      ///< rad/s about the body's axes
-    gi::dvec3 slow_velocity{0}; ///< rad/s
+    dquat raw{1, 0, 0, 0}, value{1, 0, 0, 0};
+    dvec3 velocity{0};      ///< rad/s about the body's axes
+    dvec3 slow_velocity{0}; ///< rad/s
     double lag_s = 0;
 };
 
-OneEuroPosition start(gi::dvec3 position);
-OneEuroRotation start(gi::dquat const& rotation);
+OneEuroPosition start(dvec3 position);
+OneEuroRotation start(dquat const& rotation);
 /// @param dt_s since the sample before, > 0
-OneEuroPosition step(OneEuroSettings const& settings, OneEuroPosition const& before, gi::dvec3 position,
-                     double dt_s);
-OneEuroRotation step(OneEuroSettings const& settings, OneEuroRotation const& before, gi::dquat const& rotation,
+OneEuroPosition step(OneEuroSettings const& settings, OneEuroPosition const& before, dvec3 position, double dt_s);
+OneEuroRotation step(OneEuroSettings const& settings, OneEuroRotation const& before, dquat const& rotation,
                      double dt_s);
 
-} // namespace viewer
+} // namespace gi

@@ -1,6 +1,6 @@
-#include "study/journal/durable_file.h"
+#include "gi/core/durable_file.h"
 
-#include "study/script/script_error.h"
+#include "gi/core/error.h"
 
 #include <cerrno>
 #include <cstring>
@@ -8,23 +8,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace study {
+namespace gi {
 namespace {
 
 namespace fs = std::filesystem;
 
-ScriptError cannot(char const* what, fs::path const& file, int error)
+InputError cannot(char const* what, fs::path const& file, int error)
 {
-    return ScriptError(file.string(), {}, what, std::strerror(error),
-                       error == ENOENT ? "check the path" : "free some space, or choose another folder");
-}
-
-ScriptError cannot_read(fs::path const& file, int error)
-{
-    char const* const suggestion = error == ENOENT                     ? "check the path"
-                                   : error == EACCES || error == EPERM ? "make it readable"
-                                                                       : "check the file and its disk";
-    return ScriptError(file.string(), {}, "the file cannot be read", std::strerror(error), suggestion);
+    return InputError(TextLocation{file.string()}, what, std::strerror(error),
+                      error == ENOENT ? "check the path" : "free some space, or choose another folder");
 }
 
 struct Descriptor {
@@ -36,23 +28,6 @@ struct Descriptor {
 };
 
 } // namespace
-
-std::string read_whole(fs::path const& file)
-{
-    constexpr std::size_t kMost = std::size_t(1) << 30;
-    Descriptor const in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
-    if (in.fd < 0) throw cannot_read(file, errno);
-    std::string text;
-    std::string chunk(1 << 16, '\0');
-    while (true) {
-        ssize_t const n = ::read(in.fd, chunk.data(), chunk.size());
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) throw cannot_read(file, errno);
-        if (n == 0) return text;
-        text.append(chunk, 0, std::size_t(n));
-        if (text.size() > kMost) throw cannot_read(file, EFBIG);
-    }
-}
 
 void write_durably(fs::path const& file, std::string_view text)
 {
@@ -99,4 +74,4 @@ void make_folder(fs::path const& folder)
     sync_folder(parent.empty() ? fs::path(".") : parent);
 }
 
-} // namespace study
+} // namespace gi

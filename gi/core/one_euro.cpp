@@ -1,8 +1,8 @@
-#include "viewer/devices/tracking/one_euro.h"
+#include "gi/core/one_euro.h"
 
-#include "viewer/devices/tracking/pose_math.h"
+#include "gi/core/rotation.h"
 
-namespace viewer {
+namespace gi {
 namespace {
 
 double time_constant(double cutoff_hz) { return 1 / (2 * 3.14159265358979323846 * cutoff_hz); }
@@ -10,7 +10,7 @@ double time_constant(double cutoff_hz) { return 1 / (2 * 3.14159265358979323846 
 double share(double cutoff_hz, double dt_s) { return dt_s / (dt_s + time_constant(cutoff_hz)); }
 
 /// Brings both velocities on, returns the cutoff.
-double follow(OneEuroSettings const& s, gi::dvec3 measured, double dt_s, gi::dvec3& velocity, gi::dvec3& slow)
+double update_velocities(OneEuroSettings const& s, dvec3 measured, double dt_s, dvec3& velocity, dvec3& slow)
 {
     slow += share(s.speed_cutoff_hz, dt_s) * (measured - slow);
     double const speed = glm::length(slow);
@@ -20,42 +20,42 @@ double follow(OneEuroSettings const& s, gi::dvec3 measured, double dt_s, gi::dve
 
 } // namespace
 
-OneEuroPosition start(gi::dvec3 position)
+OneEuroPosition start(dvec3 position)
 {
     OneEuroPosition f;
     f.raw = f.value = position;
     return f;
 }
 
-OneEuroRotation start(gi::dquat const& rotation)
+OneEuroRotation start(dquat const& rotation)
 {
     OneEuroRotation f;
     f.raw = f.value = rotation;
     return f;
 }
 
-OneEuroPosition step(OneEuroSettings const& settings, OneEuroPosition const& before, gi::dvec3 position,
-                     double dt_s)
+OneEuroPosition step(OneEuroSettings const& settings, OneEuroPosition const& before, dvec3 position, double dt_s)
 {
     OneEuroPosition f = before;
-    double const cutoff = follow(settings, (position - before.raw) / dt_s, dt_s, f.velocity, f.slow_velocity);
+    double const cutoff =
+        update_velocities(settings, (position - before.raw) / dt_s, dt_s, f.velocity, f.slow_velocity);
     f.raw = position;
     f.value += share(cutoff, dt_s) * (position - before.value);
     f.lag_s = time_constant(cutoff);
     return f;
 }
 
-OneEuroRotation step(OneEuroSettings const& settings, OneEuroRotation const& before, gi::dquat const& rotation,
+OneEuroRotation step(OneEuroSettings const& settings, OneEuroRotation const& before, dquat const& rotation,
                      double dt_s)
 {
     OneEuroRotation f = before;
-    double const cutoff = follow(settings, log_rotation(glm::inverse(before.raw) * rotation) / dt_s, dt_s,
-                                 f.velocity, f.slow_velocity);
+    double const cutoff = update_velocities(settings, log_rotation(glm::inverse(before.raw) * rotation) / dt_s,
+                                            dt_s, f.velocity, f.slow_velocity);
     f.raw = rotation;
-    gi::dvec3 const ahead = log_rotation(glm::inverse(before.value) * rotation);
+    dvec3 const ahead = log_rotation(glm::inverse(before.value) * rotation);
     f.value = glm::normalize(before.value * exp_rotation(share(cutoff, dt_s) * ahead));
     f.lag_s = time_constant(cutoff);
     return f;
 }
 
-} // namespace viewer
+} // namespace gi

@@ -1,20 +1,17 @@
 #pragma once
-// Files of a session that appear whole or not at all, and stay after a loss of power.
+// Files that appear whole or not at all, and stay after a loss of power.
 
 #include <filesystem>
-#include <string>
 #include <string_view>
 
-namespace study {
+namespace gi {
 
-/// At most 1 GiB. @throws ScriptError naming the file where it cannot be read
-std::string read_whole(std::filesystem::path const& file);
 /// Writes a temporary file beside it, hands it to the disk (fsync), renames it, and makes the name durable.
-/// @throws ScriptError naming the file; then nothing has changed
+/// @throws InputError naming the file; then nothing has changed
 void write_durably(std::filesystem::path const& file, std::string_view text);
 /// Makes the names in a folder durable; no harm where that cannot be had.
 void sync_folder(std::filesystem::path const& folder);
-/// Missing folders on the way are made too, and are durable. @throws ScriptError
+/// Missing folders on the way are made too, and are durable. @throws InputError
 void make_folder(std::filesystem::path const& folder);
 
-} // namespace study
+} // namespace gi

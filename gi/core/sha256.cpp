@@ -1,10 +1,10 @@
-#include "study/script/sha256.h"
+#include "gi/core/sha256.h"
 
 #include <array>
 #include <bit>
 #include <cstdint>
 
-namespace study {
+namespace gi {
 namespace {
 
 constexpr std::array<std::uint32_t, 64> kRound{
@@ -72,4 +72,4 @@ std::string sha256(std::string_view bytes)
     return text;
 }
 
-} // namespace study
+} // namespace gi

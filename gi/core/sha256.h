@@ -2,9 +2,9 @@
 #include <string>
 #include <string_view>
 
-namespace study {
+namespace gi {
 
 /// SHA-256 (FIPS 180-4) as 64 hexadecimal digits.
 std::string sha256(std::string_view bytes);
 
-} // namespace study
+} // namespace gi
