@@ -3,7 +3,7 @@
 
 namespace gi {
 
-/// How many letters have to be inserted, deleted or replaced to make one word of the other (Levenshtein).
+/// Levenshtein distance: number of letters to insert, delete or replace to turn one word into the other.
 int edit_distance(std::string const& a, std::string const& b);
 
 } // namespace gi
