@@ -105,7 +105,7 @@ struct PerspectiveLanes {
         Mask const behind = hn::Le(farthest, near);
         Mask const plain = hn::And(hn::Gt(nearest, near), hn::Le(widest, guard));
         out.clip = hn::Not(hn::Or(behind, plain));
-        // Triangles behind the eye get no samples.
+        // Lanes that are behind the eye or need clipping get no samples here.
         V const nowhere = hn::Set(d, -grid.subpixels);
         Mask const gone = hn::Not(plain);
         for (std::size_t k = 0; k < 3; ++k) {
@@ -238,7 +238,7 @@ void VectorRaster<Lanes>::empty_queue(Queue& queue, std::size_t lanes)
             if (hn::AllFalse(d, active)) break;
             V const cx = hn::Mul(hn::Add(i, half), subpixels);
             V const ax = hn::Sub(x0, cx), bx = hn::Sub(x1, cx), ex = hn::Sub(x2, cx);
-            // Rounding is monotonic: if two rounded products differ, the exact products differ in the same direction.
+            // Rounding is monotonic: if two rounded products differ, the exact ones differ in the same direction.
             V const p01 = hn::Mul(ax, by), q01 = hn::Mul(ay, bx);
             V const p12 = hn::Mul(bx, ey), q12 = hn::Mul(by, ex);
             V const p20 = hn::Mul(ex, ay), q20 = hn::Mul(ey, ax);

@@ -1,5 +1,5 @@
 #pragma once
-// Materials as plain data. One struct holds both models; what they mean is in bsdf.h and docs/methods.md.
+// Materials as plain data. One struct holds both models; bsdf.h and docs/methods.md define them.
 
 #include "gi/scene/model/texture.h"
 

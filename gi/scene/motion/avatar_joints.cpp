@@ -11,7 +11,8 @@ namespace {
 
 enum class Side { none, left, right };
 
-/// "mixamorig:LeftForeArm", "LowerArm.L", "b_RightUpperArm_06" -> forearm, lowerarm, upperarm and their sides.
+/// A parsed joint name: "mixamorig:LeftForeArm", "LowerArm.L", "b_RightUpperArm_06" -> forearm, lowerarm, upperarm
+/// and their sides.
 struct JointName {
     Side side = Side::none;
     std::string part;
@@ -59,7 +60,7 @@ JointName parse_name(std::string const& name)
     return out;
 }
 
-/// Best first.
+/// Names in order of preference.
 std::vector<std::string> const kHead{"head"};
 std::vector<std::string> const kUpper{"upperarm", "arm", "uparm", "armupper", "shldrbend", "shldr", "shoulder"};
 std::vector<std::string> const kLower{"forearm", "lowerarm", "armlower", "forearmbend", "elbow"};
@@ -118,7 +119,7 @@ private:
             if (names_[i - 1].part == part) return joints_[i - 1];
         return -1;
     }
-    /// A joint of that name, or any node where none has it.
+    /// Returns a joint of that name, or else any node of that name.
     std::int32_t exact(std::string const& name) const
     {
         for (std::int32_t const j : joints_)
@@ -163,7 +164,7 @@ private:
         return arm;
     }
 
-    /// All -1 where one of them is not found.
+    /// Returns all -1 if one of the joints is not found.
     LegJoints find_leg(Side side, LegNames const& names, std::string const& which) const
     {
         LegJoints leg;
