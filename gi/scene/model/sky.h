@@ -18,7 +18,7 @@
 namespace gi {
 
 struct SkyOptions {
-    double turbidity = 3;          ///< 2 (very clear) to 10 (hazy); outside this range the fit gives negative light
+    double turbidity = 3;          ///< 2 (very clear) to 10 (hazy); outside, the fit gives negative light
     double sun_elevation_deg = 40; ///< of the sun's centre, 0..90
     double sun_azimuth_deg = 120;  ///< from -Z towards +X, -360..360
     bool sun = true;          ///< the map includes the sun's disc; the sun lights the ground in either case

@@ -3,8 +3,8 @@
 // the tables for light sampling. Plain arrays in one index space; WorldView borrows them for kernels.
 //
 // Coordinates are float metres relative to `origin`. The origin is the centre of the scene's bounds if these are
-// so far from zero that floats would be imprecise there, else 0. Transforms are multiplied in double and the origin
-// is subtracted before rounding to float (see deform_kernels.h for the error).
+// so far from zero that floats would be imprecise there, else 0. Transforms are multiplied in double and the
+// origin is subtracted before rounding to float (see deform_kernels.h for the error).
 //
 // Instances that can move (motion.h) come last in the arrays of vertices and triangles; otherwise nodes and their
 // meshes keep their order. MovingWorld (moving_world.h) advances a World in time and writes only behind
@@ -74,7 +74,7 @@ struct World {
     std::vector<Light> lights;       ///< in this frame
     std::vector<Camera> cameras;     ///< world_from_camera without origin removed (absolute, double)
     std::shared_ptr<EnvironmentMap const>
-        environment;                    ///< null = none. Its own rotation and scale are ignored; used instead:
+        environment;                    ///< null = none. Its own rotation and scale are ignored; see:
     float environment_rotation_rad = 0; ///< as EnvironmentMap::rotation_rad
     vec3 environment_scale{1};
 

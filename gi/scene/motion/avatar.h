@@ -33,7 +33,7 @@ struct Avatar {
 
 /// Rigid transforms to the world (+Y up, m); absent or non-finite ones are not tracked.
 struct AvatarTargets {
-    std::optional<dmat4> head;                  ///< at the head joint; -Z = viewing direction, +Y = top of the head
+    std::optional<dmat4> head;                  ///< at the head joint; -Z = view direction, +Y = top of the head
     std::optional<dmat4> left_hand, right_hand; ///< at the wrist; -Z = along the fingers, +Y = back of the hand
     std::optional<dmat4> left_foot{}, right_foot{}; ///< at the ankle; -Z = along the toes, +Y = up
 };
@@ -44,10 +44,10 @@ Avatar make_avatar(Scene const& scene, AvatarJoints const& joints);
 
 /// Overwrites the pose of the avatar's joints and all nodes below them. With a tracked head, the whole avatar
 /// turns about the vertical to face in the head's direction and moves so that the head joint is at its target;
-/// untracked feet may leave the floor. Arms are bent to the hand targets by reach(): elbows point down and outwards
-/// for hands in front of the body, and this direction turns along for hands elsewhere; each bone takes the shortest
-/// rotation. A hand whose target is out of reach still takes the target's orientation. Legs are bent to the foot
-/// targets likewise (avatar_legs.h). Bones keep their lengths.
+/// untracked feet may leave the floor. Arms are bent to the hand targets by reach(): elbows point down and
+/// outwards for hands in front of the body, and this direction turns along for hands elsewhere; each bone takes
+/// the shortest rotation. A hand whose target is out of reach still takes the target's orientation. Legs are bent
+/// to the foot targets likewise (avatar_legs.h). Bones keep their lengths.
 void drive(Scene const& scene, Avatar const& avatar, AvatarTargets const& targets, Pose& pose);
 
 } // namespace gi

@@ -39,9 +39,9 @@ struct AvatarNames {
 /// Finds joints by the names of common skeletons: Mixamo ("mixamorig:LeftForeArm"), Quaternius and Blender
 /// ("LowerArm.L", "forearm.L"), Unreal ("lowerarm_l"), VRM, 3ds Max bipeds ("Bip01 L Forearm"), the glTF sample
 /// models. An elbow or wrist (knee or ankle) without such a name is taken to be the only joint below the previous
-/// one. Feet need not be descendants of their legs, as in rigs with controls. If a scene has several skeletons, the
-/// given skin is used, or the first one with head and arms. Throws InputError with the missing and the existing
-/// joints; legs may be missing.
+/// one. Feet need not be descendants of their legs, as in rigs with controls. If a scene has several skeletons,
+/// the given skin is used, or the first one with head and arms. Throws InputError with the missing and the
+/// existing joints; legs may be missing.
 AvatarJoints find_avatar_joints(Scene const& scene, AvatarNames const& names = {}, std::int32_t skin = -1);
 
 } // namespace gi

@@ -1,6 +1,6 @@
 #pragma once
-// Kernels that compute the world-space vertices of one instance of a mesh, one item per vertex: morph targets, then
-// the node's transform, linear blend skinning or dual quaternion skinning. skinning.h prepares their inputs.
+// Kernels that compute the world-space vertices of one instance of a mesh, one item per vertex: morph targets,
+// then the node's transform, linear blend skinning or dual quaternion skinning. skinning.h prepares their inputs.
 //
 // Results are float metres relative to a fixed origin. Matrices are multiplied in double and the origin is
 // subtracted before rounding; meshes far from their local zero are first moved to their centre. The error of a

@@ -1,5 +1,6 @@
 #pragma once
-// Determines which parts of a scene can move and why; the world stores them separately from static parts (world.h).
+// Determines which parts of a scene can move and why; the world stores them separately from static parts
+// (world.h).
 
 #include "gi/scene/model/scene.h"
 

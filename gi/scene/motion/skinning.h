@@ -8,8 +8,8 @@
 
 namespace gi {
 
-/// Placement of one instance at one time; equal placements of one mesh give equal vertices. Placing it again reuses
-/// its memory.
+/// Placement of one instance at one time; equal placements of one mesh give equal vertices. Placing it again
+/// reuses its memory.
 struct InstancePlacement {
     enum class Kind : std::uint8_t { rigid, linear, dual_quaternion } kind = Kind::rigid;
     Affine node;
