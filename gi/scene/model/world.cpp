@@ -41,7 +41,7 @@ WorldView view(World const& world)
     v.background = world.scene->background;
     v.environment_pdf = world.environment_pdf;
     if (world.environment_select.total > 0) {
-        double const half_row = 0.5 * double(kPi) / v.environment_height; // ratio of a texel's solid angle to its area
+        double const half_row = 0.5 * double(kPi) / v.environment_height; // solid angle of a texel over its area
         v.environment_pdf_per_luminance = float(std::sin(half_row) / half_row / world.environment_select.total);
     }
     v.scene_radius = world.bounds.radius();

@@ -66,7 +66,7 @@ struct World {
     };
     std::vector<Placed> placed; ///< per instance: its scene node and first triangle
     std::uint32_t instances = 0, static_instances = 0;
-    std::uint32_t static_triangles = 0, static_vertices = 0; ///< counts of those that never change; they come first
+    std::uint32_t static_triangles = 0, static_vertices = 0; ///< number that never change; they come first
     std::vector<Surface> surfaces;                           ///< per triangle
 
     std::vector<Material> materials; ///< the scene's, and the default material last

@@ -160,7 +160,7 @@ private:
         for (auto const& [child, parent] : {std::pair{arm.lower, arm.upper}, {arm.hand, arm.lower}})
             if (child >= 0 && parent >= 0 && !below(child, parent))
                 throw InputError(fmt::format("joint '{}' is not below '{}'", node(child).name, node(parent).name),
-                                 fmt::format("they are no {} arm", which), "name upper arm, lower arm and hand");
+                                 fmt::format("they form no {} arm", which), "name upper arm, lower arm and hand");
         return arm;
     }
 
@@ -179,8 +179,8 @@ private:
         if (is_chain) return leg;
         if (!names.upper.empty() || !names.lower.empty() || !names.foot.empty())
             throw InputError(
-                fmt::format("'{}', '{}' and '{}' are no {} leg", names.upper, names.lower, names.foot, which),
-                "the shin is below the thigh, and neither below the foot", "name thigh, shin and foot");
+                fmt::format("'{}', '{}' and '{}' form no {} leg", names.upper, names.lower, names.foot, which),
+                "the shin must be below the thigh and neither below the foot", "name thigh, shin and foot");
         return {};
     }
 
@@ -210,7 +210,7 @@ AvatarJoints find_avatar_joints(Scene const& scene, AvatarNames const& names, st
         for (std::int32_t const j : scene.skins[s].joints)
             if (known.size() < 2000) known += (known.empty() ? "" : ", ") + scene.nodes[std::size_t(j)].name;
     throw InputError(fmt::format("the avatar has no {}", fmt::join(missing, ", ")),
-                     "no joint has one of the usual names", "name them; there are: " + known);
+                     "no joint has a known name", "name them; existing joints: " + known);
 }
 
 } // namespace gi

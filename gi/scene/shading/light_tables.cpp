@@ -12,7 +12,7 @@ enum LightClass : std::size_t { punctual, distant, area, environment, classes };
 /// visible surfaces (e.g. a light inside a room under a bright sky).
 constexpr double kLeastShare = 0.1;
 
-/// Luminance of a light's power, W. @param disc area of the scene's silhouette, m2
+/// Luminance of a light's power, W. @param disc cross-section area of the scene, m2
 double power(Light const& light, double disc)
 {
     double const intensity = double(luminance(light.intensity));

@@ -74,7 +74,7 @@ void add_sun(Sky const& sky, double azimuth, EnvironmentMap& map)
         }
     }
     double const scale = 2 * kPiD * (1 - std::cos(r)) / whole;
-    std::vector<double> share(std::size_t(map.width) * map.height, 0.0); // solid angle of the disc in the texel over that of the texel
+    std::vector<double> share(std::size_t(map.width) * map.height, 0.0); // per texel: fraction covered by the disc
     for (Piece const& p : pieces) {
         if (p.theta > kPiD / 2) continue;
         auto const [y, next_row] = hats.place(std::cos(p.theta));

@@ -1,5 +1,5 @@
 #pragma once
-// The two encodings of glTF's URIs.
+// Decoders of the two encodings used in glTF URIs.
 
 #include <optional>
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace gi {
 
-/// RFC 4648; nothing where the text holds other characters than its alphabet and trailing '='.
+/// Decodes base64 (RFC 4648); returns nothing if the text has characters other than its alphabet and trailing '='.
 std::optional<std::vector<unsigned char>> decode_base64(std::string_view text);
-/// %41 becomes A; what is not an escape stays.
+/// Decodes percent escapes: %41 becomes A; all other text is kept.
 std::string decode_percent(std::string_view text);
 
 } // namespace gi
