@@ -52,7 +52,7 @@ public:
     void check()
     {
         constexpr std::uint32_t kMagic = 20000630, kMultiPart = 0x1000;
-        if (number() != kMagic) fail("it does not start as OpenEXR does");
+        if (number() != kMagic) fail("it does not start like an OpenEXR file");
         bool const multi_part = (number() & kMultiPart) != 0;
         do {
             while (check_attribute()) {
@@ -89,7 +89,7 @@ private:
         std::size_t const size = number();
         if (size > left()) fail(fmt::format("its attribute '{}' is longer than the file", attribute));
         std::size_t const end = at_ + size;
-        if (!fits(type, size)) fail(fmt::format("its attribute '{}' is no proper {}", attribute, type));
+        if (!fits(type, size)) fail(fmt::format("its attribute '{}' is not a valid {}", attribute, type));
         at_ = end;
         return true;
     }

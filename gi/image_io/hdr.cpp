@@ -129,7 +129,7 @@ private:
             unsigned char pixel[4];
             for (unsigned char& v : pixel) v = next();
             if (pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1) {
-                if (x == 0 || shift > 24) fail("a run has nothing to repeat");
+                if (x == 0 || shift > 24) fail("a run has no pixel to repeat");
                 std::size_t const count = std::size_t(pixel[3]) << shift;
                 if (count > width - x) fail("a run is longer than its row");
                 for (std::size_t i = 0; i < count; ++i, ++x) std::memcpy(&row[4 * x], &row[4 * (x - 1)], 4);

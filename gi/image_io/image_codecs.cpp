@@ -16,7 +16,7 @@ Function* codec(char const* name)
     void* const found = module != nullptr ? dlsym(module, name) : nullptr;
     if (found != nullptr) return reinterpret_cast<Function*>(found);
     char const* const why = dlerror();
-    throw gi::InputError("image files cannot be read or written", why != nullptr ? why : "OpenCV has no codecs",
+    throw gi::InputError("image files cannot be read or written", why != nullptr ? why : "OpenCV lacks the codecs",
                          "install OpenCV's module imgcodecs in the version that this program was built with");
 }
 

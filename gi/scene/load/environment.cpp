@@ -12,7 +12,7 @@ EnvironmentMap load_environment(std::filesystem::path const& file, Report& repor
     constexpr int kWidest = 32768;
     Picture const picture = read_picture(file);
     auto const bad = [&](std::string const& why) {
-        return InputError(fmt::format("'{}' is no environment map", file.string()), why,
+        return InputError(fmt::format("'{}' is not an environment map", file.string()), why,
                           "give a lat-long panorama as HDR or EXR, twice as wide as high");
     };
     Layer const* const color = picture.find("color");

@@ -125,7 +125,7 @@ private:
         check_keys(m, "model");
         if (++t_models > kMostModels)
             throw m.error(fmt::format("more than {} models", kMostModels),
-                          "those of included scene files are counted, too", "join them into one model file");
+                          "models of included scene files count, too", "join them into one model file");
         if (m.has("file") == m.has("generate"))
             throw m.error("a model needs either file or generate", "it has both or neither", "keep one");
         Scene part;

@@ -56,7 +56,7 @@ Camera look_at(dvec3 from, dvec3 at, double yfov_deg)
                          "give two different points");
     if (!(yfov_deg > 0) || !(yfov_deg < 180))
         throw InputError("the field of view is not between 0 and 180 degrees",
-                         "a perspective camera needs an opening angle", "45 is usual");
+                         "a perspective camera needs an opening angle", "45 is a usual value");
     Camera camera;
     camera.yfov_rad = glm::radians(yfov_deg);
     dvec3 const z = back / length;

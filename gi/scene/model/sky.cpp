@@ -17,21 +17,21 @@ void check(bool good, std::string const& problem, char const* why, char const* s
 
 void check(SkyOptions const& o)
 {
-    check(o.turbidity >= 2 && o.turbidity <= 10, fmt::format("a sky of turbidity {}", o.turbidity),
-          "the model was fitted to clear and hazy skies, and beyond gives negative light",
+    check(o.turbidity >= 2 && o.turbidity <= 10, fmt::format("the sky's turbidity is {}", o.turbidity),
+          "the model fits clear to hazy skies and gives negative light otherwise",
           "choose 2 (very clear) to 10 (hazy)");
     check(o.sun_elevation_deg >= 0 && o.sun_elevation_deg <= 90,
-          fmt::format("a sun at an elevation of {} degrees", o.sun_elevation_deg), "the model knows the day only",
+          fmt::format("the sun's elevation is {} degrees", o.sun_elevation_deg), "the model has no night sky",
           "choose 0 (at the horizon) to 90 (overhead)");
     check(o.sun_azimuth_deg >= -360 && o.sun_azimuth_deg <= 360,
-          fmt::format("a sun at an azimuth of {} degrees", o.sun_azimuth_deg), "that is more than a turn",
+          fmt::format("the sun's azimuth is {} degrees", o.sun_azimuth_deg), "it is more than a full turn",
           "choose -360 to 360, from -Z towards +X");
     for (int c = 0; c < 3; ++c)
         check(o.ground_albedo[c] >= 0 && o.ground_albedo[c] <= 1,
-              fmt::format("a ground of albedo {}", o.ground_albedo[c]), "it would reflect more than it receives",
+              fmt::format("the ground albedo is {}", o.ground_albedo[c]), "it would reflect more than it receives",
               "choose 0 to 1");
     check(o.width >= 8 && o.width <= 32768 && o.height >= 4 && o.height <= 16384,
-          fmt::format("a sky of {} x {} texels", o.width, o.height), "8 x 4 to 32768 x 16384 are made",
+          fmt::format("the sky map has {} x {} texels", o.width, o.height), "8 x 4 to 32768 x 16384 work",
           "choose 1024x512");
 }
 

@@ -21,8 +21,8 @@ struct SkyOptions {
     double turbidity = 3;          ///< 2 (very clear) to 10 (hazy); outside, the fit gives negative light
     double sun_elevation_deg = 40; ///< of the sun's centre, 0..90
     double sun_azimuth_deg = 120;  ///< from -Z towards +X, -360..360
-    bool sun = true;          ///< the map includes the sun's disc; the sun lights the ground in either case
-    vec3 ground_albedo{0.2f}; ///< 0..1
+    bool sun = true;               ///< the map includes the sun's disc; the sun lights the ground in either case
+    vec3 ground_albedo{0.2f};      ///< 0..1
     std::uint32_t width = 1024, height = 512; ///< texels; 8..32768 x 4..16384
 };
 

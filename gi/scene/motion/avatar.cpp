@@ -118,7 +118,7 @@ Avatar make_avatar(Scene const& scene, AvatarJoints const& joints)
     dvec3 left = joint_position(rest, joints.left.upper) - joint_position(rest, joints.right.upper);
     left.y = 0;
     if (!(glm::length(left) > 0))
-        throw InputError("the avatar's shoulders are one above the other", "its viewing direction is undefined",
+        throw InputError("one of the avatar's shoulders is above the other", "its viewing direction is undefined",
                          "stand it upright, with +Y up");
     avatar.world_from_body = orientation_of(left, kUp, 1);
     dvec3 const forward = avatar.world_from_body * dvec3{0, 0, 1};

@@ -126,7 +126,7 @@ private:
             if (node(j).name == name) return j;
         for (std::size_t i = 0; i < scene_.nodes.size(); ++i)
             if (scene_.nodes[i].name == name) return std::int32_t(i);
-        throw InputError("there is no joint '" + name.substr(0, 64) + "'", "the avatar cannot be moved by it",
+        throw InputError("there is no joint '" + name.substr(0, 64) + "'", "the avatar needs it",
                          "check the name");
     }
     std::int32_t only_joint_below(std::int32_t parent) const
@@ -209,8 +209,8 @@ AvatarJoints find_avatar_joints(Scene const& scene, AvatarNames const& names, st
     for (std::size_t s = 0; s < scene.skins.size(); ++s)
         for (std::int32_t const j : scene.skins[s].joints)
             if (known.size() < 2000) known += (known.empty() ? "" : ", ") + scene.nodes[std::size_t(j)].name;
-    throw InputError(fmt::format("the avatar has no {}", fmt::join(missing, ", ")),
-                     "no joint has a known name", "name them; existing joints: " + known);
+    throw InputError(fmt::format("the avatar has no {}", fmt::join(missing, ", ")), "no joint has a known name",
+                     "name them; existing joints: " + known);
 }
 
 } // namespace gi

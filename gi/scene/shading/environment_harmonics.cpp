@@ -92,7 +92,7 @@ EnvironmentHarmonics project(EnvironmentMap const& map, double rotation_rad, dve
 {
     if (degree < 0 || degree >= kDegrees)
         throw std::invalid_argument(
-            fmt::format("harmonics of degree {} (0 to {} are known)", degree, kDegrees - 1));
+            fmt::format("harmonics of degree {} (0 to {} are supported)", degree, kDegrees - 1));
     EnvironmentHarmonics h;
     h.degree = degree;
     std::uint32_t const width = map.width, height = map.height;

@@ -146,7 +146,7 @@ json take(json& root, char const* key, GltfDocument const& d)
     if (it == root.end()) return json::array();
     json taken = std::move(*it);
     root.erase(it);
-    if (!taken.is_array()) throw d.error(fmt::format("has no list '{}'", key), "it is of another type");
+    if (!taken.is_array()) throw d.error(fmt::format("has no list '{}'", key), "it has another type");
     for (json const& item : taken)
         if (!item.is_object()) throw d.error(fmt::format("has a bad item in '{}'", key), "it is not an object");
     return taken;
@@ -175,7 +175,7 @@ std::vector<unsigned char> read_other_file(std::string const& uri, std::filesyst
                                            std::string const& what, GltfDocument& d)
 {
     if (folder.empty())
-        throw d.error(fmt::format("{} is in another file, '{}'", what, uri), "no other files may be read here");
+        throw d.error(fmt::format("{} is in another file, '{}'", what, uri), "other files cannot be read here");
     std::filesystem::path const file = decode_percent(uri);
     if (file.is_absolute() || uri.find("://") != std::string::npos)
         throw d.error(fmt::format("{} is at '{}'", what, uri), "only files beside the scene are read");

@@ -30,9 +30,9 @@ DracoMesh decode_draco(GltfDocument& d, tinygltf::Primitive const& primitive, st
         if (!decoded.ok()) throw bad(decoded.status().error_msg_string());
         mesh = std::move(decoded).value();
     } catch (std::bad_alloc const&) {
-        throw bad("it asks for more memory than there is");
+        throw bad("it asks for more memory than is available");
     } catch (std::length_error const&) {
-        throw bad("it asks for more memory than there is");
+        throw bad("it asks for more memory than is available");
     }
 
     DracoMesh out;

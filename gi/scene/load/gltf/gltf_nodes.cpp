@@ -31,7 +31,7 @@ public:
                 throw d_.error(fmt::format("scene {} does not exist", shown), "it is the default scene");
             roots = scenes[std::size_t(shown)].nodes;
             for (int const r : roots)
-                if (!exists(r)) throw d_.error(fmt::format("node {} does not exist", r), "the scene names it");
+                if (!exists(r)) throw d_.error(fmt::format("node {} does not exist", r), "the scene lists it");
         }
         for (int const r : roots) {
             if (has_parent_[std::size_t(r)])
