@@ -18,7 +18,7 @@ void resize_on_huge_pages(std::vector<T, Allocator>& v, std::size_t count)
     if (count > v.capacity()) {
         std::vector<T, Allocator> grown;
         grown.reserve(std::max(count, 2 * v.size()));
-        advise_huge_pages(grown.data(), grown.capacity() * sizeof(T)); // before the pages are touched
+        advise_huge_pages(grown.data(), grown.capacity() * sizeof(T)); // before the pages are first touched
         grown.insert(grown.end(), v.begin(), v.end());
         v = std::move(grown);
     }

@@ -139,7 +139,7 @@ void add_limb(Mesh& m, Limb const& limb, int segments)
         }
         shrink = r == 0 || r == rings ? 0 : shrink;
         vec2 radius = glm::mix(limb.radius_from, limb.radius_to, t);
-        radius *= 1 + 0.08f * std::sin(kPi * t); // muscles
+        radius *= 1 + 0.08f * std::sin(kPi * t); // thicker in the middle, like muscles
         vec3 const center = glm::mix(limb.from, limb.to, t) + beyond * axis;
         float const along = glm::clamp(t + (beyond < 0 ? -0.1f : 0.0f), -0.1f, 1.0f);
         float const shared =

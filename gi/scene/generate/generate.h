@@ -9,7 +9,7 @@ namespace gi {
 
 struct AtriumOptions {
     int bays = 5;                                         ///< number of arches along the gallery, >= 1
-    double detail = 1;                                    ///< tessellation; 1 gives about 50K triangles
+    double detail = 1;                                    ///< tessellation; 1 gives about 50,000 triangles
     bool figure = true;                                   ///< include the skinned walking figure
     double sun_elevation_deg = 42, sun_azimuth_deg = 130; ///< azimuth from -Z towards +X
 };

@@ -1,5 +1,5 @@
-// A room with a mirror on the wall in front of the camera, for users to see their avatar (`lightwell view
-// --avatar`).
+// A room with a mirror on the wall in front of the camera, in which users see their avatar: see
+// `lightwell view --avatar`.
 
 #include "gi/scene/generate/builder.h"
 #include "gi/scene/generate/generate.h"

@@ -206,7 +206,7 @@ private:
 
 Scene load_mesh_sequence(fs::path const& folder, Report& report)
 {
-    fs::path const tidy = fs::absolute(folder).lexically_normal(); // "a/b/" has no file name, "." none of its own
+    fs::path const tidy = fs::absolute(folder).lexically_normal(); // because "a/b/" and "." have no file name
     return Sequence(tidy.has_filename() ? tidy : tidy.parent_path(), report).load();
 }
 

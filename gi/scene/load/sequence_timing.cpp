@@ -52,7 +52,7 @@ public:
 private:
     InputError wrong(std::string const& problem, std::string const& suggestion) const
     {
-        return {problem, "as given in '" + file_ + "'", suggestion};
+        return {problem, "in '" + file_ + "'", suggestion};
     }
 
     void parse()

@@ -12,7 +12,7 @@ namespace gi {
 /// Reasons why nodes move; empty = does not move.
 struct Motion {
     std::vector<std::string> node;  ///< per node: "clip 'walk'", "driven", also if only an ancestor moves
-    std::vector<std::string> morph; ///< per node: what changes its morph weights
+    std::vector<std::string> morph; ///< per node: reason why its morph weights change
 };
 
 /// A node moves if it or an ancestor is driven, or if a channel of a playing clip gives it values that change over

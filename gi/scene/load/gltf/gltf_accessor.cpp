@@ -76,7 +76,7 @@ public:
         if (layout_.components == 0) throw bad("its type is unknown");
         if (accessor_->count < 1) throw bad("it is empty");
         if (accessor_->count > (std::size_t(1) << 32)) throw bad("it has more than 2^32 elements");
-        std::size_t const cost = accessor_->bufferView < 0 ? 4 : 1; // zeros need no bytes in the file
+        std::size_t const cost = accessor_->bufferView < 0 ? 4 : 1; // no buffer view: all zeros, no bytes
         d.spend(cost * accessor_->count, fmt::format("accessor {}", index));
     }
     tinygltf::Accessor const& accessor() const { return *accessor_; }

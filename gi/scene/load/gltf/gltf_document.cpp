@@ -91,7 +91,7 @@ json parse_json(Bytes text, GltfDocument const& d)
         int const line = 1 + int(std::count(text.begin(), end, '\n'));
         auto const start = std::find(std::make_reverse_iterator(end), text.rend(), '\n').base();
         throw InputError({d.name, line, int(end - start)}, "is not valid JSON", e.what(), "export the file again");
-    } catch (json::exception const& e) { // numbers beyond double
+    } catch (json::exception const& e) { // e.g. a number outside the range of double
         throw d.error("is not valid JSON", e.what());
     }
 }

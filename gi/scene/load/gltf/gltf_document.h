@@ -29,9 +29,9 @@ struct GltfDocument {
     std::vector<GltfImage> images;
     std::vector<std::unique_ptr<std::vector<unsigned char>>>
         storage;                        ///< owns data that was decoded or read from other files
-    std::map<int, Bytes> decoded_views; ///< of EXT_meshopt_compression
+    std::map<int, Bytes> decoded_views; ///< decoded by EXT_meshopt_compression
     std::vector<std::string> files;     ///< other files that were read
-    std::size_t file_bytes = 0;         ///< with all buffers
+    std::size_t file_bytes = 0;         ///< including all buffers
     std::size_t elements_read = 0;
 
     InputError error(std::string const& problem, std::string const& why) const
