@@ -22,7 +22,7 @@ struct Texture {
     std::uint32_t width = 0, height = 0;
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false; ///< bilinear otherwise
-    bool srgb = false;    ///< r, g, b are sRGB-encoded (base colour, emissive, specular colour), a never is
+    bool srgb = false;    ///< r, g, b (not a) are sRGB-encoded: base colour, emissive, specular colour
 };
 
 /// Reference of a material to a texture, with KHR_texture_transform: uv' = T * R * S * uv.

@@ -64,7 +64,7 @@ struct World {
     struct Placed {
         std::uint32_t node, first_triangle;
     };
-    std::vector<Placed> placed; ///< per instance: its scene node and first triangle
+    std::vector<Placed> placed; ///< per instance: scene node and first triangle; ends at the next one's
     std::uint32_t instances = 0, static_instances = 0;
     std::uint32_t static_triangles = 0, static_vertices = 0; ///< number that never change; they come first
     std::vector<Surface> surfaces;                           ///< per triangle
@@ -74,7 +74,7 @@ struct World {
     std::vector<Light> lights;       ///< in this frame
     std::vector<Camera> cameras;     ///< world_from_camera without origin removed (absolute, double)
     std::shared_ptr<EnvironmentMap const>
-        environment;                    ///< null = none. Its own rotation and scale are ignored; see:
+        environment;                    ///< null = none; its rotation and scale are replaced by the next two
     float environment_rotation_rad = 0; ///< as EnvironmentMap::rotation_rad
     vec3 environment_scale{1};
 
