@@ -35,7 +35,7 @@ AliasTable make_alias_table(View<float const> weights)
             small.push_back(l);
         }
     }
-    // What rounding leaves over keeps itself, unless it has no weight at all.
+    // Bins left over by rounding always keep their own index, except those of weight 0.
     for (std::uint32_t const s : small)
         if (table.entries[s].probability == 0) {
             std::uint32_t heaviest = 0;

@@ -10,15 +10,15 @@ namespace gi {
 
 struct AliasEntry {
     float keep;          ///< probability of staying in this bin
-    std::uint32_t alias; ///< where to go otherwise
-    float probability;   ///< of drawing this index
+    std::uint32_t alias; ///< index drawn otherwise
+    float probability;   ///< total probability of drawing this index
 };
 
 struct AliasTableView {
     View<AliasEntry const> entries;
 
-    /// Draw an index from u in [0, 1); u is remapped to a fresh uniform number in [0, 1). Double, because among
-    /// millions of bins the 24 bits of a float would leave none to decide with.
+    /// Draws an index from u in [0, 1) and remaps u to a fresh uniform number in [0, 1). u is a double because the
+    /// choice among millions of bins alone uses up the 24 bits of a float.
     GI_FN std::uint32_t sample(double& u) const
     {
         constexpr double kBelowOne = 1 - 0x1p-53;
@@ -47,7 +47,7 @@ struct AliasTable {
 
 inline AliasTableView view(AliasTable const& t) { return {t.entries}; }
 
-/// Weights that are negative or not finite count as zero; if all are zero the table is empty.
+/// Negative and non-finite weights count as zero; if all weights are zero, the table is empty.
 AliasTable make_alias_table(View<float const> weights);
 
 } // namespace gi

@@ -4,7 +4,7 @@
 
 namespace gi {
 
-/// width * height as the header of a PNG or JPEG says, before a decoder makes room for that; 0 = not known.
+/// width * height stated in a PNG or JPEG header, to be checked before a decoder allocates memory; 0 = unknown.
 std::size_t claimed_pixels(std::span<unsigned char const> bytes);
 
 } // namespace gi

@@ -21,10 +21,10 @@ using glm::vec3;
 using glm::vec4;
 
 inline constexpr float kPi = 3.14159265358979323846f;
-inline constexpr double kPiD = 3.14159265358979323846; ///< in double
+inline constexpr double kPiD = 3.14159265358979323846;
 inline constexpr float kInvPi = 0.31830988618379067154f;
 inline constexpr float kInf = 3.402823466e+38f;
-inline constexpr float kFarthest = 1e18f; ///< m; squares of larger coordinates overflow a float
+inline constexpr float kFarthest = 1e18f; ///< m; the square of a larger coordinate overflows a float
 
 /// Rec. 709 luminance of linear RGB.
 GI_FN inline float luminance(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }

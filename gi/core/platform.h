@@ -1,5 +1,5 @@
 #pragma once
-// The only place that knows which compiler is reading the kernel headers.
+// Differences between the host and the CUDA compiler, for headers that both compile.
 
 #if defined(__CUDACC__)
 #include <cuda.h> // GLM 0.9.9.8 detects CUDA through CUDA_VERSION, so this precedes every GLM include.

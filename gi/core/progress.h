@@ -1,5 +1,5 @@
 #pragma once
-// Progress and interruption of long work.
+// Progress and interruption of long computations.
 
 #include <atomic>
 #include <chrono>
@@ -8,7 +8,7 @@
 
 namespace gi {
 
-/// Asks long work to stop at the next safe point. Set by the SIGINT/SIGTERM handler of the command line.
+/// Flag that stops a long computation at its next safe point. Set by the command line's SIGINT/SIGTERM handler.
 class StopRequest {
 public:
     void request() { flag_.store(true, std::memory_order_relaxed); }
@@ -18,17 +18,17 @@ private:
     std::atomic<bool> flag_{false};
 };
 
-/// Thrown by work that was asked to stop before it had anything to keep.
+/// Thrown when a computation is stopped before it has a result worth keeping.
 class Interrupted : public std::exception {
 public:
     char const* what() const noexcept override { return "interrupted"; }
 };
 
-/// Building of what a picture needs: given up where a stop was asked for and the picture is far off. What takes no
-/// time is ended, so that there is a first picture to keep.
+/// Decides whether to abandon the preparation of a picture (BVHs, hit buffers) after a stop request. Preparation
+/// that has taken less than 150 ms continues, so that there is a first picture to keep.
 class BuildStop {
 public:
-    /// @param stop  outlives this; null = nothing is given up
+    /// @param stop  must outlive this object; null = never abandon
     explicit BuildStop(StopRequest const* stop) : stop_(stop) {}
     bool given_up() const
     {
@@ -41,10 +41,10 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// A bar on stderr when that is a terminal, else nothing. Redraws at most ten times a second.
+/// Progress bar on stderr if stderr is a terminal, else no output. Redraws at most ten times a second.
 class ProgressBar {
 public:
-    /// @param label what is being done, e.g. "render atrium"
+    /// @param label name of the task, e.g. "render atrium"
     explicit ProgressBar(std::string label, bool enabled = true);
     ~ProgressBar(); ///< clears the line
     /// @param fraction 0..1   @param detail free text behind the bar, e.g. "128/1024 paths, relMSE 0.003"

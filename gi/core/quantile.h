@@ -1,9 +1,9 @@
 #pragma once
-// Quantiles and medians of samples: one definition for the whole project. Header alone, without dependencies.
+// Quantiles and medians of samples: one definition for the whole project. Header-only, without dependencies.
 //
-// The quantile of n sorted values is number 7 of Hyndman & Fan 1996 (Amer. Stat. 50:361), the default of numpy and
-// R: the value at position (n - 1) p, counted from 0, linear between neighbours. So p = 0 is the smallest, p = 1
-// the largest and p = 0.5 the usual median.
+// Quantiles follow definition 7 of Hyndman & Fan 1996 (Amer. Stat. 50:361), the default of numpy and R: among n
+// sorted values, the value at position (n - 1) p, counted from 0, interpolated linearly between neighbours. So
+// p = 0 is the smallest value, p = 1 the largest and p = 0.5 the usual median.
 
 #include <algorithm>
 #include <cmath>
@@ -16,31 +16,31 @@
 
 namespace gi {
 
-/// Where a quantile lies among sorted values: `share` of the way from number `below` to the next.
+/// Position of a quantile among sorted values: fraction `share` of the way from value `below` to the next.
 struct QuantilePlace {
     std::size_t below = 0;
     double share = 0; ///< in [0, 1); 0 at the last value
 };
 
-/// @param count  of values, at least 1
+/// @param count  number of values, at least 1
 /// @param p  in [0, 1]
 /// @throws std::invalid_argument p outside [0, 1] or NaN; no values
 inline QuantilePlace quantile_place(std::size_t count, double p)
 {
-    if (!(p >= 0 && p <= 1)) throw std::invalid_argument("a quantile is asked for outside of 0 to 1");
-    if (count == 0) throw std::invalid_argument("no values have no quantile");
+    if (!(p >= 0 && p <= 1)) throw std::invalid_argument("the quantile's p is outside 0 to 1");
+    if (count == 0) throw std::invalid_argument("a quantile needs at least one value");
     double const at = double(count - 1) * p;
     std::size_t const below = std::min(std::size_t(at), count - 1);
     return {below, below + 1 < count ? at - double(below) : 0};
 }
 
-/// Between neighbours; exact where they are equal, infinite ones too.
+/// Linear interpolation between two neighbours; exact if they are equal, even if both are infinite.
 inline double interpolated(double low, double high, double share)
 {
     return share == 0 || low == high ? low : std::lerp(low, high, share);
 }
 
-/// @param sorted  rising, without NaN
+/// @param sorted  in ascending order, without NaN
 /// @param p  in [0, 1]
 /// @return NaN if there are no values
 /// @throws std::invalid_argument p outside [0, 1] or NaN
@@ -57,7 +57,7 @@ double quantile_of_sorted(std::vector<T> const& sorted, double p)
     return quantile_of_sorted(std::span<T const>(sorted), p);
 }
 
-/// Rising, without those that are NaN: for several quantiles of the same values.
+/// Returns the values in ascending order, without NaNs. Use it to take several quantiles of the same values.
 template <class T>
 std::vector<T> sorted_values(std::vector<T> values)
 {
@@ -66,9 +66,9 @@ std::vector<T> sorted_values(std::vector<T> values)
     return values;
 }
 
-/// @param values  in any order; those that are NaN are ignored
+/// @param values  in any order; NaNs are ignored
 /// @param p  in [0, 1]
-/// @return NaN if there are no values, or none but NaN
+/// @return NaN if there are no values besides NaNs
 /// @throws std::invalid_argument p outside [0, 1] or NaN
 template <class T>
 double quantile(std::vector<T> values, double p)
@@ -82,34 +82,33 @@ double quantile(std::vector<T> values, double p)
     return at.share == 0 ? low : interpolated(low, double(*std::min_element(below + 1, values.end())), at.share);
 }
 
-/// Number 5 of Hyndman & Fan (Hazen), the default of MATLAB: at position n p - 1/2, counted from 0, linear between
-/// neighbours, held at the first and the last value. Only where results are to be those of published MATLAB code.
-/// @param values  in any order; those that are NaN are ignored
+/// Definition 5 of Hyndman & Fan (Hazen), the default of MATLAB: the value at position n p - 1/2, counted from 0,
+/// interpolated linearly and clamped to the first and last value. Use it only to match published MATLAB code.
+/// @param values  in any order; NaNs are ignored
 /// @param p  in [0, 1]
-/// @return NaN if there are no values, or none but NaN
+/// @return NaN if there are no values besides NaNs
 /// @throws std::invalid_argument p outside [0, 1] or NaN
 template <class T>
 double hazen_quantile(std::vector<T> values, double p)
 {
     values = sorted_values(std::move(values));
     if (values.size() < 2) return quantile_of_sorted(values, p);
-    if (!(p >= 0 && p <= 1)) throw std::invalid_argument("a quantile is asked for outside of 0 to 1");
+    if (!(p >= 0 && p <= 1)) throw std::invalid_argument("the quantile's p is outside 0 to 1");
     double const last = double(values.size() - 1);
     return quantile_of_sorted(values, std::clamp(double(values.size()) * p - 0.5, 0.0, last) / last);
 }
 
-/// quantile(values, 0.5): of an even number the mean of the two in the middle.
+/// Same as quantile(values, 0.5); for an even number of values, the mean of the two middle ones.
 template <class T>
 double median(std::vector<T> values)
 {
     return quantile(std::move(values), 0.5);
 }
 
-/// The value that half of the weight lies below. Where exactly half lies on either side the mean of the two
+/// Value below which half of the total weight lies. If exactly half lies on either side, the mean of the two
 /// neighbours, so that equal weights give the median.
-/// @param values  pairs of value and weight in any order; a weight is >= 0. Pairs with a NaN or without weight are
-/// ignored
-/// @return NaN if there is no weight
+/// @param values  pairs of value and weight (>= 0) in any order; pairs with a NaN or with weight 0 are ignored
+/// @return NaN if the total weight is 0
 template <class T>
 double weighted_median(std::vector<std::pair<T, T>> values)
 {

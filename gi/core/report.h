@@ -1,7 +1,7 @@
 #pragma once
-// What happened while a scene was loaded and a picture was made: stage times, counts, and everything
-// that was skipped, clamped or missing. Nothing is dropped without a line here; the command line prints
-// the losses on stderr and writes the whole report with --stats.
+// Record of loading a scene and making a picture: stage times, counts, and losses (everything that was
+// skipped, clamped or missing). Nothing is dropped without an entry here; the command line prints the
+// losses on stderr and writes the whole report with --stats.
 
 #include <chrono>
 #include <cstdint>
@@ -16,14 +16,14 @@ class Report {
 public:
     struct Loss {
         std::uint64_t count = 0;
-        std::string first; ///< where it was first seen, for the message
+        std::string first; ///< where it first occurred, for the message
     };
 
-    /// Count something skipped, clamped or missing, e.g. lose("degenerate triangles skipped", 3, "mesh 'door'").
+    /// Counts something skipped, clamped or missing, e.g. lose("degenerate triangles skipped", 3, "mesh 'door'").
     void lose(std::string const& what, std::uint64_t count = 1, std::string const& where = {});
-    /// Set (not add) a plain figure, e.g. count("triangles", 52000).
+    /// Sets (does not add to) a number, e.g. count("triangles", 52000).
     void count(std::string const& what, double value);
-    /// Add seconds to a named stage.
+    /// Adds seconds to a named stage.
     void add_time(std::string const& stage, double seconds);
 
     std::map<std::string, Loss> losses() const;
@@ -38,7 +38,7 @@ private:
     std::vector<std::pair<std::string, double>> times_;
 };
 
-/// Adds its lifetime to a stage of the report.
+/// Adds the time from its construction to its destruction to a stage of the report.
 class StageTimer {
 public:
     StageTimer(Report& report, std::string stage) : report_(report), stage_(std::move(stage)) {}
@@ -57,13 +57,13 @@ private:
     Clock::time_point start_ = Clock::now();
 };
 
-/// Reads a report that goes on growing: each call gives what was added since the one before.
+/// Incremental reader of a growing report: each call returns only what was added since the previous call.
 class ReportReader {
 public:
     explicit ReportReader(Report const& report) : report_(report) {}
-    /// Seconds by stage.
+    /// Returns the added seconds by stage.
     std::map<std::string, double> times();
-    /// Losses, to another report.
+    /// Adds the new losses to another report.
     void pass_on_losses(Report& to);
 
 private:

@@ -24,7 +24,7 @@ public:
         state_ += state;
         next();
     }
-    /// The stream of one path of one pixel.
+    /// Returns the random stream of one path of one pixel.
     GI_FN static Pcg32 for_path(std::uint64_t seed, std::uint32_t pixel, std::uint32_t path)
     {
         std::uint64_t const key = (std::uint64_t(pixel) << 32) | path;

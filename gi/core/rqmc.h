@@ -1,8 +1,8 @@
 #pragma once
-// Randomised quasi-Monte Carlo: the van der Corput sequence with an Owen scramble of its own for every stream and
+// Randomised quasi-Monte Carlo: the van der Corput sequence with an independent Owen scramble for every stream and
 // dimension (Owen 1995; hashed as in Burley 2020, "Practical Hash-based Owen Scrambling", with Vegdahl's
-// constants). Any run of 2^k consecutive indices that starts at a multiple of 2^k is stratified in each dimension;
-// scrambles and orders are independent, so that no two dimensions and no two bounces are paired.
+// constants). Any run of 2^k consecutive indices that starts at a multiple of 2^k is stratified in each dimension.
+// Scrambles and index orders are independent, so no two dimensions and no two bounces are correlated.
 
 #include "gi/core/rng.h"
 
@@ -70,38 +70,39 @@ public:
     RqmcStream() = default;
     GI_FN RqmcStream(std::uint32_t stream_seed, std::uint32_t path) : seed(stream_seed), index(path) {}
 
-    std::uint32_t seed = 0;  ///< of the pixel, say
-    std::uint32_t index = 0; ///< of the path
-    /// 0 to 15: of sixteen streams that share a seed. Their samples of one index lie in sixteen different strata.
+    std::uint32_t seed = 0;  ///< for example a hash of the pixel
+    std::uint32_t index = 0; ///< number of the path
+    /// 0 to 15: number of this stream among sixteen streams that share a seed. At any one index, the samples of
+    /// the sixteen streams lie in sixteen different strata.
     std::uint32_t place = 0;
 
-    /// Of this stream alone.
+    /// Seed that differs between the sixteen streams.
     GI_FN std::uint32_t own_seed() const { return seed + 0x9e3779b9u * place; }
     /// Uniform in [0, 1), a multiple of 2^-24.
     GI_FN float sample(std::uint32_t dimension) const
     {
         std::uint32_t const key = hash_words(seed, dimension);
         std::uint32_t const at = shuffled(key) ^ shuffled_place(key), scramble = key * 0x2c1b3c6du + 0x297a2d39u;
-        // The sixteen share which stratum an index means; where in the stratum is each one's own.
+        // The sixteen streams share the mapping from index to stratum; positions in the stratum are independent.
         std::uint32_t const stratum = permute_upwards(at, scramble) & 15,
                             within = permute_upwards(at, scramble + 0x9e3779b9u * place) & ~15u;
         std::uint32_t const word = stratum | within;
         return float(reverse_bits(word) >> 8) * 0x1p-24f;
     }
     GI_FN vec2 sample2(std::uint32_t dimension) const { return {sample(dimension), sample(dimension + 1)}; }
-    /// For taking things in turn: one more with every index, and different ones at the sixteen places.
+    /// Counter for round-robin choices: increases by one with the index, and differs between the sixteen streams.
     GI_FN std::uint32_t turn(std::uint32_t dimension) const
     {
         std::uint32_t const key = hash_words(seed, dimension);
         return (key >> 8) + shuffled_place(key) + index;
     }
-    /// Two numbers without any order, for decisions that matter little.
+    /// Two unstratified random numbers in [0, 1), for decisions that matter little.
     GI_FN vec2 noise2(std::uint32_t dimension) const
     {
         std::uint32_t const h = hash_words(own_seed() + 0x68bc21ebu * index, dimension);
         return {float(h >> 16) * 0x1p-16f, float(h & 0xffffu) * 0x1p-16f};
     }
-    /// Four numbers that are stratified together (Sobol), for one decision; on the host.
+    /// Four jointly stratified numbers (Sobol) for one decision. Host only.
     vec4 sample_together(std::uint32_t dimension) const
     {
         vec4 out{0};
@@ -117,7 +118,7 @@ public:
     }
 
 private:
-    /// The place in an order of its own for every decision.
+    /// `place` permuted differently for every dimension.
     GI_FN std::uint32_t shuffled_place(std::uint32_t key) const
     {
         std::uint32_t p = (place * (key | 1) + (key >> 4)) & 15;
@@ -126,8 +127,8 @@ private:
         p ^= p >> 2;
         return (p * (key >> 16 | 1) + (key >> 20)) & 15;
     }
-    /// The index in an order of its own for every decision, in which runs of 2^k stay together. Without it the top
-    /// bits of all dimensions would follow the same bit of the index.
+    /// Index permuted differently for every dimension such that runs of 2^k stay together. Without this, the top
+    /// bits of all dimensions would depend on the same bit of the index.
     GI_FN std::uint32_t shuffled(std::uint32_t key) const
     {
         return reverse_bits(permute_upwards(reverse_bits(index), key));

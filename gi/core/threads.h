@@ -3,8 +3,8 @@
 
 namespace gi {
 
-/// Calls work so that what it does in parallel takes so many threads, 0 = all. One arena per number is kept for
-/// good: TBB (2021.8) loses about 7 KB with each that ends, which long sequences of frames would notice.
+/// Calls `work` with at most `threads` threads for its parallel parts, 0 = all. One TBB arena per thread count is
+/// kept for good, because TBB (2021.8) leaks about 7 KB with each arena that ends, which adds up over many frames.
 void on_threads(int threads, std::function<void()> const& work);
 
 } // namespace gi

@@ -1,5 +1,5 @@
 #pragma once
-// View<T> borrows a contiguous array: pointer + size, bounds-checked in debug builds on host and device.
+// View<T>: non-owning pointer + size of a contiguous array, bounds-checked in debug builds on host and device.
 
 #include "gi/core/platform.h"
 

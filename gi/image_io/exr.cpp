@@ -23,7 +23,7 @@ namespace {
 constexpr int kLargestSide = 65536;
 constexpr std::size_t kMostValues = std::size_t(1) << 31;
 
-/// Where a channel belongs in its layer; -1 = after the known ones.
+/// Position of a channel in its layer; -1 = after the known channels.
 int channel_order(std::string const& suffix)
 {
     static constexpr std::array<std::string_view, 4> kOrders{"RGBA", "XYZW", "YV", "UV"};
@@ -58,7 +58,7 @@ private:
     std::uint64_t at_ = 0;
 };
 
-/// A channel of a file and the layer it goes to.
+/// A channel of a file and the layer it belongs to.
 struct SourceChannel {
     std::string name, layer;
     int order;
@@ -82,8 +82,8 @@ std::vector<SourceChannel> source_channels(Imf::Header const& header, std::strin
     return found;
 }
 
-/// Raw bytes that one byte of a file can stand for: flat pictures of 4096 x 4096 half floats reach 715 (ZIP), 710
-/// (PIZ), 11 (B44A), 3,443 (DWAA) and 11,660 (DWAB).
+/// Upper bound of the compression ratio: constant pictures of 4096 x 4096 half floats reach 715 (ZIP), 710 (PIZ),
+/// 11 (B44A), 3,443 (DWAA) and 11,660 (DWAB).
 std::size_t largest_ratio(Imf::Compression compression)
 {
     switch (compression) {
@@ -102,7 +102,7 @@ std::size_t largest_ratio(Imf::Compression compression)
     }
 }
 
-/// Bytes that a part needs at least. Throws where it is not a picture of a sane size.
+/// Minimum size of a part in bytes. Throws if the part is no picture of a sensible size.
 std::size_t least_bytes(Imf::Header const& header, std::string const& name)
 {
     if (header.hasType() && Imf::isDeepData(header.type())) throw bad_exr(name, "it holds deep data");
@@ -126,7 +126,7 @@ std::size_t least_bytes(Imf::Header const& header, std::string const& name)
     return values * sizeof(std::uint16_t) / ratio;
 }
 
-/// A damaged or hostile file is found out at its first or last row, before there is memory for the whole picture.
+/// Reads the first and last rows, so that a damaged or hostile file fails before the whole picture is allocated.
 void probe_rows(Imf::InputPart& input, std::vector<SourceChannel> const& channels, Imath::Box2i const& window)
 {
     std::vector<float> row(std::size_t(window.max.x - window.min.x) + 1);
@@ -190,7 +190,7 @@ Picture decode_exr(std::span<unsigned char const> bytes, std::string const& name
         if (file.parts() < 1) throw bad_exr(name, "it has no parts");
         std::size_t least = 0;
         for (int part = 0; part < file.parts(); ++part) least += least_bytes(file.header(part), name);
-        if (least > bytes.size()) throw bad_exr(name, "it is far too short for the pixels it announces");
+        if (least > bytes.size()) throw bad_exr(name, "it is far too short for the size in its header");
         for (int part = 0; part < file.parts(); ++part) read_part(file, part, name, picture);
     } catch (InputError const&) {
         throw;

@@ -1,5 +1,5 @@
 #pragma once
-// What the parts of the OpenEXR reader and writer share.
+// Shared by the parts of the OpenEXR reader and writer.
 
 #include "gi/core/error.h"
 
@@ -9,12 +9,13 @@
 
 namespace gi {
 
-/// Metadata become string attributes of the first part, with this before their key.
+/// Prefix of the keys of metadata, which are stored as string attributes of the first part.
 inline constexpr std::string_view kMetadataPrefix = "lightwell:";
 
 InputError bad_exr(std::string const& name, std::string const& why);
 
-/// Throws InputError unless every attribute of every header has the size of its type and lies within the file.
+/// Throws InputError unless every attribute of every header has the size that its type requires and lies within
+/// the file.
 void check_exr_header(std::span<unsigned char const> bytes, std::string const& name);
 
 } // namespace gi

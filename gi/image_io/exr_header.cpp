@@ -1,6 +1,6 @@
-// OpenEXR 3.1.5 believes the sizes that a header states: a text of 2 GB in a file of 300 bytes is allocated and
-// filled before reading fails, and a value of the wrong size shifts what is read after it. So headers are walked
-// here first. Layout: openexr.com/en/latest/OpenEXRFileLayout.html.
+// OpenEXR 3.1.5 trusts the sizes in a header: a 2 GB string in a file of 300 bytes is allocated and filled before
+// reading fails, and a value of the wrong size shifts everything after it. So this code checks headers first.
+// Layout: openexr.com/en/latest/OpenEXRFileLayout.html.
 
 #include "gi/core/error.h"
 #include "gi/image_io/exr.h"
@@ -52,7 +52,7 @@ public:
     void check()
     {
         constexpr std::uint32_t kMagic = 20000630, kMultiPart = 0x1000;
-        if (number() != kMagic) fail("it does not start as OpenEXR does");
+        if (number() != kMagic) fail("it does not start like an OpenEXR file");
         bool const multi_part = (number() & kMultiPart) != 0;
         do {
             while (check_attribute()) {
@@ -89,18 +89,18 @@ private:
         std::size_t const size = number();
         if (size > left()) fail(fmt::format("its attribute '{}' is longer than the file", attribute));
         std::size_t const end = at_ + size;
-        if (!fits(type, size)) fail(fmt::format("its attribute '{}' is no proper {}", attribute, type));
+        if (!fits(type, size)) fail(fmt::format("its attribute '{}' is not a valid {}", attribute, type));
         at_ = end;
         return true;
     }
-    /// Whether the value that starts here is exactly `size` bytes long, all of which are there.
+    /// True if the value that starts here is exactly `size` bytes long and all its bytes are in the file.
     bool fits(std::string_view type, std::size_t size)
     {
         std::size_t const end = at_ + size;
         for (FixedSize const& fixed : kFixedSizes)
             if (fixed.type == type) return size == fixed.bytes;
         if (type == "floatvector") return size % 4 == 0;
-        if (type == "idmanifest") return false; // states its size after decompression; no use for it here
+        if (type == "idmanifest") return false; // states its size after decompression; not needed here
         if (type == "preview") {
             if (size < 8) return false;
             std::uint64_t const width = number(), height = number();

@@ -70,7 +70,7 @@ private:
         if (line.starts_with(' ')) line.remove_prefix(1);
         return value;
     }
-    /// EXPOSURE and COLORCORR say by what the radiances were multiplied, each line once more.
+    /// EXPOSURE and COLORCORR lines give factors that the radiances were multiplied by; several lines accumulate.
     void read_variable(std::string_view line)
     {
         if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
@@ -97,7 +97,7 @@ private:
         picture.height = read_side(size, "-Y ");
         picture.width = read_side(size, "+X ");
         if (picture.pixels() > kMostHdrPixels) fail("it has more than 512 M pixels");
-        // New run-length encoding holds at most 127 values in two bytes; flat rows in the old one reach some more.
+        // The new run-length encoding stores at most 127 values in two bytes; constant rows in the old one more.
         if (picture.pixels() / 512 > bytes_.size()) fail("it is too short for its size");
     }
     void read_row(std::vector<unsigned char>& row)
@@ -129,7 +129,7 @@ private:
             unsigned char pixel[4];
             for (unsigned char& v : pixel) v = next();
             if (pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1) {
-                if (x == 0 || shift > 24) fail("a run has nothing to repeat");
+                if (x == 0 || shift > 24) fail("a run has no pixel to repeat");
                 std::size_t const count = std::size_t(pixel[3]) << shift;
                 if (count > width - x) fail("a run is longer than its row");
                 for (std::size_t i = 0; i < count; ++i, ++x) std::memcpy(&row[4 * x], &row[4 * (x - 1)], 4);

@@ -1,5 +1,5 @@
-// OpenCV's image files, loaded when the first is read or written: its module brings 120 libraries (GDAL and
-// theirs), which take 0.1 s to load. Programs link this in place of the module; the declarations are OpenCV's own.
+// OpenCV's image codecs, loaded on first use: the module depends on 120 libraries (GDAL and its dependencies),
+// which take 0.1 s to load. Programs link this file instead of the module; the declarations are OpenCV's own.
 
 #include "gi/core/error.h"
 
@@ -8,16 +8,16 @@
 
 namespace {
 
-/// @param name mangled, as the module exports it
+/// @param name mangled name that the module exports
 template <typename Function>
 Function* codec(char const* name)
 {
-    void* const module = dlopen(OPENCV_IMGCODECS, RTLD_NOW | RTLD_LOCAL); // counted: loaded once, and stays
+    void* const module = dlopen(OPENCV_IMGCODECS, RTLD_NOW | RTLD_LOCAL); // loaded once, never unloaded
     void* const found = module != nullptr ? dlsym(module, name) : nullptr;
     if (found != nullptr) return reinterpret_cast<Function*>(found);
     char const* const why = dlerror();
-    throw gi::InputError("image files cannot be read or written", why != nullptr ? why : "OpenCV has no codecs",
-                         "install OpenCV's module imgcodecs of the version that this was built with");
+    throw gi::InputError("image files cannot be read or written", why != nullptr ? why : "OpenCV lacks the codecs",
+                         "install OpenCV's module imgcodecs in the version that this program was built with");
 }
 
 } // namespace

@@ -25,10 +25,10 @@ struct Picture {
     std::map<std::string, std::string> metadata; ///< version, git hash, command, seed, settings, ...
 
     std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
-    /// nullptr where there is no such layer.
+    /// nullptr if there is no layer of that name.
     Layer const* find(std::string const& name) const;
     Layer* find(std::string const& name);
-    /// Append a zeroed layer and return it. Invalidates earlier Layer pointers.
+    /// Appends a zeroed layer and returns it. Invalidates earlier Layer pointers.
     Layer& add(std::string const& name, int channels);
 };
 

@@ -14,14 +14,14 @@ namespace gi {
 namespace {
 
 constexpr std::size_t kMostPixels = std::size_t(1) << 29, kMostBytes = std::size_t(1) << 31;
-constexpr std::size_t kMostPixelsPerByte = 8 * 1032; ///< a one-bit PNG, deflated as far as that goes
+constexpr std::size_t kMostPixelsPerByte = 8 * 1032; ///< a one-bit PNG at the highest ratio of deflate
 
 bool starts_with(std::span<unsigned char const> bytes, std::string_view magic)
 {
     return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
-/// The formats that go to OpenCV; it would try its many other decoders on unknown bytes.
+/// True for the formats passed to OpenCV, which would try its many other decoders on unknown bytes.
 bool is_known(std::span<unsigned char const> bytes)
 {
     using namespace std::string_view_literals;
@@ -43,11 +43,11 @@ Picture decode_picture(std::span<unsigned char const> bytes, std::string const& 
                           "give OpenEXR, Radiance HDR, PNG, JPEG, TIFF, BMP or WebP");
     };
     if (bytes.empty()) throw bad("it is empty");
-    if (!is_known(bytes)) throw bad("its first bytes are of no format that is read here");
+    if (!is_known(bytes)) throw bad("its first bytes match no supported format");
     if (bytes.size() >= kMostBytes) throw bad("it is larger than 2 GiB");
     std::size_t const claimed = claimed_pixels(bytes);
     if (claimed > kMostPixels || claimed / kMostPixelsPerByte > bytes.size())
-        throw bad("it announces " + std::to_string(claimed) + " pixels");
+        throw bad("its header states " + std::to_string(claimed) + " pixels");
     cv::Mat image;
     try {
         cv::Mat const raw(1, int(bytes.size()), CV_8U, const_cast<unsigned char*>(bytes.data()));

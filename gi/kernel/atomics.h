@@ -1,6 +1,6 @@
 #pragma once
-// Atomic steps of kernels, relaxed: kernels only count and claim slots with them; a launch ends before anybody
-// reads.
+// Atomic operations for kernels, with relaxed memory order: kernels use them only to count and to claim slots, and
+// results are read after the launch has ended.
 
 #include "gi/core/platform.h"
 
@@ -11,7 +11,7 @@
 
 namespace gi {
 
-/// Returns what was there before.
+/// Returns the previous value.
 GI_FN inline std::uint32_t atomic_add(std::uint32_t& at, std::uint32_t value)
 {
 #if defined(__CUDA_ARCH__)

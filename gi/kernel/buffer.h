@@ -1,6 +1,6 @@
 #pragma once
-// Buffer<T, S> owns an array in space S; View borrows it. New buffers are uninitialised: debug builds fill them
-// with 0xFF, which is a NaN in float and an impossible index.
+// Buffer<T, S> owns an array in memory space S; View borrows it. New buffers are uninitialised; debug builds fill
+// them with 0xFF bytes, which give NaN floats and invalid indices.
 
 #include "gi/core/view.h"
 #include "gi/kernel/device.h"
@@ -16,7 +16,7 @@ class Buffer {
 
 public:
     Buffer() = default;
-    /// @param n items. Throws std::bad_alloc or std::runtime_error where there is no memory or no device.
+    /// @param n number of items. Throws std::bad_alloc or std::runtime_error without enough memory or a device.
     explicit Buffer(std::size_t n) : count_(n)
     {
         if (n == 0) return;
@@ -50,7 +50,7 @@ private:
     std::size_t count_ = 0;
 };
 
-/// All items, between any two spaces; both arrays are equally long.
+/// Copies all items between any two spaces; both buffers must have the same length.
 template <class T, Space To, Space From>
 void copy(Buffer<T, From> const& from, Buffer<T, To>& to)
 {

@@ -1,5 +1,5 @@
 #pragma once
-// Memory of the host and of the CUDA device. A build without CUDA has no device: everything that names it throws
+// Memory of the host and of the CUDA device. In a build without CUDA, every use of the device throws
 // std::runtime_error and device_present() is false.
 
 #include "gi/kernel/space.h"
@@ -8,12 +8,12 @@
 
 namespace gi {
 
-/// Whether this build and this machine can run kernels on a device.
+/// True if this build and this machine can run kernels on a CUDA device.
 bool device_present();
-/// Throws InputError where that is not so and `space` is the device.
+/// Throws InputError if `space` is the device and no device is present.
 void check_device(Space space);
 
-/// Uninitialised bytes; throws std::bad_alloc (host) or std::runtime_error naming the CUDA error (device).
+/// Returns uninitialised bytes; throws std::bad_alloc (host) or std::runtime_error naming the CUDA error (device).
 void* allocate_bytes(Space space, std::size_t bytes);
 void free_bytes(Space space, void* bytes) noexcept;
 void fill_bytes(Space space, void* bytes, unsigned char value, std::size_t count);

@@ -1,5 +1,5 @@
 #pragma once
-// What device.cu and scan.cu implement, and device.cpp and scan.cpp where there is no CUDA.
+// Device functions implemented by device.cu and scan.cu, or by device.cpp and scan.cpp in builds without CUDA.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,9 +9,9 @@ namespace gi::device {
 void* allocate(std::size_t bytes);
 void release(void* bytes) noexcept;
 void fill(void* bytes, unsigned char value, std::size_t count);
-/// Between the device and itself or the host; which is which is known from the addresses.
+/// Copies within the device or between device and host; the addresses determine the direction.
 void copy(void* to, void const* from, std::size_t count);
-/// In scan.cu and scan.cpp.
+/// Implemented in scan.cu and scan.cpp.
 void exclusive_scan(std::uint32_t const* in, std::uint32_t* out, std::size_t n);
 
 } // namespace gi::device

@@ -1,5 +1,6 @@
 #pragma once
-// The device half of launch(). A kernel's .cu includes this and its header, and instantiates launch_device for it.
+// Device part of launch(). A kernel's .cu file includes this file and the kernel's header, and instantiates
+// launch_device for the kernel.
 
 #include "gi/kernel/launch.h"
 
@@ -9,7 +10,7 @@
 
 namespace gi {
 
-/// Throws std::runtime_error naming `what` and CUDA's own words.
+/// On a CUDA error, throws std::runtime_error with `what` and CUDA's error message.
 inline void check_cuda(cudaError_t error, char const* what)
 {
     if (error != cudaSuccess) throw std::runtime_error(std::string(what) + ": CUDA: " + cudaGetErrorString(error));

@@ -1,6 +1,6 @@
 #pragma once
-// Running a kernel over n items. A kernel is a trivially copyable struct with operator()(std::size_t i) const,
-// written once in a header; which space runs it is decided by the caller. Its views lie in that space.
+// Runs a kernel over n items. A kernel is a trivially copyable struct with operator()(std::size_t i) const,
+// written once in a header. The caller chooses the space that runs it; the kernel's views must lie in that space.
 
 #include "gi/kernel/space.h"
 
@@ -10,7 +10,7 @@
 
 namespace gi {
 
-/// Defined in launch.cuh; instantiated for each kernel in a .cu file of its own. Ends when the device is done.
+/// Defined in launch.cuh; instantiated for each kernel in a .cu file of its own. Returns when the device is done.
 template <class Kernel>
 void launch_device(char const* name, std::size_t n, Kernel const& kernel);
 

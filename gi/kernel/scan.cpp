@@ -15,7 +15,7 @@ void exclusive_scan(std::uint32_t const*, std::uint32_t*, std::size_t) { throw_n
 
 void exclusive_scan(Space space, View<std::uint32_t const> in, View<std::uint32_t> out)
 {
-    if (in.size() != out.size()) throw std::logic_error("a scan needs as much room as it has numbers");
+    if (in.size() != out.size()) throw std::logic_error("input and output of a scan differ in length");
     if (space == Space::host)
         std::exclusive_scan(in.begin(), in.end(), out.begin(), 0u);
     else

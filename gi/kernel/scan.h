@@ -1,5 +1,5 @@
 #pragma once
-// Prefix sums in either space.
+// Prefix sums on host or device.
 
 #include "gi/core/view.h"
 #include "gi/kernel/space.h"
@@ -8,7 +8,8 @@
 
 namespace gi {
 
-/// out[i] = in[0] + ... + in[i - 1]. Both are equally long, lie in `space` and may be the same. Sums wrap at 2^32.
+/// out[i] = in[0] + ... + in[i - 1]. Both have the same length, lie in `space` and may be the same array. Sums
+/// wrap at 2^32.
 void exclusive_scan(Space space, View<std::uint32_t const> in, View<std::uint32_t> out);
 
 } // namespace gi

@@ -1,5 +1,5 @@
 #pragma once
-// Where data lie and kernels run.
+// Memory and execution spaces: host or CUDA device.
 
 #include <cstdint>
 
@@ -7,14 +7,14 @@ namespace gi {
 
 enum class Space : std::uint8_t { host, device };
 
-/// Whether this build has the CUDA twins of the kernels (the cuda preset).
+/// True if this build includes the CUDA versions of the kernels (the cuda preset).
 #if defined(LIGHTWELL_CUDA_BUILD)
 inline constexpr bool kCudaBuild = true;
 #else
 inline constexpr bool kCudaBuild = false;
 #endif
 
-/// Throws std::runtime_error: this program cannot run `what` on a device.
+/// Throws std::runtime_error because this build cannot run `what` on a device.
 [[noreturn]] void throw_no_cuda(char const* what);
 
 } // namespace gi

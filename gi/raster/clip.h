@@ -1,21 +1,21 @@
 #pragma once
-// Triangles that reach out of what a pinhole raster can hold, cut to it (Sutherland & Hodgman 1974), and boxes
-// that it cannot see. Cuts are made between the corners of an edge in a fixed order, so that neighbours cut alike,
-// with multiply-adds spelled out, so that all compilers round alike.
+// Clipping of triangles to the range of a pinhole raster (Sutherland & Hodgman 1974) and view culling of boxes.
+// Each edge is cut with its corners in a fixed order, so that neighbouring triangles get identical cuts, and with
+// explicit fused multiply-adds, so that all compilers round identically.
 
 #include "gi/raster/perspective_grid.h"
 
 namespace gi {
 namespace clip_detail {
 
-/// Rounds alike everywhere.
+/// Rounds identically with all compilers.
 GI_FN inline double dot(dvec3 a, dvec3 b) { return std::fma(a.z, b.z, std::fma(a.y, b.y, a.x * b.x)); }
 
 struct Corner {
-    dvec3 raster; ///< subpixels times w, and w in z
+    dvec3 raster; ///< x, y in subpixels times w; z = w
 };
 
-/// Inside where weights . (x, y, w) >= limit.
+/// Half space: weights . (x, y, w) >= limit is inside.
 struct Plane {
     dvec3 weights;
     double limit;
@@ -41,7 +41,7 @@ GI_FN inline Corner corner(PerspectiveGrid const& g, vec3 p)
 
 } // namespace clip_detail
 
-/// Calls emit(SnappedTriangle, depths) for the parts of a triangle within the guard and in front of the eye.
+/// Calls emit(SnappedTriangle, depths) for the parts of a triangle within the guard band and in front of the eye.
 template <class Emit>
 GI_FN void clip_triangle(PerspectiveGrid const& g, vec3 const* corners, Emit const& emit)
 {
@@ -76,13 +76,13 @@ GI_FN void clip_triangle(PerspectiveGrid const& g, vec3 const* corners, Emit con
              vec3{depth(0), depth(k), depth(k + 1)});
 }
 
-/// False only where no point of the box is in view.
+/// False only if no point of the box is in view.
 inline bool sees(PerspectiveGrid const& g, Bounds const& box)
 {
     if (box.empty()) return false;
     vec3 const center = box.center() - g.eye, half = 0.5f * (box.high - box.low);
     float const right = float(g.width) * g.subpixels, bottom = float(g.height) * g.subpixels;
-    auto const outside = [&](vec3 inwards) { // of the plane through the eye
+    auto const outside = [&](vec3 inwards) { // side of a plane through the eye
         return glm::dot(inwards, center) + glm::dot(glm::abs(inwards), half) < 0;
     };
     if (glm::dot(g.forward, center) + glm::dot(glm::abs(g.forward), half) < g.near_m) return false;

@@ -11,7 +11,7 @@ namespace {
 
 using namespace lanes;
 
-/// Snapped corners and depths of triangles that wait for a full vector.
+/// Snapped corners and depths of triangles queued until they fill a vector.
 struct Queue {
     enum Column { x0, x1, x2, y0, y1, y2, z0, z1, z2, kColumns };
 
@@ -20,11 +20,11 @@ struct Queue {
     std::size_t count = 0;
 };
 
-/// Corners of one vector of triangles on the raster.
+/// Projected corners of one vector of triangles.
 struct Projected {
     V x[3], y[3]; ///< subpixels
     V z[3];       ///< depth
-    Mask clip;    ///< these need clipping; their other values mean nothing
+    Mask clip;    ///< lanes that need clipping; their other values are undefined
 };
 
 struct Corners {
@@ -58,7 +58,7 @@ struct OrthographicLanes {
         }
         out.clip = hn::FirstN(Floats(), 0);
     }
-    /// Apart, because most triangles are gone before it is wanted.
+    /// Separate from projection, because most triangles are dropped before their depth is needed.
     void add_depth(Corners const& p, Projected& out) const
     {
         for (std::size_t k = 0; k < 3; ++k)
@@ -105,7 +105,7 @@ struct PerspectiveLanes {
         Mask const behind = hn::Le(farthest, near);
         Mask const plain = hn::And(hn::Gt(nearest, near), hn::Le(widest, guard));
         out.clip = hn::Not(hn::Or(behind, plain));
-        // What is behind has no samples.
+        // Lanes that are behind the eye or need clipping get no samples here.
         V const nowhere = hn::Set(d, -grid.subpixels);
         Mask const gone = hn::Not(plain);
         for (std::size_t k = 0; k < 3; ++k) {
@@ -121,7 +121,7 @@ struct PerspectiveLanes {
     }
 };
 
-/// One range of triangles over one grid.
+/// Rasterises one range of triangles over one grid.
 template <class Lanes>
 class VectorRaster {
 public:
@@ -136,7 +136,7 @@ public:
     {
     }
 
-    /// Some may wait for more until finish.
+    /// Some triangles may stay queued until finish().
     void run(TriangleSoup const& soup, std::size_t first, std::size_t last);
     void finish();
 
@@ -195,7 +195,7 @@ void VectorRaster<Lanes>::scan_large(SnappedTriangle const& t, vec3 depth, std::
     });
 }
 
-/// For the rare lanes whose sample lies so near to an edge that floats cannot tell the side.
+/// Exact test for the rare lanes whose sample lies too close to an edge for floats to determine the side.
 template <class Lanes>
 void VectorRaster<Lanes>::test_exactly(Queue const& queue, std::size_t at, std::uint32_t i, std::uint32_t j)
 {
@@ -238,7 +238,7 @@ void VectorRaster<Lanes>::empty_queue(Queue& queue, std::size_t lanes)
             if (hn::AllFalse(d, active)) break;
             V const cx = hn::Mul(hn::Add(i, half), subpixels);
             V const ax = hn::Sub(x0, cx), bx = hn::Sub(x1, cx), ex = hn::Sub(x2, cx);
-            // Rounding is monotonic: where two rounded products differ, the exact ones differ to the same side.
+            // Rounding is monotonic: if two rounded products differ, the exact ones differ in the same direction.
             V const p01 = hn::Mul(ax, by), q01 = hn::Mul(ay, bx);
             V const p12 = hn::Mul(bx, ey), q12 = hn::Mul(by, ex);
             V const p20 = hn::Mul(ex, ay), q20 = hn::Mul(ey, ax);

@@ -1,9 +1,9 @@
 #pragma once
-// The deep rasteriser: every triangle over every texel centre of an orthographic view (Yu 2012, ch. 4).
+// Deep rasteriser: records every triangle over every texel centre of an orthographic view (Yu 2012, ch. 4).
 //
-// Vector form: one triangle per lane. Triangles that fall between the texel centres, which most do when there are
-// millions, are gone after projection; those over a few samples wait in queues until there is a vector of them;
-// large ones are scanned one by one.
+// SIMD version: one triangle per lane. Triangles that cover no texel centre, as most do in scenes of millions, are
+// dropped after projection; triangles over a few samples wait in queues until they fill a vector; large triangles
+// are scanned one by one.
 
 #include "gi/raster/fragments.h"
 #include "gi/raster/scan_triangle.h"
@@ -11,7 +11,7 @@
 
 namespace gi {
 
-/// Triangles whose bounds hold more samples than this on a side are scanned one by one.
+/// Triangles whose bounds span more samples than this along one side are scanned one by one.
 inline constexpr int kMicroSide = 4;
 
 /// Appends the fragments of triangles first..last - 1.

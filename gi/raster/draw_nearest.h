@@ -1,12 +1,12 @@
 #pragma once
-// A NearestMap drawn by kernels, in either space.
+// Draws a NearestMap with kernels, on host or device.
 
 #include "gi/kernel/launch.h"
 #include "gi/raster/raster_kernels.h"
 
 namespace gi {
 
-/// Row-major, as NearestMap::texels. @param soup  in space S
+/// Returns texels row-major, as NearestMap::texels. @param soup  in space S
 template <Space S, class Grid, class Keep = KeepAll>
 Buffer<NearestTexel, S> draw_nearest(SoupView const& soup, Grid const& grid, Keep const& keep = {})
 {

@@ -1,5 +1,5 @@
 #pragma once
-// What a rasteriser leaves: one fragment for each triangle over each texel centre, in no order of texels.
+// Output of a rasteriser: one fragment for each triangle over each texel centre, in no particular order of texels.
 
 #include "gi/raster/grid.h"
 
@@ -11,10 +11,10 @@ namespace gi {
 struct Fragments {
     std::unique_ptr<std::uint32_t[]> texel;     ///< j * width + i
     std::unique_ptr<float[]> depth;             ///< along the axis, m
-    std::unique_ptr<std::uint32_t[]> primitive; ///< index of the triangle, and kAlongAxis
+    std::unique_ptr<std::uint32_t[]> primitive; ///< index of the triangle, with bit kAlongAxis
     std::size_t count = 0, capacity = 0;
 
-    /// Room for `more` fragments beyond those that are there.
+    /// Reserves memory for `more` additional fragments.
     void reserve(std::size_t more)
     {
         if (count + more > capacity) grow(count + more);

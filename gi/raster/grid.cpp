@@ -6,7 +6,7 @@ namespace gi {
 
 RasterGrid make_grid(Bounds const& bounds, vec3 axis, std::uint32_t resolution, vec2 jitter, float turn_rad)
 {
-    constexpr float kLongestSide = 4; // of a grid, in resolutions
+    constexpr float kLongestSide = 4; // longest side of a grid, as a multiple of the resolution
     RasterGrid g;
     Frame const frame = Frame::about(axis);
     float const c = std::cos(turn_rad), s = std::sin(turn_rad);
@@ -15,13 +15,13 @@ RasterGrid make_grid(Bounds const& bounds, vec3 axis, std::uint32_t resolution, 
     g.axis = axis;
     if (bounds.empty()) return g;
 
-    // The extent of a box seen along an axis: half sizes weighted by the axis' components.
+    // Extent of a box along a direction: its half sizes weighted by the direction's components.
     vec3 const center = bounds.center(), half = 0.5f * (bounds.high - bounds.low);
     vec2 const middle{glm::dot(center, g.right), glm::dot(center, g.up)};
     vec2 reach{glm::dot(half, glm::abs(g.right)), glm::dot(half, glm::abs(g.up))};
     float const longest = glm::max(glm::max(reach.x, reach.y), 1e-30f);
     reach = glm::max(reach, vec2(longest / (kLongestSide * kLongestSide)));
-    // One texel is left for the jitter, and a little for rounding.
+    // Leaves one texel of margin for the jitter, and a little for rounding.
     float const texels = float(std::max(resolution, 2u) - 1) - 0.01f;
     g.texel = glm::max(2 * std::sqrt(reach.x * reach.y) / texels, 2 * longest / (kLongestSide * texels));
     g.corner = middle - reach - g.texel * (vec2(0.995f) * jitter + 0.0025f);

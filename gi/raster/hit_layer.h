@@ -1,5 +1,5 @@
 #pragma once
-// One surface under one texel centre.
+// One entry of a hit buffer: a surface under a texel centre.
 
 #include "gi/core/platform.h"
 
@@ -9,10 +9,10 @@ namespace gi {
 
 struct HitLayer {
     float depth;             ///< along the axis, m
-    std::uint32_t primitive; ///< triangle of the world, and kAlongAxis
+    std::uint32_t primitive; ///< triangle of the world, with bit kAlongAxis
 };
 
-/// The order of the layers of a texel.
+/// Sort order of the layers of a texel.
 GI_FN inline bool before(HitLayer const& a, HitLayer const& b)
 {
     return a.depth < b.depth || (a.depth == b.depth && a.primitive < b.primitive);

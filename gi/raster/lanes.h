@@ -1,5 +1,5 @@
 #pragma once
-// Names for Highway's vectors at the width of LIGHTWELL_MARCH; for .cpp files only.
+// Aliases for Highway's SIMD vectors at the width of LIGHTWELL_MARCH; for .cpp files only.
 
 #include <hwy/highway.h>
 
@@ -15,7 +15,7 @@ using W = hn::Vec<Words>;
 using Mask = hn::Mask<Floats>;
 inline constexpr std::size_t kMostLanes = HWY_MAX_BYTES / sizeof(float);
 
-/// Bit per lane.
+/// Returns the mask with one bit per lane.
 inline std::uint32_t bits_of(Mask mask)
 {
     std::uint8_t bytes[8] = {};

@@ -1,5 +1,5 @@
 #pragma once
-// The nearest triangle under every texel: G-buffers and shadow maps.
+// Nearest triangle under every texel, for G-buffers and shadow maps.
 
 #include "gi/raster/fragments.h"
 #include "gi/raster/perspective_grid.h"
@@ -19,15 +19,15 @@ struct NearestMap {
     std::vector<NearestTexel> texels; ///< row-major
 };
 
-/// Triangles first..last - 1, appended with 1 / distance as depth. Chunks outside the view are skipped whole.
+/// Appends the fragments of triangles first..last - 1, with 1 / distance as depth. Skips chunks outside the view.
 void rasterize(TriangleSoup const& soup, std::size_t first, std::size_t last, PerspectiveGrid const& grid,
                Fragments& out);
 
 void clear(NearestMap& map, std::uint32_t width, std::uint32_t height);
-/// Keeps the nearer of what is there and each fragment; of two as near, the triangle of smaller number.
-/// @param key_sign -1 where small depths are near
+/// Merges fragments into the map, keeping the nearest per texel; ties go to the triangle of lower index.
+/// @param key_sign -1 if smaller depths are nearer, else 1
 void resolve(Fragments const& fragments, float key_sign, NearestMap& map);
-/// The same; several threads may at once.
+/// Same as resolve(), but safe for concurrent calls on one map.
 void resolve_shared(Fragments const& fragments, float key_sign, NearestMap& map);
 
 } // namespace gi

@@ -5,7 +5,7 @@
 namespace gi {
 namespace {
 
-/// Corners within the guard and samples within the raster leave 4 times the raster on all sides.
+/// With corners inside the guard band and samples inside the raster, this leaves 4 times the raster on all sides.
 float subpixels_for(std::uint32_t width, std::uint32_t height)
 {
     int const bits = int(std::bit_width(std::max(width, height)));

@@ -1,8 +1,8 @@
 #pragma once
-// The raster of a pinhole view: a camera's picture or one face of the cube around a lamp. Depth is the reciprocal
-// of the distance along the view, 1/m, which is linear over the raster; larger is nearer. Triangles that reach
-// behind the eye, or so far beside the raster that subpixels would overflow, are clipped one by one; the others
-// are exact on snapped vertices as in grid.h.
+// Raster of a pinhole view: a camera's picture or one face of the cube around a light point. Depth is the
+// reciprocal of the distance along the view, 1/m, which is linear over the raster; larger is nearer. Triangles
+// that reach behind the eye, or so far outside the raster that subpixels would overflow, are clipped one by one;
+// all others are exact on snapped vertices as in grid.h.
 
 #include "gi/raster/grid.h"
 #include "gi/scene/model/camera.h"
@@ -10,7 +10,7 @@
 namespace gi {
 
 struct PerspectiveGrid {
-    /// Beyond this many subpixels from zero a corner is clipped.
+    /// Corners farther than this many subpixels from zero are clipped.
     static constexpr float kGuard = 4194304; // 2^22
 
     vec3 eye{0};
@@ -20,10 +20,10 @@ struct PerspectiveGrid {
     float subpixels = 1;
     std::uint32_t width = 1, height = 1;
 
-    mat3 inverse{1}; ///< from (x, y, w) with x and y in subpixels times w to the world
+    mat3 inverse{1}; ///< from (x, y, w), with x and y in subpixels times w, to world directions
 
     GI_FN std::size_t texels() const { return std::size_t(width) * height; }
-    /// Through the centre of texel (i, j), not normalised: one metre along the view.
+    /// Direction through the centre of texel (i, j), scaled to one metre along the view (not unit length).
     GI_FN vec3 direction(std::uint32_t i, std::uint32_t j) const
     {
         return inverse * vec3{(float(i) + 0.5f) * subpixels, (float(j) + 0.5f) * subpixels, 1};
@@ -32,10 +32,10 @@ struct PerspectiveGrid {
     GI_FN vec3 point(std::uint32_t i, std::uint32_t j, float depth) const { return eye + direction(i, j) / depth; }
 };
 
-/// @param at  position within its pixel, [0, 1)^2, that every pixel looks through   @param near_m > 0
+/// @param at  sample position within each pixel, [0, 1)^2   @param near_m > 0
 PerspectiveGrid camera_grid(CameraRays const& camera, int width, int height, vec2 at, float near_m);
 
-/// Face 0..5 (+X, -X, +Y, -Y, +Z, -Z) of the cube about a point, resolution^2 texels over 90 degrees.
+/// Grid of face 0..5 (+X, -X, +Y, -Y, +Z, -Z) of the cube around a point: resolution^2 texels over 90 degrees.
 PerspectiveGrid cube_face(vec3 eye, int face, std::uint32_t resolution, float near_m);
 
 } // namespace gi

@@ -1,7 +1,7 @@
 #pragma once
-// The rasteriser as kernels, one item per share of a triangle: layers under every texel are counted, then filled
-// in no order; or the nearest one is kept. All decisions are made in integers and in multiply-adds that are
-// spelled out, so that every space gives the same layers, bit for bit.
+// Rasterisation kernels, one item per share of a triangle. Either the layers under every texel are counted and
+// then filled in no particular order, or only the nearest one is kept. All decisions use integers and explicit
+// fused multiply-adds, so that host and device give the same layers, bit for bit.
 //
 // A launch has triangles * shares items. The rows of a large triangle are divided among its shares, since a scene
 // may have few triangles that fill the view; see shares_for.
@@ -17,7 +17,7 @@
 
 namespace gi {
 
-/// Items per triangle so that a device has enough of them.
+/// Number of items per triangle that gives a device enough parallel work.
 inline std::uint32_t shares_for(std::size_t triangles)
 {
     constexpr std::size_t kEnough = 1 << 17, kMost = 64;
@@ -26,18 +26,18 @@ inline std::uint32_t shares_for(std::size_t triangles)
 
 namespace raster_detail {
 
-/// Calls run as scan does, for the rows of one share.
+/// Calls `run` as scan() does, for the rows of one share.
 template <class Run>
 GI_FN void scan_share(TriangleScan s, std::uint32_t share, std::uint32_t shares, Run const& run)
 {
     if (s.empty) return;
     std::int64_t const rows = s.rows.last - s.rows.first + 1, top = s.rows.first;
     s.rows = {std::int32_t(top + rows * share / shares), std::int32_t(top + rows * (share + 1) / shares - 1)};
-    constexpr std::int32_t kSmall = 4; // columns in which divisions would cost more than they save
+    constexpr std::int32_t kSmall = 4; // width in columns below which divisions would cost more than they save
     scan(s, s.columns.last - s.columns.first < kSmall ? MacroPath::square_blocks : MacroPath::edge_table, run);
 }
 
-/// Calls emit(SnappedTriangle, depths) for what the grid has to scan of a triangle.
+/// Calls emit(SnappedTriangle, depths) for each projected (and possibly clipped) part of a triangle.
 template <class Emit>
 GI_FN void project(RasterGrid const& grid, vec3 const* p, Emit const& emit)
 {
@@ -69,7 +69,7 @@ GI_FN void project(PerspectiveGrid const& grid, vec3 const* p, Emit const& emit)
          vec3{z[0], z[1], z[2]});
 }
 
-/// A float as an integer of the same order; never 0.
+/// Maps a float to an integer that sorts in the same order; never 0.
 GI_FN inline std::uint32_t ordered_bits(float v)
 {
     auto const bits = std::bit_cast<std::uint32_t>(v + 0.0f); // -0 is 0
@@ -86,13 +86,13 @@ GI_FN inline float key_sign(PerspectiveGrid const&) { return 1; }
 
 } // namespace raster_detail
 
-/// Item = share of a triangle. Adds the layers that it has under each texel.
+/// Item = share of a triangle. Counts its layers under each texel.
 struct CountLayers {
     SoupView soup;
     RasterGrid grid;
     std::uint32_t shares;
     View<std::uint32_t> count; ///< per texel
-    View<std::uint64_t> total; ///< one number, of all texels: counts wrap at 2^32
+    View<std::uint64_t> total; ///< one number, sum over all texels in 64 bits because the 32-bit counts can wrap
 
     GI_FN void operator()(std::size_t i) const
     {
@@ -110,12 +110,12 @@ struct CountLayers {
     }
 };
 
-/// Item = share of a triangle. Writes its layers, where CountLayers and a scan have made room for them.
+/// Item = share of a triangle. Writes its layers into the ranges that CountLayers and a scan computed.
 struct FillLayers {
     SoupView soup;
     RasterGrid grid;
     std::uint32_t shares;
-    View<std::uint32_t> next; ///< per texel: first free layer; the end of its layers when all is done
+    View<std::uint32_t> next; ///< per texel: next free layer; after the launch, the end of its layers
     View<HitLayer> layers;
 
     GI_FN void operator()(std::size_t i) const
@@ -137,7 +137,7 @@ struct FillLayers {
     }
 };
 
-/// Draws every fragment.
+/// Accepts every fragment.
 struct KeepAll {
     template <class Grid>
     GI_FN bool operator()(Grid const&, std::uint32_t, std::uint32_t, float) const
@@ -146,8 +146,8 @@ struct KeepAll {
     }
 };
 
-/// Item = share of a triangle. Keeps the nearest fragment of each texel, of equally near ones that of the first
-/// triangle. Keep(grid, triangle, texel, depth) says which fragments there are.
+/// Item = share of a triangle. Keeps the nearest fragment of each texel; ties go to the triangle of lower index.
+/// Fragments for which keep(grid, triangle, texel, depth) is false are ignored.
 template <class Grid, class Keep>
 struct DrawNearest {
     SoupView soup;
@@ -181,7 +181,7 @@ struct DrawNearest {
     }
 };
 
-/// Item = texel. What DrawNearest left, as a NearestMap has it.
+/// Item = texel. Converts the result of DrawNearest to the texels of a NearestMap.
 struct UnpackNearest {
     View<std::uint64_t const> best;
     View<NearestTexel> texels;

@@ -1,27 +1,27 @@
 #pragma once
-// One triangle after the other: the plain form of the rasteriser, which runs on every device and judges the fast
-// ones, and the three ways to take a large triangle apart (Yu 2012, sec. 4.4.4).
+// Scalar rasteriser, one triangle at a time, which runs on every device and is the reference for the fast
+// versions, with three ways to traverse a large triangle (Yu 2012, sec. 4.4.4).
 //
-// Each way calls run(j, first, last) for the samples first..last of row j that the triangle covers; every covered
-// sample once. All are exact (see grid.h).
+// Each traversal calls run(j, first, last) for the samples first..last of row j that the triangle covers, every
+// covered sample once. All are exact (see grid.h).
 
 #include "gi/raster/grid.h"
 
 namespace gi {
 
 enum class MacroPath : std::uint8_t {
-    edge_table,    ///< per row, where it meets the edges (fig. 4.9)
+    edge_table,    ///< intersects each row with the edges (fig. 4.9)
     linear_blocks, ///< rows of the bounding box in runs of 16 samples (fig. 4.8)
-    square_blocks, ///< blocks of 4 x 4: outside, inside, or sample by sample (fig. 4.7). Edges are judged by the
-                   ///< corner farthest inside, so that a triangle within a block that touches none of its corners
-                   ///< is found
+    square_blocks, ///< blocks of 4 x 4: outside, inside, or sample by sample (fig. 4.7). Edges are tested at the
+                   ///< block corner farthest inside, so that a triangle within a block is found even if it covers
+                   ///< none of the block's corners
 };
 
 /// A triangle ready for scanning.
 struct TriangleScan {
     HalfPlane edge[3];
     SampleRange columns, rows;
-    bool along = false; ///< its normal points along the axis
+    bool along = false; ///< the triangle's normal points along the axis
     bool empty = true;  ///< no area, or no sample within its bounds
 };
 
@@ -131,8 +131,8 @@ GI_FN void scan(TriangleScan const& s, MacroPath path, Run const& run)
         scan_square_blocks(s, run);
 }
 
-/// Depth over the samples of a triangle: its plane, held between its lowest and highest corner, which is what
-/// keeps triangles seen edge-on from flying off. Multiply-adds are spelled out, so that all compilers round alike.
+/// Depth at the samples of a triangle: its plane, clamped between the depths of its corners so that triangles seen
+/// edge-on get no extreme values. Explicit fused multiply-adds make all compilers round identically.
 struct DepthPlane {
     double at_zero, step_i, step_j; ///< at sample (0, 0), per sample
     float low, high;
@@ -143,7 +143,7 @@ struct DepthPlane {
     }
 };
 
-/// @param t its doubled area is not 0   @param depth of the three corners
+/// @param t must have a non-zero area   @param depth of the three corners
 GI_FN inline DepthPlane depth_plane(SnappedTriangle const& t, std::int32_t subpixels, vec3 depth)
 {
     double const x1 = t.x[1] - t.x[0], y1 = t.y[1] - t.y[0], z1 = double(depth.y) - double(depth.x);

@@ -1,5 +1,5 @@
 #pragma once
-// A TriangleSoup as kernels see it, and one that lies on a device.
+// View of a TriangleSoup for kernels, and a copy of one in device memory.
 
 #include "gi/kernel/buffer.h"
 #include "gi/raster/triangle_soup.h"
@@ -24,7 +24,7 @@ inline SoupView view(TriangleSoup const& soup)
     return v;
 }
 
-/// A copy of a soup in a space.
+/// Copy of a soup in a memory space.
 template <Space S>
 class SoupOn {
 public:
@@ -33,7 +33,7 @@ public:
         for (std::size_t k = 0; k < 9; ++k) corner_[k] = upload<S>(soup.corner[k]);
         count_ = soup.count;
     }
-    /// Triangles from `first` on have moved.
+    /// Copies again the triangles from `first` on, which have moved.
     void update(TriangleSoup const& soup, std::size_t first)
     {
         for (std::size_t k = 0; k < 9; ++k)

@@ -1,7 +1,7 @@
 #pragma once
-// Triangle corners as nine arrays, so that a vector register holds one coordinate of several triangles. Indices
-// are those of the world's triangles. Followed by one vector of points, so that any triangle can be the first of a
-// vector.
+// Triangle corners in nine arrays (structure of arrays), so that a SIMD register holds one coordinate of several
+// triangles. Indices are those of the world's triangles. The arrays are padded by one SIMD vector of degenerate
+// triangles, so that a vector can be loaded from any triangle on.
 
 #include "gi/scene/model/world.h"
 
@@ -14,7 +14,7 @@ struct TriangleSoup {
 
     std::array<std::vector<float>, 9> corner; ///< [3 * vertex + coordinate][triangle], m
     std::size_t count = 0;                    ///< without the padding
-    std::vector<Bounds> chunks;               ///< of kChunk triangles each, to skip what a view cannot see
+    std::vector<Bounds> chunks;               ///< bounds of kChunk triangles each, for culling
 
     vec3 vertex(std::size_t triangle, std::size_t k) const
     {
@@ -23,7 +23,7 @@ struct TriangleSoup {
 };
 
 TriangleSoup make_soup(World const& world);
-/// Reads triangles first.. of the world again, which have moved.
+/// Updates the triangles from `first` on, which have moved, from the world.
 void update_soup(World const& world, std::size_t first, TriangleSoup& soup);
 
 } // namespace gi

@@ -67,7 +67,7 @@ TEST(Plan, EverythingThatIsThereIsBuilt)
     EXPECT_EQ(item(plan, "alpha").reason, "1 of 4 materials are masks or blend");
     EXPECT_EQ(item(plan, "delta").reason, "2 of 4 materials are perfectly smooth");
     EXPECT_EQ(item(plan, "emissive").reason, "2 triangles emit");
-    EXPECT_EQ(item(plan, "parts renewed").reason, "2 of 8 triangles in 1 of 4 instances can move: clip 'slide'");
+    EXPECT_EQ(item(plan, "updates").reason, "2 of 8 triangles in 1 of 4 instances can move: clip 'slide'");
 }
 
 TEST(Plan, OnlyMaterialsInUseCount)

@@ -1,5 +1,5 @@
-// The scene that the program shows first: a vaulted gallery behind an arcade, beside a court under sun and sky.
-// Most of what one sees is lit indirectly.
+// The default demo scene: a vaulted gallery behind an arcade, beside a court under sun and sky. Most visible
+// surfaces are lit indirectly.
 
 #include "gi/core/error.h"
 #include "gi/scene/generate/figure.h"
@@ -19,7 +19,7 @@ namespace {
 constexpr float kBay = 3;                    ///< m, width of an arch with its column
 constexpr float kBack = -4.2f, kCourt = 7;   ///< x of the gallery's back wall and of the court's far wall
 constexpr float kFloor1 = 4.9f, kTop = 8.2f; ///< upper floor and roof
-constexpr float kSpring = 2.75f;             ///< where the arches begin
+constexpr float kSpring = 2.75f;             ///< height at which the arches begin
 
 struct Materials {
     int stone, plaster, tiles, paving, vase, gold, mirror, glass, lamp, iron, red, blue, lattice;
@@ -28,7 +28,7 @@ struct Materials {
 vec3 stone_color(vec2 uv)
 {
     float const n = tileable_noise(uv, 4, 11), fine = tileable_noise(uv, 32, 12);
-    // Courses of ashlar, four to the texture, every second one shifted.
+    // Four courses of ashlar per texture, every second one shifted.
     float const row = std::floor(uv.y * 4), x = uv.x * 2 + (int(row) % 2 == 0 ? 0.0f : 0.5f);
     vec2 const in_block{x - std::floor(x), uv.y * 4 - row};
     vec2 const edge = glm::min(in_block, 1.0f - in_block) * vec2{0.5f, 0.25f};
@@ -77,7 +77,7 @@ vec3 tile_normal(vec2 uv)
     return glm::normalize(vec3{-slope(in_tile.x), slope(in_tile.y), 1}) * 0.5f + 0.5f;
 }
 
-/// Interlaced rings: where alpha is 0 there is nothing.
+/// Interlaced rings, cut out by alpha 0.
 float lattice_alpha(vec2 uv)
 {
     auto const ring = [&](vec2 center) {
@@ -163,11 +163,11 @@ Materials add_materials(SceneBuilder& b)
     return out;
 }
 
-/// Everything that stands still and carries. @param end z of the far end (negative), n: tessellation
+/// Adds the static structure. @param end z of the far end (negative)   @param n tessellation
 void add_building(SceneBuilder& b, Materials const& m, int bays, float end, auto const& n)
 {
     constexpr float kNear = 1.5f; // z of the wall behind the camera
-    // Floors. Slabs have thickness, so that no light comes through joints.
+    // Floors. Slabs have thickness, so that no light leaks through joints.
     b.quad(m.tiles, {kBack - 0.3f, 0, kNear}, {-kBack + 0.3f + 0.5f, 0, 0}, {0, 0, end - kNear}, 0.35f, n(4),
            n(16));
     b.quad(m.paving, {0.5f, -0.001f, kNear}, {kCourt - 0.5f, 0, 0}, {0, 0, end - kNear}, 0.5f);
@@ -212,7 +212,7 @@ void add_building(SceneBuilder& b, Materials const& m, int bays, float end, auto
     }
 }
 
-/// Hanging cloth with folds. @param top_left its upper corner, width along z
+/// Adds a hanging cloth with folds. @param top_left its upper corner   @param width along z
 void add_banner(SceneBuilder& b, int material, vec3 top_left, float width, float length, int nu, int nv)
 {
     b.grid(material, nu, nv, [&](float u, float v) {

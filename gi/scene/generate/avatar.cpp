@@ -1,4 +1,4 @@
-// The mannequin with a face, so that one sees where it looks.
+// The mannequin with a face, so that its viewing direction is visible.
 
 #include "gi/scene/generate/figure.h"
 #include "gi/scene/generate/generate.h"
@@ -8,7 +8,7 @@
 namespace gi {
 namespace {
 
-/// An ellipsoid that moves with one joint.
+/// Adds an ellipsoid that moves with one joint.
 void add_ellipsoid(Mesh& m, vec3 center, vec3 radius, std::uint16_t joint)
 {
     constexpr std::uint32_t kAround = 16, kRings = 8;
@@ -32,7 +32,7 @@ void add_ellipsoid(Mesh& m, vec3 center, vec3 radius, std::uint16_t joint)
         }
 }
 
-/// @param like  node of the mannequin's other meshes
+/// @param like  node that holds the mannequin's other meshes
 void add_part(Scene& scene, Node const& like, std::string const& name, vec3 color, Mesh mesh)
 {
     Material material;

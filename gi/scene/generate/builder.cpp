@@ -43,7 +43,7 @@ void SceneBuilder::grid(int material, int nu, int nv, std::function<GridVertex(f
             auto const add = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) {
                 bool const empty = m.positions[p] == m.positions[q] || m.positions[q] == m.positions[r] ||
                                    m.positions[r] == m.positions[p];
-                if (!empty) m.triangles.push_back({p, q, r}); // cells at poles have one triangle
+                if (!empty) m.triangles.push_back({p, q, r}); // cells at the poles have only one triangle
             };
             add(a, b, d);
             add(a, d, c);
@@ -79,7 +79,7 @@ void SceneBuilder::lathe(int material, vec3 foot, std::vector<vec2> const& profi
     };
     grid(material, segments, int(last), [&](float u, float v) {
         auto const i = std::min(std::size_t(std::lround(v * float(last))), last);
-        // The seam closes exactly: both ends use the same angle.
+        // Both ends of the seam use the same angle, so that it closes exactly.
         float const angle = u < 1 ? 2 * kPi * u : 0.0f;
         vec3 const out{std::sin(angle), 0, std::cos(angle)};
         vec2 const t = tangent(i);

@@ -1,5 +1,5 @@
-// The Cornell box as measured (Cornell University Program of Computer Graphics, 1998): corners in its own units of
-// about a millimetre, here as metres; spectra from 400 to 700 nm.
+// The Cornell box as measured (Cornell University Program of Computer Graphics, 1998): corners in the original
+// units of about a millimetre, converted to metres; spectra from 400 to 700 nm.
 
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/model/spectrum.h"
@@ -40,7 +40,7 @@ public:
         scene.material_names.push_back(name);
         return int(scene.materials.size()) - 1;
     }
-    /// @param inside a point on the side that is seen
+    /// @param seen_from a point in front of the quads, or behind them if `outwards`
     void add(std::string const& name, int material, std::vector<Quad> const& quads, dvec3 seen_from, bool outwards)
     {
         Mesh mesh;
@@ -88,7 +88,7 @@ Scene generate_cornell()
 
     dvec3 const middle{278, 270, 280};
     b.add("floor", white, {Quad{{{552.8, 0, 0}, {0, 0, 0}, {0, 0, 559.2}, {549.6, 0, 559.2}}}}, middle, false);
-    // The ceiling has a hole where the lamp is.
+    // The ceiling has a hole at the light.
     dvec3 const l0{343, 548.8, 227}, l1{343, 548.8, 332}, l2{213, 548.8, 332}, l3{213, 548.8, 227};
     dvec3 const c0{556, 548.8, 0}, c1{556, 548.8, 559.2}, c2{0, 548.8, 559.2}, c3{0, 548.8, 0};
     b.add("ceiling", white,

@@ -111,7 +111,7 @@ std::array<Limb, 17> limbs()
               false}}};
 }
 
-/// Rings along the bone with round ends; the upper end is blended half and half with the neighbour's joint.
+/// Adds rings along the bone with round ends; the upper end is weighted equally with the neighbouring joint.
 void add_limb(Mesh& m, Limb const& limb, int segments)
 {
     constexpr int kCapRings = 5, kBodyRings = 7;
@@ -122,7 +122,7 @@ void add_limb(Mesh& m, Limb const& limb, int segments)
     auto const first = std::uint32_t(m.positions.size());
     int const rings = 2 * kCapRings + kBodyRings;
     for (int r = 0; r <= rings; ++r) {
-        // Along the bone: t in [0, 1] between the joints; beyond them the caps, `shrink` narrows their rings.
+        // Position t along the bone: [0, 1] between the joints; beyond are the caps, whose rings `shrink` narrows.
         float t, shrink = 1, beyond = 0;
         if (r <= kCapRings) {
             float const a = 0.5f * kPi * (1 - float(r) / kCapRings);
@@ -139,7 +139,7 @@ void add_limb(Mesh& m, Limb const& limb, int segments)
         }
         shrink = r == 0 || r == rings ? 0 : shrink;
         vec2 radius = glm::mix(limb.radius_from, limb.radius_to, t);
-        radius *= 1 + 0.08f * std::sin(kPi * t); // muscles
+        radius *= 1 + 0.08f * std::sin(kPi * t); // thicker in the middle, like muscles
         vec3 const center = glm::mix(limb.from, limb.to, t) + beyond * axis;
         float const along = glm::clamp(t + (beyond < 0 ? -0.1f : 0.0f), -0.1f, 1.0f);
         float const shared =
@@ -172,15 +172,15 @@ struct Stride {
     double hip, knee; ///< rad; hip forwards, knee bent
 };
 
-/// One leg at phase 0..2 pi; the other is half a turn later.
+/// Returns the angles of one leg at phase 0..2 pi; the other leg is half a period later.
 Stride stride(double phase)
 {
     return {0.45 * std::sin(phase) + 0.05, 0.12 + 0.85 * std::pow(std::max(0.0, std::cos(phase - 0.25)), 2.0)};
 }
 
-constexpr double kSole = 0.075, kBall = 0.17; ///< m, of the foot: below its joint, and before it
+constexpr double kSole = 0.075, kBall = 0.17; ///< m; foot joint to sole, and to ball in front of it
 
-/// Toes down, rad, against the ground.
+/// Pitch of the foot against the ground, rad; positive = toes down.
 double foot_pitch(Stride const& s) { return 0.25 * s.knee; }
 
 dquat about_x(double angle) { return glm::angleAxis(angle, dvec3{1, 0, 0}); }
@@ -214,7 +214,7 @@ Animation walk(std::int32_t first_joint)
             return thigh * std::cos(s.hip) + shin * std::cos(s.hip - s.knee) + kSole * std::cos(foot_pitch(s)) +
                    kBall * std::sin(foot_pitch(s));
         };
-        // The longer leg stands.
+        // The leg that reaches lower stands on the floor.
         double const drop = std::max(reach(left), reach(right)) - thigh - shin - kSole;
         auto const set = [&](Joint j, dquat const& q) {
             rotation[j].times_s.push_back(float(kDuration * k / kKeys));
@@ -229,7 +229,7 @@ Animation walk(std::int32_t first_joint)
         set(chest, about_y(-0.10 * swing) * about_x(0.04));
         set(neck, about_y(0.05 * swing));
         set(head, about_y(0.04 * swing));
-        // Rotation about +X turns what hangs down backwards, so forwards is negative.
+        // A positive rotation about +X swings hanging limbs backwards, so forwards is negative.
         set(thigh_l, about_x(-left.hip));
         set(shin_l, about_x(left.knee));
         set(foot_l, about_x(left.hip - left.knee + foot_pitch(left)));

@@ -11,7 +11,7 @@ void add_arch_wall(SceneBuilder& b, int material, ArchWall const& w)
 {
     float const middle = 0.5f * (w.z0 + w.z1), radius = 0.5f * w.opening;
     float const left = middle - radius, right = middle + radius;
-    /// A piece of both faces between two heights that vary along z.
+    /// Adds a piece of both faces between two heights that vary along z.
     auto const faces = [&](float za, float zb, int n, auto const& low, auto const& high) {
         for (bool const front : {false, true})
             b.grid(material, n, 1, [&](float u, float v) {
@@ -25,7 +25,7 @@ void add_arch_wall(SceneBuilder& b, int material, ArchWall const& w)
     faces(w.z0, left, 1, constant(w.y0), constant(w.y1));
     faces(right, w.z1, 1, constant(w.y0), constant(w.y1));
     if (w.sill > w.y0) faces(left, right, 1, constant(w.y0), constant(w.sill));
-    // Over the arch the pieces are cut where the arch has its corners, so that nothing gapes.
+    // Above the arch, pieces meet at the arch's corners, so that there are no gaps.
     for (int i = 0; i < w.segments; ++i) {
         auto const angle = [&](int k) { return kPi * float(k) / float(w.segments); };
         auto const z_at = [&](int k) { return middle - radius * std::cos(angle(k)); };

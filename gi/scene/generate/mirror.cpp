@@ -1,4 +1,5 @@
-// A room with a mirror on the wall before its camera, for who wants to see himself: see `lightwell view --avatar`.
+// A room with a mirror on the wall in front of the camera, in which users see their avatar: see
+// `lightwell view --avatar`.
 
 #include "gi/scene/generate/builder.h"
 #include "gi/scene/generate/generate.h"
@@ -53,7 +54,7 @@ void add_mirror(SceneBuilder& b)
     b.box(frame, {half, low, kFront}, {half + rim, high, z + 0.02f});
 }
 
-/// Two steps to climb, and something round.
+/// Adds two steps and a ball.
 void add_furniture(SceneBuilder& b)
 {
     int const wood = b.add_material("wood", matt({0.45f, 0.3f, 0.16f}));
@@ -65,7 +66,7 @@ void add_furniture(SceneBuilder& b)
     b.sphere(b.add_material("ball", glossy), {-1.5f, 0.3f, -0.9f}, 0.3f, 32);
 }
 
-/// Large and dim: by way of the mirror, light paths meet it by chance alone.
+/// Adds an area light, large and dim because paths via the mirror hit it only by chance.
 void add_lamp(SceneBuilder& b)
 {
     Material lamp = matt(vec3{0.8f});

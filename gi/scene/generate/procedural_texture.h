@@ -1,5 +1,5 @@
 #pragma once
-// Small tileable pictures, the same on every machine.
+// Small tileable textures, identical on every machine.
 
 #include "gi/scene/model/texture.h"
 
@@ -7,9 +7,10 @@
 
 namespace gi {
 
-/// Smooth noise in [0, 1] over the unit square, repeating; `cells` periods across, several octaves.
+/// Returns smooth, tileable noise in [0, 1] over the unit square, with `cells` periods across and several octaves.
 float tileable_noise(vec2 uv, int cells, std::uint32_t seed);
-/// size x size texels. @param color called with uv in [0, 1); linear RGB and alpha. @param srgb stored encoded
+/// Adds a texture of size x size texels.
+/// @param color called with uv in [0, 1)^2; returns linear RGB and alpha   @param srgb store sRGB-encoded
 std::int32_t add_procedural_texture(TexturePool& pool, int size, bool srgb,
                                     std::function<vec4(vec2 uv)> const& color);
 

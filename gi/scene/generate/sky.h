@@ -3,8 +3,8 @@
 
 namespace gi {
 
-/// A clear sky without its sun (which is a directional light): blue above, pale at the horizon, brighter towards
-/// the sun, and sunlit ground below. @param to_sun unit
+/// Returns a clear sky without the sun (which is a directional light): blue above, pale at the horizon, brighter
+/// towards the sun, and sunlit ground below. @param to_sun unit
 EnvironmentMap generate_sky(vec3 to_sun);
 
 } // namespace gi

@@ -1,4 +1,4 @@
-// Scenes of any size for robustness and speed: a closed room with a lamp and many triangles in it.
+// Scenes of any size for tests of robustness and speed: a closed room with an area light and many triangles.
 
 #include "gi/core/error.h"
 #include "gi/core/rng.h"
@@ -19,7 +19,7 @@ void check(std::uint32_t triangles)
 {
     if (triangles < 12 || triangles > kMost)
         throw InputError(fmt::format("{} triangles cannot be made", triangles),
-                         fmt::format("12 to {} are possible", kMost), "choose a number in between");
+                         fmt::format("12 to {} are supported", kMost), "choose a number in between");
 }
 
 Material matt_on_both_sides(vec3 albedo)
@@ -31,7 +31,7 @@ Material matt_on_both_sides(vec3 albedo)
     return m;
 }
 
-/// 14 triangles: six walls and the lamp below the ceiling.
+/// 14 triangles: six walls and the light below the ceiling.
 void add_room(SceneBuilder& b)
 {
     int const wall = b.add_material("wall", matt_on_both_sides(vec3{0.7f}));

@@ -19,7 +19,7 @@
 namespace gi {
 namespace {
 
-using json = nlohmann::json; // not the ordered one: references into it stay valid
+using json = nlohmann::json; // not ordered_json, because references into this one stay valid
 
 constexpr int kFloat = 5126, kUint32 = 5125, kUint16 = 5123;
 
@@ -126,7 +126,8 @@ private:
         }
     }
 
-    /// KHR_texture_transform from the rows of the matrix: scale along the columns, rotation between them.
+    /// Computes KHR_texture_transform from the matrix: the scale from the columns' lengths, the rotation from
+    /// their directions.
     json texture_info(TextureRef const& t)
     {
         json j{{"index", t.texture}};
@@ -153,7 +154,7 @@ private:
             pbr["baseColorFactor"] = {m.base_color.x, m.base_color.y, m.base_color.z, m.alpha};
             pbr["metallicFactor"] = m.metallic;
             bool const phong = m.model == MaterialModel::phong;
-            // What other viewers see of the Phong lobe: the GGX width of the same exponent (Walter et al. 2007).
+            // For other viewers, approximate the Phong lobe by the corresponding GGX width (Walter et al. 2007).
             pbr["roughnessFactor"] = phong ? std::pow(2 / (m.phong_exponent + 2), 0.25f) : m.roughness;
             if (m.base_color_map.texture >= 0) pbr["baseColorTexture"] = texture_info(m.base_color_map);
             if (m.metallic_roughness_map.texture >= 0)
@@ -229,7 +230,7 @@ private:
         }
         return p;
     }
-    /// A glTF mesh holds all that one node shows; nodes that show the same share it.
+    /// A glTF mesh contains all meshes of a node; nodes with the same meshes share it.
     void add_meshes()
     {
         std::vector<json> primitives(scene_.meshes.size());
@@ -326,7 +327,7 @@ private:
     {
         static constexpr std::array kPaths{"translation", "rotation", "scale", "weights"};
         static constexpr std::array kInterpolations{"STEP", "LINEAR", "CUBICSPLINE"};
-        // The clip that plays comes first: readers take the first.
+        // The playing clip comes first, because readers play the first one.
         std::vector<std::size_t> order(scene_.animations.size());
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
         if (!scene_.playbacks.empty())
@@ -357,7 +358,7 @@ private:
         }
     }
 
-    /// Frames as weights of every morph target, which glTF has instead.
+    /// Converts frame numbers to weights of every morph target, because glTF has only weights.
     AnimationChannel as_gltf(AnimationChannel const& channel) const
     {
         if (channel.path != ChannelPath::morph_frame) return channel;

@@ -1,5 +1,6 @@
-// OBJ, PLY, STL, FBX, COLLADA, ... through Assimp. Some damaged files make Assimp itself crash or hang, so every
-// file is first imported by a child process with limits; only if that ends well does this process read it.
+// Reads OBJ, PLY, STL, FBX, COLLADA, ... with Assimp. Some damaged files make Assimp itself crash or hang, so
+// every file is first imported in a child process with resource limits; this process reads it only if that
+// succeeds.
 
 #include "gi/core/error.h"
 #include "gi/core/file.h"
@@ -28,11 +29,11 @@ namespace gi {
 namespace {
 
 constexpr rlim_t kProbeSeconds = 60;
-constexpr int kAttempts = 2; ///< as the first may have stalled on a lock, see run_child
+constexpr int kAttempts = 2; ///< because the first may stall on a lock, see run_child
 constexpr rlim_t kProbeBytes = rlim_t(1) << 30,
-                 kProbeBytesPerByte = 64; ///< memory: some, and some per byte of file
+                 kProbeBytesPerByte = 64; ///< memory limit: a constant plus a multiple of the file size
 
-/// Notes which files an import opens or misses.
+/// Records which files an import opens or fails to open.
 class NotingFiles : public Assimp::DefaultIOSystem {
 public:
     explicit NotingFiles(ImportedFiles& files) : files_(files) {}
@@ -63,7 +64,7 @@ aiScene const* import(Assimp::Importer& importer, std::filesystem::path const& f
     return importer.ReadFile(file.string(), steps(faces));
 }
 
-/// Address space of this process, bytes.
+/// Size of this process's address space, bytes.
 rlim_t used_memory()
 {
     rlim_t pages = 0;
@@ -71,13 +72,13 @@ rlim_t used_memory()
     return pages * rlim_t(sysconf(_SC_PAGESIZE));
 }
 
-/// Why the file cannot be imported; empty where it can.
+/// Returns why the file cannot be imported; empty = it can.
 std::string try_import(Assimp::Importer& importer, std::filesystem::path const& file, AssimpFaces faces)
 {
     try {
         if (import(importer, file, faces) != nullptr) return {};
         std::string const reason = importer.GetErrorString();
-        return reason.empty() ? "Assimp gives no reason" : reason;
+        return reason.empty() ? "Assimp reports no reason" : reason;
     } catch (std::exception const& e) {
         return e.what();
     }
@@ -103,14 +104,14 @@ std::string try_import(Assimp::Importer& importer, std::filesystem::path const& 
     _exit(reason.empty() && told ? 0 : 1);
 }
 
-/// Throws InputError where the file cannot be read within the limits, or reading it kills or stalls the reader.
+/// Throws InputError if the file cannot be read within the limits, or if reading it crashes or stalls the reader.
 void probe(std::filesystem::path const& file, AssimpFaces faces, std::size_t file_bytes)
 {
     auto const bad = [&](std::string const& why) {
         bool const known = Assimp::Importer().IsExtensionSupported(file.extension().string());
         return InputError("'" + file.string() + "' cannot be read", why,
                           known ? "export it again"
-                                : "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp knows");
+                                : "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp supports");
     };
     rlim_t const most_memory = used_memory() + kProbeBytes + kProbeBytesPerByte * file_bytes;
     std::string reason;
@@ -119,12 +120,12 @@ void probe(std::filesystem::path const& file, AssimpFaces faces, std::size_t fil
         reason.clear();
         ended = run_child([&](int pipe) { import_with_limits(file, faces, most_memory, pipe); }, reason);
     }
-    if (!ended) throw bad("its reader (Assimp) waits for something, perhaps for a file it names");
+    if (!ended) throw bad("its reader (Assimp) waits for something, perhaps for a file that it refers to");
     int const status = *ended;
     if (WIFSIGNALED(status))
-        throw bad(WTERMSIG(status) == SIGXCPU ? "its reader (Assimp) did not come to an end"
+        throw bad(WTERMSIG(status) == SIGXCPU ? "its reader (Assimp) did not finish in time"
                                               : "its reader (Assimp) crashed on it");
-    if (reason == std::bad_alloc().what()) reason = "its header asks for more memory than there is";
+    if (reason == std::bad_alloc().what()) reason = "its header asks for more memory than is available";
     if (WEXITSTATUS(status) != 0) throw bad(reason);
 }
 
@@ -139,7 +140,7 @@ ImportedFiles import_assimp(std::filesystem::path const& file, AssimpFaces faces
     probe(file, faces, file_bytes);
     ImportedFiles files;
     Assimp::Importer importer;
-    importer.SetIOHandler(new NotingFiles(files)); // which the importer deletes
+    importer.SetIOHandler(new NotingFiles(files)); // the importer takes ownership
     std::string const reason = try_import(importer, file, faces);
     if (!reason.empty()) throw InputError("'" + file.string() + "' cannot be read", reason, "export it again");
     use(*importer.GetScene());
@@ -149,7 +150,7 @@ ImportedFiles import_assimp(std::filesystem::path const& file, AssimpFaces faces
 void lose_material_libraries(std::filesystem::path const& file, ImportedFiles const& files, Report& report)
 {
     if (files.missing.empty() || strcasecmp(file.extension().c_str(), ".obj") != 0) return;
-    // For each that is missing Assimp looks for one of the OBJ file's own name, too.
+    // For each missing library, Assimp also tries one with the OBJ file's own name.
     std::set<std::string> named = files.missing;
     if (named.size() > 1) named.erase(std::filesystem::path(file).replace_extension("mtl").string());
     report.lose("material libraries that could not be read", named.size(), *named.begin());

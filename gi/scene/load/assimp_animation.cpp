@@ -23,7 +23,7 @@ void add_channel(Animation& clip, std::int32_t node, ChannelPath path, Key const
     clip.duration_s = std::max(clip.duration_s, double(channel.times_s.back()));
     clip.channels.push_back(std::move(channel));
 }
-/// A node that moves needs its parts: channels replace some of them.
+/// Splits a moving node's matrix into its parts, because channels replace some of them.
 void split_matrix(Node& node)
 {
     if (!node.matrix) return;

@@ -43,8 +43,8 @@ public:
     }
 
 private:
-    /// FBX states its unit in centimetres and leaves the numbers as they are: everything hangs below a node that
-    /// scales.
+    /// FBX states its unit in centimetres and does not convert its numbers, so all nodes are placed below a
+    /// scaling node.
     void add_unit_node()
     {
         float centimetres = 100;
@@ -80,7 +80,8 @@ private:
         }
     }
 
-    /// Assimp gives formats without materials one of its own, of a certain name or none.
+    /// True if a material is from the file: for formats without materials, Assimp adds one with a default or empty
+    /// name.
     bool of_the_file(unsigned material) const
     {
         if (material >= scene_.material_names.size()) return false;
@@ -173,7 +174,7 @@ private:
         }
         auto const skin_index = std::int32_t(scene_.skins.size());
         scene_.skins.push_back(std::move(skin));
-        // A node of ours has one skin; Assimp has one per mesh. Further skinned meshes get a node of their own.
+        // Our nodes have one skin, Assimp's have one per mesh. Further skinned meshes get a node of their own.
         std::size_t const nodes = scene_.nodes.size();
         for (std::size_t n = 0; n < nodes; ++n) {
             auto& meshes = scene_.nodes[n].meshes;
@@ -201,7 +202,7 @@ private:
             });
     }
 
-    /// A node that carries what Assimp keeps beside its node of the same name.
+    /// Adds a child node for a camera or light, which Assimp links to its node by name.
     Node& child_of(aiString const& name)
     {
         Node node;

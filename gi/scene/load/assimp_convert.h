@@ -8,7 +8,8 @@ struct aiScene;
 
 namespace gi {
 
-/// Nodes, meshes, materials, bones, clips, cameras and lights. @param file where textures are looked up beside
+/// Converts nodes, meshes, materials, bones, clips, cameras and lights. @param file textures are searched beside
+/// it
 Scene convert_assimp(aiScene const& source, std::filesystem::path const& file, Report& report);
 
 } // namespace gi

@@ -10,23 +10,23 @@ struct aiScene;
 
 namespace gi {
 
-/// What becomes of the faces and vertices of a file.
+/// Processing of the faces and vertices of a file.
 enum class AssimpFaces : unsigned char {
-    merged,    ///< triangles, equal vertices joined: for a model that stands alone
-    triangles, ///< triangles, vertices one by one as the file has them: its frames may differ in which are equal
-    polygons,  ///< as `triangles` but uncut: where a polygon is cut depends on its shape
+    merged,    ///< triangles, equal vertices joined: for single models
+    triangles, ///< triangles, vertices not joined: which of them are equal may differ between frames
+    polygons,  ///< as `triangles` but not triangulated: the triangulation of a polygon depends on its shape
 };
 
-/// This file and those it names, such as material libraries.
+/// Files opened or missing during an import: the file itself and those it refers to, such as material libraries.
 struct ImportedFiles {
     std::set<std::string> opened, missing;
 };
 
-/// Import a file and show it to `use`. Throws InputError where it cannot be read within limits of time and memory.
+/// Imports a file and passes it to `use`. Throws InputError if it cannot be read within limits of time and memory.
 ImportedFiles import_assimp(std::filesystem::path const& file, AssimpFaces faces,
                             std::function<void(aiScene const&)> const& use);
 
-/// Counts the material libraries that an OBJ file names and that are missing.
+/// Counts the missing material libraries of an OBJ file.
 void lose_material_libraries(std::filesystem::path const& file, ImportedFiles const& files, Report& report);
 
 } // namespace gi

@@ -92,7 +92,7 @@ private:
                 report_.lose("texture maps other than diffuse, emissive, normal and opacity, ignored",
                              source.GetTextureCount(aiTextureType(type)), where_);
     }
-    /// The ray-traced illumination models of MTL: 5 reflects, 6 and 7 refract as well.
+    /// Illumination models of MTL for ray tracing: 5 reflects, 6 and 7 also refract.
     static void make_mirror(Material& m, vec3 reflectance)
     {
         m.model = MaterialModel::metal_rough;
@@ -135,7 +135,7 @@ private:
             }
             cv::Mat const pixels(int(embedded->mHeight), int(embedded->mWidth), CV_8UC4, embedded->pcData);
             std::vector<unsigned char> png;
-            cv::imencode(".png", pixels, png); // aiTexel is BGRA, as OpenCV wants it
+            cv::imencode(".png", pixels, png); // aiTexel is BGRA, as OpenCV expects
             return png;
         }
         std::replace(path.begin(), path.end(), '\\', '/');
@@ -165,7 +165,7 @@ private:
         ref.uv_set = uv_set == 1 ? 1 : 0;
         return ref;
     }
-    /// Puts the brightness of an opacity map into the alpha of the base colour.
+    /// Stores the brightness of an opacity map in the alpha of the base colour.
     void add_mask(aiMaterial const& source, Material& m)
     {
         TextureRef const mask = texture(source, aiTextureType_OPACITY, false);
@@ -175,7 +175,7 @@ private:
         Texture const from = combined;
         Texture const* color =
             m.base_color_map.texture >= 0 ? &pool.textures[std::size_t(m.base_color_map.texture)] : nullptr;
-        if (color != nullptr && color->first == from.first) return; // one picture with its own alpha
+        if (color != nullptr && color->first == from.first) return; // same picture, which has its own alpha
         combined.first = pool.texels.size();
         combined.srgb = true;
         for (std::uint32_t y = 0; y < from.height; ++y)

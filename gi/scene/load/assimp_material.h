@@ -7,7 +7,7 @@
 
 namespace gi {
 
-/// Materials with their textures, embedded ones or files beside the scene in `folder`.
+/// Converts materials with their textures, which are embedded or files in `folder` beside the scene.
 void convert_materials(aiScene const& source, std::filesystem::path const& folder, Scene& scene, Report& report);
 
 } // namespace gi

@@ -1,5 +1,5 @@
 #pragma once
-// Assimp's small types as ours.
+// Conversion of Assimp's small types to ours.
 
 #include "gi/core/math.h"
 
@@ -9,12 +9,12 @@
 
 namespace gi {
 
-/// Nodes of ours by the names by which Assimp refers to them; the first of a name counts.
+/// Our node indices by the names by which Assimp refers to them; of equal names, the first node.
 using NodeOfName = std::map<std::string, std::int32_t>;
 
 inline vec3 to_vec3(aiVector3D v) { return {v.x, v.y, v.z}; }
 inline vec3 to_vec3(aiColor3D v) { return {v.r, v.g, v.b}; }
-/// Negative and not finite values become 0.
+/// Negative and non-finite values become 0.
 inline vec3 positive(vec3 v) { return all_finite(v) ? glm::max(v, vec3{0}) : vec3{0}; }
 
 } // namespace gi

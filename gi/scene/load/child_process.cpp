@@ -24,7 +24,7 @@ std::int64_t processor_time_ns(pid_t process)
     return std::int64_t(t.tv_sec) * 1000000000 + t.tv_nsec;
 }
 
-/// Until the other end of the pipe is closed, or the process stalls, which is false.
+/// Reads until the other end of the pipe is closed (true) or the process stalls (false).
 bool read_all(int pipe, pid_t process, std::string& told)
 {
     std::int64_t used_ns = 0;
@@ -51,10 +51,10 @@ std::optional<int> run_child(std::function<void(int pipe)> const& work, std::str
 {
     int ends[2];
     if (pipe(ends) != 0)
-        throw InputError("a file cannot be tried out", "there is no pipe to be had", "close other programs");
+        throw InputError("a file cannot be tested", "no pipe is available", "close other programs");
     pid_t const child = fork();
     if (child == 0) {
-        prctl(PR_SET_PDEATHSIG, SIGKILL); // or one that stalls would outlive us
+        prctl(PR_SET_PDEATHSIG, SIGKILL); // else a stalled child would outlive its parent
         close(ends[0]);
         work(ends[1]);
         _exit(1);
@@ -63,7 +63,7 @@ std::optional<int> run_child(std::function<void(int pipe)> const& work, std::str
     bool const ended = child < 0 || read_all(ends[0], child, told);
     close(ends[0]);
     if (child < 0)
-        throw InputError("a file cannot be tried out", "there is no process to be had", "close other programs");
+        throw InputError("a file cannot be tested", "no process can be started", "close other programs");
     if (!ended) kill(child, SIGKILL);
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {

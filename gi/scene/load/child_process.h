@@ -5,14 +5,14 @@
 
 namespace gi {
 
-/// Runs `work` in a copy of this process, which dies with it, which gets the writing end of a pipe and has to end
-/// by itself.
+/// Runs `work` in a forked child process. `work` gets the writing end of a pipe and must end the process itself;
+/// the child is killed if this process dies.
 ///
-/// A copy made while other threads run may wait for ever for a lock that one of them held (an allocator's, under
-/// ASan). So one that sleeps for five seconds without using the processor is killed.
-/// @param told  gets what was written to the pipe
-/// @returns its status as of waitpid; nothing where it stalled, after which another try may succeed
-/// Throws InputError where there is no pipe or process to be had.
+/// A child forked while other threads run may wait forever for a lock that one of them held (an allocator's, under
+/// ASan). So a child that sleeps for five seconds without using CPU time is killed.
+/// @param told  receives the data written to the pipe
+/// @returns the status from waitpid; nothing if the child stalled, in which case another attempt may succeed
+/// Throws InputError if no pipe or process can be created.
 std::optional<int> run_child(std::function<void(int pipe)> const& work, std::string& told);
 
 } // namespace gi

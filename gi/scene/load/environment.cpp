@@ -12,7 +12,7 @@ EnvironmentMap load_environment(std::filesystem::path const& file, Report& repor
     constexpr int kWidest = 32768;
     Picture const picture = read_picture(file);
     auto const bad = [&](std::string const& why) {
-        return InputError(fmt::format("'{}' is no environment map", file.string()), why,
+        return InputError(fmt::format("'{}' is not an environment map", file.string()), why,
                           "give a lat-long panorama as HDR or EXR, twice as wide as high");
     };
     Layer const* const color = picture.find("color");
@@ -20,7 +20,7 @@ EnvironmentMap load_environment(std::filesystem::path const& file, Report& repor
     if (picture.width < 2 || picture.height < 1)
         throw bad(fmt::format("it has {} x {} pixels, at least 2 x 1 are needed", picture.width, picture.height));
     if (picture.width > kWidest || picture.height > kWidest)
-        throw bad(fmt::format("it has {} x {} pixels, at most {} are read a side", picture.width, picture.height,
+        throw bad(fmt::format("it has {} x {} pixels, at most {} per side work", picture.width, picture.height,
                               kWidest));
 
     EnvironmentMap map;

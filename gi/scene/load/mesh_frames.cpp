@@ -13,7 +13,7 @@ namespace {
 
 InputError misfit(std::filesystem::path const& file, std::string const& why)
 {
-    return {"'" + file.string() + "' does not fit into its sequence", why,
+    return {"'" + file.string() + "' does not match its sequence", why,
             "export all frames from one mesh, with the same settings"};
 }
 

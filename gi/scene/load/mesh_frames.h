@@ -1,5 +1,5 @@
 #pragma once
-// The frames of a mesh sequence as they are read, before they become a scene.
+// Frames of a mesh sequence as read from files, before they are converted to a scene.
 
 #include "gi/core/math.h"
 
@@ -15,27 +15,28 @@ struct MeshFrame {
     std::vector<vec3> normals;   ///< unit or 0; empty = the file has none
 };
 
-/// One file: its meshes, and how its polygons hang together.
+/// Contents of one file: its meshes and their polygons.
 struct SequenceFrame {
     std::vector<MeshFrame> meshes;
     std::vector<std::vector<std::uint32_t>> polygons; ///< per mesh: size and corners of each face
-    std::vector<std::string> files;                   ///< that were opened for it
+    std::vector<std::string> files;                   ///< opened for this frame
 };
 
-/// Throws InputError where the file cannot be read or has vertices that are not finite.
+/// Throws InputError if the file cannot be read or has non-finite vertices.
 SequenceFrame read_sequence_frame(std::filesystem::path const& file);
 
-/// Throws InputError, naming the file, where its meshes, vertices or faces are not those of the first.
+/// Throws InputError, naming the file, if its number of meshes or vertices or its faces differ from the first
+/// file.
 void check_topology(SequenceFrame const& first, std::filesystem::path const& first_file,
                     SequenceFrame const& frame, std::filesystem::path const& file);
 
-/// A vertex attribute as bytes that vertices are compared by.
+/// A vertex attribute as raw bytes, for comparing vertices.
 struct VertexBytes {
     unsigned char const* data;
     std::size_t size; ///< per vertex
 };
 
-/// For every vertex the first one that is equal in all attributes.
+/// Returns for every vertex the first vertex that is equal in all attributes.
 std::vector<std::uint32_t> first_equal_vertices(std::size_t count, std::vector<VertexBytes> const& attributes);
 
 } // namespace gi

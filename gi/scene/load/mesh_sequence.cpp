@@ -1,6 +1,6 @@
-// A folder of OBJ or PLY files as one scene whose meshes move: the first file is the mesh, each further one a
-// morph target (its difference to the first), and one channel of frame numbers goes through them. Memory: 24 bytes
-// per vertex and frame.
+// Loads a folder of OBJ or PLY files as one scene with animated meshes: the first file gives the mesh, each
+// further file a morph target (the difference from the first), and one channel of frame numbers steps through
+// them. Memory: 24 bytes per vertex and frame.
 
 #include "gi/core/error.h"
 #include "gi/scene/load/assimp_convert.h"
@@ -25,7 +25,7 @@ std::string lower_extension(fs::path const& file)
     return e;
 }
 
-/// In the order of their names, numbers by their value.
+/// Returns the frame files sorted by name, with numbers in names compared by value.
 std::vector<fs::path> frame_files(fs::path const& folder)
 {
     std::vector<fs::path> obj, ply;
@@ -39,7 +39,7 @@ std::vector<fs::path> frame_files(fs::path const& folder)
         throw InputError("'" + folder.string() + "' is a folder", "it holds no OBJ or PLY files as frames",
                          "name a scene file, or a folder of frames");
     if (!obj.empty() && !ply.empty())
-        throw InputError("'" + folder.string() + "' holds OBJ and PLY files", "which are the frames is not known",
+        throw InputError("'" + folder.string() + "' holds OBJ and PLY files", "it is unclear which are the frames",
                          "move the others away");
     std::vector<fs::path> files = obj.empty() ? std::move(ply) : std::move(obj);
     std::sort(files.begin(), files.end(), [](fs::path const& a, fs::path const& b) {
@@ -85,7 +85,7 @@ public:
         for (std::size_t m = 0; same && m < scene_.meshes.size(); ++m)
             same = first.meshes[m].positions.size() == scene_.meshes[m].positions.size();
         if (!same)
-            throw InputError("'" + files_[0].string() + "' has points or lines", "frames consist of faces",
+            throw InputError("'" + files_[0].string() + "' has points or lines", "frames must consist of faces",
                              "export its surfaces alone");
         frames_.resize(scene_.meshes.size());
         for (std::size_t i = 0; i < files_.size(); ++i) {
@@ -104,7 +104,7 @@ public:
 private:
     void make_morphing(Mesh& mesh, std::vector<MeshFrame>& frames)
     {
-        bool const expanded = lower_extension(files_[0]) == ".obj"; // its reader makes a vertex of every corner
+        bool const expanded = lower_extension(files_[0]) == ".obj"; // its reader creates a vertex for every corner
         std::vector<VertexBytes> attributes;
         if (expanded)
             for (MeshFrame const& f : frames) attributes.push_back(bytes_of(f.positions));
@@ -128,7 +128,8 @@ private:
         }
     }
 
-    /// Those of the files where all have them. Vertices that are equal in `attributes` are smooth together.
+    /// Keeps the normals of the files if all files have them, else computes smooth normals; vertices that are
+    /// equal in `attributes` are treated as one vertex.
     void find_normals(Mesh const& mesh, std::vector<MeshFrame>& frames, std::vector<VertexBytes> const& attributes)
     {
         auto const without =
@@ -167,7 +168,7 @@ private:
         }
     }
 
-    /// The key after the last leads back to the first frame.
+    /// Adds the clip that plays the frames; an extra key after the last leads back to the first frame.
     void play()
     {
         if (files_.size() < 2) return;
@@ -205,7 +206,7 @@ private:
 
 Scene load_mesh_sequence(fs::path const& folder, Report& report)
 {
-    fs::path const tidy = fs::absolute(folder).lexically_normal(); // "a/b/" has no file name, "." none of its own
+    fs::path const tidy = fs::absolute(folder).lexically_normal(); // because "a/b/" and "." have no file name
     return Sequence(tidy.has_filename() ? tidy : tidy.parent_path(), report).load();
 }
 

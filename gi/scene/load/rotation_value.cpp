@@ -15,9 +15,8 @@ dmat4 read_rotation(Yaml const& r)
     }
     check_keys(r, "rotation");
     dvec3 const axis = r.has("axis") ? r.at("axis").vector(-1e6, 1e6) : dvec3{0, 1, 0};
-    if (!(glm::length(axis) > 0))
-        throw r.error("the axis is zero", "nothing can turn about it", "axis: [0, 1, 0]");
-    if (!r.has("degrees")) throw r.error("a rotation needs degrees", "it is not known how far", "degrees: 90");
+    if (!(glm::length(axis) > 0)) throw r.error("the axis is zero", "it has no direction", "axis: [0, 1, 0]");
+    if (!r.has("degrees")) throw r.error("a rotation needs degrees", "the angle is missing", "degrees: 90");
     return glm::rotate(dmat4(1), glm::radians(r.at("degrees").number(-1e6, 1e6)), glm::normalize(axis));
 }
 

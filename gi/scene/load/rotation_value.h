@@ -3,7 +3,7 @@
 
 namespace gi {
 
-/// [x, y, z] degrees about x, then y, then z; or {axis, degrees}, right-handed, about +Y without an axis.
+/// Reads a rotation: [x, y, z] degrees about x, then y, then z; or {axis, degrees}, right-handed, default axis +Y.
 dmat4 read_rotation(Yaml const& value);
 
 } // namespace gi

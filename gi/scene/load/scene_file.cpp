@@ -1,4 +1,4 @@
-// The YAML scene file: models, environment, background, lights, cameras, overrides of materials. Schema:
+// Reader of YAML scene files: models, environment, background, lights, cameras, material overrides. Schema:
 // data/scene.schema.json.
 
 #include "gi/core/file.h"
@@ -23,11 +23,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDeepestInclusion = 8; ///< scene files that include scene files
-constexpr int kMostModels = 10000;   ///< of a file and all that it includes
+constexpr int kDeepestInclusion = 8; ///< maximum nesting of scene files that include scene files
+constexpr int kMostModels = 10000;   ///< of a file and all files that it includes
 
-thread_local int t_depth = 0;  ///< of this file below the first
-thread_local int t_models = 0; ///< since the first file began
+thread_local int t_depth = 0;  ///< nesting depth of the current file, 0 = the first
+thread_local int t_models = 0; ///< number of models so far, over all nested files
 
 struct DepthGuard {
     DepthGuard()
@@ -71,14 +71,14 @@ private:
     {
         if (folder_.empty())
             throw at.error("no files may be read here", "the scene comes from memory", "use generate");
-        fs::path const file = folder_ / at.text(); // which is the text alone where that is absolute
+        fs::path const file = folder_ / at.text(); // just the text if it is an absolute path
         std::error_code error;
         if (fs::status(file, error).type() == fs::file_type::not_found)
             throw at.error("cannot read '" + file.string() + "'", "there is no such file", suggestion);
         return file;
     }
 
-    /// Throws unless there is such a kind that reads all keys that are given.
+    /// Throws unless the kind exists and supports all given keys.
     static void check_kind(Yaml const& g, std::string const& kind)
     {
         auto const known = keys_of_generated().find(kind);
@@ -94,11 +94,11 @@ private:
     Scene generate(Yaml const& g) const
     {
         check_keys(g, "generate");
-        if (!g.has("kind")) throw g.error("generate has no kind", "it is not known what to make", "kind: atrium");
+        if (!g.has("kind")) throw g.error("generate has no kind", "it does not name a scene", "kind: atrium");
         std::string const kind = g.at("kind").text();
         check_kind(g, kind);
         auto const triangles = [&] {
-            // A text from memory may not ask for a scene of any size.
+            // Limits the size of scenes in text from memory, which may be untrusted.
             return g.has("triangles")
                        ? std::uint32_t(g.at("triangles").integer(12, folder_.empty() ? 10000 : 100'000'000))
                        : 20000u;
@@ -125,9 +125,9 @@ private:
         check_keys(m, "model");
         if (++t_models > kMostModels)
             throw m.error(fmt::format("more than {} models", kMostModels),
-                          "those of included scene files are counted, too", "join them into one model file");
+                          "models of included scene files count, too", "join them into one model file");
         if (m.has("file") == m.has("generate"))
-            throw m.error("a model needs either file or generate", "it has both or none", "keep one");
+            throw m.error("a model needs either file or generate", "it has both or neither", "keep one");
         Scene part;
         std::string name;
         if (m.has("file")) {
@@ -164,13 +164,13 @@ private:
         bool const is_scene_file = strcasecmp(file.extension().c_str(), ".yaml") == 0 ||
                                    strcasecmp(file.extension().c_str(), ".yml") == 0;
         if (is_scene_file && t_depth == kDeepestInclusion)
-            throw at.error("'" + file.string() + "' is not read",
+            throw at.error("'" + file.string() + "' is not loaded",
                            fmt::format("scene files include each other {} deep", kDeepestInclusion),
                            "break the loop");
         return file;
     }
 
-    /// So that overrides reach meshes without a material.
+    /// Gives meshes without a material an explicit default one, so that overrides can match it.
     static void name_default_material(Scene& part)
     {
         auto const material = std::int32_t(part.materials.size());
@@ -190,7 +190,7 @@ private:
         std::string const method = s.text();
         if (method == "linear") return SkinningMethod::linear;
         if (method == "dual_quaternion") return SkinningMethod::dual_quaternion;
-        throw s.error("there is no skinning '" + method.substr(0, 64) + "'", "it is not known here",
+        throw s.error("there is no skinning '" + method.substr(0, 64) + "'", "the method is unknown",
                       "choose linear or dual_quaternion");
     }
 
@@ -200,7 +200,7 @@ private:
         std::string const kind = b.text();
         if (kind == "map") return {};
         if (kind == "transparent") return {BackgroundKind::transparent, vec3{0}};
-        throw b.error("there is no background '" + kind.substr(0, 64) + "'", "it is not known here",
+        throw b.error("there is no background '" + kind.substr(0, 64) + "'", "the kind is unknown",
                       "choose map, transparent or a colour: [0.1, 0.2, 0.3]");
     }
 
@@ -216,9 +216,9 @@ private:
         if (s.has("size")) {
             auto const size = s.at("size").items();
             if (size.size() != 2)
-                throw s.at("size").error("a size has two numbers", "width and height, texels",
+                throw s.at("size").error("a size needs two numbers", "width and height, texels",
                                          "size: [1024, 512]");
-            // A text from memory may not ask for a sky of any size.
+            // Limits the size of skies in text from memory, which may be untrusted.
             o.width = std::uint32_t(size[0].integer(8, folder_.empty() ? 128 : 32768));
             o.height = std::uint32_t(size[1].integer(4, folder_.empty() ? 64 : 16384));
         } else if (folder_.empty()) {
@@ -257,7 +257,7 @@ private:
         if (c.has("focus_distance")) {
             camera.focus_distance_m = c.at("focus_distance").number(kNearestFocus_m, kFarthestFocus_m);
             if (!c.has("aperture_radius"))
-                throw c.error("a camera has focus_distance alone", "without a lens all is in focus",
+                throw c.error("a camera has only focus_distance", "without a lens everything is in focus",
                               "add aperture_radius, m");
         } else if (camera.aperture_radius_m > 0) {
             camera.focus_distance_m = glm::length(c.at("at").vector() - c.at("from").vector());
@@ -265,11 +265,11 @@ private:
         try {
             check_lens(camera);
         } catch (InputError const& e) {
-            throw c.error("the camera's lens cannot be", e.what(), "change aperture_radius or focus_distance");
+            throw c.error("the camera's lens is not valid", e.what(), "change aperture_radius or focus_distance");
         }
     }
 
-    /// The file's own cameras come first: they are what its author wants to see.
+    /// Puts the file's own cameras first, because its author prefers them over those of its models.
     void add_cameras(Yaml const& list)
     {
         std::vector<Node> nodes;
@@ -286,7 +286,7 @@ private:
                 camera = look_at(c.at("from").vector(), c.at("at").vector(),
                                  c.has("fov") ? c.at("fov").number(0.001, 179) : 45);
             } catch (InputError const& e) {
-                throw c.error("the camera cannot see", e.what(), "change from or at");
+                throw c.error("the camera is not valid", e.what(), "change from or at");
             }
             if (c.has("height")) {
                 camera.orthographic = true;
@@ -315,7 +315,7 @@ private:
     {
         check_keys(o, "material");
         if (!o.has("match"))
-            throw o.error("an override needs match", "it is not known which material", "match: Wall");
+            throw o.error("an override needs match", "it does not name a material", "match: Wall");
         std::string const pattern = o.at("match").text();
         std::size_t first = 0, end = scene_.materials.size();
         if (o.has("model")) {
@@ -339,7 +339,7 @@ private:
         for (std::size_t i = first; i < std::min(end, first + 12); ++i)
             known += (known.empty() ? "" : ", ") + scene_.material_names[i];
         throw o.at("match").error("no material matches '" + pattern.substr(0, 64) + "'", "nothing would change",
-                                  known.empty() ? "there are none" : "some that exist: " + known);
+                                  known.empty() ? "the scene has none" : "some that exist: " + known);
     }
     Yaml const& root_;
     fs::path const& folder_;
@@ -355,13 +355,13 @@ Scene parse_scene_file(std::string const& text, fs::path const& folder, std::str
     DepthGuard const guard;
     Yaml const root = Yaml::parse(text, name, "scene");
     if (!root.is_map())
-        throw root.error("'" + name + "' is no scene file", "it has no keys", "start with models:");
+        throw root.error("'" + name + "' is not a scene file", "it has no keys", "start with models:");
     try {
         Scene scene = SceneFileReader(root, folder, report).read();
         scene.name = name;
         return scene;
     } catch (YAML::Exception const& e) {
-        throw InputError({name, e.mark.line + 1, e.mark.column + 1}, "this value is not understood", e.msg,
+        throw InputError({name, e.mark.line + 1, e.mark.column + 1}, "this value is not valid", e.msg,
                          "check it against the schema");
     }
 }

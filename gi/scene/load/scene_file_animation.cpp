@@ -14,8 +14,8 @@ std::int32_t find_clip(Yaml const& at, std::string const& name, Scene const& par
         known += (known.empty() ? "" : ", ") + part.animations[i].name;
     }
     if (found < 0)
-        throw at.error("there is no clip '" + name.substr(0, 64) + "'", "the model does not have it",
-                       known.empty() ? "it has none" : "choose one of: " + known);
+        throw at.error("there is no clip '" + name.substr(0, 64) + "'", "the model has no clip of that name",
+                       known.empty() ? "the model has no clips" : "choose one of: " + known);
     return found;
 }
 
@@ -31,7 +31,7 @@ Playback read_playback(Yaml const& a, Scene const& part)
         else if (part.animations.size() == 1)
             playback.animation = 0;
         else
-            throw a.error("an animation needs a clip", "the model does not have just one", "clip: Walk");
+            throw a.error("an animation needs a clip", "the model has none or several", "clip: Walk");
     }
     for (Playback const& own : part.playbacks)
         if (own.animation == playback.animation) playback.loop = own.loop;

@@ -4,8 +4,8 @@
 
 namespace gi {
 
-/// What `animation` says of a model: none, the name of a clip, a clip with speed, offset, loop and weight, or a
-/// list of such clips that are blended (Playback).
+/// Applies the `animation` of a model: none, the name of a clip, a clip with speed, offset, loop and weight, or a
+/// list of clips to blend (Playback).
 void choose_animation(Yaml const& animation, Scene& part);
 
 } // namespace gi

@@ -7,9 +7,9 @@
 
 namespace gi {
 
-/// The keys of every kind of mapping in a scene file, by the name that data/scene.schema.json gives to it.
+/// Keys of every kind of mapping in a scene file, by its name in data/scene.schema.json.
 std::map<std::string, std::set<std::string>> const& scene_file_keys();
-/// The keys that `generate` has for each kind of scene.
+/// Keys of `generate` for each kind of scene.
 std::map<std::string, std::set<std::string>> const& keys_of_generated();
 /// Throws unless all keys of the mapping belong to its kind.
 inline void check_keys(Yaml const& map, char const* kind) { map.only_keys(scene_file_keys().at(kind)); }

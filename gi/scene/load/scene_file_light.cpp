@@ -7,7 +7,7 @@
 namespace gi {
 namespace {
 
-/// Unit; down where nothing is said.
+/// Returns the unit direction; downwards by default.
 dvec3 read_direction(Yaml const& l, dvec3 position)
 {
     if (l.has("direction") && l.has("target"))
@@ -16,7 +16,7 @@ dvec3 read_direction(Yaml const& l, dvec3 position)
     if (l.has("direction")) direction = l.at("direction").vector();
     if (l.has("target")) direction = l.at("target").vector() - position;
     double const length = glm::length(direction);
-    if (!(length > 0)) throw l.error("the light has no direction", "it is zero", "direction: [0, -1, 0]");
+    if (!(length > 0)) throw l.error("the light has no direction", "the vector is zero", "direction: [0, -1, 0]");
     return direction / length;
 }
 
@@ -24,14 +24,15 @@ struct Rectangle {
     dvec3 corner, u, v;
 };
 
-/// By its corner and edges, or by its centre, size and direction (then the first edge is level).
+/// Reads a rectangle from its corner and edges, or from its centre, size and direction (then the first edge is
+/// horizontal).
 Rectangle read_rectangle(Yaml const& l)
 {
     auto const need = [&](char const* key) {
         if (!l.has(key))
             throw l.error(
                 fmt::format("a rectangle light needs {}", key),
-                "it is given by corner and edges (position, u, v) or by centre (position, size, direction)",
+                "a rectangle has corner and edges (position, u, v) or centre and size (position, size, direction)",
                 "position: [0, 2, 0], u: [1, 0, 0], v: [0, 0, 1], radiance: 10");
     };
     need("position");
@@ -49,7 +50,7 @@ Rectangle read_rectangle(Yaml const& l)
         throw l.error("a rectangle has both size and edges", "they contradict each other", "keep one");
     auto const size = l.at("size").items();
     if (size.size() != 2)
-        throw l.at("size").error("a size has two numbers", "width and height, m", "size: [1, 0.5]");
+        throw l.at("size").error("a size needs two numbers", "width and height, m", "size: [1, 0.5]");
     double const width = size[0].number(1e-9, 1e9), height = size[1].number(1e-9, 1e9);
     dvec3 const n = read_direction(l, position);
     dvec3 const up = std::abs(n.y) < 0.999 ? dvec3{0, 1, 0} : dvec3{0, 0, 1};
@@ -57,7 +58,7 @@ Rectangle read_rectangle(Yaml const& l)
     return {position - 0.5 * (u + v), u, v};
 }
 
-/// An emissive quad that shines to the side of u x v.
+/// Adds an emissive quad that shines in the direction of u x v.
 void add_rectangle(Yaml const& l, Scene& scene)
 {
     check_keys(l, "rectangle_light");
@@ -88,7 +89,7 @@ void add_rectangle(Yaml const& l, Scene& scene)
 void add_scene_file_light(Yaml const& l, Scene& scene)
 {
     if (!l.is_map() || !l.has("type"))
-        throw l.error("a light needs a type", "it is not known what it is", "type: point");
+        throw l.error("a light needs a type", "the key type is missing", "type: point");
     std::string const type = l.at("type").text();
     if (type == "rectangle") return add_rectangle(l, scene);
     Light light;
@@ -102,7 +103,7 @@ void add_scene_file_light(Yaml const& l, Scene& scene)
         check_keys(l, "directional_light");
         light.type = LightType::directional;
     } else {
-        throw l.at("type").error("there is no light type '" + type.substr(0, 64) + "'", "it is not known here",
+        throw l.at("type").error("there is no light type '" + type.substr(0, 64) + "'", "the type is unknown",
                                  "choose point, spot, directional or rectangle");
     }
     dvec3 const position = l.has("position") ? l.at("position").vector() : dvec3{0};
@@ -112,7 +113,7 @@ void add_scene_file_light(Yaml const& l, Scene& scene)
     if (l.has("cone")) {
         auto const angles = l.at("cone").items();
         if (angles.size() != 2)
-            throw l.at("cone").error("a cone has two angles", "inner and outer, degrees", "cone: [20, 30]");
+            throw l.at("cone").error("a cone needs two angles", "inner and outer, degrees", "cone: [20, 30]");
         double const outer = angles[1].number(0.01, 90), inner = angles[0].number(0, outer);
         light.cos_inner = float(std::cos(glm::radians(inner)));
         light.cos_outer = float(std::cos(glm::radians(outer)));

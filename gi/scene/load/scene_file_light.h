@@ -4,7 +4,7 @@
 
 namespace gi {
 
-/// A punctual light with its node, or for a rectangle an emissive mesh.
+/// Adds a punctual light with its node, or an emissive mesh for a rectangle light.
 void add_scene_file_light(Yaml const& light, Scene& scene);
 
 } // namespace gi

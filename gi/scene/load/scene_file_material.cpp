@@ -30,7 +30,7 @@ void change_material(Yaml const& o, Material& m)
         if (p.has("exponent")) m.phong_exponent = float(p.at("exponent").number(0, 1e6));
     }
     if (m.model == MaterialModel::phong && max_component(m.base_color + m.phong_specular) > 1)
-        throw o.error("base_color and phong specular add up to more than 1", "the surface would make light",
+        throw o.error("base_color and phong specular add up to more than 1", "the surface would create light",
                       "make one of them darker");
 }
 

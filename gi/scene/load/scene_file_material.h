@@ -4,7 +4,7 @@
 
 namespace gi {
 
-/// The values that one override of a scene file names; the others stay.
+/// Sets the values given in one override of a scene file; other values are kept.
 void change_material(Yaml const& values, Material& m);
 
 } // namespace gi

@@ -41,8 +41,8 @@ public:
         for (double const time : times) t.times_s.push_back(float(time));
         for (std::size_t i = 1; i < t.times_s.size(); ++i)
             if (!(t.times_s[i] > t.times_s[i - 1]))
-                throw wrong(fmt::format("the time of frame {} is not after that of the frame before", i),
-                            "let the times increase");
+                throw wrong(fmt::format("the time of frame {} is not after that of the previous frame", i),
+                            "use increasing times");
         if (t.period_s < double(t.times_s.back()) - 1e-6 * std::max(1.0, t.period_s))
             throw wrong("'duration_s' is smaller than the last time", "give the period of the loop");
         t.period_s = std::max(t.period_s, double(t.times_s.back()));
@@ -52,7 +52,7 @@ public:
 private:
     InputError wrong(std::string const& problem, std::string const& suggestion) const
     {
-        return {problem, "'" + file_ + "' says so", suggestion};
+        return {problem, "in '" + file_ + "'", suggestion};
     }
 
     void parse()
@@ -66,7 +66,7 @@ private:
                 at.column = text[i] == '\n' ? 1 : at.column + 1;
                 at.line += text[i] == '\n';
             }
-            throw InputError(at, "this is not JSON", "it cannot be understood from here on",
+            throw InputError(at, "this is not JSON", "it cannot be parsed from here on",
                              "correct it, or remove the file");
         }
         if (!root_.is_object()) throw wrong("there are no keys", "write {\"fps\": 24}");
@@ -98,14 +98,14 @@ private:
         json const& list = root_["times_s"];
         if (!list.is_array() || list.size() != frames_)
             throw wrong(fmt::format("'times_s' is not a list of {} numbers", frames_),
-                        fmt::format("give one for each of the {} frames beside it", frames_));
+                        fmt::format("give one for each of the {} frames in its folder", frames_));
         double const start = root_.contains("t0_s") ? number("t0_s", -kLongestSequence, kLongestSequence) : 0;
         for (json const& value : list) {
             double const t = value.is_number() ? value.get<double>() - start : -1;
             if (!(t >= 0) || !(t <= kLongestSequence))
-                throw wrong(fmt::format("time {} is not a number from t0_s on, below {:g}", times.size(),
+                throw wrong(fmt::format("time {} is not a number from t0_s up to {:g} s after it", times.size(),
                                         kLongestSequence),
-                            "give seconds");
+                            "give times in seconds");
             times.push_back(t);
         }
         return times;

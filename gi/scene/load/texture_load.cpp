@@ -30,7 +30,7 @@ std::int32_t add_texture(TexturePool& pool, unsigned char const* bytes, std::siz
     } catch (cv::Exception const& e) {
         throw bad(e.what());
     }
-    if (image.empty()) throw bad("no decoder knows it, or it is damaged");
+    if (image.empty()) throw bad("its format is not supported, or it is damaged");
     if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 1.0 / 257);
     if (image.depth() != CV_8U) throw bad("it has neither 8 nor 16 bits per channel");
     int const conversion = image.channels() == 1   ? cv::COLOR_GRAY2RGBA

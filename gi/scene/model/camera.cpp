@@ -33,16 +33,16 @@ void check_lens(Camera const& camera)
 {
     double const radius = camera.aperture_radius_m, focus = camera.focus_distance_m;
     if (!(radius >= 0 && radius <= kWidestLens_m))
-        throw InputError(fmt::format("an aperture radius of {} m", radius),
-                         fmt::format("a lens has 0 to {:g} m", kWidestLens_m), "give its radius in metres, or 0");
+        throw InputError(fmt::format("the aperture radius is {} m", radius),
+                         fmt::format("it must be 0 to {:g} m", kWidestLens_m), "give its radius in metres, or 0");
     if (radius == 0) return;
     if (camera.orthographic)
         throw InputError("the orthographic camera '" + camera.name + "' has an aperture",
-                         "its rays do not pass through one place",
+                         "its rays do not pass through one point",
                          "choose a perspective camera, or a radius of 0");
     if (!(focus >= kNearestFocus_m && focus <= kFarthestFocus_m))
-        throw InputError(fmt::format("a focus distance of {} m", focus),
-                         fmt::format("the plane in focus lies {:g} to {:g} m before the lens", kNearestFocus_m,
+        throw InputError(fmt::format("the focus distance is {} m", focus),
+                         fmt::format("the plane in focus must be {:g} to {:g} m from the lens", kNearestFocus_m,
                                      kFarthestFocus_m),
                          "give the distance along the view in metres");
 }
@@ -52,11 +52,11 @@ Camera look_at(dvec3 from, dvec3 at, double yfov_deg)
     dvec3 const back = from - at;
     double const length = glm::length(back);
     if (!(length > 0) || !std::isfinite(length) || !std::isfinite(glm::length(from)))
-        throw InputError("the camera has no direction", "it looks from a point at the same point or at no number",
+        throw InputError("the camera has no direction", "it looks at its own position or a value is not finite",
                          "give two different points");
     if (!(yfov_deg > 0) || !(yfov_deg < 180))
         throw InputError("the field of view is not between 0 and 180 degrees",
-                         "a perspective needs an opening angle", "45 is usual");
+                         "a perspective camera needs an opening angle", "45 is a usual value");
     Camera camera;
     camera.yfov_rad = glm::radians(yfov_deg);
     dvec3 const z = back / length;

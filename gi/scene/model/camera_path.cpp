@@ -9,13 +9,13 @@
 namespace gi {
 namespace {
 
-/// Where a time lies: u = 0..1 between keys i and i + 1.
+/// Position of a time: u = 0..1 between keys i and i + 1.
 struct Segment {
     std::size_t i;
     double u, span_s;
 };
 
-/// The rotation by the angle |v| about v.
+/// Returns the rotation by the angle |v| about v.
 dquat exponential(dvec3 v)
 {
     double const angle = glm::length(v);
@@ -36,7 +36,7 @@ class PathCurves {
 public:
     explicit PathCurves(std::vector<CameraKey> const& keys) : keys_(keys) {}
 
-    /// A vector of the keys along its cubic curve.
+    /// Interpolates a vector of the keys along its cubic curve.
     dvec3 point(Segment s, std::function<dvec3(CameraKey const&)> const& value) const
     {
         auto const chord = [&](std::size_t i) { return (value(keys_[i + 1]) - value(keys_[i])) / span(i); };
@@ -86,7 +86,7 @@ private:
 
     double span(std::size_t i) const { return keys_[i + 1].time_s - keys_[i].time_s; }
 
-    /// At key i, per second, from the chords per second between keys.
+    /// Velocity at key i, per second, from the chords per second between keys.
     dvec3 velocity(std::size_t i, Chord const& chord) const
     {
         std::size_t const last = keys_.size() - 1;

@@ -14,8 +14,7 @@ namespace {
 
 bool usable(vec3 p)
 {
-    return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest &&
-           std::abs(p.z) <= kFarthest; // not NaN either
+    return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest; // false for NaN
 }
 
 bool has_area(vec3 a, vec3 b, vec3 c)

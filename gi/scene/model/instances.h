@@ -1,5 +1,5 @@
 #pragma once
-// Meshes at nodes: where each lies in the arrays of a World, and how its vertices and triangles get there.
+// Instances of meshes at nodes: their ranges in the arrays of a World, and writing their vertices and triangles.
 
 #include "gi/core/report.h"
 #include "gi/scene/model/world.h"
@@ -15,38 +15,37 @@ struct Instance {
     std::size_t node = 0;
     Mesh const* mesh = nullptr;
     vec3 center{0};                                   ///< center_of(*mesh)
-    std::string why_moving;                           ///< empty = it cannot
+    std::string why_moving;                           ///< empty = it cannot move
     std::size_t first_vertex = 0, first_triangle = 0; ///< in the World
     InstancePlacement placement;
-    std::uint64_t unusable_vertices = 0;  ///< not finite or beyond 1e18 m, at the present moment
-    std::optional<bool> corners_mirrored; ///< the mesh's corners are written, mirrored or not
+    std::uint64_t unusable_vertices = 0;  ///< not finite or beyond 1e18 m, at the current time
+    std::optional<bool> corners_mirrored; ///< winding of the corners in World; empty = must be written
 
     bool moves() const { return !why_moving.empty(); }
 };
 
-/// All instances, those that cannot move first; first_vertex is set. Throws InputError if a count overflows 32
+/// Returns all instances, static ones first, with first_vertex set. Throws InputError if a count overflows 32
 /// bits.
 std::vector<Instance> find_instances(Scene const& scene);
 
-/// Sizes the arrays of vertices and fills in what time does not change: texture coordinates, colours, and zeros
+/// Resizes the vertex arrays and writes the time-independent attributes: texture coordinates, colours, and zeros
 /// for normals and tangents that a mesh does not have.
 void prepare_vertices(World& world, std::vector<Instance> const& instances);
 
-/// Vertices of an instance, from its placement; they must be there for the triangles.
+/// Writes the vertices of an instance from its placement. Call it before the functions for its triangles.
 void deform_into(World& world, Instance const& instance);
 
-/// Append the triangles of an instance that cannot move, but for those that are not finite or have no area
-/// (reported).
+/// Appends the triangles of a static instance; skips and reports those that are not finite or have no area.
 void append_static_triangles(World& world, Instance& instance, Report& report);
-/// Append all triangles of an instance that moves, with no corners yet.
+/// Appends all triangles of a moving instance, without corners.
 void append_moving_triangles(World& world, Instance& instance);
-/// The corners of a moving instance's triangles at this moment. Vertices that are not usable go to the origin, and
-/// triangles that have one become points, so that nothing that is not finite is in the World.
+/// Writes the corners of a moving instance's triangles. Unusable vertices are moved to the origin and triangles
+/// that have one become points, so that the World contains only finite values.
 void write_moving_triangles(World& world, Instance& instance);
 
-/// What some triangles take up, and how many of them have no area.
+/// Bounds of a range of triangles, and the number of those without area.
 struct TriangleExtent {
-    Bounds bounds; ///< of those with area
+    Bounds bounds; ///< of the triangles with area
     std::uint64_t flat = 0;
 };
 TriangleExtent measure_triangles(World const& world, std::size_t first, std::size_t end);

@@ -1,5 +1,5 @@
 #pragma once
-// Materials as plain data. One struct holds both models; what they mean is in bsdf.h and docs/methods.md.
+// Materials as plain data. One struct holds both models; bsdf.h and docs/methods.md define them.
 
 #include "gi/scene/model/texture.h"
 
@@ -29,7 +29,7 @@ struct Material {
     float specular = 1;       ///< KHR_materials_specular.specularFactor; 0 = pure Lambert
     vec3 specular_color{1};   ///< KHR_materials_specular.specularColorFactor
     float ior = 1.5f;         ///< >= 1
-    float transmission = 0;   ///< 0..1, share of the non-reflected light of a dielectric that is transmitted
+    float transmission = 0;   ///< 0..1, fraction of a dielectric's non-reflected light that is transmitted
     vec3 phong_specular{0};   ///< k_s of f = k_s (n+1)/(2 pi) (r . w)^n
     float phong_exponent = 1; ///< n >= 0
     vec3 emission{0};         ///< radiance, W/(m2 sr) = emissiveFactor * emissive_strength

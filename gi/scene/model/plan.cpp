@@ -73,10 +73,10 @@ ScenePlan plan_scene(World const& world)
     std::size_t const moving = world.triangles.size() - world.static_triangles;
     std::vector<std::string> const reasons = reasons_for_motion(scene);
     plan.moving_parts =
-        decide("parts renewed with time", moving > 0,
+        decide("updates of moving parts", moving > 0,
                fmt::format("{} of {} triangles in {} of {} instances can move: {}", moving, world.triangles.size(),
                            world.instances - world.static_instances, world.instances, fmt::join(reasons, "; ")),
-               fmt::format("all {} triangles stay where they are", world.triangles.size()));
+               fmt::format("none of the {} triangles can move", world.triangles.size()));
     return plan;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
-// The scene plan: what is built for this scene and what is left out, each with its reason; `lightwell info` prints
-// it. Tables (lights, sky, normals) are built where the world has what they hold; alpha tests where the plan says
-// so.
+// The scene plan: what is built for this scene and what is not, each with its reason; printed by `lightwell info`.
+// Tables (lights, sky, normals) are built if the world has the data for them, alpha tests if the plan says so.
 
 #include "gi/scene/model/world.h"
 
@@ -17,15 +16,15 @@ struct PlanItem {
 };
 
 struct ScenePlan {
-    bool alpha_tests = false; ///< some material is a mask or blends: rays must ask for coverage
+    bool alpha_tests = false; ///< some material is a mask or blends: rays must evaluate coverage
     bool environment = false;
     bool emitters = false;
     bool punctual_lights = false;
     bool delta_lobes = false; ///< mirrors or smooth glass
     bool transmission = false;
     bool textures = false, normal_maps = false;
-    bool skins = false, morphs = false, motion = false; ///< motion: some clip plays
-    bool moving_parts = false; ///< some triangles can move: what holds them is renewed with time, the rest is not
+    bool skins = false, morphs = false, motion = false; ///< motion: at least one clip plays
+    bool moving_parts = false; ///< some triangles can move; only what contains them is updated over time
     std::vector<PlanItem> items;
 };
 

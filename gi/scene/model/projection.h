@@ -1,5 +1,5 @@
 #pragma once
-// The inverse of CameraRays::through, made ready for many points; in double.
+// Inverse of CameraRays::through, precomputed in double for many points.
 
 #include "gi/scene/model/camera.h"
 
@@ -9,7 +9,7 @@ class Projection {
 public:
     explicit Projection(CameraRays const& camera);
 
-    /// Of a point in the same frame: pixel position and depth along forward (m).
+    /// Returns the pixel position (x, y) and the depth along forward (m) of a point in the same frame.
     vec3 operator()(vec3 point) const
     {
         dvec3 const to = dvec3(point) - origin_;

@@ -1,6 +1,6 @@
 #pragma once
-// A scene as its authors wrote it: a node graph with meshes, materials, skins, clips, cameras and lights.
-// world.h turns it into what the renderers see at one moment.
+// A scene as authored: a node graph with meshes, materials, skins, clips, cameras and lights.
+// world.h evaluates it to triangles and lights at one moment in time for the renderers.
 
 #include "gi/core/math.h"
 #include "gi/scene/model/camera.h"
@@ -45,11 +45,11 @@ struct Node {
     std::vector<std::int32_t> meshes;                ///< several nodes may share a mesh (instances)
     std::int32_t skin = -1, camera = -1, light = -1; ///< indices into Scene
     std::vector<float> morph_weights;
-    bool driven = false; ///< something outside the clips may move it (a tracker, an editor)
+    bool driven = false; ///< may be moved by something other than clips (a tracker, an editor)
 };
 
-/// How joints are blended (deform_kernels.h): linear skinning is what files mean; dual quaternions keep the volume
-/// of what is twisted.
+/// Blending of joints (deform_kernels.h): linear skinning is what scene files assume; dual quaternion skinning
+/// preserves the volume of twisted limbs.
 enum class SkinningMethod : std::uint8_t { linear, dual_quaternion };
 
 struct Skin {
@@ -58,9 +58,9 @@ struct Skin {
     SkinningMethod method = SkinningMethod::linear;
 };
 
-/// `morph_frame` has one number f per key: morph target f - 1 alone, target 0 being the mesh itself; between whole
-/// numbers the two around it, and one beyond the last target is the mesh again. It takes a key per frame where
-/// morph_weights would take one per pair of frames.
+/// `morph_frame` has one number f per key: f = 0 is the mesh itself and f >= 1 is morph target f - 1 alone;
+/// fractional values interpolate between the two neighbours, and one beyond the last target is the mesh again. It
+/// stores one number per frame where morph_weights would store one per pair of frames.
 enum class ChannelPath : std::uint8_t { translation, rotation, scale, morph_weights, morph_frame };
 enum class Interpolation : std::uint8_t { step, linear, cubic_spline };
 
@@ -77,14 +77,14 @@ struct AnimationChannel {
 struct Animation {
     std::string name;
     std::vector<AnimationChannel> channels;
-    double duration_s = 0; ///< period of a clip that loops
-    double closing_s = 0;  ///< its last part, which leads from the last key back to the first; only loops play it
+    double duration_s = 0; ///< period of a looping clip
+    double closing_s = 0;  ///< length of the last part, from the last key back to the first; only loops play it
 };
 
-/// A clip that plays: local time = offset + speed * t, wrapped into the clip if it loops, else held at its ends.
-/// Where several clips move the same part of a node, the part is their mean by weight: weights count relative to
-/// those of the other clips that move it, whatever their sum, and the rest pose never fills up. A clip of weight 0
-/// (or less) does not play.
+/// A playing clip: local time = offset + speed * t, wrapped into the clip if it loops, else clamped to its ends.
+/// If several clips move the same part of a node, the result is their weighted mean: weights are normalised over
+/// the clips that move the part, whatever their sum, and the rest pose is not mixed in. A clip of weight 0 (or
+/// less) does not play.
 struct Playback {
     std::int32_t animation = -1;
     double offset_s = 0, speed = 1;
@@ -100,11 +100,11 @@ struct EnvironmentMap {
     vec3 scale{1};
 };
 
-/// What the camera sees where its ray meets no surface. Light, mirrors and glass know the map alone.
+/// Background that the camera sees where its ray hits no surface. Lighting, mirrors and glass use only the map.
 enum class BackgroundKind : std::uint8_t { map, color, transparent };
 struct Background {
     BackgroundKind kind = BackgroundKind::map;
-    vec3 color{0}; ///< radiance, where that is the kind
+    vec3 color{0}; ///< radiance, for kind `color`
 };
 
 struct Scene {
@@ -116,15 +116,15 @@ struct Scene {
     TexturePool textures;
     std::vector<Skin> skins;
     std::vector<Animation> animations;
-    std::vector<Playback> playbacks; ///< what moves when a time is given; loaders: the first clip
+    std::vector<Playback> playbacks; ///< clips that play when a time is given; loaders choose the first clip
     std::vector<Camera> cameras;     ///< world_from_camera is taken from the node that holds it
     std::vector<Light> lights;       ///< position/direction are taken from the node that holds it
     std::optional<EnvironmentMap> environment;
-    Background background;          ///< append() leaves it as it is
-    std::vector<std::string> files; ///< all that were read: the scene's own and those it names
+    Background background;          ///< not changed by append()
+    std::vector<std::string> files; ///< all files read: the scene's own and those it refers to
 };
 
-/// Append a copy of everything in `part` below a new root node of that name and transform.
+/// Appends everything in `part` below a new root node with the given name and transform.
 void append(Scene& scene, Scene part, std::string const& name, dmat4 const& transform);
 
 } // namespace gi

@@ -17,25 +17,25 @@ void check(bool good, std::string const& problem, char const* why, char const* s
 
 void check(SkyOptions const& o)
 {
-    check(o.turbidity >= 2 && o.turbidity <= 10, fmt::format("a sky of turbidity {}", o.turbidity),
-          "the model was fitted to clear and hazy skies, and beyond gives negative light",
+    check(o.turbidity >= 2 && o.turbidity <= 10, fmt::format("the sky's turbidity is {}", o.turbidity),
+          "the model fits clear to hazy skies and gives negative light otherwise",
           "choose 2 (very clear) to 10 (hazy)");
     check(o.sun_elevation_deg >= 0 && o.sun_elevation_deg <= 90,
-          fmt::format("a sun at an elevation of {} degrees", o.sun_elevation_deg), "the model knows the day only",
+          fmt::format("the sun's elevation is {} degrees", o.sun_elevation_deg), "the model has no night sky",
           "choose 0 (at the horizon) to 90 (overhead)");
     check(o.sun_azimuth_deg >= -360 && o.sun_azimuth_deg <= 360,
-          fmt::format("a sun at an azimuth of {} degrees", o.sun_azimuth_deg), "that is more than a turn",
+          fmt::format("the sun's azimuth is {} degrees", o.sun_azimuth_deg), "it is more than a full turn",
           "choose -360 to 360, from -Z towards +X");
     for (int c = 0; c < 3; ++c)
         check(o.ground_albedo[c] >= 0 && o.ground_albedo[c] <= 1,
-              fmt::format("a ground of albedo {}", o.ground_albedo[c]), "it would reflect more than it receives",
+              fmt::format("the ground albedo is {}", o.ground_albedo[c]), "it would reflect more than it receives",
               "choose 0 to 1");
     check(o.width >= 8 && o.width <= 32768 && o.height >= 4 && o.height <= 16384,
-          fmt::format("a sky of {} x {} texels", o.width, o.height), "8 x 4 to 32768 x 16384 are made",
+          fmt::format("the sky map has {} x {} texels", o.width, o.height), "8 x 4 to 32768 x 16384 work",
           "choose 1024x512");
 }
 
-/// Nearest colour of the same luminance that has no negative channel, on the way to grey.
+/// Desaturates a colour towards grey of the same luminance until no channel is negative.
 dvec3 into_gamut(dvec3 c)
 {
     double const grey = glm::dot(c, dvec3{0.2126, 0.7152, 0.0722}), least = std::min({c.x, c.y, c.z});
@@ -48,7 +48,8 @@ dvec3 to_rec709(LuminanceXy const& v)
     return into_gamut(xyz_to_rec709(v.luminance * xyz));
 }
 
-// Outside the atmosphere, W / (cm2 um sr) (the paper's table 2), and absorption of ozone and water vapour, 1/cm.
+// Solar radiance outside the atmosphere, W / (cm2 um sr) (the paper's table 2), and absorption of ozone and water
+// vapour, 1/cm.
 constexpr std::array kSun{1655.9,  1623.37, 2112.75, 2588.82, 2582.91, 2423.23, 2676.05, 2965.83, 3054.54, 3005.75,
                           3066.37, 2883.04, 2871.21, 2782.5,  2710.06, 2723.36, 2636.13, 2550.38, 2506.02, 2531.16,
                           2535.59, 2513.42, 2463.15, 2417.32, 2368.53, 2321.21, 2282.77, 2233.98, 2197.02, 2152.67,
@@ -59,7 +60,7 @@ constexpr std::array kOzone{0.003, 0.006, 0.009, 0.014, 0.021, 0.030, 0.040, 0.0
 constexpr std::array kVapour{0.0, 0.016, 0.024, 0.0125, 1.0, 0.87, 0.061, 0.001};
 
 /// Preetham et al., appendix A.1, with 0.35 cm of ozone, 2 cm of water and an aerosol exponent of 1.3. Oxygen
-/// absorbs beyond 750 nm only.
+/// is omitted because it absorbs only beyond 750 nm.
 double transmittance(double nm, double turbidity, double air_mass)
 {
     Spectrum const ozone{450, 10, kOzone}, vapour{680, 10, kVapour};
@@ -116,7 +117,7 @@ Sky::Sky(SkyOptions const& o)
     for (Distribution* d : {&luminance_, &x_, &y_}) d->at_zenith = d->value(1, s);
     sun_radiance_ = attenuated_sun(t, s);
 
-    // Midpoints of equal parts of the projected hemisphere.
+    // Midpoint rule on cells of equal projected solid angle.
     constexpr int kRings = 64, kSectors = 128;
     double const solid_angle = 2 * kPiD * (1 - std::cos(kSunRadiusRad));
     dvec3 irradiance = sun_radiance_ * solid_angle * std::sin(elevation);

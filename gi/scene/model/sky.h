@@ -11,18 +11,18 @@
 // Units are photometric: the luminance of an RGB value (linear Rec. 709) is in kcd/m2, and so irradiances come in
 // klx. A blue sky has about 3 to 10, a high sun 1.4 million: render with --envmap-scale or --exposure.
 //
-// Below the horizon lies even ground that reflects, by its albedo, what sun and sky send to it.
+// Below the horizon is uniform ground that reflects the light of sun and sky according to its albedo.
 
 #include "gi/scene/model/scene.h"
 
 namespace gi {
 
 struct SkyOptions {
-    double turbidity = 3;          ///< 2 (very clear) to 10 (hazy): beyond, the fit gives negative light
-    double sun_elevation_deg = 40; ///< of its centre, 0..90
+    double turbidity = 3;          ///< 2 (very clear) to 10 (hazy); outside, the fit gives negative light
+    double sun_elevation_deg = 40; ///< of the sun's centre, 0..90
     double sun_azimuth_deg = 120;  ///< from -Z towards +X, -360..360
-    bool sun = true;          ///< its disc is in the map; without it the ground is lit by the sun all the same
-    vec3 ground_albedo{0.2f}; ///< 0..1
+    bool sun = true;               ///< the map includes the sun's disc; the sun lights the ground in either case
+    vec3 ground_albedo{0.2f};      ///< 0..1
     std::uint32_t width = 1024, height = 512; ///< texels; 8..32768 x 4..16384
 };
 
@@ -42,13 +42,13 @@ public:
     LuminanceXy zenith() const { return zenith_; }
     /// @param direction unit, above the horizon (y > 0)
     LuminanceXy sky(dvec3 direction) const;
-    /// Linear Rec. 709, kcd/m2; no channel is negative. Of sky and ground, not of the sun.
+    /// Radiance of sky and ground without the sun: linear Rec. 709, kcd/m2, no negative channels.
     vec3 radiance(dvec3 direction) const;
-    /// Of every point of the disc, as above.
+    /// Radiance of every point of the sun's disc, same units.
     dvec3 sun_radiance() const { return sun_radiance_; }
 
 private:
-    /// Perez' five numbers of one of Y, x, y, and F(0, theta_sun).
+    /// Perez' five coefficients for one of Y, x, y, and F(0, theta_sun).
     struct Distribution {
         double a, b, c, d, e, at_zenith = 1;
         double value(double cos_theta, double gamma) const;
@@ -61,9 +61,10 @@ private:
     vec3 ground_{0};
 };
 
-/// The whole sphere. Texels of sky and ground are means; the sun's are such that the bilinear map has the disc's
-/// power and its horizontal irradiance at every size (overhead the latter to 0.4 % at 64 x 32). The part of the
-/// disc below the horizon is left out. Throws InputError as Sky does.
+/// Returns a map of the whole sphere. Texels of sky and ground are means; those of the sun are chosen such that
+/// the bilinear map has the disc's power and horizontal irradiance at every size (with the sun overhead, the
+/// irradiance to 0.4 % at 64 x 32). The part of the disc below the horizon is left out. Throws InputError as Sky
+/// does.
 EnvironmentMap sky_map(SkyOptions const& options);
 
 } // namespace gi

@@ -45,7 +45,7 @@ std::string join(Items const& items, Text const& text)
     return out.empty() ? "none" : out;
 }
 
-/// What the sky sends, unshadowed: integrated; harmonics only say where most comes from.
+/// Unshadowed irradiance from the environment, integrated numerically; harmonics only find the brightest normal.
 void describe_environment(World const& world, SceneSummary& s)
 {
     EnvironmentHarmonics const h = project(world, EnvironmentHarmonics::kMostDegree);

@@ -1,5 +1,5 @@
 #pragma once
-// What is in a scene, for people.
+// Human-readable summary of a scene.
 
 #include "gi/scene/model/world.h"
 

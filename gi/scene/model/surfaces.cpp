@@ -7,7 +7,7 @@
 namespace gi {
 namespace {
 
-/// The rounding of the three vertices and of the interpolation between them scales with the coordinates.
+/// Relative clearance: rounding errors of the vertices and of interpolation scale with the coordinates.
 constexpr float kClearance = 2e-6f;
 
 Surface surface_of(World const& world, std::size_t triangle)
@@ -30,7 +30,7 @@ Surface surface_of(World const& world, std::size_t triangle)
     if (emits(m)) s.flags |= Surface::kEmits;
     if (m.double_sided) s.flags |= Surface::kDoubleSided;
     if (world.normals.empty()) return s;
-    constexpr float kFlat = 1e-4f; // rad; more than positions in floats leave of a small box
+    constexpr float kFlat = 1e-4f; // rad; exceeds the angle error of a small box in float coordinates
     vec3 const n = shading_detail::triangle_normal(s);
     for (int k = 0; k < 3; ++k) {
         vec3 const given = world.normals[s.vertex[k]];

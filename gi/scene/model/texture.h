@@ -1,5 +1,5 @@
 #pragma once
-// Textures: all texels of a scene lie in one pool, so that a kernel needs one pointer for all of them.
+// Textures. All texels of a scene are stored in one pool, so that kernels need only one pointer.
 
 #include "gi/core/math.h"
 #include "gi/core/view.h"
@@ -15,17 +15,17 @@ struct Rgba8 {
 
 enum class Wrap : std::uint8_t { repeat, clamp, mirror };
 
-/// One image in the pool: texel (x, y) of row-major, top row first, is pool[first + y * width + x].
+/// One image in the pool, row-major with the top row first: texel (x, y) is pool[first + y * width + x].
 /// (u, v) = (0, 0) is the corner of the first texel (glTF convention).
 struct Texture {
     std::uint64_t first = 0;
     std::uint32_t width = 0, height = 0;
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false; ///< bilinear otherwise
-    bool srgb = false;    ///< r, g, b are sRGB-encoded (base colour, emissive, specular colour); a never is
+    bool srgb = false;    ///< r, g, b (not a) are sRGB-encoded: base colour, emissive, specular colour
 };
 
-/// How a material refers to a texture: KHR_texture_transform, uv' = T * R * S * uv.
+/// Reference of a material to a texture, with KHR_texture_transform: uv' = T * R * S * uv.
 struct TextureRef {
     std::int32_t texture = -1;                   ///< index into TexturePool::textures, -1 = none
     std::uint8_t uv_set = 0;                     ///< 0 or 1
@@ -45,7 +45,7 @@ struct TexturePoolView {
     View<float const> linear_of_srgb; ///< 256 entries
 };
 
-/// The sRGB decoding (IEC 61966-2-1) of 0..255. Static storage.
+/// Table of the sRGB decoding (IEC 61966-2-1) of 0..255, in static storage.
 View<float const> linear_of_srgb();
 
 inline TexturePoolView view(TexturePool const& pool) { return {pool.texels, pool.textures, linear_of_srgb()}; }

@@ -1,14 +1,14 @@
 #pragma once
-// The world at one moment: every instance, skin and morph target evaluated to world-space triangles, with the
-// tables that light sampling needs. Plain arrays in one index space; WorldView borrows them for kernels.
+// The world at one moment in time: every instance, skin and morph target evaluated to world-space triangles, with
+// the tables for light sampling. Plain arrays in one index space; WorldView borrows them for kernels.
 //
-// Coordinates are float metres relative to `origin`, which is the centre of the scene's bounds when those lie so
-// far from zero that floats would be coarse there (else 0); transforms are multiplied in double, and the origin
-// taken off, before they are rounded (deform_kernels.h has the error).
+// Coordinates are float metres relative to `origin`. The origin is the centre of the scene's bounds if these are
+// so far from zero that floats would be imprecise there, else 0. Transforms are multiplied in double and the
+// origin is subtracted before rounding to float (see deform_kernels.h for the error).
 //
-// Instances that can move (motion.h) come last, in vertices and in triangles; else nodes and their meshes keep
-// their order. MovingWorld (moving_world.h) takes a World from one moment to the next and writes behind
-// static_triangles and static_vertices only.
+// Instances that can move (motion.h) come last in the arrays of vertices and triangles; otherwise nodes and their
+// meshes keep their order. MovingWorld (moving_world.h) advances a World in time and writes only behind
+// static_triangles and static_vertices.
 
 #include "gi/core/alias_table.h"
 #include "gi/core/report.h"
@@ -31,16 +31,16 @@ inline Bounds joined(Bounds const& a, Bounds const& b)
     return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
 }
 
-/// What shading reads of one triangle, gathered on one cache line. Derived from the arrays of World.
+/// Data of one triangle for shading, packed into one cache line. Derived from the arrays of World.
 struct alignas(64) Surface {
-    static constexpr std::uint32_t kSmooth = 1; ///< its vertex normals differ from the triangle's
+    static constexpr std::uint32_t kSmooth = 1; ///< vertex normals differ from the triangle's normal
     static constexpr std::uint32_t kVaries = 2; ///< textures or vertex colours change the material across it
     static constexpr std::uint32_t kEmits = 4;
     static constexpr std::uint32_t kDoubleSided = 8;
 
-    vec3 corner, edge1, edge2; ///< vertex 0, and from it to vertices 1 and 2, m
-    float normal_scale;        ///< 1 / |edge1 x edge2|; 0 where that is too large or too small for floats
-    float clearance;           ///< m; more than the rounding error of a position interpolated on it
+    vec3 corner, edge1, edge2; ///< vertex 0 and the vectors from it to vertices 1 and 2, m
+    float normal_scale;        ///< 1 / |edge1 x edge2|; 0 if too large or too small for a float
+    float clearance;           ///< m; exceeds the rounding error of positions interpolated on the triangle
     std::uint32_t material, flags;
     uvec3 vertex;
 
@@ -48,11 +48,11 @@ struct alignas(64) Surface {
 };
 
 struct World {
-    std::shared_ptr<Scene const> scene; ///< textures; what else is there may have been replaced since
+    std::shared_ptr<Scene const> scene; ///< owns the textures; its lights, materials etc. may be outdated
     dvec3 origin{0};
     Bounds bounds;
 
-    // Vertices: arrays are empty where no mesh of the scene has the attribute.
+    // Vertices: an array is empty if no mesh of the scene has that attribute.
     std::vector<vec3> positions;
     std::vector<vec3> normals;  ///< zero vector = this vertex is flat shaded
     std::vector<vec4> tangents; ///< zero = none
@@ -64,9 +64,9 @@ struct World {
     struct Placed {
         std::uint32_t node, first_triangle;
     };
-    std::vector<Placed> placed; ///< per instance: its node of the scene, and its triangles up to the next one's
+    std::vector<Placed> placed; ///< per instance: scene node and first triangle; ends at the next one's
     std::uint32_t instances = 0, static_instances = 0;
-    std::uint32_t static_triangles = 0, static_vertices = 0; ///< those before never change
+    std::uint32_t static_triangles = 0, static_vertices = 0; ///< number that never change; they come first
     std::vector<Surface> surfaces;                           ///< per triangle
 
     std::vector<Material> materials; ///< the scene's, and the default material last
@@ -74,7 +74,7 @@ struct World {
     std::vector<Light> lights;       ///< in this frame
     std::vector<Camera> cameras;     ///< world_from_camera without origin removed (absolute, double)
     std::shared_ptr<EnvironmentMap const>
-        environment;                    ///< null = none. Its own rotation and scale are not read, but:
+        environment;                    ///< null = none; its rotation and scale are replaced by the next two
     float environment_rotation_rad = 0; ///< as EnvironmentMap::rotation_rad
     vec3 environment_scale{1};
 
@@ -87,12 +87,12 @@ struct World {
     float environment_pdf = 0;     ///< probability that select picks the environment
 };
 
-/// Time at which a scene is looked at: without one, nodes rest as the file has them.
+/// Time at which a scene is evaluated; without one, nodes are in the rest pose of the file.
 using SceneTime = std::optional<double>;
 
-/// Evaluate the scene. Triangles with a vertex that is not finite, or with no area, are skipped and counted; those
-/// of instances that can move keep their places and have no area meanwhile, so that indices hold at all times.
-/// @param origin  of the World, m; without one it is chosen as said above
+/// Evaluates the scene. Triangles with a non-finite vertex or without area are skipped and counted; in instances
+/// that can move they are kept as triangles without area, so that indices stay valid at all times.
+/// @param origin  of the World, m; without one it is chosen as described at the top of this file
 /// Throws InputError if a count overflows 32 bits.
 World build_world(std::shared_ptr<Scene const> scene, SceneTime time_s, Report& report,
                   std::optional<dvec3> origin = std::nullopt);
@@ -116,8 +116,8 @@ struct WorldView {
     View<vec3 const> environment_radiance; ///< empty = no environment
     std::uint32_t environment_width = 0, environment_height = 0;
     vec3 environment_scale{1};
-    float environment_pdf_per_luminance = 0; ///< of a direction in the middle of its texel, see light_sampling.h
-    float environment_cos = 1, environment_sin = 0; ///< of its rotation about +Y
+    float environment_pdf_per_luminance = 0; ///< for a direction at the centre of its texel, see light_sampling.h
+    float environment_cos = 1, environment_sin = 0; ///< of the map's rotation about +Y
     float environment_pdf = 0;
     Background background;
     float scene_radius = 0; ///< m

@@ -1,5 +1,5 @@
 #pragma once
-// The arrays of a World in a space, for kernels that run there.
+// Copy of the arrays of a World in a memory space, for kernels that run there.
 
 #include "gi/kernel/buffer.h"
 #include "gi/scene/motion/moving_world.h"
@@ -13,7 +13,7 @@ class WorldOn {
 public:
     explicit WorldOn(World const& world) { update(world, {}); }
 
-    /// Takes over what has changed; of vertices and triangles those that can move.
+    /// Copies what has changed; of vertices and triangles only those that can move.
     void update(World const& world, Changes const& changes)
     {
         WorldView now = gi::view(world);
@@ -37,7 +37,7 @@ public:
     WorldView const& view() const { return view_; }
 
 private:
-    /// What has to change for an array to be another one.
+    /// Kind of change that affects an array.
     enum class Part : std::uint8_t {
         nothing,
         vertices,
@@ -50,13 +50,13 @@ private:
     };
     static constexpr std::size_t kNone = ~std::size_t(0);
 
-    /// Item of an array.
+    /// Returns the first item of an array to copy again; kNone = nothing.
     static std::size_t first_changed(Part part, World const& world, Changes const& c)
     {
         switch (part) {
         case Part::vertices:
             return c.geometry ? world.static_vertices : kNone;
-        case Part::triangles: // those of something mirrored turn round
+        case Part::triangles: // mirroring an instance reverses their winding
             return c.geometry ? world.static_triangles : kNone;
         case Part::surfaces:
             return c.materials ? 0 : c.geometry ? world.static_triangles : kNone;

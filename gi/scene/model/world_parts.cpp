@@ -8,7 +8,7 @@
 namespace gi {
 namespace {
 
-/// What triangles' corners take up that floats can hold.
+/// Bounds of all usable triangle corners.
 Bounds corner_bounds(World const& world, std::vector<Instance> const& instances)
 {
     constexpr float kFarthest = 1e18f;
@@ -33,7 +33,7 @@ void place_and_deform(World& world, Pose const& pose, std::vector<Instance>& ins
     });
 }
 
-/// Where a far scene's centre is takes a second look from close by, since floats are coarse out there.
+/// Chooses the origin. The centre of a distant scene is refined iteratively, since floats are imprecise there.
 void choose_origin(World& world, Pose const& pose, std::vector<Instance>& instances)
 {
     for (int look = 0; look < 4; ++look) {

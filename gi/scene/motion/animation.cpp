@@ -22,7 +22,7 @@ void store(dquat const& q, float* out)
     out[3] = float(q.w);
 }
 
-/// The two keys around a time and how far between them, 0..1; `span` is their distance in s.
+/// The two keys around a time and the fraction between them, 0..1; `span` is their distance in s.
 struct KeyPair {
     std::size_t first, second;
     double fraction, span;
@@ -53,7 +53,7 @@ struct LocalTransform {
     std::optional<dmat4> matrix;
 };
 
-/// What the clips say of one node, summed with their weights.
+/// Weighted sum of the clips' values for one node.
 struct Blend {
     dvec3 translation{0}, scale{0};
     dquat rotation{0, 0, 0, 0}, first_rotation{1, 0, 0, 0};
@@ -100,7 +100,7 @@ void add_channel(AnimationChannel const& channel, double time_s, double weight, 
     }
 }
 
-/// Parts that no clip moves stay as they are.
+/// Parts that no clip moves are not changed.
 void apply(Blend const& blend, LocalTransform& local, std::vector<float>& morph_weights)
 {
     if (blend.translation_weight > 0) local.translation = blend.translation / blend.translation_weight;

@@ -15,7 +15,7 @@ constexpr dvec3 kUp{0, 1, 0};
 
 std::vector<std::int32_t> top_joints(Scene const& scene, std::int32_t head)
 {
-    std::vector<bool> inside(scene.nodes.size(), false); // joints of its skins, and what hangs on them
+    std::vector<bool> inside(scene.nodes.size(), false); // joints of its skins and all nodes below them
     inside[std::size_t(head)] = true;
     for (Skin const& s : scene.skins)
         if (std::find(s.joints.begin(), s.joints.end(), head) != s.joints.end())
@@ -49,7 +49,8 @@ Avatar::Arm make_arm(Scene const& scene, Pose const& rest, ArmJoints const& join
             arm.wrist.push_back(std::int32_t(n));
     }
     if (glm::length(fingers) < 1e-3 * near) fingers = wrist - elbow;
-    // Palms face down where arms are spread, and the body where they hang: there "up" is nearly along the fingers.
+    // Palms face down when the arms are spread, and face the body when they hang: "up" is then nearly along the
+    // fingers.
     dvec3 back = body * dvec3{0.3 * outward, 1, 0};
     if (double const length = glm::length(fingers); length > 0)
         back -= glm::dot(back, fingers) / (length * length) * fingers;
@@ -67,7 +68,7 @@ bool tracked(std::optional<dmat4> const& target)
     return true;
 }
 
-/// The horizontal direction in which a head looks, also where it looks straight up or down: its top then points
+/// Horizontal direction that a head faces; valid even if it looks straight up or down, since its top then points
 /// backwards or forwards.
 dvec3 heading(dquat const& head)
 {
@@ -86,9 +87,9 @@ void drive_head(Scene const& scene, Avatar const& avatar, dmat4 const& target, d
     move_below(scene, {avatar.head}, turn_about(joint_position(pose, avatar.head), turn), pose);
 }
 
-/// Down and outwards for a hand in front; for others that direction is carried along by the shortest turn. So it
-/// is undecided only for hands behind the head, where a fixed pole would be for two directions, one before the
-/// face.
+/// Pole direction of the elbow: down and outwards for a hand in front; for other hand directions, this pole is
+/// rotated along by the shortest rotation. So it is undefined only for hands behind the head, whereas a fixed pole
+/// would be undefined for two directions, one of them in front of the face.
 dvec3 elbow_direction(dvec3 to_hand, double outward, dquat const& body)
 {
     dvec3 const front = body * dvec3{0.3 * outward, -0.3, 0.9}, down = body * dvec3{0.4 * outward, -1, 0};
@@ -117,7 +118,7 @@ Avatar make_avatar(Scene const& scene, AvatarJoints const& joints)
     dvec3 left = joint_position(rest, joints.left.upper) - joint_position(rest, joints.right.upper);
     left.y = 0;
     if (!(glm::length(left) > 0))
-        throw InputError("the avatar's shoulders are one above the other", "it is not known where it looks",
+        throw InputError("one of the avatar's shoulders is above the other", "its viewing direction is undefined",
                          "stand it upright, with +Y up");
     avatar.world_from_body = orientation_of(left, kUp, 1);
     dvec3 const forward = avatar.world_from_body * dvec3{0, 0, 1};
@@ -125,7 +126,7 @@ Avatar make_avatar(Scene const& scene, AvatarJoints const& joints)
                              orientation_of(rest.world_from_node[std::size_t(joints.head)]);
     avatar.left = make_arm(scene, rest, joints.left, 1, avatar.world_from_body);
     avatar.right = make_arm(scene, rest, joints.right, -1, avatar.world_from_body);
-    // An avatar stands on y = 0 unless its joints reach below; ankles are a little above the soles.
+    // The floor is y = 0 unless joints lie below; ankles are a little above the soles.
     for (Skin const& skin : scene.skins)
         for (std::int32_t const j : skin.joints)
             avatar.floor_y = std::min(avatar.floor_y, joint_position(rest, j).y);

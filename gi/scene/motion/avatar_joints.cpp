@@ -11,7 +11,8 @@ namespace {
 
 enum class Side { none, left, right };
 
-/// "mixamorig:LeftForeArm", "LowerArm.L", "b_RightUpperArm_06" -> forearm, lowerarm, upperarm and their sides.
+/// A parsed joint name: "mixamorig:LeftForeArm", "LowerArm.L", "b_RightUpperArm_06" -> forearm, lowerarm, upperarm
+/// and their sides.
 struct JointName {
     Side side = Side::none;
     std::string part;
@@ -59,7 +60,7 @@ JointName parse_name(std::string const& name)
     return out;
 }
 
-/// Best first.
+/// Names in order of preference.
 std::vector<std::string> const kHead{"head"};
 std::vector<std::string> const kUpper{"upperarm", "arm", "uparm", "armupper", "shldrbend", "shldr", "shoulder"};
 std::vector<std::string> const kLower{"forearm", "lowerarm", "armlower", "forearmbend", "elbow"};
@@ -118,14 +119,14 @@ private:
             if (names_[i - 1].part == part) return joints_[i - 1];
         return -1;
     }
-    /// A joint of that name, or any node where none has it.
+    /// Returns a joint of that name, or else any node of that name.
     std::int32_t exact(std::string const& name) const
     {
         for (std::int32_t const j : joints_)
             if (node(j).name == name) return j;
         for (std::size_t i = 0; i < scene_.nodes.size(); ++i)
             if (scene_.nodes[i].name == name) return std::int32_t(i);
-        throw InputError("there is no joint '" + name.substr(0, 64) + "'", "the avatar cannot be moved by it",
+        throw InputError("there is no joint '" + name.substr(0, 64) + "'", "the avatar needs it",
                          "check the name");
     }
     std::int32_t only_joint_below(std::int32_t parent) const
@@ -159,11 +160,11 @@ private:
         for (auto const& [child, parent] : {std::pair{arm.lower, arm.upper}, {arm.hand, arm.lower}})
             if (child >= 0 && parent >= 0 && !below(child, parent))
                 throw InputError(fmt::format("joint '{}' is not below '{}'", node(child).name, node(parent).name),
-                                 fmt::format("they are no {} arm", which), "name upper arm, lower arm and hand");
+                                 fmt::format("they form no {} arm", which), "name upper arm, lower arm and hand");
         return arm;
     }
 
-    /// All -1 where one of them is not found.
+    /// Returns all -1 if one of the joints is not found.
     LegJoints find_leg(Side side, LegNames const& names, std::string const& which) const
     {
         LegJoints leg;
@@ -178,8 +179,8 @@ private:
         if (is_chain) return leg;
         if (!names.upper.empty() || !names.lower.empty() || !names.foot.empty())
             throw InputError(
-                fmt::format("'{}', '{}' and '{}' are no {} leg", names.upper, names.lower, names.foot, which),
-                "the shin is below the thigh, and neither below the foot", "name thigh, shin and foot");
+                fmt::format("'{}', '{}' and '{}' form no {} leg", names.upper, names.lower, names.foot, which),
+                "the shin must be below the thigh and neither below the foot", "name thigh, shin and foot");
         return {};
     }
 
@@ -208,8 +209,8 @@ AvatarJoints find_avatar_joints(Scene const& scene, AvatarNames const& names, st
     for (std::size_t s = 0; s < scene.skins.size(); ++s)
         for (std::int32_t const j : scene.skins[s].joints)
             if (known.size() < 2000) known += (known.empty() ? "" : ", ") + scene.nodes[std::size_t(j)].name;
-    throw InputError(fmt::format("the avatar has no {}", fmt::join(missing, ", ")),
-                     "no joint has one of the usual names", "name them; there are: " + known);
+    throw InputError(fmt::format("the avatar has no {}", fmt::join(missing, ", ")), "no joint has a known name",
+                     "name them; existing joints: " + known);
 }
 
 } // namespace gi

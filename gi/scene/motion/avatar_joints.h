@@ -1,16 +1,16 @@
 #pragma once
-// Which joints of a skeleton are head, arms, hands, legs and feet.
+// Identification of a skeleton's head, arms, hands, legs and feet.
 
 #include "gi/scene/model/scene.h"
 
 namespace gi {
 
-/// Node indices: the joint at the shoulder that moves the upper arm, elbow, wrist.
+/// Node indices of the shoulder joint (which moves the upper arm), the elbow and the wrist.
 struct ArmJoints {
     std::int32_t upper = -1, lower = -1, hand = -1;
 };
 
-/// The joint at the hip that moves the thigh, knee, ankle; all -1 where no legs can be told.
+/// Node indices of the hip joint (which moves the thigh), the knee and the ankle; all -1 if no legs are found.
 struct LegJoints {
     std::int32_t upper = -1, lower = -1, foot = -1;
 };
@@ -21,7 +21,7 @@ struct AvatarJoints {
     LegJoints left_leg, right_leg; ///< both or none
 };
 
-/// Names of nodes, for skeletons whose names tell nothing; those that are empty are looked for.
+/// Node names, for skeletons with unknown naming; empty names are searched for automatically.
 struct ArmNames {
     std::string upper, lower, hand;
 };
@@ -36,12 +36,12 @@ struct AvatarNames {
     LegNames left_leg{}, right_leg{};
 };
 
-/// Joints by their names in common skeletons: Mixamo ("mixamorig:LeftForeArm"), Quaternius and Blender
+/// Finds joints by the names of common skeletons: Mixamo ("mixamorig:LeftForeArm"), Quaternius and Blender
 /// ("LowerArm.L", "forearm.L"), Unreal ("lowerarm_l"), VRM, 3ds Max bipeds ("Bip01 L Forearm"), the glTF sample
-/// models. Where an elbow or wrist (knee or ankle) has no such name, it is the only joint below the one before it.
-/// Feet may hang elsewhere than on their legs, as in rigs with controls. Of several
-/// skeletons in a scene the first that has head and arms counts, or the given skin. Throws InputError that says
-/// what of these was not found and which joints there are; legs may be missing.
+/// models. An elbow or wrist (knee or ankle) without such a name is taken to be the only joint below the previous
+/// one. Feet need not be descendants of their legs, as in rigs with controls. If a scene has several skeletons,
+/// the given skin is used, or the first one with head and arms. Throws InputError with the missing and the
+/// existing joints; legs may be missing.
 AvatarJoints find_avatar_joints(Scene const& scene, AvatarNames const& names = {}, std::int32_t skin = -1);
 
 } // namespace gi

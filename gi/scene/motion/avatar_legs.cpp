@@ -10,9 +10,9 @@ namespace gi {
 namespace {
 
 constexpr double kMostRise_rad = 0.9;
-constexpr double kBallOfLeg = 0.15; // of the leg's length, before the ankle, where no toes tell
+constexpr double kBallOfLeg = 0.15; // of the leg's length, in front of the ankle, if there is no toe joint
 
-/// Before the ankle, m.
+/// Distance of the ball of the foot in front of the ankle, m.
 double ball_distance(Scene const& scene, Pose const& rest, std::int32_t foot, dvec3 forward, double leg_m)
 {
     double distance = kBallOfLeg * leg_m;
@@ -29,7 +29,7 @@ struct Foot {
     dquat rotation;
 };
 
-/// The least turn about the ball that brings the ankle within `reach_m` of the hip, or, where none does, the one
+/// Smallest rotation about the ball that brings the ankle within `reach_m` of the hip or, if impossible, the one
 /// that brings it nearest. With a = ankle - ball and d = hip - ball in the foot's frame, turned by t about its x
 /// axis: |d - R(t) a|^2 = d^2 + a^2 - 2 (A cos t + B sin t), A = dy ay + dz az, B = dz ay - dy az.
 Foot on_ball(Foot const& flat, dvec3 ball_in_foot, dvec3 hip, double reach_m)
@@ -40,7 +40,7 @@ Foot on_ball(Foot const& flat, dvec3 ball_in_foot, dvec3 hip, double reach_m)
     double const A = d.y * a.y + d.z * a.z, B = d.z * a.y - d.y * a.z, most = std::hypot(A, B);
     double const least = 0.5 * (glm::dot(d, d) + glm::dot(a, a) - reach_m * reach_m);
     double const nearest = std::atan2(B, A);
-    if (!(nearest < 0)) return flat; // only the heel rises
+    if (!(nearest < 0)) return flat; // only the heel may rise, not the toes
     double const within = least < most ? std::acos(std::max(-1.0, least / most)) : 0;
     dquat const rise = glm::angleAxis(std::max(-kMostRise_rad, nearest + within), dvec3{1, 0, 0});
     return {ball + flat.rotation * (rise * a), flat.rotation * rise};
@@ -74,7 +74,7 @@ void drive_leg(Scene const& scene, Avatar::Leg const& leg, dmat4 const& target, 
         on_ball({dvec3(target[3]), orientation_of(target)}, length_m * leg.ball_in_foot, hip, length_m);
     dvec3 const toes = orientation_of(target) * dvec3{0, 0, -1}, ahead = body * dvec3{0, 0, 1};
     dvec3 const level{toes.x, 0, toes.z};
-    // Toes that point backwards do not turn knees backwards.
+    // Toes that point backwards must not turn the knee backwards.
     dvec3 const forward = glm::dot(level, ahead) > -0.5 ? ahead + level : ahead;
     dvec3 const pole = turn_between({0, -1, 0}, foot.ankle - hip, body * dvec3{1, 0, 0}) * forward;
     dvec3 const ankle = bend_limb(scene, j.upper, j.lower, j.foot, foot.ankle, pole, pose);

@@ -1,16 +1,16 @@
 #pragma once
-// The vertices of one instance of a mesh in the world, one item per vertex: morph targets, then the node's
-// transform, linear blend skinning or dual quaternion skinning. skinning.h makes what these kernels read.
+// Kernels that compute the world-space vertices of one instance of a mesh, one item per vertex: morph targets,
+// then the node's transform, linear blend skinning or dual quaternion skinning. skinning.h prepares their inputs.
 //
-// Results are float metres relative to a fixed origin. Matrices are multiplied in double, with the origin taken
-// off, before they are rounded; meshes far from their own zero are moved to their centre first. So a position is
-// off by at most about 8 * 2^-24 * (its distance from the origin + the size of the mesh at that place), wherever
-// the origin lies. Multiply-adds are spelled out, so that every space gives the same positions, bit for bit; hit
-// buffers follow from them.
+// Results are float metres relative to a fixed origin. Matrices are multiplied in double and the origin is
+// subtracted before rounding; meshes far from their local zero are first moved to their centre. The error of a
+// position is therefore at most about 8 * 2^-24 * (its distance from the origin + the size of the mesh at that
+// place), wherever the origin lies. Explicit fused multiply-adds make host and device give the same positions, bit
+// for bit, because hit buffers depend on them.
 //
-// Normals are multiplied by the matrix of cofactors, which also exists where a transform flattens space, and
-// negated with the winding where the instance is mirrored; tangents by the matrix itself. What has no length
-// becomes zero.
+// Normals are multiplied by the cofactor matrix, which exists even for singular transforms, and negated together
+// with the winding if the instance is mirrored; tangents are multiplied by the matrix itself. Vectors without
+// length become zero.
 
 #include "gi/core/math.h"
 #include "gi/core/view.h"
@@ -19,7 +19,7 @@
 
 namespace gi {
 
-/// An affine map: row r is (linear part, offset).
+/// Affine map: row r is (linear part, offset).
 struct Affine {
     vec4 rows[3]{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 
@@ -28,20 +28,20 @@ struct Affine {
 
 using JointIndices = std::array<std::uint16_t, 4>;
 
-/// One morph target that counts; arrays are empty or as long as the mesh's positions.
+/// One morph target with non-zero weight; arrays are empty or as long as the mesh's positions.
 struct MorphView {
     View<vec3 const> positions, normals, tangents;
     float weight = 0;
 };
 
-/// A mesh as its author made it. Normals and tangents are empty or as long as the positions.
+/// A mesh as authored. Normals and tangents are empty or as long as the positions.
 struct MeshView {
     View<vec3 const> positions, normals;
     View<vec4 const> tangents;
     View<JointIndices const> joints;
     View<vec4 const> weights;
     View<MorphView const> morphs;
-    vec3 center{0}; ///< taken off the positions; the maps are for what is left
+    vec3 center{0}; ///< subtracted from the positions; the maps apply to the result
 };
 
 namespace deform_detail {
@@ -80,7 +80,7 @@ GI_FN inline vec3 unit(vec3 v)
     return length > 0 && length <= kInf ? vec3{v.x / length, v.y / length, v.z / length} : vec3{0};
 }
 
-/// Weights of a vertex with sum one; `any` is false where they are all zero or not numbers.
+/// Weights of a vertex, normalised to sum one; `any` is false if they are all zero or NaN.
 struct Weights {
     vec4 w;
     bool any;
@@ -95,14 +95,14 @@ GI_FN inline Weights normalised(vec4 w)
 
 } // namespace deform_detail
 
-/// Every vertex follows the node.
+/// Rigid placement: every vertex follows the node.
 struct RigidPlacement {
     Affine node;
 
     GI_FN Affine operator()(MeshView const&, std::size_t) const { return node; }
 };
 
-/// Linear blend skinning: the mean of the joints' maps by weight. Vertices without weights follow the node.
+/// Linear blend skinning: weighted mean of the joints' maps. Vertices without weights follow the node.
 struct LinearPlacement {
     Affine node;
     View<Affine const> joints;
@@ -120,7 +120,7 @@ struct LinearPlacement {
     }
 };
 
-/// A rotation `real` (x, y, z, w; unit) followed by a translation t, dual = 0.5 t real.
+/// Rigid motion: rotation `real` (x, y, z, w; unit) followed by a translation t, dual = 0.5 t real.
 struct DualQuaternion {
     vec4 real{0, 0, 0, 1}, dual{0};
 
@@ -128,12 +128,12 @@ struct DualQuaternion {
 };
 
 /// Dual quaternion skinning (Kavan, Collins, Zara & O'Sullivan 2008, "Geometric Skinning with Approximate Dual
-/// Quaternion Blending", DLB; two phases for scale, their section 4.4). Each joint's map is a rigid motion after a
-/// stretch: first the stretches are blended linearly, then the motions as dual quaternions, in the hemisphere of
-/// the joint that weighs most. So a vertex of one joint goes where linear skinning takes it, under any scale, and
-/// an even scale that all joints share commutes with the blending; where joints of unequal or uneven scale meet,
-/// the stretch goes linearly from one to the other about their rest places, and between them the two kinds of
-/// skinning differ in that, too.
+/// Quaternion Blending", DLB; two phases for scale, their section 4.4). Each joint's map is split into a
+/// stretch followed by a rigid motion: first the stretches are blended linearly, then the motions as dual
+/// quaternions, in the hemisphere of the joint with the largest weight. So a vertex of a single joint has the same
+/// position as with linear skinning, under any scale, and a uniform scale shared by all joints commutes with the
+/// blending. Between joints of different or non-uniform scale, the stretch is interpolated linearly about their
+/// rest positions, and there the two kinds of skinning differ in the stretch, too.
 struct DualQuaternionPlacement {
     Affine node;
     View<DualQuaternion const> motions;
@@ -158,7 +158,7 @@ struct DualQuaternionPlacement {
             dual = add_scaled(w, q.dual, dual);
         }
         float const length = std::sqrt(std::fma(real.w, real.w, dot(linear(real), linear(real))));
-        if (!(length > 1e-6f)) { // opposite turns that cancel: the one that weighs most
+        if (!(length > 1e-6f)) { // opposite rotations cancel: use the one of largest weight
             real = toward;
             dual = motions[j[std::size_t(pivot)]].dual;
         } else {
@@ -174,7 +174,7 @@ struct DualQuaternionPlacement {
     }
 
 private:
-    /// The motion after an affine map.
+    /// Returns the composition: the affine map followed by the rigid motion.
     GI_FN static Affine after(vec4 real, vec4 dual, Affine const& a)
     {
         using namespace deform_detail;
@@ -199,14 +199,14 @@ private:
     }
 };
 
-/// Item = vertex. Outputs are as long as the mesh's positions; normals and tangents may be empty where they are
-/// not wanted or the mesh has none.
+/// Item = vertex. Outputs are as long as the mesh's positions; normals and tangents may be empty if they are not
+/// needed or the mesh has none.
 template <class Placement>
 struct DeformVertices {
     MeshView mesh;
     Placement placement;
     float handedness = 1; ///< -1: the instance is mirrored
-    float shrink = 1;     ///< a power of two that brings the maps' linear parts near one, for squares of cofactors
+    float shrink = 1;     ///< power of two that scales the maps' linear parts to about one, against overflow
     View<vec3> positions, normals;
     View<vec4> tangents;
 
@@ -218,7 +218,7 @@ struct DeformVertices {
         if (normals.empty() && tangents.empty()) return;
         vec3 const x = shrink * linear(m.rows[0]), y = shrink * linear(m.rows[1]), z = shrink * linear(m.rows[2]);
         if (!normals.empty()) {
-            // The matrix of cofactors has the rows cross(y, z), cross(z, x), cross(x, y) as m has x, y, z.
+            // If m has the rows x, y, z, its cofactor matrix has the rows cross(y, z), cross(z, x), cross(x, y).
             vec3 const n = morphed(mesh.normals[i], i, &MorphView::normals);
             normals[i] = handedness * unit({dot(cross(y, z), n), dot(cross(z, x), n), dot(cross(x, y), n)});
         }

@@ -6,7 +6,7 @@
 namespace gi {
 namespace {
 
-/// Unit, at a right angle to a unit direction, as far towards `wish` as can be.
+/// Returns the unit vector perpendicular to a unit direction that is closest to `wish`.
 dvec3 perpendicular(dvec3 direction, dvec3 wish)
 {
     double const length = glm::length(wish);

@@ -5,7 +5,7 @@
 namespace gi {
 namespace {
 
-/// Whether the value of a channel depends on time: some key differs from the first, or a spline leaves its keys.
+/// True if the value of a channel depends on time: some key differs from the first, or a tangent is not 0.
 bool varies(AnimationChannel const& channel)
 {
     std::size_t const keys = channel.times_s.size();

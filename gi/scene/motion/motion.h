@@ -1,5 +1,6 @@
 #pragma once
-// What of a scene can move and why: the world keeps that apart from what cannot (world.h).
+// Determines which parts of a scene can move and why; the world stores them separately from static parts
+// (world.h).
 
 #include "gi/scene/model/scene.h"
 
@@ -8,20 +9,20 @@
 
 namespace gi {
 
-/// Reasons are empty where nothing moves.
+/// Reasons why nodes move; empty = does not move.
 struct Motion {
-    std::vector<std::string> node;  ///< per node: "clip 'walk'", "driven", also where only an ancestor moves
-    std::vector<std::string> morph; ///< per node: what changes its morph weights
+    std::vector<std::string> node;  ///< per node: "clip 'walk'", "driven", also if only an ancestor moves
+    std::vector<std::string> morph; ///< per node: reason why its morph weights change
 };
 
-/// A node moves where it or an ancestor is driven, or a channel of a clip that plays gives it values that change
-/// in time.
+/// A node moves if it or an ancestor is driven, or if a channel of a playing clip gives it values that change over
+/// time.
 Motion find_motion(Scene const& scene);
 
-/// Why one mesh at a node can move; empty = it cannot. A skinned mesh moves with the joints of its skin.
+/// Returns why a mesh at a node can move; empty = it cannot. A skinned mesh moves with the joints of its skin.
 std::string why_moving(Scene const& scene, Motion const& motion, std::size_t node, Mesh const& mesh);
 
-/// All reasons of the scene's instances, each once, in order.
+/// Returns the distinct reasons of the scene's instances, in order.
 std::vector<std::string> reasons_for_motion(Scene const& scene);
 
 } // namespace gi

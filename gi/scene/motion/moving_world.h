@@ -1,6 +1,6 @@
 #pragma once
-// A World that is taken from one moment to the next, and changed by hand, at the cost of what changed. At every
-// time its arrays are, bit for bit, those of build_world for the scene as it then is, at the same origin.
+// A World that can be advanced in time and edited at a cost proportional to what changed. Its arrays are always
+// bit for bit those that build_world would give for the current state of the scene, at the same origin.
 
 #include "gi/scene/model/world_parts.h"
 
@@ -9,21 +9,21 @@
 
 namespace gi {
 
-/// What is no longer as it was. Tables that follow from it within the World are up to date already; what others
-/// derived (hit buffers, BVHs, shadow maps, copies on a device) is theirs to renew.
+/// What changed in an update. Tables derived within the World are already up to date; data derived elsewhere (hit
+/// buffers, BVHs, shadow maps, copies on a device) must be updated by its owners.
 struct Changes {
     bool geometry = false; ///< vertices, corners and Surfaces of triangles that can move
     bool bounds = false;
     bool materials = false;    ///< materials, bsdfs, flags of Surfaces
-    bool coverage = false;     ///< where a material lets rays through: masks, blending
+    bool coverage = false;     ///< opacity of materials: masks, blending
     bool lights = false;       ///< punctual lights
     bool emitters = false;     ///< which triangles emit, or how much
     bool environment = false;  ///< the map, its rotation or scale
     bool light_select = false; ///< light_select, emitters, emitter_pdf or environment_pdf
     bool cameras = false;
     std::uint32_t moved_instances = 0,
-                  moved_triangles = 0; ///< those that did move; the others' arrays are untouched
-    std::uint64_t flat_triangles = 0;  ///< that can move and have no area now, or a vertex that is not finite
+                  moved_triangles = 0; ///< number that actually moved; data of others is unchanged
+    std::uint64_t flat_triangles = 0;  ///< can move and currently have no area or a non-finite vertex
     std::vector<std::string>
         reasons; ///< for --stats: "3 of 4 moving instances, 2496 triangles (skin, clip 'walk')"
 
@@ -32,12 +32,12 @@ struct Changes {
         return geometry || bounds || materials || coverage || lights || emitters || environment || light_select ||
                cameras;
     }
-    /// Of this and, after it, that.
+    /// Adds the changes of a later update.
     void add(Changes const& later);
 };
 
-/// Arrays may move in memory when something changes, but for the vertices, triangles and Surfaces: take
-/// view(world()) anew. Not for use by several threads at once.
+/// After a change, call view(world()) again, because all arrays except vertices, triangles and Surfaces may have
+/// been reallocated. Not thread-safe.
 class MovingWorld {
 public:
     /// As build_world.
@@ -45,25 +45,26 @@ public:
                 std::optional<dvec3> origin = std::nullopt);
 
     World const& world() const { return parts_.world; }
-    /// Instances that can move, in the order of their triangles, and why.
+    /// Returns the instances that can move, with their reasons, in the order of their triangles.
     std::vector<Instance> const& moving() const { return parts_.moving; }
 
-    /// To what the clips that play say of this time.
+    /// Advances to the pose of the playing clips at this time.
     Changes advance(double time_s);
-    /// To a pose that something else made, of the same scene: only driven nodes and those that clips move may
+    /// Advances to a pose of the same scene from another source; only driven nodes and those that clips move may
     /// differ.
     Changes advance(Pose const& pose);
 
-    /// @param k  index into World::lights. Place and direction count only where the light's node cannot move: else
-    /// they are the node's again with the next advance. Throws InputError where there is no such light, or it is
-    /// not finite.
+    /// @param k  index into World::lights. Position and direction last only if the light's node cannot move;
+    /// otherwise the next advance() resets them to the node's. Throws InputError if there is no such light, or if
+    /// it is not finite.
     Changes set_light(std::size_t k, Light const& light);
-    /// @param k  index into World::materials. Throws InputError where there is no such material, or its textures
-    /// are not the scene's.
+    /// @param k  index into World::materials. Throws InputError if there is no such material, or if it refers to
+    /// textures that the scene does not have.
     Changes set_material(std::size_t k, Material const& material);
-    /// Null: none. Rotation and scale are the map's. Throws InputError where its size is not that of its texels.
+    /// Sets the environment map, null = none. Rotation and scale are taken from the map. Throws InputError if its
+    /// size does not match its number of texels.
     Changes set_environment(std::shared_ptr<EnvironmentMap const> map);
-    /// Turn and scale the map that is there. Throws InputError for a scale that is negative or not finite.
+    /// Rotates and scales the current map. Throws InputError if the scale is negative or not finite.
     Changes turn_environment(float rotation_rad, vec3 scale);
 
 private:

@@ -27,7 +27,7 @@ double largest_entry(dmat4 const& m)
     return most;
 }
 
-/// One over the largest of some maps, as a power of two.
+/// Reciprocal of the largest entry of some maps, as a power of two.
 float shrink_for(double largest)
 {
     if (!(largest > 1e-30) || !(largest < 1e30)) return 1;
@@ -36,7 +36,7 @@ float shrink_for(double largest)
 
 double determinant(dmat4 const& m) { return glm::determinant(glm::dmat3(m)); }
 
-/// Splits the joints' maps into stretches and motions. @param centers  the joints' places in the mesh at rest
+/// Splits the joints' maps into stretches and motions. @param centers  positions of the joints in the mesh at rest
 void make_dual_quaternions(std::vector<dmat4> const& maps, std::vector<dvec3> const& centers,
                            InstancePlacement& to)
 {
@@ -56,7 +56,8 @@ void make_dual_quaternions(std::vector<dmat4> const& maps, std::vector<dvec3> co
         glm::dmat3 const stretch = glm::transpose(rotation) * linear;
         for (int c = 0; c < 3; ++c)
             for (int r = 0; r < 3; ++r) even &= std::abs(stretch[c][r] - (c == r ? shared : 0)) < 1e-6 * shared;
-        // x -> stretch (x - center) + shared center, then the rotation, then to where the map takes it.
+        // x -> stretch (x - center) + shared center, then the rotation, then the translation to the mapped
+        // position.
         to.stretches.push_back(to_affine(stretch, shared * centers[j] - stretch * centers[j]));
         dvec3 const moved = dvec3(maps[j] * glm::dvec4(centers[j], 1)) - rotation * (shared * centers[j]);
         dquat const q = glm::normalize(glm::quat_cast(rotation));
@@ -74,7 +75,7 @@ dvec3 rest_place(mat4 const& inverse_bind)
     return -(glm::inverse(glm::dmat3(m)) * dvec3(m[3]));
 }
 
-/// Whether joints turn the winding round: by the determinants at the first vertex that has weights.
+/// True if the joints reverse the winding, by the determinants at the first vertex that has weights.
 bool joints_mirror(Mesh const& mesh, std::vector<dmat4> const& maps, bool node_mirrors)
 {
     for (std::size_t v = 0; v < mesh.weights.size(); ++v) {
@@ -107,10 +108,10 @@ void run(Mesh const& mesh, MeshView const& m, Placement const& placement, Instan
 
 vec3 center_of(Mesh const& mesh)
 {
-    constexpr float kFar = 4; // times the size; nearer than that the rounding does not matter
+    constexpr float kFar = 4; // times the size; below this the rounding error is negligible
     vec3 low{kInf}, high{-kInf};
     for (vec3 const p : mesh.positions)
-        // Others are skipped (world.h), so they have no say in where the centre is.
+        // Other vertices are skipped (world.h), so they must not affect the centre.
         if (max_component(glm::abs(p)) <= kFarthest && all_finite(p)) {
             low = glm::min(low, p);
             high = glm::max(high, p);
@@ -124,7 +125,7 @@ vec3 center_of(Mesh const& mesh)
 void place_instance(Scene const& scene, Pose const& pose, std::size_t node, Mesh const& mesh, vec3 center,
                     dvec3 origin, InstancePlacement& placement)
 {
-    auto const relative = [&](dmat4 m) { // to the centre, from the origin
+    auto const relative = [&](dmat4 m) { // maps from the centre, to positions relative to the origin
         m[3] = m * glm::dvec4(dvec3(center), 1) - glm::dvec4(origin, 0);
         return m;
     };

@@ -1,7 +1,7 @@
 #pragma once
 // Scattering at a point of a surface. Directions are unit vectors in the local shading frame, z = shading normal,
 // both pointing away from the surface; wo is towards the viewer, wi towards the light. f is in 1/sr.
-// Solid-angle measure throughout; perfect mirrors and smooth glass are delta lobes that only `sample` sees.
+// Solid-angle measure throughout; perfect mirrors and smooth glass are delta lobes, handled only by `sample`.
 
 #include "gi/scene/model/material.h"
 
@@ -10,10 +10,9 @@ namespace gi {
 /// GGX alpha below which a lobe is a perfect mirror (roughness < 0.01).
 inline constexpr float kSmoothAlpha = 1e-4f;
 
-/// A material after its textures have been looked up: what scatters at one point.
-///   metal_rough: the diffuse base below a Schlick coat + GGX reflection with Fresnel f0..f90; a share `clear` of
-///   the
-///     surface is smooth dielectric instead (exact Fresnel, roughness ignored)
+/// Scattering parameters at one point: a material with its textures evaluated.
+///   metal_rough: the diffuse base below a Schlick coat + GGX reflection with Fresnel f0..f90; a share `clear`
+///     of the surface is smooth dielectric instead (exact Fresnel, roughness ignored)
 ///   phong: Lambert + Phong lobe
 struct Bsdf {
     MaterialModel model = MaterialModel::metal_rough;
@@ -23,13 +22,13 @@ struct Bsdf {
     float coat_f0 = 0, coat_f90 = 0; ///< the same of the dielectric coat over the base, largest channel
     float alpha = 1;                 ///< GGX width; < kSmoothAlpha: delta
     float clear = 0;                 ///< share that is glass, (1 - metallic) transmission; 0 = opaque
-    vec3 transmitted{0};             ///< tint of light that passes, times clear
+    vec3 transmitted{0};             ///< tint of transmitted light, times clear
     float ior = 1.5f;                ///< inside over outside, seen from the front face
     vec3 phong_specular{0};
     float phong_exponent = 1;
 };
 
-/// The factors of a material at one point: its own values times its textures.
+/// Factors of a material at one point: its own values times its textures.
 struct MaterialFactors {
     vec3 base_color;
     float metallic, roughness, specular;
@@ -39,7 +38,7 @@ struct MaterialFactors {
 
 /// glTF 2 appendix B with KHR_materials_specular, _ior and _transmission.
 GI_FN Bsdf make_bsdf(Material const& material, MaterialFactors const& factors);
-/// A material without textures.
+/// Same for a material without textures.
 GI_FN Bsdf make_bsdf(Material const& material);
 
 struct BsdfSample {
@@ -57,7 +56,7 @@ struct BsdfValue {
 };
 
 GI_FN BsdfValue evaluate(Bsdf const& bsdf, vec3 wo, vec3 wi);
-/// @param front  wo is on the front face (decides which side of a dielectric is the inside)
+/// @param front  wo is on the front face (determines which side of a dielectric is the inside)
 /// @param u_lobe selects the lobe, u the direction; uniform in [0, 1)
 GI_FN BsdfSample sample(Bsdf const& bsdf, vec3 wo, bool front, float u_lobe, vec2 u);
 /// True when every lobe is delta or black, so that sampling lights is useless.

@@ -19,7 +19,7 @@ GI_FN inline Bsdf make_bsdf(Material const& m, MaterialFactors const& f)
         b.phong_exponent = m.phong_exponent;
         return b;
     }
-    if (f.specular == 0 && f.metallic == 0 && f.transmission == 0) { // most of a room
+    if (f.specular == 0 && f.metallic == 0 && f.transmission == 0) { // most surfaces of a room
         b.diffuse = f.base_color;
         return b;
     }
@@ -43,8 +43,8 @@ GI_FN inline Bsdf make_bsdf(Material const& m)
 
 namespace bsdf_detail {
 
-/// The part of the light that passes the coat on the way in and out, so that base and coat together never reflect
-/// more than they receive, and reciprocally (Shirley et al. 1997).
+/// Fraction of light that passes the coat on the way in and out, such that base and coat together conserve energy
+/// and are reciprocal (Shirley et al. 1997).
 GI_FN inline float through_coat(Bsdf const& b, float cos_o, float cos_i)
 {
     if (b.coat_f90 == 0) return 1;
@@ -53,12 +53,12 @@ GI_FN inline float through_coat(Bsdf const& b, float cos_o, float cos_i)
     return (1 - schlick(b.coat_f0, b.coat_f90, cos_o)) * (1 - schlick(b.coat_f0, b.coat_f90, cos_i)) / mean;
 }
 
-/// Probabilities of sampling each lobe; all zero where everything is black.
+/// Probabilities of sampling each lobe; all zero if everything is black.
 struct LobeChances {
     float clear = 0, specular = 0, diffuse = 0;
 };
 
-/// By what each lobe can reflect at most.
+/// Probabilities in proportion to the maximum reflectance of each lobe.
 GI_FN inline LobeChances lobe_chances(Bsdf const& b, float cos_o)
 {
     float diffuse = max_component(b.diffuse);
@@ -87,13 +87,13 @@ GI_FN inline bool specular_is_delta(Bsdf const& b)
     return b.model == MaterialModel::metal_rough && b.alpha < kSmoothAlpha;
 }
 
-/// Nothing but a diffuse base: most surfaces of most rooms.
+/// True if the surface has only a diffuse base, as most surfaces of most rooms.
 GI_FN inline bool is_matt(Bsdf const& b)
 {
     return b.model == MaterialModel::metal_rough && b.f90.x == 0 && b.clear == 0;
 }
 
-/// Smooth glass or a thin sheet. @param chance probability of being here
+/// Samples smooth glass or a thin sheet. @param chance probability of having chosen this lobe
 GI_FN inline BsdfSample sample_clear(Bsdf const& b, vec3 wo, bool front, float u, float chance)
 {
     BsdfSample s;
@@ -117,7 +117,7 @@ GI_FN inline BsdfSample sample_clear(Bsdf const& b, vec3 wo, bool front, float u
     return s;
 }
 
-/// Through the specular lobe, where it is not delta.
+/// Samples the specular lobe if it is not delta.
 GI_FN inline vec3 sample_specular(Bsdf const& b, vec3 wo, vec2 u)
 {
     if (b.model == MaterialModel::metal_rough) return reflect(wo, sample_ggx_normal(wo, b.alpha, u));

@@ -15,8 +15,7 @@ constexpr double kCosineLobe[kDegrees] = {kPiD, 2 * kPiD / 3, kPiD / 4, 0, -kPiD
 
 using Values = std::array<double, EnvironmentHarmonics::kMost>;
 
-/// The part of Y_lm that depends on theta, at index(l, m), m >= 0, orthonormal together with cos(m phi), sin(m
-/// phi).
+/// Theta-dependent factors of Y_lm, at index(l, m), m >= 0, orthonormal together with cos(m phi), sin(m phi).
 Values polar_parts(double cos_theta, double sin_theta)
 {
     auto const at = EnvironmentHarmonics::index;
@@ -35,8 +34,8 @@ Values polar_parts(double cos_theta, double sin_theta)
     return p;
 }
 
-/// A row of the map, integrated along phi: with cos(m phi) at [m], with sin(m phi) at [-m] of the middle; and
-/// products of the row with itself and the row below.
+/// Integrals of a map row along phi: times cos(m phi) at index [m], times sin(m phi) at [-m], counted from the
+/// middle of the array; and products of the row with itself and the row below.
 struct RowSums {
     std::array<dvec3, 2 * kDegrees - 1> fourier{};
     dvec3 squared{0}, with_next{0};
@@ -59,7 +58,7 @@ RowSums sum_row(EnvironmentMap const& map, std::uint32_t y, std::vector<double> 
     return s;
 }
 
-/// Gauss and Legendre's points of [-1, 1] and their weights, exact up to degree 15.
+/// Gauss-Legendre nodes on [-1, 1] and their weights, exact up to degree 15.
 constexpr double kGauss[8][2] = {
     {-0.96028985649753623, 0.10122853629037626}, {-0.79666647741362674, 0.22238103445337447},
     {-0.52553240991632899, 0.31370664587788729}, {-0.18343464249564980, 0.36268378337836198},
@@ -93,14 +92,14 @@ EnvironmentHarmonics project(EnvironmentMap const& map, double rotation_rad, dve
 {
     if (degree < 0 || degree >= kDegrees)
         throw std::invalid_argument(
-            fmt::format("harmonics of degree {} (0 to {} are known)", degree, kDegrees - 1));
+            fmt::format("harmonics of degree {} (0 to {} are supported)", degree, kDegrees - 1));
     EnvironmentHarmonics h;
     h.degree = degree;
     std::uint32_t const width = map.width, height = map.height;
     if (width == 0 || height == 0) return h;
 
-    // A texel is a hat along phi, whose integral with a wave is that of the wave's value in the middle, times
-    // sinc^2.
+    // A texel is a hat function along phi. Its integral times a wave is the hat's area times the wave's value at
+    // the texel centre times sinc^2.
     std::vector<double> waves[2 * kDegrees - 1];
     double const du = 2 * kPiD / width;
     for (int m = -degree; m <= degree; ++m) {
@@ -195,7 +194,7 @@ std::vector<dvec3> integrate_irradiance(World const& world, std::span<dvec3 cons
     std::vector<dvec3> sums(normals.size(), dvec3{0});
     if (!world.environment) return sums;
     WorldView const v = view(world);
-    // Points in the middle of equal parts of texels.
+    // Midpoint rule on equal parts of texels.
     auto const parts = [](std::uint32_t texels, std::uint32_t least) {
         return (least + texels - 1) / texels * texels;
     };

@@ -1,5 +1,5 @@
 #pragma once
-// Reflectance of interfaces.
+// Fresnel reflectance.
 
 #include "gi/core/math.h"
 
@@ -12,14 +12,14 @@ GI_FN inline float schlick_weight(float cos_theta)
     return m2 * m2 * m;
 }
 
-/// Schlick 1994.
+/// Schlick's approximation (1994).
 template <class T>
 GI_FN T schlick(T f0, T f90, float cos_theta)
 {
     return f0 + (f90 - f0) * schlick_weight(cos_theta);
 }
 
-/// 2 * integral of Schlick's reflectance times cos over cos: the mean over a white sky.
+/// Mean reflectance under a uniform sky: 2 * integral of Schlick's reflectance times cos over cos.
 template <class T>
 GI_FN T schlick_mean(T f0, T f90)
 {

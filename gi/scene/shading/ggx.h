@@ -9,7 +9,7 @@ namespace gi {
 /// Density of microfacet normals, 1/sr.
 GI_FN inline float ggx_normals(vec3 h, float alpha)
 {
-    // From h.x and h.y, because 1 - h.z^2 has no digits left on narrow lobes.
+    // Computed from h.x and h.y, because 1 - h.z^2 loses all precision for narrow lobes.
     float const a2 = alpha * alpha;
     float const t = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z;
     return 1.0f / (kPi * a2 * t * t);
@@ -33,7 +33,7 @@ GI_FN inline float ggx_reflection_pdf(vec3 wo, float normals, float alpha)
     return 0.5f * normals / (wo.z + ggx_root(wo.z, alpha));
 }
 
-/// A normal visible from wo (Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps").
+/// Samples a normal visible from wo (Dupuy & Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps").
 GI_FN inline vec3 sample_ggx_normal(vec3 wo, float alpha, vec2 u)
 {
     vec3 const stretched = glm::normalize(vec3{alpha * wo.x, alpha * wo.y, wo.z});

@@ -1,5 +1,5 @@
 #pragma once
-// One light sample for next-event estimation: a light is chosen by power (alias table over punctual lights,
+// Light sampling for next-event estimation: a light is chosen by power (alias table over punctual lights,
 // emissive triangles and the environment), then a point or direction on it.
 
 #include "gi/scene/model/world.h"
@@ -15,10 +15,10 @@ struct LightSample {
     bool delta = false;
 };
 
-/// One of all lights and texels; it does not depend on the point that is lit, so it can be made ahead of time.
+/// A chosen light or environment texel. Independent of the lit point, so it can be chosen in advance.
 struct LightChoice {
     std::uint32_t light = 0; ///< index into World::light_select
-    std::uint32_t texel = 0; ///< of the environment map, where that is the light
+    std::uint32_t texel = 0; ///< of the environment map, if that is the light
     float probability = 0;   ///< of light and texel together; 0 = there is no light
 };
 
@@ -26,15 +26,15 @@ struct LightChoice {
 GI_FN LightChoice choose_light(WorldView const& world, double u);
 /// @param u uniform in [0, 1)^2
 GI_FN LightSample sample_light(WorldView const& world, LightChoice choice, vec3 point, vec2 u);
-/// Density with which sample_light draws the direction to a point on an emissive triangle.
+/// Probability density with which sample_light draws the direction to a point on an emissive triangle.
 /// @param distance_m to that point, cos_light = |cos| between the triangle's normal and the direction
 GI_FN float emitter_direction_pdf(WorldView const& world, std::uint32_t triangle, float distance_m,
                                   float cos_light);
-/// Density with which sample_light draws a direction to the environment.
+/// Probability density with which sample_light draws a direction to the environment.
 GI_FN float environment_direction_pdf(WorldView const& world, vec3 direction);
 /// Radiance from the environment (bilinear), 0 if there is none.
 GI_FN vec3 environment_radiance(WorldView const& world, vec3 direction);
-/// What a camera ray brings that meets no surface.
+/// Radiance of a camera ray that hits no surface.
 GI_FN vec3 background_radiance(WorldView const& world, vec3 direction);
 
 } // namespace gi

@@ -59,19 +59,19 @@ GI_FN inline LightSample sample_emitter(WorldView const& world, std::uint32_t tr
     if (!(squared > 0)) return s;
     s.distance = std::sqrt(squared);
     s.direction = way * (1 / s.distance);
-    float const facing = -glm::dot(area_vector(surface), s.direction); // 2 * area * cos at the lamp
+    float const facing = -glm::dot(area_vector(surface), s.direction); // 2 * area * cos at the light
     if (!(facing > 0) && !surface.is(Surface::kDoubleSided)) return s;
     s.pdf = 2 * squared / std::abs(facing);
     if (!(s.pdf < kInf)) return {};
     Material const& m = world.materials[surface.material];
     if (m.emissive_map.texture >= 0) shading_detail::interpolate_uv(world, on);
     s.radiance = shading_detail::look_up_emission(world, m, on);
-    // Rays that hit the lamp pass through what is cut out of it.
+    // Scaled by coverage, because exact rays pass through the light's cut-out parts.
     if (m.alpha_mode != AlphaMode::opaque) s.radiance *= coverage(world, triangle, on.barycentric);
     return s;
 }
 
-/// From the world to the map's own frame.
+/// Transforms a direction from the world to the map's own frame.
 GI_FN inline vec3 to_map(WorldView const& world, vec3 d)
 {
     float const c = world.environment_cos, s = world.environment_sin;
@@ -98,9 +98,9 @@ GI_FN inline MapPoint map_point(WorldView const& world, vec3 direction)
     return {{u * float(world.environment_width), v * float(world.environment_height)}, sin_theta};
 }
 
-/// Density per solid angle with which sample_environment draws a point of the map, for all texels together: a
-/// texel by its mean luminance times its solid angle (taken at its middle), and the point in it by the luminance
-/// there.
+/// Density per solid angle with which sample_environment draws a point of the map, over all texels: it chooses a
+/// texel by its mean luminance times its solid angle (at the texel centre), and the point in the texel by the
+/// luminance there.
 /// @param texel_row, sin_theta of the point
 GI_FN inline float map_pdf(WorldView const& world, float luminance_there, std::uint32_t texel_row, float sin_theta)
 {
@@ -108,8 +108,8 @@ GI_FN inline float map_pdf(WorldView const& world, float luminance_there, std::u
     return luminance_there * world.environment_pdf_per_luminance * middle / sin_theta;
 }
 
-/// A point of [0, 1) with a density in proportion to a function that is linear from the mean of `before` and
-/// `middle` at 0 to `middle` at 1/2 and to the mean of `middle` and `after` at 1.
+/// Samples [0, 1) with a density proportional to a piecewise linear function: the mean of `before` and `middle` at
+/// 0, `middle` at 1/2, and the mean of `middle` and `after` at 1.
 GI_FN inline float sample_hats(float before, float middle, float after, float u)
 {
     float const first = 0.5f * (before + middle), last = 0.5f * (middle + after);
@@ -124,7 +124,7 @@ GI_FN inline float sample_hats(float before, float middle, float after, float u)
     return glm::min(0.5f * ((in_left ? 0.0f : 1.0f) + t), 0x1.fffffep-1f);
 }
 
-/// Bilinear, around in u, held in v.
+/// Bilinear lookup, wrapped in u and clamped in v.
 GI_FN inline vec3 map_radiance(WorldView const& world, vec2 position)
 {
     TexelPair const u =
@@ -139,14 +139,14 @@ GI_FN inline vec3 map_radiance(WorldView const& world, vec2 position)
     return world.environment_scale * glm::mix(top, bottom, v.weight);
 }
 
-/// A point in a texel by the luminance of the bilinear map, so that a small sun is equally bright wherever it is
-/// sampled.
+/// Samples a point in a texel by the luminance of the bilinear map, so that a small sun has equal weight wherever
+/// it is sampled.
 GI_FN inline vec2 sample_texel(WorldView const& world, std::uint32_t x, std::uint32_t y, vec2 u)
 {
     std::uint32_t const w = world.environment_width, h = world.environment_height;
     std::uint32_t const columns[3] = {x > 0 ? x - 1 : w - 1, x, x + 1 < w ? x + 1 : 0};
     std::uint32_t const rows[3] = {y > 0 ? y - 1 : 0, y, glm::min(y + 1, h - 1)};
-    float l[3][3], mean[3]; // of the column over the height of the texel
+    float l[3][3], mean[3]; // mean of each column over the height of the texel
     for (int c = 0; c < 3; ++c) {
         for (int r = 0; r < 3; ++r)
             l[r][c] = luminance(world.environment_radiance[std::uint64_t(rows[r]) * w + columns[c]] *

@@ -8,11 +8,11 @@ namespace {
 
 enum LightClass : std::size_t { punctual, distant, area, environment, classes };
 
-/// No class of light that is there is chosen less often than this: power alone says nothing about which of them
-/// reaches the places one looks at (a lamp in a room below a sky).
+/// Minimum probability of each kind of light present, because power alone does not show which light reaches the
+/// visible surfaces (e.g. a light inside a room under a bright sky).
 constexpr double kLeastShare = 0.1;
 
-/// Luminance of the power that a light sends out, W. @param disc area of the scene's shadow, m2
+/// Luminance of a light's power, W. @param disc cross-section area of the scene, m2
 double power(Light const& light, double disc)
 {
     double const intensity = double(luminance(light.intensity));
@@ -27,8 +27,8 @@ double power(Light const& light, double disc)
     return 0;
 }
 
-/// Mean luminance of what a triangle emits; where a texture says how much, from 16 points. A triangle whose points
-/// are all dark keeps a hundredth of the material's emission, for there may be light between them.
+/// Mean luminance of a triangle's emission; with an emissive texture, from 16 points. The result is at least 1/100
+/// of the material's emission, because the texture may be bright between dark points.
 double mean_emission(WorldView const& world, std::uint32_t triangle)
 {
     Surface const& surface = world.surfaces[triangle];
@@ -45,8 +45,8 @@ double mean_emission(WorldView const& world, std::uint32_t triangle)
     return std::max(sum / 16, 0.01 * most);
 }
 
-/// Solid angle of a texel times its mean luminance, for every texel; the mean of a bilinear patch over one texel
-/// has the weights 1/8, 6/8, 1/8 per axis.
+/// Returns solid angle times mean luminance of every texel; the mean of the bilinear map over one texel has the
+/// weights 1/8, 6/8, 1/8 per axis.
 std::vector<float> texel_weights(EnvironmentMap const& map, vec3 scale)
 {
     std::uint32_t const w = map.width, h = map.height;

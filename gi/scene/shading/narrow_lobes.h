@@ -1,16 +1,16 @@
 #pragma once
-// Which lobes a set of axes cannot carry, and how they share a surface with those that it can.
+// Lobes too narrow for a discrete set of axes, and how a surface combines them with other lobes.
 
 #include "gi/scene/shading/bsdf.h"
 
 namespace gi {
 
-/// Lobes narrower than this GGX alpha continue with exact rays.
+/// Lobes narrower than this GGX alpha are sampled with exact rays.
 inline constexpr float kNarrowAlpha = 0.2f;
-/// The same for Phong exponents above.
+/// Same for Phong exponents above this.
 inline constexpr float kNarrowExponent = 40;
 
-/// Whether some lobe is narrow, smooth or clear.
+/// True if some lobe is narrow, smooth or clear.
 GI_FN inline bool has_narrow_lobe(Bsdf const& b)
 {
     if (b.model == MaterialModel::phong)
@@ -18,7 +18,7 @@ GI_FN inline bool has_narrow_lobe(Bsdf const& b)
     return b.clear > 0 || (b.f90.x > 0 && b.alpha < kNarrowAlpha);
 }
 
-/// Whether gi::sample takes a lobe other than the diffuse one.
+/// True if gi::sample chooses a lobe other than the diffuse one.
 GI_FN inline bool takes_narrow_lobe(Bsdf const& b, vec3 wo, float u_lobe)
 {
     bsdf_detail::LobeChances const chance = bsdf_detail::lobe_chances(b, wo.z);

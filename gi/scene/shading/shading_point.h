@@ -1,5 +1,5 @@
 #pragma once
-// From a ray hit to everything that shading needs: interpolated attributes, textures looked up, a frame.
+// Shading data at a ray hit: interpolated attributes, evaluated textures, a shading frame.
 
 #include "gi/scene/model/world.h"
 #include "gi/scene/shading/bsdf.h"
@@ -13,21 +13,21 @@ struct ShadingPoint {
     bool front;            ///< viewer is on the counter-clockwise side
     Bsdf bsdf;
     vec3 emission;   ///< radiance leaving towards the viewer (0 on the dark side)
-    float clearance; ///< m; by how much rays have to start off the surface
+    float clearance; ///< m; offset from the surface at which rays must start
 };
 
 /// @param barycentric  weights of vertices 1 and 2 (Embree's u, v)
-/// @param direction    of the ray that arrived, unit
+/// @param direction    direction of the arriving ray, unit
 GI_FN ShadingPoint shading_point(WorldView const& world, std::uint32_t triangle, vec2 barycentric, vec3 direction);
 
-/// Where a ray along `direction` starts, off the surface on its side (m). @param direction unit
+/// Returns the start of a ray along `direction`, offset from the surface to that side (m). @param direction unit
 GI_FN inline vec3 leave(ShadingPoint const& at, vec3 direction)
 {
     return at.position +
            (glm::dot(direction, at.geometric_normal) > 0 ? at.clearance : -at.clearance) * at.geometric_normal;
 }
 
-/// For the layer of that name: diffuse + normal reflectance + transmitted, without regard to directions.
+/// Value of the layer "albedo": diffuse + normal-incidence reflectance + transmitted, independent of directions.
 GI_FN vec3 albedo(Bsdf const& bsdf);
 
 /// Coverage of the surface there, 0..1: 1 for opaque materials, 0 or 1 for masks, alpha for blend.

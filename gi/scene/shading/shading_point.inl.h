@@ -6,21 +6,21 @@
 namespace gi {
 namespace shading_detail {
 
-/// A vector of the same direction whose largest component is 1, so that products neither overflow nor vanish.
+/// Scales a vector such that its largest component is 1, so that products neither overflow nor underflow.
 GI_FN inline vec3 rescale(vec3 v)
 {
     float const m = max_component(glm::abs(v));
     return m > 0 ? v / m : v;
 }
 
-/// Unit, on the counter-clockwise side.
+/// Unit normal on the counter-clockwise side.
 GI_FN inline vec3 triangle_normal(Surface const& s)
 {
     if (s.normal_scale > 0) return glm::cross(s.edge1, s.edge2) * s.normal_scale;
     return glm::normalize(rescale(glm::cross(rescale(s.edge1), rescale(s.edge2))));
 }
 
-/// One point of a triangle.
+/// A point of a triangle.
 struct SurfacePoint {
     Surface const& surface;
     vec2 barycentric; ///< weights of vertices 1 and 2
@@ -39,15 +39,15 @@ struct SurfacePoint {
     }
 };
 
-/// Texture coordinates, for materials that have textures.
+/// Interpolates texture coordinates, for materials with textures.
 GI_FN inline void interpolate_uv(WorldView const& world, SurfacePoint& s)
 {
     if (!world.uv0.empty()) s.uv0 = s.interpolate(world.uv0);
     if (!world.uv1.empty()) s.uv1 = s.interpolate(world.uv1);
 }
 
-/// dP/du of the coordinates that the map uses, and the handedness that makes the bitangent -dP/dv (v points down);
-/// zero where they do not span a plane.
+/// Tangent dP/du of the given UV set, with the handedness that makes the bitangent -dP/dv (v points down); zero if
+/// the coordinates are degenerate.
 GI_FN inline vec4 tangent_from_uv(WorldView const& world, SurfacePoint const& s, std::uint8_t uv_set)
 {
     View<vec2 const> const& uv = uv_set == 0 ? world.uv0 : world.uv1;
@@ -97,15 +97,15 @@ GI_FN inline MaterialFactors look_up_factors(WorldView const& world, Material co
     return f;
 }
 
-/// Emitted radiance of the material there, on the side that emits.
+/// Emitted radiance of the material at a point, on the side that emits.
 GI_FN inline vec3 look_up_emission(WorldView const& world, Material const& m, SurfacePoint const& s)
 {
     if (m.emissive_map.texture < 0) return m.emission;
     return m.emission * vec3(look_up(world.textures, m.emissive_map, s.uv0, s.uv1));
 }
 
-/// Interpolated and mapped normals may point away from the viewer; they are bent until they just face him, for a
-/// surface that one sees has to scatter towards the eye.
+/// Bends a normal until it just faces the viewer: interpolated and mapped normals may point away, but a visible
+/// surface must scatter towards the eye.
 GI_FN inline vec3 face_viewer(vec3 n, vec3 to_viewer)
 {
     constexpr float kLeast = 1e-3f;

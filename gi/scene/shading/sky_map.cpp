@@ -11,14 +11,15 @@ dvec3 direction_to(double theta, double phi)
     return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 
-/// What a texel of each row adds to the bilinear map: a hat over the row and its neighbours, level at the poles.
+/// Contribution of a texel of each row to the bilinear map: a hat function over the row and its neighbours,
+/// constant at the poles.
 struct RowHats {
     std::vector<double> solid_angle; ///< integral, sr
     std::vector<double> cosine;      ///< mean of max(cos theta, 0); falls from row to row down to the horizon
 
     RowHats(std::uint32_t width, std::uint32_t height)
     {
-        constexpr int kParts = 64; // of a half row
+        constexpr int kParts = 64; // per half row
         double const row = kPiD / height;
         for (std::uint32_t y = 0; y < height; ++y) {
             double sum = 0, cosines = 0;
@@ -34,7 +35,7 @@ struct RowHats {
             cosine.push_back(cosines / sum);
         }
     }
-    /// The row from which on, and how much of the next one, the mean cosine is that of `cos_theta`.
+    /// Returns the row and the fraction towards the next row at which the interpolated mean cosine is `cos_theta`.
     std::pair<std::uint32_t, double> place(double cos_theta) const
     {
         auto const below = std::lower_bound(cosine.begin(), cosine.end(), cos_theta, std::greater<>());
@@ -52,7 +53,8 @@ void add_sun(Sky const& sky, double azimuth, EnvironmentMap& map)
     double const row = kPiD / map.height, column = 2 * kPiD / map.width;
     auto const strips = int(std::clamp(std::ceil(8 * r / row), 32.0, 4096.0));
     dvec3 const radiance = sky.sun_radiance();
-    // The disc in strips of equal theta, and these in pieces: all within an eighth of a texel.
+    // The disc is divided into strips of equal theta and these into pieces, each smaller than an eighth of a
+    // texel.
     struct Piece {
         double theta, phi, solid_angle;
     };
@@ -72,7 +74,7 @@ void add_sun(Sky const& sky, double azimuth, EnvironmentMap& map)
         }
     }
     double const scale = 2 * kPiD * (1 - std::cos(r)) / whole;
-    std::vector<double> share(std::size_t(map.width) * map.height, 0.0); // sr of the disc over sr of the texel
+    std::vector<double> share(std::size_t(map.width) * map.height, 0.0); // per texel: fraction covered by the disc
     for (Piece const& p : pieces) {
         if (p.theta > kPiD / 2) continue;
         auto const [y, next_row] = hats.place(std::cos(p.theta));
@@ -105,7 +107,7 @@ EnvironmentMap sky_map(SkyOptions const& o)
     map.width = o.width;
     map.height = o.height;
     map.radiance.resize(std::size_t(o.width) * o.height);
-    auto const points = std::clamp(int(1024 / o.height), 1, 8); // on a side of a texel
+    auto const points = std::clamp(int(1024 / o.height), 1, 8); // per side of a texel
     tbb::parallel_for(std::uint32_t(0), o.height, [&](std::uint32_t y) {
         for (std::uint32_t x = 0; x < o.width; ++x) {
             dvec3 sum{0};

@@ -5,13 +5,13 @@
 
 namespace gi {
 
-/// Where a lookup of one axis falls: the two texels and the weight of the second.
+/// The two texels that a lookup interpolates along one axis, and the weight of the second.
 struct TexelPair {
     std::uint32_t first, second;
     float weight;
 };
 
-/// The coordinate of the same colour in [0, 1]; 0 for those that are not finite.
+/// Maps a coordinate into [0, 1] by the wrap mode; 0 if not finite.
 GI_FN inline float wrap_coordinate(float x, Wrap wrap)
 {
     if (wrap == Wrap::repeat) x -= std::floor(x);
@@ -62,14 +62,14 @@ GI_FN inline vec4 look_up(TexturePoolView const& pool, Texture const& t, vec2 uv
             mix([linear](Rgba8 x) { return linear[x.b]; }), alpha};
 }
 
-/// Chooses the set of coordinates and applies KHR_texture_transform.
+/// Selects the UV set and applies KHR_texture_transform.
 GI_FN inline vec2 transform_uv(TextureRef const& ref, vec2 uv0, vec2 uv1)
 {
     vec2 const uv = ref.uv_set == 0 ? uv0 : uv1;
     return vec2{glm::dot(ref.row_u, uv), glm::dot(ref.row_v, uv)} + ref.offset;
 }
 
-/// Through a material's reference.
+/// Linear RGBA through a material's texture reference.
 GI_FN inline vec4 look_up(TexturePoolView const& pool, TextureRef const& ref, vec2 uv0, vec2 uv1)
 {
     return look_up(pool, pool.textures[std::size_t(ref.texture)], transform_uv(ref, uv0, uv1));

@@ -1,12 +1,12 @@
 #pragma once
-// From uniform numbers in [0, 1)^2 to directions and points.
+// Maps from uniform numbers in [0, 1)^2 to directions and points.
 
 #include "gi/core/math.h"
 
 namespace gi {
 
-/// (cos, sin) of q * pi/4, |q| <= 1: Taylor polynomials, errors below 2e-7. A library's functions would spend most
-/// of their time on the range of their argument.
+/// (cos, sin) of q * pi/4, |q| <= 1: Taylor polynomials, errors below 2e-7. Library functions would spend most
+/// of their time on range reduction.
 GI_FN inline vec2 eighth_turn(float q)
 {
     float const a = 0.25f * kPi * q, a2 = a * a;
@@ -26,15 +26,15 @@ GI_FN inline vec2 square_to_disk(vec2 u)
     return {wide ? d.x : d.y, wide ? d.y : d.x};
 }
 
-/// Density cos(theta) / pi about +z.
+/// Direction about +z with density cos(theta) / pi.
 GI_FN inline vec3 square_to_cosine_hemisphere(vec2 u)
 {
     vec2 const d = square_to_disk(u);
     return {d.x, d.y, std::sqrt(glm::max(0.0f, 1 - glm::dot(d, d)))};
 }
 
-/// Uniform in a triangle: weights of vertices 1 and 2 (Heitz 2019, "A Low-Distortion Map Between Triangle and
-/// Square").
+/// Uniform point in a triangle, as weights of vertices 1 and 2 (Heitz 2019, "A Low-Distortion Map Between Triangle
+/// and Square").
 GI_FN inline vec2 square_to_triangle(vec2 u)
 {
     float const half = 0.5f * glm::min(u.x, u.y);

@@ -26,7 +26,7 @@ Interpolation to_interpolation(std::string const& name)
                                    : Interpolation::linear;
 }
 
-/// Keys of one channel. Throws InputError where times do not increase or values are missing.
+/// Reads the keys of one channel. Throws InputError if times do not increase or values are missing.
 void read_keys(GltfDocument& d, tinygltf::AnimationSampler const& sampler, std::size_t components,
                AnimationChannel& channel, std::string const& where, Report& report)
 {

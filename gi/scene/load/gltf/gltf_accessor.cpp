@@ -64,7 +64,7 @@ std::uint32_t to_integer(unsigned char const* p, std::size_t bytes)
     return bytes == 1 ? *p : bytes == 2 ? load<std::uint16_t>(p) : load<std::uint32_t>(p);
 }
 
-/// Walks the bytes of accessors after checking that they are all there.
+/// Iterates over the elements of an accessor after checking that all its bytes exist.
 class AccessorReader {
 public:
     AccessorReader(GltfDocument& d, int index) : d_(d), index_(index)
@@ -73,10 +73,10 @@ public:
             throw d.error(fmt::format("accessor {} does not exist", index), "the file refers to it");
         accessor_ = &d.model.accessors[std::size_t(index)];
         layout_ = element_layout(*accessor_);
-        if (layout_.components == 0) throw bad("its type is not known");
+        if (layout_.components == 0) throw bad("its type is unknown");
         if (accessor_->count < 1) throw bad("it is empty");
         if (accessor_->count > (std::size_t(1) << 32)) throw bad("it has more than 2^32 elements");
-        std::size_t const cost = accessor_->bufferView < 0 ? 4 : 1; // zeros need no bytes in the file
+        std::size_t const cost = accessor_->bufferView < 0 ? 4 : 1; // no buffer view: all zeros, no bytes
         d.spend(cost * accessor_->count, fmt::format("accessor {}", index));
     }
     tinygltf::Accessor const& accessor() const { return *accessor_; }
@@ -86,7 +86,7 @@ public:
         return d_.error(fmt::format("accessor {} cannot be read", index_), why);
     }
 
-    /// put(element, component, where its bytes are), the sparse values last.
+    /// Calls put(element, component, pointer to its bytes), for the sparse values last.
     template <class Put>
     void walk(Put const& put) const
     {
@@ -126,7 +126,7 @@ private:
         if (s.count < 1 || std::size_t(s.count) > accessor_->count) throw bad("its sparse count is out of range");
         if (s.indices.byteOffset < 0 || s.values.byteOffset < 0) throw bad("a sparse offset is negative");
         std::int32_t const size = tinygltf::GetComponentSizeInBytes(std::uint32_t(s.indices.componentType));
-        if (size != 1 && size != 2 && size != 4) throw bad("its sparse indices are no integers");
+        if (size != 1 && size != 2 && size != 4) throw bad("its sparse indices are not unsigned integers");
         auto const index_bytes = std::size_t(size), count = std::size_t(s.count);
         Bytes const all = d_.view_bytes(s.indices.bufferView);
         auto const offset = std::size_t(s.indices.byteOffset);

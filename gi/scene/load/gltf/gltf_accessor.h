@@ -1,5 +1,5 @@
 #pragma once
-// Typed arrays out of a glTF file: strides, normalised integers, sparse accessors.
+// Reads typed arrays from a glTF file: strides, normalised integers, sparse accessors.
 
 #include "gi/core/math.h"
 #include "gi/scene/load/gltf/gltf_document.h"
@@ -24,10 +24,11 @@ struct GltfArray {
     }
 };
 
-/// Integers become -1..1 or 0..1 where the accessor says normalized. Throws InputError on anything out of range.
-/// @param components that are wanted; 0 = any
+/// Reads floats; integers of a normalized accessor become -1..1 or 0..1. Throws InputError if anything is out of
+/// range.
+/// @param components required number of components; 0 = any
 GltfArray read_floats(GltfDocument& document, int accessor, std::size_t components);
-/// Unsigned integers, one component for indices, four for joints.
+/// Reads unsigned integers, one component for indices, four for joints.
 std::vector<std::uint32_t> read_integers(GltfDocument& document, int accessor, std::size_t components);
 
 } // namespace gi

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kDeepestJson = 64; ///< nesting of a file's JSON; deeper files would exhaust the stack of the parser
+constexpr int kDeepestJson = 64; ///< maximum nesting of JSON; deeper files would exhaust the parser's stack
 
 constexpr std::array<std::string_view, 15> kKnownExtensions{
     "KHR_draco_mesh_compression", "KHR_lights_punctual",    "KHR_materials_emissive_strength",
@@ -41,10 +41,10 @@ Container open_container(Bytes bytes, GltfDocument const& d)
     if (bytes.empty()) throw d.error("is empty", "there is nothing to load");
     if (bytes.size() < 4 || std::memcmp(bytes.data(), "glTF", 4) != 0) return {bytes, {}};
     if (bytes.size() < 20) throw d.error("is truncated", "a GLB header has 20 bytes");
-    if (read_u32(bytes, 4) != 2) throw d.error("is not GLB version 2", "other versions are laid out differently");
+    if (read_u32(bytes, 4) != 2) throw d.error("is not GLB version 2", "other versions have a different layout");
     std::size_t const total = read_u32(bytes, 8);
     if (total > bytes.size())
-        throw d.error("is truncated", fmt::format("its header says {} bytes, it has {}", total, bytes.size()));
+        throw d.error("is truncated", fmt::format("its header states {} bytes, it has {}", total, bytes.size()));
     Container c;
     for (std::size_t at = 12; at + 8 <= total;) {
         std::size_t const length = read_u32(bytes, at);
@@ -92,12 +92,12 @@ json parse_json(Bytes text, GltfDocument const& d)
         int const line = 1 + int(std::count(text.begin(), end, '\n'));
         auto const start = std::find(std::make_reverse_iterator(end), text.rend(), '\n').base();
         throw InputError({d.name, line, int(end - start)}, "is not valid JSON", e.what(), "export the file again");
-    } catch (json::exception const& e) { // numbers beyond double
+    } catch (json::exception const& e) { // e.g. a number outside the range of double
         throw d.error("is not valid JSON", e.what());
     }
 }
 
-/// -1 where it is missing or no usable index.
+/// Returns -1 if the member is missing or not a usable index.
 std::int64_t index_member(json const& object, char const* key)
 {
     auto const it = object.find(key);
@@ -107,7 +107,7 @@ std::int64_t index_member(json const& object, char const* key)
     return it->get<std::int64_t>();
 }
 
-/// 3.0 becomes 3: JSON knows no difference, tinygltf does.
+/// Changes 3.0 to 3: the two are the same in JSON, but not for tinygltf.
 void make_whole_numbers_integers(json& j)
 {
     if (j.is_structured()) {
@@ -118,8 +118,8 @@ void make_whole_numbers_integers(json& j)
     }
 }
 
-/// The indices of all primitives, -1 = none. tinygltf refuses indices without a buffer view, as Draco leaves them,
-/// so they pass it by.
+/// Removes and returns the indices of all primitives, -1 = none, because tinygltf rejects indices without a buffer
+/// view, which are valid with Draco compression.
 std::vector<std::vector<int>> take_indices(json& root)
 {
     std::vector<std::vector<int>> taken;
@@ -133,21 +133,21 @@ std::vector<std::vector<int>> take_indices(json& root)
             if (!primitive.is_object() || !primitive.contains("indices")) continue;
             std::int64_t const index = index_member(primitive, "indices");
             bool const usable = index >= 0 && index < (1 << 30);
-            taken.back().back() = usable ? int(index) : 1 << 30; // which no file has: an error later on
+            taken.back().back() = usable ? int(index) : 1 << 30; // exists in no file: an error later on
             primitive.erase("indices");
         }
     }
     return taken;
 }
 
-/// Of an array member of the root; null where there is none.
+/// Removes and returns an array member of the root; null if it does not exist.
 json take(json& root, char const* key, GltfDocument const& d)
 {
     auto const it = root.find(key);
     if (it == root.end()) return json::array();
     json taken = std::move(*it);
     root.erase(it);
-    if (!taken.is_array()) throw d.error(fmt::format("has no list '{}'", key), "it is of another type");
+    if (!taken.is_array()) throw d.error(fmt::format("has no list '{}'", key), "it has another type");
     for (json const& item : taken)
         if (!item.is_object()) throw d.error(fmt::format("has a bad item in '{}'", key), "it is not an object");
     return taken;
@@ -176,7 +176,7 @@ std::vector<unsigned char> read_other_file(std::string const& uri, std::filesyst
                                            std::string const& what, GltfDocument& d)
 {
     if (folder.empty())
-        throw d.error(fmt::format("{} is in another file, '{}'", what, uri), "no other files may be read here");
+        throw d.error(fmt::format("{} is in another file, '{}'", what, uri), "other files cannot be read here");
     std::filesystem::path const file = decode_percent(uri);
     if (file.is_absolute() || uri.find("://") != std::string::npos)
         throw d.error(fmt::format("{} is at '{}'", what, uri), "only files beside the scene are read");
@@ -205,7 +205,7 @@ void open_buffers(GltfDocument& d, json const& list, Bytes binary, std::filesyst
         else if (i == 0 && !binary.empty())
             bytes = binary;
         else
-            given = false; // a placeholder, as of compressed data: an error only if it is used
+            given = false; // a placeholder, e.g. for compressed data: an error only if it is used
         if (given && std::uint64_t(length) > bytes.size())
             throw d.error(what + " is truncated",
                           fmt::format("it should have {} bytes and has {}", length, bytes.size()));
@@ -241,7 +241,7 @@ void open_images(GltfDocument& d, json const& list, std::filesystem::path const&
             else if (view >= 0 && view < std::int64_t(d.model.bufferViews.size()))
                 image.bytes = d.view_bytes(int(view));
             else
-                throw d.error(image.name + " points nowhere", "it has neither a URI nor a buffer view");
+                throw d.error(image.name + " has no source", "it has neither a URI nor a buffer view");
         } catch (InputError const& e) {
             report.lose("textures that could not be read", 1, e.what());
         }
@@ -265,7 +265,7 @@ void check_extensions(GltfDocument const& d, Report& report)
         return std::find(kKnownExtensions.begin(), kKnownExtensions.end(), e) != kKnownExtensions.end();
     };
     for (std::string const& e : d.model.extensionsRequired)
-        if (!known(e)) throw d.error("needs the extension " + e, "it is not known here");
+        if (!known(e)) throw d.error("needs the extension " + e, "it is not supported");
     for (std::string const& e : d.model.extensionsUsed)
         if (!known(e)) report.lose("glTF extensions ignored", 1, e);
 }
@@ -277,7 +277,7 @@ void GltfDocument::spend(std::size_t elements, std::string const& what)
     std::size_t const limit = (std::size_t(1) << 22) + 64 * file_bytes;
     if (elements > limit || elements_read > limit - elements)
         throw error(what + " cannot be read",
-                    fmt::format("{} elements are more than a file of {} bytes can mean", elements, file_bytes));
+                    fmt::format("{} elements are too many for a file of {} bytes", elements, file_bytes));
     elements_read += elements;
 }
 
@@ -322,7 +322,7 @@ GltfDocument open_gltf(Bytes bytes, std::filesystem::path const& folder, std::st
     }
     while (errors.ends_with('\n')) errors.pop_back();
     std::replace(errors.begin(), errors.end(), '\n', ' ');
-    if (!parsed) throw d.error("is not valid glTF", errors.empty() ? "the parser refused it" : errors);
+    if (!parsed) throw d.error("is not valid glTF", errors.empty() ? "the parser rejected it" : errors);
     if (!d.model.asset.version.starts_with("2."))
         throw d.error("is not glTF 2", "its asset version is '" + d.model.asset.version + "'");
     restore_indices(d, indices);

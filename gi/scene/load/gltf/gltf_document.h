@@ -1,6 +1,6 @@
 #pragma once
-// A glTF file taken apart: its structure through tinygltf, its bytes as checked spans. Everything that is wrong
-// with the file as a whole is an InputError here.
+// An opened glTF file: its structure parsed by tinygltf, its bytes as checked spans. Errors that concern the file
+// as a whole throw InputError here.
 
 #include "gi/core/error.h"
 #include "gi/core/report.h"
@@ -28,31 +28,31 @@ struct GltfDocument {
     std::vector<Bytes> buffers;
     std::vector<GltfImage> images;
     std::vector<std::unique_ptr<std::vector<unsigned char>>>
-        storage;                        ///< of what was decoded or read from other files
-    std::map<int, Bytes> decoded_views; ///< of EXT_meshopt_compression
+        storage;                        ///< owns data that was decoded or read from other files
+    std::map<int, Bytes> decoded_views; ///< decoded by EXT_meshopt_compression
     std::vector<std::string> files;     ///< other files that were read
-    std::size_t file_bytes = 0;         ///< with all buffers
+    std::size_t file_bytes = 0;         ///< including all buffers
     std::size_t elements_read = 0;
 
     InputError error(std::string const& problem, std::string const& why) const
     {
         return {name + ": " + problem, why, "check it with the glTF validator and export it again"};
     }
-    /// Counts array elements that are about to be made. Throws InputError where a small file asks for a large
-    /// scene: what a file holds may be used several times, but it may not grow without limit.
+    /// Counts array elements about to be created. Throws InputError if a small file would create a huge scene:
+    /// data may be used several times, but not without limit.
     void spend(std::size_t elements, std::string const& what);
     Bytes own(std::vector<unsigned char> bytes)
     {
         storage.push_back(std::make_unique<std::vector<unsigned char>>(std::move(bytes)));
         return *storage.back();
     }
-    /// The bytes of a buffer view, decompressed where it is compressed. Throws InputError if it lies outside its
+    /// Returns the bytes of a buffer view, decompressed if necessary. Throws InputError if it lies outside its
     /// buffer.
     Bytes view_bytes(int view);
 };
 
-/// @param bytes  glTF JSON or GLB; they have to outlive the document
-/// @param folder where other files are looked up; empty = none allowed
+/// @param bytes  glTF JSON or GLB; must outlive the document
+/// @param folder in which other files are searched; empty = none allowed
 GltfDocument open_gltf(Bytes bytes, std::filesystem::path const& folder, std::string const& name, Report& report);
 
 } // namespace gi

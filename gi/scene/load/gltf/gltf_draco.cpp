@@ -18,7 +18,7 @@ DracoMesh decode_draco(GltfDocument& d, tinygltf::Primitive const& primitive, st
     };
     if (!extension.IsObject() || !extension.Has("bufferView") || !extension.Get("bufferView").IsInt() ||
         !extension.Has("attributes") || !extension.Get("attributes").IsObject())
-        throw bad("it names no buffer view or no attributes");
+        throw bad("it has no buffer view or no attributes");
     Bytes const bytes = d.view_bytes(extension.Get("bufferView").GetNumberAsInt());
 
     draco::DecoderBuffer buffer;
@@ -30,9 +30,9 @@ DracoMesh decode_draco(GltfDocument& d, tinygltf::Primitive const& primitive, st
         if (!decoded.ok()) throw bad(decoded.status().error_msg_string());
         mesh = std::move(decoded).value();
     } catch (std::bad_alloc const&) {
-        throw bad("it asks for more memory than there is");
+        throw bad("it asks for more memory than is available");
     } catch (std::length_error const&) {
-        throw bad("it asks for more memory than there is");
+        throw bad("it asks for more memory than is available");
     }
 
     DracoMesh out;
@@ -44,7 +44,7 @@ DracoMesh decode_draco(GltfDocument& d, tinygltf::Primitive const& primitive, st
     }
     tinygltf::Value const& ids = extension.Get("attributes");
     for (std::string const& name : ids.Keys()) {
-        if (!ids.Get(name).IsInt()) throw bad("the id of " + name + " is no integer");
+        if (!ids.Get(name).IsInt()) throw bad("the id of " + name + " is not an integer");
         auto const id = std::uint32_t(ids.Get(name).GetNumberAsInt());
         int const number = mesh->GetAttributeIdByUniqueId(id);
         if (number < 0) throw bad(fmt::format("it has no attribute {} for {}", id, name));

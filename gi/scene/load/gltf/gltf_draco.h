@@ -3,7 +3,7 @@
 
 namespace gi {
 
-/// What KHR_draco_mesh_compression holds of a primitive. Integers are normalised where the accessor says so.
+/// Decoded KHR_draco_mesh_compression data of a primitive. Integers of normalized accessors are normalised.
 struct DracoMesh {
     std::vector<uvec3> triangles;
     std::map<std::string, GltfArray> attributes; ///< by glTF's names ("POSITION", ...)

@@ -10,7 +10,7 @@
 namespace gi {
 namespace {
 
-/// Values of a JSON object with their defaults; anything of another type counts as missing.
+/// Reads values of a JSON object with defaults; a value of the wrong type counts as missing.
 class Properties {
 public:
     explicit Properties(tinygltf::Value const* object)
@@ -46,7 +46,7 @@ tinygltf::Value const* find_extension(tinygltf::ExtensionMap const& map, char co
     return it == map.end() ? nullptr : &it->second;
 }
 
-/// The other formats that OpenCV knows do not belong in glTF.
+/// True for the image formats allowed in glTF; OpenCV would read others, too.
 bool is_image_of_gltf(Bytes b)
 {
     auto const has = [&](std::size_t at, std::string_view magic) {
@@ -93,7 +93,7 @@ public:
 
         Properties const ior(find_extension(source.extensions, "KHR_materials_ior"));
         double const index = ior.number("ior", 1.5);
-        m.ior = index == 0 ? 1e6f : within(index, 1, 100, "ior"); // 0 stands for a reflectance of 1 (its README)
+        m.ior = index == 0 ? 1e6f : within(index, 1, 100, "ior"); // 0 means a reflectance of 1 (its README)
         Properties const specular(find_extension(source.extensions, "KHR_materials_specular"));
         m.specular = within(specular.number("specularFactor", 1), 0, 1, "specularFactor");
         auto const tint = specular.numbers("specularColorFactor", {1, 1, 1});
@@ -133,7 +133,7 @@ private:
         return {within(v[0], 0, 1, what), within(v[1], 0, 1, what), within(v[2], 0, 1, what)};
     }
 
-    /// The old Phong-like workflow: f0 is given directly, so the material becomes one with that specular colour.
+    /// KHR_materials_pbrSpecularGlossiness gives f0 directly, so it is converted to a specular colour.
     void read_specular_glossiness(Material& m, Properties const& p)
     {
         if (!p.exist()) return;
@@ -149,7 +149,7 @@ private:
         m.metallic_roughness_map = {};
     }
 
-    /// What write_glb leaves of the model that glTF does not know.
+    /// Reads the Phong parameters that write_glb stores in extras, because glTF has no Phong model.
     static void read_phong(Material& m, tinygltf::Value const& extras)
     {
         if (!extras.IsObject() || !extras.Has("lightwell_phong")) return;
@@ -167,7 +167,7 @@ private:
         return make_ref(info.index, info.texCoord,
                         Properties(find_extension(info.extensions, "KHR_texture_transform")), srgb);
     }
-    /// Of an extension, where tinygltf leaves the JSON as it is.
+    /// Same for a texture in an extension, which tinygltf leaves as JSON.
     TextureRef texture(tinygltf::Value const* info, bool srgb)
     {
         Properties const p(info);
@@ -201,7 +201,7 @@ private:
         return ref;
     }
 
-    /// -1 = missing (counted).
+    /// Returns the texture's index in the pool; -1 = missing (counted).
     std::int32_t find_texture(int index, bool srgb)
     {
         if (std::size_t(index) >= d_.model.textures.size())
@@ -229,12 +229,12 @@ private:
             return -1;
         }
         GltfImage const& image = d_.images[std::size_t(source)];
-        if (image.bytes.empty()) return -1; // counted when it was opened
+        if (image.bytes.empty()) return -1; // already counted when the file was opened
         if (!is_image_of_gltf(image.bytes)) {
             report_.lose("textures that could not be read", 1, image.name + " is neither PNG, JPEG nor WebP");
             return -1;
         }
-        // The texels of an image are shared by all its textures.
+        // All textures of an image share its texels.
         if (auto const it = texels_of_.find(image.bytes.data()); it != texels_of_.end()) {
             Texture t = scene_.textures.textures[std::size_t(it->second)];
             t.wrap_u = sampling.wrap_u;

@@ -4,8 +4,8 @@
 
 namespace gi {
 
-/// Materials, and the textures that they use, into the scene. Factors out of range are clamped and counted;
-/// textures that cannot be read are left out and counted.
+/// Adds the materials and the textures that they use to the scene. Factors out of range are clamped and counted;
+/// unreadable textures are left out and counted.
 void read_materials(GltfDocument& document, Scene& scene, Report& report);
 
 } // namespace gi

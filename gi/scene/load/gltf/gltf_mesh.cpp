@@ -10,7 +10,7 @@
 namespace gi {
 namespace {
 
-/// Some exporters let all primitives share the vertices of the whole file.
+/// Removes unused vertices, because some exporters let all primitives share the vertices of the whole file.
 void drop_unused_vertices(Mesh& mesh)
 {
     constexpr std::uint32_t kUnused = ~0u;
@@ -52,7 +52,7 @@ public:
     {
     }
 
-    /// Nothing where the primitive has no triangles.
+    /// Returns nothing if the primitive has no triangles.
     std::optional<Mesh> read(tinygltf::Primitive const& p)
     {
         int const mode = p.mode < 0 ? TINYGLTF_MODE_TRIANGLES : p.mode;
@@ -88,7 +88,7 @@ public:
     }
 
 private:
-    /// Empty where the primitive does not have it. @param components 0 = any
+    /// Returns an attribute; empty if the primitive does not have it. @param components 0 = any
     GltfArray attribute(tinygltf::Primitive const& p, char const* name, std::size_t components)
     {
         if (draco_)

@@ -4,15 +4,15 @@
 
 namespace gi {
 
-/// One glTF mesh: its primitives that have triangles.
+/// One glTF mesh: its primitives with triangles.
 struct GltfMesh {
     std::vector<std::int32_t> meshes; ///< indices into Scene::meshes
     std::size_t morph_targets = 0;
     std::vector<float> weights; ///< default morph weights, one per target
-    std::uint32_t joints = 0;   ///< a skin must have this many
+    std::uint32_t joints = 0;   ///< minimum number of joints of a skin for this mesh
 };
 
-/// All meshes, in the order of the file. Points and lines are counted as lost.
+/// Reads all meshes, in file order. Points and lines are counted as losses.
 std::vector<GltfMesh> read_meshes(GltfDocument& document, Scene& scene, Report& report);
 
 } // namespace gi

@@ -6,8 +6,8 @@
 namespace gi {
 namespace {
 
-/// Bytes out per byte in: the vertex codec at its best has 2 bits for 16 equal bytes, the index codecs have a byte
-/// for a triangle or an index of up to 12 or 4 bytes.
+/// Maximum compression ratio: the vertex codec needs at least 2 bits for 16 equal bytes, the index codecs one byte
+/// per triangle (up to 12 bytes) or index (up to 4 bytes).
 constexpr std::size_t kStrongestCompression = 64;
 
 std::size_t size_member(tinygltf::Value const& object, char const* key)
@@ -31,7 +31,7 @@ std::vector<unsigned char> decode_meshopt(GltfDocument& d, int view, tinygltf::V
     auto const bad = [&](std::string const& why) {
         return d.error(fmt::format("buffer view {} cannot be decompressed (EXT_meshopt_compression)", view), why);
     };
-    if (!extension.IsObject() || !extension.Has("buffer")) throw bad("it names no buffer");
+    if (!extension.IsObject() || !extension.Has("buffer")) throw bad("it has no buffer");
     std::size_t const buffer = size_member(extension, "buffer"), offset = size_member(extension, "byteOffset"),
                       length = size_member(extension, "byteLength"), stride = size_member(extension, "byteStride"),
                       count = size_member(extension, "count");
@@ -46,16 +46,16 @@ std::vector<unsigned char> decode_meshopt(GltfDocument& d, int view, tinygltf::V
     std::vector<unsigned char> out(count * stride);
     int result = -1;
     if (mode == "ATTRIBUTES") {
-        if (stride % 4 != 0) throw bad("its stride is no multiple of 4");
+        if (stride % 4 != 0) throw bad("its stride is not a multiple of 4");
         result = meshopt_decodeVertexBuffer(out.data(), count, stride, source.data(), source.size());
     } else if (mode == "TRIANGLES" || mode == "INDICES") {
         if (stride != 2 && stride != 4) throw bad("its stride is neither 2 nor 4");
-        if (mode == "TRIANGLES" && count % 3 != 0) throw bad("its count is no multiple of 3");
+        if (mode == "TRIANGLES" && count % 3 != 0) throw bad("its count is not a multiple of 3");
         result = mode == "TRIANGLES"
                      ? meshopt_decodeIndexBuffer(out.data(), count, stride, source.data(), source.size())
                      : meshopt_decodeIndexSequence(out.data(), count, stride, source.data(), source.size());
     } else {
-        throw bad("its mode '" + mode + "' is not known");
+        throw bad("its mode '" + mode + "' is unknown");
     }
     if (result != 0) throw bad("the data are damaged");
 

@@ -3,7 +3,7 @@
 
 namespace gi {
 
-/// A buffer view of EXT_meshopt_compression, decoded and its filter undone. Throws InputError on damaged data.
+/// Decodes a buffer view of EXT_meshopt_compression, including its filter. Throws InputError on damaged data.
 std::vector<unsigned char> decode_meshopt(GltfDocument& document, int view, tinygltf::Value const& extension);
 
 } // namespace gi

@@ -28,10 +28,10 @@ public:
         std::vector<int> roots;
         if (!scenes.empty()) {
             if (std::size_t(shown) >= scenes.size())
-                throw d_.error(fmt::format("scene {} does not exist", shown), "it is the one to show");
+                throw d_.error(fmt::format("scene {} does not exist", shown), "it is the default scene");
             roots = scenes[std::size_t(shown)].nodes;
             for (int const r : roots)
-                if (!exists(r)) throw d_.error(fmt::format("node {} does not exist", r), "the scene names it");
+                if (!exists(r)) throw d_.error(fmt::format("node {} does not exist", r), "the scene lists it");
         }
         for (int const r : roots) {
             if (has_parent_[std::size_t(r)])
@@ -48,7 +48,7 @@ public:
 private:
     bool exists(int node) const { return node >= 0 && std::size_t(node) < d_.model.nodes.size(); }
 
-    /// After this every node has at most one parent and no loop exists.
+    /// Checks that every node has at most one parent and that there is no loop.
     void check_graph()
     {
         auto const& nodes = d_.model.nodes;
@@ -87,7 +87,7 @@ private:
             Visit const v = stack.back();
             stack.pop_back();
             if (place_[std::size_t(v.node)] >= 0)
-                continue; // a root that the scene names twice, or names below another
+                continue; // the scene lists this root twice, or also below another root
             place_[std::size_t(v.node)] = std::int32_t(scene_.nodes.size());
             tinygltf::Node const& source = d_.model.nodes[std::size_t(v.node)];
             scene_.nodes.push_back(make_node(source, v.node, v.parent, shown));
@@ -157,7 +157,7 @@ private:
         camera.name = node.name;
         camera.orthographic = source.type == "orthographic";
         auto const bad = [&](std::string const& why) {
-            return d_.error("camera '" + node.name + "' cannot see", why);
+            return d_.error("camera '" + node.name + "' is not valid", why);
         };
         if (camera.orthographic) {
             camera.ymag_m = std::abs(source.orthographic.ymag);
@@ -188,7 +188,7 @@ private:
         else if (source.type == "directional")
             light.type = LightType::directional;
         else
-            throw d_.error("light '" + source.name + "' is of no known type", "its type is '" + source.type + "'");
+            throw d_.error("light '" + source.name + "' has an unknown type", "its type is '" + source.type + "'");
         for (int c = 0; c < 3; ++c) {
             double const color = source.color.size() == 3 ? source.color[std::size_t(c)] : 1;
             double const v = color * source.intensity;

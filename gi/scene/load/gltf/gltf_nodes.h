@@ -3,10 +3,10 @@
 
 namespace gi {
 
-/// Nodes with parents before children, skins, cameras and lights. Nodes outside the scene that the file shows keep
-/// their place, as joints may be among them, but nothing hangs on them. Throws InputError on loops and on second
-/// parents.
-/// @return where each node of the file went
+/// Reads nodes (parents before children), skins, cameras and lights. Nodes outside the file's default scene are
+/// kept because they may be joints, but without meshes, cameras or lights. Throws InputError if nodes form a loop
+/// or have two parents.
+/// @return for each node of the file, its index in the scene
 std::vector<std::int32_t> read_nodes(GltfDocument& document, std::vector<GltfMesh> const& meshes, Scene& scene,
                                      Report& report);
 

@@ -1,6 +1,6 @@
 #pragma once
-// tinygltf parses the structure of a glTF file. Buffers and images are ours (gltf_document.h): every byte that a
-// file points to is checked before it is read.
+// tinygltf parses the structure of a glTF file. gltf_document.h reads buffers and images, so that every byte that
+// a file refers to is checked before it is read.
 
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE
