@@ -9,9 +9,9 @@
 namespace gi {
 namespace {
 
-/// Of look-ups of a pilot, how many have to be right as far as columns tell.
+/// Fraction of a pilot's look-ups that must be right, as far as columns show.
 constexpr double kTrusted = 0.87;
-/// Of the budget, that a BVH may take.
+/// Largest fraction of the budget that building a BVH may take.
 constexpr double kMostForBvh = 0.8;
 
 bool says_look_ups(SlhbSettings const& s)
@@ -27,7 +27,7 @@ bool says_maps(SlhbSettings const& s)
            s.space == Space::device;
 }
 
-/// s of one core that a picture may take; 0 = any.
+/// Seconds of one core that a picture may take; 0 = unlimited.
 double budget_of(RenderSettings const& s)
 {
     return s.budget_s * (s.threads > 0 ? s.threads : tbb::this_task_arena::max_concurrency());
@@ -55,7 +55,7 @@ bool narrow_somewhere(World const& world)
         if (has_narrow_lobe(world.bsdfs[m])) return true;
         bool const textured = material.metallic_roughness_map.texture >= 0 ||
                               material.transmission_map.texture >= 0 || material.specular_map.texture >= 0;
-        // A roughness map can make any roughness smaller.
+        // A roughness map can reduce any roughness.
         if (textured && (material.specular > 0 || material.metallic > 0 || material.transmission > 0)) return true;
     }
     return false;
