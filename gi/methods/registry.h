@@ -21,7 +21,7 @@ struct Method {
 };
 
 std::span<Method const> methods();
-/// Throws InputError naming the known methods.
+/// Throws InputError, listing the known methods.
 Method const& find_method(std::string_view name);
 
 } // namespace gi

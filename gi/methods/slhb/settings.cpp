@@ -233,7 +233,7 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
         if (s.schedule == Schedule::stored)
             items.push_back(
                 {"directions " + s.directions, true,
-                 world.environment_select.empty() ? "asked for" : "a sky shines, and many axes must look for it"});
+                 world.environment_select.empty() ? "asked for" : "a sky shines, which takes many axes to find"});
         else
             items.push_back({fmt::format("{} axes for each bounce of a pass", s.axes), true,
                              fmt::format("for {} triangles and {} x {} pixels", world.triangles.size(),

@@ -21,7 +21,7 @@ struct FewAxes {
     std::uint32_t count = 0;
     alignas(64) std::array<float, kMost> x{}, y{}, z{}; ///< unit axes; zero beyond count
     alignas(64) std::array<float, kMost> share{};       ///< solid angle over 2 pi / count; zero beyond count
-    std::array<std::uint32_t, kMost> slot{};            ///< in the pool
+    std::array<std::uint32_t, kMost> slot{};            ///< index in the pool
 
     void set(std::size_t k, vec3 axis, float share_of_all, std::size_t in_pool)
     {

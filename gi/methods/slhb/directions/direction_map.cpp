@@ -32,7 +32,7 @@ std::uint32_t nearest_direction(DirectionSet const& directions, dvec3 d)
 
 NearestDirections::NearestDirections(DirectionSet const& directions) : directions_(directions)
 {
-    constexpr double kRounding = 1e-4; // margin for rounding in the choice of the cell
+    constexpr double kRounding = 1e-4; // rad; margin for rounding when a direction's cell is found
     std::vector<double> cosines(directions.axes.size());
     for (std::uint32_t y = 0; y < kAcross; ++y)
         for (std::uint32_t x = 0; x < kAcross; ++x) {
