@@ -23,7 +23,7 @@ struct NamedValue {
 
 struct Comparison {
     std::vector<NamedValue> values;
-    std::vector<std::string> notes; ///< what was downsampled, omitted, ... ...
+    std::vector<std::string> notes; ///< what was downsampled, omitted, ...
 };
 
 /// @param names from metrics(); empty = the default ones

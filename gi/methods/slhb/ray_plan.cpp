@@ -81,7 +81,7 @@ RayPlan plan_rays(RenderSettings const& asked, int resolution, World const& worl
     bool const no_time = !lasting && asked.budget_s > 0 && costs.bvh > kMostForBvh * budget_of(asked);
     if (s.look_ups != LookUps::automatic || says_look_ups(s)) {
         plan.look_ups = s.look_ups != LookUps::automatic ? s.look_ups : LookUps::all;
-        plan.why_look_ups = "asked for";
+        plan.why_look_ups = "requested";
     } else if (!no_time || camera.orthographic) {
         plan.why_look_ups = "pixels would share their error, which no filter removes; --look-ups all";
     } else {
@@ -95,12 +95,12 @@ RayPlan plan_rays(RenderSettings const& asked, int resolution, World const& worl
     bool const bvh = narrow_somewhere(world) || plan.look_ups == LookUps::none;
     if (s.shadows != Shadows::automatic) {
         plan.shadows = s.shadows;
-        plan.why_shadows = "asked for";
+        plan.why_shadows = "requested";
     } else if (says_maps(s) || says_look_ups(s) || !bvh) {
         plan.shadows = Shadows::maps;
-        plan.why_shadows = bvh ? "asked for" : "there is no BVH";
+        plan.why_shadows = bvh ? "requested" : "there is no BVH";
     } else {
-        plan.why_shadows = "each path has light samples of its own, so that pixels share no error";
+        plan.why_shadows = "each path has its own light samples, so that pixels share no error";
     }
     return plan;
 }

@@ -228,12 +228,12 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
     if (walks) {
         char const* const names[] = {"automatic", "stored", "streamed", "temporal"};
         items.push_back({fmt::format("schedule {}", names[int(s.schedule)]), true,
-                         s.schedule == Schedule::streamed ? "no set of directions limits how far the error falls"
-                                                          : "a sky shines, or it was asked for"});
+                         s.schedule == Schedule::streamed ? "the error is not limited by a fixed set of directions"
+                                                          : "there is a sky, or it was requested"});
         if (s.schedule == Schedule::stored)
             items.push_back(
                 {"directions " + s.directions, true,
-                 world.environment_select.empty() ? "asked for" : "a sky shines, which takes many axes to find"});
+                 world.environment_select.empty() ? "requested" : "a sky needs many axes to be found"});
         else
             items.push_back({fmt::format("{} axes for each bounce of a pass", s.axes), true,
                              fmt::format("for {} triangles and {} x {} pixels", world.triangles.size(),
@@ -246,9 +246,9 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
     }
     bool const cached = choose_cache(asked, false) == RadianceCaching::on;
     items.push_back({"radiance cache", cached,
-                     asked.slhb.cache != RadianceCaching::automatic ? "asked for"
-                     : cached ? "time decides; it trades noise for a little blur"
-                              : "it would leave a small error however long the render is; --radiance-cache on"});
+                     asked.slhb.cache != RadianceCaching::automatic ? "requested"
+                     : cached ? "there is a budget; it trades noise for a little blur"
+                              : "it would leave a small error even in long renders; --radiance-cache on"});
     bool const lit = !world.light_select.empty(), rays = plan.shadows == Shadows::rays;
     items.push_back({rays ? "shadow rays"
                           : fmt::format("{} shadow maps of {} x {}", s.light_samples, s.shadow_resolution,

@@ -35,7 +35,7 @@ void FrameAxes::make_smaller()
     constexpr std::uint32_t kLeast = 8;
     if (source_->resolution < 2 * kLeast)
         throw InputError("even hit buffers of few texels exceed their memory limit",
-                         fmt::format("they have {} texels on a side, and may take {} MiB", source_->resolution,
+                         fmt::format("they have {} texels per side, and the limit is {} MiB", source_->resolution,
                                      source_->most_bytes >> 20),
                          "raise --memory, or choose --look-ups none");
     source_->resolution /= 2;

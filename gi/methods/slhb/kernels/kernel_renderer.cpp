@@ -20,7 +20,7 @@ void check_kernels_can(Camera const& camera, SlhbSettings const& s)
     if (s.packed)
         throw InputError("--device cuda with --packed", "its kernels read plain layers only", suggestion);
     if (s.interleave > 1)
-        throw InputError("--device cuda with --interleave", "its kernels take indirect light in every pixel",
+        throw InputError("--device cuda with --interleave", "its kernels compute indirect light in all pixels",
                          suggestion);
     if (s.cache == RadianceCaching::on)
         throw InputError("--device cuda with --radiance-cache on", "its kernels do not end paths in a cache",

@@ -142,7 +142,7 @@ private:
     Buffer<vec3, S> directions_;
     Buffer<float, S> solid_angles_;
     AxisChoice choice_;
-    std::vector<std::array<Buffer<NearestTexel, S>, 6>> maps_; ///< per lamp, its faces
+    std::vector<std::array<Buffer<NearestTexel, S>, 6>> maps_; ///< per light point, its faces
     Buffer<LightPointView, S> light_points_;
     Buffer<PathSample, S> samples_;
     PathKernelCounts counts_;
