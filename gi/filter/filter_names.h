@@ -1,5 +1,5 @@
 #pragma once
-// The filters by name: the one table for the command line, the viewer's settings, studies, AR sessions and Python.
+// Table of the filters by name, used by the command line, the viewer's settings, studies, AR sessions and Python.
 
 #include "gi/filter/denoise.h"
 

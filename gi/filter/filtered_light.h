@@ -1,5 +1,5 @@
 #pragma once
-// Filtered light that a picture takes from a partner that has been filtered.
+// Filtered light that a picture takes from a partner whose picture has already been filtered.
 
 #include "gi/filter/filter_area.h"
 #include "gi/filter/filter_input.h"
@@ -17,7 +17,7 @@ struct FilteredLight {
 
 /// Replaces L1, L2 and color of all surfaces that are not wanted by the partner's light over albedo times the
 /// picture's own albedo.
-/// @param report  counts pixels that keep their values because the partner's light is not finite
+///  @param report  counts pixels that keep their values because the partner's light is not finite
 /// @return the partner's light
 Planes take_filtered(Picture& picture, ReusedLight const& taken, FilterArea const& area, DenoiseReport& report);
 

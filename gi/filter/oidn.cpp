@@ -172,7 +172,7 @@ void store(OidnFilter const& f, std::vector<Pixel> const& kinds, Layer& layer)
 /// Built at the first call and kept; rebuilt if size, quality or number of threads change.
 OidnFilter& filter_for(OidnSettings const& settings)
 {
-    static OidnFilter* kept = nullptr; // not deleted at the end: the library's own threads may be gone by then
+    static OidnFilter* kept = nullptr; // never deleted, because the library's own threads may have ended by then
     if (kept == nullptr || kept->settings != settings) {
         delete std::exchange(kept, nullptr);
         kept = new OidnFilter(settings);

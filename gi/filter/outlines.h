@@ -14,7 +14,7 @@ namespace gi {
 /// square of their mean m, plus the difference of the two pixels beyond noise, max(0, (l_n - l)^2 - v). g =
 /// max(0, 1
 /// - m^2 / 5 v): pixels with a relative error below 45 % and pixels without variance are unchanged.
-/// @param light  filtered, with luminance and variance @param out  receives the colours of wanted pixels
+///  @param light  filtered, with luminance and variance  @param out  receives the colours of wanted pixels
 void smooth_outlines(Planes const& guides, Planes const& light, RowSpans const& wanted, Planes& out);
 
 } // namespace gi

@@ -241,7 +241,7 @@ void ExactVisibility::moved(World const& world)
             rtcCommitGeometry(geometry);
         }
         rtcCommitScene(part.scene.get());
-        rtcCommitGeometry(rtcGetGeometry(scene_.get(), 1)); // the instance takes the new bounds
+        rtcCommitGeometry(rtcGetGeometry(scene_.get(), 1)); // updates the instance's bounds
         rtcCommitScene(scene_.get());
     } else {
         build_moving(world);

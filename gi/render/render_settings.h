@@ -20,7 +20,7 @@ enum class PixelFilter : std::uint8_t { box, tent };
 enum class Schedule : std::uint8_t {
     automatic,
     stored,   ///< one set for all passes, built once
-    streamed, ///< fresh axes for every pass
+    streamed, ///< new axes for every pass
     temporal, ///< a set in which some axes are replaced in every pass
 };
 
@@ -60,12 +60,12 @@ struct ExactParts {
 struct SlhbSettings {
     Schedule schedule = Schedule::automatic;
     std::string directions;    ///< such as "icosahedron:320"; schedule stored
-    int resolution = 0;        ///< texels of a hit buffer, about resolution x resolution
+    int resolution = 0;        ///< texels per side of a hit buffer, about
     int axes = 0;              ///< per pass; schedules streamed and temporal
     int fresh_axes = 0;        ///< axes replaced per pass; schedule temporal
     int light_samples = 0;             ///< light samples with a shadow map per pass
     int fresh_light_samples = 0;       ///< light samples replaced per pass
-    int shadow_resolution = 0; ///< texels of a shadow map, squared
+    int shadow_resolution = 0; ///< texels per side of a shadow map
     int most_layers = 0;       ///< per texel; 0 = all
     int memory_mib = 0;        ///< memory limit of hit buffers and shadow maps
     bool packed = false;       ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
@@ -89,8 +89,8 @@ inline constexpr int kMostPoints = 1 << 17;
 /// Settings of the methods vpl_*, see gi/methods/vpl.
 struct VirtualLightSettings {
     int light_paths = 256;    ///< light paths per pass; each surface point that one hits becomes a virtual light
-    float near_m = 0;         ///< the contribution of virtual lights is clamped at about this distance and
-                              ///< nearer; 0 = 2 % of the scene's radius
+    float near_m = 0;         ///< virtual lights nearer than about this are bounded, and camera paths add the
+                              ///< rest; 0 = 2 % of the scene's radius
     int points = 1024;        ///< drawn into each imperfect shadow map
     int point_map = 64;       ///< texels per side of an imperfect shadow map
     float ao_radius_m = 0.5f; ///< ambient and directional occlusion ignore surfaces farther away

@@ -46,7 +46,7 @@ struct PointSubset {
     std::uint32_t first = 0, count = 0; ///< consecutive points of the cloud, wrapping around
 };
 
-/// @param map  grid.size squared @param scratch  reusable buffer
+///  @param map  grid.size squared  @param scratch  reusable buffer
 void draw_imperfect_map(PointCloud const& cloud, PointSubset subset, VirtualLight const& light,
                         HemisphereGrid grid, std::span<float> map, std::vector<float>& scratch);
 

@@ -31,7 +31,7 @@ public:
     void report_work(Report& report) override;
 
 private:
-    /// A direction of the set: 2 k along axis k, 2 k + 1 against it.
+    /// A direction of the set; index 2 k is along axis k, 2 k + 1 against it.
     struct Direction {
         vec3 along;  ///< unit
         float texel; ///< texel size of its buffer, m

@@ -18,7 +18,7 @@ enum class VisibilityKind : std::uint8_t {
     slhb,        ///< walks along the stored axes of layered hit buffers
     imperfect,   ///< shadow maps drawn from points, with holes filled by pull-push
     ambient,     ///< unoccluded fraction of the hemisphere within a radius
-    directional, ///< rays no longer than a radius
+    directional, ///< rays limited to a radius
     none         ///< everything is visible
 };
 

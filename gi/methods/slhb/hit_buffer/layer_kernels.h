@@ -112,7 +112,7 @@ struct PackLayers {
     }
 };
 
-/// Item = query. Arrays as in QueryBatch.
+/// Item = look-up. Arrays as in QueryBatch.
 struct AnswerQueries {
     View<AxisView const> axes;
     View<Surface const> surfaces;

@@ -62,7 +62,7 @@ struct VertexNumbers {
 };
 
 /// Probability that a path continues. @param throughput  its largest channel @param scatterings  so far
-/// @param roulette  see SlhbSettings
+///  @param roulette  see SlhbSettings
 GI_FN inline float chance_to_go_on(float throughput, int scatterings, float roulette)
 {
     if (roulette > 0) return glm::min(1.0f, roulette * throughput);

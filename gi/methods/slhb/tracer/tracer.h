@@ -1,5 +1,5 @@
 #pragma once
-// Paths through layered hit buffers. Primary surfaces come from a G-buffer, direct light from shadow maps; a
+// Paths through layered hit buffers. First surfaces come from a G-buffer, direct light from shadow maps; a
 // diffuse or broad lobe continues along one of the axes of the pass (hemisphere formulation, Yu 2012, eq. 5.7), a
 // mirror, glass or narrow lobe with an exact ray. Paths of a block advance together, one surface at a time: all
 // shading, then all look-ups.
@@ -86,7 +86,7 @@ public:
         bool spread = false;                ///< pixels without indirect light will get it from neighbours
     };
 
-    /// @param width  of the picture, pixels
+    ///  @param width  of the picture, pixels
     SlhbTracer(World const& world, CameraRays const& camera, int width, RenderSettings const& settings,
                SlhbSettings const& slhb)
         : world_(view(world)),
@@ -103,10 +103,10 @@ public:
     {
     }
 
-    /// @param samples  one per start, overwritten
-    /// @param shared_vertices  empty, or one per start: paths end on the first diffuse layer, which is stored
+    ///  @param samples  one per start, overwritten
+    ///  @param shared_vertices  empty, or one per start: paths end on the first diffuse layer, which is stored
     ///   here
-    /// @param notes   notes for the radiance cache are appended here
+    ///  @param notes   notes for the radiance cache are appended here
     void trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
                std::span<SharedVertex> shared_vertices, std::vector<CacheNote>& notes, PathCounts& paths,
                SlhbCounts& counts) const;
@@ -120,7 +120,7 @@ private:
     struct Leaving;
     struct Open;
 
-    /// All in one function, so that vectors stay in registers.
+    /// Flattened into one function, so that vectors stay in registers.
     [[gnu::flatten]] bool shade(Pass const& pass, State& s, Vertex& next, Direct& direct, std::span<Open> open,
                                 PathCounts& paths) const;
     /// Unoccluded contribution of a light sample, weighted against the sampling of path directions.

@@ -174,7 +174,7 @@ AxisSample SlhbTracer::choose_axis(Pass const& pass, State const& s, ShadingPoin
     return pass.axes.sample(std::uint32_t(s.scatterings), at.frame.normal, (*s.u)[PathDimension::axis]);
 }
 
-/// False where the path ends.
+/// Returns false if the path ends.
 bool SlhbTracer::scatter_along_axis(Pass const& pass, State& s, Leaving const& from, Vertex& next) const
 {
     ShadingPoint const& at = from.at;
@@ -204,7 +204,7 @@ bool SlhbTracer::scatter_along_axis(Pass const& pass, State& s, Leaving const& f
     return true;
 }
 
-/// False where the path ends.
+/// Returns false if the path ends.
 bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct, std::span<Open> open,
                        PathCounts& paths) const
 {
