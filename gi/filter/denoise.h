@@ -40,7 +40,7 @@ struct DenoiseReport {
 /// position for oidn); a-trous also needs variance, or the variances measured by temporal reuse. Throws
 /// InputError if one is missing. `variance` keeps the variance of the unfiltered picture. The result does not
 /// depend on the number of threads.
-///  @param taken  light of a partner that has been filtered: its light over albedo is taken unchanged, and only
+/// @param taken  light of a partner that has been filtered: its light over albedo is taken unchanged, and only
 ///   the other pixels are filtered. oidn filters the whole picture instead
 DenoiseReport denoise(Picture& picture, DenoiseSettings const& settings, ReusedLight const& taken = {});
 

@@ -8,11 +8,11 @@
 
 namespace gi {
 
-///  @param window  width in pixels, 1 to kMaxWindow. Even windows extend half a pixel further on each side: their
+/// @param window  width in pixels, 1 to kMaxWindow. Even windows extend half a pixel further on each side: their
 ///   outermost pixels have weight 1/2
-///  @param reach  windows to each side whose means are averaged for indirect light; 0 = none.
+/// @param reach  windows to each side whose means are averaged for indirect light; 0 = none.
 /// window * reach <= Planes::kMargin
-///  @param known  filtered light of the partner: left unchanged. It is used only when window means are averaged
+/// @param known  filtered light of the partner: left unchanged. It is used only when window means are averaged
 ///   again, not in the first window means around wanted pixels
 /// @return the filtered light, without luminance and variance
 Planes filter_discontinuity(FilterInput const& input, int window, int reach, FilteredLight const& known);

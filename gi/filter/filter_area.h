@@ -28,7 +28,7 @@ FilterArea whole_area(Picture const& picture);
 
 /// Area in which only surfaces that take no valid light from the partner are wanted. The pictures may differ in
 /// size.
-///  @param reach  radius of the filter, pixels; if at least the picture's size, every pixel is near
+/// @param reach  radius of the filter, pixels; if at least the picture's size, every pixel is near
 FilterArea own_area(Picture const& picture, ReusedLight const& taken, int reach);
 
 } // namespace gi

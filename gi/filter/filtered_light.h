@@ -17,7 +17,7 @@ struct FilteredLight {
 
 /// Replaces L1, L2 and color of all surfaces that are not wanted by the partner's light over albedo times the
 /// picture's own albedo.
-///  @param report  counts pixels that keep their values because the partner's light is not finite
+/// @param report  counts pixels that keep their values because the partner's light is not finite
 /// @return the partner's light
 Planes take_filtered(Picture& picture, ReusedLight const& taken, FilterArea const& area, DenoiseReport& report);
 

@@ -11,10 +11,9 @@ namespace gi {
 ///   g max(0, 1 - 2 v_n / v) / (v_n + min(1, d^2) b^2),
 /// so only those with less than half its variance count. d^2 is the difference of the surfaces, and b^2 an
 /// estimate of the squared difference of light on another surface: the variance among the neighbours, plus the
-/// square of their mean m, plus the difference of the two pixels beyond noise, max(0, (l_n - l)^2 - v). g =
-/// max(0, 1
-/// - m^2 / 5 v): pixels with a relative error below 45 % and pixels without variance are unchanged.
-///  @param light  filtered, with luminance and variance  @param out  receives the colours of wanted pixels
+/// square of their mean m, plus the difference of the two pixels beyond noise, max(0, (l_n - l)^2 - v).
+/// g = max(0, 1 - m^2 / 5 v): pixels with a relative error below 45 % and pixels without variance are unchanged.
+/// @param light  filtered, with luminance and variance  @param out  receives the colours of wanted pixels
 void smooth_outlines(Planes const& guides, Planes const& light, RowSpans const& wanted, Planes& out);
 
 } // namespace gi

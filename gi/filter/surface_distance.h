@@ -36,7 +36,7 @@ struct SurfaceRow {
 /// One pixel's surface, and the difference of other pixels from it.
 class SurfacePoint {
 public:
-    ///  @param by_plane  1 / (footprint * reach)^2
+    /// @param by_plane  1 / (footprint * reach)^2
     SurfacePoint(SurfaceRow const& row, int x, float by_plane)
         : normal_(row.normal[x]),
           plane_(glm::dot(normal_, row.position[x])),

@@ -46,7 +46,7 @@ public:
     /// frames; negative if there was only one frame. Needs color, L0, L1, L2, albedo, normal, depth and motion
     /// (throws InputError if one is missing). "motion" is as in gi/render/motion.h: x, y: offset in pixels to the
     /// surface's previous position; z: its previous depth, m; NaN if there was none. All frames have one size.
-    ///  @param partner, from  the partner's reuse, to which this frame has already been added, and the partner's
+    /// @param partner, from  the partner's reuse, to which this frame has already been added, and the partner's
     ///   source pixels (ReusedLight::from): these pixels take the partner's motion-following means
     TemporalCounts add(Picture& frame, SceneChange change, TemporalReuse const* partner = nullptr,
                        std::span<std::uint32_t const> from = {});

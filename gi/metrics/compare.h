@@ -26,8 +26,8 @@ struct Comparison {
     std::vector<std::string> notes; ///< what was downsampled, omitted, ...
 };
 
-///  @param names from metrics(); empty = the default ones
-///  @param layer  to compare; "color" is the full picture
+/// @param names from metrics(); empty = the default ones
+/// @param layer  to compare; "color" is the full picture
 /// If the sizes differ by an integer factor, the larger picture is downsampled by averaging. Throws InputError on
 /// unknown metrics, missing layers (listing the existing ones) and incompatible sizes.
 Comparison compare(Picture const& image, Picture const& reference, std::vector<std::string> const& names,

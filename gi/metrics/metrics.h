@@ -19,7 +19,7 @@ struct ErrorSums {
     std::size_t not_finite = 0;
 };
 
-///  @param image, reference  interleaved values of `channels` per pixel
+/// @param image, reference  interleaved values of `channels` per pixel
 ErrorSums measure_errors(std::vector<float> const& image, std::vector<float> const& reference, int channels);
 /// 10 log10(1 / MSE) of values in [0, 1]; infinite for equal pictures.
 double psnr(std::vector<float> const& image, std::vector<float> const& reference);

@@ -117,7 +117,7 @@ struct Accumulator {
              Picture& picture) const;
 };
 
-///  @param fingerprint  of scene, camera and settings; a checkpoint with another one is refused (InputError)
+/// @param fingerprint  of scene, camera and settings; a checkpoint with another one is refused (InputError)
 void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, std::uint64_t fingerprint);
 /// Returns false if the file does not exist. Throws InputError if it belongs to another render or is damaged.
 bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint);

@@ -42,8 +42,8 @@ enum class RayWorld : std::uint8_t {
 class ExactVisibility {
 public:
     /// Copies the vertices; with alpha tests, `world` must outlive this object. threads 0 = all.
-    ///  @param first_moving  index of the first triangle that may move; all later ones may move too
-    ///  @param stop  checked while the BVH is built, which throws Interrupted if a stop is requested; null = never
+    /// @param first_moving  index of the first triangle that may move; all later ones may move too
+    /// @param stop  checked while the BVH is built, which throws Interrupted if a stop is requested; null = never
     ExactVisibility(World const& world, bool alpha_tests, int threads, std::size_t first_moving = ~std::size_t(0),
                     StopRequest const* stop = nullptr);
     /// Updates the vertices of the triangles that may move. Materials must not have changed.
@@ -99,7 +99,7 @@ private:
     void build_moving(World const& world);
     ScenePointer scene_of_parts(unsigned count) const;
     void check() const;
-    ///  @param instance  Embree's instance id, or none
+    /// @param instance  Embree's instance id, or none
     Part const& part_of(unsigned instance) const { return parts_[instance == 1 ? 1 : 0]; }
 
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice> device_;

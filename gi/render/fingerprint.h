@@ -10,7 +10,7 @@ namespace gi {
 
 /// Hash of geometry, materials, lights, camera and of the settings that affect the value of a path (not of those
 /// that only decide the number of paths).
-///  @param method  name
+/// @param method  name
 std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettings const& settings,
                           std::string_view method);
 

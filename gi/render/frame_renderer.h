@@ -65,7 +65,7 @@ struct PairResult {
 };
 
 /// Sets all layers to 0 in hidden pixels, except "motion", which is not read where no surface is seen.
-///  @param hidden  as in FrameView
+/// @param hidden  as in FrameView
 void hide_pixels(Picture& picture, std::span<std::uint8_t const> hidden);
 
 /// Number of axes stored per bounce, and of those updated for dynamic geometry in a frame.
@@ -89,13 +89,13 @@ public:
     virtual DynamicUpdate dynamic_update() const { return {}; }
     /// Renders a frame; the settings' budget and paths apply to each frame. The layers are those of RenderResult
     /// and, if the method supports it, "motion" (see gi/render/motion.h).
-    ///  @param moments  if set, every path of a pixel is traced at its own moment, so that their mean is motion
+    /// @param moments  if set, every path of a pixel is traced at its own moment, so that their mean is motion
     ///   blurred; `camera` is then not used for paths, and there is no "motion"
     virtual RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                                Moments const& moments = {}) = 0;
     /// Renders all views of one moment; view-independent work is done once for all of them. Ignores budget, paths
     /// and size of the settings. Only this function supports hidden pixels.
-    ///  @param paths  per pixel, >= 1
+    /// @param paths  per pixel, >= 1
     /// @return one result per view, in order; `interrupted`, with fewer paths, if `stop` was requested before the
     ///   end
     virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths,

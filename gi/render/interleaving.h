@@ -37,13 +37,13 @@ struct Interleaving {
 /// Distributes L2 from pixels that computed it with weight n^2 (IndirectTurn::taken) to the waiting pixels around
 /// them, as light over albedo, weighted by distance in the picture and similarity of the surfaces: less noise,
 /// and a blur of n pixels.
-///  @param samples  of the pass, row by row
+/// @param samples  of the pass, row by row
 void spread_indirect(std::span<PathSample> samples, int width, Interleaving const& interleaving,
                      std::uint32_t pass);
 
 /// Chooses n for the next frame from the time of the last one. Changes n by one step at a time, because fewer
 /// paths cost more each.
-///  @param frame_s, indirect_s  time of the last frame if it had had one pass, and the part of it spent on
+/// @param frame_s, indirect_s  time of the last frame if it had had one pass, and the part of it spent on
 ///   indirect light
 int next_interleaving(int n, double budget_s, double frame_s, double indirect_s);
 
@@ -51,12 +51,12 @@ int next_interleaving(int n, double budget_s, double frame_s, double indirect_s)
 /// the first passes of the first frame.
 class FrameInterleaving {
 public:
-    ///  @param n  of the first pass  @param budget_s  of a frame; 0 = keep n for all frames
+    /// @param n  of the first pass  @param budget_s  of a frame; 0 = keep n for all frames
     FrameInterleaving(int n, double budget_s) : n_(n), budget_s_(budget_s) {}
 
     int n() const { return n_; }
     void frame_begins();
-    ///  @param indirect  fraction of the pass's time spent on indirect light, 0..1
+    /// @param indirect  fraction of the pass's time spent on indirect light, 0..1
     void pass_ended(double indirect);
     void frame_ended();
 

@@ -25,7 +25,7 @@ struct EarlierCorners {
 /// Returns the current corners of the triangles from `first` on.
 std::vector<Corners> corners_of(World const& world, std::size_t first);
 
-///  @param weights  of corners 1 and 2
+/// @param weights  of corners 1 and 2
 inline vec3 point_on(Corners const& c, vec2 weights)
 {
     return c[0] + weights.x * (c[1] - c[0]) + weights.y * (c[2] - c[0]);

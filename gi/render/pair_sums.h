@@ -15,14 +15,14 @@ public:
     void start(int width, int height);
 
     /// Adds one path to every pixel of both pictures. @param first  paths of the first picture, one per pixel
-    ///  @param pixels, second  pixels in which the second picture has a different path, and those paths; each
+    /// @param pixels, second  pixels in which the second picture has a different path, and those paths; each
     ///   pixel at most once
     void add(std::span<PathSample const> first, std::span<std::uint32_t const> pixels,
              std::span<PathSample const> second);
     std::uint32_t paths() const { return first_.paths; }
 
     Picture first(World const& world, PictureLayers layers) const { return first_.picture(world, layers); }
-    ///  @param picture  first(), of the same world and layers
+    /// @param picture  first(), of the same world and layers
     void make_second(World const& world, Picture& picture) const;
 
 private:

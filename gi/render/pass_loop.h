@@ -14,7 +14,7 @@ namespace gi {
 class PassLoop {
 public:
     /// Starts the clock: construct it before building the method's structures.
-    ///  @param spent_s  seconds already spent on them
+    /// @param spent_s  seconds already spent on them
     PassLoop(RenderSettings const& settings, StopRequest const& stop, RenderProgress const& progress,
              Report& report, double spent_s = 0);
 
@@ -23,7 +23,7 @@ public:
     using Pass = std::function<void(Accumulator&, std::uint32_t paths)>;
 
     /// Runs the passes in an arena of settings.threads and fills in all of the result except picture and rays.
-    ///  @param print  see fingerprint.h; only used with a checkpoint
+    /// @param print  see fingerprint.h; only used with a checkpoint
     /// @throws InputError if the checkpoint belongs to another render.
     RenderResult run(std::uint64_t print, Pass const& pass);
 

@@ -11,7 +11,7 @@ namespace gi {
 
 namespace pass_samples_detail {
 
-///  @param what  identifies the sequence
+/// @param what  identifies the sequence
 inline vec4 sample(std::uint64_t seed, std::uint64_t what, std::uint32_t pass)
 {
     return RqmcStream(std::uint32_t(mix_bits(seed ^ what)), pass).sample_together(0);

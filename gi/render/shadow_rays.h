@@ -7,7 +7,7 @@
 namespace gi {
 
 /// Traces the shadow rays of many paths together and adds the light of the unblocked ones.
-///  @param paths  each with its `shadow` (RayQuery), `shadow_radiance` (0 = no shadow ray), `shadow_bucket`,
+/// @param paths  each with its `shadow` (RayQuery), `shadow_radiance` (0 = no shadow ray), `shadow_bucket`,
 ///   `bucket(i)` and `rng`
 template <class Path, class Visibility>
 void add_unshadowed(std::span<Path* const> paths, Visibility const& visibility, PathCounts& counts)

@@ -22,8 +22,8 @@ struct FirstHit {
     vec2 weights; ///< of corners 1 and 2
 };
 
-///  @param first_hits  one per pixel, set by its last path; empty = not needed
-///  @param memory  buffer for interleaved passes, in which pixels take indirect light from those in turn
+/// @param first_hits  one per pixel, set by its last path; empty = not needed
+/// @param memory  buffer for interleaved passes, in which pixels take indirect light from those in turn
 void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t first_path,
                 std::uint32_t paths, std::span<FirstHit> first_hits = {},
                 std::vector<PathSample>* memory = nullptr)
@@ -74,8 +74,8 @@ void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, st
 struct Structures {
     std::unique_ptr<ExactVisibility> visibility;
 
-    ///  @param first_moving  index of the first dynamic triangle
-    ///  @param stop  see ExactVisibility
+    /// @param first_moving  index of the first dynamic triangle
+    /// @param stop  see ExactVisibility
     void build(World const& world, int threads, Report& report, std::size_t first_moving,
                StopRequest const* stop = nullptr)
     {
@@ -90,7 +90,7 @@ struct Structures {
     }
 };
 
-///  @param print  of the scene and settings
+/// @param print  of the scene and settings
 RenderResult trace_all(PassLoop& loop, std::uint64_t print, PassLoop::Pass const& pass, World const& world,
                        Report& report)
 {

@@ -17,8 +17,8 @@ struct RayPlan {
     std::string why_look_ups, why_shadows;
 };
 
-///  @param resolution  texels per side that a hit buffer would have
-///  @param lasting   structures serve many pictures, so that their build time is ignored
+/// @param resolution  texels per side that a hit buffer would have
+/// @param lasting   structures serve many pictures, so that their build time is ignored
 RayPlan plan_rays(RenderSettings const& asked, int resolution, World const& world, TriangleSoup const& soup,
                   Camera const& camera, Costs const& costs, bool lasting);
 

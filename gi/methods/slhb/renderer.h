@@ -21,7 +21,7 @@ class SlhbRenderer {
 public:
     /// Builds the lasting structures; throws Interrupted if `stop` is requested meanwhile. `world` and `report`
     /// must outlive this object, and the world's arrays must not be reallocated.
-    ///  @param views  at least one  @param settings  with chosen slhb settings  @param soup  of the world
+    /// @param views  at least one  @param settings  with chosen slhb settings  @param soup  of the world
     SlhbRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
                  TriangleSoup soup, std::size_t first_moving, Report& report,
                  FirstSurfaces first_surfaces = FirstSurfaces::by_raster, StopRequest const* stop = nullptr);
@@ -38,7 +38,7 @@ public:
     /// Sets the views from the next pass on. Each continues the previous frame's view of the same index.
     void see(std::span<FrameView const> views);
     /// Traces one more path for every pixel. @param index  of the pass; selects the random numbers
-    ///  @param sums  one per view
+    /// @param sums  one per view
     void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::exact);
 
     /// Traces a pass of one view with and without dynamic geometry, with the same random numbers; without it,
@@ -49,7 +49,7 @@ public:
     void add_motion(std::size_t view, Picture& picture) const;
     /// For every pixel whose path in the last pass first hit a dynamic triangle: adds 1 to counts, and the path's
     /// radiance to radiance.
-    ///  @param counts, radiance  one per pixel. Adds nothing for orthographic cameras.
+    /// @param counts, radiance  one per pixel. Adds nothing for orthographic cameras.
     void add_coverage(std::size_t view, std::span<float> counts, std::span<vec3> radiance) const;
     /// RenderResult::light_from over the passes since the sums were empty.
     std::span<std::uint32_t const> light_from(std::size_t view) const;

@@ -22,7 +22,7 @@ CameraSubpath CameraPaths::start(int x, int y, std::uint32_t index) const
     return p;
 }
 
-///  @param share  fraction of the light that these paths contribute
+/// @param share  fraction of the light that these paths contribute
 void CameraPaths::aim_at_light(CameraSubpath& p, ShadingPoint const& at, vec3 wo, float share) const
 {
     LightChoice const choice = choose_light(world, p.rng.uniform_double());

@@ -23,7 +23,7 @@ struct Disk {
 constexpr int kLanes = 8;
 static_assert(kLanes >= 2 * kReach + 2);
 
-///  @param map  with room for kLanes more values
+/// @param map  with room for kLanes more values
 void draw(Disk const& disk, HemisphereGrid grid, float* map)
 {
     vec3 const at = disk.centre;
@@ -86,7 +86,7 @@ void push(float const* coarse, std::uint32_t fine_size, float* fine)
         }
 }
 
-///  @param map  followed by room for all coarser levels
+/// @param map  followed by room for all coarser levels
 void fill_holes(float* map, std::uint32_t size, int levels)
 {
     float* level[16] = {map};

@@ -46,7 +46,7 @@ struct PointSubset {
     std::uint32_t first = 0, count = 0; ///< consecutive points of the cloud, wrapping around
 };
 
-///  @param map  grid.size squared  @param scratch  reusable buffer
+/// @param map  grid.size squared  @param scratch  reusable buffer
 void draw_imperfect_map(PointCloud const& cloud, PointSubset subset, VirtualLight const& light,
                         HemisphereGrid grid, std::span<float> map, std::vector<float>& scratch);
 
@@ -57,7 +57,7 @@ struct MappedLight {
     float const* map;
 };
 
-/// True if a surface receives light. @param normal  unit @param slack  m; tolerated distance behind the stored
+/// True if a surface receives light. @param normal  unit  @param slack  m; tolerated distance behind the stored
 /// surface, in addition to the width of a texel at that distance
 inline bool is_lit(MappedLight const& light, HemisphereGrid grid, vec3 position, vec3 normal, float slack)
 {

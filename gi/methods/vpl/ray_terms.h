@@ -10,7 +10,7 @@ namespace gi {
 /// here with a ray per direction instead of spherical harmonics).
 class RayTerm : public VisibilityTerm {
 public:
-    ///  @param visibility  must outlive this object  @param radius_m  >= 0, kInf = unlimited
+    /// @param visibility  must outlive this object  @param radius_m  >= 0, kInf = unlimited
     RayTerm(ExactVisibility const& visibility, float radius_m) : visibility_(visibility), radius_m_(radius_m) {}
     void of_connections(ReceiverTile const& tile, std::span<Connection const> connections, std::span<float> shares,
                         PathCounts& counts) const override;

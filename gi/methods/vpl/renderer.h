@@ -18,7 +18,7 @@ public:
     /// See Changes.
     void changed(Changes const& changes);
     /// Traces one more path for every pixel of all views, lit by the virtual lights of this pass.
-    ///  @param sums  one per view
+    /// @param sums  one per view
     void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums);
     /// Reports the work done since the last call.
     void report_work();

@@ -120,7 +120,7 @@ public:
     /// Makes look-ups find dynamic geometry or ignore it.
     void show_moving(bool shown) { pool_.without_moving = !shown; }
 
-    ///  @param bounce  0 = the first  @param normal unit  @param u uniform in [0, 1)
+    /// @param bounce  0 = the first  @param normal unit  @param u uniform in [0, 1)
     AxisSample sample(std::uint32_t bounce, vec3 normal, float u) const
     {
         return AxisChoice{few_, takes_few() ? CosineTablesView{} : view(tables_)}.sample(bounce, normal, u);

@@ -20,7 +20,7 @@ struct CosineTablesView {
     View<float const> solid_angles; ///< per axis, of one of its two directions, sr; they sum to 2 pi
     std::uint32_t bins_across = 0;  ///< bins per side of the octahedral square
 
-    ///  @param normal unit  @param u uniform in [0, 1)
+    /// @param normal unit  @param u uniform in [0, 1)
     GI_FN AxisSample sample(vec3 normal, double u) const
     {
         vec2 const uv = octahedral_from_direction(normal);
@@ -41,7 +41,7 @@ struct CosineTables {
     std::uint32_t bins_across = 0;
 };
 
-///  @param bins_across  with 64, the weights of icosahedron:320 deviate from 1 by 0.052 (root mean square); more
+/// @param bins_across  with 64, the weights of icosahedron:320 deviate from 1 by 0.052 (root mean square); more
 ///   for axes at grazing angles, which are rarely drawn
 CosineTables make_cosine_tables(DirectionSet const& directions, std::uint32_t bins_across);
 

@@ -65,7 +65,7 @@ struct DirectionMap {
     SphereMapping mapping = SphereMapping::octahedral;
 };
 
-///  @param size  number of rows of the table
+/// @param size  number of rows of the table
 DirectionMap make_direction_map(DirectionSet const& directions, SphereMapping mapping, std::uint32_t size);
 
 inline DirectionMapView view(DirectionMap const& m) { return {m.nearest, m.width, m.height, m.mapping}; }

@@ -34,7 +34,7 @@ struct Gaps {
     }
 };
 
-///  @param with_gaps  false = compute only `nearest_to`
+/// @param with_gaps  false = compute only `nearest_to`
 Gaps find_gaps(DirectionSet const& directions, std::size_t samples, bool with_gaps)
 {
     NearestDirections const nearest(directions);

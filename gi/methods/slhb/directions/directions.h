@@ -22,8 +22,8 @@ struct DirectionSet {
 ///   tetrahedron               those of the tetrahedron and their opposites, 8 * 4^L
 ///   uv_grid                   centres of the thesis's spherical triangles (fig. 3.4), 8 * L^2
 ///   halton, fibonacci         any even count: Halton points (bases 2, 3) or a spherical Fibonacci lattice on the
-///                             hemisphere z > 0, and their opposites Throws InputError on other names and counts;
-///                             the message names the nearest valid count.
+///                             hemisphere z > 0, and their opposites
+/// Throws InputError on other names and counts; the message names the nearest valid count.
 DirectionSet make_directions(std::string const& name);
 
 } // namespace gi

@@ -12,11 +12,11 @@ namespace gi {
 
 class FrameAxes {
 public:
-    ///  @param settings, report  must outlive this object
+    /// @param settings, report  must outlive this object
     FrameAxes(SlhbSettings const& settings, Report& report) : slhb_(settings), report_(report) {}
 
     /// Makes the axes; call this first. Stored axes are built here.
-    ///  @param walks  true if paths may leave a surface along an axis; else no axis is built
+    /// @param walks  true if paths may leave a surface along an axis; else no axis is built
     void make(AxisSet::Source source, bool walks);
     /// Prepares the axes of a pass. @param surfaces  number of surfaces that a path may leave along an axis
     void prepare(int surfaces, std::uint32_t index);

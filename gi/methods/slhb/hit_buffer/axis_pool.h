@@ -28,13 +28,13 @@ struct AxisPool {
     std::size_t size() const { return grids.size(); }
     /// Returns a view of axis `a`; only for unpacked layers without dynamic geometry.
     AxisView axis(std::size_t a) const;
-    ///  @param at  index of a texel in `offset`
+    /// @param at  index of a texel in `offset`
     LayerRange column(std::size_t at) const
     {
         return by_ranges() ? ranges[at] : LayerRange{offset[at], offset[at + 1]};
     }
     bool by_ranges() const { return !ranges.empty() && !without_moving; }
-    ///  @param k  index into `layers` or `packed`, of axis `a`
+    /// @param k  index into `layers` or `packed`, of axis `a`
     HitLayer layer(std::size_t a, std::uint32_t k) const;
     std::size_t bytes() const
     {

@@ -54,8 +54,8 @@ void trim(Keep const& keep, std::uint32_t most_layers, HitBufferOn<S>& b)
 
 } // namespace build_detail
 
-///  @param soup  in space S  @param most_layers  per texel, see fill_hit_buffer
-///  @param keep  selects the layers that exist, see TrimLayers
+/// @param soup  in space S  @param most_layers  per texel, see fill_hit_buffer
+/// @param keep  selects the layers that exist, see TrimLayers
 /// Throws InputError if there are too many layers for 32-bit indices.
 template <Space S, class Keep = KeepAll>
 HitBufferOn<S> build_hit_buffer(SoupView const& soup, RasterGrid const& grid, std::uint32_t most_layers = 0,

@@ -29,7 +29,7 @@ inline HitBufferView view(HitBuffer const& b) { return {b.grid, b.offset, b.laye
 void sort_layers(HitLayer* first, HitLayer* last);
 
 /// Builds a hit buffer: count, scan, fill, sort. Reuses the memory of `out`.
-///  @param most_layers  per texel: the first ones along the axis are kept, the others counted; 0 = all
+/// @param most_layers  per texel: the first ones along the axis are kept, the others counted; 0 = all
 void fill_hit_buffer(Fragments const& fragments, RasterGrid const& grid, std::uint32_t most_layers,
                      HitBuffer& out);
 

@@ -13,7 +13,7 @@ namespace gi {
 /// @return fraction of look-ups whose four columns contain the starting surface and agree, for points that the
 ///   camera sees and points hit from there along two axes; 1 if the camera sees nothing, 0 if a texel is larger
 ///   than 1/16 of the median distance to what the camera sees
-///  @param camera  not orthographic  @param resolution  texels per side of a hit buffer
+/// @param camera  not orthographic  @param resolution  texels per side of a hit buffer
 double look_up_agreement(World const& world, TriangleSoup const& soup, CameraRays const& camera,
                          std::uint32_t resolution);
 

@@ -9,7 +9,7 @@ namespace gi {
 /// Returns the corners of the soup's triangles from `first` on.
 std::vector<Corners> corners_of(TriangleSoup const& soup, std::size_t first);
 
-///  @param now  camera of the frame whose last pass is in `primary`
+/// @param now  camera of the frame whose last pass is in `primary`
 void add_motion(PrimaryMap const& primary, TriangleSoup const& soup, CameraRays const& now,
                 CameraRays const& camera_before, EarlierCorners const& before, Picture& picture);
 

@@ -22,7 +22,7 @@ public:
 
     /// Adds the current dynamic layers to the updated axes that lack them, and removes outdated dynamic layers
     /// from all other axes. After fill_pool, call forget() first.
-    ///  @param cut_seeds  per axis, as used for its static buffer  @param updated  per axis: 0 = not updated
+    /// @param cut_seeds  per axis, as used for its static buffer  @param updated  per axis: 0 = not updated
     /// @return number of layers lost (beyond most_layers) in columns that contain dynamic geometry
     /// Throws InputError if 32-bit indices are not enough.
     std::uint64_t append(Source const& source, std::span<std::uint32_t const> cut_seeds,

@@ -160,7 +160,7 @@ Answer store_answers(WalkLanes<kPacked> const& w, QueryBatch& b, std::size_t fir
     return {bits_of(w.found), bits_of(doubtful)};
 }
 
-///  @param grids, column  of the first vector of the pair
+/// @param grids, column  of the first vector of the pair
 template <bool kPacked>
 Answer answer_pair(AxisPool const& pool, GridLanes const* grids, QueryBatch& b, std::size_t first,
                    Columns const& columns, std::size_t column)
@@ -203,7 +203,7 @@ struct ManyGrids {
     RasterGrid const& of(std::size_t i) const { return pool.grids[axes[i]]; }
 };
 
-///  @param kBufferIsCold  few look-ups spread over many texels
+/// @param kBufferIsCold  few look-ups spread over many texels
 template <bool kBufferIsCold>
 struct OneGrid {
     static constexpr bool kMany = false, kCold = kBufferIsCold;

@@ -34,7 +34,7 @@ public:
     DynamicUpdate dynamic_update() const { return axes_.dynamic_update(); }
     /// Throws InputError on orthographic cameras.
     void see(std::span<FrameView const> views);
-    ///  @param sharing  ignored: paths do not share vertices
+    /// @param sharing  ignored: paths do not share vertices
     void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::none);
     void add_motion(std::size_t view, Picture& picture) const;
     /// Empty: no light is reused from a partner.

@@ -17,7 +17,7 @@ namespace gi {
 template <Space S>
 class KernelScene {
 public:
-    ///  @param most_layers  per texel, see fill_hit_buffer
+    /// @param most_layers  per texel, see fill_hit_buffer
     KernelScene(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t most_layers)
         : world_(world), soup_(soup), marked_(upload<S>(cut_outs.marked())), most_layers_(most_layers)
     {
@@ -101,7 +101,7 @@ public:
         chances_ = upload<S>(std::vector<AliasEntry>(chances.entries.begin(), chances.entries.end()));
     }
 
-    ///  @param paths  with the host's parameters and those of the view; this function fills in the rest
+    /// @param paths  with the host's parameters and those of the view; this function fills in the rest
     std::vector<PathSample> trace(TracePaths paths)
     {
         std::size_t const pixels = paths.primary.size();

@@ -14,7 +14,7 @@ GI_FN inline std::uint32_t random_key(std::uint64_t seed)
 }
 
 /// Random numbers of pixel `id` = y * width + x. Neighbours use different strata, so that means over windows of
-/// pixels have less noise. @param key  of the picture @param index  of the path
+/// pixels have less noise. @param key  of the picture  @param index  of the path
 GI_FN inline RqmcStream pixel_stream(std::uint32_t key, std::uint32_t id, std::uint32_t width, std::uint32_t index)
 {
     constexpr std::uint32_t kTile = 4; // pixels per side, as sixteen streams share a seed
@@ -61,8 +61,8 @@ struct VertexNumbers {
     vec2 pair(PathDimension d) const { return {u[std::size_t(d)], u[std::size_t(d) + 1]}; }
 };
 
-/// Probability that a path continues. @param throughput  its largest channel @param scatterings  so far
-///  @param roulette  see SlhbSettings
+/// Probability that a path continues. @param throughput  its largest channel  @param scatterings  so far
+/// @param roulette  see SlhbSettings
 GI_FN inline float chance_to_go_on(float throughput, int scatterings, float roulette)
 {
     if (roulette > 0) return glm::min(1.0f, roulette * throughput);

@@ -34,8 +34,8 @@ struct LightPointSettings {
 
 class LightPoints {
 public:
-    ///  @param bounds  of all shadow casters
-    ///  @param elsewhere  if set, this class only sets up the maps' grids, and the callback draws each map from
+    /// @param bounds  of all shadow casters
+    /// @param elsewhere  if set, this class only sets up the maps' grids, and the callback draws each map from
     ///   all triangles: maps of new light points, and all maps after dynamic geometry changes
     struct DeviceDraw {
         std::vector<LightPoint> const& light_points;

@@ -15,7 +15,7 @@ class LightOrder {
 public:
     /// Rebuilds the order for the current world, which must outlive this object.
     void update(World const& world);
-    ///  @param u  in [0, 1), with all 53 bits used
+    /// @param u  in [0, 1), with all 53 bits used
     LightChoice choose(double u) const;
 
 private:
@@ -71,14 +71,14 @@ public:
     /// With more lights than kManyLights, a choice is made among kMostRounds groups.
     static constexpr std::uint32_t kManyLights = 512, kMostRounds = 4;
 
-    ///  @param groups  > 0  @param pass  selects the samples
+    /// @param groups  > 0  @param pass  selects the samples
     void fill(LightOrder const& order, World const& world, std::uint32_t groups, std::uint64_t seed,
               std::uint32_t pass);
     bool empty() const { return lights_.empty(); }
 
     /// Chooses a sample from one or several groups, with probability roughly proportional to its unoccluded
     /// contribution to a diffuse surface: luminance times the cosines over the squared distance.
-    ///  @param normal  unit, on the viewer's side  @param u, pick  select the group and the sample within it; in
+    /// @param normal  unit, on the viewer's side  @param u, pick  select the group and the sample within it; in
     ///   [0, 1)
     ChosenLight choose(vec3 position, vec3 normal, float u, float pick) const;
 

@@ -21,7 +21,7 @@ public:
     PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, RenderSettings const& settings, int width,
                int height);
 
-    /// Rasterises the view of a pass. @param camera  without a lens @param near_m  distance of the near plane
+    /// Rasterises the view of a pass. @param camera  without a lens  @param near_m  distance of the near plane
     void refresh(CameraRays const& camera, float near_m, std::uint32_t pass);
     /// The same, and also keeps the view of only the triangles before `first_moving`.
     void refresh_pair(CameraRays const& camera, float near_m, std::uint32_t pass, std::size_t first_moving);

@@ -40,7 +40,7 @@ GI_FN inline int face_of(vec3 d)
     return d.z < 0 ? 5 : 4;
 }
 
-///  @param normal  unit, of the lit triangle  @param u uniform in [0, 1)^2
+/// @param normal  unit, of the lit triangle  @param u uniform in [0, 1)^2
 template <class Map>
 GI_FN ShadowPlace look(Map const& map, vec3 position, vec3 normal, vec2 u)
 {
@@ -74,7 +74,7 @@ GI_FN ShadowPlace look(Map const& map, vec3 position, vec3 normal, vec2 u)
     return {texels + (std::size_t(j) * g.width + i), w + shift(way - w * line, line, texel), texel};
 }
 
-///  @param triangle  the lit triangle, at `position`
+/// @param triangle  the lit triangle, at `position`
 template <class Map>
 GI_FN bool lit(Map const& map, ShadowPlace const& place, View<Surface const> surfaces, vec3 position,
                std::uint32_t triangle)

@@ -28,9 +28,9 @@ struct ShadowMap {
     {
         return maps[face].texels.empty() ? nullptr : maps[face].texels.data();
     }
-    ///  @param normal  unit, of the lit triangle  @param u uniform in [0, 1)^2
+    /// @param normal  unit, of the lit triangle  @param u uniform in [0, 1)^2
     Place look(vec3 position, vec3 normal, vec2 u) const;
-    ///  @param triangle  the lit triangle, at `position`
+    /// @param triangle  the lit triangle, at `position`
     bool lit(Place const& place, View<Surface const> surfaces, vec3 position, std::uint32_t triangle) const;
 };
 
@@ -51,7 +51,7 @@ using TakenTexels = std::array<std::vector<std::pair<std::uint32_t, NearestTexel
 /// Builds shadow maps; the faces of a map are independent of each other.
 class ShadowMapBuilder {
 public:
-    ///  @param bounds  of all shadow casters  @param resolution  texels per side
+    /// @param bounds  of all shadow casters  @param resolution  texels per side
     ShadowMapBuilder(Bounds const& bounds, TriangleSoup const& soup, CutOuts const& cut_outs,
                      std::uint32_t resolution)
         : bounds_(bounds), soup_(soup), cut_outs_(cut_outs), resolution_(resolution)

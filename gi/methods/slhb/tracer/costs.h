@@ -15,7 +15,7 @@ struct Costs {
     double ray, shadow_ray;   ///< per exact, incoherent ray
     double bvh;               ///< ///< building it
 
-    ///  @param layers_each  mean number of layers per non-empty texel, see HitBuffer
+    /// @param layers_each  mean number of layers per non-empty texel, see HitBuffer
     Costs(World const& world, double layers_each)
         : triangles(double(world.triangles.size())), layers(std::max(1.0, layers_each))
     {

@@ -25,7 +25,7 @@ public:
 
     /// Finds the partner's pixel that shows the surface a path starts at; the partner's first surfaces must be
     /// ready.
-    ///  @param sample  receives the pixel's own values (L0, albedo, normal, position, depth) if a partner pixel is
+    /// @param sample  receives the pixel's own values (L0, albedo, normal, position, depth) if a partner pixel is
     ///   found
     /// @return the partner's pixel, else kOwnLight
     std::uint32_t find(PathStart const& start, PathSample& sample) const;
@@ -40,7 +40,7 @@ private:
 };
 
 /// True if all paths of two pixels (given as sums) hit the same surface, so that neither pixel lies on an edge.
-///  @param pixel_m  size of a pixel at the surface
+/// @param pixel_m  size of a pixel at the surface
 bool same_surface(PixelSums const& a, PixelSums const& b, double pixel_m);
 
 /// Sets L1 and L2 of the sample from the partner's completed path: divided by its albedo, times the sample's own.

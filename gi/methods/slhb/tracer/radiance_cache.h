@@ -46,13 +46,13 @@ inline bool is_directional(Bsdf const& b)
 
 class RadianceCache {
 public:
-    ///  @param radius  of the world, m  @param most_bytes  memory limit; notes without a cell are counted
+    /// @param radius  of the world, m  @param most_bytes  memory limit; notes without a cell are counted
     RadianceCache(float radius, std::size_t most_bytes);
 
     /// Returns equal keys for points on the same material and the same side of triangles, with similar
     /// orientation, in the same cell. Empty if floats are too coarse for cells this narrow.
-    ///  @param footprint  width of the bundle that the path represents, m  @param arrival  direction of the path
-    ///  @param further  number of scatterings that may follow, >= 0
+    /// @param footprint  width of the bundle that the path represents, m  @param arrival  direction of the path
+    /// @param further  number of scatterings that may follow, >= 0
     CacheKeys keys(Surface const& surface, vec3 position, vec3 arrival, float footprint, int further) const;
     void prefetch(CacheKeys const& keys) const;
 

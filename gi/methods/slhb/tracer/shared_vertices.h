@@ -9,7 +9,7 @@ namespace gi {
 
 class SharedVertices {
 public:
-    ///  @param paths  of the pass  @param layers  number of layers on which they may end; 0 = no sharing in this
+    /// @param paths  of the pass  @param layers  number of layers on which they may end; 0 = no sharing in this
     ///   pass
     void start(std::size_t paths, std::size_t layers, std::uint32_t pass);
     /// Registers the end of a path; called once per path, from several threads.
@@ -18,7 +18,7 @@ public:
     void note_none(std::uint32_t path) { start_of_[path] = kNone; }
     /// Call after all paths are registered: makes the starts of the continuing paths, in an order independent of
     /// threads.
-    ///  @param shared_vertices  one per path; ignored for paths registered without one
+    /// @param shared_vertices  one per path; ignored for paths registered without one
     void collect(std::vector<SharedVertex> const& shared_vertices);
 
     std::vector<PathStart> const& starts() const { return starts_; }

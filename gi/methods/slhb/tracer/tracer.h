@@ -86,7 +86,7 @@ public:
         bool spread = false;                ///< pixels without indirect light will get it from neighbours
     };
 
-    ///  @param width  of the picture, pixels
+    /// @param width  of the picture, pixels
     SlhbTracer(World const& world, CameraRays const& camera, int width, RenderSettings const& settings,
                SlhbSettings const& slhb)
         : world_(view(world)),
@@ -103,10 +103,10 @@ public:
     {
     }
 
-    ///  @param samples  one per start, overwritten
-    ///  @param shared_vertices  empty, or one per start: paths end on the first diffuse layer, which is stored
+    /// @param samples  one per start, overwritten
+    /// @param shared_vertices  empty, or one per start: paths end on the first diffuse layer, which is stored
     ///   here
-    ///  @param notes   notes for the radiance cache are appended here
+    /// @param notes   notes for the radiance cache are appended here
     void trace(Pass const& pass, std::span<PathStart const> starts, std::span<PathSample> samples,
                std::span<SharedVertex> shared_vertices, std::vector<CacheNote>& notes, PathCounts& paths,
                SlhbCounts& counts) const;
