@@ -11,22 +11,22 @@ namespace gi {
 namespace {
 
 constexpr std::array<float, 3> kSpline{3.0f / 8, 1.0f / 4, 1.0f / 16};
-// Standard deviations from which on weights are 0. More in the first iteration, whose variance is the least
-// certain, and more of indirect light, which has fewer edges.
+// Luminance difference, in standard deviations, from which on weights are 0. Larger in the first iteration, whose
+// variance is the least certain, and for indirect light, which has fewer edges.
 constexpr float kDirect = 7, kDirectFirst = 10, kIndirect = 10, kIndirectFirst = 14;
 constexpr float kTinyVariance = 1e-12f; // of light without noise
 
 struct Iteration {
     Planes const& guides;
     Planes const& in;
-    Planes& out; ///< its luminances hold the sums of the weights meanwhile
+    Planes& out; ///< the luminance planes hold the sums of the weights until finished
     int step;    ///< pixels between taps
     float plane_scale;
-    float direct2, indirect2; ///< squared standard deviations from which on weights are 0
+    float direct2, indirect2; ///< squared limits, in standard deviations, from which on weights are 0
 };
 
 /// Adds the taps of row y + dy * step to the sums of row y. The middle row starts the sums with its central tap,
-/// whose weight is the spline's even where nothing is like it.
+/// which has the spline's full weight even if no neighbour is similar.
 template <bool kMiddle>
 void add_row(Iteration const& it, Spans spans, int y, int dy)
 {
@@ -110,7 +110,7 @@ void filter_row(Iteration const& it, Spans spans, int y)
     divide(it.out, spans, y);
 }
 
-/// Light that is known has no noise any more.
+/// The partner's light is already filtered and counts as free of noise.
 void lay(FilteredLight const& known, Planes const& from, int y, Planes& out)
 {
     known.area.for_known(y, [&](Span span) {
@@ -150,7 +150,7 @@ Planes filter_atrous(FilterInput& input, int iterations, FilteredLight const& kn
                            square(i == 0 ? kDirectFirst : kDirect),
                            square(i == 0 ? kIndirectFirst : kIndirect)};
         tbb::parallel_for(0, height, [&](int y) { filter_row(it, known.area.wanted[std::size_t(y)], y); });
-        if (i == 0) lay_in(input.light); // what it saw first was as it came
+        if (i == 0) lay_in(input.light); // the first iteration used the picture's own light
         std::swap(input.light, other);
     }
     smooth_outlines(input.guides, input.light, known.area.wanted, other);

@@ -31,15 +31,15 @@ void check(Picture const& picture, DenoiseSettings const& s)
                              "the filtered picture is L0 + L1 + L2", "keep all layers until it is filtered");
 }
 
-/// How far from a pixel the filters look.
+/// Radius of the filters' neighbourhood, pixels.
 int reach_of(DenoiseSettings const& s)
 {
-    // The variance of a-trous is split by all of the picture.
+    // a-trous estimates the split of the variance from the whole picture.
     return s.denoiser == Denoiser::atrous ? std::numeric_limits<int>::max()
                                           : std::max(s.window / 2, s.reach * s.window);
 }
 
-/// Multiplies the albedo back, where there was a surface to go by.
+/// Multiplies by the albedo again in pixels that were filtered.
 void store(Planes const& guides, Planes const& filtered, RowSpans const& wanted, Picture& picture)
 {
     FilteredLayers const layers(picture);

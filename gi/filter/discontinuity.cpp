@@ -6,13 +6,13 @@ namespace gi {
 namespace {
 
 constexpr float kCosineStep = 0.95f; // 18 degrees
-constexpr float kAlbedoStep = 1;     // only what is too dark in other channels differs by more
-constexpr float kPlaneDistance = 1; // in distances of neighbouring pixels
+constexpr float kAlbedoStep = 1;     // larger differences occur only if other channels are too dark
+constexpr float kPlaneDistance = 1; // in units of the distance between neighbouring pixels
 
 /// Planes of the sums: direct and indirect light as in namespace light, then the weights.
 constexpr int kWeight = 6;
 
-/// Adds to the sums of row y the light of the pixels that lie (dx, dy) away.
+/// Adds the light of the pixels at offset (dx, dy) to the sums of row y.
 template <bool with_direct>
 void add_row(Planes const& g, Planes const& light, Spans spans, int y, int dx, int dy, float share, Planes& out)
 {
@@ -39,7 +39,7 @@ void add_row(Planes const& g, Planes const& light, Spans spans, int y, int dx, i
         }
 }
 
-/// The light of a span, as the start of its sums: a pixel itself counts whatever its surface.
+/// Starts the sums of a span with its own light: a pixel always counts itself.
 void start_sums(Planes const& light, int first_plane, Span span, int y, Planes& out)
 {
     for (int p = first_plane; p < kWeight; ++p)
@@ -66,7 +66,7 @@ void filter_row(FilterInput const& input, int window, Spans spans, int y, Planes
     divide(out, light::direct, spans, y, out);
 }
 
-/// Indirect light of `means`, averaged over windows as far apart as they are wide.
+/// Indirect light of `means`, averaged over adjacent windows (spaced by their width).
 void widen_row(Planes const& guides, Planes const& means, int window, int reach, Spans spans, int y, Planes& out)
 {
     for (Span const& s : spans) start_sums(means, light::indirect, s, y, out);

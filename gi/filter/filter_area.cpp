@@ -8,7 +8,7 @@
 namespace gi {
 namespace {
 
-/// Of channels that are too dark in the partner's picture nothing is known.
+/// Channels that are too dark in the partner's picture have no known light.
 bool tells(vec3 there, vec3 here)
 {
     for (int c = 0; c < 3; ++c)

@@ -1,6 +1,6 @@
 #pragma once
-// Which pixels of a picture a filter has to find the light of, and which it looks at for that: few of either where
-// the light of most is known.
+// Which pixels a filter has to compute and which it reads for that: only few if most light is already known from
+// a partner.
 
 #include "gi/filter/reused_light.h"
 #include "gi/filter/spans.h"
@@ -8,13 +8,14 @@
 namespace gi {
 
 struct FilterArea {
-    RowSpans wanted; ///< what a filter has to find
-    RowSpans near;   ///< these, and all that it looks at: one pixel around at least
+    RowSpans wanted; ///< pixels that a filter has to compute
+    RowSpans near;   ///< `wanted` and all pixels that the filter reads: at least one pixel around
 
-    /// All light that is near but not wanted is known: it is not the filter's to report.
+    /// True if all light that is near but not wanted is the partner's; the filter does not report on those
+    /// pixels.
     bool takes = false;
 
-    /// Calls for every span of `near` in a row that is not wanted.
+    /// Calls `call` for every span of row y that is in `near` but not in `wanted`.
     template <class F>
     void for_known(int y, F const& call) const
     {
@@ -22,11 +23,12 @@ struct FilterArea {
     }
 };
 
-/// All that a picture has of surfaces is wanted: in each row from the first to the last.
+/// Area in which all surfaces are wanted: in each row, from the first to the last surface pixel.
 FilterArea whole_area(Picture const& picture);
 
-/// Surfaces that take no light from a partner that could tell it are wanted. Sizes may differ.
-/// @param reach  of the filter, pixels; as large as the picture and more: everything is near
+/// Area in which only surfaces that take no valid light from the partner are wanted. The pictures may differ in
+/// size.
+/// @param reach  radius of the filter, pixels; if at least the picture's size, every pixel is near
 FilterArea own_area(Picture const& picture, ReusedLight const& taken, int reach);
 
 } // namespace gi

@@ -12,22 +12,22 @@ namespace {
 
 struct Layers {
     Layer const *l1, *l2, *albedo, *normal, *position, *variance;
-    std::array<Layer const*, 2> measured; ///< variances of direct and indirect light; null = they were not
+    std::array<Layer const*, 2> measured; ///< variances of direct and indirect light; null = not measured
 };
 
-/// Apart by more than 1 where other channels are dark.
+/// Differs by more than 1 between surfaces whose dark channels differ.
 float albedo_guide(vec3 a)
 {
     return luminance(a) + 4.0f * float((a.x < kDarkest) + 2 * (a.y < kDarkest) + 4 * (a.z < kDarkest));
 }
 
-/// Noise of the three channels mostly rises and falls together, so that deviations add.
+/// Noise of the three channels is mostly correlated, so standard deviations are added.
 float luminance_variance(vec3 variance, vec3 albedo)
 {
     return square(luminance(over_albedo(glm::sqrt(glm::max(variance, vec3{0})), albedo)));
 }
 
-/// Positions count from here, so that products with them round less.
+/// Origin of positions, so that products with them have smaller rounding errors.
 vec3 first_position(Layers const& layers, std::size_t pixels)
 {
     for (std::size_t i = 0; i < pixels; ++i)
@@ -73,8 +73,8 @@ void fill(Layers const& layers, vec3 origin, Span span, int y, FilterInput& in, 
     }
 }
 
-/// Distance to the nearest of the four neighbours: on a surface seen at a glancing angle that is the distance
-/// across the line of sight. Not below the rounding of the coordinates.
+/// Distance to the nearest of the four neighbours: on a surface seen at a grazing angle that is the distance
+/// across the line of sight. At least the rounding error of the coordinates.
 void measure_footprints(Layer const& positions, Span span, int y, Planes& guides)
 {
     auto const here = guides.row3(guide::position, y);

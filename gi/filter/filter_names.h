@@ -1,5 +1,5 @@
 #pragma once
-// The filters by name: the one table for the command line, the viewer's settings, studies, AR sessions and Python.
+// Table of the filters by name, used by the command line, the viewer's settings, studies, AR sessions and Python.
 
 #include "gi/filter/denoise.h"
 
@@ -18,12 +18,12 @@ struct NamedFilter {
 
 std::span<NamedFilter const> named_filters();
 std::vector<std::string> filter_names();
-/// Throws InputError naming those that there are.
+/// Throws InputError, listing the known names.
 DenoiseSettings find_filter(std::string_view name);
 
-/// Throws InputError where the filter is not installed; call it before rendering starts.
+/// Throws InputError if the filter is not installed; call it before rendering starts.
 void check_filter(DenoiseSettings const& settings);
-/// False of atrous where nothing tells the variance: with fewer than two paths and no temporal reuse.
+/// False for atrous if no variance is available: fewer than two paths and no temporal reuse.
 bool can_filter(DenoiseSettings const& settings, std::uint32_t paths, bool has_reuse = false);
 
 } // namespace gi

@@ -1,5 +1,5 @@
 #pragma once
-// The layers of a picture that filters replace, by light over the albedo.
+// The layers of a picture that filters replace, accessed as light over albedo.
 
 #include "gi/filter/filter_input.h"
 
@@ -9,7 +9,7 @@ struct FilteredLayers {
     Layer const &l0, &albedo;
     Layer &color, &l1, &l2;
 
-    /// Throws InputError where one is missing.
+    /// Throws InputError if one is missing.
     explicit FilteredLayers(Picture& picture)
         : l0(needed_layer(picture, "L0")),
           albedo(needed_layer(picture, "albedo")),

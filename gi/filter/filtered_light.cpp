@@ -23,7 +23,7 @@ Planes take_filtered(Picture& picture, ReusedLight const& taken, FilterArea cons
             for (int x = span.first; x < span.end; ++x) {
                 std::size_t const i = row + std::size_t(x);
                 std::uint32_t const from = taken.from[i];
-                if (from == kOwnLight || rgb(normal, i) == vec3{0}) continue; // nothing is there
+                if (from == kOwnLight || rgb(normal, i) == vec3{0}) continue; // no reused light or no surface
                 vec3 const a = rgb(other, from), e1 = over_albedo(rgb(l1, from), a),
                            e2 = over_albedo(rgb(l2, from), a);
                 if (in_range(e1) && in_range(e2) && in_range(rgb(layers.albedo, i)))

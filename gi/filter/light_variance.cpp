@@ -9,11 +9,12 @@ namespace gi {
 namespace {
 
 constexpr int kRadius = 2;
-/// Of what is measured over frames, by FLIP of four sequences: edges of shadows are worth some noise, and noise of
-/// indirect light that pixels around take from each other does not go as fast as a filter expects.
+/// Factors for variances measured over frames, tuned by FLIP on four sequences: sharp shadow edges are worth some
+/// noise, and the noise of indirect light shared between neighbouring pixels averages out more slowly than a
+/// filter expects.
 constexpr float kDirectShare = 0.5f, kIndirectShare = 64;
 
-/// Squared second differences of one luminance along row y; 0 where a neighbour is no surface.
+/// Squared second differences of one luminance along row y; 0 if a neighbour has no surface.
 void measure_noise(FilterInput const& in, int which, int y, float* out)
 {
     int const above = std::max(y - 1, 0), below = std::min(y + 1, in.light.height() - 1);
@@ -30,8 +31,8 @@ void measure_noise(FilterInput const& in, int which, int y, float* out)
     }
 }
 
-/// Of rows row_of(k, j) of light and guides, over windows of (2 kRadius + 1)^2 pixels around row y: row k of
-/// `sums`.
+/// Writes to row k of `sums` the window sums, over (2 kRadius + 1)^2 pixels around row y, of the rows row_of(k,
+/// j) of light and guides.
 template <class RowOf>
 void sum_windows(FilterInput const& in, int y, RowOf const& row_of, Planes& sums)
 {
@@ -75,7 +76,7 @@ void split_variance(FilterInput& in)
     });
 }
 
-/// Of direct and indirect luminance, over pixels around that show a like surface.
+/// Variance of direct and indirect luminance over surrounding pixels with a similar surface.
 vec2 variance_around(FilterInput const& in, int x, int y)
 {
     constexpr int kReach = 3;
@@ -86,7 +87,7 @@ vec2 variance_around(FilterInput const& in, int x, int y)
     for (int j = std::max(0, y - kReach); j <= std::min(in.light.height() - 1, y + kReach); ++j) {
         SurfaceRow const row(in.guides, j);
         float const *l1 = in.light.row(light::luminance, j), *l2 = in.light.row(light::luminance + 1, j);
-        for (int i = x - kReach; i <= x + kReach; ++i) { // beyond the sides there is no surface
+        for (int i = x - kReach; i <= x + kReach; ++i) { // pixels beyond the border have no surface
             float const like = std::max(0.0f, 1 - here.distance2(row, i));
             vec2 const light{l1[i], l2[i]};
             weights += like;
@@ -102,7 +103,7 @@ vec2 variance_around(FilterInput const& in, int x, int y)
 void pool_variance(FilterInput& in)
 {
     int const width = in.light.width(), height = in.light.height();
-    Planes known(3, width, height); // variances where there are some, and where that is
+    Planes known(3, width, height); // known variances, and a mask of where they are known
     tbb::parallel_for(0, height, [&](int y) {
         float const *direct = in.light.row(light::variance, y), *indirect = in.light.row(light::variance + 1, y);
         for (int x = 0; x < width; ++x) {

@@ -13,12 +13,13 @@
 namespace gi {
 namespace {
 
-/// Mirrored pixels around the picture: without them the network is off by up to a third in its corners.
+/// Width of the margin of mirrored pixels around the picture; without it the network's result is wrong by up to a
+/// third in the corners.
 constexpr int kMargin = 8;
 
-/// What a filter is made for.
+/// Parameters that a filter is built for.
 struct OidnSettings {
-    int width, height; ///< 0 = the device alone
+    int width, height; ///< 0 = only the device
     OidnQuality quality;
     int threads;
 
@@ -31,7 +32,8 @@ class OidnFilter {
 public:
     explicit OidnFilter(OidnSettings const& s) : settings(s), device_(lib_.new_device(lib_.device_cpu))
     {
-        lib_.set_device_bool(device_, "setAffinity", false); // its threads are TBB's, which others use too
+        lib_.set_device_bool(device_, "setAffinity", false); // it runs on TBB's threads, which other code uses
+                                                             // too
         if (s.threads > 0) lib_.set_device_int(device_, "numThreads", s.threads);
         lib_.commit_device(device_);
         check("start");
@@ -62,8 +64,8 @@ public:
     }
 
     OidnSettings const settings;
-    std::vector<float> light, albedo, normal; ///< what run() reads: 3 floats per pixel, with margins
-    std::vector<float> filtered;              ///< what it writes
+    std::vector<float> light, albedo, normal; ///< input of run(): 3 floats per pixel, with margins
+    std::vector<float> filtered;              ///< output of run()
 
     std::size_t row_start(int y) const { return 3 * std::size_t(y) * std::size_t(settings.width + 2 * kMargin); }
 
@@ -82,7 +84,7 @@ private:
         if (lib_.device_error(device_, &message) != 0)
             throw InputError("the filter oidn cannot be used",
                              std::string("Open Image Denoise did not ") + what + ": " +
-                                 (message != nullptr ? message : "it gives no reason"),
+                                 (message != nullptr ? message : "no reason given"),
                              "choose another filter");
     }
 
@@ -92,7 +94,7 @@ private:
 
 enum class Pixel : std::uint8_t { surface, without_surface, not_finite };
 
-/// L1, L2, and what tells edges apart.
+/// L1, L2, and the layers that guide the filter.
 struct OidnLayers {
     Layer const &l0, &albedo, &normal;
     Layer &color, &l1, &l2;
@@ -115,14 +117,14 @@ struct OidnLayers {
     }
 };
 
-/// The pixel of a row or column of `count` that pixel i beside it mirrors.
+/// Index of the pixel of a row or column of length `count` that pixel i in the margin mirrors.
 int mirrored(int i, int count)
 {
     int const turned = ((i % (2 * count)) + 2 * count) % (2 * count);
     return turned < count ? turned : 2 * count - 1 - turned;
 }
 
-/// The mean of a layer over those of the eight pixels around that have finite values; 0 without any.
+/// Mean of a layer over those of the eight neighbours with finite values; 0 without any.
 vec3 mean_around(Layer const& layer, std::vector<Pixel> const& kinds, int width, int height, std::size_t pixel)
 {
     int const x = int(pixel % std::size_t(width)), y = int(pixel / std::size_t(width));
@@ -138,7 +140,7 @@ vec3 mean_around(Layer const& layer, std::vector<Pixel> const& kinds, int width,
     return count > 0 ? sum / count : sum;
 }
 
-/// What Open Image Denoise reads of a layer.
+/// Copies a layer to an input buffer of Open Image Denoise.
 void load(Layer const& layer, std::vector<Pixel> const& kinds, OidnFilter const& f, std::vector<float>& values)
 {
     int const width = f.settings.width, height = f.settings.height;
@@ -154,7 +156,7 @@ void load(Layer const& layer, std::vector<Pixel> const& kinds, OidnFilter const&
     });
 }
 
-/// Puts the filtered light where there is a surface.
+/// Writes the filtered light to all pixels with a surface.
 void store(OidnFilter const& f, std::vector<Pixel> const& kinds, Layer& layer)
 {
     int const width = f.settings.width;
@@ -167,10 +169,10 @@ void store(OidnFilter const& f, std::vector<Pixel> const& kinds, Layer& layer)
     });
 }
 
-/// Made at the first call, kept, and made anew for other sizes, qualities or numbers of threads.
+/// Built at the first call and kept; rebuilt if size, quality or number of threads change.
 OidnFilter& filter_for(OidnSettings const& settings)
 {
-    static OidnFilter* kept = nullptr; // not deleted at the end: the library's own threads may be gone by then
+    static OidnFilter* kept = nullptr; // never deleted, because the library's own threads may have ended by then
     if (kept == nullptr || kept->settings != settings) {
         delete std::exchange(kept, nullptr);
         kept = new OidnFilter(settings);
@@ -200,7 +202,7 @@ DenoiseReport filter_oidn(Picture& picture, OidnQuality quality, int threads)
     static std::mutex mutex;
     std::scoped_lock const lock(mutex);
     OidnFilter& f = filter_for({picture.width, picture.height, quality, threads});
-    // Isolated: a thread that waits here must not take up other work that waits for the lock.
+    // Isolated, because a thread that waits here must not start another task that needs the lock.
     on_threads(threads, [&] {
         tbb::this_task_arena::isolate([&] {
             load(layers.albedo, kinds, f, f.albedo);

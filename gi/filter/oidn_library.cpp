@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr char const *kLibrary = "libOpenImageDenoise.so.2", *kVariable = "LIGHTWELL_OIDN";
 
-/// The folders of the program and of the shared object that has this function.
+/// Folders of the program and of the shared object that contains this function.
 std::vector<fs::path> own_folders()
 {
     std::vector<fs::path> folders;
@@ -35,7 +35,7 @@ void add_existing(fs::path const& file, std::vector<fs::path>& found)
     if (fs::exists(file, none)) found.push_back(file);
 }
 
-/// What pip installed into an environment of Python.
+/// Libraries that pip installed into a Python environment.
 void add_of_environment(fs::path const& environment, std::vector<fs::path>& found)
 {
     std::error_code none;
@@ -63,7 +63,7 @@ std::vector<fs::path> candidates()
 
 struct Loaded {
     OidnLibrary library{};
-    std::string why; ///< empty: the library can be used
+    std::string why; ///< why the library cannot be used; empty = it can
 };
 
 template <class Function>

@@ -1,9 +1,9 @@
 #pragma once
-// Intel Open Image Denoise 2, loaded at run time where it is installed: the few functions of its C API that the
-// filter calls. The names, types and values are those of the library's public header.
+// Intel Open Image Denoise 2, loaded at run time if installed: the few functions of its C API that the filter
+// calls. Names, types and values follow the library's public header.
 //
-// Where it is looked for, in this order:
-//   1. $LIGHTWELL_OIDN, a library or the folder that has it; if set, nowhere else
+// Search order:
+//   1. $LIGHTWELL_OIDN, a library or its folder; if set, the only place searched
 //   2. beside the program or the Python module
 //   3. in the folders above those: python/lib/python3*/site-packages/pyoidn/oidn/lib (scripts/setup --oidn) and
 //      pyoidn/oidn/lib (pip install pyoidn beside the Python module)
@@ -33,7 +33,7 @@ struct OidnLibrary {
     void (*release_filter)(void* filter);
 };
 
-/// Loads the library at the first call; it stays loaded. Throws InputError, each time, where it cannot be used.
+/// Loads the library at the first call; it stays loaded. Throws InputError at every call if it cannot be used.
 OidnLibrary const& oidn_library();
 
 } // namespace gi

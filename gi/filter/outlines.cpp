@@ -7,17 +7,18 @@
 namespace gi {
 namespace {
 
-constexpr float kLessVariance = 2;     // times the neighbour's variance is below the pixel's
-constexpr float kRelativeNoise = 0.2f; // 1 / (standard deviation / mean)^2 from which on pixels stay as they are
-constexpr float kKnown = 1e-3f;        // (standard deviation / mean)^2: no light is known better
-constexpr float kNoVariance = 1e-12f;  // of light without noise
+constexpr float kLessVariance = 2;     // a neighbour counts if its variance is this many times less than the
+                                       // pixel's
+constexpr float kRelativeNoise = 0.2f; // 1 / (standard deviation / mean)^2 from which on pixels are unchanged
+constexpr float kKnown = 1e-3f;        // (standard deviation / mean)^2: no light is assumed to be known better
+constexpr float kNoVariance = 1e-12f;  // variance of light without noise
 
-/// One row of the picture, of direct or indirect light.
+/// One row of direct or indirect light.
 struct LightRow {
     SurfaceRow surfaces;
     Row3<float const> color;
     float const *luminance, *variance, *surface;
-    float inside; ///< 0 where the row is beyond the picture's edge
+    float inside; ///< 0 if the row is outside the picture
 
     LightRow(Planes const& guides, Planes const& light, int which, int y)
         : LightRow(guides, light, which, std::clamp(y, 0, light.height() - 1),
@@ -37,16 +38,16 @@ private:
     }
 };
 
-/// Adds up what the neighbours say of the light.
+/// Accumulates the neighbours' statistics of the light.
 struct NeighbourSums {
     float by_variance, albedo;
     float count = 1e-20f, sum = 0, squares = 0;
 
-    /// 0 to 1: by how much a neighbour's variance is less.
+    /// 0 to 1: how much smaller a neighbour's variance is.
     float less_noisy(LightRow const& r, int i) const
     {
         float const g = 1 - by_variance * r.variance[i], da = r.surfaces.albedo[i] - albedo;
-        float const counts = g > 0 && da * da < 1 ? g : 0; // else other channels are too dark to tell
+        float const counts = g > 0 && da * da < 1 ? g : 0; // else different channels are too dark to compare
         return counts * r.surface[i] * r.inside;
     }
     void add(LightRow const& r, int i)

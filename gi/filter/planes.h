@@ -1,6 +1,6 @@
 #pragma once
-// Pictures for filters with wide steps: one plane of floats per channel, and margins on both sides so that a loop
-// along a row may look beyond its ends.
+// Pictures for filters with wide steps: one plane of floats per channel, with margins on both sides so that a
+// loop along a row can read beyond its ends.
 
 #include "gi/core/huge_pages.h"
 #include "gi/core/math.h"
@@ -25,8 +25,8 @@ struct Row3 {
     }
 };
 
-/// Pixel (x, y) of plane p is row(p, y)[x] with x from -kMargin to width + kMargin - 1. Row by row, in each row
-/// plane by plane. Margins are 0, the rest is uninitialised.
+/// Pixel (x, y) of plane p is row(p, y)[x] with x from -kMargin to width + kMargin - 1. Stored row by row, within
+/// each row plane by plane. Margins are 0, the rest is uninitialised.
 class Planes {
 public:
     static constexpr int kMargin = 32;
@@ -50,7 +50,7 @@ public:
         };
         if (height <= kRows)
             clear_margins(0);
-        else // touches much memory for the first time
+        else // first touch of much memory
             tbb::parallel_for(0, (height + kRows - 1) / kRows, clear_margins);
     }
     int count() const { return count_; }
@@ -71,7 +71,8 @@ private:
     }
 
     int count_, width_, height_;
-    std::size_t stride_; ///< an odd number of cache lines, or else all planes compete for the same few of them
+    std::size_t stride_; ///< an odd number of cache lines; otherwise all planes would compete for the same few
+                         ///< cache sets
     std::unique_ptr<float[]> values_;
 };
 

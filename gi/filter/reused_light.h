@@ -1,5 +1,5 @@
 #pragma once
-// Light that a picture takes from another one of the same moment, as the two eyes of a person see nearly the same.
+// Light that a picture takes from another picture of the same moment, because the two eyes see nearly the same.
 
 #include "gi/image_io/picture.h"
 
@@ -8,13 +8,14 @@
 
 namespace gi {
 
-/// Where a pixel takes its light from: a pixel of the partner's picture, else this.
+/// Source pixel of a pixel that computed its own light instead of taking the partner's.
 inline constexpr std::uint32_t kOwnLight = 0xffffffff;
 
 struct ReusedLight {
-    /// As far on its way as the picture that takes is to be brought; null = none.
+    /// Partner image at the same processing stage; null if none.
     Picture const* partner = nullptr;
-    std::span<std::uint32_t const> from{}; ///< per pixel: a pixel of the partner, row by row, or kOwnLight
+    std::span<std::uint32_t const> from{}; ///< source pixel per pixel: index in the partner, row by row, or
+                                           ///< kOwnLight
 };
 
 } // namespace gi

@@ -11,7 +11,7 @@ RowSpans widened(RowSpans const& rows, int reach, int width)
     int const height = int(rows.size());
     RowSpans wide(rows.size());
     tbb::parallel_for(0, height, [&](int y) {
-        thread_local std::vector<int> begun; // at each pixel: spans that begin there, less those that end
+        thread_local std::vector<int> begun; // per pixel: number of spans that begin minus number that end there
         begun.assign(std::size_t(width) + 1, 0);
         for (int there = std::max(0, y - reach); there <= std::min(height - 1, y + reach); ++there)
             for (Span const& s : rows[std::size_t(there)]) {

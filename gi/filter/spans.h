@@ -1,5 +1,5 @@
 #pragma once
-// Some of a picture's pixels, row by row.
+// Subsets of a picture's pixels, as spans per row.
 
 #include <span>
 #include <vector>
@@ -10,12 +10,12 @@ namespace gi {
 struct Span {
     int first, end;
 };
-/// Of one row, from left to right; they neither meet nor overlap.
+/// Spans of one row, from left to right, neither adjacent nor overlapping.
 using Spans = std::span<Span const>;
-/// Of each row of a picture.
+/// Spans of every row of a picture.
 using RowSpans = std::vector<std::vector<Span>>;
 
-/// Calls for every span that lies within some and in none of the holes, from left to right.
+/// Calls `call` for the parts of `within` that are outside all `holes`, from left to right.
 template <class F>
 void for_between(Spans within, Spans holes, F const& call)
 {
@@ -30,7 +30,7 @@ void for_between(Spans within, Spans holes, F const& call)
     }
 }
 
-/// With pixels up to `reach` in x and in y from them, in rows of `width`.
+/// Returns the spans dilated by `reach` pixels in x and y, clipped to `width`.
 RowSpans widened(RowSpans const& rows, int reach, int width);
 
 } // namespace gi

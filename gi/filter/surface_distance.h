@@ -1,5 +1,5 @@
 #pragma once
-// How far two pixels' surfaces differ: from 1 on they count as different ones.
+// Difference between two pixels' surfaces; from 1 on they count as different.
 //   d^2 = (1 - cos) / (1 - cos 37 degrees) + (distance from the tangent plane / reach)^2 + (3 difference of
 //   albedos)^2
 
@@ -7,10 +7,13 @@
 
 namespace gi {
 
-inline constexpr float kBySurfaceNormal = 5; ///< 1 / (1 - cosine) of the angle from which on surfaces differ
-inline constexpr float kBySurfaceAlbedo = 3; ///< 1 / difference of luminances from which on they do
+inline constexpr float kBySurfaceNormal = 5; ///< 1 / (1 - cosine) of the angle from which on surfaces count as
+                                             ///< different
+inline constexpr float kBySurfaceAlbedo = 3; ///< 1 / difference of albedo luminances from which on they count as
+                                             ///< different
 
-/// 1 / reach^2: pixels of distance from the tangent plane. What is far away may curve more.
+/// 1 / reach^2: pixels of distance from the tangent plane. Larger for larger steps, as surfaces curve more over a
+/// distance.
 constexpr float plane_scale(int step)
 {
     float const reach = 1.5f * (1 + 0.2f * float(step));
@@ -30,7 +33,7 @@ struct SurfaceRow {
     }
 };
 
-/// One pixel, and how far others are from its surface.
+/// One pixel's surface, and the difference of other pixels from it.
 class SurfacePoint {
 public:
     /// @param by_plane  1 / (footprint * reach)^2

@@ -11,23 +11,23 @@
 namespace gi {
 namespace {
 
-// A texel of the frame before shows the same surface: cosine of normals, and difference of depths per depth,
-// beside what the surface's slope explains.
+// A pixel of the previous frame shows the same surface within these limits: cosine of normals, and relative
+// difference of depths beyond what the surface's slope explains.
 constexpr float kCosine = 0.8f, kDepth = 0.02f;
-// What moves by less than that, pixels, stands still in the picture.
+// Motion below this, in pixels, counts as static.
 constexpr float kStill = 1e-3f;
-// L1 is held to mean +- kSpread standard deviations of a window of kWindow pixels.
+// L1 is clamped to mean +- kSpread standard deviations of a window of kWindow pixels.
 constexpr int kWindow = 5;
 constexpr float kSpread = 1;
 
 Layer const& layer_of(Picture const& picture, char const* name)
 {
     if (Layer const* const layer = picture.find(name)) return *layer;
-    throw InputError(std::string("the picture has no layer '") + name + "'", "temporal reuse goes by it",
-                     "render frames with a method that gives it");
+    throw InputError(std::string("the picture has no layer '") + name + "'", "temporal reuse needs it",
+                     "render frames with a method that provides it");
 }
 
-/// Light over albedo, where that is not too dark to tell.
+/// Light over albedo; channels that are too dark are not divided.
 vec3 over(vec3 light, vec3 albedo)
 {
     for (int c = 0; c < 3; ++c)
@@ -42,7 +42,7 @@ vec3 times(vec3 light, vec3 albedo)
     return light;
 }
 
-/// Light over these albedos is meant alike, channel by channel.
+/// True if both albedos are usable, or both too dark, in each channel, so that light over albedo is comparable.
 bool same_dark(vec3 a, vec3 b)
 {
     return (a.x < kDarkest) == (b.x < kDarkest) && (a.y < kDarkest) == (b.y < kDarkest) &&
@@ -51,8 +51,8 @@ bool same_dark(vec3 a, vec3 b)
 
 bool finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// Of direct light over the albedo, in windows around pixels: of all pixels at once, or of one after the other
-/// where few are asked for.
+/// Statistics of direct light over albedo in windows around pixels: computed for all pixels at once, or pixel by
+/// pixel if only few are needed.
 class Neighbourhoods {
 public:
     Neighbourhoods(Layer const& l1, Layer const& albedo, int width, int height, bool few)
@@ -108,7 +108,7 @@ private:
 
 } // namespace
 
-/// Light of this frame, averaged with that of the surface before.
+/// Averages the light of this frame with the surface's earlier light.
 void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, std::span<std::uint32_t const> from,
                            TemporalCounts& total)
 {
@@ -153,7 +153,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
     }
     bool const few = std::size_t(std::ranges::count(takes, 1)) > 3 * pixels / 4;
     Neighbourhoods const neighbourhoods(l1, albedo, width, height, few);
-    // Whether a surface is still there now, in a pixel next to this one.
+    // True if a surface still shows now, in a pixel next to this one.
     auto const is_beside = [&](Surface const& s, int x, int y) {
         for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)
             for (int k = std::max(0, x - 1); k <= std::min(width - 1, x + 1); ++k) {
@@ -172,12 +172,13 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
             if (!(here.depth > 0)) continue;
             ++local.surfaces;
             vec3 const was = rgb(motion, i);
-            // Neither what is seen here now nor what was seen moves: an edge, perhaps, seen through another point.
+            // Neither the surface seen now nor the one seen before moves: probably an edge, seen through another
+            // subpixel position.
             bool const still = glm::length(vec2(was)) < kStill, taken = partner && takes[i];
             lights_[i].still = still;
             if (taken && !still) continue;
             bool const resting = still && last_lights_[i].still;
-            // What the depth changes by over a pixel; frames look through different points of it.
+            // Change of depth across a pixel, as frames sample different subpixel positions.
             auto const change = [&](bool there, std::ptrdiff_t step) {
                 return there ? std::abs(surfaces_[std::size_t(std::ptrdiff_t(i) + step)].depth - here.depth)
                              : kInf;
@@ -205,7 +206,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
                     weight += w;
                 }
             }
-            // Less than that is as good as nothing, and noisy.
+            // A smaller sum of weights is negligible and only adds noise.
             constexpr float kLeast = 0.05f;
             if (!(weight > kLeast)) {
                 local.started += !taken;
@@ -236,7 +237,7 @@ void TemporalReuse::follow(Picture const& frame, TemporalReuse const* partner, s
     });
 }
 
-/// Adds one more picture of a scene in which nothing moves, and replaces it by both means.
+/// Adds one more picture of a static scene, and replaces it by a combination of both means.
 void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
 {
     for (char const* const name : {"variance_direct", "variance_indirect"})
@@ -255,7 +256,8 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
             std::array<vec3, 3>& mean = mean_[i];
             for (std::size_t k = 0; k < 3; ++k) mean[k] = first ? now[k] : glm::mix(mean[k], now[k], 1 / n);
             Light const& light = lights_[i];
-            // The frames since are in both means; those before count as long as they are many beside them.
+            // Frames since the last motion are in both means; earlier ones count while they are many in
+            // comparison.
             float const earlier = std::max(0.0f, light.frames - n), share = first ? 1 : earlier / (earlier + n);
             vec3 const e0 = glm::mix(mean[0], light.l0, share),
                        e1 = glm::mix(mean[1], times(light.direct, light.albedo), share),
@@ -268,7 +270,8 @@ void TemporalReuse::rest(Picture& frame, TemporalCounts& counts)
                 l2.data[k] = e2[c];
                 color.data[k] = e0[c] + e1[c] + e2[c];
             }
-            // Of one frame, without the bias of a mean that the frame is in; then of all of them.
+            // Variance of one frame, corrected for the bias of a mean that contains the frame; then variance of
+            // the mean of all frames.
             float const of_mean = light.frames > 1 ? light.frames / ((light.frames - 1) * (earlier + n)) : -1;
             direct_variance.data[i] = of_mean > 0 ? of_mean * light.variance.x : -1;
             indirect_variance.data[i] = of_mean > 0 ? of_mean * light.variance.y : -1;
@@ -282,7 +285,7 @@ TemporalCounts TemporalReuse::add(Picture& frame, SceneChange change, TemporalRe
                                   std::span<std::uint32_t const> from)
 {
     if (frames_ > 0 && surfaces_.size() != frame.pixels())
-        throw InputError("frames of different sizes", "temporal reuse goes pixel by pixel", "start afresh");
+        throw InputError("frames of different sizes", "temporal reuse works pixel by pixel", "start afresh");
     layer_of(frame, "color");
     if (change == SceneChange::light) frames_ = 0;
     if (change != SceneChange::nothing || frames_ == 0) still_ = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// From linear radiance to a display: exposure, a curve, the sRGB encoding.
+// Tone mapping from linear radiance to a display: exposure, tone curve, sRGB encoding.
 
 #include "gi/core/view.h"
 #include "gi/image_io/picture.h"
@@ -8,7 +8,7 @@ namespace gi {
 
 enum class ToneCurve : std::uint8_t {
     srgb,  ///< clip at 1
-    filmic ///< Narkowicz 2015, a fit of ACES: rolls bright light off
+    filmic ///< fit of ACES by Narkowicz 2015: compresses highlights
 };
 
 struct ToneMapSettings {
@@ -16,13 +16,13 @@ struct ToneMapSettings {
     ToneCurve curve = ToneCurve::srgb;
 };
 
-/// IEC 61966-2-1, for v in [0, 1].
+/// sRGB encoding (IEC 61966-2-1) of v in [0, 1].
 GI_FN inline float encode_srgb(float v)
 {
     return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
 }
 
-/// One value per item, display-encoded in [0, 1]; NaN becomes 0.
+/// Kernel that maps one value per item to [0, 1], display-encoded; NaN becomes 0.
 struct ToneMap {
     View<float const> in;
     View<float> out;
@@ -38,13 +38,13 @@ struct ToneMap {
     }
 };
 
-/// Red, green and blue of a layer, display-encoded in [0, 1]; grey layers three times the same.
+/// Returns red, green and blue of a layer, display-encoded in [0, 1]; grey layers give three equal values.
 std::vector<float> tone_map(Layer const& layer, ToneMapSettings const& settings);
-/// The same in bytes.
+/// The same as bytes.
 std::vector<unsigned char> tone_map_bytes(Layer const& layer, ToneMapSettings const& settings);
-/// R, G, B, A. PNG keeps colours that are not multiplied by their coverage: they are divided by it, 0 where it is
-/// 0.
-/// @param color multiplied by @param alpha, one channel, 0..1
+/// Returns R, G, B, A bytes. PNG stores colours without premultiplied alpha, so colours are divided by alpha; 0
+/// if alpha is 0.
+/// @param color  multiplied by alpha  @param alpha  one channel, 0..1
 std::vector<unsigned char> tone_map_bytes(Layer const& color, Layer const& alpha, ToneMapSettings const& settings);
 
 } // namespace gi

@@ -1,5 +1,5 @@
 #pragma once
-// Every light-transport method by name. One line here gives a method its place on the command line, in the
+// Table of the light-transport methods by name. One entry makes a method available on the command line, in
 // benchmarks, in studies and in --help.
 
 #include "gi/render/frame_renderer.h"
@@ -21,7 +21,7 @@ struct Method {
 };
 
 std::span<Method const> methods();
-/// Throws InputError naming the known methods.
+/// Throws InputError, listing the known methods.
 Method const& find_method(std::string_view name);
 
 } // namespace gi

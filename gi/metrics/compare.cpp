@@ -21,7 +21,7 @@ constexpr std::array kMetrics{
     MetricInfo{"bias", "mean(x) / mean(r), over all and per channel", true},
     MetricInfo{"psnr", "dB, of the display-encoded pictures", true},
     MetricInfo{"ssim", "structural similarity of the display-encoded luminance", true},
-    MetricInfo{"flip", "what an observer sees when the two alternate, 0..1", true},
+    MetricInfo{"flip", "difference visible when the two alternate, 0..1", true},
     MetricInfo{"hdrflip", "FLIP over all exposures that the reference needs", false},
     MetricInfo{"ztest", "z = (x - r) / sqrt(var x + var r); needs the layer 'variance'", false},
 };
@@ -67,7 +67,7 @@ void run_metric(std::string const& name, PicturePair const& p, Comparison& out)
         add(name, mean(hdr_flip(p.finite_image.data, p.finite_reference.data, p.width, p.height)));
     } else if (name == "ztest") {
         if (p.image_variance.empty())
-            throw InputError("the image has no variance for its layer", "a z-test needs to know its noise",
+            throw InputError("the image has no variance for its layer", "a z-test needs the variance of its noise",
                              "render it with the layer 'variance', and compare the layer 'color'");
         if (p.reference_variance.empty())
             out.notes.push_back("the reference is taken as exact: it has no variance");

@@ -1,5 +1,5 @@
 #pragma once
-// A picture against its reference: every metric by name, and a picture of the difference.
+// Comparison of a picture with its reference: all metrics by name, and a picture of the difference.
 
 #include "gi/image_io/picture.h"
 
@@ -23,17 +23,17 @@ struct NamedValue {
 
 struct Comparison {
     std::vector<NamedValue> values;
-    std::vector<std::string> notes; ///< what was averaged down, left out, ...
+    std::vector<std::string> notes; ///< what was downsampled, omitted, ...
 };
 
-/// @param names from metrics(); empty = those by default
-/// @param layer compared; "color" is the beauty
-/// If the sizes differ by a whole factor the larger picture is averaged down. Throws InputError on unknown
-/// metrics, missing layers (it names those that are there) and sizes that do not fit.
+/// @param names from metrics(); empty = the default ones
+/// @param layer  to compare; "color" is the full picture
+/// If the sizes differ by an integer factor, the larger picture is downsampled by averaging. Throws InputError on
+/// unknown metrics, missing layers (listing the existing ones) and incompatible sizes.
 Comparison compare(Picture const& image, Picture const& reference, std::vector<std::string> const& names,
                    std::string const& layer);
 
-/// FLIP per pixel in the magma-like scale of the papers' figures, black = no difference.
+/// Returns FLIP per pixel as bytes in the magma-like colour scale of the papers, black = no difference.
 std::vector<unsigned char> difference_image(Picture const& image, Picture const& reference,
                                             std::string const& layer, int& width, int& height);
 

@@ -57,7 +57,7 @@ vec3 xyz_to_lab(vec3 c)
     c /= kWhite;
     return {116 * f(c.y) - 16, 500 * (f(c.x) - f(c.y)), 200 * (f(c.y) - f(c.z))};
 }
-/// Colours look paler where it is dark (Hunt).
+/// Hunt effect: colours look less saturated at low luminance.
 vec3 hunt(vec3 lab) { return {lab.x, 0.01f * lab.x * lab.y, 0.01f * lab.x * lab.z}; }
 float hyab(vec3 a, vec3 b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
 
@@ -66,7 +66,7 @@ vec3 seen_color(vec3 linear) { return hunt(xyz_to_lab(linear_to_xyz(linear))); }
 /// A one-dimensional kernel, centre in the middle.
 using Kernel = std::vector<float>;
 
-/// Convolution along one axis, the border pixels repeated.
+/// Convolution along one axis with repeated border pixels.
 Plane convolve(Plane const& in, Size size, Kernel const& kernel, bool along_x)
 {
     Plane out(in.size());
@@ -138,7 +138,7 @@ OpponentPlanes to_ycxcz(std::vector<float> const& linear, Size size)
     return out;
 }
 
-/// Colours after the eye's blur, in Hunt-adjusted CIELAB.
+/// Colours filtered by contrast sensitivity, in Hunt-adjusted CIELAB.
 std::vector<vec3> perceived(OpponentPlanes const& ycxcz, Size size, float pixels_per_degree)
 {
     OpponentPlanes blurred;
@@ -156,7 +156,7 @@ struct Features {
     Plane edges, points;
 };
 
-/// Gradient and second derivative of a Gaussian, their positive and their negative parts summing to one.
+/// Gradient and second derivative of a Gaussian, with positive and negative parts each normalised to one.
 Features detect_features(Plane const& luminance, Size size, float pixels_per_degree)
 {
     float const sigma = 0.5f * kFeatureWidth_deg * pixels_per_degree;
@@ -226,7 +226,7 @@ FlipExposures flip_exposures(std::vector<float> const& reference)
     if (y.empty()) return {0, 0, 1};
     float const largest = std::max(*std::max_element(y.begin(), y.end()), 1e-4f);
     float const median = std::max(1e-4f, float(gi::median(std::move(y))));
-    // Where ACES reaches 0.85.
+    // Solves for the input at which ACES reaches 0.85.
     constexpr double kLevel = 0.85;
     double const a = 0.36 * 2.51 - kLevel * 0.36 * 2.43, b = 0.6 * 0.03 - kLevel * 0.6 * 0.59, c = -kLevel * 0.14;
     double const white = -0.5 * b / a + std::sqrt(square(float(0.5 * b / a)) - c / a);

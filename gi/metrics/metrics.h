@@ -1,6 +1,6 @@
 #pragma once
-// Plain error measures over linear values. Definitions: docs/methods.md. Pairs that are not finite are left out
-// and counted.
+// Basic error measures of linear values. Definitions: docs/methods.md. Pairs with a value that is not finite are
+// omitted and counted.
 
 #include "gi/core/math.h"
 
@@ -8,9 +8,9 @@
 
 namespace gi {
 
-inline constexpr double kRelativeFloor = 0.01; ///< of relMSE: keeps black pixels from deciding
+inline constexpr double kRelativeFloor = 0.01; ///< of relMSE: prevents black pixels from dominating
 
-/// NaN where no pair is finite.
+/// All NaN if no pair is finite.
 struct ErrorSums {
     double rmse = 0;
     double relmse = 0;

@@ -7,7 +7,7 @@
 namespace gi {
 namespace {
 
-/// Sums over pairs (a, b); each pair is counted both ways, so that both sides have one mean.
+/// Sums over pairs (a, b); each pair is counted in both orders, so that a and b have the same mean.
 struct PairMoments {
     double n = 0, sum = 0, squares = 0, products = 0;
 

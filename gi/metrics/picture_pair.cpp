@@ -48,7 +48,7 @@ std::vector<float> three_channels(Layer const& layer)
     return out;
 }
 
-/// One side of the pair, in its own size.
+/// One picture of the pair, in its own size.
 struct Side {
     char const* name;
     Picture const& picture;
@@ -63,7 +63,9 @@ void take(Side const& side, std::string const& layer, std::vector<std::string>& 
         notes.push_back(
             fmt::format("the first {} of {} channels of the {} are compared", used, from.channels, side.name));
     Layer const* const variance = side.picture.find("variance");
-    if (variance != nullptr && layer == "color") side.variance = three_channels(*variance); // it is that of color
+    if (variance != nullptr && layer == "color") side.variance = three_channels(*variance); // the layer
+                                                                                            // "variance" belongs
+                                                                                            // to color
 }
 
 void shrink(Side const& side, PicturePair& p)

@@ -1,5 +1,5 @@
 #pragma once
-// Two pictures made comparable: one layer of each, in one size, with three channels.
+// Two pictures made comparable: one layer of each, at the same size, with three channels.
 
 #include "gi/image_io/picture.h"
 
@@ -7,17 +7,17 @@ namespace gi {
 
 struct PicturePair {
     int width, height;
-    std::vector<float> image, reference;                   ///< 3 * width * height values, as they are
-    Layer finite_image, finite_reference;                  ///< both 0 where one of the two is not finite
-    std::vector<float> image_variance, reference_variance; ///< empty where there is none
-    std::vector<std::string> notes;                        ///< what was averaged down or left out
+    std::vector<float> image, reference;                   ///< 3 * width * height values, unchanged
+    Layer finite_image, finite_reference;                  ///< both 0 where either is not finite
+    std::vector<float> image_variance, reference_variance; ///< empty if the picture has no variance
+    std::vector<std::string> notes;                        ///< what was downsampled or omitted
 };
 
-/// Throws InputError where a picture lacks the layer, the sizes are no whole multiples of each other, or no value
+/// Throws InputError if a picture lacks the layer, one size is not an integer multiple of the other, or no value
 /// is finite in both.
 PicturePair pair_up(Picture const& image, Picture const& reference, std::string const& layer);
 
-/// For metrics of displays: everything in [0, 1].
+/// Returns the values clipped to [0, 1], for metrics of displayed pictures.
 std::vector<float> clipped(Layer const& layer);
 
 } // namespace gi

@@ -22,7 +22,7 @@ std::vector<double> window(int size)
     return w;
 }
 
-/// Weighted means over all windows inside the picture.
+/// Weighted means over all windows that lie inside the picture.
 std::vector<double> local_means(std::vector<double> const& in, int width, int height,
                                 std::vector<double> const& wx, std::vector<double> const& wy)
 {

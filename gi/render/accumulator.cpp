@@ -23,7 +23,7 @@ void Accumulator::add(Accumulator const& other)
                       });
     paths += other.paths;
     counts += other.counts;
-    seconds = std::max(seconds, other.seconds); // side by side
+    seconds = std::max(seconds, other.seconds); // the two were rendered in parallel
 }
 
 dvec3 Accumulator::variance_of_mean(PixelSums const& p) const
@@ -36,7 +36,7 @@ dvec3 Accumulator::variance_of_mean(PixelSums const& p) const
 
 namespace {
 
-/// Means over windows of (2 r + 1)^2 values, fewer at the rim.
+/// Means over windows of (2 r + 1)^2 values, fewer at the picture's border.
 std::vector<vec3> window_means(std::vector<vec3> values, int width, int height, int r)
 {
     std::vector<vec3> rows(values.size());
@@ -81,7 +81,7 @@ double Accumulator::relative_mse() const
 
 namespace {
 
-/// Where the layers of a picture are; null = it has not got that one.
+/// Pointers to the layers of a picture; null = the picture lacks that layer.
 struct Targets {
     float *color, *parts[3], *alpha, *variance, *albedo, *normal, *depth, *position;
 
@@ -104,7 +104,7 @@ struct Targets {
     }
 };
 
-/// Of pixel i. Surface layers average over the paths that met a surface; where none did they are 0.
+/// Writes pixel i. Surface layers are averages over the paths that hit a surface, and 0 if none did.
 void put_pixel(Accumulator const& a, World const& world, PixelSums const& p, std::size_t i, Targets const& to)
 {
     double const n = double(a.paths);
@@ -141,7 +141,7 @@ Picture Accumulator::picture(World const& world, PictureLayers layers) const
         for (char const* const name : {"variance", "albedo", "normal"}) add(name, 3);
     add("depth", 1);
     if (all) add("position", 3);
-    tbb::parallel_for(std::size_t(0), out.layers.size(), [&](std::size_t k) { // much memory, new
+    tbb::parallel_for(std::size_t(0), out.layers.size(), [&](std::size_t k) { // first touch of new memory
         Layer& layer = out.layers[k];
         layer.data.resize(out.pixels() * std::size_t(layer.channels));
     });

@@ -1,6 +1,6 @@
 #pragma once
-// Sums over the paths of every pixel, in double and in path order, so that neither threads nor passes nor an
-// interruption change the picture. A checkpoint stores them exactly.
+// Sums over the paths of every pixel, in double precision and in path order, so that the picture does not depend
+// on threads, on the split into passes, or on interruptions. A checkpoint stores the sums exactly.
 
 #include "gi/core/huge_pages.h"
 #include "gi/image_io/picture.h"
@@ -45,7 +45,8 @@ struct PixelSums {
     }
 };
 
-/// Leaves elements as they are in memory: large arrays whose every element is written anyway.
+/// Allocator that leaves elements uninitialised, for large arrays in which every element is written before it is
+/// read.
 template <class T>
 struct Uninitialised : std::allocator<T> {
     static_assert(std::is_trivially_default_constructible_v<T>);
@@ -70,30 +71,31 @@ enum class PictureLayers : std::uint8_t { all, color_and_depth };
 struct Accumulator {
     int width = 0, height = 0;
     std::uint32_t paths = 0;                                 ///< per pixel
-    std::vector<PixelSums, Uninitialised<PixelSums>> pixels; ///< where paths > 0
+    std::vector<PixelSums, Uninitialised<PixelSums>> pixels; ///< valid only if paths > 0
     PathCounts counts;                                       ///< of all paths so far
-    double seconds = 0;                                      ///< that they took
+    double seconds = 0;                                      ///< spent on these paths
 
     Accumulator() = default;
     Accumulator(int w, int h) { start(w, h); }
-    /// Anew, in the same memory where that is large enough.
+    /// Restarts with no paths; reuses the memory if it is large enough.
     void start(int w, int h)
     {
         width = w;
         height = h;
-        pixels.clear(); // nothing of them is kept
+        pixels.clear(); // so that resizing copies nothing
         resize_on_huge_pages(pixels, std::size_t(w) * std::size_t(h));
         paths = 0;
         counts = {};
         seconds = 0;
     }
-    /// One more path of a pixel. @param before  paths of it that were added already
+    /// Adds one path of a pixel. @param before  number of paths already added to this pixel
     void add(std::size_t pixel, PathSample const& s, std::uint32_t before)
     {
         if (before == 0) pixels[pixel] = PixelSums{};
         pixels[pixel].add(s);
     }
-    /// All paths of another one of the same size. Sums of doubles: who is added to whom decides the last bits.
+    /// Adds all paths of an accumulator of the same size. As with any floating-point sum, the order of additions
+    /// decides the last bits.
     void add(Accumulator const& other);
     dvec3 mean(PixelSums const& p) const
     {
@@ -102,19 +104,22 @@ struct Accumulator {
     /// Variance of the mean per channel; 0 with fewer than two paths.
     dvec3 variance_of_mean(PixelSums const& p) const;
     /// Estimated relMSE of the picture: mean over pixels and channels of var(mean) / (m^2 + 0.01), where m is the
-    /// mean of 5 x 5 pixels: that of a noisy pixel alone would be large where its variance is.
+    /// mean of 5 x 5 pixels. (With the noisy value of a single pixel as m, pixels that happen to be dark would
+    /// dominate.)
     double relative_mse() const;
-    /// Of the world that was rendered: positions are absolute; where its background is transparent, "alpha" is the
-    /// share of paths that met a surface, and the colours are multiplied by it as they are.
+    /// Makes the picture of the rendered world: positions are absolute; if the world's background is transparent,
+    /// "alpha" is the fraction of paths that hit a surface, and the colours are already multiplied by it
+    /// (premultiplied).
     Picture picture(World const& world, PictureLayers layers = PictureLayers::all) const;
-    /// Writes pixels of such a picture that have other sums, of as many paths. @param at  pixels, one per sum
+    /// Overwrites some pixels of such a picture from other sums over the same number of paths. @param at  pixel
+    /// indices, one per sum
     void put(World const& world, std::span<std::uint32_t const> at, std::span<PixelSums const> sums,
              Picture& picture) const;
 };
 
-/// @param fingerprint of scene, camera and settings; a checkpoint with another one is refused (InputError)
+/// @param fingerprint  of scene, camera and settings; a checkpoint with another one is refused (InputError)
 void save_checkpoint(std::filesystem::path const& file, Accumulator const& a, std::uint64_t fingerprint);
-/// False where there is no such file. Throws InputError if it does not belong to this render or is damaged.
+/// Returns false if the file does not exist. Throws InputError if it belongs to another render or is damaged.
 bool load_checkpoint(std::filesystem::path const& file, Accumulator& a, std::uint64_t fingerprint);
 
 } // namespace gi

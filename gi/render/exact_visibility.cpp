@@ -9,7 +9,7 @@
 namespace gi {
 namespace {
 
-/// Rays of a packet. Where the processor has no vectors of 16 floats, Embree takes a packet apart by itself.
+/// Rays per packet. On processors without 16-wide float vectors, Embree splits packets by itself.
 constexpr std::size_t kPacket = 16;
 
 struct alignas(64) PacketMask {
@@ -39,14 +39,15 @@ PacketMask fill(RTCRay16& packet, std::span<RayQuery const> queries)
     return mask;
 }
 
-/// Embree leaves triangles out that are not finite or too far away, and refitting would not bring them back.
+/// Embree omits triangles that are not finite or too far away, and refitting would not bring them back.
 bool usable(vec3 p) { return all_finite(p) && max_component(glm::abs(p)) < 1e18f; }
 bool usable(std::span<vec3 const> positions)
 {
     return std::ranges::all_of(positions, [](vec3 p) { return usable(p); });
 }
 
-/// Are its usable triangles more than one point? Of two geometries without extent Embree 3.13 can build nothing.
+/// True if the usable triangles span more than a single point. Embree 3.13 cannot build a scene from two
+/// geometries without extent.
 bool has_extent(World const& world, std::uint32_t first, std::uint32_t last)
 {
     Bounds bounds;
@@ -141,7 +142,8 @@ void ExactVisibility::build(World const& world, bool moves, Part& part)
     part.scene.reset(rtcNewScene(device_.get()));
     rtcSetSceneFlags(part.scene.get(),
                      RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | (moves ? RTC_SCENE_FLAG_DYNAMIC : 0)));
-    // Low: a tree of one tree per geometry. These are good ones, by surface area, whatever is refitted later.
+    // Low quality builds one tree per geometry and a tree over those. Each is built well (by surface area), and
+    // only the dynamic one is refitted later.
     rtcSetSceneBuildQuality(part.scene.get(), moves ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
     part.first_vertex = std::uint32_t(world.positions.size());
     for (std::vector<std::uint32_t>& t : part.triangles) t.clear();
@@ -239,7 +241,7 @@ void ExactVisibility::moved(World const& world)
             rtcCommitGeometry(geometry);
         }
         rtcCommitScene(part.scene.get());
-        rtcCommitGeometry(rtcGetGeometry(scene_.get(), 1)); // the instance takes the new bounds
+        rtcCommitGeometry(rtcGetGeometry(scene_.get(), 1)); // updates the instance's bounds
         rtcCommitScene(scene_.get());
     } else {
         build_moving(world);

@@ -1,9 +1,9 @@
 #pragma once
 // Exact ray queries against a World through Embree 3 (robust, watertight mode), in packets.
-// Only triangles whose material can be seen through pass the filter that tests coverage; partial coverage is a
-// random decision per ray and triangle that does not depend on traversal order.
-// Where something moves, it has a BVH of its own beside that of what stays, and only that one follows: its boxes
-// are refitted. Measured against building it anew: docs/results/2026-11-21-moving.md.
+// Only triangles with a (partly) transparent material go through the filter that tests coverage; partial coverage
+// is a random decision per ray and triangle that does not depend on traversal order.
+// If the scene has dynamic geometry, that gets a BVH of its own beside the static one, and only the dynamic BVH
+// is updated, by refitting its boxes. Measured against rebuilding it: docs/results/2026-11-21-moving.md.
 
 #include "gi/core/progress.h"
 #include "gi/scene/model/camera.h"
@@ -19,7 +19,7 @@ namespace gi {
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
 struct Hit {
-    std::uint32_t triangle = kNoTriangle; ///< index into World::triangles, kNoTriangle = missed
+    std::uint32_t triangle = kNoTriangle; ///< index into World::triangles, kNoTriangle = no hit
     vec2 barycentric{0};                  ///< weights of vertices 1 and 2
     float distance = kInf;
 };
@@ -28,34 +28,36 @@ struct RayQuery {
     static constexpr float kFar = 1e30f;
 
     Ray ray;
-    float reach = kFar;     ///< m; what lies beyond does not count
-    std::uint32_t seed = 0; ///< decides partial coverage
-    float start = 0;        ///< m; what lies nearer does not count
+    float reach = kFar;     ///< m; farther surfaces are ignored
+    std::uint32_t seed = 0; ///< of the random decisions about partial coverage
+    float start = 0;        ///< m; nearer surfaces are ignored
 };
 
-/// What of the world rays can meet.
+/// Which geometry rays can hit.
 enum class RayWorld : std::uint8_t {
     all,
-    what_stays ///< triangles that may move are passed by
+    what_stays ///< static triangles only
 };
 
 class ExactVisibility {
 public:
-    /// Copies the vertices; `world` must outlive this where alpha tests are on. threads 0 = all.
-    /// @param first_moving  triangle; all from there on may move
-    /// @param stop  throws Interrupted where it asks for it while the BVH is built; null = it cannot be
+    /// Copies the vertices; with alpha tests, `world` must outlive this object. threads 0 = all.
+    /// @param first_moving  index of the first triangle that may move; all later ones may move too
+    /// @param stop  checked while the BVH is built, which throws Interrupted if a stop is requested; null = never
     ExactVisibility(World const& world, bool alpha_tests, int threads, std::size_t first_moving = ~std::size_t(0),
                     StopRequest const* stop = nullptr);
-    /// The vertices of triangles that may move are elsewhere now. Materials are as they were.
+    /// Updates the vertices of the triangles that may move. Materials must not have changed.
     void moved(World const& world);
 
-    /// Nearest triangle beyond each origin. hits.size() == queries.size()
+    /// Finds the nearest triangle along each ray. hits.size() == queries.size()
     void nearest(std::span<RayQuery const> queries, std::span<Hit> hits, RayWorld met = RayWorld::all) const;
-    /// Is anything between origin and origin + reach * direction? blocked.size() == queries.size(); 1 = yes
+    /// Tests whether anything lies between origin and origin + reach * direction. blocked.size() ==
+    /// queries.size(); 1 = yes
     void occluded(std::span<RayQuery const> queries, std::span<std::uint8_t> blocked,
                   RayWorld met = RayWorld::all) const;
 
-    /// What a query needs to know for the filter; `rtc` first, so that the filter finds the rest behind it.
+    /// Intersection context with the data that the coverage filter needs. `rtc` comes first, so that the filter
+    /// can reach the rest from Embree's pointer.
     struct Context {
         explicit Context(ExactVisibility const& visibility) : owner(&visibility) { rtcInitIntersectContext(&rtc); }
         RTCIntersectContext rtc;
@@ -74,15 +76,16 @@ private:
     };
     using ScenePointer = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
-    /// What stays, or what moves.
+    /// The static or the dynamic geometry.
     struct Part {
         std::uint32_t first = 0, last = 0;       ///< triangles of the world
-        std::uint32_t first_vertex = 0;          ///< of the world; Embree's are counted from there
-        std::vector<std::uint32_t> triangles[2]; ///< of each geometry, of the world; empty = all in their order
+        std::uint32_t first_vertex = 0;          ///< in the world; Embree's vertex indices start here
+        std::vector<std::uint32_t> triangles[2]; ///< per geometry: indices of the world's triangles; empty = all,
+                                                 ///< in order
         ScenePointer scene;
-        RTCGeometry geometries[2] = {}; ///< held by the scene; null = not there
+        RTCGeometry geometries[2] = {}; ///< owned by the scene; null = none
         vec3* positions = nullptr;      ///< Embree's copy of the vertices
-        bool usable = false;            ///< all of them, when it was built
+        bool usable = false;            ///< true if all triangles were usable when the BVH was built
 
         std::uint32_t world_triangle(unsigned geometry_id, std::uint32_t primitive) const
         {
@@ -96,13 +99,13 @@ private:
     void build_moving(World const& world);
     ScenePointer scene_of_parts(unsigned count) const;
     void check() const;
-    /// @param instance  Embree's, or none
+    /// @param instance  Embree's instance id, or none
     Part const& part_of(unsigned instance) const { return parts_[instance == 1 ? 1 : 0]; }
 
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice> device_;
-    Part parts_[2];      ///< the second one is empty where nothing moves
-    ScenePointer scene_; ///< that rays go through: the first part's own, or one with instances of both
-    ScenePointer still_; ///< with an instance of the first part alone; null where nothing moves
+    Part parts_[2];      ///< static, dynamic; the second is empty without dynamic geometry
+    ScenePointer scene_; ///< traced by rays: the first part's own scene, or one with instances of both
+    ScenePointer still_; ///< with an instance of the first part only; null without dynamic geometry
     StopRequest const* stop_;
     WorldView world_;
     bool alpha_tests_;

@@ -17,7 +17,7 @@ public:
     {
         for (int i = 0; i < 3; ++i) add(v[i]);
     }
-    /// Only for types without padding.
+    /// Hashes the elements' bytes; only for types without padding.
     template <class T>
     void add_array(std::vector<T> const& v)
     {

@@ -1,5 +1,5 @@
 #pragma once
-// A number that changes with whatever changes the picture, to refuse checkpoints of another render.
+// A hash of everything that affects the picture, used to refuse checkpoints of another render.
 
 #include "gi/render/render_settings.h"
 #include "gi/scene/model/world.h"
@@ -8,9 +8,9 @@
 
 namespace gi {
 
-/// Hash of geometry, materials, lights, camera and of those settings that decide the value of every path (not of
-/// those that decide how many paths there are).
-/// @param method by name
+/// Hash of geometry, materials, lights, camera and of the settings that affect the value of a path (not of those
+/// that only decide the number of paths).
+/// @param method  name
 std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettings const& settings,
                           std::string_view method);
 

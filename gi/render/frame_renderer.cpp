@@ -19,8 +19,8 @@ void FrameRenderer::update_axes(int) {}
 
 PairResult FrameRenderer::pair(FrameView const&, PairSettings const&, PairWorld const&, StopRequest const&)
 {
-    throw InputError("pictures with and without what moves, by this method",
-                     "it does not know how to give both the same random numbers", "use the method slhb");
+    throw InputError("pictures with and without dynamic geometry, by this method",
+                     "it cannot render both with the same random numbers", "use the method slhb");
 }
 
 } // namespace gi

@@ -1,5 +1,6 @@
 #pragma once
-// Frames of a world that moves, one after another. What did not change since the frame before is kept.
+// Renders successive frames of a world that moves. Structures that did not change since the previous frame are
+// kept.
 
 #include "gi/render/accumulator.h"
 #include "gi/render/render_settings.h"
@@ -10,42 +11,43 @@
 
 namespace gi {
 
-/// What there is at one moment while the shutter is open.
+/// State of the scene at one moment while the shutter is open.
 struct Moment {
-    Changes changes; ///< of the world, since the moment before
+    Changes changes; ///< of the world, since the previous moment
     Camera camera;
 };
-/// Takes the world to the moment of a pass, counted from 0 in every frame.
+/// Callback that moves the world to the moment of a pass (counted from 0 in every frame).
 using Moments = std::function<Moment(std::uint32_t pass)>;
 
-/// One of several pictures of the same moment: an eye, a wall.
+/// One of several pictures of the same moment, such as an eye or a wall.
 struct FrameView {
     Camera camera;
     int width = 0, height = 0; ///< pixels
-    int partner = -1; ///< index of an earlier view that sees nearly the same: where it is valid, light that was
-                      ///< found there may be taken over; -1 = none
-    /// 1 per pixel that nobody sees, rows from the top; empty = none. Outlives the call. Their pictures are black
-    /// there and have no surface. The method slhb traces nothing for them; others render them like all, and hide
-    /// them in the end.
+    int partner = -1; ///< index of an earlier view that sees nearly the same; light computed there may be reused
+                      ///< where it is valid; -1 = none
+    /// 1 for each pixel that is never seen, rows from the top; empty = all are seen. Must outlive the call.
+    /// Hidden pixels are black and have no surface. The method slhb traces nothing for them; other methods render
+    /// and then hide them.
     std::span<std::uint8_t const> hidden{};
 };
 
-/// What is found of the light that surfaces send on to others.
+/// How indirect light at a path's last vertex is shared between paths.
 enum class VertexSharing : std::uint8_t {
-    none,  ///< each path finds it by itself: one that meets nothing new stays as it was, whatever others meet
-    exact, ///< paths that end on one layer share it
-    cached ///< paths may end in cells of a cache that is kept while light and geometry stay: much less work, a
-           ///< little blur
+    none,  ///< each path computes its own, so that a path that hits no changed geometry keeps its value whatever
+           ///< other paths hit
+    exact, ///< paths that end on the same layer share it
+    cached ///< paths may end in cells of a radiance cache that is kept while light and geometry are unchanged:
+           ///< much less work, a little blur
 };
 
 /// The two pictures of a PairResult.
 enum class PairSide : std::uint8_t { with, without };
-/// Takes the world to one of them.
+/// Callback that switches the world to one of the two pictures.
 using PairWorld = std::function<Changes(PairSide)>;
-/// What they differ in.
+/// How the two worlds differ.
 enum class PairDifference : std::uint8_t {
-    anything,  ///< what PairWorld says; both are rendered whole
-    vanishing, ///< without, nothing of what can move is there, and all else is the same
+    anything,  ///< any change that PairWorld reports; both pictures are rendered in full
+    vanishing, ///< `without` lacks all geometry that can move; everything else is the same
 };
 struct PairSettings {
     std::uint32_t paths = 1; ///< per pixel of each, >= 1
@@ -53,61 +55,61 @@ struct PairSettings {
     PictureLayers layers = PictureLayers::all;
 };
 
-/// Two pictures of one moment, of worlds that differ in what moves alone, by the same axes, points on lamps and
-/// random numbers: paths that meet no difference are equal in every bit.
+/// Two pictures of one moment, of worlds that differ only in dynamic geometry, rendered with the same axes, light
+/// samples and random numbers: paths unaffected by the difference are equal bit for bit.
 struct PairResult {
     RenderResult with, without;
-    std::vector<float> coverage; ///< per pixel: share of the paths of `with` whose first surface is one that moves
-    std::vector<vec3> covered;   ///< radiance that those paths bring to the pixel: no more than all of it
+    std::vector<float> coverage; ///< per pixel: fraction of the paths of `with` whose first surface is dynamic
+    std::vector<vec3> covered;   ///< radiance that those paths contribute to the pixel, at most its total
+                                 ///< radiance
 };
 
-/// Makes all layers 0 in hidden pixels; "motion" is left as it is, since it is not read where nothing is seen.
-/// @param hidden  as FrameView has it
+/// Sets all layers to 0 in hidden pixels, except "motion", which is not read where no surface is seen.
+/// @param hidden  as in FrameView
 void hide_pixels(Picture& picture, std::span<std::uint8_t const> hidden);
 
-/// Directions kept for each bounce, and those that followed what moves in a frame.
+/// Number of axes stored per bounce, and of those updated for dynamic geometry in a frame.
 struct DynamicUpdate {
-    int stored = 0;     ///< all of them; 0 = none are kept
-    int axes = 0;       ///< different ones that followed, of all bounces
-    int bounces = 1;    ///< that choose theirs by themselves
-    double seconds = 0; ///< that it took
+    int stored = 0;     ///< stored axes; 0 = none
+    int axes = 0;       ///< distinct axes updated, over all bounces
+    int bounces = 1;    ///< bounces that choose their axes separately
+    double seconds = 0; ///< duration of the update
 };
 
 class FrameRenderer {
 public:
     virtual ~FrameRenderer() = default;
 
-    /// The world has changed; before the next frame.
+    /// Call before the next frame if the world has changed.
     virtual void changed(Changes const& changes) = 0;
-    /// From the next frame on: of the directions kept for each bounce (method slhb, schedule stored) about so many
-    /// follow what moves, others from frame to frame, and paths take no others; 0 = all. Methods that keep none
-    /// have nothing to do.
+    /// From the next frame on: update about `axes` stored axes per bounce each frame, round-robin (method slhb,
+    /// schedule stored); paths sample only the updated ones; 0 = all. No effect on methods that store no axes.
     virtual void update_axes(int axes);
-    /// What that came to in the last frame.
+    /// Returns the counts of the last frame's update.
     virtual DynamicUpdate dynamic_update() const { return {}; }
-    /// Renders what the camera sees now, with the budget and paths of the settings for every frame. Layers as
-    /// those of RenderResult and, where the method knows it, "motion" (see gi/render/motion.h).
-    /// @param moments  where given, every path of a pixel is of a moment of its own, so that their mean is blurred
-    /// by
-    ///                 motion; `camera` is then that of no path, and there is no "motion"
+    /// Renders a frame; the settings' budget and paths apply to each frame. The layers are those of RenderResult
+    /// and, if the method supports it, "motion" (see gi/render/motion.h).
+    /// @param moments  if set, every path of a pixel is traced at its own moment, so that their mean is motion
+    ///   blurred; `camera` is then not used for paths, and there is no "motion"
     virtual RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                                Moments const& moments = {}) = 0;
-    /// Renders all views of one moment; what does not depend on the point of view is done once for all of them.
-    /// Budget, paths and size of the settings do not count here; hidden pixels do here alone.
+    /// Renders all views of one moment; view-independent work is done once for all of them. Ignores budget, paths
+    /// and size of the settings. Only this function supports hidden pixels.
     /// @param paths  per pixel, >= 1
-    /// @return a result per view, in their order; `interrupted` where `stop` came first, with fewer paths
+    /// @return one result per view, in order; `interrupted`, with fewer paths, if `stop` was requested before the
+    ///   end
     virtual std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths,
                                             VertexSharing sharing, StopRequest const& stop) = 0;
-    /// One view with what moves and without it; `turn` is asked for the one and the other in turns, `with` first,
-    /// and leaves the world at either. Where things only vanish, the world stays at `with` if it can, and of the
-    /// other picture only those paths are traced that what moves could change; bounds of the world, and with them
-    /// the choice of lamps, are those of `with` in both.
-    /// @throws InputError where the method does not know how
+    /// Renders one view with and without the dynamic geometry. Calls `turn` for the two sides alternately, `with`
+    /// first, and leaves the world at either side. With PairDifference::vanishing the world stays at `with` if
+    /// possible, and of the other picture only those paths are traced that the dynamic geometry could affect; the
+    /// bounds of the world, and so the choice of lights, are those of `with` in both.
+    /// @throws InputError if the method does not support it
     virtual PairResult pair(FrameView const& view, PairSettings const& settings, PairWorld const& turn,
                             StopRequest const& stop);
 };
 
-/// Starts with the world as it is; it and the report outlive the renderer.
+/// Makes a renderer for the current state of the world; the world and the report must outlive it.
 using StartFrames = std::unique_ptr<FrameRenderer> (*)(MovingWorld const&, Camera const&, RenderSettings const&,
                                                        Report&);
 

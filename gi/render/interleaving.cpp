@@ -8,14 +8,14 @@
 namespace gi {
 namespace {
 
-/// Albedos below tell nothing of the light.
+/// Light cannot be recovered from smaller albedos.
 constexpr float kDarkest = 1e-3f;
 
-/// How like the surface of a pixel that waits is to one that has taken light. Never 0: light is handed on where
-/// nothing is alike, too, so that small things do not get dark.
+/// Similarity between the surface of a waiting pixel and one that computed light. Never 0, so that small objects
+/// without a similar neighbour still get light instead of turning dark.
 float likeness(PathSample const& to, PathSample const& from)
 {
-    constexpr float kPlane = 0.005f, kLeast = 1e-4f; // distance to the plane, of the depth
+    constexpr float kPlane = 0.005f, kLeast = 1e-4f; // distance to the plane, relative to the depth
     float const cosine = std::max(0.0f, glm::dot(to.normal, from.normal));
     float const off = glm::dot(to.normal, from.position - to.position) / (kPlane * std::max(to.depth, 1e-6f));
     float const cosine2 = cosine * cosine, cosine8 = cosine2 * cosine2 * cosine2 * cosine2;
@@ -30,7 +30,7 @@ void spread_indirect(std::span<PathSample> samples, int width, Interleaving cons
     int const height = int(samples.size() / std::size_t(width)), n = int(interleaving.n);
     int const turn = int(interleaving.turn(pass)), column = turn % n, row = turn / n;
     float const share = 1 / float(n * n);
-    // Pixels whose turn it is, at and before a place, and next to it; how far apart, n = at the same place.
+    // Pixels in turn at or before a position, and the next one after it; nearness = n - distance.
     struct Beside {
         std::array<int, 2> at, nearness;
     };
@@ -66,7 +66,7 @@ void spread_indirect(std::span<PathSample> samples, int width, Interleaving cons
 
 int next_interleaving(int n, double budget_s, double frame_s, double indirect_s)
 {
-    constexpr double kMargin = 0.95; // frames of one n differ by so much
+    constexpr double kMargin = 0.95; // frames with equal n vary by about 5 %
     double const rest = frame_s - indirect_s;
     auto const at = [&](int m) { return rest + indirect_s * n * n / double(m * m); };
     if (n < kMostInterleaving && frame_s > budget_s) return n + 1;

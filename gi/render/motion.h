@@ -1,6 +1,6 @@
 #pragma once
-// Motion vectors: where the surface under each pixel was in the frame before. For every method that knows the
-// triangle and the point that a pixel's last path met first.
+// Motion vectors: where the surface seen in each pixel was in the previous frame. For every method that records
+// the triangle and the point first hit by a pixel's last path.
 
 #include "gi/image_io/picture.h"
 #include "gi/render/exact_visibility.h"
@@ -16,13 +16,13 @@ namespace gi {
 
 using Corners = std::array<vec3, 3>;
 
-/// Where triangles were in the frame before.
+/// Triangle positions in the previous frame.
 struct EarlierCorners {
-    std::size_t first_moving = 0; ///< triangle
-    std::vector<Corners> corners; ///< of triangles from there on; empty = none has moved
+    std::size_t first_moving = 0; ///< index of the first triangle that may move
+    std::vector<Corners> corners; ///< of the triangles from first_moving on; empty = nothing has moved
 };
 
-/// The corners of triangles from `first` on, as they are now.
+/// Returns the current corners of the triangles from `first` on.
 std::vector<Corners> corners_of(World const& world, std::size_t first);
 
 /// @param weights  of corners 1 and 2
@@ -37,11 +37,12 @@ struct SeenPoint {
     vec2 weights{0};  ///< of corners 1 and 2
     vec3 position{0}; ///< now
 };
-/// Sets the points of a row of pixels; called from several threads.
+/// Callback that fills in the points of a row of pixels; called from several threads.
 using SeenRow = std::function<void(std::size_t y, std::span<SeenPoint> row)>;
 
-/// Adds the layer "motion": x, y in pixels from here to there, z the depth it had there, m; NaN where nothing is
-/// seen or it was behind the camera. What stands still before a camera that stands still has 0, 0 exactly.
+/// Adds the layer "motion": x, y: offset in pixels from the current to the previous position; z: the previous
+/// depth, m; NaN if the pixel shows no surface or the point was behind the camera. Static geometry before a
+/// static camera gets exactly 0, 0.
 void add_motion(SeenRow const& seen, CameraRays const& now, CameraRays const& camera_before,
                 EarlierCorners const& before, Picture& picture);
 

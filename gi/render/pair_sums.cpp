@@ -33,7 +33,7 @@ void PairSums::add(std::span<PathSample const> first, std::span<std::uint32_t co
     other_.assign(pixels_.size(), kNone);
     for (std::uint32_t k = 0; k < pixels.size(); ++k) {
         std::uint32_t const p = pixels[k];
-        if (slot_[p] == kNone) { // so far they were equal
+        if (slot_[p] == kNone) { // equal until now
             slot_[p] = std::uint32_t(pixels_.size());
             pixels_.push_back(p);
             other_.push_back(kNone);

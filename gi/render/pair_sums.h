@@ -1,6 +1,7 @@
 #pragma once
-// Sums over the paths of two pictures that are equal in most pixels: of the second only those are kept that ever
-// had another path than the first. What comes out is what two Accumulators would give, bit for bit.
+// Sums over the paths of two pictures that are equal in most pixels: for the second, sums are kept only for
+// pixels whose paths ever differed from the first picture's. The results equal those of two Accumulators bit for
+// bit.
 
 #include "gi/render/accumulator.h"
 
@@ -10,11 +11,12 @@ namespace gi {
 
 class PairSums {
 public:
-    /// Forgets all paths; memory of the same size is used again.
+    /// Removes all paths; reuses the memory if the size is the same.
     void start(int width, int height);
 
-    /// A path for every pixel of both. @param first  of the first picture, one per pixel
-    /// @param pixels, second  where the second picture has another path, and that; each pixel at most once
+    /// Adds one path to every pixel of both pictures. @param first  paths of the first picture, one per pixel
+    /// @param pixels, second  pixels in which the second picture has a different path, and those paths; each
+    ///   pixel at most once
     void add(std::span<PathSample const> first, std::span<std::uint32_t const> pixels,
              std::span<PathSample const> second);
     std::uint32_t paths() const { return first_.paths; }
@@ -25,10 +27,11 @@ public:
 
 private:
     Accumulator first_{0, 0};
-    std::vector<std::uint32_t> slot_;   ///< per pixel: where its sums of the second picture are; kNone = as first
+    std::vector<std::uint32_t> slot_;   ///< per pixel: index of its sums of the second picture; kNone = same as
+                                        ///< first
     std::vector<std::uint32_t> pixels_; ///< per slot
     std::vector<PixelSums> second_;     ///< per slot
-    std::vector<std::uint32_t> other_;  ///< per slot: which of the paths of a pass is its own; kNone = as first
+    std::vector<std::uint32_t> other_;  ///< per slot: index of its own path in this pass; kNone = same as first
 };
 
 } // namespace gi

@@ -18,8 +18,8 @@ PassLoop::PassLoop(RenderSettings const& settings, StopRequest const& stop, Rend
 {
 }
 
-/// How many paths the next pass takes: short enough to answer Ctrl-C, the budget and the progress bar, long enough
-/// that the overhead of a pass does not show.
+/// Returns the number of paths of the next pass: few enough to respond to Ctrl-C and update the progress bar in
+/// time, and to keep the budget; many enough that the overhead of a pass is negligible.
 std::uint32_t PassLoop::next_pass(double seconds_per_path) const
 {
     constexpr double kPassSeconds = 0.5;
@@ -30,7 +30,7 @@ std::uint32_t PassLoop::next_pass(double seconds_per_path) const
     return std::uint32_t(std::clamp(paths, 1.0, double(limit() - sums_.paths)));
 }
 
-/// A disk that is full must not cost what was rendered.
+/// A failed write (full disk) is reported, but must not end the render.
 bool PassLoop::save(std::uint64_t print)
 {
     try {

@@ -1,6 +1,6 @@
 #pragma once
-// The loop that every method renders in: pass after pass until the paths, the time or the error that was asked
-// for, or an interruption; with progress, checkpoints and the losses of all paths.
+// The render loop of every method: runs passes until the requested paths, time or error is reached or the render
+// is interrupted; handles progress, checkpoints and the report of losses.
 
 #include "gi/render/accumulator.h"
 #include "gi/render/render_settings.h"
@@ -13,18 +13,18 @@ namespace gi {
 
 class PassLoop {
 public:
-    /// Time counts from here on: make it before the structures that the method builds.
-    /// @param spent_s  on them already
+    /// Starts the clock: construct it before building the method's structures.
+    /// @param spent_s  seconds already spent on them
     PassLoop(RenderSettings const& settings, StopRequest const& stop, RenderProgress const& progress,
              Report& report, double spent_s = 0);
 
-    /// Traces that many more paths for every pixel, into the sums. The next one has the number first_path() plus
-    /// those that the sums have.
+    /// Callback that traces `paths` more paths for every pixel and adds them to the sums. The first of them has
+    /// the number first_path() plus the number of paths already in the sums.
     using Pass = std::function<void(Accumulator&, std::uint32_t paths)>;
 
-    /// Everything of the result but picture and rays. Runs the passes in an arena of settings.threads.
-    /// @param print see fingerprint.h; only read where there is a checkpoint
-    /// Throws InputError if the checkpoint does not belong to this render.
+    /// Runs the passes in an arena of settings.threads and fills in all of the result except picture and rays.
+    /// @param print  see fingerprint.h; only used with a checkpoint
+    /// @throws InputError if the checkpoint belongs to another render.
     RenderResult run(std::uint64_t print, Pass const& pass);
 
     bool keeps_state() const { return !settings_.checkpoint.empty(); }

@@ -1,8 +1,7 @@
 #pragma once
-// What all pixels of a pass have in common: randomised low-discrepancy sequences over the passes, each independent
-// of the others, so that the mean of the passes has the pixel filter, the depth of field and the motion blur (Yu
-// 2012, sec. 7.2; distributed over the paths by Cook, Porter and Carpenter 1984, over passes by Haeberli and
-// Akeley 1990).
+// Samples that all pixels of a pass share: independent randomised low-discrepancy sequences over the passes, so
+// that the mean of the passes contains the pixel filter, depth of field and motion blur (Yu 2012, sec. 7.2;
+// distributed over the paths by Cook, Porter and Carpenter 1984, over passes by Haeberli and Akeley 1990).
 
 #include "gi/core/rqmc.h"
 #include "gi/scene/model/camera.h"
@@ -12,7 +11,7 @@ namespace gi {
 
 namespace pass_samples_detail {
 
-/// @param what  tells sequences apart
+/// @param what  identifies the sequence
 inline vec4 sample(std::uint64_t seed, std::uint64_t what, std::uint32_t pass)
 {
     return RqmcStream(std::uint32_t(mix_bits(seed ^ what)), pass).sample_together(0);
@@ -20,19 +19,19 @@ inline vec4 sample(std::uint64_t seed, std::uint64_t what, std::uint32_t pass)
 
 } // namespace pass_samples_detail
 
-/// In [0, 1)^2, to be warped by the pixel filter.
+/// Sample in [0, 1)^2, to be warped by the pixel filter.
 inline vec2 sample_in_pixel(std::uint64_t seed, std::uint32_t pass)
 {
     return vec2(pass_samples_detail::sample(seed, 0xca3e7a, pass));
 }
-/// The camera at the point of its lens that a pass looks through; a pinhole as it is.
+/// Returns the camera at the lens point sampled for a pass; a pinhole camera unchanged.
 inline CameraRays eye_of_pass(CameraRays const& camera, std::uint64_t seed, std::uint32_t pass)
 {
     if (!camera.has_lens()) return camera;
     return camera.at_lens(square_to_disk(vec2(pass_samples_detail::sample(seed, 0x1e45, pass))));
 }
 
-/// In [0, 1), of the time that the shutter is open.
+/// Moment of a pass in [0, 1), as a fraction of the time that the shutter is open.
 inline double moment_of_pass(std::uint64_t seed, std::uint32_t pass)
 {
     return double(pass_samples_detail::sample(seed, 0x54f7e4, pass).x);

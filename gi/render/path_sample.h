@@ -1,5 +1,5 @@
 #pragma once
-// What one path brings to its pixel.
+// Contribution of one path to its pixel.
 
 #include "gi/core/math.h"
 
@@ -8,23 +8,24 @@
 
 namespace gi {
 
-/// Longest chain of surfaces a path may visit, delta lobes included. Reaching it is counted.
+/// Maximum number of surfaces along a path, delta lobes included. Paths cut there are counted.
 inline constexpr int kLongestPath = 1024;
 
-/// Where one pixel of some takes indirect light, see gi/render/interleaving.h.
+/// With interleaving, whether this pixel computed indirect light; see gi/render/interleaving.h.
 enum class IndirectTurn : std::uint8_t {
-    each,  ///< it took what it takes
-    taken, ///< it took that of its neighbours, too
-    waits  ///< it took none
+    each,  ///< no interleaving: computed its own
+    taken, ///< computed it for itself and its neighbours
+    waits  ///< computed none; waits for a neighbour's
 };
 
 struct PathSample {
     std::array<vec3, 3> radiance{vec3{0}, vec3{0}, vec3{0}}; ///< L0, L1, L2
     vec3 albedo{0}, normal{0}, position{0};                  ///< at the first surface
-    float depth = 0;                                         ///< m along the camera's axis
+    float depth = 0;                                         ///< m, along the camera's axis
     bool hit = false;
-    bool near_moving = false; ///< without what moves it might be another; only where the tracer was asked to say
-    IndirectTurn turn = IndirectTurn::each; ///< of its broad lobes
+    bool near_moving = false; ///< true if the path could differ without dynamic geometry; set only if the tracer
+                              ///< is asked for it
+    IndirectTurn turn = IndirectTurn::each; ///< for its broad lobes
 };
 
 struct PathCounts {

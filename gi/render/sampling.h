@@ -11,11 +11,12 @@ namespace gi {
 /// Veach's power heuristic with exponent 2.
 GI_FN inline float power_heuristic(float pdf, float other)
 {
-    float const ratio = other / pdf; // squares of the densities themselves would overflow near small lamps
+    float const ratio = other / pdf; // squaring the densities would overflow near small lights
     return 1.0f / (1.0f + ratio * ratio);
 }
 
-/// Filter importance sampling: where in the plane the path of a pixel starts, relative to the pixel's centre (px).
+/// Filter importance sampling: where in the image plane the path of a pixel starts, relative to the pixel's
+/// centre (px).
 GI_FN inline vec2 filter_offset(PixelFilter filter, vec2 u)
 {
     if (filter == PixelFilter::box) return u - 0.5f;
@@ -25,8 +26,8 @@ GI_FN inline vec2 filter_offset(PixelFilter filter, vec2 u)
     return {tent(u.x), tent(u.y)};
 }
 
-/// From where on rays of a camera see, m: one that lies in a surface would see nothing but that. Above the
-/// rounding error of the distance to a plane through it.
+/// Distance from which on camera rays see surfaces, m, so that a camera lying in a surface does not see only
+/// that. Exceeds the rounding error of the distance to a plane through the camera.
 GI_FN inline float camera_clearance(vec3 origin)
 {
     return glm::max(2e-6f * max_component(glm::abs(origin)), std::numeric_limits<float>::min());

@@ -6,9 +6,9 @@
 
 namespace gi {
 
-/// Asks the shadow rays of many paths at once and adds the light of those that nothing blocks.
-/// @param paths  each with its `shadow` (RayQuery), `shadow_radiance` (0 = it has none), `shadow_bucket`,
-/// `bucket(i)` and `rng`
+/// Traces the shadow rays of many paths together and adds the light of the unblocked ones.
+/// @param paths  each with its `shadow` (RayQuery), `shadow_radiance` (0 = no shadow ray), `shadow_bucket`,
+///   `bucket(i)` and `rng`
 template <class Path, class Visibility>
 void add_unshadowed(std::span<Path* const> paths, Visibility const& visibility, PathCounts& counts)
 {
@@ -16,7 +16,7 @@ void add_unshadowed(std::span<Path* const> paths, Visibility const& visibility, 
     std::vector<RayQuery> queries;
     for (Path* p : paths) {
         if (!(max_component(p->shadow_radiance) > 0)) continue;
-        if (!(p->shadow.reach > 0)) { // the lamp lies on the surface
+        if (!(p->shadow.reach > 0)) { // the light lies on the surface
             p->bucket(p->shadow_bucket) += p->shadow_radiance;
             continue;
         }

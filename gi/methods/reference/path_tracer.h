@@ -1,13 +1,13 @@
 #pragma once
 // Path tracing: next-event estimation and BSDF sampling combined with the power heuristic (Veach 1997,
-// sec. 9.2.4), Russian roulette on throughput. The estimator is unbiased but for the limit on bounces; nothing is
-// clamped.
+// sec. 9.2.4), Russian roulette on throughput. The estimator is unbiased except for the limit on bounces; nothing
+// is clamped.
 //
 // Paths advance together, one surface at a time: all nearest hits, then all scatterings, then all shadow rays. So
-// rays travel in packets, and work on one path hides the cache misses of another. Each path draws from its own
-// random stream; what is grouped with what depends on the tile alone, not on threads.
+// rays are traced in packets, and work on one path hides the cache misses of another. Each path has its own
+// random stream; the grouping depends only on the tile, not on threads.
 //
-// Light is sorted by the number of non-delta scatterings between the lamp and the eye: L0 emitted light seen
+// Light is sorted by the number of non-delta scatterings between the light and the eye: L0 emitted light seen
 // directly (also through mirrors and glass), L1 direct light, L2 all indirect light.
 
 #include "gi/core/rng.h"
@@ -28,32 +28,32 @@
 
 namespace gi {
 
-/// Sides of the tiles whose paths advance together, px.
+/// Size of the tiles whose paths advance together, px.
 inline constexpr int kTile = 16;
 
-/// One path on its way.
+/// State of one path.
 struct Path {
     Pcg32 rng{0, 0};
     Ray ray;
     vec3 throughput{1};
-    /// Density of the direction we come along; 0 = camera or delta lobe, which no other technique finds.
+    /// Probability density of the arrival direction; 0 = camera or delta lobe, which no other technique samples.
     float arrival_pdf = 0;
     int scatterings = 0; ///< non-delta, so far
-    LightChoice light;   ///< for the coming surface
+    LightChoice light;   ///< chosen for the next surface
     bool ended = false;
-    bool emitted = false;    ///< what the coming surface or sky emits has been counted
-    std::uint32_t share = 1; ///< pixels that it takes indirect light for, see Interleaving
+    bool emitted = false;    ///< emission of the next surface or sky has already been counted
+    std::uint32_t share = 1; ///< number of pixels for which it computes indirect light, see Interleaving
     RayQuery shadow;
     int shadow_bucket = 0;
-    vec3 shadow_radiance{0}; ///< what arrives if nothing is between; 0 = no shadow ray wanted
+    vec3 shadow_radiance{0}; ///< radiance that arrives if unblocked; 0 = no shadow ray needed
     PathSample sample;
-    std::uint32_t first_triangle = kNoTriangle; ///< that the camera sees
-    vec2 first_weights{0};                      ///< there, of corners 1 and 2
+    std::uint32_t first_triangle = kNoTriangle; ///< triangle seen by the camera
+    vec2 first_weights{0};                      ///< hit point on it: weights of corners 1 and 2
 
     vec3& bucket(int scattered) { return sample.radiance[std::size_t(std::min(scattered, 2))]; }
 };
 
-/// @tparam Visibility answers nearest(queries, hits) and occluded(queries, blocked) as ExactVisibility does
+/// @tparam Visibility provides nearest(queries, hits) and occluded(queries, blocked) like ExactVisibility
 template <class Visibility>
 struct PathTracer {
     WorldView world;
@@ -65,7 +65,7 @@ struct PathTracer {
     int width;
     Interleaving interleaving{};
 
-    /// Path number `index` of pixel (x, y), at the camera.
+    /// Starts path number `index` of pixel (x, y) at the camera.
     Path start(int x, int y, std::uint32_t index) const
     {
         Path p;
@@ -77,11 +77,11 @@ struct PathTracer {
         if (camera.has_lens()) look_through_lens(place, p);
         return p;
     }
-    /// Follow all paths to their ends.
+    /// Traces all paths to their ends.
     void trace(std::span<Path> paths, PathCounts& counts) const;
 
 private:
-    /// Apart, so that the rounding of pinholes does not depend on it.
+    /// Separate, so that it does not affect the rounding of pinhole rays.
     [[gnu::noinline]] void look_through_lens(vec2 place, Path& p) const
     {
         p.ray = camera.at_lens(square_to_disk(p.rng.uniform2())).through(place);
@@ -91,7 +91,7 @@ private:
         float const offset = glm::dot(direction, at.geometric_normal) > 0 ? at.clearance : -at.clearance;
         return at.position + offset * at.geometric_normal;
     }
-    /// Fetch what shading will read: first the surface, a few paths later what the surface names.
+    /// Prefetches shading data: first the surface, and a few paths later the data to which it refers.
     void fetch_surface(Hit const& hit) const
     {
         if (hit.triangle != kNoTriangle) __builtin_prefetch(&world.surfaces[hit.triangle]);
@@ -107,9 +107,10 @@ private:
     }
     void collect_environment(Path& p) const;
     void collect_emission(Path& p, Hit const& hit, ShadingPoint const& at) const;
-    /// @param alone  no path goes on to meet the light
+    /// @param alone  no path continues that could hit the light
     void aim_at_light(Path& p, ShadingPoint const& at, vec3 wo, bool alone) const;
-    /// All in one function, so that vectors stay in registers: measured, 3 to 16 % less time for a path.
+    /// Flattened into one function, so that vectors stay in registers: measured to save 3 to 16 % of a path's
+    /// time.
     [[gnu::flatten]] bool advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const;
     void choose_lights(std::span<Path* const> paths, std::span<Hit const> hits) const;
 };
@@ -153,15 +154,14 @@ void PathTracer<Visibility>::aim_at_light(Path& p, ShadingPoint const& at, vec3 
     p.shadow.ray = {leave(at, light.direction), light.direction};
     p.shadow.reach = light.distance;
     if (light.distance == kInf) return;
-    // Aim from where the ray starts, and stop short of the lamp's own surface by more than the rounding of both
-    // ends.
+    // Aims from the ray's start, and ends before the light's own surface by more than the rounding of both ends.
     vec3 const way = at.position + light.distance * light.direction - p.shadow.ray.origin;
     float const length = glm::length(way);
     p.shadow.ray.direction = way * (1 / length);
     p.shadow.reach = length * (1 - 2e-5f) - at.clearance;
 }
 
-/// From a hit to the next ray. False where the path ends.
+/// Advances from a hit to the next ray. Returns false if the path ends.
 template <class Visibility>
 bool PathTracer<Visibility>::advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const
 {
@@ -190,7 +190,7 @@ bool PathTracer<Visibility>::advance(Path& p, Hit const& hit, int vertex, PathCo
     }
 
     vec3 const wo = at.frame.to_local(-p.ray.direction);
-    bool const last = p.scatterings > bounces; // mirrors and glass do not count
+    bool const last = p.scatterings > bounces; // mirrors and glass do not count as scatterings
     bool const in_turn = vertex == 0 && interleaving.n > 1 && bounces > 0;
     bool const narrow = in_turn && has_narrow_lobe(at.bsdf), alone = in_turn && !narrow;
     if (!last && !world.light_select.empty() && !only_delta(at.bsdf)) aim_at_light(p, at, wo, alone);
@@ -212,7 +212,7 @@ bool PathTracer<Visibility>::advance(Path& p, Hit const& hit, int vertex, PathCo
         p.throughput /= survival;
     }
     vec3 const direction = at.frame.to_world(next.wi);
-    // A shading normal may send light through an opaque surface; that part does not exist.
+    // With a shading normal, a direction may pass through an opaque surface; such light is discarded.
     if ((glm::dot(direction, at.geometric_normal) > 0) != (next.wi.z > 0)) return false;
     p.ray = {leave(at, direction), direction};
     p.arrival_pdf = next.delta ? 0 : next.pdf;
@@ -253,7 +253,7 @@ void PathTracer<Visibility>::trace(std::span<Path> paths, PathCounts& counts) co
             }
 }
 
-/// In a loop of its own, so that the cache misses of many choices overlap: the tables of a sky are large.
+/// In a separate loop, so that the cache misses of many choices overlap: the tables of a sky are large.
 template <class Visibility>
 void PathTracer<Visibility>::choose_lights(std::span<Path* const> paths, std::span<Hit const> hits) const
 {

@@ -16,14 +16,14 @@ namespace {
 
 double rays_of(PathCounts const& c) { return double(c.nearest_rays + c.shadow_rays); }
 
-/// What the last path of a pixel met first.
+/// First surface of a pixel's last path.
 struct FirstHit {
     std::uint32_t triangle;
     vec2 weights; ///< of corners 1 and 2
 };
 
-/// @param first_hits  one per pixel, set by its last path; empty = not wanted
-/// @param memory  of an interleaved pass, in which pixels take indirect light from those whose turn it is
+/// @param first_hits  one per pixel, set by its last path; empty = not needed
+/// @param memory  buffer for interleaved passes, in which pixels take indirect light from those in turn
 void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t first_path,
                 std::uint32_t paths, std::span<FirstHit> first_hits = {},
                 std::vector<PathSample>* memory = nullptr)
@@ -70,11 +70,11 @@ void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, st
     sums.counts += counts.combine([](PathCounts a, PathCounts const& b) { return a += b; });
 }
 
-/// Rays through a world as it is.
+/// The BVH of a world, and path tracers that use it.
 struct Structures {
     std::unique_ptr<ExactVisibility> visibility;
 
-    /// @param first_moving  triangle
+    /// @param first_moving  index of the first dynamic triangle
     /// @param stop  see ExactVisibility
     void build(World const& world, int threads, Report& report, std::size_t first_moving,
                StopRequest const* stop = nullptr)
@@ -142,7 +142,7 @@ public:
                 trace_pass(tracer(now.camera), sums, paths_, 1);
             }
         };
-        tracer(camera); // builds before the passes
+        tracer(camera); // so that the BVH is built before the passes
         RenderResult result = trace_all(loop, 0, pass, world_.world(), report_);
         paths_ += result.paths;
         if (!moments) add_motion(seen_.front(), result.picture);
@@ -177,13 +177,13 @@ public:
     }
 
 private:
-    /// Through the middle of the lens.
+    /// Rays through the centre of the lens.
     struct SeenFrom {
         CameraRays now, earlier;
         int width, height;
     };
 
-    /// With a budget in passes of one path, where pixels may wait for indirect light.
+    /// With a budget, renders passes of one path, in which pixels may wait for indirect light.
     void trace_frame(Camera const& camera, Accumulator& sums, std::uint32_t paths)
     {
         PathTracer<ExactVisibility> through = tracer(camera);
@@ -192,7 +192,7 @@ private:
             double const earlier = rays_of(sums.counts);
             through.interleaving.n = std::uint32_t(interleaving_.n());
             trace_pass(through, sums, paths_, 1, first_hits_, &waiting_);
-            // Two rays of each pixel are for its first surface.
+            // Two rays per pixel are for its first surface.
             double const first = 2.0 * sums.width * sums.height,
                          later = std::max(0.0, rays_of(sums.counts) - earlier - first);
             interleaving_.pass_ended(later / (first + later));
@@ -201,7 +201,7 @@ private:
 
     std::size_t first_moving() const { return world_.world().static_triangles; }
 
-    /// A view is what the view of the same index was in the frame before.
+    /// Each view continues the previous frame's view of the same index.
     void see(std::span<FrameView const> views)
     {
         std::size_t const known = std::min(seen_.size(), views.size());
@@ -222,7 +222,7 @@ private:
         earlier_.corners.clear();
         for (SeenFrom& s : seen_) s.earlier = s.now;
     }
-    /// Of the view that was traced last.
+    /// Adds the motion vectors of the view traced last.
     void add_motion(SeenFrom const& from, Picture& picture) const
     {
         if (from.now.orthographic) return;
@@ -240,7 +240,7 @@ private:
         gi::add_motion(seen, from.now, from.earlier, earlier_, picture);
     }
 
-    /// Through the world as it is now.
+    /// Returns a tracer for the current world.
     PathTracer<ExactVisibility> tracer(Camera const& camera) { return tracer(camera, settings_); }
     PathTracer<ExactVisibility> tracer(Camera const& camera, RenderSettings const& settings)
     {
@@ -253,12 +253,12 @@ private:
     RenderSettings settings_;
     Report& report_;
     Structures structures_;
-    std::uint32_t paths_ = 0; ///< so far, of all frames
+    std::uint32_t paths_ = 0; ///< so far, over all frames
     FrameInterleaving interleaving_;
-    std::vector<PathSample> waiting_; ///< memory of interleaved passes
+    std::vector<PathSample> waiting_; ///< buffer for interleaved passes
     std::vector<SeenFrom> seen_;
-    std::vector<FirstHit> first_hits_; ///< of the view that was traced last
-    std::vector<Corners> now_;         ///< of what may move
+    std::vector<FirstHit> first_hits_; ///< of the view traced last
+    std::vector<Corners> now_;         ///< of dynamic triangles
     EarlierCorners earlier_;
 };
 

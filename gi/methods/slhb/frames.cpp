@@ -30,8 +30,8 @@ public:
         if (settings.threads > 0)
             threads_.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(settings.threads));
         if (settings.slhb.packed && world.world().static_triangles < world.world().triangles.size())
-            throw InputError("--packed with something that moves",
-                             "the range of packed depths is that of what stays", "leave out --packed");
+            throw InputError("--packed with dynamic geometry",
+                             "the range of packed depths covers static geometry only", "leave out --packed");
         auto const begun = std::chrono::steady_clock::now();
         FrameView const eye = full_size(camera);
         start({&eye, 1});
@@ -40,14 +40,14 @@ public:
 
     void changed(Changes const& changes) override
     {
-        if (changes.coverage) restart_ = true; // hit buffers leave out what lets rays through
+        if (changes.coverage) restart_ = true; // hit buffers omit transparent parts of surfaces
         if (!restart_) renderer_->changed(changes);
     }
 
     void update_axes(int axes) override
     {
         updated_axes_ = std::uint32_t(axes);
-        if (renderer_) renderer_->update_axes(updated_axes_); // else one that starts will
+        if (renderer_) renderer_->update_axes(updated_axes_); // otherwise applied when a renderer starts
     }
 
     DynamicUpdate dynamic_update() const override
@@ -64,7 +64,7 @@ public:
         double const earlier = renderer_->rays();
         if constexpr (!kByKernels)
             if (!(settings_.budget_s > 0))
-                renderer_->forget(); // else a frame of so many paths is the same by itself
+                renderer_->forget(); // with fixed paths, frames must not depend on earlier ones
         VertexSharing const sharing =
             settings_.slhb.cache == RadianceCaching::on ? VertexSharing::cached : VertexSharing::exact;
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
@@ -119,8 +119,8 @@ public:
                     StopRequest const& stop) override
     {
         if constexpr (kByKernels)
-            throw InputError("--device cuda with pictures with and without what moves",
-                             "its kernels trace no such pairs", "render with --device cpu");
+            throw InputError("--device cuda with pictures with and without dynamic geometry",
+                             "its kernels cannot trace such pairs", "render with --device cpu");
         else
             return traced_pair(view, settings, turn, stop);
     }
@@ -144,10 +144,11 @@ private:
                            StopRequest const& stop)
     {
         if (view.camera.orthographic)
-            throw InputError("pictures with and without what moves, of an orthographic camera",
+            throw InputError("pictures with and without dynamic geometry, of an orthographic camera",
                              "its first surfaces are not rasterised", "use a perspective camera");
         auto const begun = std::chrono::steady_clock::now();
-        // Streamed axes have what moves built into them, and are kept for both sides: the same axes with it apart.
+        // Streamed axes have dynamic geometry built in; to share axes between both sides, use the same axes with
+        // dynamic geometry kept separate.
         if (settings_.slhb.schedule == Schedule::streamed) {
             asked_.slhb.schedule = Schedule::temporal;
             asked_.slhb.axes = asked_.slhb.fresh_axes = settings_.slhb.axes;
@@ -176,7 +177,8 @@ private:
         return both;
     }
 
-    /// Whether the world without what moves can be seen in that with it: lamps are the same.
+    /// True if the picture without dynamic geometry can be made from the world with it, as the lights are the
+    /// same.
     bool can_leave_out() const
     {
         World const& world = world_.world();
@@ -205,7 +207,8 @@ private:
     {
         sums_.resize(2);
         for (Accumulator& s : sums_) s.start(view.width, view.height);
-        // Every other pass begins with the side that the one before it ended with: the world changes but once.
+        // Each pass begins with the side with which the previous one ended, so that the world changes only once
+        // per pass.
         PairSide now = PairSide::with;
         for (std::uint32_t i = 0; i < settings.paths && !(i > 0 && stop.requested()); ++i, ++passes_)
             for (int half = 0; half < 2; ++half) {
@@ -266,7 +269,7 @@ private:
         TriangleSoup soup = make_soup(world);
         settings_.slhb = choose_frame_settings(asked_, world, soup, views[0].camera);
         if (kByKernels) {
-            settings_.slhb.interleave = 1; // whatever the budget
+            settings_.slhb.interleave = 1; // regardless of the budget
             for (FrameView const& v : views) check_kernels_can(v.camera, settings_.slhb);
         }
         if constexpr (!kByKernels)
@@ -278,17 +281,17 @@ private:
     }
 
     MovingWorld const& world_;
-    RenderSettings asked_, settings_; ///< the second with those of slhb chosen
+    RenderSettings asked_, settings_; ///< the second with the chosen settings of slhb
     Report& report_;
     std::optional<tbb::global_control> threads_;
     std::optional<Renderer> renderer_;
-    std::optional<FrameInterleaving> interleaving_; ///< none by kernels
+    std::optional<FrameInterleaving> interleaving_; ///< none with kernels
     std::vector<Accumulator> sums_;                 ///< of the views
     PairSums pair_sums_;
     std::uint32_t passes_ = 0, updated_axes_ = 0;
-    std::uint64_t lost_ = 0, refused_ = 0; ///< layers, and notes of the cache, that were reported
+    std::uint64_t lost_ = 0, refused_ = 0; ///< layers and cache notes already reported as lost
     bool restart_ = false;
-    double start_s_ = 0; ///< that the first start took
+    double start_s_ = 0; ///< duration of the first start
 };
 
 } // namespace

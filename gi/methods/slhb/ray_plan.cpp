@@ -9,9 +9,9 @@
 namespace gi {
 namespace {
 
-/// Of look-ups of a pilot, how many have to be right as far as columns tell.
+/// Fraction of a pilot's look-ups that must be right, as far as columns show.
 constexpr double kTrusted = 0.87;
-/// Of the budget, that a BVH may take.
+/// Largest fraction of the budget that building a BVH may take.
 constexpr double kMostForBvh = 0.8;
 
 bool says_look_ups(SlhbSettings const& s)
@@ -27,7 +27,7 @@ bool says_maps(SlhbSettings const& s)
            s.space == Space::device;
 }
 
-/// s of one core that a picture may take; 0 = any.
+/// Seconds of one core that a picture may take; 0 = unlimited.
 double budget_of(RenderSettings const& s)
 {
     return s.budget_s * (s.threads > 0 ? s.threads : tbb::this_task_arena::max_concurrency());
@@ -55,7 +55,7 @@ bool narrow_somewhere(World const& world)
         if (has_narrow_lobe(world.bsdfs[m])) return true;
         bool const textured = material.metallic_roughness_map.texture >= 0 ||
                               material.transmission_map.texture >= 0 || material.specular_map.texture >= 0;
-        // A roughness map can make any roughness smaller.
+        // A roughness map can reduce any roughness.
         if (textured && (material.specular > 0 || material.metallic > 0 || material.transmission > 0)) return true;
     }
     return false;
@@ -81,7 +81,7 @@ RayPlan plan_rays(RenderSettings const& asked, int resolution, World const& worl
     bool const no_time = !lasting && asked.budget_s > 0 && costs.bvh > kMostForBvh * budget_of(asked);
     if (s.look_ups != LookUps::automatic || says_look_ups(s)) {
         plan.look_ups = s.look_ups != LookUps::automatic ? s.look_ups : LookUps::all;
-        plan.why_look_ups = "asked for";
+        plan.why_look_ups = "requested";
     } else if (!no_time || camera.orthographic) {
         plan.why_look_ups = "pixels would share their error, which no filter removes; --look-ups all";
     } else {
@@ -95,12 +95,12 @@ RayPlan plan_rays(RenderSettings const& asked, int resolution, World const& worl
     bool const bvh = narrow_somewhere(world) || plan.look_ups == LookUps::none;
     if (s.shadows != Shadows::automatic) {
         plan.shadows = s.shadows;
-        plan.why_shadows = "asked for";
+        plan.why_shadows = "requested";
     } else if (says_maps(s) || says_look_ups(s) || !bvh) {
         plan.shadows = Shadows::maps;
-        plan.why_shadows = bvh ? "asked for" : "there is no BVH";
+        plan.why_shadows = bvh ? "requested" : "there is no BVH";
     } else {
-        plan.why_shadows = "each path has light samples of its own, so that pixels share no error";
+        plan.why_shadows = "each path has its own light samples, so that pixels share no error";
     }
     return plan;
 }

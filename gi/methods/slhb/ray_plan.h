@@ -1,5 +1,5 @@
 #pragma once
-// Whether paths look surfaces and shadows up, or send exact rays.
+// Chooses between look-ups and exact rays, for surfaces and for shadows.
 
 #include "gi/methods/slhb/tracer/costs.h"
 #include "gi/raster/triangle_soup.h"
@@ -8,26 +8,26 @@
 
 namespace gi {
 
-/// Look-ups are cheaper than rays, but pixels share their error: at equal time exact rays leave less that an
-/// observer sees, and far less after a filter (docs/results/2026-11-25-pictures.md). So look-ups are for when they
-/// are asked for, and for when a BVH would take too much of the budget, if they can be trusted then.
+/// Look-ups are cheaper than rays, but pixels share their error: at equal time, exact rays leave less visible
+/// error, and far less after a filter (docs/results/2026-11-25-pictures.md). So look-ups are used on request, or
+/// if building a BVH would take too much of the budget and look-ups are accurate enough.
 struct RayPlan {
     LookUps look_ups = LookUps::none;
     Shadows shadows = Shadows::rays;
     std::string why_look_ups, why_shadows;
 };
 
-/// @param resolution  texels that a hit buffer would have on a side
-/// @param lasting     structures serve many pictures: what they take to build does not count
+/// @param resolution  texels per side that a hit buffer would have
+/// @param lasting   structures serve many pictures, so that their build time is ignored
 RayPlan plan_rays(RenderSettings const& asked, int resolution, World const& world, TriangleSoup const& soup,
                   Camera const& camera, Costs const& costs, bool lasting);
 
-/// Paths per pixel that there is time for by exact rays, at least 1.
+/// Returns the number of paths per pixel that the budget allows with exact rays, at least 1.
 double expected_passes(RenderSettings const& asked, Costs const& costs);
 
-/// Whether some path of the scene has to continue with an exact ray: some lobe is narrow, a mirror or glass.
+/// True if some path may have to continue with an exact ray: some lobe is narrow, a mirror or glass.
 bool narrow_somewhere(World const& world);
-/// Whether some surface is a mirror or glass, which do not count as bounces: paths find lamps through them.
+/// True if some surface is a mirror or glass. These do not count as bounces: paths reach lights through them.
 bool smooth_somewhere(World const& world);
 
 } // namespace gi

@@ -12,8 +12,8 @@
 namespace gi {
 namespace {
 
-/// Groups of light samples of a pass: few paths share each, a second-level cache holds all where lights are few,
-/// and every light has about two samples where they are many.
+/// Number of groups of light samples per pass: each is shared by few paths; with few lights all groups fit the
+/// second-level cache; with many lights each has about two samples.
 std::uint32_t light_groups(std::size_t pixels, World const& world)
 {
     constexpr std::size_t kPixelsOfGroup = 32, kLeast = 64, kUsual = 256, kMost = 4096;
@@ -22,7 +22,7 @@ std::uint32_t light_groups(std::size_t pixels, World const& world)
     return std::uint32_t(std::min(std::max(for_pixels, for_lights), kMost));
 }
 
-/// Choosing among axes and lamps takes their grids alone.
+/// Choosing among axes and light points only needs their grids.
 std::uint32_t texels(bool unused, int n) { return std::uint32_t(unused ? 2 : n); }
 
 } // namespace
@@ -65,7 +65,7 @@ void SlhbRenderer::build_exact()
                                                first_moving_, stop_);
 }
 
-/// Also the last surface sends paths along axes: only where they can meet light there.
+/// Paths also leave the last surface along axes, but only if they can hit light there.
 bool SlhbRenderer::to_the_end() const
 {
     return !world_.emitters.empty() || !view(world_).environment_radiance.empty();
@@ -126,10 +126,10 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
         if (!grow(grid_bounds_, world_.bounds)) {
             axes_.set().moved();
         } else {
-            if (slhb_.schedule != Schedule::streamed) // which is built anew in every pass
+            if (slhb_.schedule != Schedule::streamed) // streamed buffers are rebuilt in every pass
                 report_.lose("frames that left the bounds of the hit buffers, which were built anew");
             make_axes();
-            lights = true; // the maps of parallel light hold the same bounds
+            lights = true; // the maps of parallel lights depend on the same bounds
         }
         light_points_->moved();
     }
@@ -181,7 +181,7 @@ void SlhbRenderer::see(std::span<FrameView const> views)
         else if (!known || !v.primary)
             v.primary.emplace(soup_, cut_outs_, settings_, v.width, v.height);
     }
-    if (!exact_ && orthographic()) build_exact(); // they have no raster
+    if (!exact_ && orthographic()) build_exact(); // orthographic cameras are not rasterised
 }
 
 void SlhbRenderer::prepare(std::uint32_t index, Sides sides)
@@ -241,12 +241,13 @@ void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Vertex
 
 void SlhbRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& counts)
 {
-    if (!std::exchange(shadow_maps_, true)) make_lamps(); // they tell what moves may count in
+    if (!std::exchange(shadow_maps_, true)) make_lamps(); // shadow maps show which paths dynamic geometry may
+                                                          // affect
     prepare(index, Sides::pair);
     StageTimer const timer(report_, "paths");
     SlhbTracer::Pass now = tracing(index, false);
     now.first_watched = std::uint32_t(first_moving_);
-    // The world stays as it is: look-ups pass by what moves.
+    // The world is not changed: look-ups ignore dynamic geometry.
     auto const show_moving = [&](bool shown) {
         axes_.set().show_moving(shown);
         light_points_->show_moving(shown);

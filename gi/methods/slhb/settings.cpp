@@ -21,7 +21,8 @@ double cores_of(RenderSettings const& s)
 
 std::size_t physical_bytes() { return std::size_t(sysconf(_SC_PHYS_PAGES)) * std::size_t(sysconf(_SC_PAGE_SIZE)); }
 
-/// How cluttered a scene is: the mean over texels that have any, in a coarse look from a slanted direction.
+/// Depth complexity of a scene: mean number of layers over non-empty texels, in a coarse buffer along an oblique
+/// direction.
 double layers_per_texel(World const& world, TriangleSoup const& soup)
 {
     HitBuffer const b = make_hit_buffer(
@@ -41,11 +42,11 @@ bool needs_exact_rays(World const& world, bool orthographic, SlhbSettings const&
 
 namespace {
 
-/// All but what plan_rays decides.
+/// Chooses all settings except those of plan_rays.
 SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Costs const& costs)
 {
     SlhbSettings s = asked.slhb;
-    // Light that comes through few openings is found by few axes: a pass needs many at once.
+    // Only few axes find light that enters through small openings, so a pass needs many at once.
     bool const sky = !world.environment_select.empty();
     if (s.schedule == Schedule::automatic)
         s.schedule = !s.directions.empty()         ? Schedule::stored
@@ -54,13 +55,13 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
                                                    : Schedule::streamed;
     if (s.directions.empty()) s.directions = "icosahedron:320";
     double const pixels = double(asked.width) * asked.height;
-    // What a pass builds should cost a share of what its paths cost, or be shared by too few of them; and of the
-    // budget.
+    // Building the structures of a pass should cost only a fraction of its paths and of the budget, or there
+    // would be too few paths to share them.
     constexpr double kPath = 0.5e-6, kShare = 0.5, kShareOfBudget = 0.2;
     double const budget = asked.budget_s > 0 ? asked.budget_s * cores_of(asked) : double(kInf);
     double const worth = std::min(kShare * kPath * pixels, kShareOfBudget * budget);
-    // Few passes need more axes and lamps each: what they lack shows in the whole picture alike. Rather fewer
-    // texels.
+    // With few passes, each needs more axes and light points, because what they miss is missing from the whole
+    // picture. Fewer texels are the smaller loss.
     bool const few_passes = budget < 8 * kPath * pixels;
     int const enough = few_passes ? 8 : 4;
     constexpr int kLeast = 64; // texels
@@ -97,7 +98,7 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
         s.light_samples =
             from_points ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), sky ? 8 : 1, most_lamps);
     if (s.memory_mib == 0) s.memory_mib = int((physical_bytes() >> 20) / 4);
-    auto const map_bytes = [&] { // cubes, which take the most
+    auto const map_bytes = [&] { // cube maps, the largest
         return 6.0 * s.light_samples * s.shadow_resolution * s.shadow_resolution * sizeof(NearestTexel);
     };
     while (s.shadow_resolution > kLeast && map_bytes() > double(s.memory_mib) * (1 << 20))
@@ -107,7 +108,7 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
     return s;
 }
 
-/// Automatic: for frames, who looks at them says so.
+/// Automatic: for frames, the caller decides.
 RadianceCaching choose_cache(RenderSettings const& asked, bool lasting)
 {
     SlhbSettings const& s = asked.slhb;
@@ -117,13 +118,13 @@ RadianceCaching choose_cache(RenderSettings const& asked, bool lasting)
     return lasting ? RadianceCaching::automatic : RadianceCaching::off;
 }
 
-/// Where the first pass would not end within the budget: the primary surfaces and direct light of all pixels, and
-/// indirect light for as many as there is time for. @param axes  built in a pass, for a bounce
+/// Chooses the interleaving if the first pass would exceed the budget: first surfaces and direct light for all
+/// pixels, indirect light for as many as time allows. @param axes  built per pass and bounce
 int choose_interleave(RenderSettings const& asked, SlhbSettings const& s, int axes, Costs const& costs)
 {
     if (!(asked.budget_s > 0) || asked.bounces == 0) return 1;
     bool const rays = s.look_ups == LookUps::none, shadow_rays = s.shadows == Shadows::rays;
-    // Surfaces after the first one: many paths end by roulette, most in the cache.
+    // Surfaces after the first one: many paths end by roulette, or most of them in the cache.
     double const pixels = double(asked.width) * asked.height, bounces = std::min(asked.bounces, 3),
                  after = s.cache == RadianceCaching::on ? 1.3
                          : s.roulette > 0               ? std::min(bounces, 1.5)
@@ -143,7 +144,7 @@ SlhbSettings with_rays(RenderSettings const& asked, SlhbSettings s, World const&
 {
     RayPlan const plan = plan_rays(asked, s.resolution, world, soup, camera, costs, lasting);
     s.look_ups = plan.look_ups;
-    // Where time decides, weak paths are worth less than others, as long as what they leave makes room for more.
+    // With a budget, paths of low throughput are worth less, as ending them leaves time for more paths.
     constexpr float kRoulette = 2, kRouletteToCells = 3; // measured: docs/methods.md
     constexpr double kFewPasses = 1.4;
     bool const by_time =
@@ -174,13 +175,14 @@ SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& wor
     lasting.budget_s = 0;
     SlhbSettings& wanted = lasting.slhb;
     bool const moves = world.static_triangles < world.triangles.size();
-    // Many axes for every frame, and what moves is all that they cost.
+    // Many axes for every frame; each frame only pays for dynamic geometry.
     if (moves && wanted.schedule == Schedule::automatic && wanted.axes == 0 && wanted.fresh_axes == 0)
         wanted.schedule = Schedule::stored;
     SlhbSettings s = choose_look_ups(lasting, world, costs);
-    // Few points on lamps are exchanged from pass to pass: each has the light of as many as a window of the
-    // discontinuity filter has pixels.
-    constexpr int kLamps = 16, kPasses = 4; // in which what choose_settings takes in one is exchanged
+    // Each pass replaces only a few light points, and has at least as many as a window of the discontinuity
+    // filter has pixels.
+    constexpr int kLamps = 16, kPasses = 4; // passes that replace as many light points as choose_settings uses in
+                                            // one
     int const fresh = asked.slhb.fresh_light_samples > 0 ? asked.slhb.fresh_light_samples
                                                          : std::max(1, s.light_samples / kPasses);
     if (asked.slhb.light_samples == 0) s.light_samples = std::max(s.light_samples, kLamps);
@@ -226,38 +228,38 @@ std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const&
     if (walks) {
         char const* const names[] = {"automatic", "stored", "streamed", "temporal"};
         items.push_back({fmt::format("schedule {}", names[int(s.schedule)]), true,
-                         s.schedule == Schedule::streamed ? "no set of directions limits how far the error falls"
-                                                          : "a sky shines, or it was asked for"});
+                         s.schedule == Schedule::streamed ? "the error is not limited by a fixed set of directions"
+                                                          : "there is a sky, or it was requested"});
         if (s.schedule == Schedule::stored)
             items.push_back(
                 {"directions " + s.directions, true,
-                 world.environment_select.empty() ? "asked for" : "a sky shines, and many axes must look for it"});
+                 world.environment_select.empty() ? "requested" : "a sky needs many axes to be found"});
         else
             items.push_back({fmt::format("{} axes for each bounce of a pass", s.axes), true,
                              fmt::format("for {} triangles and {} x {} pixels", world.triangles.size(),
                                          asked.width, asked.height)});
         items.push_back({fmt::format("hit buffers of {0} x {0} texels", s.resolution), true,
-                         fmt::format("{:.1f} surfaces behind each other, texels of {:.2g} m", costs.layers,
+                         fmt::format("{:.1f} layers per texel, texels of {:.2g} m", costs.layers,
                                      2 * world.bounds.radius() / s.resolution)});
         items.push_back({fmt::format("at most {} MiB of hit buffers", s.memory_mib), true,
                          "else they get fewer texels (--memory)"});
     }
     bool const cached = choose_cache(asked, false) == RadianceCaching::on;
     items.push_back({"radiance cache", cached,
-                     asked.slhb.cache != RadianceCaching::automatic ? "asked for"
-                     : cached ? "time decides; it takes noise for a little blur"
-                              : "it would leave a small error however long the render is; --radiance-cache on"});
+                     asked.slhb.cache != RadianceCaching::automatic ? "requested"
+                     : cached ? "there is a budget; it trades noise for a little blur"
+                              : "it would leave a small error even in long renders; --radiance-cache on"});
     bool const lit = !world.light_select.empty(), rays = plan.shadows == Shadows::rays;
     items.push_back({rays ? "shadow rays"
                           : fmt::format("{} shadow maps of {} x {}", s.light_samples, s.shadow_resolution,
                                         s.shadow_resolution),
-                     lit, lit ? plan.why_shadows : "nothing shines"});
+                     lit, lit ? plan.why_shadows : "there are no lights"});
     bool const narrow = narrow_somewhere(world);
     items.push_back({"exact rays (Embree)", !walks || rays || narrow || camera.orthographic,
                      !walks                ? "in place of look-ups"
                      : rays                ? "for shadows"
                      : camera.orthographic ? "the camera is orthographic"
-                     : narrow              ? "mirrors, glass or narrow lobes cannot live on a set of axes"
+                     : narrow              ? "mirrors, glass or narrow lobes need more directions than the axes"
                                            : "every lobe is broad"});
     return items;
 }

@@ -19,7 +19,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
         check_device(Space::device);
         return render_by_kernels(Space::device, world, camera, settings, stop, progress, report);
     }
-    std::optional<tbb::global_control> limit; // also of what is built before the passes
+    std::optional<tbb::global_control> limit; // also limits the building of structures before the passes
     if (settings.threads > 0)
         limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(settings.threads));
     PassLoop loop(settings, stop, progress, report);

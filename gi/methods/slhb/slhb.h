@@ -6,7 +6,7 @@
 
 namespace gi {
 
-/// See RenderFunction in gi/methods. Throws InputError on settings that cannot work.
+/// See RenderFunction in gi/methods. Throws InputError on incompatible settings.
 RenderResult render_slhb(World const& world, Camera const& camera, RenderSettings const& settings,
                          StopRequest const& stop, RenderProgress const& progress, Report& report);
 

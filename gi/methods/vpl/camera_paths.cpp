@@ -22,7 +22,7 @@ CameraSubpath CameraPaths::start(int x, int y, std::uint32_t index) const
     return p;
 }
 
-/// @param share  of what is found that these paths bring
+/// @param share  fraction of the light that these paths contribute
 void CameraPaths::aim_at_light(CameraSubpath& p, ShadingPoint const& at, vec3 wo, float share) const
 {
     LightChoice const choice = choose_light(world, p.rng.uniform_double());
@@ -39,14 +39,14 @@ void CameraPaths::aim_at_light(CameraSubpath& p, ShadingPoint const& at, vec3 wo
     p.shadow.ray = {leave(at, light.direction), light.direction};
     p.shadow.reach = light.distance;
     if (light.distance == kInf) return;
-    // From where the ray starts to just before the lamp, as the reference does.
+    // From the ray's start to just before the light, as in the reference.
     vec3 const way = at.position + light.distance * light.direction - p.shadow.ray.origin;
     float const length = glm::length(way);
     p.shadow.ray.direction = way * (1 / length);
     p.shadow.reach = length * (1 - 2e-5f) - at.clearance;
 }
 
-/// From a hit to the next ray. False where the path ends.
+/// Advances from a hit to the next ray. Returns false if the path ends.
 bool CameraPaths::advance(CameraSubpath& p, Hit const& hit, int surface, std::uint32_t index,
                           std::vector<Receiver>& receivers, PathCounts& counts) const
 {
@@ -85,8 +85,8 @@ bool CameraPaths::advance(CameraSubpath& p, Hit const& hit, int surface, std::ui
     }
 
     vec3 const wo = at.frame.to_local(-direction);
-    bool const last = p.scatterings > bounces; // mirrors and glass do not count
-    float share = 1;                           // of these paths in what leaves here other than by delta lobes
+    bool const last = p.scatterings > bounces; // mirrors and glass do not count as scatterings
+    float share = 1;                           // fraction of these paths in non-delta outgoing light
     if (p.straight) {
         share = 1 - share_of_virtual_lights(bounded_term(p.value_x, cos_here, square(hit.distance)), bound);
         if (!(share > 0) && !has_delta_lobe(at.bsdf)) return false;
@@ -113,7 +113,7 @@ bool CameraPaths::advance(CameraSubpath& p, Hit const& hit, int surface, std::ui
     float survival = max_component(p.throughput);
     if (!(survival > 0)) return false;
     if (!next.delta && share < 1) {
-        // The share is the chance to go on, so that throughputs stay as they are.
+        // The fraction is used as the probability of continuing, so that throughputs are unchanged.
         if (p.rng.uniform() >= share) return false;
     }
     if (p.scatterings >= 3 && survival < 0.95f) {
@@ -121,7 +121,7 @@ bool CameraPaths::advance(CameraSubpath& p, Hit const& hit, int surface, std::ui
         p.throughput /= survival;
     }
     vec3 const leaves = at.frame.to_world(next.wi);
-    // A shading normal may send light through an opaque surface; that part does not exist.
+    // With a shading normal, a direction may pass through an opaque surface; such light is discarded.
     if ((glm::dot(leaves, at.geometric_normal) > 0) != (next.wi.z > 0)) return false;
     p.straight = !next.delta && p.scatterings == 0;
     if (p.straight) p.value_x = kPi * max_component(evaluate(at.bsdf, wo, next.wi).f) * std::abs(next.wi.z);

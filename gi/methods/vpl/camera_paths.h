@@ -1,13 +1,13 @@
 #pragma once
-// Paths from the camera: they find the surfaces that virtual lights light, and bring all light but that.
+// Paths from the camera: they find the surfaces that virtual lights illuminate, and compute all other light.
 //
-// Of the light that a surface y sends straight to the first surface x that scatters other than by a delta lobe,
-// virtual lights bring the share
+// Of the light that a surface y sends directly to x, the first surface with non-delta scattering, virtual lights
+// contribute the fraction
 //   w(x, y) = min(1, b / h),  h = pi f_x |cos_x| |cos_y| / |x - y|^2,  b = 1 / near^2
-// so that what one of them brings is bounded (Kollig and Keller 2004, sec. 3: "bias compensation"), and these
-// paths bring 1 - w: direct light, light along mirrors and glass, and what is nearer than about `near`. Nothing is
-// clamped away, and with exact visibility of virtual lights the sum is unbiased.
-// f_x is the largest channel, cos_x is with the shading normal and cos_y with the geometric one.
+// so that each contribution is bounded (Kollig and Keller 2004, sec. 3: "bias compensation"). These paths
+// contribute the remaining 1 - w, which matters within about `near`, as well as direct light and light along
+// mirrors and glass. No light is lost by clamping, and with exact visibility of virtual lights the sum is
+// unbiased. f_x is the largest channel; cos_x uses the shading normal and cos_y the geometric one.
 
 #include "gi/core/rng.h"
 #include "gi/render/exact_visibility.h"
@@ -30,9 +30,9 @@ inline float bounded_term(float value_x, float cos_y, float squared_distance)
 /// w of the formula above.
 inline float share_of_virtual_lights(float h, float bound) { return h > bound ? bound / h : 1.0f; }
 
-/// A surface that a camera path met and that virtual lights light.
+/// A surface that a camera path hit and that virtual lights illuminate.
 struct Receiver {
-    std::uint32_t path = 0; ///< of those that advance together
+    std::uint32_t path = 0; ///< index among the paths that advance together
     std::uint32_t triangle = 0;
     vec3 throughput{1}; ///< from the camera
     vec3 position;
@@ -41,7 +41,7 @@ struct Receiver {
     Bsdf bsdf;
     vec3 wo; ///< unit, local
     float clearance;
-    bool front; ///< the viewer is on the counter-clockwise side
+    bool front; ///< the viewer sees the counter-clockwise side
     bool matt;
 };
 
@@ -49,10 +49,10 @@ struct CameraSubpath {
     Pcg32 rng{0, 0};
     Ray ray;
     vec3 throughput{1};
-    float arrival_pdf = 0; ///< of the direction we come along; 0 = camera or delta lobe
+    float arrival_pdf = 0; ///< of the arrival direction; 0 = camera or delta lobe
     int scatterings = 0;   ///< non-delta, so far
-    bool straight = false; ///< comes straight from the first surface that scattered
-    float value_x = 0;     ///< there, see bounded_term
+    bool straight = false; ///< arrives directly from the first surface with non-delta scattering
+    float value_x = 0;     ///< at that surface, see bounded_term
     bool ended = false;
     RayQuery shadow;
     vec3 shadow_radiance{0};
@@ -73,7 +73,7 @@ struct CameraPaths {
     float bound; ///< b of the formula above, 1/m^2
 
     CameraSubpath start(int x, int y, std::uint32_t index) const;
-    /// Follows all paths to their ends. @param receivers  are added, in the order of surfaces, then of paths
+    /// Traces all paths to their ends. @param receivers  appended, ordered by surface, then by path
     void trace(std::span<CameraSubpath> paths, std::vector<Receiver>& receivers, PathCounts& counts) const;
 
 private:

@@ -3,10 +3,10 @@
 namespace gi {
 namespace {
 
-/// Parallel light that fills the disk around the scene. @param travels unit
+/// Parallel light through a disk as wide as the scene. @param travels  unit
 EmittedLight through_scene(Bounds const& bounds, vec3 travels, vec3 irradiance, vec2 place)
 {
-    constexpr float kAround = 1.001f; // rounding must not cut a corner off
+    constexpr float kAround = 1.001f; // so that rounding does not exclude a corner
     float const radius = kAround * bounds.radius();
     Frame const frame = Frame::about(travels);
     vec2 const on_disk = radius * square_to_disk(place);

@@ -3,10 +3,11 @@
 namespace gi {
 namespace {
 
-/// Connections that are asked about at once.
+/// Number of connections tested together.
 constexpr std::size_t kTogether = 4096;
 
-/// Receivers as arrays, so that one virtual light meets several in a vector; and how they lie to it.
+/// Receivers as arrays, so that one virtual light is combined with several receivers per SIMD vector; and their
+/// geometry relative to it.
 struct alignas(64) Lanes {
     static constexpr std::size_t kMost = 256;
     using Array = float[kMost];
@@ -14,7 +15,7 @@ struct alignas(64) Lanes {
     Array x, y, z;    ///< m
     Array gx, gy, gz; ///< geometric normals
     Array sx, sy, sz; ///< shading normals
-    // For one light:
+    // Relative to one light:
     Array dx, dy, dz; ///< unit, towards it
     Array squared;    ///< distance, m^2
     Array cos_light;  ///< geometric, at the light
@@ -26,7 +27,7 @@ struct alignas(64) Lanes {
         gx[k] = r.geometric_normal.x, gy[k] = r.geometric_normal.y, gz[k] = r.geometric_normal.z;
         sx[k] = r.frame.normal.x, sy[k] = r.frame.normal.y, sz[k] = r.frame.normal.z;
     }
-    /// No branches: it becomes vectors.
+    /// Without branches, so that it vectorises.
     void meet(VirtualLight const& light, std::size_t count)
     {
         vec3 const p = light.position, n = light.normal;
@@ -64,7 +65,7 @@ vec3 at_light(VirtualLight const& light, vec3 direction)
 
 struct Waiting {
     std::vector<Connection> connections;
-    std::vector<vec3> light; ///< that arrives if nothing is between
+    std::vector<vec3> light; ///< that arrives if unblocked
     std::vector<float> shares;
 
     void flush(ReceiverTile const& tile, VisibilityTerm const& term, std::span<vec3> sums, PathCounts& paths)

@@ -1,13 +1,13 @@
 #pragma once
-// Light from virtual lights to receivers: everything but visibility, which a term gives.
+// Light from virtual lights to receivers; the visibility comes from a VisibilityTerm.
 
 #include "gi/methods/vpl/visibility_term.h"
 
 namespace gi {
 
 struct GatherCounts {
-    std::uint64_t connections = 0; ///< between surfaces that face each other
-    std::uint64_t bounded = 0;     ///< of these, whose rest camera paths bring
+    std::uint64_t connections = 0; ///< pairs of surfaces that face each other
+    std::uint64_t bounded = 0;     ///< of these, bounded ones; camera paths add the rest
 
     GatherCounts& operator+=(GatherCounts const& o)
     {
@@ -17,9 +17,8 @@ struct GatherCounts {
     }
 };
 
-/// Adds to radiance[k], of the path of receiver k, what virtual lights bring to it (see camera_paths.h for
-/// shares).
-/// @param bound 1/m^2  @param radiance as many as receivers
+/// Adds the light from virtual lights to radiance[k], for receiver k (fractions: see camera_paths.h).
+/// @param bound  1/m^2  @param radiance  one per receiver
 void gather(ReceiverTile const& tile, std::span<VirtualLight const> lights, VisibilityTerm const& term,
             float bound, std::span<vec3> radiance, PathCounts& paths, GatherCounts& counts);
 

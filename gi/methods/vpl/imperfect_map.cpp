@@ -6,24 +6,24 @@
 namespace gi {
 namespace {
 
-/// Elevation below which points are left out: the light's own surface. Sine.
+/// Sine of the elevation below which points are omitted, as they belong to the light's own surface.
 constexpr float kHorizon = 0.01f;
-/// A disk covers no more texels than 2 * kReach + 1 squared.
+/// A disk covers at most (2 * kReach + 1)^2 texels.
 constexpr int kReach = 2;
-/// Ratio of distances that holes between them are filled with.
+/// Largest ratio of distances that are averaged to fill a hole.
 constexpr float kAlike = 1.1f;
 
-/// A point of the cloud as a light sees it: a disk.
+/// A point of the cloud as seen from a light: a disk.
 struct Disk {
     vec3 centre, normal; ///< local
     float radius;
 };
 
-/// Texels of a row that are tried at once.
+/// Texels of a row that are tested together.
 constexpr int kLanes = 8;
 static_assert(kLanes >= 2 * kReach + 2);
 
-/// @param map  with room for kLanes more
+/// @param map  with room for kLanes more values
 void draw(Disk const& disk, HemisphereGrid grid, float* map)
 {
     vec3 const at = disk.centre;
@@ -32,14 +32,14 @@ void draw(Disk const& disk, HemisphereGrid grid, float* map)
     float const own = HemisphereGrid::octahedral_distance(at), offset = glm::dot(disk.normal, at);
     vec2 const centre = grid.square_from(at);
     auto const n = int(grid.size);
-    // An angle of 1 is about as wide as half the square, in texels.
+    // An angle of 1 rad is about half the square wide, in texels.
     float const wide = std::min(0.5f * float(n) * disk.radius / std::sqrt(squared), float(kReach) + 0.5f);
     int const left = grid.coordinate(centre.x - wide), right = grid.coordinate(centre.x + wide);
     int const top = grid.coordinate(centre.y - wide), bottom = grid.coordinate(centre.y + wide);
     float const radius_squared = square(disk.radius);
     for (int y = top; y <= bottom; ++y) {
         float* const row = map + y * n + left;
-        for (int k = 0; k < kLanes; ++k) { // no branches: it becomes vectors
+        for (int k = 0; k < kLanes; ++k) { // without branches, so that it vectorises
             vec3 const d = grid.direction(left + k, y);
             float const t = offset / glm::dot(disk.normal, d);
             vec3 const beside = t * d - at;
@@ -47,13 +47,13 @@ void draw(Disk const& disk, HemisphereGrid grid, float* map)
             row[k] = std::min(row[k], covers ? t : kInf);
         }
     }
-    // However small it looks, it is in the texel where its centre is.
+    // Even a tiny disk covers the texel of its centre.
     int const x = grid.coordinate(centre.x), y = grid.coordinate(centre.y);
     float const t = offset / glm::dot(disk.normal, grid.direction(x, y));
     map[y * n + x] = std::min(map[y * n + x], t > 0.5f * own && t < 2 * own ? t : own);
 }
 
-/// Levels that are needed until a texel has a point, if they fell evenly.
+/// Levels needed until every texel has a point, if the points were evenly distributed.
 int levels_for(std::uint32_t size, std::uint32_t points)
 {
     double const texels_each = double(size) * size / std::max(1u, points);

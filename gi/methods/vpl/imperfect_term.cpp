@@ -10,7 +10,7 @@
 namespace gi {
 namespace {
 
-/// By how much of a disk's radius a receiver may lie behind what the map has.
+/// Tolerated distance of a receiver behind the stored surface, relative to a disk's radius.
 constexpr float kSlack = 0.5f;
 
 std::uint32_t checked(VirtualLightSettings const& s)
@@ -43,7 +43,7 @@ void ImperfectTerm::prepare(std::span<VirtualLight const> lights, std::uint32_t 
     std::size_t const texels = std::size_t(grid_.size) * grid_.size;
     maps_.resize(lights.size() * texels);
     auto const count = std::uint32_t(vpl_.points);
-    // Subsets start at multiples of a power of two, so that each is spread evenly.
+    // Subsets start at multiples of a power of two, so that each is evenly distributed.
     std::uint32_t const step = std::bit_ceil(count), subsets = std::max(1u, PointCloud::kCount / step);
     tbb::parallel_for(std::size_t(0), lights.size(), [&](std::size_t k) {
         thread_local std::vector<float> scratch;

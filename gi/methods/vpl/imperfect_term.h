@@ -8,10 +8,10 @@ namespace gi {
 
 class ImperfectTerm : public VisibilityTerm {
 public:
-    /// Throws InputError where a map is not 8 to 1024 texels wide, or no power of two.
+    /// Throws InputError if the map's width is not a power of two from 8 to 1024 texels.
     explicit ImperfectTerm(TermSource const& source);
 
-    /// Draws the maps: each light has another subset of the points.
+    /// Draws the maps: each light uses a different subset of the points.
     void prepare(std::span<VirtualLight const> lights, std::uint32_t pass) override;
     void world_changed() override;
     void of_connections(ReceiverTile const& tile, std::span<Connection const> connections, std::span<float> shares,
@@ -24,9 +24,9 @@ private:
     std::uint64_t seed_;
     PointCloud cloud_;
     HemisphereGrid grid_;
-    std::vector<float> maps_; ///< of all lights, one after another
+    std::vector<float> maps_; ///< of all lights, consecutively
     std::vector<MappedLight> lights_;
-    std::uint64_t drawn_ = 0; ///< maps, so far
+    std::uint64_t drawn_ = 0; ///< number of maps drawn so far
 };
 
 } // namespace gi

@@ -8,7 +8,7 @@
 namespace gi {
 namespace {
 
-/// Rows of the table of nearest axes, for so many directions: about 16 texels each.
+/// Rows of the table of nearest axes: about 16 texels per direction.
 std::uint32_t map_size(std::size_t directions)
 {
     return std::uint32_t(std::ceil(4 * std::sqrt(double(directions))));
@@ -20,14 +20,14 @@ std::uint32_t map_size(std::size_t directions)
 struct LayerTerm::End {
     vec3 position, normal; ///< geometric, towards the other end
     std::uint32_t triangle;
-    bool front; ///< that is the counter-clockwise side
+    bool front; ///< the normal is on the counter-clockwise side
 };
 
-/// What is asked at once, and what of the answers blocks.
+/// Walks that are looked up together, and the distances within which their hits block.
 struct LayerTerm::Walks {
     struct Far {
         vec3 from, along; ///< m; unit
-        float reach;      ///< m, of a hit that blocks
+        float reach;      ///< largest distance of a blocking hit, m
         std::uint32_t triangle, connection;
     };
     QueryBatch batch;
@@ -67,7 +67,7 @@ void LayerTerm::build(Bounds const& bounds)
     DirectionSet set = make_directions(slhb_.directions);
     axes_->store(set);
     axes_->update_axes();
-    for (std::size_t a = 0; a < set.axes.size(); ++a) set.axes[a] = dvec3(axes_->axis(a)); // turned by the seed
+    for (std::size_t a = 0; a < set.axes.size(); ++a) set.axes[a] = dvec3(axes_->axis(a)); // rotated by the seed
     nearest_ = make_direction_map(set, SphereMapping::octahedral, map_size(set.size()));
     directions_.clear();
     for (std::size_t k = 0; k < set.size(); ++k)
@@ -82,7 +82,7 @@ void LayerTerm::world_changed()
     axes_->update_axes();
 }
 
-/// Adds the walk; false where its axis does not leave `from`.
+/// Adds the walk; returns false if its axis does not leave `from`.
 bool LayerTerm::leave(End const& from, End const& to, std::uint32_t direction, std::uint32_t connection,
                       Walks& walks) const
 {
@@ -103,7 +103,7 @@ bool LayerTerm::leave(End const& from, End const& to, std::uint32_t direction, s
     walks.batch.set(k,
                     {.position = from.position,
                      .triangle = from.triangle,
-                     .along = from.front == up, // as the axis leaves that side
+                     .along = from.front == up, // the axis leaves on that side
                      .up = up,
                      .slope = slope(cos_from)},
                     direction / 2);

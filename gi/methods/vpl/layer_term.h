@@ -1,12 +1,13 @@
 #pragma once
-// Visibility by layered hit buffers (gi/methods/slhb): a connection is walked along the stored axis nearest to its
-// direction (Yu 2012, sec. 5.3.1), and is blocked if the walk meets a surface before it comes past its far end.
+// Visibility by layered hit buffers (gi/methods/slhb): a connection is tested by a walk along the stored axis
+// nearest to its direction (Yu 2012, sec. 5.3.1); it is blocked if the walk hits a surface before it passes the
+// far end.
 //
-// The walk starts at the receiver if its axis leaves that on the lit side, else at the virtual light, if the axis
-// leaves that one; connections that no axis leaves at either end (nearly edge-on at both) count as free, and are
-// counted. With o the angle between direction and axis, the walk passes the far end at a distance of
-// |x - y| sin o; what it meets there may be the far end's own surface, so hits within a texel and that distance
-// times the far surface's slope against the axis do not block, up to half the way.
+// The walk starts at the receiver if the axis leaves it on the lit side, else at the virtual light if the axis
+// leaves that. If the axis leaves neither end (both nearly edge-on), the connection is treated as unblocked and
+// counted. With o the angle between direction and axis, the walk passes the far end at a distance of |x - y| sin
+// o; a hit there may be on the far end's own surface. So hits do not block within texel + (texel + that distance)
+// * slope of the far surface against the axis, up to half the length of the connection.
 
 #include "gi/methods/slhb/directions/axis_set.h"
 #include "gi/methods/slhb/directions/direction_map.h"
@@ -19,8 +20,8 @@ namespace gi {
 
 class LayerTerm : public VisibilityTerm {
 public:
-    /// Builds the hit buffers: SlhbSettings::directions, resolution, most_layers. Throws InputError on directions
-    /// that there are not.
+    /// Builds the hit buffers: SlhbSettings::directions, resolution, most_layers. Throws InputError on unknown
+    /// directions.
     explicit LayerTerm(TermSource const& source);
 
     void prepare(std::span<VirtualLight const> lights, std::uint32_t) override { lights_ = lights; }
@@ -30,10 +31,10 @@ public:
     void report_work(Report& report) override;
 
 private:
-    /// A direction of the set: 2 k along axis k, 2 k + 1 against it.
+    /// A direction of the set; index 2 k is along axis k, 2 k + 1 against it.
     struct Direction {
         vec3 along;  ///< unit
-        float texel; ///< m, of its buffer
+        float texel; ///< texel size of its buffer, m
     };
     struct End;
     struct Walks;
@@ -53,7 +54,7 @@ private:
     DirectionMap nearest_;
     std::span<VirtualLight const> lights_;
     mutable std::atomic<std::uint64_t> unanswered_ = 0, queries_ = 0;
-    std::uint64_t lost_ = 0; ///< layers that were reported
+    std::uint64_t lost_ = 0; ///< layers already reported as lost
 };
 
 } // namespace gi

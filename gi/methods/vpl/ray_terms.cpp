@@ -44,7 +44,7 @@ void AmbientTerm::of_receivers(ReceiverTile const& tile, std::span<float> shares
         for (int i = 0; i < kRays; ++i) {
             vec2 const u = (vec2{float(i % kAcross), float(i / kAcross)} + rng.uniform2()) / float(kAcross);
             vec3 const direction = r.frame.to_world(square_to_cosine_hemisphere(u));
-            // What a bent shading normal sends behind the triangle is no part of its hemisphere.
+            // Directions behind the triangle (due to the shading normal) are not part of its hemisphere.
             bool const above = glm::dot(direction, r.geometric_normal) > 0;
             rays.push_back({.ray = {r.position + r.clearance * r.geometric_normal, direction},
                             .reach = above ? radius_m_ : 0.0f,

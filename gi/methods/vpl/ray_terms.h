@@ -5,12 +5,12 @@
 
 namespace gi {
 
-/// Rays to the virtual light, but no longer than a radius: all the way it is exact visibility; else directional
-/// occlusion, by which occluders count along every direction by itself, and only those within the radius
-/// (after Sloan et al. 2007, here with a ray for every direction instead of harmonics).
+/// Rays towards the virtual light, limited to a radius. Unlimited, this is exact visibility; else directional
+/// occlusion, in which occluders within the radius count, separately for each direction (after Sloan et al. 2007,
+/// here with a ray per direction instead of spherical harmonics).
 class RayTerm : public VisibilityTerm {
 public:
-    /// @param visibility  outlives this  @param radius_m  >= 0, kInf = all the way
+    /// @param visibility  must outlive this object  @param radius_m  >= 0, kInf = unlimited
     RayTerm(ExactVisibility const& visibility, float radius_m) : visibility_(visibility), radius_m_(radius_m) {}
     void of_connections(ReceiverTile const& tile, std::span<Connection const> connections, std::span<float> shares,
                         PathCounts& counts) const override;
@@ -22,9 +22,9 @@ private:
     std::span<VirtualLight const> lights_;
 };
 
-/// Ambient occlusion (Zhukov et al. 1998 without their falloff): A(x) = 1/pi times the integral over the
-/// hemisphere of cos theta where nothing is nearer than the radius. A receiver's estimate has 4 rays, one for each
-/// stratum; as light is linear in it, its noise averages away over passes like all other.
+/// Ambient occlusion (Zhukov et al. 1998 without their falloff): A(x) = 1/pi times the integral of cos theta over
+/// the directions of the hemisphere in which no surface is nearer than the radius. The estimate uses 4 stratified
+/// rays per receiver; as light is linear in it, its noise averages out over passes like all other noise.
 class AmbientTerm : public VisibilityTerm {
 public:
     AmbientTerm(ExactVisibility const& visibility, float radius_m) : visibility_(visibility), radius_m_(radius_m)

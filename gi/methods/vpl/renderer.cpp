@@ -9,10 +9,10 @@
 namespace gi {
 namespace {
 
-/// Sides of the tiles whose paths advance together, px.
+/// Size of the tiles whose paths advance together, px.
 constexpr int kTile = 16;
 
-/// Where nothing is said: virtual lights so near are bounded, in radii of the scene.
+/// Default distance within which virtual lights are bounded, relative to the scene's radius.
 constexpr float kNear = 0.02f;
 
 /// b of camera_paths.h, 1/m^2.
@@ -45,7 +45,7 @@ void VirtualLightRenderer::build()
 
 void VirtualLightRenderer::changed(Changes const& changes)
 {
-    // Rays that ask for coverage read the materials that there were when they were built.
+    // Rays with coverage tests use the materials from when the BVH was built.
     if (changes.coverage || (changes.materials && plan_scene(world_).alpha_tests)) return build();
     if (!changes.geometry) return;
     visibility_->moved(world_);

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures by virtual lights with one visibility term: what is kept from pass to pass and from frame to frame.
+// Renders pictures with virtual lights and one visibility term; keeps structures between passes and frames.
 
 #include "gi/methods/vpl/gather.h"
 #include "gi/render/accumulator.h"
@@ -11,18 +11,18 @@ namespace gi {
 
 class VirtualLightRenderer {
 public:
-    /// `world`, `settings` and `report` outlive this; the arrays of the world stay where they are.
+    /// `world`, `settings` and `report` must outlive this object, and the world's arrays must not be reallocated.
     VirtualLightRenderer(VisibilityKind kind, World const& world, RenderSettings const& settings,
                          std::size_t first_moving, Report& report);
 
     /// See Changes.
     void changed(Changes const& changes);
-    /// One more path for every pixel of all views, lit by the virtual lights of that pass.
+    /// Traces one more path for every pixel of all views, lit by the virtual lights of this pass.
     /// @param sums  one per view
     void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums);
-    /// What has been done since the last call.
+    /// Reports the work done since the last call.
     void report_work();
-    double rays() const { return rays_; } ///< closest-hit and shadow rays, so far
+    double rays() const { return rays_; } ///< number of closest-hit and shadow rays so far
 
 private:
     struct Counts {

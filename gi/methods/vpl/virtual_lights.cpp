@@ -10,7 +10,7 @@
 namespace gi {
 namespace {
 
-/// Paths that advance together, so that rays travel in packets.
+/// Number of paths that advance together, so that rays are traced in packets.
 constexpr std::uint32_t kPathsTogether = 64;
 
 struct LightPath {
@@ -18,10 +18,10 @@ struct LightPath {
     EmittedLight light;
     int scatterings = 0; ///< non-delta, so far
     bool from_lamp = true;
-    std::vector<VirtualLight> left; ///< on its way
+    std::vector<VirtualLight> left; ///< left along the path
 };
 
-/// From a hit to the next ray. False where the path ends.
+/// Advances from a hit to the next ray. Returns false if the path ends.
 bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit const& hit)
 {
     if (hit.triangle == kNoTriangle) return false;
@@ -56,9 +56,9 @@ bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit cons
     vec3 const leaves = at.frame.to_world(next.wi);
     float const cos_leaves = glm::dot(leaves, at.geometric_normal);
     if ((cos_leaves > 0) != (next.wi.z > 0) || next.wi.z == 0) return false;
-    // Of a path from the camera the weight has the cosine with the shading normal on this side.
+    // The sampled weight is that of a camera path: it contains the cosine with the shading normal on this side.
     vec3 weight = next.weight * std::abs(cos_leaves / next.wi.z);
-    // Only radiance is squeezed by refraction, not power.
+    // Refraction scales radiance, but not power.
     if (next.transmitted && !at.bsdf.thin) weight *= square(at.front ? at.bsdf.ior : 1 / at.bsdf.ior);
     float const survival = std::min(1.0f, max_component(weight));
     if (!(survival > 0) || p.rng.uniform() >= survival) return false;
@@ -109,7 +109,7 @@ std::vector<VirtualLight> trace_light_paths(WorldView const& world, Bounds const
         for (std::uint32_t i = first; i < last; ++i) {
             LightPath& p = paths[i - first];
             p.rng = Pcg32::for_path(s.seed ^ 0x7619, i, s.pass);
-            // Strata over the lamps: every lamp gets its share of the paths, whatever the pass.
+            // Stratified over the lights, so that every light gets its share of the paths in each pass.
             double const u = (double(i) + p.rng.uniform_double()) / double(s.count);
             LightChoice const choice = choose_light(world, u);
             vec2 const place = p.rng.uniform2(), direction = p.rng.uniform2();

@@ -14,11 +14,11 @@
 namespace gi {
 namespace {
 
-/// By VisibilityKind.
+/// Names by VisibilityKind.
 constexpr std::array<char const*, 6> kNames{"vpl_exact", "vpl_slhb", "vpl_imperfect",
                                             "vpl_ao",    "vpl_dao",  "vpl_none"};
 
-/// As options of the command line, which repeat the picture.
+/// Settings as command-line options that reproduce the picture.
 std::string as_options(VisibilityKind kind, RenderSettings const& s)
 {
     std::string text = fmt::format("--light-paths {}", s.vpl.light_paths);
@@ -32,7 +32,7 @@ std::string as_options(VisibilityKind kind, RenderSettings const& s)
     return text;
 }
 
-/// With what is not said chosen.
+/// Returns the settings with defaults chosen.
 RenderSettings chosen(RenderSettings settings)
 {
     if (settings.slhb.directions.empty()) settings.slhb.directions = "icosahedron:320";
@@ -110,7 +110,7 @@ private:
     Report& report_;
     std::optional<tbb::global_control> threads_;
     std::optional<VirtualLightRenderer> renderer_;
-    std::uint32_t passes_ = 0; ///< so far, of all frames
+    std::uint32_t passes_ = 0; ///< so far, over all frames
 };
 
 } // namespace
@@ -119,7 +119,7 @@ RenderResult render_with_virtual_lights(VisibilityKind kind, World const& world,
                                         RenderSettings const& asked, StopRequest const& stop,
                                         RenderProgress const& progress, Report& report)
 {
-    std::optional<tbb::global_control> limit; // also of what is built before the passes
+    std::optional<tbb::global_control> limit; // also limits the building of structures before the passes
     if (asked.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(asked.threads));
     RenderSettings const settings = chosen(asked);
     PassLoop loop(settings, stop, progress, report);

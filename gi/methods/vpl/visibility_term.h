@@ -1,5 +1,5 @@
 #pragma once
-// What stands for the visibility between a surface and a virtual light: all that differs between the methods
+// The estimate of the visibility between a surface and a virtual light: the only difference between the methods
 // vpl_*.
 
 #include "gi/core/report.h"
@@ -16,32 +16,32 @@ namespace gi {
 enum class VisibilityKind : std::uint8_t {
     exact,       ///< rays
     slhb,        ///< walks along the stored axes of layered hit buffers
-    imperfect,   ///< shadow maps of points, holes filled by pull-push
-    ambient,     ///< the share of the hemisphere that is free within a radius
-    directional, ///< rays no longer than a radius
-    none         ///< everything sees everything
+    imperfect,   ///< shadow maps drawn from points, with holes filled by pull-push
+    ambient,     ///< unoccluded fraction of the hemisphere within a radius
+    directional, ///< rays limited to a radius
+    none         ///< everything is visible
 };
 
-/// Receivers of one tile and the random numbers of its pass.
+/// Receivers of one tile and the random seed of its pass.
 struct ReceiverTile {
     std::span<Receiver const> receivers;
     std::uint32_t seed;
 };
 
-/// From a receiver to a virtual light that faces it.
+/// Connection of a receiver to a virtual light that faces it.
 struct Connection {
     std::uint32_t receiver, light; ///< indices
     vec3 direction;                ///< unit, from the receiver
 };
 
-/// Shares of light that pass, 0 to 1: of a connection that of its receiver times its own. All but prepare() and
-/// world_changed() may be called by several threads at once.
+/// Fractions of unblocked light, 0 to 1: the total for a connection is that of its receiver times its own. All
+/// functions except prepare() and world_changed() may be called by several threads at once.
 class VisibilityTerm {
 public:
     virtual ~VisibilityTerm() = default;
-    /// Before a pass. The lights stay where they are while it lasts.
+    /// Called before a pass. The span of lights stays valid during the pass.
     virtual void prepare(std::span<VirtualLight const> /*lights*/, std::uint32_t /*pass*/) {}
-    /// Triangles that can move are elsewhere now.
+    /// Called after dynamic triangles have moved.
     virtual void world_changed() {}
     virtual void of_receivers(ReceiverTile const&, std::span<float> shares, PathCounts&) const
     {
@@ -52,16 +52,16 @@ public:
     {
         std::fill(shares.begin(), shares.end(), 1.0f);
     }
-    /// What has been done and lost since the last call.
+    /// Reports work and losses since the last call.
     virtual void report_work(Report&) {}
 };
 
-/// What terms are made from; all of it outlives them.
+/// Input from which terms are made; must outlive them.
 struct TermSource {
     World const& world;
     ExactVisibility const& visibility;
     RenderSettings const& settings;
-    std::size_t first_moving; ///< triangle
+    std::size_t first_moving; ///< index of the first dynamic triangle
     Report& report;
 };
 

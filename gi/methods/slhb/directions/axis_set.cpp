@@ -10,16 +10,16 @@
 namespace gi {
 namespace {
 
-/// Bins of normals across the octahedral square.
+/// Bins of normals per side of the octahedral square.
 constexpr std::uint32_t kNormalBins = 64;
 
-/// Twice, as they are copied into the pool.
+/// Counted twice, as they are copied into the pool.
 std::size_t bytes_of(HitBuffer const& b)
 {
     return 2 * (b.offset.size() * sizeof(b.offset[0]) + b.layers.size() * sizeof(HitLayer));
 }
 
-/// Uniform over the half sphere. @param u in [0, 1)^2
+/// Uniform direction on the hemisphere. @param u  in [0, 1)^2
 vec3 half_sphere(vec2 u)
 {
     float const z = 1 - u.x, r = std::sqrt(glm::max(0.0f, 1 - z * z));
@@ -129,7 +129,8 @@ std::size_t AxisSet::follow_some(std::uint32_t sequences, std::uint32_t count, s
     few_.assign(sequences, {});
     std::vector<std::uint8_t> updated(n, 0);
     for (std::uint32_t s = 0; s < sequences; ++s) {
-        // Every n-th axis: those of a subdivided solid are ordered by place, so each part is spread over all.
+        // Every n-th axis: axes of a subdivided solid are ordered by location, so that each part covers the whole
+        // sphere.
         std::vector<std::uint32_t> order(parts);
         std::iota(order.begin(), order.end(), 0u);
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0xf0110, s, turn / parts);

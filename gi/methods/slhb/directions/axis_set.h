@@ -1,6 +1,6 @@
 #pragma once
-// The axes that the paths of a pass may take, with their buffers, and the choice among them by the cosine with a
-// normal.
+// The axes available to the paths of a pass, with their buffers, and sampling of an axis in proportion to its
+// cosine with a normal.
 
 #include "gi/core/progress.h"
 #include "gi/methods/slhb/directions/cosine_tables.h"
@@ -12,16 +12,16 @@
 
 namespace gi {
 
-/// Plain arrays for choosing among few axes: the cosines of all of them are computed, so that the chance is exact.
-/// The integral over the half sphere is estimated by the sum over the axes, each weighted by 2 pi / count times
-/// its `share`.
+/// Arrays for choosing among few axes: the cosines of all are computed, so that the probability is exact. The
+/// integral over the hemisphere is estimated by the sum over the axes, each weighted by 2 pi / count times its
+/// `share`.
 struct FewAxes {
     static constexpr std::size_t kMost = 64;
 
     std::uint32_t count = 0;
     alignas(64) std::array<float, kMost> x{}, y{}, z{}; ///< unit axes; zero beyond count
     alignas(64) std::array<float, kMost> share{};       ///< solid angle over 2 pi / count; zero beyond count
-    std::array<std::uint32_t, kMost> slot{};            ///< in the pool
+    std::array<std::uint32_t, kMost> slot{};            ///< index in the pool
 
     void set(std::size_t k, vec3 axis, float share_of_all, std::size_t in_pool)
     {
@@ -39,7 +39,7 @@ struct FewAxes {
         for (std::size_t k = 0; k < count; ++k)
             weight[k] = share[k] * std::abs(normal.x * x[k] + normal.y * y[k] + normal.z * z[k]);
         for (std::size_t k = 0; k < count; ++k) total += weight[k];
-        // The first axis up to which the weights sum to more than u of all: no branch on what is random.
+        // Finds the first axis at which the cumulative weight exceeds u times the total, without random branches.
         float const wanted = u * total;
         float sum = 0;
         std::uint32_t k = 0;
@@ -52,10 +52,10 @@ struct FewAxes {
     }
 };
 
-/// What AxisSet::sample does, for kernels.
+/// AxisSet::sample for kernels.
 struct AxisChoice {
     View<FewAxes const> few; ///< per sequence
-    CosineTablesView tables; ///< where there are any, in place of the few
+    CosineTablesView tables; ///< used instead of `few` if not empty
 
     GI_FN AxisSample sample(std::uint32_t bounce, vec3 normal, float u) const
     {
@@ -64,15 +64,15 @@ struct AxisChoice {
     }
 };
 
-/// Hit buffers would take more memory than they may.
+/// Thrown if hit buffers would exceed their memory limit.
 struct HitBuffersTooLarge {};
 
 class AxisSet {
 public:
     struct BuiltAxis {
-        std::uint64_t layers = 0, lost = 0; ///< of all texels; those beyond most_layers
+        std::uint64_t layers = 0, lost = 0; ///< in all texels; beyond most_layers
     };
-    /// What all axes are built from.
+    /// Input from which all axes are built.
     struct Source {
         Bounds bounds;
         TriangleSoup const& soup;
@@ -81,41 +81,43 @@ public:
         std::uint32_t most_layers;
         bool packed;
         std::uint64_t seed;
-        /// Where it is not empty, buffers are not built here but there, of all that there is, and anew where what
-        /// moves is elsewhere: index of the axis, its grid, a seed for the cut-outs. Axes come one after the
-        /// other.
+        /// If set, this callback builds each buffer from all triangles, and rebuilds it after dynamic geometry
+        /// changes. Arguments: index of the axis, its grid, seed for the cut-outs. Called for one axis at a time.
         std::function<BuiltAxis(std::size_t, RasterGrid const&, std::uint32_t)> elsewhere = {};
-        /// Of all buffers together, while they are made; more throw HitBuffersTooLarge.
+        /// Limit for all buffers together while they are built; exceeding it throws HitBuffersTooLarge.
         std::size_t most_bytes = ~std::size_t(0);
-        /// store() throws Interrupted where it is asked to stop; null = it cannot be.
+        /// If not null, store() checks it and throws Interrupted if a stop is requested.
         StopRequest const* stop = nullptr;
-        /// Triangles from here on move: they are left to follow(). As many as there are: none does.
+        /// Index of the first dynamic triangle; dynamic triangles are added by update_axes(). Number of triangles
+        /// or more = all static.
         std::size_t first_moving = ~std::size_t(0);
     };
 
     explicit AxisSet(Source const& source) : source_(source) {}
 
-    /// All axes of the set, once, turned as the seed says: so its error has no preferred direction and mean zero.
+    /// Builds all axes of the set once, randomly rotated by the seed, so that the set's error has no preferred
+    /// direction and mean zero.
     void store(DirectionSet const& directions);
-    /// Bounces that have axes of their own. Axes of one low-discrepancy sequence must not be paired along a path:
-    /// they avoid each other, which is a bias that does not go away. Bounce b shares its axes with b + kSequences.
+    /// Number of bounces with separate axes. Axes from one low-discrepancy sequence must not be combined along a
+    /// path: they avoid each other, which gives a bias that does not vanish. Bounce b uses the same axes as b +
+    /// kSequences.
     static constexpr std::uint32_t kSequences = 3;
 
-    /// For each of `sequences` bounces `count` axes (up to FewAxes::kMost) from a scrambled Sobol sequence over
-    /// the half sphere: numbers pass * fresh to pass * fresh + count - 1. Those that are there already are kept,
-    /// so that a pass has the same axes whether or not the passes before it were made here.
+    /// Prepares for each of `sequences` bounces `count` axes (up to FewAxes::kMost) from a scrambled Sobol
+    /// sequence over the hemisphere: numbers pass * fresh to pass * fresh + count - 1. Existing ones are kept. A
+    /// pass has the same axes whether or not the earlier passes were rendered here.
     void refresh(std::uint32_t sequences, std::uint32_t count, std::uint32_t fresh, std::uint32_t pass);
 
-    /// What moves is elsewhere: follow() puts it into the axes as it is now. Not with packed layers.
+    /// Marks dynamic geometry as moved; update_axes() will update the axes. Not with packed layers.
     void moved() { moved_ = true; }
-    /// Puts what moves into all axes that there are, where they are new or something has moved.
+    /// Updates dynamic geometry in all axes that are new or outdated.
     void update_axes();
-    /// Of stored axes only some, and paths take no others: for each of `sequences` bounces one part of the set of
-    /// about `count` axes (up to FewAxes::kMost), in random order all parts in successive turns. The mean over
-    /// the parts is what all axes would bring. @param count  0 = all
-    /// @return different axes that follow now
+    /// Updates only some of the stored axes, and restricts paths to them: for each of `sequences` bounces, one
+    /// part of the set with about `count` axes (up to FewAxes::kMost). Successive turns visit all parts in random
+    /// order; the mean over the parts equals the result of all axes. @param count  0 = all
+    /// @return number of distinct axes updated
     std::size_t follow_some(std::uint32_t sequences, std::uint32_t count, std::uint32_t turn);
-    /// Look-ups find what moves, or go on as if it was not there.
+    /// Makes look-ups find dynamic geometry or ignore it.
     void show_moving(bool shown) { pool_.without_moving = !shown; }
 
     /// @param bounce  0 = the first  @param normal unit  @param u uniform in [0, 1)
@@ -123,12 +125,12 @@ public:
     {
         return AxisChoice{few_, takes_few() ? CosineTablesView{} : view(tables_)}.sample(bounce, normal, u);
     }
-    /// Whether paths take the axes of few(), not those of tables().
+    /// True if paths use the axes of few(), not those of tables().
     bool takes_few() const { return some_ || tables_.axes.empty(); }
-    /// Axes that the first bounce chooses from where all follow: the first ones of the pool.
+    /// Number of axes available to the first bounce if all are updated; they come first in the pool.
     std::size_t first_bounce_axes() const { return tables_.axes.empty() ? few_count_ : tables_.axes.size(); }
     AxisPool const& pool() const { return pool_; }
-    /// The layers of these axes have smaller numbers in the pool.
+    /// Layers of these axes have indices below this in the pool.
     std::size_t first_bounce_layers() const
     {
         std::size_t const n = first_bounce_axes();
@@ -142,8 +144,8 @@ public:
     }
     std::vector<FewAxes> const& few() const { return few_; }
     CosineTables const& tables() const { return tables_; }
-    std::uint64_t built() const { return built_; } ///< axes, so far
-    /// Layers beyond most_layers, of what is built once and of what moves.
+    std::uint64_t built() const { return built_; } ///< number of axes built so far
+    /// Number of layers beyond most_layers, static and dynamic.
     std::uint64_t lost() const { return lost_; }
     std::uint64_t layers() const { return layers_; } ///< of all axes built so far
 
@@ -151,7 +153,7 @@ private:
     struct NewAxis {
         std::size_t slot;
         vec3 direction;
-        std::uint32_t number; ///< decides where its grid lies
+        std::uint32_t number; ///< index in the sequence; selects the offset of its grid
     };
     void build(std::vector<NewAxis> const& axes);
     void build_elsewhere(std::size_t axis);
@@ -160,16 +162,16 @@ private:
     Source source_;
     std::vector<HitBuffer> buffers_;
     std::vector<std::uint32_t> cut_seeds_; ///< per axis, of CutOuts
-    std::vector<RasterGrid> grids_;        ///< per axis that is built elsewhere
-    std::vector<std::uint8_t> stale_;      ///< the same: 1 = what moves is not in it as it is now
+    std::vector<RasterGrid> grids_;        ///< per axis built by the callback `elsewhere`
+    std::vector<std::uint8_t> stale_;      ///< per axis built by the callback: 1 = outdated after motion
     MovingLayers moving_;
     AxisPool pool_;
     CosineTables tables_;
     std::vector<FewAxes> few_; ///< per sequence
     std::uint32_t few_count_ = 0;
-    bool some_ = false;       ///< of stored axes paths take `few_`
-    std::uint32_t drawn_ = 0; ///< of each sequence, the next number
-    bool moved_ = true;       ///< what moves is not where it was when axes last followed it
+    bool some_ = false;       ///< stored schedule: paths use only `few_`
+    std::uint32_t drawn_ = 0; ///< next number of each sequence
+    bool moved_ = true;       ///< dynamic geometry has moved since axes were last updated
     std::uint64_t built_ = 0, lost_ = 0, layers_ = 0;
 };
 

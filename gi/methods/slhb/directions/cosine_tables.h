@@ -1,7 +1,7 @@
 #pragma once
-// Axes chosen in proportion to the cosine between them and a surface's normal, without trigonometry: one alias
-// table for each bin of normals. What a table cannot know is the exact normal; the ratio of the exact cosine to
-// the chance is the weight of a sample, so every estimate is right for the discrete set, whatever the bins.
+// Sampling of axes in proportion to the cosine between axis and surface normal, without trigonometry: one alias
+// table per bin of normals. As a table does not use the exact normal, a sample is weighted by the ratio of the
+// exact cosine to its probability, so that estimates are correct for the discrete set with any number of bins.
 
 #include "gi/core/alias_table.h"
 #include "gi/methods/slhb/directions/direction_map.h"
@@ -11,14 +11,14 @@ namespace gi {
 struct AxisSample {
     std::uint32_t axis;
     vec3 direction; ///< of the axis, on the side of the normal
-    float weight;   ///< cos(direction, normal) * solid angle of the direction / (pi * chance), mean 1
+    float weight;   ///< cos(direction, normal) * solid angle of the direction / (pi * probability), mean 1
 };
 
 struct CosineTablesView {
     View<AliasEntry const> entries; ///< bin after bin, one per axis
     View<vec3 const> axes;
-    View<float const> solid_angles; ///< of each axis: that of one of its two directions, sr; their sum is 2 pi
-    std::uint32_t bins_across = 0;  ///< of the octahedral square
+    View<float const> solid_angles; ///< per axis, of one of its two directions, sr; they sum to 2 pi
+    std::uint32_t bins_across = 0;  ///< bins per side of the octahedral square
 
     /// @param normal unit  @param u uniform in [0, 1)
     GI_FN AxisSample sample(vec3 normal, double u) const
@@ -41,8 +41,8 @@ struct CosineTables {
     std::uint32_t bins_across = 0;
 };
 
-/// @param bins_across with 64 the weights of icosahedron:320 deviate from 1 by 0.052 (root mean square); axes at
-/// grazing angles, which are rarely drawn, by more
+/// @param bins_across  with 64, the weights of icosahedron:320 deviate from 1 by 0.052 (root mean square); more
+///   for axes at grazing angles, which are rarely drawn
 CosineTables make_cosine_tables(DirectionSet const& directions, std::uint32_t bins_across);
 
 inline CosineTablesView view(CosineTables const& t) { return {t.entries, t.axes, t.solid_angles, t.bins_across}; }

@@ -7,7 +7,7 @@ namespace gi {
 
 namespace {
 
-/// Of `count` axes, of which `axis` gives the numbers in ascending order.
+/// Searches `count` axes, whose numbers `axis` returns in ascending order.
 template <class AxisAt>
 std::uint32_t nearest_of(DirectionSet const& directions, dvec3 d, std::size_t count, AxisAt const& axis)
 {
@@ -32,7 +32,7 @@ std::uint32_t nearest_direction(DirectionSet const& directions, dvec3 d)
 
 NearestDirections::NearestDirections(DirectionSet const& directions) : directions_(directions)
 {
-    constexpr double kRounding = 1e-4; // of the cell that is asked for
+    constexpr double kRounding = 1e-4; // rad; margin for rounding when a direction's cell is found
     std::vector<double> cosines(directions.axes.size());
     for (std::uint32_t y = 0; y < kAcross; ++y)
         for (std::uint32_t x = 0; x < kAcross; ++x) {
@@ -41,7 +41,7 @@ NearestDirections::NearestDirections(DirectionSet const& directions) : direction
                     dvec3(direction_from_octahedral(vec2{float(x) + u, float(y) + v} / float(kAcross))));
             };
             auto const angle = [](double cosine) { return std::acos(std::min(cosine, 1.0)); };
-            // A cell is one or two spherical triangles: nothing in it is farther from its middle than a corner.
+            // A cell is one or two spherical triangles: no point in it is farther from its centre than a corner.
             dvec3 const middle = at(0.5f, 0.5f);
             double radius = 0;
             for (vec2 const corner : {vec2{0, 0}, vec2{1, 0}, vec2{0, 1}, vec2{1, 1}})

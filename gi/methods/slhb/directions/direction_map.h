@@ -1,5 +1,6 @@
 #pragma once
-// The nearest of a set of directions in constant time: a table over the sphere (Yu 2012, sec. 5.3.1 and fig. 5.4).
+// Finds the nearest of a set of directions in constant time, with a table over the sphere (Yu 2012, sec. 5.3.1
+// and fig. 5.4).
 
 #include "gi/core/view.h"
 #include "gi/methods/slhb/directions/directions.h"
@@ -13,7 +14,7 @@ enum class SphereMapping : std::uint8_t {
     lat_long,   ///< 2 size x size; u = 0.5 + atan2(x, -z) / 2 pi, v = acos(y) / pi, as environment maps
 };
 
-/// Point of the unit square that a unit vector falls on, [0, 1]^2 (Cigolle et al. 2014, "Survey of Efficient
+/// Octahedral mapping of a unit vector to the unit square [0, 1]^2 (Cigolle et al. 2014, "Survey of Efficient
 /// Representations for Independent Unit Vectors").
 GI_FN inline vec2 octahedral_from_direction(vec3 d)
 {
@@ -53,7 +54,8 @@ struct DirectionMapView {
         auto const y = glm::min(std::uint32_t(uv.y * float(height)), height - 1);
         return y * width + x;
     }
-    /// Index of the direction; not the nearest where a border between two runs through the texel.
+    /// Returns the index of a direction; it may not be the nearest if a border between two cells crosses the
+    /// texel.
     GI_FN std::uint32_t look_up(vec3 direction) const { return nearest[texel(direction)]; }
 };
 
@@ -63,16 +65,16 @@ struct DirectionMap {
     SphereMapping mapping = SphereMapping::octahedral;
 };
 
-/// @param size rows of the table
+/// @param size  number of rows of the table
 DirectionMap make_direction_map(DirectionSet const& directions, SphereMapping mapping, std::uint32_t size);
 
 inline DirectionMapView view(DirectionMap const& m) { return {m.nearest, m.width, m.height, m.mapping}; }
 
-/// The nearest direction by looking at all of them: what the map is measured against.
+/// Nearest direction by exhaustive search: reference for measuring the map.
 std::uint32_t nearest_direction(DirectionSet const& directions, dvec3 d);
 
-/// The same answers for many questions: only axes are looked at that may be the nearest somewhere in the cell of
-/// the octahedral square. The set has to outlive it.
+/// The same results, faster for many directions: tests only the axes that can be nearest somewhere in the cell of
+/// the octahedral square. The set must outlive it.
 class NearestDirections {
 public:
     explicit NearestDirections(DirectionSet const& directions);
@@ -82,7 +84,7 @@ private:
     static constexpr std::uint32_t kAcross =
         32; ///< even, so that the folds of the octahedron are diagonals of cells
     DirectionSet const& directions_;
-    std::vector<std::uint32_t> first_; ///< of a cell in axes_, and one behind the last
+    std::vector<std::uint32_t> first_; ///< index of each cell's first entry in axes_, plus an end entry
     std::vector<std::uint32_t> axes_;  ///< ascending within a cell
 };
 

@@ -13,19 +13,19 @@ cv::Scalar const kInk(40, 40, 40);
 
 struct Cells {
     DirectionSet const& directions;
-    std::vector<double> relative; ///< solid angle per axis over the mean
+    std::vector<double> relative; ///< solid angle per axis, divided by the mean
 
     cv::Vec3b color(std::uint32_t direction) const
     {
         double const t = std::clamp((relative[direction / 2] - 0.5), 0.0, 1.0); // 0.5 is the mean
         double const low = std::min(1.0, 2 * t), high = std::min(1.0, 2 - 2 * t);
-        // Neighbours of equal size are told apart by a little shade.
+        // Small differences in brightness separate neighbours of equal size.
         double const shade = 235 - 7 * double(direction * 7 % 5);
         return {std::uint8_t(shade * low), std::uint8_t(shade * std::min(low, high)), std::uint8_t(shade * high)};
     }
 };
 
-/// Colours every pixel for which `direction_at` gives one; where two cells meet it is dark.
+/// Colours every pixel for which `direction_at` returns a direction; borders between cells are dark.
 template <class DirectionAt>
 void fill(cv::Mat& image, cv::Rect const& where, Cells const& cells, DirectionAt const& direction_at)
 {

@@ -18,7 +18,7 @@ dvec3 lattice_point(std::size_t i, std::size_t n)
     return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-/// Between unit vectors; exact for small angles, too.
+/// Angle between unit vectors; also accurate for small angles.
 double angle(dvec3 a, dvec3 b) { return 2 * std::atan2(glm::length(a - b), glm::length(a + b)); }
 
 struct Gaps {
@@ -34,7 +34,7 @@ struct Gaps {
     }
 };
 
-/// @param with_gaps  or else only `nearest_to`
+/// @param with_gaps  false = compute only `nearest_to`
 Gaps find_gaps(DirectionSet const& directions, std::size_t samples, bool with_gaps)
 {
     NearestDirections const nearest(directions);

@@ -1,12 +1,12 @@
 #pragma once
-// How evenly a set of directions covers the sphere, and how far its map is from the truth.
+// Measures how evenly a set of directions covers the sphere, and the errors of its map.
 
 #include "gi/methods/slhb/directions/direction_map.h"
 
 namespace gi {
 
-/// Solid angle nearer to each axis' direction than to any other, sr, by counting `samples` points of a Fibonacci
-/// lattice. One value per axis; their sum is 2 pi.
+/// Solid angle of the points nearest to each axis' direction, sr, estimated by counting `samples` points of a
+/// Fibonacci lattice. One value per axis; they sum to 2 pi.
 std::vector<double> solid_angles(DirectionSet const& directions, std::size_t samples);
 
 struct DirectionQuality {
@@ -17,8 +17,9 @@ struct DirectionQuality {
 DirectionQuality measure(DirectionSet const& directions, std::size_t samples);
 
 struct MapQuality {
-    double wrong_share = 0;        ///< of directions whose answer is not the nearest
-    double largest_excess_rad = 0; ///< by how much the answer is farther than the nearest at most
+    double wrong_share = 0;        ///< fraction of directions for which the map does not return the nearest
+    double largest_excess_rad = 0; ///< largest additional angle to the returned direction, compared with the
+                                   ///< nearest
     double mean_excess_rad = 0;
 };
 MapQuality measure(DirectionMapView const& map, DirectionSet const& directions, std::size_t samples);

@@ -15,7 +15,7 @@ constexpr std::size_t kMostDirections = 1u << 16;
 
 using Triangle = std::array<dvec3, 3>;
 
-/// Corners anti-clockwise seen from outside or not: only centres matter.
+/// The winding of the corners does not matter, as only centres are used.
 std::vector<Triangle> subdivide(std::vector<Triangle> faces, int levels)
 {
     for (int level = 0; level < levels; ++level) {
@@ -36,7 +36,7 @@ std::vector<dvec3> centers(std::vector<Triangle> const& faces)
     return out;
 }
 
-/// One of every two opposite directions: the one that points up (then right, then forwards).
+/// Keeps one of each two opposite directions: the one that points up (then right, then forwards).
 std::vector<dvec3> fold(std::vector<dvec3> const& directions)
 {
     std::vector<dvec3> axes;
@@ -66,7 +66,7 @@ std::vector<Triangle> tetrahedron()
 
 std::vector<Triangle> icosahedron()
 {
-    // Corners are the cyclic permutations of (0, +-1, +-golden); three of them make a face where they are nearest
+    // Corners are the cyclic permutations of (0, +-1, +-golden); three of them form a face if they are nearest
     // neighbours.
     double const golden = 0.5 * (1 + std::sqrt(5.0));
     std::vector<dvec3> v;
@@ -84,7 +84,7 @@ std::vector<Triangle> icosahedron()
     return faces;
 }
 
-/// A quadrant of the half sphere in `rows` bands of equal latitude; band i has 2 i + 1 triangles (fig. 3.4).
+/// A quadrant of the hemisphere in `rows` bands of equal latitude; band i has 2 i + 1 triangles (fig. 3.4).
 std::vector<dvec3> uv_grid(int rows)
 {
     auto const corner = [&](int row, int column) {
@@ -131,7 +131,7 @@ std::vector<dvec3> halton(std::size_t axes)
     return out;
 }
 
-/// Keinert et al. 2015, "Spherical Fibonacci Mapping", on a half sphere.
+/// Keinert et al. 2015, "Spherical Fibonacci Mapping", on a hemisphere.
 std::vector<dvec3> fibonacci(std::size_t axes)
 {
     double const golden = 0.5 * (1 + std::sqrt(5.0));
@@ -145,7 +145,7 @@ std::vector<dvec3> fibonacci(std::size_t axes)
 
 struct Family {
     char const* name;
-    std::vector<std::size_t> counts; ///< empty = all even ones
+    std::vector<std::size_t> counts; ///< empty = all even counts
     std::function<std::vector<dvec3>(std::size_t count, int step)> axes;
 };
 
@@ -170,7 +170,7 @@ std::vector<Family> families()
     };
     return {{"icosahedron", powers(20), solid(icosahedron)},
             {"octahedron", powers(8), solid(octahedron)},
-            // No face of a tetrahedron lies opposite to another: each direction is an axis.
+            // No two faces of a tetrahedron are opposite to each other, so each direction is an axis.
             {"tetrahedron", powers(8),
              [](std::size_t, int level) { return centers(subdivide(tetrahedron(), level)); }},
             {"uv_grid", squares(), [](std::size_t, int row) { return uv_grid(row + 1); }},

@@ -1,6 +1,6 @@
 #pragma once
-// Sets of directions that stand for all of the sphere (Yu 2012, sec. 3.3). Opposite directions belong together:
-// they see the same surfaces in opposite order, so both are one *axis*. Every set is its own mirror image.
+// Sets of directions that sample the sphere (Yu 2012, sec. 3.3). Opposite directions see the same surfaces in
+// opposite order, so both form one *axis*. Every set is point-symmetric.
 
 #include "gi/core/math.h"
 
@@ -10,7 +10,7 @@
 namespace gi {
 
 struct DirectionSet {
-    std::string name;        ///< as it was asked for, "icosahedron:320"
+    std::string name;        ///< as requested, e.g. "icosahedron:320"
     std::vector<dvec3> axes; ///< unit vectors
     /// Directions: 2 k is axes[k], 2 k + 1 its opposite.
     std::size_t size() const { return 2 * axes.size(); }
@@ -22,8 +22,8 @@ struct DirectionSet {
 ///   tetrahedron               those of the tetrahedron and their opposites, 8 * 4^L
 ///   uv_grid                   centres of the thesis's spherical triangles (fig. 3.4), 8 * L^2
 ///   halton, fibonacci         any even count: Halton points (bases 2, 3) or a spherical Fibonacci lattice on the
-///                             half sphere z > 0, and their opposites
-/// Throws InputError on other names and counts, and names the nearest count that there is.
+///                             hemisphere z > 0, and their opposites
+/// Throws InputError on other names and counts; the message names the nearest valid count.
 DirectionSet make_directions(std::string const& name);
 
 } // namespace gi

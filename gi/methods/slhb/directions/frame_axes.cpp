@@ -16,7 +16,7 @@ void FrameAxes::make(AxisSet::Source source, bool walks)
     walks_ = walks;
     dynamic_update_ = {};
     moves_ = source.first_moving < source.soup.count;
-    // Streamed axes are built in every pass anyway, of all that there is.
+    // Streamed axes are built from all triangles in every pass anyway.
     if (slhb_.schedule == Schedule::streamed) source.first_moving = source.soup.count;
     source_.emplace(std::move(source));
     set_.emplace(*source_);
@@ -34,10 +34,10 @@ void FrameAxes::make_smaller()
 {
     constexpr std::uint32_t kLeast = 8;
     if (source_->resolution < 2 * kLeast)
-        throw InputError("hit buffers of few texels take more memory than they may",
-                         fmt::format("they have {} texels on a side, and may take {} MiB", source_->resolution,
+        throw InputError("even hit buffers of few texels exceed their memory limit",
+                         fmt::format("they have {} texels per side, and the limit is {} MiB", source_->resolution,
                                      source_->most_bytes >> 20),
-                         "give them more by --memory, or choose --look-ups none");
+                         "raise --memory, or choose --look-ups none");
     source_->resolution /= 2;
     report_.lose("times that hit buffers got half as many texels on a side, to stay within --memory", 1,
                  fmt::format("now {}", source_->resolution));

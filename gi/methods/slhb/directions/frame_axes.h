@@ -1,6 +1,6 @@
 #pragma once
-// The axes of a renderer from frame to frame, as its schedule says: stored ones, of which all or some follow what
-// moves, or those that each pass draws.
+// Keeps the axes of a renderer between frames, according to its schedule: stored axes, of which all or some are
+// updated for dynamic geometry, or axes drawn for each pass.
 
 #include "gi/core/report.h"
 #include "gi/methods/slhb/directions/axis_set.h"
@@ -12,13 +12,13 @@ namespace gi {
 
 class FrameAxes {
 public:
-    /// @param settings, report  outlive this
+    /// @param settings, report  must outlive this object
     FrameAxes(SlhbSettings const& settings, Report& report) : slhb_(settings), report_(report) {}
 
-    /// Anew, before all else; stored ones are built here.
-    /// @param walks  paths may leave a surface along an axis: else none is built
+    /// Makes the axes; call this first. Stored axes are built here.
+    /// @param walks  true if paths may leave a surface along an axis; else no axis is built
     void make(AxisSet::Source source, bool walks);
-    /// Those of a pass. @param surfaces  of a path that it may leave along an axis
+    /// Prepares the axes of a pass. @param surfaces  number of surfaces that a path may leave along an axis
     void prepare(int surfaces, std::uint32_t index);
     void end_frame();
 
@@ -29,9 +29,9 @@ public:
     bool walks() const { return walks_; }
     AxisSet& set() { return *set_; }
     AxisSet const& set() const { return *set_; }
-    /// Layers beyond the limit of a texel, so far, of sets that are no more as well.
+    /// Number of layers beyond a texel's limit so far, including earlier sets.
     std::uint64_t lost() const { return earlier_.lost + set_->lost(); }
-    /// What has been built so far, likewise.
+    /// Reports the work done so far, including earlier sets.
     void report_work() const;
 
 private:
@@ -39,15 +39,15 @@ private:
 
     SlhbSettings const& slhb_;
     Report& report_;
-    /// With fewer texels, where the buffers would take too much memory.
+    /// Rebuilds with fewer texels if the buffers take too much memory.
     void make_smaller();
 
     std::optional<AxisSet::Source> source_;
     std::optional<AxisSet> set_;
-    bool walks_ = false, moves_ = false;          ///< something may move
-    std::uint32_t updated_axes_ = 0, frames_ = 0; ///< axes of a bounce, 0 = all; so far
+    bool walks_ = false, moves_ = false;          ///< moves_: some geometry may move
+    std::uint32_t updated_axes_ = 0, frames_ = 0; ///< axes updated per bounce, 0 = all; frames so far
     DynamicUpdate dynamic_update_;                ///< in this frame
-    bool follows_ = false;                        ///< and it has in this frame
+    bool follows_ = false;                        ///< axes were updated in this frame
     struct {
         std::uint64_t built = 0, layers = 0, lost = 0;
     } earlier_;

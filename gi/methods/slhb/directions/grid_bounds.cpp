@@ -4,7 +4,7 @@ namespace gi {
 
 Bounds grid_bounds(World const& world, TriangleSoup const& soup, std::size_t first_moving)
 {
-    constexpr float kRoom = 0.25f; // of the size of what moves
+    constexpr float kRoom = 0.25f; // relative to the size of the dynamic geometry
     Bounds moving;
     for (std::size_t t = first_moving; t < soup.count; ++t)
         for (std::size_t c = 0; c < 3; ++c)

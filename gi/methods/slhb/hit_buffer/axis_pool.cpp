@@ -82,7 +82,7 @@ void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool, bool packe
     }
     if (packed && pool.packed.empty()) pool.packed.push_back(0);
     if (!packed && pool.layers.empty())
-        pool.layers.push_back({}); // vectors read something where they have nothing to read
+        pool.layers.push_back({}); // padding, as vectors may read beyond empty columns
 }
 
 } // namespace gi

@@ -1,34 +1,34 @@
 #pragma once
-// The hit buffers of several axes in a few arrays.
+// The hit buffers of several axes, stored together.
 
 #include "gi/methods/slhb/hit_buffer/query.h"
 
 namespace gi {
 
-/// Layers of one texel, from the axis' first layer on.
+/// Layers of one texel, as indices relative to the axis' first layer.
 struct LayerRange {
     std::uint32_t begin, end;
 };
 
-/// The buffers of several axes in a few arrays, so that one vector can walk along many axes.
+/// The buffers of several axes in shared arrays, so that one SIMD vector can walk along many axes.
 struct AxisPool {
     std::vector<RasterGrid> grids;
-    std::vector<std::uint32_t> first_offset, first_layer; ///< of each axis
-    std::vector<std::uint32_t> offset; ///< per axis texels + 1 entries, from the axis' first layer on
-    std::vector<HitLayer> layers;      ///< of all axes; then those of moving_layers.h
-    /// Where something moves, in place of `offset` and numbered as that: the columns, wherever they lie.
+    std::vector<std::uint32_t> first_offset, first_layer; ///< per axis
+    std::vector<std::uint32_t> offset; ///< texels + 1 entries per axis, relative to the axis' first layer
+    std::vector<HitLayer> layers;      ///< of all axes, followed by those of moving_layers.h
+    /// With dynamic geometry, replaces `offset` (same indices): the columns, which may be stored anywhere.
     std::vector<LayerRange> ranges;
-    bool without_moving = false;     ///< `ranges` are not read: columns are as if nothing of what moves was there
-    std::uint32_t first_moved = ~0u; ///< layers from here on are in columns that something moving is in
-    /// Instead of `layers` where that was asked for (after Yu 2012, sec. 4.3): 12 bits of depth, 1 of facing, 19
-    /// of the triangle, and the range of depths of each axis.
+    bool without_moving = false;     ///< ignore `ranges`: use the columns without dynamic geometry
+    std::uint32_t first_moved = ~0u; ///< layers from here on belong to columns that contain dynamic geometry
+    /// Used instead of `layers` with packing (after Yu 2012, sec. 4.3): 12 bits of depth, 1 of facing, 19 of the
+    /// triangle; plus the range of depths of each axis.
     std::vector<std::uint32_t> packed;
     std::vector<float> packed_low, packed_step;
 
     std::size_t size() const { return grids.size(); }
-    /// Axis `a` by itself; only where layers are not packed and nothing moves.
+    /// Returns a view of axis `a`; only for unpacked layers without dynamic geometry.
     AxisView axis(std::size_t a) const;
-    /// @param at  index into `offset`, of a texel
+    /// @param at  index of a texel in `offset`
     LayerRange column(std::size_t at) const
     {
         return by_ranges() ? ranges[at] : LayerRange{offset[at], offset[at + 1]};
@@ -45,7 +45,8 @@ struct AxisPool {
 
 inline constexpr std::uint32_t kPackedTriangles = 1u << 19;
 
-/// Reuses the memory of `pool`. Throws InputError where 32-bit indices do not suffice, or 19 bits for a triangle.
+/// Fills the pool, reusing its memory. Throws InputError if 32-bit indices, or 19 bits for a packed triangle, are
+/// not enough.
 void fill_pool(std::vector<HitBuffer> const& buffers, AxisPool& pool, bool packed = false);
 
 } // namespace gi

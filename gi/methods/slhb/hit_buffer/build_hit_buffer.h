@@ -1,6 +1,6 @@
 #pragma once
-// Hit buffers built by kernels, in either space: count, scan, fill, sort; then what is cut out, or beyond a limit,
-// is taken out. The layers are those of rasterize and fill_hit_buffer, bit for bit.
+// Hit buffers built by kernels, in either space: count, scan, fill, sort; then layers that are cut out or beyond
+// the limit are removed. The layers equal those of rasterize and fill_hit_buffer bit for bit.
 
 #include "gi/core/error.h"
 #include "gi/kernel/launch.h"
@@ -31,7 +31,7 @@ Buffer<T, S> zeros(std::size_t n)
     return b;
 }
 
-/// Keeps the order of layers and makes them dense again.
+/// Removes layers and compacts the rest, keeping their order.
 template <Space S, class Keep>
 void trim(Keep const& keep, std::uint32_t most_layers, HitBufferOn<S>& b)
 {
@@ -54,9 +54,9 @@ void trim(Keep const& keep, std::uint32_t most_layers, HitBufferOn<S>& b)
 
 } // namespace build_detail
 
-/// @param soup in space S  @param most_layers per texel, see fill_hit_buffer
-/// @param keep which layers there are, see TrimLayers
-/// Throws InputError where there are too many layers for 32-bit indices.
+/// @param soup  in space S  @param most_layers  per texel, see fill_hit_buffer
+/// @param keep  selects the layers that exist, see TrimLayers
+/// Throws InputError if there are too many layers for 32-bit indices.
 template <Space S, class Keep = KeepAll>
 HitBufferOn<S> build_hit_buffer(SoupView const& soup, RasterGrid const& grid, std::uint32_t most_layers = 0,
                                 Keep const& keep = {})

@@ -1,6 +1,6 @@
 #pragma once
-// What is cut out of surfaces (alpha masks, blending) is taken out of the buffers when they are built, so that no
-// query has to ask. Partial coverage is a random decision per fragment.
+// Cut-outs (alpha masks, blending) are removed from the buffers when these are built, so that look-ups need no
+// test. Partial coverage is a random decision per fragment.
 
 #include "gi/core/rng.h"
 #include "gi/raster/nearest_map.h"
@@ -22,7 +22,7 @@ GI_FN inline vec2 barycentric_at(Surface const& s, vec3 position)
     return sum > 1 ? w / sum : w;
 }
 
-/// Whether the surface of a triangle with an alpha is there, at a position in a texel.
+/// True if a triangle with alpha has a surface at a position in a texel (random if coverage is partial).
 GI_FN inline bool is_there(WorldView const& world, std::uint32_t triangle, std::uint32_t texel, vec3 position,
                            std::uint32_t seed)
 {
@@ -31,7 +31,7 @@ GI_FN inline bool is_there(WorldView const& world, std::uint32_t triangle, std::
     return float(mix_bits(key) >> 40) * 0x1p-24f < covered;
 }
 
-/// For kernels: which fragments there are, see DrawNearest and TrimLayers.
+/// For kernels: selects the fragments that exist, see DrawNearest and TrimLayers.
 struct KeepUncut {
     WorldView world;
     View<std::uint8_t const> marked; ///< per triangle
@@ -47,13 +47,12 @@ struct KeepUncut {
 
 class CutOuts {
 public:
-    /// Empty where every material is opaque.
+    /// Empty if all materials are opaque.
     explicit CutOuts(World const& world);
 
     bool none() const { return marked_.empty(); }
     std::vector<std::uint8_t> const& marked() const { return marked_; }
-    /// Drops fragments where the surface is not. @param seed another one, another decision where coverage is
-    /// partial
+    /// Removes fragments that are cut out. @param seed  of the random decisions about partial coverage
     void remove(Fragments& fragments, RasterGrid const& grid, std::uint32_t seed) const;
     void remove(Fragments& fragments, PerspectiveGrid const& grid, std::uint32_t seed) const;
 
@@ -62,7 +61,7 @@ private:
     void remove_where(Fragments& fragments, std::uint32_t seed, Position const& position) const;
 
     WorldView world_;
-    std::vector<std::uint8_t> marked_; ///< per triangle: 1 = it has an alpha
+    std::vector<std::uint8_t> marked_; ///< per triangle: 1 = has alpha
 };
 
 } // namespace gi

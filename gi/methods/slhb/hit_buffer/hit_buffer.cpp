@@ -21,7 +21,7 @@ void sort_layers(HitLayer* first, HitLayer* last)
 
 namespace {
 
-/// Moves the first `most` layers of every texel together.
+/// Compacts the first `most` layers of every texel.
 void cut(HitBuffer& b, std::uint32_t most)
 {
     std::uint32_t kept = 0, first = 0;
@@ -43,7 +43,8 @@ void fill_hit_buffer(Fragments const& f, RasterGrid const& grid, std::uint32_t m
     std::size_t const texels = grid.texels();
     out.grid = grid;
     out.lost = 0;
-    // offset[t + 1] first counts the layers of t, then is where the next of them goes, and so ends as their end.
+    // offset[t + 1] first counts the layers of t, then is the position of the next one to insert, and so finally
+    // their end.
     out.offset.assign(texels + 1, 0);
     std::uint32_t* const next = out.offset.data() + 1;
     for (std::size_t k = 0; k < f.count; ++k) ++next[f.texel[k]];

@@ -1,9 +1,9 @@
 #pragma once
-// A layered hit buffer: every surface under every texel centre of an orthographic view along one axis (Yu 2012,
-// sec. 3.4 and 4.3). Exact storage: nothing is dropped, however many layers a texel has.
+// A layered hit buffer: all surfaces under each texel centre of an orthographic view along one axis (Yu 2012,
+// sec. 3.4 and 4.3). No layer is dropped, however many a texel has (unless a limit is set).
 //
-// Layout: the layers of texel t are layers[offset[t]] .. layers[offset[t + 1] - 1], by rising depth (equal depths
-// by primitive). offset has texels + 1 entries.
+// Layout: the layers of texel t are layers[offset[t]] .. layers[offset[t + 1] - 1], in order of increasing depth
+// (equal depths by primitive). offset has texels + 1 entries.
 
 #include "gi/raster/deep_raster.h"
 #include "gi/raster/hit_layer.h"
@@ -20,20 +20,20 @@ struct HitBuffer {
     RasterGrid grid;
     std::vector<std::uint32_t> offset;
     std::vector<HitLayer> layers;
-    std::uint64_t lost = 0; ///< layers beyond a limit that was asked for
+    std::uint64_t lost = 0; ///< number of layers beyond the requested limit
 };
 
 inline HitBufferView view(HitBuffer const& b) { return {b.grid, b.offset, b.layers}; }
 
-/// A column, fast where it has few layers or starts in order.
+/// Sorts a column; fast for few or nearly sorted layers.
 void sort_layers(HitLayer* first, HitLayer* last);
 
-/// Count, scan, fill, sort. Reuses the memory of `out`.
-/// @param most_layers per texel, the nearest along the axis are kept and the others counted; 0 = all
+/// Builds a hit buffer: count, scan, fill, sort. Reuses the memory of `out`.
+/// @param most_layers  per texel: the first ones along the axis are kept, the others counted; 0 = all
 void fill_hit_buffer(Fragments const& fragments, RasterGrid const& grid, std::uint32_t most_layers,
                      HitBuffer& out);
 
-/// From triangles to layers on the calling thread.
+/// Rasterises triangles into a hit buffer on the calling thread.
 HitBuffer make_hit_buffer(TriangleSoup const& soup, RasterGrid const& grid,
                           MacroPath macro = MacroPath::edge_table, std::uint32_t most_layers = 0);
 

@@ -1,9 +1,9 @@
 #pragma once
-// From filled layers to a hit buffer and its answers, as kernels: sort, take out, move together, ask.
+// Kernels that turn filled layers into a hit buffer and look up in it: sort, trim, pack, look up.
 //
-// A texel is sorted by one item: by insertion where it has few layers, else as a heap in place, so that 10,000
-// layers under one texel (a needle seen along its length) take n log n steps and no memory. Order: depth, then
-// primitive, which is that of fill_hit_buffer; it leaves no choice, so that all spaces give the same buffer.
+// One item sorts one texel: insertion sort for few layers, else in-place heap sort, so that 10,000 layers under
+// one texel (a needle seen along its length) take n log n steps and no extra memory. Order: depth, then
+// primitive, as in fill_hit_buffer; this order is total, so that all spaces give the same buffer.
 
 #include "gi/kernel/atomics.h"
 #include "gi/methods/slhb/hit_buffer/query.h"
@@ -29,7 +29,7 @@ GI_FN inline void sort_by_insertion(HitLayer* v, std::size_t n)
     }
 }
 
-/// Lets v[root] sink in a heap of n whose largest is first.
+/// Sifts v[root] down in a max-heap of n elements.
 GI_FN inline void sink(HitLayer* v, std::size_t root, std::size_t n)
 {
     HitLayer const moved = v[root];
@@ -70,8 +70,8 @@ struct SortLayers {
     }
 };
 
-/// Item = texel. Moves the layers that Keep(grid, triangle, texel, depth) wants to the texel's front, no more than
-/// `most`, and counts them.
+/// Item = texel. Moves the layers accepted by Keep(grid, triangle, texel, depth) to the front of the texel, at
+/// most `most`, and counts them.
 template <class Keep>
 struct TrimLayers {
     RasterGrid grid;
@@ -99,7 +99,7 @@ struct TrimLayers {
     }
 };
 
-/// Item = texel. Copies the front layers of every texel to where the next texel's begin right behind them.
+/// Item = texel. Copies the front layers of every texel to a compact array.
 struct PackLayers {
     View<std::uint32_t const> from_offset, to_offset;
     View<HitLayer const> from;
@@ -112,7 +112,7 @@ struct PackLayers {
     }
 };
 
-/// Item = query. Arrays as in QueryBatch.
+/// Item = look-up. Arrays as in QueryBatch.
 struct AnswerQueries {
     View<AxisView const> axes;
     View<Surface const> surfaces;

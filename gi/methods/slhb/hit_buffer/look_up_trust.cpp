@@ -12,18 +12,18 @@
 namespace gi {
 namespace {
 
-/// How far a surface may leave its own plane from column to column, texels.
+/// How far a surface may deviate from its own plane between columns, texels.
 constexpr float kSameSurface = 0.25f;
-constexpr float kLargeTexel = 1.0f / 16; ///< of the median distance
-constexpr int kPixels = 48;              ///< that the camera looks through, on a side
+constexpr float kLargeTexel = 1.0f / 16; ///< relative to the median distance
+constexpr int kPixels = 48;              ///< pixels per side that are sampled
 
 struct Start {
     vec3 position;
     std::uint32_t triangle;
-    vec3 towards; ///< a direction on the side that light leaves to
+    vec3 towards; ///< a direction on the side to which light leaves
 };
 
-/// What the camera sees, at one point of each of a few pixels.
+/// Surfaces that the camera sees, at one point each in a grid of sampled pixels.
 std::vector<Start> seen_by(CameraRays const& camera, TriangleSoup const& soup, float near_m)
 {
     PerspectiveGrid const grid = camera_grid(camera, kPixels, kPixels, vec2{0.5f}, near_m);
@@ -46,7 +46,7 @@ std::vector<Start> seen_by(CameraRays const& camera, TriangleSoup const& soup, f
     return starts;
 }
 
-/// Whether two triangles lie in one plane, as far as texels tell.
+/// True if two triangles lie in one plane, at the resolution of texels.
 bool same_surface(Surface const& a, Surface const& b, float texel)
 {
     constexpr float kAlike = 0.5f; // cosine
@@ -56,7 +56,7 @@ bool same_surface(Surface const& a, Surface const& b, float texel)
            std::abs(glm::dot(normal, middle - a.corner)) <= 0.5f * texel;
 }
 
-/// Of what all four columns around the origin answer: whether it is one surface, or nothing.
+/// True if all four columns around the origin give the same surface, or all give none.
 bool columns_agree(AxisView const& axis, View<Surface const> surfaces, WalkOrigin const& o, LayerHit const& found)
 {
     using namespace query_detail;
@@ -85,7 +85,7 @@ struct Agreed {
     std::size_t asked = 0, agreed = 0;
 };
 
-/// Follows all starts along one axis. @return what they meet
+/// Follows all starts along one axis. @return the surfaces hit
 std::vector<Start> continue_paths(std::vector<Start> const& starts, HitBuffer const& buffer,
                                   View<Surface const> surfaces, Agreed& sums)
 {

@@ -1,19 +1,19 @@
 #pragma once
-// Whether look-ups in hit buffers of some resolution can be trusted where a camera looks. A look-up sees the
-// column under a texel's centre in place of that under its origin; where the four columns around the origin answer
-// alike, both see the same. Texels that are too large for a place (a room in a large world, windows, furniture)
-// disagree, or do not have the surface that the look-up starts from, or are large beside what lies before the
-// camera.
+// Estimates whether look-ups in hit buffers of some resolution are accurate in what a camera sees. A look-up uses
+// the column under a texel's centre instead of that under its origin; if the four columns around the origin give
+// the same result, so would the origin's own. If texels are too large for a place (a room in a large world,
+// windows, furniture), the columns disagree, or lack the surface that the look-up starts from, or a texel is
+// large compared with the distance to what the camera sees.
 
 #include "gi/raster/triangle_soup.h"
 #include "gi/scene/model/camera.h"
 
 namespace gi {
 
-/// @return  share of look-ups whose four columns have their surface and agree, of points that the camera sees and
-/// of what is met from there along two axes; 1 where it sees nothing, 0 where a texel is larger than a sixteenth
-/// of the median distance to what the camera sees
-/// @param camera  not orthographic  @param resolution  texels of a hit buffer on a side
+/// @return fraction of look-ups whose four columns contain the starting surface and agree, for points that the
+///   camera sees and points hit from there along two axes; 1 if the camera sees nothing, 0 if a texel is larger
+///   than 1/16 of the median distance to what the camera sees
+/// @param camera  not orthographic  @param resolution  texels per side of a hit buffer
 double look_up_agreement(World const& world, TriangleSoup const& soup, CameraRays const& camera,
                          std::uint32_t resolution);
 

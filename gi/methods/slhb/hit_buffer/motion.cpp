@@ -5,7 +5,7 @@
 namespace gi {
 namespace {
 
-/// Where rays through pixels meet a triangle, in weights of its corners 1 and 2; not held to its inside.
+/// Weights of corners 1 and 2 where a pixel's ray hits the triangle's plane; not clamped to the triangle.
 vec2 weights_at(Ray const& ray, vec3 corner, vec3 edge1, vec3 edge2)
 {
     vec3 const normal = glm::cross(edge1, edge2);

@@ -23,7 +23,8 @@ void MovingLayers::merge(Source const& source, std::uint32_t cut_seed, AxisPool 
     out.lost = 0;
     for (std::size_t k = 0; k < f.count; ++k)
         if (count[f.texel[k]]++ == 0) out.texels.push_back(f.texel[k]);
-    std::ranges::sort(out.texels); // neighbours in space are neighbours in memory, as in the static buffer
+    std::ranges::sort(out.texels); // so that neighbours in space are neighbours in memory, as in the static
+                                   // buffer
     out.ends.clear();
     auto const stays = [&](std::uint32_t texel) {
         std::uint32_t const* const offset = &pool.offset[pool.first_offset[a] + texel];
@@ -32,7 +33,8 @@ void MovingLayers::merge(Source const& source, std::uint32_t cut_seed, AxisPool 
     std::uint32_t end = 0;
     for (std::uint32_t const t : out.texels) {
         std::uint32_t const fixed = std::uint32_t(stays(t).size());
-        std::uint32_t const all = fixed + std::exchange(count[t], end + fixed); // now: where its next layer goes
+        std::uint32_t const all = fixed + std::exchange(count[t], end + fixed); // from now on: position of its
+                                                                                // next layer
         end += all;
         out.ends.push_back(end);
     }
@@ -111,7 +113,7 @@ std::uint64_t MovingLayers::append(Source const& source, std::span<std::uint32_t
     }
     constexpr std::size_t kMost = 0x7fffffff;
     if (first.back() > kMost) {
-        moved(); // none of it is in the pool
+        moved(); // the pool contains none of the dynamic layers
         throw InputError("the hit buffers have more than 2^31 layers", "they are indexed with 32 bits",
                          "lower the resolution or the number of directions");
     }

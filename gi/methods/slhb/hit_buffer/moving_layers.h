@@ -1,8 +1,8 @@
 #pragma once
-// Layers of what moves, beside those of what stays: the columns that something moving is in are written anew
-// behind all others, merged in depth order, and found there (Yu 2012, sec. 5.4: appended to the lists). So each
-// column is what a buffer built from everything would have, and queries know no difference; what it costs follows
-// from what moves, not from the scene.
+// Layers of dynamic geometry, kept beside the static ones: columns that contain dynamic geometry are rewritten
+// behind all others, merged in depth order, and referenced there (Yu 2012, sec. 5.4: appended to the lists). So
+// each column equals that of a buffer built from everything, and look-ups work the same; the cost depends on the
+// dynamic geometry, not on the scene.
 
 #include "gi/methods/slhb/hit_buffer/axis_pool.h"
 #include "gi/methods/slhb/hit_buffer/cut_outs.h"
@@ -15,39 +15,39 @@ class MovingLayers {
 public:
     struct Source {
         TriangleSoup const& soup;
-        std::size_t first; ///< triangle that moves; all after it do
+        std::size_t first; ///< first dynamic triangle; all later ones are dynamic too
         CutOuts const& cut_outs;
         std::uint32_t most_layers; ///< per texel, as in fill_hit_buffer
     };
 
-    /// Puts the layers of now into the axes that follow, where they are not there yet; takes those of before out
-    /// of all others. After fill_pool, call forget() first.
-    /// @param cut_seeds  per axis, those that its static buffer was built with  @param followed  per axis: 0 = not
-    /// @return layers that were lost: beyond most_layers, in columns that something moving is in
-    /// Throws InputError where 32-bit indices do not suffice.
+    /// Adds the current dynamic layers to the updated axes that lack them, and removes outdated dynamic layers
+    /// from all other axes. After fill_pool, call forget() first.
+    /// @param cut_seeds  per axis, as used for its static buffer  @param updated  per axis: 0 = not updated
+    /// @return number of layers lost (beyond most_layers) in columns that contain dynamic geometry
+    /// Throws InputError if 32-bit indices are not enough.
     std::uint64_t append(Source const& source, std::span<std::uint32_t const> cut_seeds,
                          std::span<std::uint8_t const> updated, AxisPool& pool);
-    /// No axis has it as it is now.
+    /// Marks the dynamic layers of all axes as outdated.
     void moved()
     {
         for (Axis& a : axes_) a.current = false;
     }
-    /// The pool has been filled afresh.
+    /// Call after the pool has been filled again.
     void forget()
     {
         static_layers_ = kNone;
         moved();
     }
 
-    std::uint64_t layers() const { return layers_; } ///< of what moves, in all axes
+    std::uint64_t layers() const { return layers_; } ///< of dynamic geometry, in all axes
 
 private:
     static constexpr std::size_t kNone = ~std::size_t(0);
 
-    /// What one axis has.
+    /// Dynamic columns of one axis.
     struct Axis {
-        std::vector<std::uint32_t> texels; ///< that something moving is in
-        std::vector<std::uint32_t> ends;   ///< of their columns in `layers`
+        std::vector<std::uint32_t> texels; ///< that contain dynamic geometry
+        std::vector<std::uint32_t> ends;   ///< ends of their columns in `layers`
         std::vector<HitLayer> layers;
         std::uint64_t moving = 0, lost = 0;
         bool current = false;

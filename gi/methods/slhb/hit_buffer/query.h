@@ -1,32 +1,36 @@
 #pragma once
-// The nearest surface beyond a point along an axis: a look-up in a layered hit buffer instead of a ray.
+// Nearest surface along the axis: a look-up in a layered hit buffer instead of a ray.
 //
-// A query starts on a triangle of the scene and leaves it along the axis (up) or against it. In the column of
-// layers under the nearest texel centre it finds the layer of the surface it starts from, and the next layer is
-// the answer; its position is the one on the polygon at the texel centre (at any other point the depth of this
-// layer would lie off the surface).
+// A look-up starts on a triangle of the scene and leaves it along the axis (up) or against it. In the column
+// under the nearest texel centre it finds the layer of its own surface; the next layer is the hit. The hit
+// position is the point of the polygon at the texel centre (at any other point, this layer's depth would be off
+// the surface).
 //
-// Which layer is the origin's own: that of its triangle; else, as the centre may lie beside it, the nearest one of
-// the same facing within `margin`, which is how far the origin's own slope can carry a surface up over a texel. So
-// thin walls, contacts and coplanar twins need no epsilon that fits all: layers are in their true order. A column
-// speaks for the origin if it has the own layer and if what it hits can be hit from the origin: the origin is on
-// the right side of its plane (looked at only near by, where it can fail, and for backs), and if it is a back, the
-// walk from the origin itself passes its triangle within kBackReach texels. For a back is mostly the inside of
-// something solid: floors go on under columns and walls behind ledges, and a centre that lies there, where no
-// origin does, sees only what is dark. If the column does not speak, the other three of the four texel centres
-// around the origin are asked (across an edge, or beyond a wall, the centre sees another world). If none will do,
-// the answer of the first with an own layer stands; if none has one, the first face towards the walk from the
-// origin's depth on, in the nearest column.
+// The origin's own layer is that of its triangle; else, as the texel centre may lie beside the triangle, the
+// nearest layer with the same facing within `margin`, which is how much the depth of the origin's surface can
+// change across a texel due to its slope. So thin walls, contacts and coplanar duplicates need no global epsilon:
+// layers are in their true order.
+//
+// A column is accepted if it contains the own layer and its hit can be hit from the origin: the origin is on the
+// right side of the hit's plane (tested only for near hits, where it can fail, and for back faces), and, for a
+// back face, the walk from the true origin passes its triangle within kBackReach texels. The last test is needed
+// because a back face is mostly the inside of a solid: floors continue under columns and walls behind ledges, and
+// a texel centre that lies there, where no origin does, sees only dark surfaces.
+//
+// If the column is not accepted, the other three of the four texel centres around the origin are tried (across an
+// edge or beyond a wall, the first centre may see different geometry). If none is accepted, the hit of the first
+// column with an own layer is used; if none has an own layer, the first face towards the walk from the origin's
+// depth on, in the nearest column.
 
 #include "gi/methods/slhb/hit_buffer/hit_buffer.h"
 
 namespace gi {
 
 inline constexpr std::uint32_t kNoLayerHit = 0xffffffffu;
-/// Bit beside the triangle a batch query starts from: walk along the axis, else against it.
+/// Bit stored with the starting triangle of a batch look-up: set = walk along the axis, else against it.
 inline constexpr std::uint32_t kWalkUp = 0x40000000u;
 
-/// An axis as queries see it: layers that stay, and layers that move, in the same grid.
+/// An axis as used by look-ups: static layers and dynamic layers, in the same grid.
 struct AxisView {
     HitBufferView part[2]; ///< the second may be empty (no offsets)
 
@@ -47,19 +51,19 @@ struct LayerHit {
     bool along = false; ///< its normal points along the axis
 };
 
-/// How far beyond the depth of the origin, m, its own surface may lie under a texel centre.
+/// Largest difference in depth, m, between the origin and its own surface under a texel centre.
 GI_FN inline float own_margin(RasterGrid const& grid, float slope) { return grid.texel * (1 + slope); }
 
-/// By how many texels a walk may pass a triangle that its column meets from behind. Measured: about as many true
-/// backs are missed as false ones are met.
+/// Distance, in texels, at which a walk may pass a triangle hit from behind. Chosen by measurement: about as many
+/// true back-face hits are missed as false ones are accepted.
 inline constexpr float kBackReach = 0.25f;
 
-/// Hits nearer than this, m, are checked against the origin's side.
+/// Hits nearer than this, m, are checked to face the origin.
 GI_FN inline float near_gap(RasterGrid const& grid) { return 4 * grid.texel; }
 
 namespace query_detail {
 
-/// What one column of layers answers. Depths are along the walk, from the origin on, m.
+/// Result of one column. Depths are along the walk, relative to the origin, m, unless noted.
 struct Column {
     bool own = false;
     std::uint32_t own_triangle = 0;
@@ -69,7 +73,7 @@ struct Column {
     float gap = 0;                   ///< from the own layer to the hit
 };
 
-/// The layers of a texel in the order of the walk, both parts merged.
+/// Iterates over the layers of a texel in the order of the walk, with both parts merged.
 struct Walk {
     HitLayer const* at[2];
     std::ptrdiff_t left[2] = {0, 0};
@@ -124,7 +128,7 @@ GI_FN inline Column look_into(AxisView const& axis, std::size_t texel, WalkOrigi
             without.gap = z;
         }
         bool const answered = (with_own.own ? with_own.hit : without.hit) != kNoLayerHit;
-        if (answered && (best < 0 || z > margin)) break; // nothing further on can be a nearer own layer
+        if (answered && (best < 0 || z > margin)) break; // no later layer can be a nearer own layer
     }
     return with_own.own ? with_own : without;
 }
@@ -134,7 +138,7 @@ GI_FN inline bool is_back(std::uint32_t primitive, WalkOrigin const& o)
     return ((primitive & kAlongAxis) != 0) == o.up;
 }
 
-/// Whether that triangle, seen along the axis, covers the position or lies within `reach` of it, m.
+/// True if the triangle, seen along the axis, covers the position or lies within `reach` of it, m.
 GI_FN inline bool covers(Surface const& s, vec3 position, RasterGrid const& grid, float reach)
 {
     auto const seen = [&](vec3 v) { return vec2{glm::dot(v, grid.right), glm::dot(v, grid.up)}; };
@@ -153,8 +157,8 @@ GI_FN inline bool covers(Surface const& s, vec3 position, RasterGrid const& grid
     return inside;
 }
 
-/// Whether a walk from the origin's true position can meet that triangle: the plane if it is a front; if it is a
-/// back, the triangle too, nearly.
+/// True if a walk from the true origin can hit the triangle: tests its plane for front faces, and for back faces
+/// also the triangle with a small tolerance.
 GI_FN inline bool can_be_hit(Surface const& s, std::uint32_t primitive, WalkOrigin const& o,
                              RasterGrid const& grid)
 {
@@ -187,7 +191,8 @@ GI_FN inline LayerHit nearest_layer(AxisView const& axis, View<Surface const> su
     Column first;
     std::uint32_t first_i = i[0], first_j = j[0];
     for (int attempt = 0; attempt < 4; ++attempt) {
-        // The nearest centre; then its neighbour across the nearer border, the other neighbour, and the diagonal.
+        // The nearest centre; then the neighbour across the nearer border, the other neighbour, and the diagonal
+        // one.
         int const to_x = attempt == 3 || (attempt == 1) == nearer_in_x ? int(attempt > 0) : 0;
         int const to_y = attempt == 3 || (attempt == 2) == nearer_in_x ? int(attempt > 0) : 0;
         std::uint32_t const ti = i[to_x], tj = j[to_y];

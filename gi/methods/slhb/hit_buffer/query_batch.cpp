@@ -16,7 +16,7 @@ struct TwoWords {
     W first, second;
 };
 
-/// Records of two words at index * 2^kStrideLog2 bytes: one load of 64 bits a lane instead of two of 32.
+/// Records of two words at index * 2^kStrideLog2 bytes: one 64-bit load per lane instead of two 32-bit loads.
 template <int kStrideLog2>
 TwoWords gather_pairs(void const* base, I index)
 {
@@ -32,7 +32,7 @@ TwoWords gather_pairs(void const* base, I index)
 
 struct LayerLanes {
     V depth;
-    W primitive; ///< with its facing
+    W primitive; ///< with its facing bit
 };
 
 template <bool kPacked>
@@ -54,8 +54,8 @@ LayerLanes load_layers(AxisPool const& pool, GridLanes const& g, I index)
     }
 }
 
-/// query_detail::look_into in lanes, less what a column without an own layer answers. Two vectors advance
-/// together, as each step waits for the one before it.
+/// SIMD form of query_detail::look_into, without the result of columns that lack an own layer. Two vectors
+/// advance together to hide latency, as each step depends on the previous one.
 template <bool kPacked>
 struct WalkLanes {
     static constexpr Floats d{};
@@ -67,7 +67,7 @@ struct WalkLanes {
     W own, own_facing;
     V sign, origin, margin;
     I step, at, left, answer_at;
-    V best, own_depth; ///< along the walk, from the origin
+    V best, own_depth; ///< along the walk, relative to the origin
     Mask found = hn::FirstN(d, 0), hit = found, running;
 
     WalkLanes(AxisPool const& p, GridLanes const& grid, QueryBatch const& b, std::size_t first, I begin, I end)
@@ -97,7 +97,7 @@ struct WalkLanes {
     void next_layer()
     {
         I const zero = hn::Zero(integers);
-        // Not by `running`: so the next layers can be under way while these are judged.
+        // Not masked by `running`, so that the next layers can be loaded while these are tested.
         LayerLanes const layer = load_layers<kPacked>(pool, g, hn::IfThenElseZero(hn::Gt(left, zero), at));
         V const from_origin = hn::MulSub(sign, layer.depth, origin), distance = hn::Abs(from_origin);
         Mask const same = hn::RebindMask(d, hn::Eq(hn::And(layer.primitive, hn::Set(words, kPrimitiveMask)), own));
@@ -113,7 +113,7 @@ struct WalkLanes {
         Mask const new_hit = hn::And(found, first_beyond);
         hit = hn::Or(hit, new_hit);
         answer_at = hn::IfThenElse(hn::RebindMask(integers, new_hit), at, answer_at);
-        // Nothing further on can be a nearer own layer.
+        // No later layer can be a nearer own layer.
         Mask const past = hn::And(hn::Gt(from_origin, margin), hn::Or(hit, hn::Not(found)));
         Mask const done = hn::Or(past, hn::And(hit, hn::Lt(best, hn::Zero(d))));
         at = hn::Add(at, step);
@@ -124,8 +124,8 @@ struct WalkLanes {
 
 /// Bits per lane of a pair of vectors.
 struct Answer {
-    std::uint32_t found;    ///< the column has the own layer, and so an answer, be it that nothing is hit
-    std::uint32_t doubtful; ///< the answer is right if the surface can be hit from there
+    std::uint32_t found;    ///< the column has the own layer, and so a result (possibly no hit)
+    std::uint32_t doubtful; ///< the result is right only if the surface can be hit from the origin
 };
 
 template <bool kPacked>
@@ -180,7 +180,7 @@ Answer answer_pair(AxisPool const& pool, GridLanes const* grids, QueryBatch& b, 
     return {one.found | two.found << lanes, one.doubtful | two.doubtful << lanes};
 }
 
-/// Rounded up to whole pairs of vectors, which the arrays are made for.
+/// Rounded up to whole pairs of vectors, as the arrays are allocated.
 std::size_t padded(std::size_t n) { return (n + 2 * kMostLanes - 1) / (2 * kMostLanes) * (2 * kMostLanes); }
 
 void copy_query(QueryBatch const& from, std::size_t i, QueryBatch& to, std::size_t k)
@@ -203,7 +203,7 @@ struct ManyGrids {
     RasterGrid const& of(std::size_t i) const { return pool.grids[axes[i]]; }
 };
 
-/// @param kBufferIsCold  few queries over many texels
+/// @param kBufferIsCold  few look-ups spread over many texels
 template <bool kBufferIsCold>
 struct OneGrid {
     static constexpr bool kMany = false, kCold = kBufferIsCold;
@@ -217,7 +217,7 @@ struct OneGrid {
     RasterGrid const& of(std::size_t) const { return plain; }
 };
 
-/// The batch is read and written as ten or eleven streams, which is more than the hardware foresees.
+/// Prefetches the batch: it is read and written as ten or eleven streams, more than the hardware prefetches.
 template <bool kWithAxes>
 void fetch_streams(QueryBatch& b, std::size_t i)
 {
@@ -228,7 +228,7 @@ void fetch_streams(QueryBatch& b, std::size_t i)
     for (auto* const a : {&b.hit, &b.hit_layer}) __builtin_prefetch(a->data() + i, 1);
 }
 
-/// Asks all queries of the batch at one attempt; indices of those that have no good answer yet go to `unsure`.
+/// Runs one attempt for all look-ups of the batch; indices of those without an accepted result go to `unsure`.
 template <class Grids>
 void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces, int attempt, QueryBatch& b,
          std::vector<std::uint32_t>& unsure)
@@ -250,7 +250,7 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
     };
     auto const queries_of = [&](std::size_t pair) { return std::min(two, n - pair * two); };
     auto const judge = [&](std::vector<std::uint32_t>& queries) {
-        for (std::uint32_t const q : queries) // their surfaces have come meanwhile
+        for (std::uint32_t const q : queries) // their surfaces have been prefetched by now
             if (!query_detail::can_be_hit(surfaces[b.hit[q] & kPrimitiveMask], b.hit[q], b.origin(q), grids.of(q)))
                 unsure.push_back(q);
         queries.clear();
@@ -291,7 +291,7 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
             for (std::size_t k = 0; k < queries_of(pair); ++k)
                 b.near_moving[first + k] = columns.moved[slot(pair) * lanes + k];
         std::uint32_t const there =
-            queries_of(pair) < 32 ? (1u << queries_of(pair)) - 1 : ~0u; // a pair has up to 32
+            queries_of(pair) < 32 ? (1u << queries_of(pair)) - 1 : ~0u; // a pair has up to 32 lanes
         for (std::uint32_t bits = a.doubtful & there; bits != 0; bits &= bits - 1) {
             std::uint32_t const q = std::uint32_t(first) + std::uint32_t(std::countr_zero(bits));
             __builtin_prefetch(&surfaces[b.hit[q] & kPrimitiveMask]);
@@ -308,7 +308,7 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
     std::ranges::sort(unsure);
 }
 
-/// What the nearest column answers without an own layer: the first face towards the walk.
+/// Result of the nearest column without an own layer: the first face towards the walk.
 void answer_plainly(AxisPool const& pool, std::size_t a, QueryBatch& b, std::size_t i)
 {
     WalkOrigin const o = b.origin(i);
@@ -355,7 +355,7 @@ void answer_all(AxisPool const& pool, std::size_t a, View<Surface const> surface
             if (next < unsure.size() && unsure[next] == k) {
                 ++next;
                 waiting[left++] = i;
-                // The first answer of a column with an own layer stands, if there is no good one.
+                // The first result of a column with an own layer is used if none is accepted.
                 if (b.hit_layer[i] != kNoLayerHit || again.hit_layer[k] == kNoLayerHit) continue;
             }
             b.hit[i] = again.hit[k];
@@ -402,7 +402,7 @@ void nearest_layers(AxisPool const& pool, View<Surface const> surfaces, QueryBat
 
 void nearest_layers(AxisPool const& pool, std::size_t a, View<Surface const> surfaces, QueryBatch& batch)
 {
-    constexpr std::size_t kWarm = 4; // queries per texel
+    constexpr std::size_t kWarm = 4; // look-ups per texel
     if (batch.size() < kWarm * pool.grids[a].texels())
         answer_all<OneGrid<true>>(pool, a, surfaces, batch);
     else

@@ -1,22 +1,22 @@
 #pragma once
-// Many queries at once: the vector form of nearest_layer. Queries whose nearest column does not speak for their
-// origin are gathered and asked again, in vectors too.
+// Many look-ups at once: the SIMD form of nearest_layer. Look-ups whose nearest column is not accepted are
+// gathered and tried with the next column, also in SIMD vectors.
 
 #include "gi/methods/slhb/hit_buffer/axis_pool.h"
 
 namespace gi {
 
-/// Origins and answers of queries in arrays of equal length.
+/// Origins and results of look-ups in arrays of equal length.
 struct QueryBatch {
     std::vector<float> x, y, z;          ///< m
     std::vector<std::uint32_t> triangle; ///< of the origin, with kAlongAxis and kWalkUp
     std::vector<float> slope;            ///< see WalkOrigin
-    std::vector<std::uint32_t> axis;     ///< of the pool; not read where all walk along one axis
+    std::vector<std::uint32_t> axis;     ///< index in the pool; ignored if all walk along one axis
     std::vector<float> hit_x, hit_y, hit_z;
     std::vector<std::uint32_t> hit;       ///< triangle with kAlongAxis, or kNoLayerHit
-    std::vector<std::uint32_t> hit_layer; ///< index into the pool's layers where there is a hit
-    /// Where `watched`, else empty: 1 = a column was asked that something moving is in, so that the answer might
-    /// be another one without it.
+    std::vector<std::uint32_t> hit_layer; ///< index into the pool's layers if there is a hit
+    /// If `watched`, else empty: 1 = the look-up read a column that contains dynamic geometry, so the result
+    /// might differ without it.
     std::vector<std::uint8_t> near_moving;
     bool watched = false;
 
@@ -33,9 +33,9 @@ struct QueryBatch {
     }
 };
 
-/// Every query along its own axis.
+/// Every look-up along its own axis.
 void nearest_layers(AxisPool const& pool, View<Surface const> surfaces, QueryBatch& batch);
-/// All along axis `a`.
+/// All look-ups along axis `a`.
 void nearest_layers(AxisPool const& pool, std::size_t a, View<Surface const> surfaces, QueryBatch& batch);
 
 } // namespace gi

@@ -1,7 +1,6 @@
 #pragma once
-// Which columns of texels the queries of a batch look into, vectors of them at a time, and how their memory is
-// brought near before they are walked along. For query_batch.cpp alone: its arrays
-// are as wide as the vectors that it is compiled for.
+// Finds the columns that the look-ups of a batch use, vector by vector, and prefetches their memory before they
+// are walked. For query_batch.cpp only: the arrays are as wide as the SIMD vectors of its compilation target.
 
 #include "gi/methods/slhb/hit_buffer/query_batch.h"
 #include "gi/raster/lanes.h"
@@ -13,7 +12,7 @@ namespace gi::query_lanes {
 
 using namespace lanes;
 
-/// The numbers of a grid, the same in all lanes or each lane's own.
+/// Parameters of a grid, the same in all lanes or different per lane.
 struct GridLanes {
     V right[3], up[3], axis[3], corner_x, corner_y, texel, per_texel, last_i, last_j, width, rounding;
     I first_offset, first_layer;
@@ -47,7 +46,7 @@ inline GridLanes own_grids(AxisPool const& pool, std::uint32_t const* axes)
 {
     Floats const d;
     Integers const integers;
-    // Beyond the last query of a batch there may be anything.
+    // Beyond the last look-up of a batch, axis indices may be arbitrary.
     W const most = hn::Set(Words(), std::uint32_t(pool.size() - 1));
     I const a = hn::BitCast(integers, hn::Min(hn::LoadU(Words(), axes), most));
     I const at = hn::Mul(a, hn::Set(integers, std::int32_t(sizeof(RasterGrid) / sizeof(float))));
@@ -78,8 +77,8 @@ inline GridLanes own_grids(AxisPool const& pool, std::uint32_t const* axes)
             pool.packed.empty() ? hn::Zero(d) : hn::GatherIndex(d, pool.packed_step.data(), a)};
 }
 
-/// Texel coordinates (whole numbers) of the column that is asked at an attempt: the nearest centre; then across
-/// the nearer border of its texel, across the other, and across both.
+/// Texel coordinates (whole numbers) of the column used by an attempt: the nearest centre; then across the nearer
+/// border of its texel, across the other, and across both.
 struct Cell {
     V i, j;
 };
@@ -102,19 +101,19 @@ inline Cell choose_cell(V x, V y, GridLanes const& g, int attempt)
     return {hn::IfThenElse(to_x, i, c.i), hn::IfThenElse(to_x, c.j, j)};
 }
 
-/// Which columns queries look into. Found for pairs of vectors ahead of the one that walks, so that their cache
-/// misses pass while others are answered.
+/// Columns used by look-ups. They are found for pairs of vectors ahead of the one being walked, so that cache
+/// misses overlap with other look-ups.
 struct Columns {
-    static constexpr std::size_t kPairs = 8, kRing = 2 * kPairs * kMostLanes; ///< of the newest pairs
+    static constexpr std::size_t kPairs = 8, kRing = 2 * kPairs * kMostLanes; ///< ring buffer of the newest pairs
     static constexpr std::size_t kAhead = 4, kLayersAhead = 2;                ///< pairs; of offsets, of layers
 
     alignas(64) float i[kRing];
     alignas(64) float j[kRing];
     alignas(64) std::int32_t texel[kRing];       ///< into the pool's offsets
     alignas(64) std::int32_t first_layer[kRing]; ///< of the axis
-    alignas(64) std::int32_t begin[kRing];       ///< layers of the column, from the axis' first on
+    alignas(64) std::int32_t begin[kRing];       ///< layers of the column, relative to the axis' first
     alignas(64) std::int32_t end[kRing];
-    alignas(64) std::uint8_t moved[kRing]; ///< something moving is in the column
+    alignas(64) std::uint8_t moved[kRing]; ///< the column contains dynamic geometry
 };
 
 inline void find_columns(GridLanes const& g, int attempt, QueryBatch const& b, std::size_t first, std::size_t at,
@@ -134,7 +133,7 @@ inline void find_columns(GridLanes const& g, int attempt, QueryBatch const& b, s
     hn::Store(g.first_layer, integers, columns.first_layer + at);
 }
 
-/// The two steps of fetching are worth it where buffers lie in no cache.
+/// Fetching in two steps pays off if the buffers are not in the cache.
 inline void fetch_offsets(AxisPool const& pool, Columns const& columns, std::size_t column, std::size_t n)
 {
     if (pool.by_ranges()) {
@@ -144,11 +143,11 @@ inline void fetch_offsets(AxisPool const& pool, Columns const& columns, std::siz
     for (std::size_t k = column; k < column + n; ++k) {
         std::uint32_t const* const offset = pool.offset.data() + columns.texel[k];
         __builtin_prefetch(offset);
-        __builtin_prefetch(offset + 1); // often in the next line for one of a vector, which all would wait for
+        __builtin_prefetch(offset + 1); // often in the next cache line for one lane, for which all would wait
     }
 }
 
-/// By plain loads: gathers that miss address translations were measured to be far slower.
+/// Uses plain loads: gathers that miss in the TLB were measured to be far slower.
 inline void find_ranges(AxisPool const& pool, Columns& columns, std::size_t column, std::size_t n)
 {
     for (std::size_t k = column; k < column + n; ++k) {
@@ -169,7 +168,7 @@ void fetch_layers(std::vector<Record> const& layers, Columns const& columns, std
     }
 }
 
-/// After the fetch: so that address translations are there when a gather asks.
+/// Called after the prefetch, so that address translations are in the TLB for the gather.
 template <class Record>
 void touch_layers(std::vector<Record> const& layers, Columns const& columns, std::size_t column, std::size_t n)
 {

@@ -14,18 +14,18 @@ void check_kernels_can(Camera const& camera, SlhbSettings const& s)
     char const* const suggestion = "leave it out, or render with --device cpu";
     if (camera.orthographic)
         throw InputError("--device cuda with an orthographic camera",
-                         "what it sees first takes exact rays, which the device lacks",
+                         "its first surfaces need exact rays, which the device lacks",
                          "choose a perspective camera, or --device cpu");
-    if (s.cone > 0) throw InputError("--device cuda with --cone", "its kernels know one column only", suggestion);
+    if (s.cone > 0) throw InputError("--device cuda with --cone", "its kernels use one column only", suggestion);
     if (s.packed)
         throw InputError("--device cuda with --packed", "its kernels read plain layers only", suggestion);
     if (s.interleave > 1)
-        throw InputError("--device cuda with --interleave", "its kernels take indirect light in every pixel",
+        throw InputError("--device cuda with --interleave", "its kernels compute indirect light in all pixels",
                          suggestion);
     if (s.cache == RadianceCaching::on)
-        throw InputError("--device cuda with --radiance-cache on", "its kernels follow paths to their end",
+        throw InputError("--device cuda with --radiance-cache on", "its kernels do not end paths in a cache",
                          suggestion);
-    if (s.gather) throw InputError("--device cuda with --gather", "its kernels choose axes by chance", suggestion);
+    if (s.gather) throw InputError("--device cuda with --gather", "its kernels choose axes at random", suggestion);
 }
 
 template <Space S>
@@ -48,7 +48,7 @@ KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const>
     make_lamps();
 }
 
-/// Also the last surface sends paths along axes.
+/// Paths also leave the last surface along axes.
 template <Space S>
 bool KernelRenderer<S>::meets_light() const
 {
@@ -101,9 +101,9 @@ void KernelRenderer<S>::changed(Changes const& c)
     bool axes = axes_.walks() != walks(), light_points = changes_lamps(c);
     if (c.geometry) {
         if (grow(grid_bounds_, world_.bounds)) {
-            if (slhb_.schedule != Schedule::streamed) // which is built anew in every pass
+            if (slhb_.schedule != Schedule::streamed) // streamed buffers are rebuilt in every pass
                 report_.lose("frames that left the bounds of the hit buffers, which were built anew");
-            axes = light_points = true; // the maps of parallel light hold the same bounds
+            axes = light_points = true; // the maps of parallel lights depend on the same bounds
         }
         axes_.set().moved();
         light_points_->moved();

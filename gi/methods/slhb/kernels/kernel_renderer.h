@@ -1,11 +1,11 @@
 #pragma once
-// Passes of the method slhb by kernels in one space, from pass to pass and, where things move, from frame to
-// frame: SlhbRenderer's counterpart. Points on lamps, axes and random numbers are the same, so that both trace the
-// same paths but for rounding.
+// Counterpart of SlhbRenderer that runs the passes of slhb as kernels in one space, and keeps structures between
+// passes and frames. Light points, axes and random numbers are the same, so that both trace the same paths up to
+// rounding.
 //
-// Hit buffers are built of all that there is: where something has moved, those that paths take are built anew
-// (what moves is not appended to what stays, as on the CPU), and so are all shadow maps. Views take no light from
-// each other, and paths share no vertices. What paths lack is in path_kernel.h.
+// Hit buffers are built from all triangles: after motion, the buffers used by paths and all shadow maps are
+// rebuilt (dynamic geometry is not added to static buffers as on the CPU). Views do not reuse each other's light,
+// and paths do not share vertices. For the limits of paths see path_kernel.h.
 
 #include "gi/methods/slhb/directions/frame_axes.h"
 #include "gi/methods/slhb/hit_buffer/motion.h"
@@ -17,7 +17,8 @@
 
 namespace gi {
 
-/// Throws InputError on what kernels cannot do: an orthographic camera, --cone, --gather, --packed, --interleave.
+/// Throws InputError on features that kernels lack: an orthographic camera, --cone, --gather, --packed,
+/// --interleave.
 void check_kernels_can(Camera const& camera, SlhbSettings const& settings);
 
 template <Space S>
@@ -33,10 +34,10 @@ public:
     DynamicUpdate dynamic_update() const { return axes_.dynamic_update(); }
     /// Throws InputError on orthographic cameras.
     void see(std::span<FrameView const> views);
-    /// @param endings  of no account: each path finds its own
+    /// @param sharing  ignored: paths do not share vertices
     void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::none);
     void add_motion(std::size_t view, Picture& picture) const;
-    /// None is taken from a partner.
+    /// Empty: no light is reused from a partner.
     std::span<std::uint32_t const> light_from(std::size_t) const { return {}; }
     double rays() const { return double(queries_ + shadow_lookups_); }
     std::uint64_t lost_layers() const { return axes_.lost(); }
@@ -44,14 +45,14 @@ public:
 
 private:
     struct View {
-        CameraRays rays, earlier; ///< through the middle of the lens
+        CameraRays rays, earlier; ///< through the centre of the lens
         int width = 0, height = 0;
-        std::vector<std::uint8_t> hides; ///< what `hidden` was made of
-        Buffer<std::uint8_t, S> hidden;  ///< as FrameView has it
+        std::vector<std::uint8_t> hides; ///< the pixels that `hidden` was made from
+        Buffer<std::uint8_t, S> hidden;  ///< as in FrameView
         std::size_t hidden_pixels = 0;
         CameraRays eye{}; ///< of the last pass
         std::uint32_t index = 0;
-        Buffer<NearestTexel, S> primary; ///< the same
+        Buffer<NearestTexel, S> primary; ///< of the last pass
         std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
     };
 
@@ -64,7 +65,7 @@ private:
     World const& world_;
     RenderSettings settings_;
     SlhbSettings const& slhb_ = settings_.slhb;
-    std::size_t first_moving_; ///< triangle
+    std::size_t first_moving_; ///< index of the first dynamic triangle
     Report& report_;
     std::vector<View> views_;
     TriangleSoup soup_;
@@ -75,8 +76,9 @@ private:
     std::optional<LightPoints> light_points_;
     EarlierCorners earlier_;
     std::uint64_t queries_ = 0, shadow_lookups_ = 0;
-    std::uint64_t hidden_ = 0, pixels_ = 0; ///< not traced, as nobody sees them; all, in all passes
-    std::uint64_t earlier_maps_ = 0;        ///< of lamps that are no more
+    std::uint64_t hidden_ = 0, pixels_ = 0; ///< pixels not traced because they are hidden; all pixels; over all
+                                            ///< passes
+    std::uint64_t earlier_maps_ = 0;        ///< built for earlier light points that no longer exist
 };
 
 } // namespace gi

@@ -1,6 +1,6 @@
 #pragma once
-// What kernels of the method slhb read of a world, and what they make of it: everything lies in one space, and
-// only the samples of paths and, where they are asked for, first surfaces come back.
+// Data that the kernels of slhb read from a world and build from it: everything is in one space, and only path
+// samples and, on request, first surfaces are copied back.
 
 #include "gi/methods/slhb/directions/axis_set.h"
 #include "gi/methods/slhb/hit_buffer/build_hit_buffer.h"
@@ -23,7 +23,7 @@ public:
     {
     }
 
-    /// Brings what has changed, but nothing of what lets rays through. @param soup  as it is now
+    /// Copies the changes. Coverage (transparency) must not have changed. @param soup  current triangles
     void update(World const& world, TriangleSoup const& soup, Changes const& changes)
     {
         world_.update(world, changes);
@@ -82,14 +82,14 @@ public:
         return map;
     }
 
-    /// What all paths of a pass have in common. @param chances  of the lamps; empty = equal
+    /// Sets the data shared by all paths of a pass. @param chances  of the light points; empty = equal
     void start_pass(AxisSet const& axes, AliasTableView chances)
     {
         std::vector<AxisView> views;
         for (HitBufferOn<S> const& b : axes_) views.push_back({{b.view(), {}}});
         axis_views_ = upload<S>(views);
         few_ = upload<S>(axes.few());
-        if (tables_.size() != axes.tables().entries.size()) { // of the stored schedule, once
+        if (tables_.size() != axes.tables().entries.size()) { // stored schedule, once only
             tables_ = upload<S>(axes.tables().entries);
             directions_ = upload<S>(axes.tables().axes);
             solid_angles_ = upload<S>(axes.tables().solid_angles);
@@ -101,7 +101,7 @@ public:
         chances_ = upload<S>(std::vector<AliasEntry>(chances.entries.begin(), chances.entries.end()));
     }
 
-    /// @param paths  all that does not lie in the space, and what is of the view; the rest is filled in
+    /// @param paths  with the host's parameters and those of the view; this function fills in the rest
     std::vector<PathSample> trace(TracePaths paths)
     {
         std::size_t const pixels = paths.primary.size();
@@ -142,7 +142,7 @@ private:
     Buffer<vec3, S> directions_;
     Buffer<float, S> solid_angles_;
     AxisChoice choice_;
-    std::vector<std::array<Buffer<NearestTexel, S>, 6>> maps_; ///< per lamp, its faces
+    std::vector<std::array<Buffer<NearestTexel, S>, 6>> maps_; ///< per light point, its faces
     Buffer<LightPointView, S> light_points_;
     Buffer<PathSample, S> samples_;
     PathKernelCounts counts_;

@@ -1,5 +1,5 @@
 #pragma once
-// What TracePaths does; included by path_kernel.h.
+// Implementation of TracePaths; included by path_kernel.h.
 
 namespace gi {
 
@@ -12,7 +12,7 @@ GI_FN inline TracePaths::State TracePaths::start(std::size_t pixel) const
     s.triangle = primary[pixel].primitive;
     s.direction = ray.direction;
     if (s.triangle == kNoPrimitive) return s;
-    // The raster says which triangle; the ray says where on its plane.
+    // The raster gives the triangle; the ray gives the point on its plane.
     Surface const& surface = world.surfaces[s.triangle];
     vec3 const normal = glm::cross(surface.edge1, surface.edge2);
     float const t = glm::dot(normal, surface.corner - ray.origin) / glm::dot(normal, ray.direction);
@@ -29,7 +29,7 @@ GI_FN inline vec3 TracePaths::sky(State const& s) const
     return s.throughput * light;
 }
 
-/// Of a lamp that the camera or a walk has met.
+/// Emission of a light hit by the camera or a walk.
 GI_FN inline vec3 TracePaths::emission(State const& s, ShadingPoint const& at) const
 {
     if (s.scatterings == 0) return at.emission;
@@ -58,7 +58,7 @@ GI_FN inline vec3 TracePaths::direct(State const& s, ShadingPoint const& at, vec
     BsdfValue const bsdf = evaluate(at.bsdf, wo, wi);
     vec3 value = bsdf.f * light.radiance * (std::abs(wi.z) / light.pdf);
     if (!(max_component(value) > 0)) return vec3{0};
-    // No walk finds a lamp from a narrow lobe.
+    // No walk from a narrow lobe finds a light.
     if (!light.delta && !lit_alone(s, narrow) && (light.distance == kInf || !narrow))
         value *= power_heuristic(light.pdf, narrow ? bsdf.pdf : glm::max(wi.z, 0.0f) * kInvPi);
     vec2 const u = s.random.noise2(s.dimension(PathDimension::shadow));
@@ -77,7 +77,7 @@ GI_FN inline bool TracePaths::leave(State& s, ShadingPoint const& at, vec3 wo, b
         return false;
     }
     if (!(wo.z > 0)) return false;
-    // The last surface would only bring light that walks can meet.
+    // Beyond the last surface, only lights that walks can hit would contribute.
     if (s.scatterings == bounces &&
         (lit_alone(s, narrow) || (world.environment_radiance.empty() && world.emitter_pdf.empty())))
         return false;

@@ -45,7 +45,7 @@ LightPoints::LightPoints(World const& world, Bounds const& bounds, TriangleSoup 
     fixed_ = world.emitters.empty() && world.environment_select.empty() && lights <= settings.count;
     if (!fixed_) {
         light_points_.resize(settings.count);
-        // Points on lamps that move do not stay.
+        // Points on moving lights are not kept.
         if (std::ranges::any_of(world.emitters, [&](std::uint32_t t) { return t >= first_moving_; }))
             settings_.fresh = settings.count;
         return;
@@ -83,8 +83,8 @@ void LightPoints::refresh(std::uint32_t pass)
         if (moved_) build({}, pass);
         return;
     }
-    order_.update(world_); // which may have moved
-    // The points in use are successive ones.
+    order_.update(world_); // lights may have moved
+    // The points in use have successive numbers.
     std::vector<LightPoint*> fresh;
     std::uint64_t const first = std::uint64_t(pass) * settings_.fresh;
     for (std::uint64_t number = first; number < first + light_points_.size(); ++number) {

@@ -16,7 +16,7 @@ void add_up(AliasTable const& table, std::vector<double>& sums)
     for (AliasEntry const& e : table.entries) sums.push_back(sum += double(e.probability));
 }
 
-/// The entry in whose share u lies; u becomes its place in there.
+/// Returns the entry whose interval contains u; u becomes the relative position in that interval.
 std::uint32_t pick(std::vector<double> const& sums, double& u)
 {
     double const at = u * sums.back();
@@ -93,7 +93,7 @@ void LightPool::fill(LightOrder const& order, World const& world, std::uint32_t 
             at = shading_detail::SurfacePoint{s, square_to_triangle(p.u)}.position();
             near = 1;
             back = s.is(Surface::kDoubleSided) ? 1 : 0;
-            // Its radiance is what a point before it would get.
+            // Its radiance towards a point in front of it.
             LightSample const seen = sample_light(w, p.choice, at + std::sqrt(doubled) * facing, p.u);
             power = luminance(seen.radiance) * 0.5f * doubled / p.choice.probability;
             p.position = at;
@@ -154,7 +154,7 @@ ChosenLight LightPool::choose(vec3 position, vec3 normal, float u, float pick) c
         up_to += weight[k];
         chosen += up_to <= wanted ? 1 : 0;
     }
-    while (chosen > 0 && !(weight[chosen] > 0)) --chosen; // by rounding alone
+    while (chosen > 0 && !(weight[chosen] > 0)) --chosen; // only because of rounding
     if (!(weight[chosen] > 0)) return {};
     return {&lights_[group[chosen / kCandidates] * kCandidates + chosen % kCandidates],
             sum / (weight[chosen] * float(count))};

@@ -1,6 +1,6 @@
 #pragma once
-// Light samples that are drawn once for a pass, from which every path chooses its own: tables of a sky of millions
-// of texels are read once for each sample, not once for each path.
+// Light samples drawn once per pass, from which every path chooses: the large tables of a sky with millions of
+// texels are read once per sample, not once per path.
 
 #include "gi/scene/shading/light_sampling.h"
 
@@ -8,35 +8,36 @@
 
 namespace gi {
 
-/// All lights of a world in one order, neighbours beside each other, so that numbers that are spread well choose
-/// lights (and texels of a sky) that are: every pass has its share of a small sun. Alias tables leave that to
-/// chance.
+/// All lights of a world in an order that keeps neighbours together, so that well-distributed numbers choose
+/// well-distributed lights (and sky texels): every pass gets its share of a small sun. Alias tables do not
+/// preserve the distribution.
 class LightOrder {
 public:
-    /// As the world is now. It outlives this.
+    /// Rebuilds the order for the current world, which must outlive this object.
     void update(World const& world);
-    /// @param u  in [0, 1), all 53 bits of it
+    /// @param u  in [0, 1), with all 53 bits used
     LightChoice choose(double u) const;
 
 private:
     World const* world_ = nullptr;
-    std::vector<double> light_sums_, texel_sums_; ///< of probabilities
-    double texel_total_ = 0;                      ///< of the table that they belong to
+    std::vector<double> light_sums_, texel_sums_; ///< ///< cumulative probabilities
+    double texel_total_ = 0;                      ///< of the table from which they were computed
 };
 
-/// The light sample where it does not depend on the point that is lit; else pdf = 0.
+/// Returns the light sample if it is the same for all lit points; else pdf = 0.
 LightSample distant_light(World const& world, LightChoice const& choice, vec2 u);
 
 struct PooledLight {
     LightChoice choice;
     vec2 u{0};         ///< where on the light
     LightSample light; ///< see distant_light
-    /// A point on a surface that emits the same everywhere:
+    /// A point on a uniformly emitting surface:
     vec3 position{0}, facing{0}, radiance{0}; ///< m; unit; W/(m^2 sr)
-    float density = 0;                        ///< of the point, 1/m^2 times that of its choice; 0 = it is none
+    float density = 0;                        ///< of the point, 1/m^2, times the probability of choosing its
+                                              ///< light; 0 = no such point
     bool both_sides = false;
 
-    /// What sample_light says for that point.
+    /// Returns what sample_light returns for a lit point.
     LightSample seen_from(WorldView const& world, vec3 point) const
     {
         if (light.pdf > 0) return light;
@@ -55,43 +56,49 @@ struct PooledLight {
     }
 };
 
-/// One of the pool, drawn by resampled importance sampling (Talbot et al. 2005).
+/// A sample from the pool, drawn by resampled importance sampling (Talbot et al. 2005).
 struct ChosenLight {
-    PooledLight const* light = nullptr; ///< null = none of the candidates brings anything
-    float weight = 0;                   ///< that its contribution over its pdf is multiplied by
+    PooledLight const* light = nullptr; ///< null = no candidate contributes
+    float weight = 0;                   ///< factor of its contribution / pdf
 };
 
-/// Samples in groups of kCandidates. A group has one sample of each of kCandidates parts of all lights, and groups
-/// follow each other as samples do within a part: a number in [0, 1) that is spread well chooses groups that are.
+/// Samples in groups of kCandidates. The lights are split into kCandidates parts and a group has one sample of
+/// each part. Groups are ordered like the samples within a part, so that well-distributed numbers in [0, 1)
+/// choose well-distributed groups.
 class LightPool {
 public:
     static constexpr std::uint32_t kCandidates = 8;
-    /// Where there are more lights, a choice is made among kMostRounds groups.
+    /// With more lights than kManyLights, a choice is made among kMostRounds groups.
     static constexpr std::uint32_t kManyLights = 512, kMostRounds = 4;
 
-    /// @param groups  > 0  @param pass  decides which samples
+    /// @param groups  > 0  @param pass  selects the samples
     void fill(LightOrder const& order, World const& world, std::uint32_t groups, std::uint64_t seed,
               std::uint32_t pass);
     bool empty() const { return lights_.empty(); }
 
-    /// Of one group, or several, one sample, with chance in proportion to about what it would bring to a matt
-    /// surface where nothing is in the way: its luminance times the cosines over the squared distance.
-    /// @param normal  unit, on the side of the viewer  @param u  which group, pick  which sample of it; in [0, 1)
+    /// Chooses a sample from one or several groups, with probability roughly proportional to its unoccluded
+    /// contribution to a diffuse surface: luminance times the cosines over the squared distance.
+    /// @param normal  unit, on the viewer's side  @param u, pick  select the group and the sample within it; in
+    ///   [0, 1)
     ChosenLight choose(vec3 position, vec3 normal, float u, float pick) const;
 
 private:
-    /// What decides chances, per group. A point at `at` if `near` is 1, else the direction to it.
+    /// Data for the probabilities, per group. (x, y, z) is a point if `near` is 1, else the direction to the
+    /// light.
     struct Group {
         using Row = std::array<float, kCandidates>;
         alignas(32) Row x, y, z, near;
-        alignas(32) Row power;                        ///< luminance over the density, of area, direction or choice
-        alignas(32) Row facing_x, facing_y, facing_z; ///< normal of the light; 0 = it shines to all sides alike
-        alignas(32) Row everywhere, back;             ///< cosine where it has no normal; of what its back sends
+        alignas(32) Row power;                        ///< luminance / density (per area, per solid angle, or of
+                                                      ///< the choice)
+        alignas(32) Row facing_x, facing_y, facing_z; ///< normal of the light; 0 = emits equally in all
+                                                      ///< directions
+        alignas(32) Row everywhere, back;             ///< cosine used if there is no normal; 1 if the back emits
+                                                      ///< too
     };
     static void weigh(Group const& from, vec3 position, vec3 normal, float* weight);
 
     std::vector<Group> groups_;
-    std::uint32_t rounds_ = 1; ///< groups that a choice is made among
+    std::uint32_t rounds_ = 1; ///< number of groups among which a choice is made
     std::vector<PooledLight> lights_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// The first surfaces of a pass: one G-buffer of the whole picture, every pixel seen through the same point of it;
-// passes differ in that point, so that their mean has the pixel filter.
+// The first surfaces of a pass: one G-buffer of the whole picture, in which all pixels use the same subpixel
+// position; it differs between passes, so that their mean contains the pixel filter.
 
 #include "gi/methods/slhb/hit_buffer/cut_outs.h"
 #include "gi/methods/slhb/tracer/tracer.h"
@@ -11,9 +11,9 @@
 
 namespace gi {
 
-/// The point of every pixel that a pass looks through, (0, 0) its corner.
+/// Returns the subpixel position of a pass; (0, 0) is the pixel's corner.
 vec2 place_in_pixel(PixelFilter filter, std::uint64_t seed, std::uint32_t pass);
-/// Nothing nearer than this is seen, m.
+/// Near plane distance, m.
 inline float near_plane(Bounds const& bounds) { return 1e-5f * glm::max(bounds.radius(), 1e-30f); }
 
 class PrimaryMap {
@@ -21,18 +21,18 @@ public:
     PrimaryMap(TriangleSoup const& soup, CutOuts const& cut_outs, RenderSettings const& settings, int width,
                int height);
 
-    /// Rasterises the view of a pass. @param camera  without a lens  @param near_m  what is nearer is not seen
+    /// Rasterises the view of a pass. @param camera  without a lens  @param near_m  distance of the near plane
     void refresh(CameraRays const& camera, float near_m, std::uint32_t pass);
-    /// The same, and keeps what is seen of the triangles before `first_moving` alone.
+    /// The same, and also keeps the view of only the triangles before `first_moving`.
     void refresh_pair(CameraRays const& camera, float near_m, std::uint32_t pass, std::size_t first_moving);
-    /// The view of a pass that was rasterised elsewhere. @param texels  in rows
+    /// Sets the view of a pass that was rasterised elsewhere. @param texels  row by row
     void take(CameraRays const& camera, std::uint32_t pass, std::vector<NearestTexel> texels);
-    /// Of pixels first..last - 1, in rows.
+    /// Returns the path starts of pixels first..last - 1, row by row.
     void hits(std::size_t first, std::size_t last, std::vector<PathStart>& out) const;
-    /// Of pixels as they are without what moves; after refresh_pair.
+    /// The same for the given pixels without dynamic geometry; after refresh_pair.
     void hits_behind(std::span<std::uint32_t const> pixels, std::vector<PathStart>& out) const;
 
-    /// The pixel whose ray of this pass goes nearest by a point; none where that is outside.
+    /// Returns the pixel whose ray in this pass is nearest to a point; none if the point is outside the picture.
     std::optional<std::size_t> pixel_near(vec3 point) const;
     std::uint32_t triangle(std::size_t pixel) const { return map_.texels[pixel].primitive; }
     int width() const { return width_; }
@@ -52,7 +52,7 @@ private:
     std::uint64_t seed_;
     Projection projection_;   ///< of the camera
     vec2 at_{0.5f};           ///< position in the pixel
-    NearestMap map_, behind_; ///< the second without what moves
+    NearestMap map_, behind_; ///< the second without dynamic geometry
 };
 
 } // namespace gi

@@ -1,19 +1,19 @@
 #pragma once
-// Looking into a shadow map, on the CPU and in kernels: for whatever type has `parallel`, `grid`, `faces` and
-// texels(face), as ShadowMap and ShadowMapView do. What a look-up decides is said in shadow_map.h.
+// Shadow map look-ups on the CPU and in kernels, for any type with `parallel`, `grid`, `faces` and texels(face),
+// like ShadowMap and ShadowMapView. shadow_map.h describes how a look-up decides.
 
 #include "gi/raster/nearest_map.h"
 
 namespace gi {
 
-/// A texel for a point.
+/// The shadow map texel chosen for a point.
 struct ShadowPlace {
-    NearestTexel const* texel = nullptr; ///< null = nothing can be in the way
+    NearestTexel const* texel = nullptr; ///< null = nothing can block the light
     float depth = 0;                     ///< of the lit surface at the texel's centre, m
-    float side = 0;                      ///< of the texel there, m
+    float side = 0;                      ///< width of the texel at that depth, m
 };
 
-/// A ShadowMap that kernels can see.
+/// A ShadowMap that kernels can read.
 struct ShadowMapView {
     bool parallel = false;
     RasterGrid grid;
@@ -25,7 +25,7 @@ struct ShadowMapView {
 
 namespace shadow_detail {
 
-/// Of the four texels around a point, one with the probability of its bilinear weight.
+/// Picks a texel coordinate around a point with the probability of its (bi)linear weight.
 GI_FN inline std::uint32_t pick(float at, float u, std::uint32_t count)
 {
     float const shifted = std::floor(at - 0.5f + u);
@@ -44,8 +44,8 @@ GI_FN inline int face_of(vec3 d)
 template <class Map>
 GI_FN ShadowPlace look(Map const& map, vec3 position, vec3 normal, vec2 u)
 {
-    // Where the surface is met by the line through the texel's centre, no farther from the point than a surface
-    // that is grazed steeply would be.
+    // Depth offset to where the line through the texel's centre meets the lit surface's plane, limited as on a
+    // surface seen at a steep grazing angle.
     constexpr float kSteepest = 8;
     auto const shift = [&](vec3 off, vec3 line, float texel) {
         float const cosine = glm::dot(normal, line), most = kSteepest * texel;
@@ -65,7 +65,7 @@ GI_FN ShadowPlace look(Map const& map, vec3 position, vec3 normal, vec2 u)
     PerspectiveGrid const& g = map.faces[f];
     NearestTexel const* const texels = map.texels(f);
     float const w = glm::dot(g.forward, way);
-    if (texels == nullptr || !(w > g.near_m)) return {}; // behind a lamp that shines to one side, or at the lamp
+    if (texels == nullptr || !(w > g.near_m)) return {}; // behind a one-sided light, or at the light itself
     float const per_subpixel = 1 / (w * g.subpixels);
     std::uint32_t const i = pick(glm::dot(g.to_x, way) * per_subpixel, u.x, g.width);
     std::uint32_t const j = pick(glm::dot(g.to_y, way) * per_subpixel, u.y, g.height);
@@ -74,14 +74,14 @@ GI_FN ShadowPlace look(Map const& map, vec3 position, vec3 normal, vec2 u)
     return {texels + (std::size_t(j) * g.width + i), w + shift(way - w * line, line, texel), texel};
 }
 
-/// @param triangle  that is lit, at `position`
+/// @param triangle  the lit triangle, at `position`
 template <class Map>
 GI_FN bool lit(Map const& map, ShadowPlace const& place, View<Surface const> surfaces, vec3 position,
                std::uint32_t triangle)
 {
-    constexpr float kRounding = 1e-5f, kNear = 4; // of the depth; texels
-    // What one surface may stand above its own plane within a texel, where it is made of smaller triangles.
-    constexpr float kBumps = 0.1f, kAlike = 0.8f; // texels; cosine between their normals
+    constexpr float kRounding = 1e-5f, kNear = 4; // relative to the depth; in texels
+    // How far a finely tessellated surface may rise above its own plane within a texel.
+    constexpr float kBumps = 0.1f, kAlike = 0.8f; // in texels; cosine between the triangles' normals
     if (place.texel == nullptr || place.texel->primitive == triangle || place.texel->primitive == kNoPrimitive)
         return true;
     float const stored = map.parallel ? -place.texel->key : 1 / place.texel->key;

@@ -91,7 +91,7 @@ void ShadowMapBuilder::swap_moving(int face, bool back, ShadowMap& map, TakenTex
 {
     NearestMap& nearest = map.maps[std::size_t(face)];
     auto& under = taken[std::size_t(face)];
-    // A texel may be there several times: only what was first to be taken off is what it was.
+    // A texel may be listed several times; only its first entry holds the original content.
     auto const swap = [&](auto& entry) { std::swap(nearest.texels[entry.first], entry.second); };
     if (back)
         std::for_each(under.rbegin(), under.rend(), swap);

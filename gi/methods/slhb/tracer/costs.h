@@ -1,6 +1,6 @@
 #pragma once
-// What the parts of a picture cost, s on one core: rough, from the machine and scenes of docs/results. The plan
-// compares them; they are constants, so that the same call always has the same plan.
+// Rough costs of the parts of a picture, in seconds on one core, from the machine and scenes of docs/results. The
+// plan compares them; they are constants, so that the same call always gives the same plan.
 
 #include "gi/scene/model/world.h"
 
@@ -10,12 +10,12 @@
 namespace gi {
 
 struct Costs {
-    double triangles, layers; ///< layers: per texel
-    double direct, bounce;    ///< per pixel, with what is looked up
-    double ray, shadow_ray;   ///< exact, incoherent
-    double bvh;               ///< to build
+    double triangles, layers; ///< numbers of triangles, and of layers per texel
+    double direct, bounce;    ///< per pixel, including look-ups
+    double ray, shadow_ray;   ///< per exact, incoherent ray
+    double bvh;               ///< ///< building it
 
-    /// @param layers_each  see HitBuffer; per texel that has any
+    /// @param layers_each  mean number of layers per non-empty texel, see HitBuffer
     Costs(World const& world, double layers_each)
         : triangles(double(world.triangles.size())), layers(std::max(1.0, layers_each))
     {

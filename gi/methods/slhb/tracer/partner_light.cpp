@@ -6,16 +6,16 @@
 namespace gi {
 namespace {
 
-/// Shading normals that differ more see other light.
+/// Smallest cosine between shading normals at which light counts as equal.
 constexpr float kSameNormal = 0.98f;
-/// The partner's point may lie so many of its pixels aside and off the plane.
+/// Largest distance of the partner's point within and from the surface's plane, in the partner's pixels.
 constexpr float kAside_px = 1.5f, kOff_px = 0.25f;
-/// The angle between the views over the GGX alpha of a lobe.
+/// Largest angle between the views, relative to the lobe's GGX alpha.
 constexpr float kShareOfLobe = 0.2f;
-/// Where an albedo is darker, light over it is not known.
+/// Light over smaller albedos is unknown.
 constexpr float kDark = 1e-3f;
 
-/// As alpha of GGX; 0 = there are directions that bring far more light than others.
+/// Width of the lobes as GGX alpha; 0 = some lobe is narrow.
 float lobe_width(Bsdf const& b)
 {
     if (bsdf_detail::is_matt(b)) return kInf;
@@ -66,7 +66,7 @@ std::uint32_t PartnerLight::find(PathStart const& start, PathSample& sample) con
 
 bool same_surface(PixelSums const& a, PixelSums const& b, double pixel_m)
 {
-    // Means of normals that differ are shorter than one.
+    // The mean of different normals is shorter than 1.
     if (!(glm::dot(a.normal, b.normal) > double(kSameNormal) * a.hits * b.hits)) return false;
     dvec3 const apart = a.position / a.hits - b.position / b.hits;
     return std::abs(glm::dot(apart, a.normal / a.hits)) < 2 * double(kOff_px) * pixel_m;

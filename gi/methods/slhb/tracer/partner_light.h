@@ -1,9 +1,9 @@
 #pragma once
-// Light that one view of a moment takes over from another, as the two eyes of a person see nearly the same: a
-// pixel whose surface point the partner sees too takes L1 and L2 of the partner's path there over the albedo. It
-// is valid on matt surfaces, and on glossy ones whose lobe is wide against the angle between the views; mirrors,
-// glass and narrow lobes, and what only one of the two sees, are traced. The noise of the two pictures is then
-// the same on the same surfaces, as binocular fusion likes it. Error: light is sampled up to half a pixel aside.
+// Light that one view reuses from another view of the same moment, because two eyes see nearly the same: a pixel
+// whose surface point is also visible to the partner takes L1 and L2 over albedo from the partner's path there.
+// Valid on diffuse surfaces, and on glossy ones whose lobe is wide compared with the angle between the views;
+// mirrors, glass, narrow lobes and surfaces seen by one view only are traced. The noise is then the same on the
+// same surfaces in both pictures, which helps binocular fusion. Error: light is sampled up to half a pixel away.
 
 #include "gi/filter/reused_light.h"
 #include "gi/methods/slhb/lights/primary_map.h"
@@ -23,8 +23,10 @@ public:
     {
     }
 
-    /// Looks for the surface a path starts at; the partner's first surfaces must be there already.
-    /// @param sample  gets what is its own (L0, albedo, normal, position, depth) where a partner is found
+    /// Finds the partner's pixel that shows the surface a path starts at; the partner's first surfaces must be
+    /// ready.
+    /// @param sample  receives the pixel's own values (L0, albedo, normal, position, depth) if a partner pixel is
+    ///   found
     /// @return the partner's pixel, else kOwnLight
     std::uint32_t find(PathStart const& start, PathSample& sample) const;
 
@@ -37,11 +39,11 @@ private:
     CameraRays partner_camera_, camera_;
 };
 
-/// Whether the paths of two pixels, each summed, met the same surface: neither lies on an edge of it.
-/// @param pixel_m  size of a pixel there
+/// True if all paths of two pixels (given as sums) hit the same surface, so that neither pixel lies on an edge.
+/// @param pixel_m  size of a pixel at the surface
 bool same_surface(PixelSums const& a, PixelSums const& b, double pixel_m);
 
-/// L1 and L2 of the partner's path, when that has ended, over its albedo and times the sample's own.
+/// Sets L1 and L2 of the sample from the partner's completed path: divided by its albedo, times the sample's own.
 void take_light(PathSample const& partner, PathSample& sample);
 
 } // namespace gi

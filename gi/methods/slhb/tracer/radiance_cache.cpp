@@ -10,25 +10,27 @@
 namespace gi {
 namespace {
 
-/// Widest cell over the footprint; the narrowest of the same level is half of that. These and the numbers below
-/// are measured: docs/results/2026-11-25-cache.md.
+/// Largest width of the widest level's cells relative to the footprint; rounding to powers of two can halve it.
+/// This and the numbers below are measured: docs/results/2026-11-25-cache.md.
 constexpr float kWidth = 0.6f;
-/// Notes that a place needs before paths end there; with more, the chance to go on falls in proportion.
+/// Number of notes required before paths end in a cell; with more, the probability of continuing falls inversely.
 constexpr float kEnough = 3;
-/// But not below this, times the relative deviation of its notes: what cells get wrong all pixels share, and no
-/// filter removes it. For a mean of readers and teachers, teachers are worth their time in that proportion.
+/// Lower limit of that probability: kTeaching times the relative deviation of the cell's notes, clamped to the
+/// other two, because all pixels share a cell's error and no filter removes it. In a mean over reading and
+/// teaching paths, teaching pays off in this proportion.
 constexpr float kTeaching = 0.05f, kLeastTeaching = 0.03f, kMostTeaching = 0.3f;
-/// Notes from which on cells of half the width are taught, too.
+/// Number of notes from which on cells of half the width are also taught.
 constexpr float kSplit = 64;
-/// Notes of a cell count as many as what the wider one says.
+/// The estimate of the wider cell has the weight of this many notes.
 constexpr float kPrior = 8;
-/// After so many passes the widest cells are not read any more, after kSlower times as many the next ones.
+/// After this many passes, paths no longer end in the widest cells; after kSlower times as many, nor in the next
+/// ones.
 constexpr std::uint32_t kPassesOfWidest = 16, kSlower = 8;
-/// Where more scatterings may follow, all share their cells.
+/// Cells are separate by the number of scatterings that may follow; larger numbers than this share cells.
 constexpr int kMostFurther = 16;
 constexpr std::size_t kFirstCells = std::size_t(1) << 10;
 
-/// Which of the six sides of a cube a normal points through.
+/// Index of the side of a cube through which a normal points.
 std::uint64_t side_of(vec3 n)
 {
     vec3 const a = glm::abs(n);
@@ -55,7 +57,7 @@ CacheKeys RadianceCache::keys(Surface const& surface, vec3 position, vec3 arriva
     vec3 const scaled = (position + shift_) * std::ldexp(1.0f, kFinest - widest);
     if (!(max_component(glm::abs(scaled)) < 0x1p20f)) return keys;
     vec3 normal = glm::cross(surface.edge1, surface.edge2);
-    // A shade is bright within and dark without, and both may face the same way.
+    // A lampshade is bright inside and dark outside; both sides may have normals in the same direction.
     bool const back = glm::dot(normal, arrival) > 0;
     if (back) normal = -normal;
     std::uint64_t const what = std::uint64_t(surface.material) << 32 |
@@ -130,7 +132,7 @@ RadianceCache::Cell const* RadianceCache::Shard::find(std::uint64_t key) const
     }
 }
 
-/// Null where there is no room.
+/// Returns null if there is no room.
 RadianceCache::Cell* RadianceCache::Shard::add(std::uint64_t key, std::size_t most)
 {
     std::size_t at = slot(key);

@@ -9,11 +9,12 @@
 namespace gi {
 namespace {
 
-/// A bijection, so that the first of a slot is any of its paths.
+/// A pass-dependent permutation, so that the first path of a slot is a random one.
 constexpr std::uint32_t kOdd = 0x9e3779b1;
 constexpr std::uint32_t inverse_of(std::uint32_t odd)
 {
-    std::uint32_t x = odd; // Newton: each step doubles the right bits, of which odd has three
+    std::uint32_t x = odd; // Newton: each step doubles the number of correct bits, initially three for an odd
+                           // number
     for (int i = 0; i < 4; ++i) x *= 2 - odd * x;
     return x;
 }
@@ -24,7 +25,7 @@ std::uint32_t path_of(std::uint32_t rank, std::uint32_t key) { return (rank * in
 
 void SharedVertices::start(std::size_t paths, std::size_t layers, std::uint32_t pass)
 {
-    order_key_ = std::uint32_t(mix_bits(pass)) & 0x7fffffff; // no path has the rank kNone
+    order_key_ = std::uint32_t(mix_bits(pass)) & 0x7fffffff; // so that no path gets the rank kNone
     slots_.assign(2 * layers, kNone);
     start_of_.resize(layers > 0 ? paths : 0);
     starts_.clear();

@@ -1,6 +1,7 @@
 #pragma once
-// Paths of one pass whose rest is computed once, by one of them that goes on, and added to all: those that end on
-// the same side of the same layer. Each pixel's estimate is what it would be alone, but pixels share noise.
+// Paths of one pass that end on the same side of the same layer share the light from there: it is computed once,
+// by continuing one of them, and added to all. The expectation of each pixel is unchanged, but pixels share
+// noise.
 
 #include "gi/methods/slhb/tracer/tracer.h"
 
@@ -8,29 +9,31 @@ namespace gi {
 
 class SharedVertices {
 public:
-    /// @param paths  of the pass  @param layers  that they may end on; 0 = nothing is shared in this pass
+    /// @param paths  of the pass  @param layers  number of layers on which they may end; 0 = no sharing in this
+    ///   pass
     void start(std::size_t paths, std::size_t layers, std::uint32_t pass);
-    /// From several threads, once for every path.
+    /// Registers the end of a path; called once per path, from several threads.
     void note(std::uint32_t path, SharedVertex const& shared);
-    /// For paths that have no ending to share.
+    /// Registers a path without a shared vertex.
     void note_none(std::uint32_t path) { start_of_[path] = kNone; }
-    /// After all are noted: makes the starts, in an order that does not depend on threads.
-    /// @param endings  of all paths; those of paths without one are not looked at
+    /// Call after all paths are registered: makes the starts of the continuing paths, in an order independent of
+    /// threads.
+    /// @param shared_vertices  one per path; ignored for paths registered without one
     void collect(std::vector<SharedVertex> const& shared_vertices);
 
     std::vector<PathStart> const& starts() const { return starts_; }
-    /// What starts first.. have brought.
+    /// Stores the light found by the starts from index `first` on.
     void keep(std::size_t first, std::span<PathSample const> samples);
     bool has(std::size_t path) const { return start_of_[path] != kNone; }
-    /// What arrives from where a path that has an ending ended.
+    /// Returns the radiance arriving from the shared vertex of a path.
     vec3 radiance(std::size_t path) const { return radiance_[start_of_[path]]; }
     std::uint64_t shaded() const { return shaded_; }
 
 private:
     static constexpr std::uint32_t kNone = 0xffffffff;
     std::uint32_t order_key_ = 0;
-    std::vector<std::uint32_t> slots_;    ///< the first path that ends there, in an order of the pass
-    std::vector<std::uint32_t> start_of_; ///< of each path: its slot, later its start
+    std::vector<std::uint32_t> slots_;    ///< per layer side: the first path that ends there, in the pass's order
+    std::vector<std::uint32_t> start_of_; ///< per path: its slot, later its start
     std::vector<PathStart> starts_;
     std::vector<vec3> radiance_;
     std::uint64_t shaded_ = 0;

@@ -7,7 +7,7 @@
 
 namespace gi {
 
-/// Axis after axis, so that the buffers of one stay in the cache.
+/// Processes look-ups axis by axis, so that the buffers of one axis stay in the cache.
 std::size_t SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) const
 {
     thread_local std::vector<std::uint32_t> first, order;
@@ -45,10 +45,10 @@ std::size_t SlhbTracer::ask_axes(Pass const& pass, std::span<Vertex> vertices) c
             __builtin_prefetch(&world_.surfaces[to_fill.triangle]);
         }
     };
-    constexpr std::size_t kWorthwhile = 64; // queries of one axis
+    constexpr std::size_t kWorthwhile = 64; // look-ups per axis
     if (n >= kWorthwhile * pool.size()) {
         std::size_t from = 0;
-        for (std::size_t a = 0; a < pool.size(); ++a) { // first[a] has become the end of a
+        for (std::size_t a = 0; a < pool.size(); ++a) { // by now, first[a] is the end of axis a
             answer(from, first[a], [&] { nearest_layers(pool, a, world_.surfaces, batch); });
             from = first[a];
         }
@@ -106,7 +106,7 @@ void SlhbTracer::start_paths(Pass const& pass, std::span<PathStart const> starts
             s.has_position = s.along_axis = s.emitted = true;
             s.scatterings = s.vertex = 1;
         } else if (start.triangle != kNoPrimitive) {
-            // The raster says which triangle; the ray says where on its plane.
+            // The raster gives the triangle; the ray gives the point on its plane.
             s.barycentric = barycentric_of(world_.surfaces[start.triangle], start.ray);
         }
         states[k] = s;
@@ -114,8 +114,8 @@ void SlhbTracer::start_paths(Pass const& pass, std::span<PathStart const> starts
     }
 }
 
-/// Random numbers of all, and what shading will read: in loops of their own, so that they are vectors and
-/// cache misses overlap.
+/// Generates random numbers and prefetches shading data of all vertices, in separate loops that vectorise and
+/// overlap cache misses.
 void SlhbTracer::prepare_vertices(std::span<Vertex const> vertices, std::vector<State>& states) const
 {
     for (Vertex const& v : vertices) {
@@ -156,7 +156,7 @@ void SlhbTracer::add_lit(Pass const& pass, Direct& direct, SlhbCounts& counts) c
     direct.rays.clear();
 }
 
-/// Finds where all of them go, by look-ups and exact rays.
+/// Finds the next surfaces of all vertices, by look-ups and exact rays.
 void SlhbTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::vector<State>& states,
                            SlhbCounts& counts) const
 {
@@ -199,7 +199,7 @@ void SlhbTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::ve
     }
 }
 
-/// Whether it ends here, to share what is sent on from there.
+/// True if the path ends at a shared vertex here.
 bool SlhbTracer::ends_shared(State& s, Vertex const& v, SharedVertex& shared) const
 {
     if (s.vertex != 1 || s.triangle == kNoPrimitive || !s.along_axis ||
@@ -207,7 +207,7 @@ bool SlhbTracer::ends_shared(State& s, Vertex const& v, SharedVertex& shared) co
         return false;
     Surface const& surface = world_.surfaces[s.triangle];
     if (!s.has_position) s.position = shading_detail::SurfacePoint{surface, s.barycentric}.position();
-    if (!world_.emitter_pdf.empty() && world_.emitter_pdf[s.triangle] > 0) { // which differs from path to path
+    if (!world_.emitter_pdf.empty() && world_.emitter_pdf[s.triangle] > 0) { // its weight differs between paths
         ShadingPoint at = shading_point(world_, s.triangle, barycentric_at(surface, s.position), s.direction);
         at.position = s.position;
         add_emission(s, v, at);
@@ -222,7 +222,7 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
 {
     using Clock = std::chrono::steady_clock;
     auto const begun = Clock::now();
-    auto turned = begun; // from direct to indirect light
+    auto turned = begun; // time of the change from direct to indirect light
     bool const from_camera = starts.empty() || !starts[0].on_layer;
     thread_local std::vector<State> states;
     thread_local std::vector<Vertex> vertices;

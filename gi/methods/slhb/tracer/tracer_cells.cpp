@@ -1,4 +1,4 @@
-// Where paths meet the radiance cache.
+// Paths reading from and teaching the radiance cache.
 
 #include "gi/methods/slhb/tracer/tracer_state.h"
 
@@ -6,17 +6,18 @@
 
 namespace gi {
 
-/// Of the surface that a path has arrived at; none where it has to go on.
+/// Returns the keys of the surface at which a path has arrived; empty if the path must continue.
 CacheKeys SlhbTracer::cache_keys(Pass const& pass, State const& s) const
 {
-    // Beyond the last scattering, surfaces only add what they emit.
+    // After the last scattering, surfaces only contribute emission.
     if (s.triangle == kNoPrimitive || s.scatterings == 0 || s.scatterings > bounces_) return {};
     Surface const& surface = world_.surfaces[s.triangle];
     if (is_directional(world_.bsdfs[surface.material]) ||
         (!world_.emitter_pdf.empty() && world_.emitter_pdf[s.triangle] > 0))
         return {};
     vec3 const& t = s.throughput;
-    if (!(std::min({t.x, t.y, t.z}) > 1e-3f * max_component(t))) return {}; // it could not say what is sent back
+    if (!(std::min({t.x, t.y, t.z}) > 1e-3f * max_component(t))) return {}; // channels with almost no throughput
+                                                                            // cannot teach
     vec3 const position =
         s.has_position ? s.position : shading_detail::SurfacePoint{surface, s.barycentric}.position();
     return pass.cache->keys(surface, position, s.direction, s.footprint, bounces_ - s.scatterings);
@@ -30,7 +31,7 @@ void SlhbTracer::end_in_cells(Pass const& pass, std::span<State> states, std::ve
     for (std::size_t k = 0; k < active; ++k) {
         State& s = states[vertices[k].path];
         s.open = -1;
-        // A lobe of the cosine is as wide as its distance.
+        // A cosine lobe (pdf up to 1 / pi) is about as wide as its distance.
         if (s.arrival_pdf > 0)
             s.footprint += vertices[k].distance * std::min(1.0f, 1 / std::sqrt(kPi * s.arrival_pdf));
         keys[k] = cache_keys(pass, s);

@@ -1,4 +1,4 @@
-// From a surface to where its path goes next, with the light that arrives there.
+// Shading of a path vertex: its direct light and the sampling of the next direction.
 
 #include "gi/methods/slhb/tracer/tracer_state.h"
 #include "gi/render/sampling.h"
@@ -9,7 +9,7 @@
 namespace gi {
 namespace {
 
-/// One function for all, so that it rounds in one way.
+/// Not inlined, so that all callers get the same rounding.
 [[gnu::noinline]] SkyAlong look_at_sky(WorldView const& world, vec3 direction)
 {
     return {environment_radiance(world, direction), environment_direction_pdf(world, direction)};
@@ -45,7 +45,7 @@ vec3 SlhbTracer::unshadowed(Leaving const& from, LightSample const& light) const
 {
     if (!(light.pdf > 0)) return vec3{0};
     ShadingPoint const& at = from.at;
-    if (bsdf_detail::is_matt(at.bsdf)) { // the same in fewer steps
+    if (bsdf_detail::is_matt(at.bsdf)) { // the same with fewer operations
         float const cosine = glm::dot(light.direction, at.frame.normal);
         if (!(cosine > 0) || !(from.wo.z > 0) || !(glm::dot(light.direction, at.geometric_normal) > 0))
             return vec3{0};
@@ -77,7 +77,7 @@ void SlhbTracer::aim_at_light(Pass const& pass, State const& s, Leaving const& f
                                       hash_words(s.random.own_seed() + std::uint32_t(s.vertex), ~s.random.index));
     if (query.reach > 0)
         rays.push_back({query, s.throughput * value, to});
-    else // the lamp lies on the surface
+    else // the light lies on the surface
         *to += s.throughput * value;
 }
 
@@ -91,7 +91,7 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, Leaving const& fro
         double u = double((*s.u)[PathDimension::light_point]);
         k = pass.light_points.chances().sample(u);
     } else {
-        // Lamps of successive numbers are spread well, and those that a strided choice would find are not.
+        // Light points with successive numbers are well distributed; a strided subset would not be.
         k = s.random.turn(s.dimension(PathDimension::light_point)) % light_points.size();
     }
     LightPoint const& l = light_points[k];
@@ -116,7 +116,7 @@ void SlhbTracer::add_emission(State const& s, Vertex const& last, ShadingPoint c
     s.bucket(s.scatterings) += s.throughput * light;
 }
 
-/// By a mirror, glass or a narrow lobe.
+/// Scatters by a mirror, glass or a narrow lobe.
 SlhbTracer::Scattered SlhbTracer::scatter_by_ray(State& s, Leaving const& from, float u_lobe, bool last) const
 {
     ShadingPoint const& at = from.at;
@@ -129,7 +129,7 @@ SlhbTracer::Scattered SlhbTracer::scatter_by_ray(State& s, Leaving const& from, 
     return sampled.delta ? Scattered::by_delta_lobe : Scattered::widely;
 }
 
-/// In a direction of its own, by the cosine. False where the path ends.
+/// Scatters into a cosine-distributed direction. Returns false if the path ends.
 bool SlhbTracer::scatter_freely(State& s, Leaving const& from, Vertex& next) const
 {
     ShadingPoint const& at = from.at;
@@ -149,7 +149,7 @@ bool SlhbTracer::scatter_freely(State& s, Leaving const& from, Vertex& next) con
     return true;
 }
 
-/// Whether its pixel takes indirect light in this pass.
+/// True if the path's pixel computes indirect light in this pass.
 bool SlhbTracer::starts_indirect(Pass const& pass, State& s) const
 {
     if (s.vertex > 0 || interleaving_.n == 1) return true;
@@ -174,7 +174,7 @@ AxisSample SlhbTracer::choose_axis(Pass const& pass, State const& s, ShadingPoin
     return pass.axes.sample(std::uint32_t(s.scatterings), at.frame.normal, (*s.u)[PathDimension::axis]);
 }
 
-/// False where the path ends.
+/// Returns false if the path ends.
 bool SlhbTracer::scatter_along_axis(Pass const& pass, State& s, Leaving const& from, Vertex& next) const
 {
     ShadingPoint const& at = from.at;
@@ -198,13 +198,13 @@ bool SlhbTracer::scatter_along_axis(Pass const& pass, State& s, Leaving const& f
         RasterGrid const& grid = pass.axes.pool().grids[a.axis];
         vec2 const off = cone_ * grid.texel * square_to_disk(s.random.noise2(s.dimension(PathDimension::cone)));
         vec3 const shift = off.x * grid.right + off.y * grid.up;
-        // Along the axis as the surface goes.
+        // Moved along the axis to stay on the surface's plane.
         next.origin.position += shift - (glm::dot(at.geometric_normal, shift) / side) * s.direction;
     }
     return true;
 }
 
-/// False where the path ends.
+/// Returns false if the path ends.
 bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct, std::span<Open> open,
                        PathCounts& paths) const
 {
@@ -214,7 +214,7 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
     }
     if (s.triangle >= pass.first_watched) s.sample->near_moving = true;
     Surface const& surface = world_.surfaces[s.triangle];
-    bool const last = s.scatterings > bounces_; // mirrors and glass do not count
+    bool const last = s.scatterings > bounces_; // mirrors and glass do not count as scatterings
     if (last && bsdf_detail::is_matt(world_.bsdfs[surface.material]) &&
         (world_.emitter_pdf.empty() || !(world_.emitter_pdf[s.triangle] > 0)))
         return false;
@@ -237,10 +237,10 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
     }
 
     vec3 const wo = at.frame.to_local(-s.direction);
-    // A set of axes carries broad lobes; rays carry any.
+    // Axes can only sample broad lobes; exact rays can sample any.
     bool const narrow = free_ ? !bsdf_detail::is_matt(at.bsdf) : pass.exact != nullptr && has_narrow_lobe(at.bsdf);
-    // Light samples find all light that the last surface gets, but for narrow lobes, and by mirrors and glass; and
-    // that of first surfaces whose pixels wait for what paths find.
+    // Light samples must account for all direct light at the last surface (except with narrow lobes, or if
+    // mirrors or glass exist), and at first surfaces whose pixels wait for indirect light.
     bool const waits = s.vertex == 0 && pass.spread && interleaving_.n > 1 && bounces_ > 0;
     bool const alone = waits ? !has_narrow_lobe(at.bsdf) : !narrow && s.scatterings == bounces_ && !pass.smooth;
     Leaving const from{at, wo, narrow, alone};
@@ -261,7 +261,7 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
         if (scattered == Scattered::not_at_all) return false;
     } else {
         if (last || !(wo.z > 0)) return false;
-        // The last surface would only bring light that a path can meet.
+        // Beyond the last surface, only light that a path can hit would contribute.
         if (s.scatterings == bounces_ && (!meets_light_ || from.alone)) return false;
         if (!starts_indirect(pass, s)) return false;
         s.emitted = from.alone;

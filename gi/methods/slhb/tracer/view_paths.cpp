@@ -16,14 +16,15 @@ namespace {
 
 /// Pixels whose paths advance together on one thread.
 constexpr std::size_t kBlock = 4096;
-/// Where they are few, and where no buffers are to stay in the cache but paths.
+/// The same for few paths, and with exact rays, where only paths and no buffers have to stay in the cache.
 constexpr std::size_t kSmallBlock = 256;
 
-/// First surfaces of pixels first..last - 1 by exact rays, each path through a point of its own of pixel and lens.
+/// First surfaces of pixels first..last - 1 by exact rays, each path through its own sample point on pixel and
+/// lens.
 void exact_hits(SlhbTracer::Pass const& pass, SeenView const& view, RenderSettings const& s, std::size_t first,
                 std::size_t last, std::vector<PathStart>& out)
 {
-    constexpr std::uint32_t kLens = 0x1e450000; // of dimensions, beyond those of vertices
+    constexpr std::uint32_t kLens = 0x1e450000; // first dimension of the lens, beyond those of vertices
     std::uint32_t const width = std::uint32_t(view.width);
     thread_local std::vector<RayQuery> rays;
     thread_local std::vector<Hit> hits;
@@ -45,12 +46,12 @@ void exact_hits(SlhbTracer::Pass const& pass, SeenView const& view, RenderSettin
     for (std::size_t k = 0; k < hits.size(); ++k) out[k].triangle = hits[k].triangle;
 }
 
-/// Which of five turns a block of pixels has: 1, 1, 2, 4 and 8 of sixteen.
+/// Returns the turn (of five) of a block of pixels: of sixteen blocks, 1, 1, 2, 4 and 8 have turns 0 to 4.
 std::uint32_t turn_of(std::size_t block) { return std::uint32_t(std::bit_width((block * 7) & 15)); }
 
 } // namespace
 
-/// Of one of the threads that share the work of a pass.
+/// Counts of one thread.
 struct ViewPaths::Counts {
     PathCounts paths;
     SlhbCounts slhb;
@@ -75,7 +76,7 @@ ViewPaths::ViewPaths(World const& world, RenderSettings const& settings, Report&
 {
 }
 
-/// Larger ones where few of their paths go on.
+/// Chooses the block size: larger with interleaving, as fewer paths continue.
 void ViewPaths::choose_block()
 {
     std::size_t const n = std::size_t(std::max(1, settings_.slhb.interleave));
@@ -87,7 +88,7 @@ SlhbTracer ViewPaths::tracer_of(SeenView const& view) const
     return {world_, view.rays, view.width, settings_, settings_.slhb};
 }
 
-/// The paths of a block of pixels.
+/// Traces the paths of a block of pixels.
 void ViewPaths::trace_all(SlhbTracer::Pass const& pass, SlhbTracer const& tracer, std::size_t first, bool sharing,
                           std::span<PathStart const> starts, std::vector<CacheNote>& notes, Counts& counts)
 {
@@ -98,7 +99,7 @@ void ViewPaths::trace_all(SlhbTracer::Pass const& pass, SlhbTracer const& tracer
     for (std::size_t k = 0; k < ends.size(); ++k) shared_.note(std::uint32_t(first + k), ends[k]);
 }
 
-/// The same, but for pixels that are hidden and those that take their light from a partner.
+/// The same, except for hidden pixels and pixels that reuse a partner's light.
 void ViewPaths::trace_some(SlhbTracer::Pass const& pass, SlhbTracer const& tracer, SeenView const& view,
                            PartnerLight const* partner, bool sharing, std::vector<PathStart>& starts,
                            std::vector<CacheNote>& notes, Counts& counts)
@@ -162,7 +163,7 @@ void ViewPaths::trace_view(SlhbTracer::Pass const& pass, SeenViews const& views,
             if (samples_[p].near_moving) near.push_back(std::uint32_t(p));
     };
     notes_.resize(view.pixels() / block_ + 1);
-    // Of a cache that knows nothing: some blocks first, so that others can read what they taught.
+    // With an empty cache, trace some blocks first, so that others can read what those taught.
     constexpr std::uint32_t kTurns = 5;
     bool const in_turns = pass.cache != nullptr && pass.cache->empty();
     for (std::uint32_t turn = 0; turn < (in_turns ? kTurns : 1); ++turn) {
@@ -178,7 +179,7 @@ void ViewPaths::trace_view(SlhbTracer::Pass const& pass, SeenViews const& views,
     }
 }
 
-/// Whether paths of this pass end on the first matt layer and share what is sent on there.
+/// True if paths of this pass end on the first diffuse layer and share the light from there.
 bool ViewPaths::start_sharing(SlhbTracer::Pass const& pass, VertexSharing sharing)
 {
     SlhbSettings const& slhb = settings_.slhb;
@@ -190,7 +191,7 @@ bool ViewPaths::start_sharing(SlhbTracer::Pass const& pass, VertexSharing sharin
     return shares;
 }
 
-/// From the shared vertices.
+/// Traces on from the shared vertices.
 void ViewPaths::send_on(SlhbTracer::Pass const& pass, SeenView const& view, Work& work)
 {
     shared_.collect(shared_vertices_);
@@ -225,7 +226,7 @@ void ViewPaths::add(SeenViews const& views, std::size_t index, bool sharing, std
             if (from != kOwnLight) take_light(samples_[partner->first + from], sample);
             sums.add(p, sample, sums.paths);
             if (partner == nullptr) continue;
-            std::uint32_t& of_all = light_from_[v.first + p]; // the paths of this frame
+            std::uint32_t& of_all = light_from_[v.first + p]; // over all paths of this frame
             bool const taken =
                 from != kOwnLight && (sums.paths == 0 || (of_all != kOwnLight && shows_same(p, from)));
             of_all = taken ? from : kOwnLight;

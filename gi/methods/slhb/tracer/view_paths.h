@@ -1,6 +1,6 @@
 #pragma once
-// The paths of a pass through all views of a moment: which pixels start one, which take their light from a partner
-// view, which paths share what is sent on where they end, and the sums that all of it goes to.
+// Traces the paths of a pass for all views of a moment: decides which pixels start a path, which reuse light from
+// a partner view, and which paths share vertices; adds the results to the sums.
 
 #include "gi/core/report.h"
 #include "gi/methods/slhb/tracer/partner_light.h"
@@ -14,37 +14,37 @@
 
 namespace gi {
 
-/// Whether what the pass looks at has what moves in it.
+/// Callback that includes dynamic geometry in, or excludes it from, the structures that a pass uses.
 using ShowMoving = std::function<void(bool)>;
 
 class ViewPaths {
 public:
-    /// All outlive this.
+    /// All arguments must outlive this object.
     ViewPaths(World const& world, RenderSettings const& settings, Report& report);
 
-    /// One more path for every pixel; G-buffers of the pass are there already. @param sums  one per view
+    /// Traces one more path for every pixel; the pass's G-buffers must be ready. @param sums  one per view
     void trace(SlhbTracer::Pass const& pass, SeenViews const& views, VertexSharing sharing,
                std::span<Accumulator> sums);
 
-    /// A pass of the first view, with what moves and without it, by the same random numbers: of the latter only
-    /// the paths that what moves may count in (Pass::first_watched).
+    /// Traces a pass of the first view with and without dynamic geometry, with the same random numbers; without
+    /// it, only paths that dynamic geometry may affect (Pass::first_watched).
     void trace_pair(SlhbTracer::Pass const& pass, SeenViews const& views, ShowMoving const& show_moving,
                     PairSums& sums, PathCounts& counts);
 
-    /// What the paths of the last pass brought; one per pixel of a view.
+    /// Samples of the last pass's paths, one per pixel of a view.
     std::span<PathSample const> samples(SeenView const& view) const
     {
         return std::span(samples_).subspan(view.first, view.pixels());
     }
-    /// RenderResult::light_from of the passes since the sums were empty; of a view with a partner.
+    /// RenderResult::light_from over the passes since the sums were empty, for a view with a partner.
     std::span<std::uint32_t const> light_from(SeenView const& view) const
     {
         return std::span(light_from_).subspan(view.first, view.pixels());
     }
-    /// Of the time of the last pass, what follows first surfaces.
+    /// Fraction of the last pass's time spent after first surfaces.
     double indirect_share() const { return indirect_share_; }
-    double rays() const; ///< look-ups and exact rays, so far
-    /// What has been done so far.
+    double rays() const; ///< number of look-ups and exact rays so far
+    /// Reports the work done so far.
     void report_work() const;
 
 private:
@@ -67,22 +67,24 @@ private:
     World const& world_;
     RenderSettings const& settings_;
     Report& report_;
-    std::size_t block_ = 0; ///< pixels whose paths advance together on one thread
+    std::size_t block_ = 0; ///< number of pixels whose paths advance together on one thread
     SharedVertices shared_;
     std::vector<std::vector<CacheNote>> notes_; ///< per block of pixels of a view
     std::vector<PathSample> samples_;           ///< of the pixels of all views
-    std::vector<SharedVertex> shared_vertices_; ///< the same
-    std::vector<std::uint32_t> taken_from_;     ///< the same: pixel of the partner's view
-    std::vector<std::uint32_t> light_from_;     ///< the same, of all passes of a frame
+    std::vector<SharedVertex> shared_vertices_; ///< per pixel of all views
+    std::vector<std::uint32_t> taken_from_;     ///< per pixel of all views: pixel of the partner's view
+    std::vector<std::uint32_t> light_from_;     ///< per pixel of all views, for all passes of a frame
     std::vector<std::vector<std::uint32_t>>
-        near_moving_;                           ///< per block of pixels: those that what moves may count in
-    std::vector<std::uint32_t> without_pixels_; ///< all of those
-    std::vector<PathSample> without_;           ///< and their paths without it
+        near_moving_;                           ///< per block: pixels that dynamic geometry may affect
+    std::vector<std::uint32_t> without_pixels_; ///< all of these pixels
+    std::vector<PathSample> without_;           ///< their paths without dynamic geometry
     SlhbCounts done_;
     double indirect_share_ = 0;
-    std::uint64_t taken_ = 0, taking_ = 0;  ///< pixels that took light from a partner; of those that could
-    std::uint64_t hidden_ = 0, pixels_ = 0; ///< not traced, as nobody sees them; all, in all passes
-    std::uint64_t pair_paths_ = 0, without_paths_ = 0; ///< of pairs with what moves; of these, traced again
+    std::uint64_t taken_ = 0, taking_ = 0;  ///< pixels that reused a partner's light; pixels that could
+    std::uint64_t hidden_ = 0, pixels_ = 0; ///< pixels not traced because they are hidden; all pixels; over all
+                                            ///< passes
+    std::uint64_t pair_paths_ = 0, without_paths_ = 0; ///< paths of pairs with dynamic geometry; of these, traced
+                                                       ///< again without it
 };
 
 } // namespace gi
