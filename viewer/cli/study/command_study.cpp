@@ -128,8 +128,8 @@ void add_study(CLI::App& app, int& exit_code)
   lightwell study simulate visibility2026.yaml --participants 1..2 --out simulated
   lightwell study report simulated --out report.html
 
-The same script and participant always give the same plan, byte for byte. Doubtful choices, such as sessions of more
-than 60 minutes, are reported on stderr. docs/study.md describes every key of a script.)");
+A script and a participant always give the same plan, byte for byte. Doubtful choices, such as sessions of
+more than 60 minutes, are reported on stderr. docs/study.md describes every key of a script.)");
 }
 
 } // namespace viewer

@@ -93,7 +93,7 @@ void add_study_analyze(CLI::App& study, int& exit_code)
   lightwell study analyze compared --script pairs.yaml --exclude P002)");
 
     CLI::App* const report =
-        study.add_subcommand("report", "Write the same analysis as one HTML page with figures, for reading and printing.");
+        study.add_subcommand("report", "Write the same analysis as one HTML page with figures, also for print.");
     add_options(*report, *o);
     report->add_option("--out", o->out, "file to write (HTML)")->required();
     report->callback([o, &exit_code] { exit_code = run_report(*o); });

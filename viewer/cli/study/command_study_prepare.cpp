@@ -104,7 +104,7 @@ void add_study_prepare(CLI::App& study, int& exit_code)
     c->footer(R"(Example:
   mpirun -n 2 lightwell study prepare faces.yaml --size 1280x720 --out prepared
 
-Stimuli are identified by a hash of scene, settings, size and the program's version. Under mpirun they are distributed
+Stimuli are identified by a hash of scene, settings, size and program version. Under mpirun they are distributed
 over the processes, which must share a disk.)");
 }
 

@@ -138,7 +138,7 @@ int run(RunOptions const& o)
     ArStimulusCheck ar(loaded);
     ar.add(plan);
     ar.check();
-    std::vector<PlannedStimulus> const stimuli = stimuli_of(script, plan); // throws on invalid settings, naming their block
+    std::vector<PlannedStimulus> const stimuli = stimuli_of(script, plan); // throws on invalid settings
     check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
     check_stimuli(stimuli, trials.scenes);
     if (!o.display.empty()) trials.screen.display = load_display(o.display, report);
@@ -213,8 +213,8 @@ void add_study_run(CLI::App& study, int& exit_code)
   lightwell study run pairs.yaml --participant 1 --dir data --fullscreen 0 --remote /tmp/session.sock
 
 Pressing Escape twice ends the session; completed trials are kept, and --resume continues it.
-Exit codes: 0 all steps are done, 1 not all steps are done, 2 the input or the call is wrong, the disk failed, or the
-display does not keep time although the script requires it.)");
+Exit codes: 0 all steps are done, 1 not all steps are done, 2 the input or the call is wrong, the disk failed,
+or the display does not keep time although the script requires it.)");
 }
 
 } // namespace viewer

@@ -63,7 +63,7 @@ void add_study_tables(CLI::App& study, int& exit_code)
 The script is copied to records/code, where later commands find it.)");
 
     CLI::App* const exported =
-        study.add_subcommand("export", "Export all trials as one table with an R script for mixed models, or as SQLite.");
+        study.add_subcommand("export", "Export all trials as one table with a script for mixed models; SQLite.");
     add_records(*exported, *o);
     exported->add_option("--out", o->out, "folder for CSV tables (Psych-DS) and analysis.R (lme4)");
     exported->add_option("--sqlite", o->sqlite, "SQLite database to write, with the same tables");
