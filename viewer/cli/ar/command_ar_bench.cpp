@@ -251,7 +251,7 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
     CLI::App* const c = ar.add_subcommand(
         "bench", "Measure frames per second, latency from capture to display, and the error");
     CLI::Option* const session =
-        c->add_option("session", a->session, "Session as for run, with its own quality (default: generated desks)");
+        c->add_option("session", a->session, "Session as for run, at its own quality (default: made desks)");
     c->add_option("--size", a->sizes, "Frame size, WIDTHxHEIGHT; repeatable")
         ->take_all()
         ->excludes(session)
@@ -271,7 +271,7 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
     c->add_option("--frames", a->frames, "Frames of each desk or session; with --counter: frames to show")
         ->check(CLI::Range(2, 100000))
         ->capture_default_str();
-    c->add_option("--truth-paths", a->truth_paths, "Paths per pixel of desk frames and references; 0 = no references")
+    c->add_option("--truth-paths", a->truth_paths, "Paths per pixel of desk frames and references; 0 = no truth")
         ->check(CLI::Range(0, 100000))
         ->capture_default_str();
     c->add_option("--folder", a->folder, "Folder that keeps desks for later runs (default: the temporary folder)");

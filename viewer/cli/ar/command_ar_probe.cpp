@@ -148,7 +148,7 @@ void add_ar_probe(CLI::App& ar, int& exit_code)
     auto const o = std::make_shared<ProbeOptions>();
     CLI::App* const c =
         ar.add_subcommand("probe", "Measure an environment map from pictures of a mirror ball beside markers.");
-    c->add_option("PICTURES", o->pictures, "one or more from each side, with the whole ball and markers")->required();
+    c->add_option("PICTURES", o->pictures, "one or more from each side: whole ball and markers")->required();
     c->add_option("--calibration", o->calibration, "calibration of the camera, with its response")->required();
     c->add_option("--markers", o->markers, "marker map, which defines the map's axes")->required();
     c->add_option("--ball-radius", o->radius_m, "m")->required()->check(in_range(1e-4, 100));

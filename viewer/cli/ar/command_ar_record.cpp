@@ -153,7 +153,7 @@ void add_ar_record(CLI::App& ar, int& exit_code)
     c->add_option("--out", o->out, "folder to create; must not exist")->required();
     c->add_option("--frames", o->frames, "end after this many frames")->check(in_range(1, 1e9));
     c->add_option("--seconds", o->seconds, "end after this many seconds")->check(in_range(1e-3, 1e6));
-    c->add_option("--calibration", o->calibration, "calibration of the camera; it is checked and its name is stored");
+    c->add_option("--calibration", o->calibration, "of the camera: it is checked and its name is stored");
     c->add_option("--note", o->note, "text stored with the session");
     c->add_flag("--json", o->json, "print the counts as JSON");
     c->footer(R"(Examples:

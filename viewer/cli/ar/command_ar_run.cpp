@@ -207,7 +207,7 @@ void add_ar_run(CLI::App& ar, int& exit_code)
         ->excludes("--fast");
     run_command->add_option("--poses", run->poses, "Camera poses (CSV or TUM), instead of using the markers");
     CLI::Option* const window =
-        run_command->add_flag("--window", run->window, "Show a window; S switches before/after, H panel, Escape ends");
+        run_command->add_flag("--window", run->window, "Show a window: S before/after, H panel, Escape ends");
     run_command->add_option("--monitor", run->monitor, "Full screen on the monitor with this number or name")
         ->needs("--window");
     CLI::Option* const hmd = run_command->add_flag(

@@ -167,14 +167,14 @@ void add_ar_vignetting(CLI::App& ar, int& exit_code)
     CLI::App* const c = ar.add_subcommand(
         "vignetting",
         "Add a lens's vignetting to a calibration, from pictures of an evenly bright surface.");
-    c->add_option("PICTURES", o->pictures, "pictures of a lit wall through paper, or of a clear sky, out of focus; 8 bits")
+    c->add_option("PICTURES", o->pictures, "of a lit wall through paper, or of a clear sky, out of focus; 8 bits")
         ->required();
     declare_sensor_options(*c, *o);
     c->footer(R"(Example:
   lightwell ar vignetting flat1.png flat2.png --calibration camera.yaml --report vignetting.html
 
-Two pictures, with the camera turned upside down in between, show whether the surface is evenly bright. Regions with
-clipped pixels are ignored. Measure the response first (lightwell ar response), as it converts bytes to radiance.)");
+Two pictures, with the camera turned upside down in between, show whether the surface is evenly bright. Regions
+with clipped pixels are ignored. Measure the response first (lightwell ar response): it converts bytes to light.)");
     c->callback([o, &exit_code] { exit_code = run_vignetting(*o); });
 }
 
@@ -183,14 +183,14 @@ void add_ar_noise(CLI::App& ar, int& exit_code)
     auto const o = std::make_shared<SensorOptions>();
     CLI::App* const c = ar.add_subcommand(
         "noise", "Add a sensor's noise to a calibration, from pairs of pictures of a static scene.");
-    c->add_option("PICTURES", o->pictures, "first, second, first, second, ... with equal exposure; 8 bits, not JPEG")
+    c->add_option("PICTURES", o->pictures, "first, second, first, second, ... of equal exposure; 8 bits, not JPEG")
         ->required();
     declare_sensor_options(*c, *o);
     c->footer(R"(Example:
   lightwell ar noise a1.png a2.png b1.png b2.png --calibration camera.yaml --report noise.html
 
-Use the exposure and gain of later use, as noise is given per unit of light at that exposure. The scene needs dark and
-bright parts.)");
+Use the exposure and gain of the later frames: noise is given per unit of light at that exposure. The scene needs
+dark and bright parts.)");
     c->callback([o, &exit_code] { exit_code = run_noise(*o); });
 }
 
@@ -201,7 +201,7 @@ void add_ar_colour(CLI::App& ar, int& exit_code)
     CLI::App* const c = ar.add_subcommand(
         "colour",
         "Add a camera's colour matrix to a calibration, from a picture of a ColorChecker with 24 patches.");
-    c->add_option("PICTURE", o->pictures[0], "picture of the chart, evenly lit, nothing clipped; 8 bits")->required();
+    c->add_option("PICTURE", o->pictures[0], "of the chart, evenly lit, nothing clipped; 8 bits")->required();
     c->add_option("--patches", o->centres,
                   "centres X,Y, px, of dark skin, bluish green, black and white (the corners), or of all 24")
         ->required()
@@ -212,8 +212,8 @@ void add_ar_colour(CLI::App& ar, int& exit_code)
     c->footer(R"(Example:
   lightwell ar colour chart.png --patches 92,80 548,82 545,388 95,385 --calibration camera.yaml --report colour.html
 
-Measure response and vignetting first (lightwell ar response, lightwell ar vignetting). The matrix is valid only for
-the illumination of the picture.)");
+Measure response and vignetting first (lightwell ar response, lightwell ar vignetting). The matrix is valid only
+for the illumination of the picture.)");
     c->callback([o, &exit_code] { exit_code = run_colour(*o); });
 }
 
