@@ -303,9 +303,9 @@ void add_bench_accuracy(CLI::App& bench, int& exit_code)
     c->footer(R"(Example:
   lightwell bench accuracy --scene cornell --directions icosahedron:80 --hit-buffers 32 --size 16x16 --seeds 2 --paths 8 --direction-paths 8 --reference-paths 32 --out accuracy
 
-bias_direct and bias_indirect are the relative biases of L1 and L2, averaged over pixels and channels; columns ending
-in _error are standard errors over the seeds. bias_indirect is the sum of three parts, each a difference of renders
-with the same seeds and light samples, the first two also with the same axes and random numbers:
+bias_direct and bias_indirect are the relative biases of L1 and L2, averaged over pixels and channels; columns
+ending in _error are standard errors over the seeds. bias_indirect is the sum of three parts, each a difference of
+renders with the same seeds and light samples, the first two also with the same axes and random numbers:
   of_hit_buffers  slhb minus A, A = slhb with exact rays along its axes
   of_shadow_maps  A minus B, B = A with exact rays to its light samples
   of_directions   stored: B minus C, C = exact rays, cosine-distributed, separately for each path; streamed: 0, as

@@ -30,7 +30,7 @@ void add_bench_dynamic(CLI::App& bench, int& exit_code)
     auto const o = std::make_shared<DynamicOptions>();
     o->render.bounces = 2;
     o->render.denoise = "discontinuity";
-    CLI::App* const c = bench.add_subcommand("dynamic", "Measure the cost of each part of frames of moving scenes.");
+    CLI::App* const c = bench.add_subcommand("dynamic", "Measure the cost of each part of moving frames.");
     auto const list = [&](char const* name, auto& values, char const* help) {
         c->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
     };
@@ -64,13 +64,13 @@ void add_bench_dynamic(CLI::App& bench, int& exit_code)
     c->footer(R"(Example:
   lightwell bench dynamic --triangles 2000 --frames 3 --size 16x16 --reference-paths 2 --out dynamic
 
-Times are per frame. world_ms: skinning and the resulting updates of the world. structures_ms: hit buffers (rebuilt:
-everything that a renderer builds at its start). direct_ms and indirect_ms: the time of the paths, divided in
-proportion to their thread times. Errors are against the reference of the same moment; _alone: of the same frames
-without reuse. lag_relmse: error added by reuse apart from noise, from several seeds. The summary leaves out the first
-frame, which builds lasting structures. In the summary, memory_MiB is that of the last frame, with its growth since
-frame 100; raised counts frames with more error than alone; not_finite counts values in all pictures. The last frame
-is saved as a picture, with its FLIP map.)");
+Times are per frame. world_ms: skinning and the resulting updates of the world. structures_ms: hit buffers
+(rebuilt: everything that a renderer builds at its start). direct_ms and indirect_ms: the time of the paths,
+divided in proportion to their thread times. Errors are against the reference of the same moment; _alone: of the
+same frames without reuse. lag_relmse: error added by reuse apart from noise, from several seeds. The summary
+leaves out the first frame, which builds lasting structures. In the summary, memory_MiB is that of the last frame,
+with its range from frame 100 on; raised counts frames with more error than without reuse; not_finite counts values
+in all pictures. The last frame is saved as a picture, with its FLIP map.)");
     c->callback([o, c, &exit_code] {
         std::vector<NamedMethod> methods;
         for (std::string const& s : o->structures)

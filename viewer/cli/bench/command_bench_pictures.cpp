@@ -35,7 +35,7 @@ int run(PicturesOptions const& o)
     std::fflush(stdout);
     if (!result.interrupted) return 0;
     fmt::print(stderr, "note: interrupted: the rows so far are saved; {}\n",
-               o.interactive ? "the same command starts again, but keeps the references" : "add --resume to continue");
+               o.interactive ? "the same command keeps only the references" : "add --resume to continue");
     return kInterrupted;
 }
 
@@ -70,7 +70,7 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
     c->add_option("--list", o->list, "YAML file that names the scenes")->capture_default_str();
     list("--scenes", o->scenes,
          "names in the list, files or built-in scenes, comma-separated (default: all of the list)");
-    list("--budgets", o->budgets, "budgets of a render, comma-separated: times, or paths per pixel (1path, 16paths)");
+    list("--budgets", o->budgets, "per render, comma-separated: times, or paths per pixel (1path, 16paths)");
     list("--denoise", o->filters, "filters, comma-separated, as for lightwell render --denoise");
     list("--methods", o->methods,
          "comma-separated, as for lightwell bench sweep; all are compared with 'reference'");
@@ -122,20 +122,21 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
   lightwell bench pictures --scenes atrium --interactive --frames 4 --scored-frames 1,4 --size 24x16 --frame-budget 20ms --reference-paths 4 --out frames
 
 Every render (scene, budget, method, repeat) is filtered by every filter. render_s is the time of the whole call;
-it contains structures_s for hit buffers, shadow maps and BVHs, and paths_s for paths and first surfaces. filter_s is
-the time of the filter, total_s the sum. relmse does not contain relmse_of_reference, the part caused by noise of the
-reference picture. relmse_estimated is the program's own estimate for the unfiltered picture. bias is the mean divided
-by that of the reference: of all light, direct light (L1) and indirect light (L2), with standard errors over the
-repeats. neighbour_correlation is the correlation between the errors of neighbouring pixels: 0 for independent noise,
-near 1 for errors shared by regions.
+it contains structures_s for hit buffers, shadow maps and BVHs, and paths_s for paths and first surfaces. filter_s
+is the time of the filter, total_s the sum. relmse does not contain relmse_of_reference, the part caused by noise
+of the reference picture. relmse_estimated is the program's own estimate for the unfiltered picture. bias is the
+mean divided by that of the reference: of all light, direct light (L1) and indirect light (L2), with standard
+errors over the repeats. neighbour_correlation is the correlation between the errors of neighbouring pixels: 0 for
+independent noise, near 1 for errors shared by regions.
 
-The summary divides errors and times of each method by those of 'reference'; a ratio of errors above {} is lost. Times
-differ where one path takes longer than the budget. The summary also gives how many times longer 'reference' needs for
-the same error, filter included, interpolated from its errors at all budgets.
+The summary divides errors and times of each method by those of 'reference'; a ratio of errors above {} is lost.
+Times differ where one path takes longer than the budget. The summary also gives how many times longer 'reference'
+needs for the same error, filter included, interpolated from its errors at all budgets.
 
---interactive renders consecutive frames, with the same temporal reuse and filters for all methods. Its defaults are
---methods reference,slhb --denoise none,atrous --size 512x512 --reference-paths 256. frame_s is the time of world,
-render and reuse; in the row 'mean' it is the median of all frames except the first, which builds lasting structures.
+--interactive renders consecutive frames, with the same temporal reuse and filters for all methods. Its defaults
+are --methods reference,slhb --denoise none,atrous --size 512x512 --reference-paths 256. frame_s is the time of
+world, render and reuse; in the row 'mean' it is the median of all frames except the first, which builds lasting
+structures.
 
 Ctrl-C discards the renders of the current budget, saves the rows so far and exits with 130.)",
                           kLostRatio));

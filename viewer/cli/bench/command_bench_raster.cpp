@@ -43,7 +43,7 @@ RasterGrid random_grid(World const& world, Pcg32& rng, std::uint32_t resolution)
     return make_grid(world.bounds, axis, resolution, jitter, 2 * kPi * rng.uniform());
 }
 
-/// Random closed mesh: a stretched lattice on a sphere, with vertices displaced radially unless it is to be convex.
+/// Random closed mesh: a stretched lattice on a sphere, with vertices displaced radially unless convex.
 Scene random_closed_mesh(Pcg32& rng, bool convex)
 {
     Scene scene;

@@ -237,7 +237,7 @@ void add_bench_rays(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<RaysOptions>();
     CLI::App* const c =
-        bench.add_subcommand("rays", "Measure look-ups per second of hit buffers against Embree, with their error.");
+        bench.add_subcommand("rays", "Measure speed and error of look-ups in hit buffers against Embree.");
     c->add_option("--scene", o->scenes, "files or names, comma-separated")
         ->delimiter(',')
         ->capture_default_str()

@@ -29,7 +29,7 @@ std::vector<unsigned char> png_bytes(gi::Picture const& picture)
     return gi::tone_map_bytes(*picture.find("color"), {});
 }
 
-/// Writes an anaglyph beside each left eye's picture. Pairs that cannot be read are skipped; the page reports them.
+/// Writes an anaglyph beside each left picture. Pairs that cannot be read are skipped; the page reports them.
 void make_anaglyphs(BenchFolder& folder)
 {
     for (auto const& [l, r] : stereo_pairs(folder.renders)) {

@@ -136,7 +136,7 @@ private:
 int run(SchedulesOptions const& o)
 {
     if (o.judged > o.frames)
-        throw gi::InputError(fmt::format("--judged {} of {} frames", o.judged, o.frames), "there are too few frames",
+        throw gi::InputError(fmt::format("--judged {} of {} frames", o.judged, o.frames), "there are fewer",
                              "judge fewer, or render more");
     for (std::string const& schedule : o.schedules) {
         Settings settings;
@@ -203,8 +203,8 @@ void add_bench_schedules(CLI::App& bench, int& exit_code)
     c->footer(R"(Example:
   lightwell bench schedules --schedules stored,stored/16 --paths 1 --size 32x24 --frames 8 --reference-paths 4 --out schedules
 
-Frames are rendered as in view, with reuse and filter; variants take turns. following_ms: time to draw moving geometry
-into the layers of stored directions. relmse contains the noise of the reference.)");
+Frames are rendered as in view, with reuse and filter; variants take turns. following_ms: time to draw moving
+geometry into the layers of stored directions. relmse contains the noise of the reference.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

@@ -59,7 +59,7 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
                                              "paths per pixel of the reference picture, which is kept in DIR")
                                    ->check(CLI::Range(2, 1 << 24))
                                    ->capture_default_str();
-    c->add_option("--reference", o->reference, "picture to use as the reference; only with one scene")->excludes(paths);
+    c->add_option("--reference", o->reference, "picture to use as reference; for one scene")->excludes(paths);
     c->add_option("--repeats", o->repeats, "renders per row, each with its own seed; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
@@ -75,10 +75,11 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
   lightwell bench sweep --scene cornell,atrium --methods slhb:stored,slhb:streamed --budgets 20ms --repeats 1 --size 24x24 --reference-paths 8 --out both --json
   lightwell bench sweep --scene cornell --methods vpl_exact,vpl_slhb,vpl_imperfect:30%,vpl_imperfect:5%,vpl_ao:0.1,vpl_dao:0.1,vpl_none --light-paths 64 --budgets 20ms --repeats 1 --size 24x24 --reference-paths 8 --out visibility
 
-Columns: budget_s, the requested time for structures, paths and filter together; frame_s, the time of the whole call,
-with all that the method builds for it (it may exceed the budget, as at least one path per pixel is finished);
-trace_s, the time of tracing alone; paths per pixel; Mrays_per_s; relmse (relmse_indirect: of L2 alone), flip and bias
-against the reference, which has its own seed; reference_relmse, the part of relmse caused by noise of the reference.
+Columns: budget_s, the requested time for structures, paths and filter together; frame_s, the time of the whole
+call, with all that the method builds for it (it may exceed the budget, as at least one path per pixel is
+finished); trace_s, the time of tracing alone; paths per pixel; Mrays_per_s; relmse (relmse_indirect: of L2 alone),
+flip and bias against the reference, which has its own seed; reference_relmse, the part of relmse caused by noise
+of the reference.
 
 Ctrl-C discards the current render, saves the rows so far and exits with 130; a second one ends at once.)");
     c->callback([o, c, &exit_code] {

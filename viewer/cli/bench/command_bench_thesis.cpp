@@ -136,7 +136,7 @@ int run(ThesisOptions const& o)
 void add_bench_thesis(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<ThesisOptions>();
-    CLI::App* const c = bench.add_subcommand("thesis", "Repeat the sweeps of tables 6.1 to 6.4 of Yu 2012, with errors.");
+    CLI::App* const c = bench.add_subcommand("thesis", "Repeat tables 6.1 to 6.4 of Yu 2012, with errors.");
     c->add_option("--size", o->size, "pixels on a side")->check(CLI::Range(1, 8192))->capture_default_str();
     c->add_option("--paths", o->paths, "paths per pixel, tables 6.1 to 6.3")
         ->check(CLI::Range(1, 1 << 20))
@@ -155,8 +155,8 @@ void add_bench_thesis(CLI::App& bench, int& exit_code)
     c->footer(R"(Example:
   lightwell bench thesis --size 16 --paths 2 --most-triangles 2000 --reference-paths 8 --out thesis
 
-frame_ms is the time of the whole frame: hit buffers of all axes (build_ms alone), shadow maps, G-buffers and paths.
-The thesis used 512 x 512 pixels on a GTX 480.)");
+frame_ms is the time of the whole frame: hit buffers of all axes (build_ms alone), shadow maps, G-buffers and
+paths. The thesis used 512 x 512 pixels on a GTX 480.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

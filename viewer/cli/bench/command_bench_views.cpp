@@ -189,7 +189,7 @@ void add_bench_views(CLI::App& bench, int& exit_code)
         ->capture_default_str()
         ->allow_extra_args(false);
     c->add_option("--set", o->settings, "KEY=VALUE as for view; repeatable")->take_all();
-    c->add_option("--size", o->size, "size of an eye's view; walls are square with the same height")->capture_default_str();
+    c->add_option("--size", o->size, "of an eye; walls are square, of its height")->capture_default_str();
     c->add_option("--frames", o->frames, "frames per variant; the camera moves")
         ->check(CLI::Range(8, 10000))
         ->capture_default_str();
@@ -200,8 +200,8 @@ void add_bench_views(CLI::App& bench, int& exit_code)
     c->footer(R"(Example:
   lightwell bench views --scene cornell --size 48x36 --frames 8 --reference-paths 16 --out views
 
-Frames are rendered as in view, with reuse and filter, while the camera moves; variants take turns. relMSE is that of
-the last view in the last frame.)");
+Frames are rendered as in view, with reuse and filter, while the camera moves; variants take turns. relMSE is that
+of the last view in the last frame.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 
