@@ -174,8 +174,8 @@ void add_ar_vignetting(CLI::App& ar, int& exit_code)
   lightwell ar vignetting flat1.png flat2.png --calibration camera.yaml --report vignetting.html
 
 Two pictures, with the camera turned upside down in between, show whether the surface is evenly bright. Regions
-with clipped pixels are ignored. Measure the response first (lightwell ar response): it converts bytes to
-light.)");
+with clipped pixels are ignored. Measure the response first (lightwell ar response): it makes bytes
+linear.)");
     c->callback([o, &exit_code] { exit_code = run_vignetting(*o); });
 }
 

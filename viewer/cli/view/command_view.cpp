@@ -346,9 +346,9 @@ void add_view(CLI::App& app, int& exit_code)
     c->add_option("--stats", a->stats, "JSON file with statistics of the whole run");
     c->footer(
         R"(Keys: W A S D Q E move, drag to look around, wheel to approach, click to select,
-Ctrl + drag to move the selection, 1..9 0 stereo mode, V split/flicker/difference, C compare with the reference, M method, + - exposure,
-Space play/pause, Tab fly/walk/orbit, Z X raise the avatar's hands, R back to the first camera, P reprojection,
-F1 panel, F2 screenshot, F11 swap eyes, Esc end. All settings: docs/viewer.md.
+Ctrl + drag to move the selection, 1..9 0 stereo mode, V split/flicker/difference, C compare with the reference,
+M method, + - exposure, Space play/pause, Tab fly/walk/orbit, Z X raise the avatar's hands, P reprojection,
+R back to the first camera, F1 panel, F2 screenshot, F11 swap eyes, Esc end. All settings: docs/viewer.md.
 
 Exit code 1: the recording or the frame log is not complete, or a rank was lost.
 Esc, Ctrl-C and --time-limit close all files and exit with 0; a replay interrupted by Ctrl-C exits with 130.
