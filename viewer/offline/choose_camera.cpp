@@ -60,10 +60,10 @@ std::string put_lens(gi::Camera& camera, CameraChoice const& choice, std::option
                                       : 0;
         if (!(distance >= gi::kNearestFocus_m))
             throw gi::InputError("--aperture-radius without --focus-distance",
-                                 focus ? what + " is not in front of the camera" : "the plane in focus is not known",
+                                 focus ? what + " is not in front of the camera" : "the focus is not known",
                                  "add --focus-distance, m along the view");
         camera.focus_distance_m = distance;
-        note = fmt::format("in focus: {:.3g} m in front of the camera, at {}", distance, what);
+        note = fmt::format("in focus: {:.3g} m in front of the camera, as far as {}", distance, what);
     }
     check_lens(camera);
     return note;
@@ -84,7 +84,7 @@ ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice)
     if (choice.look_from && !choice.name.empty())
         throw gi::InputError("--camera and --look-from are both given", "they contradict each other", "drop one");
     if (choice.look_at && !choice.look_from)
-        throw gi::InputError("--look-at is given alone", "the position of the camera is not known", "add --look-from x,y,z");
+        throw gi::InputError("--look-at is given alone", "it needs a position", "add --look-from x,y,z");
 
     double const fov_deg = choice.fov_deg.value_or(kDefaultFov_deg);
     bool const empty = world.bounds.empty();

@@ -31,7 +31,7 @@ struct ChosenCamera {
 };
 
 /// Applies the lens options to a camera; values that are not given keep those of the camera.
-/// @param focus  point in focus if neither options nor camera give a distance   @param what  its name, for messages
+/// @param focus  point in focus if options and camera give no distance   @param what  its name, for messages
 /// @return defaults that were chosen, for a note to the user; empty = none
 /// Throws InputError if there is no such lens, or if the focus is not in front of the camera.
 std::string put_lens(gi::Camera& camera, CameraChoice const& choice, std::optional<gi::dvec3> focus,

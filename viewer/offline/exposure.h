@@ -27,7 +27,7 @@ gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposu
                         gi::RenderSettings const& settings, gi::StopRequest const& stop,
                         gi::RenderProgress const& progress, gi::Report& report);
 
-/// Distinguishes exposures that open at the same moment: hash of the world at the closing of the shutter and of the
+/// Distinguishes exposures that open at the same moment: hash of the world when the shutter closes and of the
 /// camera while it is open. @param world  is advanced to the closing
 std::uint64_t motion_fingerprint(gi::MovingWorld& world, Exposure const& exposure,
                                  gi::RenderSettings const& settings, std::string const& method);

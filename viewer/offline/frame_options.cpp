@@ -54,7 +54,7 @@ void declare_frames(CLI::App& c, RenderOptions& o)
         ->check(in_range(0, 1e6))
         ->capture_default_str()
         ->group(kGroup);
-    c.add_flag("--seed-per-frame", o.seed_per_frame, "frame k has the seed --seed + k, so noise differs between frames")
+    c.add_flag("--seed-per-frame", o.seed_per_frame, "frame k has the seed --seed + k, for noise that flickers")
         ->group(kGroup)
         ->needs(frames)
         ->excludes("--reuse"); // frames with reuse continue one sequence of random numbers

@@ -28,7 +28,7 @@ void parse_rate(std::string const& text, std::string_view rate, FrameRange& rang
     if (!frames || !seconds || !(*frames > 0) || !(*seconds > 0) || !(*frames / *seconds >= kLowestFps) ||
         !(*frames / *seconds <= kHighestFps))
         throw bad(text,
-                  fmt::format("after @ a rate from {} to {:.0f} frames per second is needed", kLowestFps, kHighestFps));
+                  fmt::format("after @, frames per second are needed, {} to {:.0f}", kLowestFps, kHighestFps));
     range.frames = *frames;
     range.per_seconds = *seconds;
 }

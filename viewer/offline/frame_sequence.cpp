@@ -68,7 +68,7 @@ public:
         try {
             render_all(there);
         } catch (gi::InputError const&) {
-            if (begins && records_.empty()) fs::remove(f_.state); // otherwise the next, valid call would be refused
+            if (begins && records_.empty()) fs::remove(f_.state); // otherwise the next call would be refused
             throw;
         }
         bar_.reset();
@@ -304,7 +304,7 @@ private:
     /// Writes the frame to its PNG and to the video.
     void show_picture(int frame, gi::Picture const& picture)
     {
-        bool const filmed = video_ && work_.alone(); // otherwise the video is made at the end, from the files in order
+        bool const filmed = video_ && work_.alone(); // otherwise the video is made at the end
         if (!f_.png && !filmed) return;
         std::vector<unsigned char> const bytes = display_bytes(o_, picture);
         if (f_.png) gi::write_png(f_.png->of(frame), picture.width, picture.height, bytes);

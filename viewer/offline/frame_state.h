@@ -10,7 +10,7 @@
 
 namespace viewer {
 
-/// Metadata of a frame: those of a picture, its number, and what identifies the render that it belongs to: its stop
+/// Metadata of a frame: those of a picture, its number, and what identifies the render that it belongs to: stop
 /// condition, the requested layers, and a fingerprint of world, camera and settings.
 /// @param motion  fingerprint of the motion while the shutter is open; 0 = none
 std::map<std::string, std::string> frame_metadata(RenderOptions const& options, gi::RenderSettings const& settings,

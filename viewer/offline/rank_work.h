@@ -26,7 +26,7 @@ public:
     /// Stop request for rendering; also set if this rank has to stop because another one is lost.
     gi::StopRequest& stop() { return stop_; }
 
-    /// Calls `what` to exchange messages with the other ranks. Throws RankLoss, or RankInterrupted after a stop request.
+    /// Calls `what` to exchange messages with other ranks. Throws RankLoss; RankInterrupted after a stop request.
     void talk(std::function<void(Cluster&)> const& what);
 
     /// The share of this rank in the paths of one picture; its merge sends all sums to the leader, which adds them in

@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 9> kLayers{"color",  "L0",    "L1",      
                                                   "normal", "depth", "position", "variance"};
 constexpr std::uint32_t kDefaultPaths = 64, kNoLimit = 0x7fffffff;
 
-/// Throws if the picture does not fit into memory; otherwise the machine would swap or the kernel kill the program.
+/// Throws if the picture does not fit into memory; otherwise the machine would swap or kill the program.
 void check_memory(gi::RenderSettings const& s)
 {
     constexpr double kBytesPerPixel = 300; // sums in double and all layers in float
@@ -101,7 +101,7 @@ gi::RadianceCaching parse_cache(std::string const& name)
 gi::RenderSettings make_settings(RenderOptions& o)
 {
     if (int(o.paths.has_value()) + int(!o.budget.empty()) + int(!o.until.empty()) > 1)
-        throw gi::InputError("--paths, --budget and --until are given together", "each of them is a stop condition",
+        throw gi::InputError("--paths, --budget and --until are given together", "each alone says when to stop",
                              "keep one of them");
     for (std::string const& layer : o.layers)
         if (std::find(kLayers.begin(), kLayers.end(), layer) == kLayers.end())
@@ -158,7 +158,7 @@ void declare_view_options(CLI::App& c, RenderOptions& o)
     c.add_option("--look-at", o.look_at, "point to look at, x,y,z, m (default: middle of the scene)");
     c.add_option("--fov", o.fov_deg, "vertical field of view, degrees")->check(in_range(0.001, 179));
     c.add_option("--envmap", o.environment, "lat-long environment map, HDR or EXR");
-    c.add_option("--envmap-rotate", o.environment_rotate_deg, "rotation of the map, degrees about +Y, counter-clockwise from above")
+    c.add_option("--envmap-rotate", o.environment_rotate_deg, "degrees about +Y, counter-clockwise from above")
         ->check(in_range(-1e6, 1e6));
     c.add_option("--envmap-scale", o.environment_scale, "scale factor of its radiance")->check(in_range(0, 1e9));
     c.add_option("--time", o.time_s, "animation time, s")->check(in_range(-1e9, 1e9));
@@ -231,7 +231,7 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
     slhb_number(c, "--memory", s.memory_mib, 1, 1 << 24,
                 "MiB for hit buffers and shadow maps; they get fewer texels if it is not enough\n"
                 "(default: a quarter of the machine's memory)");
-    slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "largest number of layers per texel, others are counted; 0 = all");
+    slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "most layers kept per texel, others are counted; 0 = all");
     c.add_option(
          "--roulette", s.roulette,
          "Russian roulette: paths continue with a probability of this times their throughput; 0: all paths\n"
@@ -306,7 +306,7 @@ void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods
     for (auto const& [part, all] :
          {std::pair{"--fresh-axes", "--axes"}, std::pair{"--fresh-light-samples", "--light-samples"}})
         if (given(part) && given(all) && command.get_option(part)->as<int>() > command.get_option(all)->as<int>())
-            throw gi::InputError(std::string(part) + " is larger than " + all, "it is the number of these that are new",
+            throw gi::InputError(std::string(part) + " is larger than " + all, "it is the part that is new",
                                  fmt::format("give at most {}", command.get_option(all)->as<int>()));
 }
 
@@ -344,7 +344,7 @@ void declare_slhb(CLI::App& c, RenderOptions& o)
         ->check(CLI::IsMember({"auto", "on", "off"}))
         ->capture_default_str()
         ->group(kSlhbGroup);
-    c.add_option("--directions", o.slhb.directions, "stored set of directions, FAMILY:COUNT (default icosahedron:320)")
+    c.add_option("--directions", o.slhb.directions, "stored directions, FAMILY:COUNT (default icosahedron:320)")
         ->group(kSlhbGroup);
     slhb_number(c, "--hit-buffer", o.slhb.resolution, 2, 8192,
                 "size of a hit buffer, texels on a side (default: by the plan)");
@@ -371,8 +371,8 @@ void declare_options(CLI::App& c, RenderOptions& o)
         "\n  R,G,B: a colour, radiance"
         "\n  transparent: nothing; adds an alpha channel A, the share of paths that hit a surface; colours are "
         "premultiplied by it in --out but not in --png"
-        "\nAffects only camera rays: surfaces are lit by the map, and mirrors and glass show it with alpha 1, as "
-        "other surfaces");
+        "\nAffects only camera rays: surfaces are lit by the map, and mirrors and glass show it, as surfaces "
+        "of alpha 1");
     c.add_option("--paths", o.paths, fmt::format("paths per pixel (default {})", kDefaultPaths))
         ->check(CLI::Range(1u, kNoLimit));
     c.add_option("--budget", o.budget, "time for structures and paths: 500ms, 2s, 3min");
@@ -385,15 +385,15 @@ void declare_options(CLI::App& c, RenderOptions& o)
         ->capture_default_str();
     declare_denoise(c, o);
     c.add_option("--seed", o.seed, "seed of the random numbers")->check(check_seed)->capture_default_str();
-    c.add_option("--threads", o.threads, "number of threads; 0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
+    c.add_option("--threads", o.threads, "threads; 0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c.add_option("--out", o.out, "EXR file for all layers, .exr (default: the scene's name)");
     c.add_flag("--half", o.half, "16-bit floats for layers for which they suffice");
     c.add_option("--png", o.png, "PNG file for the tone-mapped picture, .png");
-    c.add_option("--exposure", o.exposure_ev, "exposure, stops, for --png and --video")->check(in_range(-100, 100));
+    c.add_option("--exposure", o.exposure_ev, "in stops, for --png and --video")->check(in_range(-100, 100));
     c.add_option("--tone", o.tone, "tone curve, for --png and --video")
         ->check(CLI::IsMember({"srgb", "filmic"}))
         ->capture_default_str();
-    c.add_option("--aovs", o.layers, fmt::format("layers to save in addition to color, of: {}", fmt::join(kLayers, ", ")))
+    c.add_option("--aovs", o.layers, fmt::format("layers to save beside color, of: {}", fmt::join(kLayers, ", ")))
         ->delimiter(',')
         ->allow_extra_args(false);
     c.add_option("--stats", o.stats, "JSON file for statistics: settings, structures, losses, times");

@@ -87,7 +87,7 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     nlohmann::json const settings = header.settings.value("settings", nlohmann::json::object());
     for (Change const& c : o.settings) overridden.insert(c.key);
     for (auto const& [key, value] : settings.items())
-        if (!overridden.contains(key)) session.apply({key, value}); // overridden ones may not be available here, such as a device
+        if (!overridden.contains(key)) session.apply({key, value}); // e.g. a device that is missing here
     for (Change const& c : o.settings) session.apply(c);
     session.apply({"scene", header.scene});
     ReplaySummary summary;

@@ -12,7 +12,7 @@ namespace viewer {
 
 namespace {
 
-/// True if the height of the resting head is plausible as an eye height, i.e. if the room's origin is on the floor.
+/// True if the height of the resting head is a plausible eye height, so that the room's origin is on the floor.
 bool rests_above_floor(User const& user)
 {
     double const y = resting_head(user).position.y;

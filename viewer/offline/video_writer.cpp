@@ -28,7 +28,7 @@ Codec const& codec_of(fs::path const& file)
 {
     for (Codec const& codec : kCodecs)
         if (file.extension() == codec.extension) return codec;
-    throw cannot(file, "its ending is not that of a supported video format", "choose .mkv (lossless) or .mp4 (H.264)");
+    throw cannot(file, "its ending is not a supported video format", "choose .mkv (lossless) or .mp4 (H.264)");
 }
 
 /// The module that links FFmpeg, loaded for the first video.
