@@ -29,8 +29,8 @@ public:
     /// Calls `what` to exchange messages with other ranks. Throws RankLoss; RankInterrupted after a stop request.
     void talk(std::function<void(Cluster&)> const& what);
 
-    /// The share of this rank in the paths of one picture; its merge sends all sums to the leader, which adds them in
-    /// the order of ranks.
+    /// The share of this rank in the paths of one picture; its merge sends all sums to the leader, which adds them
+    /// in the order of ranks.
     gi::PathShare share(std::uint32_t paths);
     /// Call after rendering: sends the other counts of all ranks to the leader.
     /// @param loaded  losses of the report before path tracing, which every rank has

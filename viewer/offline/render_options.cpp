@@ -171,8 +171,8 @@ void declare_lens_options(CLI::App& c, RenderOptions& o)
          "radius of a thin lens, m, for depth of field (default: the camera's, else 0, a pinhole)")
         ->check(in_range(0, gi::kWidestLens_m));
     c.add_option("--focus-distance", o.focus_distance_m,
-                 "distance of the plane in focus along the view, m (default: the camera's, else that of --look-at or\n"
-                 "the middle of the scene)")
+                 "distance of the plane in focus along the view, m (default: the camera's, else that of\n"
+                 "--look-at or the middle of the scene)")
         ->check(in_range(gi::kNearestFocus_m, gi::kFarthestFocus_m));
 }
 
@@ -180,8 +180,8 @@ void declare_eye_options(CLI::App& c, RenderOptions& o)
 {
     CLI::Option* const eye =
         c.add_option("--eye", o.eye,
-                     "render one eye of a stereo pair, left or right: beside the camera, with an off-axis view of a\n"
-                     "virtual screen that both eyes share")
+                     "render one eye of a stereo pair, left or right: beside the camera, with an off-axis view\n"
+                     "of a virtual screen that both eyes share")
             ->check(CLI::IsMember({"left", "right"}));
     c.add_option("--eye-distance", o.eye_distance_m, "distance between the pupils, m")
         ->check(in_range(0, 1))
@@ -231,7 +231,7 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
     slhb_number(c, "--memory", s.memory_mib, 1, 1 << 24,
                 "MiB for hit buffers and shadow maps; they get fewer texels if it is not enough\n"
                 "(default: a quarter of the machine's memory)");
-    slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "most layers kept per texel, others are counted; 0 = all");
+    slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "most layers per texel, others are counted; 0 = all");
     c.add_option(
          "--roulette", s.roulette,
          "Russian roulette: paths continue with a probability of this times their throughput; 0: all paths\n"

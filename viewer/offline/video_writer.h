@@ -8,8 +8,8 @@ namespace viewer {
 
 class VideoStream;
 
-/// Throws InputError if a video with this name, size and rate is impossible. Possible are .mkv (FFV1, lossless) and
-/// .mp4 (H.264), even sizes, 0.01 to 1000 frames per second. Writes nothing.
+/// Throws InputError if a video with this name, size and rate is impossible. Possible are .mkv (FFV1, lossless)
+/// and .mp4 (H.264), even sizes, 0.01 to 1000 frames per second. Writes nothing.
 void check_video(std::filesystem::path const& file, int width, int height, double fps);
 
 /// Writes a video under a hidden name beside `file`; finish() checks it and renames it to `file`. An unfinished

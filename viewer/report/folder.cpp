@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 BenchFolder read_bench_folder(fs::path const& folder)
 {
-    constexpr std::size_t kMostBytes = std::size_t(1) << 28; // of a file of rows
+    constexpr std::size_t kMostBytes = std::size_t(1) << 28; // largest file of rows
     auto const cannot = [&](std::string const& why, std::string const& suggestion) {
         return gi::InputError("cannot read tables from '" + folder.string() + "'", why, suggestion);
     };

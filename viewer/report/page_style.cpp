@@ -2,7 +2,7 @@
 
 namespace viewer {
 
-// Curves have the colours of Okabe & Ito 2008, which colour-blind people tell apart; brighter on dark paper. The
+// Curves have the colours of Okabe & Ito 2008, which colour-blind people can distinguish; brighter on dark paper. The
 // scale of FLIP is that of gi/metrics/difference_image.cpp.
 std::string_view page_style()
 {

@@ -1,6 +1,6 @@
 #pragma once
-// FFmpeg through OpenCV, in its own module (liblightwell_video.so), which is loaded for the first video, as its 240
-// libraries take 0.2 s to load.
+// FFmpeg through OpenCV, in its own module (liblightwell_video.so), which is loaded for the first video, as its
+// 240 libraries take 0.2 s to load.
 
 #include <filesystem>
 #include <memory>
