@@ -7,8 +7,8 @@
 
 namespace viewer {
 
-/// Returns a render session with a scene. @param scene  file or name  @param settings  applied in order, before the
-/// scene  @param report  must outlive the session
+/// Returns a render session with a scene. @param scene  file or name  @param settings  applied in order, before
+/// the scene  @param report  must outlive the session
 std::unique_ptr<RenderSession> bench_session(std::string const& scene, std::vector<Change> const& settings,
                                              gi::Report& report);
 

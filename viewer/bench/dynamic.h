@@ -1,6 +1,6 @@
 #pragma once
-// `lightwell bench dynamic`: frames of moving scenes with different hit buffer structures: cost of each part, error
-// of each frame, and effect of temporal reuse.
+// `lightwell bench dynamic`: frames of moving scenes with different hit buffer structures: cost of each part,
+// error of each frame, and effect of temporal reuse.
 
 #include "viewer/offline/render_options.h"
 #include "viewer/report/table.h"

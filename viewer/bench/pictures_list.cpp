@@ -40,7 +40,7 @@ public:
                      "envmap_rotate", "envmap_scale", "camera_path"});
         ListedScene scene{"", common_, ""};
         RenderOptions& o = scene.options;
-        if (!s.has("name")) throw s.error("a scene has no name", "rows and pictures are named after it", "add name");
+        if (!s.has("name")) throw s.error("a scene has no name", "rows and pictures are named by it", "add name");
         scene.name = s.at("name").text();
         if (!fits_file_names(scene.name))
             throw s.at("name").error("'" + scene.name.substr(0, 64) + "' is no name of a scene",

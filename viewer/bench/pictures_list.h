@@ -28,8 +28,8 @@ enum class Listed : std::uint8_t { scenes, sequences };
 std::vector<ListedScene> read_scene_list(std::filesystem::path const& file, RenderOptions const& common,
                                          Listed which = Listed::scenes);
 /// Returns the scenes with these names, in this order; all if no name is given. A name that is not in the list can
-/// be a built-in scene or a file, as for lightwell render. Throws InputError if it is neither, listing the names of
-/// the list.
+/// be a built-in scene or a file, as for lightwell render. Throws InputError if it is neither, listing the names
+/// of the list.
 std::vector<ListedScene> choose_scenes(std::vector<ListedScene> list, std::vector<std::string> const& names,
                                        RenderOptions const& common);
 

@@ -20,8 +20,8 @@ struct PictureScore {
 
 PictureScore score(gi::Picture const& picture, SweepReference const& reference);
 
-/// Standard errors of the bias caused by the reference's noise, for kJudgedLayers. Those of direct and indirect light
-/// are overestimated: the noise of all light is used for them.
+/// Standard errors of the bias caused by the reference's noise, for kJudgedLayers. Those of direct and indirect
+/// light are overestimated: the noise of all light is used for them.
 std::array<double, 3> bias_errors(gi::Picture const& reference);
 
 /// A mean with its standard error.

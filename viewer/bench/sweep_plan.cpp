@@ -116,7 +116,7 @@ SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
     plan.filter = make_denoise_settings(o.render, plan.settings);
     camera_choice(o.render); // throws before anything is loaded
     if (!o.reference.empty() && o.scenes.size() > 1)
-        throw gi::InputError("--reference is given for several scenes", "one picture cannot be the reference of all",
+        throw gi::InputError("--reference is given for several scenes", "one picture does not fit all of them",
                              "sweep one scene at a time, or drop it");
     check_folder(o.out);
     std::vector<std::string> inputs = o.scenes;

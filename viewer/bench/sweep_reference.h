@@ -20,8 +20,8 @@ enum class ReferenceOf : std::uint8_t {
     any_program   ///< by any version, so that later versions can use it too; also contains L1
 };
 
-/// Reads or renders the reference. Returns nothing if interrupted; the paths so far are kept for the next call. The
-/// file name contains a hash of everything that determines the picture.
+/// Reads or renders the reference. Returns nothing if interrupted; the paths so far are kept for the next call.
+/// The file name contains a hash of everything that determines the picture.
 std::optional<SweepReference> find_reference(SweepScene const& scene, gi::RenderSettings settings,
                                              std::uint32_t paths, std::filesystem::path const& folder,
                                              gi::StopRequest const& stop, gi::Report& report,

@@ -231,7 +231,7 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
     slhb_number(c, "--memory", s.memory_mib, 1, 1 << 24,
                 "MiB for hit buffers and shadow maps; they get fewer texels if it is not enough\n"
                 "(default: a quarter of the machine's memory)");
-    slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "most layers per texel, others are counted; 0 = all");
+    slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "most layers per texel, others counted; 0 = all");
     c.add_option(
          "--roulette", s.roulette,
          "Russian roulette: paths continue with a probability of this times their throughput; 0: all paths\n"

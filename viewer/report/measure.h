@@ -22,8 +22,8 @@ Measured ratio(std::span<double const> numerator, std::span<double const> denomi
 double seconds_of(std::function<void()> const& work);
 /// Seconds of `repeats` calls, after one call that is not measured.
 Measured measure(int repeats, std::function<void()> const& work);
-/// Seconds per competitor and round, in the order A B C, B C A, C A B, ..., so that ratios come from the same run and
-/// no competitor is always first. One earlier round is not measured.
+/// Seconds per competitor and round, in the order A B C, B C A, C A B, ..., so that ratios come from the same run
+/// and no competitor is always first. One earlier round is not measured.
 std::vector<std::vector<double>> measure_interleaved(int repeats,
                                                      std::vector<std::function<void()>> const& competitors);
 

@@ -26,8 +26,8 @@ std::string render_figures(BenchFolder const& folder);
 /// method, budget_s, frame_s and relmse.
 std::string sweep_figures(BenchTable const& table, std::filesystem::path const& folder);
 
-/// For each scene and budget the pictures of all methods and filters beside the reference, worst first; empty unless
-/// the table is from `bench pictures`.
+/// For each scene and budget the pictures of all methods and filters beside the reference, worst first; empty
+/// unless the table is from `bench pictures`.
 std::string picture_grids(BenchTable const& table, std::filesystem::path const& folder, PagePictures pictures);
 
 std::string_view page_style();

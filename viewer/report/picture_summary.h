@@ -13,7 +13,7 @@ inline constexpr double kLostRatio =
 struct PictureContest {
     std::string scene, budget, filter, method;
     double relmse_ratio = 0, flip_ratio = 0; ///< method / peer
-    double time_ratio = 0;                   ///< method / peer, of whole times; no method takes less than one path needs
+    double time_ratio = 0;                   ///< method / peer, of whole times; at least one path is traced
     double relmse_time_factor = 0;           ///< time of the peer for the same relMSE / time of the method
     double flip_time_factor = 0;             ///< the same for FLIP
     Reached relmse_reached = Reached::never, flip_reached = Reached::never;

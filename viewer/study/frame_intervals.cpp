@@ -29,7 +29,7 @@ bool parse(std::string const& line, std::string& stimulus, double& swap_s)
 
 void add(fs::path const& file, std::vector<double>& intervals)
 {
-    std::unique_ptr<gzFile_s, int (*)(gzFile)> const in(gzopen(file.c_str(), "rb"), gzclose); // reads plain files, too
+    std::unique_ptr<gzFile_s, int (*)(gzFile)> const in(gzopen(file.c_str(), "rb"), gzclose); // or plain
     if (!in) return;
     std::array<char, 1024> buffer{};
     std::string last;
