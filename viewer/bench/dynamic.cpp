@@ -69,7 +69,7 @@ public:
                                "direct_ms",  "indirect_ms", "reuse_ms",      "filter_ms",      "frame_ms",
                                "memory_MiB", "paths",       "relmse",        "flip",           "relmse_alone",
                                "flip_alone", "lag_relmse"})),
-          summary_(start_table("dynamic_summary", "The same, over all frames but the first",
+          summary_(start_table("dynamic_summary", "The same over all frames except the first",
                                {"scene",         "triangles",       "moving",       "structure",
                                 "structures_ms", "frame_ms",        "frame_ms_p95", "frame_ms_p99",
                                 "frame_ms_most", "memory_MiB",      "paths",        "relmse",

@@ -212,7 +212,7 @@ PicturesResult run_interactive_pictures(PicturesOptions const& o)
 {
     PicturesPlan const plan = plan_pictures(o);
     check_interactive(o, plan);
-    PicturesResult result{start_table("interactive", "Frames that follow each other",
+    PicturesResult result{start_table("interactive", "Consecutive frames",
                                       {"scene", "budget", "method", "filter", "paths", "frame_s", "filter_s",
                                        "total_s", "relmse", "relmse_of_reference", "flip", "neighbour_correlation",
                                        "picture_file", "flip_file", "reference_file"}),

@@ -191,7 +191,7 @@ BenchTable empty_table(SweepOptions const& o, SweepPlan const& plan)
 {
     BenchTable table = start_table(
         "sweep",
-        o.render.denoise == "none" ? "Error over time, method against method"
+        o.render.denoise == "none" ? "Error over time, by method"
                                    : "Error over time, with the filter " + o.render.denoise,
         {"scene", "method", "budget_s", "frame_s", "trace_s", "paths", "Mrays_per_s", "relmse", "relmse_indirect",
          "flip", "bias", "repeats", "reference_relmse", "picture_file", "flip_file", "reference_file"});

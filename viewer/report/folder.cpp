@@ -17,7 +17,7 @@ BenchFolder read_bench_folder(fs::path const& folder)
     };
     std::error_code error;
     if (!fs::exists(folder, error)) throw cannot("there is no such folder", "make one with lightwell bench sweep");
-    if (!fs::is_directory(folder, error)) throw cannot("it is no folder", "name the folder that --out named");
+    if (!fs::is_directory(folder, error)) throw cannot("it is not a folder", "name the folder that --out named");
     std::vector<fs::path> files;
     for (auto const& entry : fs::directory_iterator(folder, error))
         if (entry.path().extension() == ".json" && !entry.path().filename().string().starts_with('.'))

@@ -126,7 +126,7 @@ void write_texture(fs::path const& file, cv::Mat const& linear)
 std::string describe(AlbedoEstimate const& e, SeenFrames const& seen)
 {
     ar::AlbedoFit const& fit = e.solution.fit;
-    std::string text = fmt::format("camera found in {} frames ({} without it, {} refused); {} compared\n",
+    std::string text = fmt::format("camera found in {} frames ({} without, {} unusable); {} compared\n",
                                    seen.found, seen.without_pose, seen.refused, seen.kept.size());
     text += fmt::format("{:<28} {:^23} {:^23} {:>8}\n", "", "albedo", "spread of pixels", "pixels");
     for (AlbedoEntry const& p : e.entries)
@@ -141,7 +141,7 @@ std::string describe(AlbedoEstimate const& e, SeenFrames const& seen)
     if (e.texels > 0)
         text += fmt::format("textures: {} texels, {} not seen (set to the surface's median), {} pixels outside\n",
                             e.texels, e.filled, e.outside);
-    text += fmt::format("{} turns, last change {:.4f}{}\n", e.solution.iterations, e.solution.last_change,
+    text += fmt::format("{} iterations, last change {:.4f}{}\n", e.solution.iterations, e.solution.last_change,
                         e.solution.converged ? "" : " (not converged)");
     return text;
 }

@@ -196,7 +196,7 @@ int run_bench(BenchArguments const& a)
                     {"size", "paths", "resolution", "pace", "stage", "median_ms", "p95_ms", "most_ms"});
     if (!a.window)
         table.facts.emplace_back("latency", "without a window: until the composite is ready, not shown");
-    table.facts.emplace_back("first frames", "left out: they build what lasts");
+    table.facts.emplace_back("first frames", "left out: they build lasting structures");
     if (!a.session.empty()) {
         ArSession const session = read_ar_session(a.session);
         fs::path const folder = fs::path(a.session).parent_path();
@@ -251,7 +251,8 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
     CLI::App* const c = ar.add_subcommand(
         "bench", "Measure frames per second, latency from capture to display, and the error");
     CLI::Option* const session =
-        c->add_option("session", a->session, "Session as for run, at its own quality (default: made desks)");
+        c->add_option("session", a->session,
+                      "Session as for run, with its own quality (default: generated desk sessions)");
     c->add_option("--size", a->sizes, "Frame size, WIDTHxHEIGHT; repeatable")
         ->take_all()
         ->excludes(session)
@@ -271,7 +272,8 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
     c->add_option("--frames", a->frames, "Frames of each desk or session; with --counter: frames to show")
         ->check(CLI::Range(2, 100000))
         ->capture_default_str();
-    c->add_option("--truth-paths", a->truth_paths, "Paths per pixel of desk frames and references; 0 = no truth")
+    c->add_option("--truth-paths", a->truth_paths,
+                  "Paths per pixel of the desks' frames and reference pictures; 0 = no reference pictures")
         ->check(CLI::Range(0, 100000))
         ->capture_default_str();
     c->add_option("--folder", a->folder, "Folder that keeps desks for later runs (default: the temporary folder)");

@@ -216,7 +216,7 @@ void add_ar_run(CLI::App& ar, int& exit_code)
     run_command->add_option("--eyes", run->eyes, "With --hmd: folder for the last pictures of both eyes, as PNG")
         ->needs(hmd);
     run_command->add_option("--truth", run->truth,
-                            "Folder of reference pictures with the objects really in the scene, to report FLIP");
+                            "Folder of reference pictures, with the virtual objects as real ones, to report FLIP");
     for (char const* other :
          {"--window", "--out", "--video", "--record-input", "--table", "--truth", "--true-poses"})
         hmd->excludes(run_command->get_option(other));

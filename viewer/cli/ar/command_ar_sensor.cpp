@@ -167,7 +167,8 @@ void add_ar_vignetting(CLI::App& ar, int& exit_code)
     CLI::App* const c = ar.add_subcommand(
         "vignetting",
         "Add a lens's vignetting to a calibration, from pictures of an evenly bright surface.");
-    c->add_option("PICTURES", o->pictures, "of a lit wall through paper, or of a clear sky, out of focus; 8 bits")
+    c->add_option("PICTURES", o->pictures,
+                  "pictures of a lit wall through paper, or of a clear sky, out of focus; 8 bits")
         ->required();
     declare_sensor_options(*c, *o);
     c->footer(R"(Example:
@@ -184,7 +185,8 @@ void add_ar_noise(CLI::App& ar, int& exit_code)
     auto const o = std::make_shared<SensorOptions>();
     CLI::App* const c = ar.add_subcommand(
         "noise", "Add a sensor's noise to a calibration, from pairs of pictures of a static scene.");
-    c->add_option("PICTURES", o->pictures, "first, second, first, second, ... of equal exposure; 8 bits, not JPEG")
+    c->add_option("PICTURES", o->pictures,
+                  "pairs: first, second, first, second, ... with equal exposure; 8 bits, not JPEG")
         ->required();
     declare_sensor_options(*c, *o);
     c->footer(R"(Example:
@@ -202,7 +204,7 @@ void add_ar_colour(CLI::App& ar, int& exit_code)
     CLI::App* const c = ar.add_subcommand(
         "colour",
         "Add a camera's colour matrix to a calibration, from a picture of a ColorChecker with 24 patches.");
-    c->add_option("PICTURE", o->pictures[0], "of the chart, evenly lit, nothing clipped; 8 bits")->required();
+    c->add_option("PICTURE", o->pictures[0], "the chart, evenly lit, nothing clipped; 8 bits")->required();
     c->add_option("--patches", o->centres,
                   "centres X,Y, px, of dark skin, bluish green, black and white (the corners), or of all 24")
         ->required()

@@ -51,7 +51,8 @@ void add_ar_synthesize(CLI::App& ar, int& exit_code)
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     synthesize->add_option("--threads", made->options.quality.threads, "0 = all")->check(CLI::NonNegativeNumber);
-    synthesize->add_flag("--no-truth", made->no_truth, "Leave out the reference pictures (objects really there)");
+    synthesize->add_flag("--no-truth", made->no_truth,
+                         "Do not render the reference pictures, which show the virtual objects as real ones");
     synthesize->add_flag("--no-denoise", made->no_denoise, "Do not denoise the frames");
     synthesize->footer(R"(Example:
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth)");

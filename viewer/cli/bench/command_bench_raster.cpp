@@ -105,7 +105,7 @@ void check_watertight(RasterOptions const& o, BenchTable& table)
                std::string("(holes and doubles)"), Cell()});
 }
 
-/// Every layer of every texel against the rays through its centre.
+/// Compares the layers of every texel with rays through its centre.
 void check_against_embree(char const* name, World const& world, double wanted, BenchTable& table)
 {
     ExactVisibility const exact(world, false, 0);
@@ -251,7 +251,7 @@ int run(RasterOptions const& o)
 {
     check_folder(o.out);
     make_folder(o.out);
-    BenchTable table = start_table("raster", "The deep rasteriser: exact, and how fast",
+    BenchTable table = start_table("raster", "The deep rasteriser: correctness and speed",
                                    {"what", "unit", "value", "also", "second"});
     check_watertight(o, table);
     check_against_embree("room with a displaced sphere", world_of(generate_sphere(o.triangles, 0)), o.samples / 2,

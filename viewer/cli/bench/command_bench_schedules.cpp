@@ -144,7 +144,7 @@ int run(SchedulesOptions const& o)
     }
     check_folder(o.out);
     make_folder(o.out);
-    BenchTable table = start_table("schedules", "Schedules of the hit buffers where things move",
+    BenchTable table = start_table("schedules", "Schedules of hit buffers in moving scenes",
                                    {"scene", "schedule", "paths_per_pixel", "frame_ms", "following_ms", "relmse"});
     table.facts = {{"size", o.size},
                    {"frames", std::to_string(o.frames)},

@@ -167,7 +167,7 @@ int run(ViewsOptions const& o)
     check_folder(o.out);
     make_folder(o.out);
     BenchTable table = start_table(
-        "views", "What further views of a frame cost",
+        "views", "Cost of further views of a frame",
         {"scene", "views", "count", "size", "frame_ms", "each_further_over_first", "relmse_of_last_view"});
     for (std::string const& scene : o.scenes) {
         measure(o, scene, table);
@@ -189,7 +189,7 @@ void add_bench_views(CLI::App& bench, int& exit_code)
         ->capture_default_str()
         ->allow_extra_args(false);
     c->add_option("--set", o->settings, "KEY=VALUE as for view; repeatable")->take_all();
-    c->add_option("--size", o->size, "of an eye; walls are square, of its height")->capture_default_str();
+    c->add_option("--size", o->size, "of an eye, pixels; walls are square, of its height")->capture_default_str();
     c->add_option("--frames", o->frames, "frames per variant; the camera moves")
         ->check(CLI::Range(8, 10000))
         ->capture_default_str();

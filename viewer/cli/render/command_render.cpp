@@ -155,7 +155,7 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
     if (o.resume && !has_state) say("there is no '" + state + "': starting afresh");
     if (!o.resume && has_state && work.leads())
         throw gi::InputError("'" + state + "' holds an unfinished render", "a new one would replace it",
-                             "add --resume to go on, or delete it");
+                             "add --resume to continue, or delete it");
 
     gi::Report report;
     auto [plan, result, loaded] = shoot(o, settings, choice, motion, work, report);

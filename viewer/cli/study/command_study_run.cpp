@@ -92,7 +92,7 @@ void check_one_at_a_time(study::Script const& script, study::Plan const& plan, b
             if (i > 0 && is_in_it != headset)
                 throw gi::InputError(fmt::format("{}: block {}", script.file, block.name),
                                      "stimuli of one trial have different displays (view)",
-                                     "let trials differ in it: per: FACTOR, or cross");
+                                     "vary it between trials: per: FACTOR, or cross");
             headset = is_in_it;
         }
         if (is_ar && on_walls)
@@ -193,7 +193,7 @@ void add_study_run(CLI::App& study, int& exit_code)
     c->add_option("--fullscreen", o->fullscreen, "full screen on the monitor with this number or name");
     c->add_option("--display", o->display, "display file: walls instead of a window (docs/displays.md)");
     c->add_flag("--hmd", o->hmd,
-                "show stimuli in a headset (OpenXR, docs/hmd.md) unless their `view` says otherwise");
+                "show stimuli in a headset (OpenXR, docs/hmd.md) unless their `view` is set otherwise");
     c->add_flag("--seated", o->seated, "with --hmd: space without a floor, as in lightwell view");
     c->add_option("--font", o->font_px, "height of text, px")->check(CLI::Range(8, 200))->capture_default_str();
     c->add_option("--prepared", o->prepared, "output folder of study prepare, for blocks with stimuli: prepared");

@@ -130,7 +130,7 @@ int run_send(TrackOptions const& o)
         ++sent;
         refused += !sender.send(p.bytes); // a missing receiver is reported only with the next packet
     }
-    fmt::print("sent {} packets, left out {}, not taken {}\n", sent, lost, refused);
+    fmt::print("sent {} packets, left out {}, refused {}\n", sent, lost, refused);
     return stop.requested() ? kInterrupted : 0;
 }
 

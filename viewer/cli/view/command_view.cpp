@@ -261,7 +261,7 @@ int run_replay(ViewArguments const& a)
     if (as_recorded(o))
         fmt::print(": {} as recorded bit by bit, {} not, {} unknown", done.same, done.other, done.unknown);
     fmt::print("\n");
-    if (done.first_other) fmt::print("first other frame: {}\n", *done.first_other);
+    if (done.first_other) fmt::print("first different frame: {}\n", *done.first_other);
     std::string const loss = describe_loss(done.end);
     if (!loss.empty()) say(loss);
     std::fflush(stdout);
