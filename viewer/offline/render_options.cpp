@@ -229,7 +229,7 @@ void declare_slhb_quality(CLI::App& c, RenderOptions& o)
     slhb_number(c, "--interleave", s.interleave, 1, 16,
                 "compute indirect light for one pixel in each n x n block per pass (default: by the budget)");
     slhb_number(c, "--memory", s.memory_mib, 1, 1 << 24,
-                "MiB for hit buffers and shadow maps; they get fewer texels if it is not enough\n"
+                "MiB for hit buffers, and as much for shadow maps; they get fewer texels if it is not enough\n"
                 "(default: a quarter of the machine's memory)");
     slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "most layers per texel, others counted; 0 = all");
     c.add_option(

@@ -129,9 +129,9 @@ mean divided by that of the reference: of all light, direct light (L1) and indir
 errors over the repeats. neighbour_correlation is the correlation between the errors of neighbouring pixels: 0 for
 independent noise, near 1 for errors shared by regions.
 
-The summary divides errors and times of each method by those of 'reference'; a ratio of errors above {} is lost.
-Times differ where one path takes longer than the budget. The summary also gives how many times longer 'reference'
-needs for the same error, filter included, interpolated from its errors at all budgets.
+The summary divides errors and times of each method by those of 'reference'; above an error ratio of {} a row
+is lost. Times differ where one path takes longer than the budget. The summary also gives how many times longer
+'reference' needs for the same error, filter included, estimated from its errors at all budgets.
 
 --interactive renders consecutive frames, with the same temporal reuse and filters for all methods. Its defaults
 are --methods reference,slhb --denoise none,atrous --size 512x512 --reference-paths 256. frame_s is the time of
