@@ -165,7 +165,7 @@ TEST(BenchCommand, AGivenReference)
                              "--reference d/cornell_reference_20ms.exr",
                              folder.path());
     EXPECT_EQ(same.code, 2) << "would be replaced";
-    EXPECT_NE(same.err.find("it is read as well"), std::string::npos) << same.err;
+    EXPECT_NE(same.err.find("it is also an input"), std::string::npos) << same.err;
 }
 
 /// Within a budget the frames have as many paths as it allows, else one.

@@ -116,7 +116,7 @@ TEST(BenchPictures, ControlCKeepsTheRowsSoFar)
     program.send(SIGINT);
     Outcome const o = program.wait(std::chrono::seconds(30));
     EXPECT_EQ(o.code, 130) << o.err;
-    EXPECT_NE(o.err.find("add --resume to go on"), std::string::npos) << o.err;
+    EXPECT_NE(o.err.find("add --resume to continue"), std::string::npos) << o.err;
     BenchTable const t = table_of(read_bench_folder(folder / "d"), "pictures");
     ASSERT_EQ(t.rows.size(), 1u);
     EXPECT_EQ(to_text(cell(t, t.rows[0], "budget")), "20ms");

@@ -123,9 +123,9 @@ TEST(Frames, OfAnotherMotionAreKept)
     run_well(call + "@24", folder.path());
     Outcome const other = run(call + "@12 --resume", folder.path());
     EXPECT_EQ(other.code, 2);
-    EXPECT_TRUE(contains(other.err, "another motion blurs it")) << other.err;
+    EXPECT_TRUE(contains(other.err, "its motion blur differs")) << other.err;
     Outcome const same = run_well(call + "@24 --resume", folder.path());
-    EXPECT_TRUE(contains(same.out, "3 were there")) << same.out;
+    EXPECT_TRUE(contains(same.out, "3 existed already")) << same.out;
 }
 
 /// Two triangles that lie apart; one of them has no area in the last two frames.
@@ -197,7 +197,7 @@ TEST(Frames, FarFromZeroResumeWithReuse)
     run_well(call, folder.path());
     std::filesystem::remove(folder / "f_2.exr");
     Outcome const o = run_well(call + " --resume", folder.path());
-    EXPECT_TRUE(contains(o.out, "2 were there")) << o.out;
+    EXPECT_TRUE(contains(o.out, "2 existed already")) << o.out;
 }
 
 TEST(Frames, OfACameraPathAreThePicturesOfTheirTimes)
@@ -351,7 +351,7 @@ TEST(Frames, ControlCKeepsWhatIsCompleteAndResumeGoesOn)
 
     auto const time = std::filesystem::last_write_time(folder / "f_00.exr");
     Outcome const resumed = run_well(std::string(kLong) + " --resume", folder.path());
-    EXPECT_TRUE(contains(resumed.out, std::to_string(frames) + " were there")) << resumed.out;
+    EXPECT_TRUE(contains(resumed.out, std::to_string(frames) + " existed already")) << resumed.out;
     EXPECT_EQ(std::filesystem::last_write_time(folder / "f_00.exr"), time);
     expect_whole(folder);
 }
@@ -386,7 +386,7 @@ TEST(Frames, OfAnotherRenderAreKept)
                               {"--size 8x8", "its size is 16x16, not 8x8"},
                               {"--shutter 0.1", "its shutter is 0, not 0.1"},
                               {"--half", "its numbers is single, not half"},
-                              {"--fov 20", "its scene, camera or settings are others"}}) {
+                              {"--fov 20", "its scene, camera or settings differ"}}) {
         std::string changed = call;
         if (std::string(other.option).starts_with("--paths")) changed.replace(changed.find("--paths 1"), 9, "");
         if (std::string(other.option).starts_with("--size")) changed.replace(changed.find("--size 16x16"), 12, "");

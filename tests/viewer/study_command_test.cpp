@@ -75,7 +75,7 @@ TEST(StudyCommand, RefusesInOneLine)
           {"study check file.yaml", "there is no file 'nowhere.md'"},
           {"study plan r.yaml --participant 13", "participant 13 of 12"},
           {"study plan r.yaml --participant 0", "participant"},
-          {"study plan r.yaml --out r.yaml", "it is read as well"},
+          {"study plan r.yaml --out r.yaml", "it is also an input"},
           {"study plan r.yaml --out nowhere/plan.tsv", "there is no folder"},
           {"study example nothing --out x", "there are: ar_paths, pairs, rating, staircase, visibility2026"}}) {
         Outcome const o = run(arguments, folder.path());

@@ -83,7 +83,7 @@ TEST(StudySimulate, RefusesInOneLine)
          {std::pair{"study simulate r.yaml --participants 1 --out d", "participant P001 has a session 1 already"},
           {"study simulate r.yaml --participants 1,2 --out d", "begin another one by --session 2"},
           {"study simulate r.yaml --participants 2 --out d --seed 1", "other observers answered in this folder"},
-          {"study simulate r.yaml --participants 99", "'99' is none of 1 to 12"},
+          {"study simulate r.yaml --participants 99", "'99' is not one of 1 to 12"},
           {"study simulate r.yaml --participants 3..1", "write 3, 1..24"},
           {"study simulate r.yaml --participants x", "'x' is none"},
           {"study simulate r.yaml --session 100", "--session"},

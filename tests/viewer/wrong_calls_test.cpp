@@ -30,13 +30,13 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              WrongCall{"", "subcommand"},
              {"paint", "--help"},
              {"paint", "no subcommand 'paint'"},
-             {"rendr cornell", "no subcommand 'rendr' (the call does not fit) did you mean 'render'?"},
-             {"track lisen", "no subcommand 'lisen' (the call does not fit) did you mean 'listen'?"},
+             {"rendr cornell", "no subcommand 'rendr' (the call is not valid) did you mean 'render'?"},
+             {"track lisen", "no subcommand 'lisen' (the call is not valid) did you mean 'listen'?"},
              {"--bogus", "'--bogus' was not expected"},
              {"render", "SCENE"},
              {"render cornell --path 1",
-              "'--path' was not expected (the call does not fit) did you mean '--paths'?"},
-             {"render --sice=8x8", "'--sice' was not expected (the call does not fit) did you mean '--size'?"},
+              "'--path' was not expected (the call is not valid) did you mean '--paths'?"},
+             {"render --sice=8x8", "'--sice' was not expected (the call is not valid) did you mean '--size'?"},
              {"render cornell more", "more"},
              {"render cornell --bogus", "--bogus"},
              {"render nowhere.glb", "nowhere.glb"},
@@ -273,7 +273,7 @@ TEST(WrongCalls, AnInputIsNotOverwritten)
     TemporaryFolder const folder;
     run_well("generate sky --size 64x32 --out sky.exr", folder.path());
     std::string const before = file_text(folder / "sky.exr");
-    expect_refused("render cornell --envmap sky.exr --size 8x8 --paths 1 --out ./sky.exr", "read as well",
+    expect_refused("render cornell --envmap sky.exr --size 8x8 --paths 1 --out ./sky.exr", "also an input",
                    folder.path());
     EXPECT_TRUE(file_text(folder / "sky.exr") == before);
 }
@@ -294,7 +294,7 @@ TEST(WrongCalls, WhatASceneReadsIsNotOverwritten)
     for (std::string const call :
          {"render studio.yaml --out studio_0.exr", "render studio.yaml --frames 0:2@4 --out studio_%d.exr",
           "bench sweep --scene room.yaml --methods reference --budgets 20ms --out sweep"})
-        expect_refused(call + " --size 8x8", "read as well", folder.path());
+        expect_refused(call + " --size 8x8", "also an input", folder.path());
     EXPECT_TRUE(file_text(folder / "studio_0.exr") == before);
     EXPECT_TRUE(file_text(folder / "sweep/room_reference_20ms.exr") == before);
     EXPECT_EQ(folder.files(), (std::vector<std::string>{"room.yaml", "studio.yaml", "studio_0.exr", "sweep"}));

@@ -113,13 +113,13 @@ TEST(ArProbe, GivesBackTheLightInTheWorldOfTheMarkers)
         EXPECT_LT(error, 0.02);
         EXPECT_EQ(lamps.size(), kDiscs.size());
         for (auto const& d : kDiscs) EXPECT_LT(nearest_deg(lamps, d.direction), 1);
-        EXPECT_NE(o.out.find("2 lamps with"), std::string::npos);
+        EXPECT_NE(o.out.find("2 lights with"), std::string::npos);
     }
     Outcome const one = run_well("ar probe a0.png a1.png a2.png --out one.exr" + rest, folder.path());
-    EXPECT_NE(one.out.find("% filled from around it"), std::string::npos);
+    EXPECT_NE(one.out.find("% filled in from neighbours"), std::string::npos);
     Outcome const behind = run("ar probe a0.png a1.png a2.png --out x.exr --ball 0.1,3,3" + rest, folder.path());
     EXPECT_EQ(behind.code, 2);
-    EXPECT_NE(behind.err.find("no ball is found in a0.png (--ball 0.1,3,3 (it is not ahead"), std::string::npos)
+    EXPECT_NE(behind.err.find("no ball was found in a0.png (--ball 0.1,3,3 (it is not in"), std::string::npos)
         << behind.err;
     Outcome const elsewhere =
         run("ar probe a0.png a1.png a2.png --out x.exr --ball -0.2,0.09,-0.3" + rest, folder.path());

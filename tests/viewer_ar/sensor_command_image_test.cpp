@@ -123,7 +123,7 @@ TEST(ArSensor, IsThatOfThePicturesForIt)
     EXPECT_LT(colour_off, 0.03);
 
     EXPECT_NE(flat.out.find("error: "), std::string::npos);
-    EXPECT_NE(flat.out.find("RMS of 3456 parts of 2 pictures"), std::string::npos);
+    EXPECT_NE(flat.out.find("RMS of 3456 regions of 2 pictures"), std::string::npos);
     EXPECT_NE(noise.out.find("of 2 pairs"), std::string::npos);
     EXPECT_NE(colour.out.find("without the matrix"), std::string::npos);
     for (auto const& [page, text] : {std::pair{"vignetting.html", "Vignetting"},

@@ -63,7 +63,7 @@ TEST(PrepareCommand, CtrlCLeavesWhatIsComplete)
     program.send(SIGINT);
     Outcome const o = program.wait();
     EXPECT_EQ(o.code, 130) << o.err;
-    EXPECT_NE(o.err.find("interrupted: stimuli that are complete stay"), std::string::npos) << o.err;
+    EXPECT_NE(o.err.find("interrupted: complete stimuli are kept"), std::string::npos) << o.err;
     EXPECT_TRUE(fs::is_empty(folder / "out")) << "none was";
 }
 

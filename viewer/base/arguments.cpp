@@ -100,7 +100,7 @@ double parse_target(std::string const& option, std::string const& text, std::str
     std::string const example = name + "=0.001";
     auto const [given, value] = parse_limit(option, text, example);
     if (given != name || !(value > 0))
-        throw bad(option, text, "only " + name + " with a positive value can be waited for", "write " + example);
+        throw bad(option, text, "only " + name + " with a positive value can be a target", "write " + example);
     return value;
 }
 
@@ -108,7 +108,7 @@ std::string check_seed(std::string const& text)
 {
     if (text.starts_with('-')) return "'" + text + "' is negative";
     errno = 0;
-    std::strtoull(text.c_str(), nullptr, 0); // as CLI11 reads it
+    std::strtoull(text.c_str(), nullptr, 0); // as CLI11 parses it
     return errno == ERANGE ? "'" + text + "' is larger than 18446744073709551615" : std::string();
 }
 

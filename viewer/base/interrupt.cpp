@@ -5,7 +5,7 @@
 namespace viewer {
 namespace {
 
-gi::StopRequest* g_stop = nullptr; // a signal handler can reach nothing else
+gi::StopRequest* g_stop = nullptr; // global, as a signal handler gets no arguments of its own
 
 void handle(int signal)
 {

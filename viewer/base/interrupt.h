@@ -3,9 +3,9 @@
 
 namespace viewer {
 
-inline constexpr int kInterrupted = 130; ///< exit code
+inline constexpr int kInterrupted = 130; ///< exit code after Ctrl-C or SIGTERM
 
-/// While this lives, Ctrl-C and SIGTERM ask for a stop; a second one ends the program at once.
+/// While this object lives, Ctrl-C and SIGTERM request a stop; a second signal ends the program at once.
 class InterruptGuard {
 public:
     explicit InterruptGuard(gi::StopRequest& stop);

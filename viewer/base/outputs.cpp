@@ -14,7 +14,7 @@ namespace viewer {
 namespace fs = std::filesystem;
 namespace {
 
-/// The same for all names of a file.
+/// Device and inode: equal for all names of one file.
 using Identity = std::pair<dev_t, ino_t>;
 
 std::optional<Identity> identity(std::string const& file)
@@ -49,7 +49,7 @@ void check_outputs(std::vector<std::string> const& files, std::vector<std::strin
         if (!seen.insert(fs::weakly_canonical(fs::absolute(path), error)).second)
             throw cannot("two outputs have this name", "give each its own");
         if (auto const found = identity(file); found && read.contains(*found))
-            throw cannot("it is read as well", "choose another name");
+            throw cannot("it is also an input", "choose another name");
     }
 }
 

@@ -5,11 +5,11 @@
 
 namespace viewer {
 
-/// stages (s), counts, losses (count, first place), peak memory (bytes).
+/// Stage times (s), counts, losses (count and first place) and peak memory (bytes).
 nlohmann::ordered_json to_json(gi::Report const& report);
-/// One line per loss on stderr. @param whose  stands before what was lost; empty = the command's
+/// Prints one line per loss on stderr. @param whose  prefix of each loss, e.g. "rank 1: "; empty = this process
 void print_losses(gi::Report const& report, std::string const& whose = "");
-/// With a newline at the end; names that are not UTF-8 are repaired.
+/// Serialises with a newline at the end; invalid UTF-8 is replaced.
 std::string to_text(nlohmann::ordered_json const& json);
 
 } // namespace viewer

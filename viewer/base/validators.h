@@ -5,7 +5,7 @@
 
 namespace viewer {
 
-/// As CLI::Range, but NaN is outside too, and limits are written as short as they can be.
+/// Like CLI::Range, but rejects NaN and prints the limits in their shortest form.
 inline CLI::Validator in_range(double low, double high)
 {
     std::string const range = fmt::format("[{} - {}]", low, high);

@@ -34,7 +34,7 @@ void check_folder(std::string const& folder)
     fs::path const path = fs::absolute(folder, error).lexically_normal();
     if (fs::exists(path, error) && !fs::is_directory(path, error))
         throw cannot("it is a file", "choose another --out");
-    fs::path there = path; // the part of the way that exists
+    fs::path there = path; // the part of the path that exists
     while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
     if (!fs::is_directory(there, error))
         throw cannot("'" + there.string() + "' is a file", "choose another --out");

@@ -1,17 +1,17 @@
 #pragma once
-// What every bench command does at its beginning and at its end.
+// Start and end of every bench command.
 
 #include "viewer/report/table.h"
 
 namespace viewer {
 
-/// An empty table that knows program, command, machine and date.
+/// Returns an empty table with program, command, machine and date.
 BenchTable start_table(std::string const& name, std::string const& title, std::vector<std::string> const& columns);
 
-/// Throws InputError unless the folder is there, or can be made, and tables can be written to it. Makes nothing.
+/// Throws InputError unless the folder exists or can be created, and is writable. Creates nothing.
 void check_folder(std::string const& folder);
 
-/// On stdout: the rows and the names of their files, or all of it as JSON.
+/// Prints the rows and the names of the table's files on stdout, or the whole table as JSON.
 void show(BenchTable const& table, std::string const& folder, bool json);
 
 } // namespace viewer

@@ -1,5 +1,5 @@
 #pragma once
-// Sessions whose frames are measured, and the truth that they are measured against.
+// Render sessions whose frames are measured, and references to compare with.
 
 #include "viewer/engine/render_session.h"
 
@@ -7,13 +7,13 @@
 
 namespace viewer {
 
-/// A session with a scene. @param scene  file or name  @param settings  in order, before the scene
-/// @param report  outlives it
+/// Returns a render session with a scene. @param scene  file or name  @param settings  applied in order, before
+/// the scene  @param report  must outlive the session
 std::unique_ptr<RenderSession> bench_session(std::string const& scene, std::vector<Change> const& settings,
                                              gi::Report& report);
 
-/// The layer `color` of a view of the session's world as its last frame left it, by the method reference with as
-/// many bounces as the session has. @param paths  per pixel; their noise is in it
+/// Layer `color` of a view of the session's world after its last frame, rendered by method reference with the
+/// session's number of bounces. @param paths  per pixel; the result contains their noise
 gi::Layer reference_of(RenderSession const& session, ViewCommand const& view, int paths, gi::Report& report);
 
 } // namespace viewer

@@ -29,7 +29,7 @@ namespace {
 using namespace gi;
 namespace fs = std::filesystem;
 
-/// A room with a displaced sphere that stays and a figure of 10,880 triangles that walks.
+/// Room with a static displaced sphere and a walking figure of 10,880 triangles.
 Scene figure_in_room(std::uint32_t triangles)
 {
     Scene scene = generate_sphere(triangles, 0);
@@ -37,7 +37,7 @@ Scene figure_in_room(std::uint32_t triangles)
     return scene;
 }
 
-/// Resident, of this program.
+/// Resident memory of this program.
 double memory_mib()
 {
     std::ifstream statm("/proc/self/statm");
@@ -64,13 +64,13 @@ class Dynamic {
 public:
     Dynamic(DynamicOptions const& o, Report& report)
         : o_(o),
-          frames_(start_table("dynamic", "Frames of what moves, by method slhb: what each costs, and its error",
+          frames_(start_table("dynamic", "Frames of moving scenes, by method slhb: their cost and error",
                               {"scene",      "triangles",   "moving",        "structure",      "frame",
                                "time_s",     "world_ms",    "structures_ms", "shadow_maps_ms", "g_buffer_ms",
                                "direct_ms",  "indirect_ms", "reuse_ms",      "filter_ms",      "frame_ms",
                                "memory_MiB", "paths",       "relmse",        "flip",           "relmse_alone",
                                "flip_alone", "lag_relmse"})),
-          summary_(start_table("dynamic_summary", "The same, over all frames but the first",
+          summary_(start_table("dynamic_summary", "The same over all frames except the first",
                                {"scene",         "triangles",       "moving",       "structure",
                                 "structures_ms", "frame_ms",        "frame_ms_p95", "frame_ms_p99",
                                 "frame_ms_most", "memory_MiB",      "paths",        "relmse",
@@ -141,7 +141,7 @@ private:
                 not_finite += std::ranges::count_if(frame.picture.find("color")->data,
                                                     [](float v) { return !std::isfinite(v); });
                 if (judged && reuses) lag.add(std::size_t(seed), std::size_t(f), frame.picture, frame.alone);
-                if (seed > 0) continue; // which is for the lag alone
+                if (seed > 0) continue; // further seeds are only for the lag
                 seconds.push_back(frame.seconds);
                 memory.push_back(memory_mib());
                 paths.push_back(frame.paths);
@@ -178,7 +178,7 @@ private:
                          to_cell(alone[f].flip),
                          to_cell(lags[f])});
         }
-        // The first frame builds what lasts.
+        // The first frame builds lasting structures.
         auto const over = [&](double share, auto const& value) {
             std::vector<double> v;
             for (std::size_t f = 1; f < seconds.size(); ++f) v.push_back(value(f));
@@ -216,7 +216,7 @@ private:
 
     double first_s() const { return o_.render.time_s.value_or(0); }
 
-    /// Of the last frame, and what was seen since all that lasts is there.
+    /// Value of the last frame, with the range since lasting structures were built.
     static Cell settled(std::vector<double> const& memory)
     {
         constexpr std::size_t kSettled = 100;
@@ -225,7 +225,7 @@ private:
                         int(later.size())};
     }
 
-    /// The last frame: itself, FLIP, reference.
+    /// Saves the last frame, its FLIP map and its reference.
     std::vector<std::string> save(std::string const& name, Structure const& structure, Picture const& picture,
                                   Picture const& truth) const
     {
@@ -245,7 +245,7 @@ private:
     DynamicOptions const& o_;
     BenchTable frames_, summary_;
     Report& report_;
-    std::vector<Picture> references_; ///< of every frame
+    std::vector<Picture> references_; ///< one per frame
 };
 
 } // namespace

@@ -27,7 +27,7 @@ Structure const& find_structure(std::string const& name)
         if (s.name == name) return s;
         known += (known.empty() ? "" : ", ") + std::string(s.name);
     }
-    throw gi::InputError("there is no structure '" + name + "'", "it is not one of slhb's", "choose of: " + known);
+    throw gi::InputError("there is no structure '" + name + "'", "slhb does not have it", "choose of: " + known);
 }
 
 DynamicSequence::DynamicSequence(DynamicOptions const& o, std::shared_ptr<gi::Scene const> const& scene,
@@ -64,7 +64,7 @@ DynamicSequence::Frame DynamicSequence::next(gi::DenoiseSettings const& filter, 
         flat_.see(changes, report_);
         build_s = seconds_of([&] {
             if (structure_.anew) {
-                renderer_.reset(); // its memory is free for the next
+                renderer_.reset(); // frees its memory for the next one
                 renderer_ = start();
             } else {
                 renderer_->changed(changes);

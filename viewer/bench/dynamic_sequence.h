@@ -1,5 +1,5 @@
 #pragma once
-// The frames of one scene with one structure and one seed, and what each part of them takes.
+// Frames of one scene with one structure and one seed, and the times of their parts.
 
 #include "gi/filter/denoise.h"
 #include "gi/filter/temporal.h"
@@ -9,14 +9,14 @@
 
 namespace viewer {
 
-/// What the slhb method does about what moves.
+/// How method slhb handles moving geometry.
 struct Structure {
     std::string_view name;
     gi::Schedule schedule;
-    bool moves, anew; ///< time passes; everything is built anew for every frame
+    bool moves, anew; ///< moves: the animation runs; anew: everything is rebuilt for every frame
 };
 
-/// Throws InputError naming those that there are.
+/// Throws InputError listing the known structures.
 Structure const& find_structure(std::string const& name);
 
 struct FrameSeconds {
@@ -30,11 +30,11 @@ public:
                     Structure const& structure, gi::RenderSettings const& settings, gi::Report& report);
 
     struct Frame {
-        gi::Picture picture, alone; ///< filtered; the second without reuse, where there is reuse
+        gi::Picture picture, alone; ///< filtered, with and without reuse; `alone` only with reuse
         FrameSeconds seconds;
         std::uint32_t paths = 0;
     };
-    /// The next one. @param wants_alone  which costs time of nobody's frame
+    /// Renders the next frame. @param wants_alone  also without reuse; not included in the times
     Frame next(gi::DenoiseSettings const& filter, bool wants_alone);
 
     gi::World const& world() const { return world_.world(); }

@@ -48,11 +48,11 @@ std::vector<std::string> const kColumns{"scene",
                                         "flip_file",
                                         "reference_file"};
 
-/// Of all repeats of a method with a budget.
+/// Samples of all repeats of a method with a budget.
 struct RenderSamples {
     std::vector<double> paths, render_s, structures_s, paths_s, estimated;
 };
-/// Of these, through one filter.
+/// Samples of these renders through one filter.
 struct FilterSamples {
     std::vector<double> filter_s, total_s, relmse, flip, correlation;
     std::array<std::vector<double>, 3> bias;
@@ -86,7 +86,7 @@ public:
     {
     }
 
-    /// @return false where it was interrupted
+    /// @return false if it was interrupted
     bool run(ListedScene const& listed);
     std::set<std::string> const& notes() const { return notes_; }
 
@@ -141,7 +141,7 @@ gi::RenderSettings Pictures::settings(SweepMethod const& method, PictureBudget c
     return s;
 }
 
-/// The first render also starts threads and fills caches, the first filter too; that is no method's fault.
+/// Renders and filters once without measuring: the first calls also start threads and fill caches.
 void Pictures::warm_up(PictureScene const& s)
 {
     gi::Report unused;
@@ -183,7 +183,7 @@ bool Pictures::measure_budget(PictureScene const& s, PictureBudget const& budget
     std::vector<MethodSamples> samples(n);
     for (MethodSamples& m : samples) m.filtered.resize(plan_.filters.size());
     gi::ProgressBar bar("pictures", !o_.render.quiet);
-    // In turns, so that a machine that slows down slows everybody.
+    // In turns, so that a slower machine affects all methods equally.
     for (int repeat = 0; repeat < o_.repeats; ++repeat)
         for (std::size_t i = 0; i < n; ++i) {
             std::size_t const m = (std::size_t(repeat) + i) % n;
@@ -214,7 +214,7 @@ bool Pictures::measure(PictureScene const& s, SweepMethod const& method, Picture
     r.render_s.push_back(render_s);
     r.structures_s.push_back(parts.structures);
     r.paths_s.push_back(parts.paths);
-    // One path says nothing of its variance.
+    // One path gives no variance.
     r.estimated.push_back(result.paths > 1 ? result.relmse : std::nan(""));
     judge(s, method, budget, repeat, result, render_s, into);
     return true;
@@ -247,7 +247,7 @@ void Pictures::judge(PictureScene const& s, SweepMethod const& method, PictureBu
 void Pictures::add_rows(PictureScene const& s, PictureBudget const& budget, SweepMethod const& method,
                         MethodSamples const& samples)
 {
-    // Rows of an earlier, unfinished run.
+    // Removes rows of an earlier, unfinished run.
     std::erase_if(table_.rows, [&](auto const& row) {
         auto const is = [&](char const* column, std::string const& value) {
             return to_text(cell(table_, row, column)) == value;
@@ -297,7 +297,7 @@ BenchTable start_pictures(PicturesOptions const& o, PicturesPlan const& plan)
     std::vector<unsigned char> const bytes = gi::read_bytes(file, kMostBytes);
     BenchTable earlier = parse_table(std::string(bytes.begin(), bytes.end()), file.string());
     auto const refuse = [&](std::string const& why) {
-        return gi::InputError("--resume: '" + file.string() + "' is of another run", why,
+        return gi::InputError("--resume: '" + file.string() + "' is from another run", why,
                               "choose another --out, or leave --resume out");
     };
     if (earlier.columns != table.columns) throw refuse("it has other columns");
@@ -309,7 +309,7 @@ BenchTable start_pictures(PicturesOptions const& o, PicturesPlan const& plan)
     return table;
 }
 
-/// Pictures stay files beside the page: there may be a thousand.
+/// Pictures are linked, not embedded, as there may be a thousand.
 void write_page(PicturesOptions const& o, PicturesResult const& result)
 {
     Page page;

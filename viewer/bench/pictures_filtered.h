@@ -1,5 +1,5 @@
 #pragma once
-// What happens to every picture after its render: a filter, and files for the page.
+// Filtering and saving of every rendered picture.
 
 #include "viewer/bench/pictures_plan.h"
 #include "viewer/bench/sweep_reference.h"
@@ -8,13 +8,13 @@ namespace viewer {
 
 struct FilteredPicture {
     gi::Picture picture;
-    double seconds = 0;       ///< of the filter
-    bool no_variance = false; ///< the filter had nothing to go by and changed nothing
+    double seconds = 0;       ///< time of the filter
+    bool no_variance = false; ///< the filter needs a variance and changed nothing
 };
 FilteredPicture filtered(gi::Picture picture, PictureFilter const& filter);
 
 struct PictureFiles {
-    std::string picture, flip_map; ///< within the folder
+    std::string picture, flip_map; ///< file names within the folder
 };
 PictureFiles save_pictures(gi::Picture const& picture, SweepReference const& reference,
                            std::filesystem::path const& folder, std::string const& stem);

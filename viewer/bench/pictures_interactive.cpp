@@ -1,4 +1,4 @@
-// `lightwell bench pictures --interactive`: what people see while something moves, method against method.
+// `lightwell bench pictures --interactive`: compares methods by interactive frames of moving scenes.
 
 #include "gi/core/durable_file.h"
 #include "gi/core/error.h"
@@ -25,12 +25,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the scored frames of one method have, one value each.
+/// Scores of one method, one value per scored frame.
 struct FrameScores {
     std::vector<double> paths, filter_s, relmse, flip, correlation;
 };
 
-/// A scene that moves, its cameras, and the truth of the frames that are scored.
+/// A moving scene, its cameras, and references of the scored frames.
 class SequenceOfFrames {
 public:
     SequenceOfFrames(ListedScene const& listed, PicturesOptions const& o, gi::Report& report)
@@ -49,7 +49,7 @@ public:
     {
         return camera_->of(world, frame / o_.fps, frame / double(o_.frames));
     }
-    /// @return false where it was interrupted
+    /// @return false if it was interrupted
     bool find_references(gi::RenderSettings const& settings, gi::StopRequest const& stop, gi::Report& report)
     {
         fs::path const folder = reference_folder(o_);
@@ -65,7 +65,7 @@ public:
         }
         return true;
     }
-    /// Null where the frame is not scored. @param frame  counted from 0
+    /// Reference of a frame; null if it is not scored. @param frame  counted from 0
     SweepReference const* reference(int frame) const
     {
         auto const at = std::ranges::find(o_.scored_frames, frame + 1);
@@ -89,7 +89,7 @@ public:
     {
     }
 
-    /// @return false where it was interrupted
+    /// @return false if it was interrupted
     bool run(ListedScene const& listed)
     {
         SequenceOfFrames sequence(listed, o_, report_);
@@ -153,7 +153,7 @@ private:
         into.correlation.push_back(judged.neighbour_correlation);
     }
 
-    /// @param all_s  times of all frames but the first, which builds what lasts
+    /// @param all_s  times of all frames except the first, which builds lasting structures
     void add_mean(SequenceOfFrames const& sequence, SweepMethod const& method, PictureFilter const& filter,
                   FrameScores const& s, std::vector<double> const& all_s)
     {
@@ -177,13 +177,13 @@ void check_interactive(PicturesOptions const& o, PicturesPlan const& plan)
     for (SweepMethod const& m : plan.methods)
         if (!m.method.motion_vectors)
             throw gi::InputError("--interactive with --methods " + m.name,
-                                 "it gives no motion vectors, by which the light of earlier frames is found",
+                                 "it gives no motion vectors, which reuse needs to find earlier light",
                                  "choose from: reference, slhb");
     for (int const frame : o.scored_frames)
         if (frame < 1 || frame > o.frames)
             throw gi::InputError(fmt::format("--scored-frames {}", frame),
                                  fmt::format("there are frames 1 to {}", o.frames),
-                                 "name others, or add --frames");
+                                 "choose others, or increase --frames");
     refuse_twins("--scored-frames", o.scored_frames, [&] {
         std::vector<std::string> texts;
         for (int const frame : o.scored_frames) texts.push_back(std::to_string(frame));
@@ -191,7 +191,7 @@ void check_interactive(PicturesOptions const& o, PicturesPlan const& plan)
     }());
 }
 
-/// Times at equal error have no meaning for frames, which all have one budget.
+/// Times at equal error have no meaning here, as all frames have the same budget.
 BenchTable frame_summary_of(BenchTable const& frames)
 {
     std::string const peer = kPeer;
@@ -213,7 +213,7 @@ PicturesResult run_interactive_pictures(PicturesOptions const& o)
 {
     PicturesPlan const plan = plan_pictures(o);
     check_interactive(o, plan);
-    PicturesResult result{start_table("interactive", "Frames that follow each other",
+    PicturesResult result{start_table("interactive", "Consecutive frames",
                                       {"scene", "budget", "method", "filter", "paths", "frame_s", "filter_s",
                                        "total_s", "relmse", "relmse_of_reference", "flip", "neighbour_correlation",
                                        "picture_file", "flip_file", "reference_file"}),

@@ -44,7 +44,7 @@ public:
         scene.name = s.at("name").text();
         if (!fits_file_names(scene.name))
             throw s.at("name").error("'" + scene.name.substr(0, 64) + "' is no name of a scene",
-                                     "it becomes part of names of files",
+                                     "it becomes part of file names",
                                      "use letters, digits, '-' and '_', at most 64");
         if (s.has("file") == s.has("built_in"))
             throw s.error("a scene needs either file or built_in", "it has both or none", "keep one");
@@ -99,7 +99,7 @@ std::vector<ListedScene> read_scene_list(fs::path const& file, RenderOptions con
         list.push_back(reader.read(item));
         if (which == Listed::scenes && item.has("camera_path"))
             throw item.at("camera_path")
-                .error("a scene has a camera_path", "its pictures are of one moment", "move it to sequences");
+                .error("a scene has a camera_path", "scenes are rendered at one moment", "move it to sequences");
         if (std::ranges::count(list, list.back().name, &ListedScene::name) > 1)
             throw item.error("there are two scenes '" + list.back().name + "'",
                              "their rows and pictures would be mixed up", "rename one");
@@ -125,7 +125,7 @@ std::vector<ListedScene> choose_scenes(std::vector<ListedScene> list, std::vecto
             std::vector<std::string> known;
             for (ListedScene const& s : list) known.push_back(s.name);
             throw gi::InputError("--scenes '" + name + "' is not known",
-                                 "it is no scene of the list, no file and no built-in scene",
+                                 "it is not a scene of the list, a file or a built-in scene",
                                  fmt::format("choose from: {}", fmt::join(known, ", ")));
         }
     }

@@ -13,7 +13,7 @@
 namespace viewer {
 namespace {
 
-/// By the option --denoise itself, so that both know the same filters.
+/// Parses the name by the option --denoise, so that both have the same filters.
 void choose_filter(std::string const& name, RenderOptions& options)
 {
     CLI::App parser;
@@ -25,7 +25,7 @@ void choose_filter(std::string const& name, RenderOptions& options)
     }
 }
 
-/// Throws InputError where the filter cannot work here, for want of a library or its weights.
+/// Throws InputError if the filter cannot work here, as a library or its weights are missing.
 void try_filter(gi::DenoiseSettings const& settings)
 {
     if (settings.denoiser == gi::Denoiser::none) return;
@@ -37,7 +37,7 @@ void try_filter(gi::DenoiseSettings const& settings)
     gi::denoise(picture, settings);
 }
 
-/// A filter that is known but cannot work here is skipped.
+/// Adds a filter; known filters that cannot work here are skipped.
 void add_filter(PicturesOptions const& o, std::string const& name, PicturesPlan& plan)
 {
     RenderOptions options = o.render;
@@ -53,13 +53,13 @@ void add_filter(PicturesOptions const& o, std::string const& name, PicturesPlan&
 
 Listed kind_of(PicturesOptions const& o) { return o.interactive ? Listed::sequences : Listed::scenes; }
 
-/// Without the list, scenes can still be named one by one.
+/// Reads the list; without it, scenes can still be named one by one.
 std::vector<ListedScene> scene_list(PicturesOptions const& o)
 {
     std::error_code error;
     if (std::filesystem::exists(o.list, error)) return read_scene_list(o.list, o.render, kind_of(o));
     if (!o.scenes.empty() && o.list == PicturesOptions().list) return {};
-    throw gi::InputError("there is no list of scenes '" + o.list + "'", "it says what is to be rendered",
+    throw gi::InputError("there is no list of scenes '" + o.list + "'", "the scenes to render are not known",
                          "start in the repository's folder, or name scenes with --scenes or a list with --list");
 }
 
@@ -75,7 +75,7 @@ PictureBudget parse_picture_budget(std::string const& text)
             auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), paths);
             constexpr std::uint32_t kMost = 1 << 24;
             if (error != std::errc() || end != digits.data() + digits.size() || paths < 1 || paths > kMost)
-                throw gi::InputError("--budgets " + text, "it is no number of paths",
+                throw gi::InputError("--budgets " + text, "it is not a number of paths",
                                      fmt::format("write 1path to {}paths", kMost));
             return {text, 0, paths};
         }

@@ -1,5 +1,5 @@
 #pragma once
-// What `bench pictures` does, checked before it is begun.
+// Plan of `bench pictures`, checked before rendering.
 
 #include "viewer/bench/pictures.h"
 #include "viewer/bench/pictures_list.h"
@@ -12,36 +12,36 @@ struct PictureBudget {
     double seconds = 0;      ///< 0 = none
     std::uint32_t paths = 0; ///< 0 = as many as the time allows
 };
-/// "1path", "16paths", or a time. Throws InputError.
+/// Parses "1path", "16paths" or a time. Throws InputError.
 PictureBudget parse_picture_budget(std::string const& text);
 
 struct PictureFilter {
-    std::string name; ///< as --denoise has it
+    std::string name; ///< as in --denoise
     gi::DenoiseSettings settings;
 };
 
 struct Skipped {
     std::string what, why; ///< "scene sponza", "there is no file '...'"
 };
-/// Says on stderr that something is left out, and notes it in the table.
+/// Reports on stderr and in the table that something is skipped.
 void skip(Skipped const& skipped, BenchTable& table);
 
 struct PicturesPlan {
-    gi::RenderSettings settings; ///< the same for all, but for budget, paths and seed
+    gi::RenderSettings settings; ///< common to all renders, except budget, paths and seed
     std::vector<PictureBudget> budgets;
     std::vector<PictureFilter> filters;
     std::vector<SweepMethod> methods;
-    std::vector<ListedScene> scenes; ///< or sequences, where `interactive` is asked for
+    std::vector<ListedScene> scenes; ///< sequences with `interactive`
     std::vector<Skipped> skipped;
 };
 
-/// Made where it is not there.
+/// Folder of the reference pictures; created if missing.
 std::filesystem::path reference_folder(PicturesOptions const& options);
-/// Rows, or pictures of frames: everything that they have in common. Tables that differ in it are not continued.
+/// Facts that all rows, or all frames, have in common. Tables with other facts are not continued.
 std::vector<std::pair<std::string, std::string>> common_facts(PicturesOptions const& options,
                                                               PicturesPlan const& plan);
 
-/// Loads no scene. Throws InputError on all that is wrong with the call.
+/// Makes the plan without loading scenes. Throws InputError if the call is invalid.
 PicturesPlan plan_pictures(PicturesOptions const& options);
 
 } // namespace viewer

@@ -86,7 +86,7 @@ RenderSeconds seconds_by_part(gi::Report const& report)
         if (stage == kTrace) trace += seconds;
         if (std::ranges::find(kStructures, stage) != kStructures.end()) s.structures += seconds;
     }
-    if (s.paths == 0) s.paths = trace; // of a method whose passes are paths alone
+    if (s.paths == 0) s.paths = trace; // for methods whose passes consist only of paths
     return s;
 }
 

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the repeats of one method with one budget gave.
+/// Samples of all repeats of one method with one budget.
 struct Samples {
     std::vector<double> frame_s, trace_s, paths, mrays_per_s, relmse, relmse_indirect, flip, bias;
     std::string picture, flip_map;
@@ -38,7 +38,7 @@ public:
         total_s_ *= double(plan.scenes.size() * plan.methods.size()) * o_.repeats;
     }
 
-    /// @return false where it was interrupted
+    /// @return false if it was interrupted
     bool run(SweepScene const& scene, SweepReference const& reference, BenchTable& table);
 
     std::set<std::string> const& notes() const { return notes_; }
@@ -60,20 +60,20 @@ private:
     gi::Report& report_;
     gi::ProgressBar bar_;
     double total_s_ = 0, done_s_ = 0;
-    double filter_s_ = 0;         ///< that the filter takes of a frame
-    std::set<std::string> notes_; ///< of the comparisons
+    double filter_s_ = 0;         ///< time of the filter per frame
+    std::set<std::string> notes_; ///< from the comparisons
 };
 
 gi::RenderSettings Sweep::settings(SweepMethod const& method, double budget_s, int repeat) const
 {
     gi::RenderSettings s = settings_of(method, plan_.settings);
-    constexpr double kLeast = 1e-4; // s; a budget of 0 would be none
+    constexpr double kLeast = 1e-4; // s; 0 would mean no budget
     if (budget_s > 0) s.budget_s = std::max(kLeast, budget_s - filter_s_);
     s.seed = std::uint64_t(repeat) + 1;
     return s;
 }
 
-/// All that makes a picture: structures, paths and the filter.
+/// Renders and filters a picture: structures, paths and filter.
 gi::RenderResult Sweep::frame(gi::Method const& method, SweepScene const& scene, gi::RenderSettings const& s,
                               gi::RenderProgress const& progress, gi::Report& report) const
 {
@@ -82,8 +82,8 @@ gi::RenderResult Sweep::frame(gi::Method const& method, SweepScene const& scene,
     return result;
 }
 
-/// The first render of a program also starts threads and fills caches; that is nobody's fault. Tells what the
-/// filter takes.
+/// Renders once with each method without measuring, as the first render also starts threads and fills caches.
+/// Measures the time of the filter.
 void Sweep::warm_up(SweepScene const& scene)
 {
     filter_s_ = 0;
@@ -159,7 +159,7 @@ bool Sweep::run(SweepScene const& scene, SweepReference const& reference, BenchT
     for (std::size_t b = 0; b < plan_.budgets_s.size(); ++b) {
         std::vector<Samples> samples(n);
         bool goes_on = !stop_.requested();
-        // In turns, so that a machine that slows down slows everybody.
+        // In turns, so that a slower machine affects all methods equally.
         for (int repeat = 0; repeat < o_.repeats && goes_on; ++repeat)
             for (std::size_t i = 0; i < n && goes_on; ++i) {
                 std::size_t const m = (std::size_t(repeat) + i) % n;
@@ -180,7 +180,7 @@ bool Sweep::run(SweepScene const& scene, SweepReference const& reference, BenchT
     return true;
 }
 
-/// With what it says of itself where a render of ours has written it.
+/// Description of a reference file, with its method and paths if this program wrote it.
 std::string describe_reference(std::string const& file, gi::Picture const& picture)
 {
     auto const method = picture.metadata.find("method"), paths = picture.metadata.find("paths");
@@ -192,14 +192,14 @@ BenchTable empty_table(SweepOptions const& o, SweepPlan const& plan)
 {
     BenchTable table = start_table(
         "sweep",
-        o.render.denoise == "none" ? "Error over time, method against method"
-                                   : "Error over time, all through the filter " + o.render.denoise,
+        o.render.denoise == "none" ? "Error over time, by method"
+                                   : "Error over time, with the filter " + o.render.denoise,
         {"scene", "method", "budget_s", "frame_s", "trace_s", "paths", "Mrays_per_s", "relmse", "relmse_indirect",
          "flip", "bias", "repeats", "reference_relmse", "picture_file", "flip_file", "reference_file"});
     gi::RenderSettings const& s = plan.settings;
     table.facts = {{"size", fmt::format("{}x{}", s.width, s.height)},
                    {"bounces", std::to_string(s.bounces)},
-                   {"filter", o.render.denoise + ", in the frame's time"},
+                   {"filter", o.render.denoise + ", included in frame times"},
                    {"threads", s.threads == 0 ? "all" : std::to_string(s.threads)},
                    {"reference", o.reference.empty()
                                      ? fmt::format("path tracing, {} paths per pixel", o.reference_paths)

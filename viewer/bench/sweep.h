@@ -1,5 +1,5 @@
 #pragma once
-// Methods against each other: every scene, every budget of time, the error that is left at its end.
+// `lightwell bench sweep`: errors of methods in every scene with every time budget.
 
 #include "viewer/offline/render_options.h"
 #include "viewer/report/table.h"
@@ -7,21 +7,21 @@
 namespace viewer {
 
 struct SweepOptions {
-    RenderOptions render; ///< what all have in common: size, bounces, camera, sky, threads
+    RenderOptions render; ///< common to all renders: size, bounces, camera, sky, threads
     std::vector<std::string> scenes, methods, budgets;
     std::uint32_t reference_paths = 1024;
-    std::string reference; ///< a picture to take instead
+    std::string reference; ///< reference picture to use instead; empty = render one
     int repeats = 3;
     std::string out;
 };
 
 struct SweepResult {
     BenchTable table;
-    bool interrupted = false; ///< the table holds what was done before
+    bool interrupted = false; ///< the table holds what was finished before
 };
 
-/// Writes tables and pictures to the folder as they come. All that can be wrong with the call is found before
-/// anything is rendered or written (InputError).
+/// Writes tables and pictures to the folder as they are finished. Throws InputError before rendering or writing if
+/// the call is invalid.
 SweepResult run_sweep(SweepOptions const& options);
 
 } // namespace viewer

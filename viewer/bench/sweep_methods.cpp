@@ -12,7 +12,7 @@ void check_sweep_methods(CLI::App const& command, RenderOptions const& options,
                          std::vector<std::string> const& names)
 {
     std::vector<NamedMethod> methods;
-    bool shared = false; // --schedule is that of some
+    bool shared = false; // some method uses --schedule
     for (std::string const& name : names) {
         std::size_t const colon = name.find(':');
         bool const own = colon != std::string::npos && !name.starts_with("vpl_");
@@ -24,7 +24,7 @@ void check_sweep_methods(CLI::App const& command, RenderOptions const& options,
     check_virtual_lights(command, methods);
     if (!shared && command.get_option("--schedule")->count() > 0)
         throw gi::InputError(fmt::format("--schedule with --methods {}", fmt::join(names, ",")),
-                             "it is that of 'slhb', and the others say their own", "leave one of them out");
+                             "it applies only to 'slhb' without a schedule of its own", "leave one of them out");
 }
 
 } // namespace viewer

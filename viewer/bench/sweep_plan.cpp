@@ -24,12 +24,12 @@ gi::Picture read_reference(std::string const& file, gi::RenderSettings const& s)
         throw gi::InputError("'" + file + "' is no reference", "it has no layer 'color'", "choose another");
     if (picture.width != s.width || picture.height != s.height)
         throw gi::InputError(fmt::format("'{}' is {}x{}", file, picture.width, picture.height),
-                             fmt::format("the pictures to judge are {}x{}", s.width, s.height),
+                             fmt::format("the pictures to compare are {}x{}", s.width, s.height),
                              fmt::format("add --size {}x{}", picture.width, picture.height));
     return picture;
 }
 
-/// A second sweep may replace what a first one wrote, but not what it reads itself.
+/// A sweep may replace outputs of an earlier one, but not its own inputs.
 void check_pictures(SweepOptions const& o, std::vector<std::string> const& names,
                     std::vector<std::string> const& inputs)
 {
@@ -55,7 +55,7 @@ SweepMethod find_sweep_method(std::string const& name, std::string const& schedu
         if (method.name == graded) return {name, method, gi::Schedule::automatic, name.substr(colon + 1)};
     if (method.name != "slhb")
         throw gi::InputError(fmt::format("--methods {}: '{}' has no schedules", name, method.name),
-                             "slhb alone has axes to schedule", fmt::format("name it '{}'", method.name));
+                             "only slhb has schedules", fmt::format("name it '{}'", method.name));
     return {name, method, parse_schedule(name.substr(colon + 1)), ""};
 }
 
@@ -95,7 +95,7 @@ gi::RenderSettings settings_of(SweepMethod const& m, gi::RenderSettings s)
         char* end = nullptr;
         s.vpl.ao_radius_m = std::strtof(m.quality.c_str(), &end);
         if (*end != 0 || !(s.vpl.ao_radius_m >= 0 && s.vpl.ao_radius_m <= 1e9f))
-            throw gi::InputError(what, "what stands behind the colon is its radius, m",
+            throw gi::InputError(what, "the number after the colon is its radius, m",
                                  fmt::format("write {}:0.5", m.method.name));
     }
     return s;
@@ -116,7 +116,7 @@ SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
     plan.filter = make_denoise_settings(o.render, plan.settings);
     camera_choice(o.render); // throws before anything is loaded
     if (!o.reference.empty() && o.scenes.size() > 1)
-        throw gi::InputError("--reference is given for several scenes", "one picture cannot judge them all",
+        throw gi::InputError("--reference is given for several scenes", "one picture does not fit all of them",
                              "sweep one scene at a time, or drop it");
     check_folder(o.out);
     std::vector<std::string> inputs = o.scenes;

@@ -1,5 +1,5 @@
 #pragma once
-// What a sweep does, checked before it is begun.
+// Plan of a sweep, checked before rendering.
 
 #include "gi/core/error.h"
 #include "gi/filter/denoise.h"
@@ -14,21 +14,21 @@ namespace viewer {
 
 struct SweepScene {
     RenderOptions options;
-    std::string name; ///< in tables and names of files
+    std::string name; ///< for tables and file names
     gi::World world;
     gi::Camera camera;
 };
 
 struct SweepMethod {
-    std::string name; ///< in tables: "slhb", "slhb:streamed", "vpl_imperfect:30%"
+    std::string name; ///< for tables: "slhb", "slhb:streamed", "vpl_imperfect:30%"
     gi::Method method;
-    gi::Schedule schedule = gi::Schedule::automatic; ///< of the method slhb
-    std::string quality; ///< of vpl_slhb, vpl_imperfect, vpl_ao, vpl_dao: what stands behind the colon; or empty
+    gi::Schedule schedule = gi::Schedule::automatic; ///< for method slhb
+    std::string quality; ///< of vpl_slhb, vpl_imperfect, vpl_ao, vpl_dao: text after the colon; or empty
 };
 
-/// "slhb:streamed" is slhb with that schedule. Throws InputError naming the known methods.
+/// Parses a method; "slhb:streamed" is slhb with that schedule. Throws InputError listing the known methods.
 SweepMethod find_sweep_method(std::string const& name, std::string const& schedule_of_all);
-/// Throws InputError where a list has a value twice. @param texts  of the values
+/// Throws InputError if a list has a value twice. @param texts  the values as given
 template <class T>
 void refuse_twins(std::string const& option, std::vector<T> const& values, std::vector<std::string> const& texts)
 {
@@ -38,27 +38,27 @@ void refuse_twins(std::string const& option, std::vector<T> const& values, std::
             throw gi::InputError(fmt::format("{} names '{}' twice", option, texts[i]),
                                  "its rows and pictures would be mixed up", "name it once");
 }
-/// Those of all methods; no number of paths ends a render before its time.
+/// Common settings of all methods, with no limit on paths, so that only the budget ends a render.
 gi::RenderSettings sweep_settings(RenderOptions options);
-/// Loads what the options name. @param name  of the scene, in tables
+/// Loads the scene of the options. @param name  name of the scene in tables
 SweepScene load_sweep_scene(RenderOptions const& options, std::string const& name, gi::Report& report);
 
-/// The common settings with those that the method says itself. Throws InputError.
+/// The common settings, with those given in the name of the method. Throws InputError.
 gi::RenderSettings settings_of(SweepMethod const& method, gi::RenderSettings common);
 
 struct SweepPlan {
-    gi::RenderSettings settings; ///< the same for all, but for budget and seed
-    gi::DenoiseSettings filter;  ///< of every picture
+    gi::RenderSettings settings; ///< common to all renders, except budget and seed
+    gi::DenoiseSettings filter;  ///< applied to every picture
     std::vector<double> budgets_s;
     std::vector<SweepMethod> methods;
     std::vector<SweepScene> scenes;
-    std::optional<gi::Picture> reference; ///< that was given
+    std::optional<gi::Picture> reference; ///< of --reference, if given
 };
 
-/// Of the pictures of a row, without extension.
+/// File name of the pictures of a row, without extension.
 std::string picture_stem(std::string const& scene, std::string method, std::string const& budget);
 
-/// Loads every scene. Throws InputError on all that is wrong with the call.
+/// Makes the plan and loads every scene. Throws InputError if the call is invalid.
 SweepPlan plan_sweep(SweepOptions const& options, gi::Report& report);
 
 } // namespace viewer

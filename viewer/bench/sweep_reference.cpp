@@ -14,7 +14,7 @@
 namespace viewer {
 namespace {
 
-constexpr std::uint64_t kReferenceSeed = 20120301; // none of those that are judged: they count from 1
+constexpr std::uint64_t kReferenceSeed = 20120301; // differs from those of compared renders, which start at 1
 
 double relative_variance(gi::Picture const& picture)
 {

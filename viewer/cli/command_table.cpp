@@ -9,26 +9,26 @@ namespace {
 constexpr std::string_view kRender = "lightwell-render", kView = "lightwell-view", kStudy = "lightwell-study",
                            kTrials = "lightwell-trials", kAr = "lightwell-ar";
 
-/// As --help lists them. A command of a group comes with the group's own program unless it is named here.
+/// In the order of --help. A subcommand belongs to the program of its group unless it has its own row.
 constexpr CommandRow kCommands[]{
-    {"render", kRender, "Render a scene to a picture with its error."},
+    {"render", kRender, "Render a scene to a picture with an error estimate."},
     {"view", kView, "Walk through a scene: window, stereo, recording, remote control."},
-    {"compare", kRender, "Measure how far a picture is from a reference."},
-    {"info", kRender, "What is in a scene, what will be built for it, and why."},
-    {"generate", kRender, "Save a scene or a sky that the program makes itself."},
-    {"recording", kView, "What a recorded walk holds."},
-    {"remote", kView, "Ask a running viewer to do something; prints its results."},
-    {"track", kView, "Try out trackers: listen, send, walk."},
-    {"display", kView, "Walls, windows, users and trackers: check, import, pictures for setting up."},
-    {"xr", kView, "Headsets through OpenXR."},
+    {"compare", kRender, "Measure the error of a picture against a reference."},
+    {"info", kRender, "Show what a scene contains and what will be built for it, and why."},
+    {"generate", kRender, "Generate a built-in scene or a sky and save it."},
+    {"recording", kView, "Inspect or export a recorded walk."},
+    {"remote", kView, "Send requests to a running viewer and print its answers."},
+    {"track", kView, "Test trackers: listen, send, walk."},
+    {"display", kView, "Displays of walls, windows, users and trackers: check, import, calibrate."},
+    {"xr", kView, "Show the OpenXR runtime and headset."},
     {"study", kStudy, "Experiments from a script: check, plan, run, simulate, analyze, report."},
-    {"study check", kTrials, "What a script holds; every participant's plan is made, and what is wrong is said."},
-    {"study run", kTrials, "A session with a participant: in a window, on walls, in a headset."},
-    {"study control", kTrials, "The experimenter's window on a session: progress, pause, skip, abort, notes."},
+    {"study check", kTrials, "Check a script: make every participant's plan and report all problems."},
+    {"study run", kTrials, "Run a session with a participant, in a window, on walls or in a headset."},
+    {"study control", kTrials, "Open the experimenter's window: progress, pause, skip, abort, notes."},
     {"study prepare", kTrials,
-     "Render ahead what blocks with `stimuli: prepared` show; what is there already is kept."},
-    {"ar", kAr, "Augmented reality: virtual things in a camera's pictures"},
-    {"bench", kRender, "Measure methods against each other, and report on it."},
+     "Render the stimuli of blocks with `stimuli: prepared` in advance; existing ones are kept."},
+    {"ar", kAr, "Augmented reality: add virtual objects to camera frames."},
+    {"bench", kRender, "Compare methods by time and error, and report the results."},
 };
 
 CommandRow const* find(std::string_view name)

@@ -1,5 +1,5 @@
 #pragma once
-// Every command with its program: `lightwell` shows all of them and becomes the one that is called.
+// Table of all commands and their programs. `lightwell` lists all of them and executes the program of a command.
 
 #include <span>
 #include <string>
@@ -9,14 +9,14 @@ namespace viewer {
 
 struct CommandRow {
     std::string_view name;    ///< "render", or "study run" within a group
-    std::string_view program; ///< its file, beside `lightwell`
+    std::string_view program; ///< file name, in the folder of `lightwell`
     std::string_view about;   ///< one line of --help
 };
 
 std::span<CommandRow const> commands();
-/// The line of --help of a command that is in the table.
+/// One-line help of a command in the table.
 std::string about(std::string_view name);
-/// The file that has the command which these first two arguments call; empty = none.
+/// Program of the command that the first two arguments name; empty if none.
 std::string_view program_of(std::string_view first, std::string_view second);
 
 } // namespace viewer

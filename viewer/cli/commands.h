@@ -1,5 +1,5 @@
 #pragma once
-// One function per subcommand: it declares its options and, when called, does its work.
+// One function per subcommand, which declares its options and the callback that runs it.
 
 namespace CLI {
 class App;

@@ -19,7 +19,7 @@
 namespace viewer {
 namespace {
 
-/// Of the innermost subcommand that was given, e.g. "track listen ".
+/// Names of the given subcommands, e.g. "track listen ".
 std::string path_of_given(CLI::App const& app)
 {
     std::string path;
@@ -28,7 +28,7 @@ std::string path_of_given(CLI::App const& app)
     return path;
 }
 
-/// "did you mean 'render'? ", or nothing where none is near.
+/// "did you mean 'render'? ", or empty if no known word is close.
 std::string suggest(std::string const& word, std::vector<std::string> const& known)
 {
     int least = 3;
@@ -57,10 +57,10 @@ std::vector<std::string> options_of(CLI::App const& app)
     return names;
 }
 
-/// What is said of a call that does not fit. A word that is not known comes before what is missing without it.
+/// Error message for an invalid call. Unknown words are reported before missing arguments.
 std::string describe(CLI::ParseError const& e, CLI::App const& app)
 {
-    std::string const misfit = " (the call does not fit) ";
+    std::string const misfit = " (the call is not valid) ";
     bool const may_be_unknown = dynamic_cast<CLI::ExtrasError const*>(&e) != nullptr ||
                                 dynamic_cast<CLI::RequiredError const*>(&e) != nullptr;
     for (CLI::App const* a = &app; may_be_unknown && a != nullptr;) {
@@ -92,7 +92,7 @@ void add_elsewhere(CLI::App& parent, CommandRow const& c)
 
 namespace {
 
-/// All of the table, so that every program knows what there is; those of other programs have no options here.
+/// Adds all commands of the table, so that every program lists them; those of other programs are stubs.
 void add_commands(CLI::App& app, std::span<AddedCommand const> own, int& exit_code)
 {
     for (CommandRow const& c : commands()) {
@@ -111,12 +111,12 @@ void add_commands(CLI::App& app, std::span<AddedCommand const> own, int& exit_co
 
 int run_program(int argc, char const* const* argv, std::span<AddedCommand const> own)
 {
-    // Frames need the same memory again and again; taking its pages anew costs a quarter of a short one.
+    // Keep freed memory: each frame needs the same amount, and mapping it anew takes a quarter of a short frame.
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     mallopt(M_TOP_PAD, 64 << 20);
-    mallopt(M_ARENA_MAX, 2); // each keeps what it once had
-    CLI::App app{"Lightwell: globally lit pictures with their error beside them."};
+    mallopt(M_ARENA_MAX, 2); // as each arena keeps its peak memory
+    CLI::App app{"Lightwell: renders global illumination and measures its error."};
     app.set_version_flag("--version", version_text());
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
@@ -125,9 +125,9 @@ int run_program(int argc, char const* const* argv, std::span<AddedCommand const>
   lightwell info atrium
   lightwell generate boxes --triangles 20000 --out boxes.glb
 
-Exit codes: 0 done, 1 a comparison failed or not all could be written, 2 the input or the call is wrong, 130 interrupted.
-Who ends view by Ctrl-C leaves it in order: 0.)");
-    setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); // none: messages of this program say what is wrong
+Exit codes: 0 done, 1 a comparison failed or not all outputs could be written, 2 the input or the call is wrong,
+130 interrupted. Ctrl-C in `view` exits cleanly with code 0.)");
+    setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); // silent: this program reports errors itself
     int exit_code = 0;
     add_commands(app, own, exit_code);
     try {
@@ -146,7 +146,7 @@ Who ends view by Ctrl-C leaves it in order: 0.)");
         std::fputs(fmt::format("lightwell: {}\n", e.what()).c_str(), stderr);
         return 2;
     } catch (gi::Interrupted const&) {
-        std::fputs("lightwell: interrupted before there was a picture\n", stderr);
+        std::fputs("lightwell: interrupted before a picture was rendered\n", stderr);
         return kInterrupted;
     } catch (std::bad_alloc const&) {
         std::fputs("lightwell: out of memory (the scene or the picture is too large for this machine) choose a "

@@ -8,19 +8,20 @@ class App;
 
 namespace viewer {
 
-/// A command that this program has itself.
+/// A command that this program implements.
 struct AddedCommand {
-    std::string_view name; ///< as in the table of commands
+    std::string_view name; ///< as in command_table.h
     void (*add)(CLI::App& parent, int& exit_code);
 };
 
 struct CommandRow;
-/// A command of another program: for --help; calling it here says where it is (InputError).
+/// Adds a command of another program to --help. Calling it throws InputError, which names that program.
 void add_elsewhere(CLI::App& parent, CommandRow const& command);
 
-/// The whole command line. @param own  what is done here; of the other commands only --help speaks
-/// Exit codes: 0 done, 1 a comparison failed or something broke inside, 2 the input or the
-/// call is wrong, 130 interrupted (what was done so far is kept).
+/// Parses and runs the whole command line.
+/// @param own  commands that this program implements; all others appear only in --help
+/// @return exit code: 0 done, 1 a comparison or an output failed, or an internal error, 2 invalid input or call,
+/// 130 interrupted (results so far are kept)
 int run_program(int argc, char const* const* argv, std::span<AddedCommand const> own);
 
 } // namespace viewer

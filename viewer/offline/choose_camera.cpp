@@ -8,7 +8,7 @@
 namespace viewer {
 namespace {
 
-/// Rays in float from farther away are not finite once squared.
+/// Squared lengths of rays from farther away overflow float.
 constexpr double kFarthest_m = 1e12;
 
 gi::Camera with_fov(gi::Camera camera, std::optional<double> fov_deg)
@@ -48,7 +48,7 @@ std::string put_lens(gi::Camera& camera, CameraChoice const& choice, std::option
     if (choice.focus_distance_m) camera.focus_distance_m = *choice.focus_distance_m;
     if (camera.aperture_radius_m == 0) {
         if (choice.focus_distance_m)
-            throw gi::InputError("--focus-distance is given for a pinhole", "all that it sees is in focus",
+            throw gi::InputError("--focus-distance is given for a pinhole", "everything is in focus",
                                  "add --aperture-radius 0.02, or leave it out");
         camera.focus_distance_m = 0;
         return {};
@@ -60,10 +60,10 @@ std::string put_lens(gi::Camera& camera, CameraChoice const& choice, std::option
                                       : 0;
         if (!(distance >= gi::kNearestFocus_m))
             throw gi::InputError("--aperture-radius without --focus-distance",
-                                 focus ? what + " is not before the camera" : "nothing says what is in focus",
+                                 focus ? what + " is not in front of the camera" : "the focus is not known",
                                  "add --focus-distance, m along the view");
         camera.focus_distance_m = distance;
-        note = fmt::format("in focus is what lies {:.3g} m before the camera, as {} does", distance, what);
+        note = fmt::format("in focus: {:.3g} m in front of the camera, as far as {}", distance, what);
     }
     check_lens(camera);
     return note;
@@ -84,7 +84,7 @@ ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice)
     if (choice.look_from && !choice.name.empty())
         throw gi::InputError("--camera and --look-from are both given", "they contradict each other", "drop one");
     if (choice.look_at && !choice.look_from)
-        throw gi::InputError("--look-at is given alone", "it is not known from where", "add --look-from x,y,z");
+        throw gi::InputError("--look-at is given alone", "it needs a position", "add --look-from x,y,z");
 
     double const fov_deg = choice.fov_deg.value_or(kDefaultFov_deg);
     bool const empty = world.bounds.empty();

@@ -9,39 +9,39 @@ namespace viewer {
 
 inline constexpr double kDefaultFov_deg = 45;
 
-/// One of two eyes beside the camera, which share a virtual screen.
+/// One of the two eyes of a stereo pair, beside the camera. Both share a virtual screen.
 struct EyeChoice {
     bool right = false;
     double eye_distance_m = 0.063;
-    std::optional<double> screen_distance_m; ///< m along the view; what lies there has no disparity
+    std::optional<double> screen_distance_m; ///< m along the view; points there have no disparity
     glm::ivec2 size{1};                      ///< of the picture, pixels
 };
 
-/// What the command line says about the point of view; all may be empty.
+/// Camera options of the command line; all may be empty.
 struct CameraChoice {
     std::string name;
     std::optional<gi::dvec3> look_from, look_at;
     std::optional<double> fov_deg, aperture_radius_m, focus_distance_m;
-    std::optional<EyeChoice> eye; ///< of FrameCamera alone
+    std::optional<EyeChoice> eye; ///< used by FrameCamera only
 };
 
 struct ChosenCamera {
     gi::Camera camera;
-    std::string note; ///< what was decided for the user; empty = nothing
+    std::string note; ///< defaults that were chosen, for a note to the user; empty = none
 };
 
-/// Puts the lens that was chosen before a camera; what is not chosen stays.
-/// @param focus  what is in focus where neither says that   @param what  that is, for messages
-/// @return what was decided for the user; empty = nothing
-/// Throws InputError where there is no such lens, or the focus is not before the camera.
+/// Applies the lens options to a camera; values that are not given keep those of the camera.
+/// @param focus  point in focus if options and camera give no distance   @param what  its name, for messages
+/// @return defaults that were chosen, for a note to the user; empty = none
+/// Throws InputError if there is no such lens, or if the focus is not in front of the camera.
 std::string put_lens(gi::Camera& camera, CameraChoice const& choice, std::optional<gi::dvec3> focus,
                      std::string const& what);
 
-/// The named camera, or the one looked from, or the scene's first, or one that frames the whole scene.
-/// Throws InputError on unknown names (it lists the known ones), half-given or contradictory positions, a field of
-/// view or a lens for an orthographic camera, a lens without a focus, and cameras too far away to compute with.
+/// Returns the named camera, the one of look_from, the scene's first, or one that frames the whole scene.
+/// Throws InputError on unknown names (listing the known ones), incomplete or contradictory positions, a field of
+/// view or a lens for an orthographic camera, a lens without a focus, and cameras too far away for float.
 ChosenCamera choose_camera(gi::World const& world, CameraChoice const& choice);
-/// Throws InputError where a camera is too far away to compute with.
+/// Throws InputError if the camera is too far away for float precision.
 void check_distance(gi::World const& world, gi::Camera const& camera);
 
 } // namespace viewer

@@ -23,7 +23,7 @@ bool depends_on_time(gi::Scene const& scene, bool scene_still, CameraMotion cons
 
 namespace {
 
-/// Triangles that move would be appended to all stored axes anew for every path: fresh axes are less work.
+/// Streams axes if triangles move: appending those to all stored axes again for every path is more work.
 gi::RenderSettings with_moving_triangles(gi::RenderSettings settings)
 {
     gi::SlhbSettings& s = settings.slhb;
@@ -32,7 +32,7 @@ gi::RenderSettings with_moving_triangles(gi::RenderSettings settings)
     return settings;
 }
 
-/// A budget is that of this one picture, and builds all that it is made of: not that of a frame among others.
+/// Chooses settings for the budget of a single picture, which includes building all structures.
 gi::RenderSettings with_budget(gi::RenderSettings settings, gi::Method const& method, gi::World const& world,
                                gi::Camera const& camera)
 {

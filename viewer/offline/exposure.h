@@ -1,6 +1,6 @@
 #pragma once
-// Pictures for which the shutter is open for a while: every path sees a moment of its own (Cook, Porter and
-// Carpenter 1984; per pass in Yu 2012, sec. 7.2), so that their mean is blurred by motion.
+// Motion blur: while the shutter is open, each path is traced at a moment of its own (Cook, Porter and Carpenter
+// 1984; per pass in Yu 2012, sec. 7.2), so that the mean of paths is blurred.
 
 #include "gi/methods/registry.h"
 #include "viewer/offline/frame_camera.h"
@@ -8,26 +8,27 @@
 namespace viewer {
 
 struct Exposure {
-    double from_s = 0, shutter_s = 0; ///< opens then, in the scene's time, for so long
-    bool still = false;               ///< the scene holds still, the camera may move
-    std::function<gi::Camera(gi::World const&, double after_s)> camera; ///< so long after the shutter has opened
+    double from_s = 0, shutter_s = 0; ///< opening, in scene time, and duration, s
+    bool still = false;               ///< only the camera may move, not the scene
+    std::function<gi::Camera(gi::World const&, double after_s)> camera; ///< at `after_s` after the opening
 };
 
-/// What is to be said of --shutter then.
+/// Note to the user if --shutter has no effect.
 inline constexpr char const* kNothingMoves = "--shutter does nothing: neither the scene nor the camera moves";
 
-/// Whether a picture depends on the moment at all.
-/// @param scene_still  whatever it could do, it does not
+/// True if the picture depends on the time.
+/// @param scene_still  the scene is not animated, even if it could be
 bool depends_on_time(gi::Scene const& scene, bool scene_still, CameraMotion const& camera);
 
-/// @param world  as it is when the shutter opens, also afterwards
-/// Throws InputError on settings that do not go with what moves.
+/// Renders a picture with motion blur.
+/// @param world  at the opening of the shutter, before and after the call
+/// Throws InputError on settings that do not work with the motion.
 gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposure const& exposure,
                         gi::RenderSettings const& settings, gi::StopRequest const& stop,
                         gi::RenderProgress const& progress, gi::Report& report);
 
-/// Tells exposures apart that open at the same moment: of the world as the shutter closes, and of where the camera
-/// is meanwhile. @param world  is taken to the moment when it closes
+/// Distinguishes exposures that open at the same moment: hash of the world when the shutter closes and of the
+/// camera while it is open. @param world  is advanced to the closing
 std::uint64_t motion_fingerprint(gi::MovingWorld& world, Exposure const& exposure,
                                  gi::RenderSettings const& settings, std::string const& method);
 

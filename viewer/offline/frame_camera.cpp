@@ -29,7 +29,7 @@ FrameCamera::FrameCamera(gi::World const& first, CameraChoice const& choice, Cam
     : choice_(choice), motion_(motion)
 {
     if (motion_.path) {
-        gi::Camera any; // refused before the work
+        gi::Camera any; // throws early if the lens is invalid
         put_lens(any, choice_, std::nullopt, "");
         if (choice_.eye) place_screen(first);
         return;
@@ -43,13 +43,13 @@ FrameCamera::FrameCamera(gi::World const& first, CameraChoice const& choice, Cam
     if (choice_.eye) place_screen(first);
 }
 
-/// As the viewer does it, and then it stays there.
+/// Places the virtual screen as the viewer does; its distance is constant for all frames.
 void FrameCamera::place_screen(gi::World const& first)
 {
     constexpr double kNearest_m = 0.2, kFarthest_m = 1e4;
     if (!motion_.path && first_.camera.orthographic)
         throw gi::InputError("--eye with the camera '" + first_.camera.name + "'",
-                             "it is orthographic: all of its rays are parallel, from no eye",
+                             "it is orthographic: its rays are parallel and start at no eye",
                              "choose a perspective camera");
     if (choice_.eye->screen_distance_m) return;
     gi::dvec3 const from =
@@ -58,8 +58,8 @@ void FrameCamera::place_screen(gi::World const& first)
     double const distance = std::clamp(glm::length(middle - from), kNearest_m, kFarthest_m);
     choice_.eye->screen_distance_m = distance;
     first_.note +=
-        fmt::format("{}the pictures of the two eyes coincide {:.3g} m before the camera, as far away as "
-                    "the middle of the scene",
+        fmt::format("{}the pictures of the two eyes coincide {:.3g} m in front of the camera, at the "
+                    "distance of the middle of the scene",
                     first_.note.empty() ? "" : "; ", distance);
 }
 

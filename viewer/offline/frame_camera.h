@@ -4,25 +4,24 @@
 
 namespace viewer {
 
-/// How the point of view moves over frames: not, along a path, or round the scene.
+/// How the camera moves over frames: not at all, along a path, or around the scene.
 struct CameraMotion {
     std::optional<gi::CameraPath> path;
     double turn_rad = 0; ///< over all frames, about +Y, counter-clockwise from above
 };
 
-/// "" = once round, "2" turns, "90deg". Throws InputError.
+/// Parses "" (one turn), "2" (turns) or "90deg" and returns radians. Throws InputError.
 double parse_turn(std::string const& text);
 
 /// The cameras of all frames.
 class FrameCamera {
 public:
-    /// @param first the world of the first frame: its middle is circled, and a camera that frames the whole scene
-    ///              stays where it is then; what a lens focuses on, and where the screen of two eyes is, without
-    ///              being told how far
-    /// Throws InputError as choose_camera does, and where an eye of an orthographic camera is asked for.
+    /// @param first world of the first frame. It gives the centre of a turn, the place of a camera that frames the
+    ///              whole scene, and the default distances of the lens's focus and of the virtual screen.
+    /// Throws InputError as choose_camera does, and if an eye of an orthographic camera is requested.
     FrameCamera(gi::World const& first, CameraChoice const& choice, CameraMotion const& motion);
 
-    /// @param time_s on the path   @param fraction of the turn, 0..1
+    /// @param time_s  time on the camera path   @param fraction  fraction of the turn, 0..1
     gi::Camera of(gi::World const& world, double time_s, double fraction) const;
     std::string const& note() const { return first_.note; }
 
@@ -34,7 +33,7 @@ private:
     CameraMotion motion_;
     ChosenCamera first_;
     gi::dvec3 center_{0};
-    bool of_scene_ = false; ///< a camera of the scene's, which may be animated
+    bool of_scene_ = false; ///< it is a camera of the scene, which may be animated
 };
 
 } // namespace viewer

@@ -14,7 +14,7 @@ FrameFollower::FrameFollower(std::shared_ptr<gi::Scene const> scene, double time
 {
     if (!method.motion_vectors)
         throw gi::InputError("--reuse with method '" + std::string(method.name) + "'",
-                             "it gives no motion vectors, by which the light of earlier frames is found",
+                             "it gives no motion vectors, which reuse needs to find earlier light",
                              "use --method slhb or --method reference");
 }
 

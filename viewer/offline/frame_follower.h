@@ -7,31 +7,31 @@
 
 namespace viewer {
 
-/// Frames that follow each other: the world is moved on in place, structures of what stays are kept, and the light
-/// of earlier frames is reused.
+/// Renders consecutive frames: advances the world in place, keeps structures of static geometry, and reuses the
+/// light of earlier frames.
 class FrameFollower {
 public:
     struct Frame {
         gi::RenderResult result;
         gi::TemporalCounts counts;
-        std::vector<std::string> changes; ///< since the frame before, with reasons
+        std::vector<std::string> changes; ///< since the previous frame, with reasons
     };
 
-    /// @param origin  of the world, as in build_world
-    /// Throws InputError where the method does not give what reuse needs.
+    /// @param origin  origin of the world, as in build_world
+    /// Throws InputError if the method gives no motion vectors.
     FrameFollower(std::shared_ptr<gi::Scene const> scene, double time_s, gi::Method const& method,
                   gi::RenderSettings const& settings, int most_frames,
                   std::optional<gi::dvec3> origin = std::nullopt);
 
     gi::World const& go_to(double time_s);
-    /// @param report  gets the times and losses of this frame, the first one also those of the world
+    /// @param report  receives the times and losses of this frame; the first frame includes those of the world
     Frame render(gi::Camera const& camera, gi::StopRequest const& stop, gi::RenderProgress const& progress,
                  gi::Report& report);
 
 private:
     gi::Method const& method_;
     gi::RenderSettings settings_;
-    gi::Report report_; ///< of all frames
+    gi::Report report_; ///< for all frames
     gi::ReportReader added_{report_};
     gi::MovingWorld world_;
     FlatTriangles flat_;

@@ -19,45 +19,45 @@ void declare_frames(CLI::App& c, RenderOptions& o)
 {
     CLI::Option* const frames =
         c.add_option("--frames", o.frames,
-                     "FIRST:END@FPS: frame k is the moment k / FPS; END is the frame after the last, so "
-                     "0:120@30\nlast 4 s, and 0:60 and 60:120 join; 0:4s@30 is the same; --budget and --until are "
-                     "per frame.\n--out and --png name frames by %d or %04d")
+                     "FIRST:END@FPS: frame k is at time k / FPS; END is the frame after the last, so 0:120@30\n"
+                     "lasts 4 s, and 60:120 continues 0:60; 0:4s@30 is the same; --budget and --until are "
+                     "per frame.\n--out and --png contain %d or %04d for the frame number")
             ->group(kGroup);
-    c.add_option("--video", o.video, "tone-mapped: F.mkv (FFV1, lossless) or F.mp4 (H.264)")
+    c.add_option("--video", o.video, "tone-mapped video: F.mkv (FFV1, lossless) or F.mp4 (H.264)")
         ->group(kGroup)
         ->needs(frames);
     c.add_option_function<std::string>(
          "--turntable",
          [&o](std::string const& text) {
              o.turns = true;
-             o.turntable = text == "true" ? "" : text; // CLI11's word for no value
+             o.turntable = text == "true" ? "" : text; // CLI11 passes this if there is no value
          },
-         "TURNS or DEGdeg: the camera circles the middle of the scene, or --look-at, over the frames; "
-         "once\nwithout "
-         "a value. With --time the scene holds still")
+         "TURNS or DEGdeg: over the frames, the camera circles the middle of the scene or --look-at "
+         "(default:\none "
+         "turn). With --time the scene does not move")
         ->expected(0, 1)
         ->type_name("[TEXT]")
         ->group(kGroup)
         ->needs(frames);
     c.add_option("--camera-path", o.camera_path,
-                 "YAML key frames (data/camera_path.yaml); without --frames, the camera at --time")
+                 "YAML key frames of the camera (data/camera_path.yaml); without --frames: the camera at --time")
         ->group(kGroup);
     c.add_option("--reuse", o.reuse,
-                 "temporal reuse: a pixel is the mean of so many frames at most (of all, while nothing moves)")
+                 "temporal reuse: average up to this many frames per pixel (all frames while nothing moves)")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str()
         ->group(kGroup)
         ->needs(frames);
     c.add_option(
          "--shutter", o.shutter_s,
-         "s, open from the frame's moment on, or from --time: what moves meanwhile, the camera too, is blurred")
+         "motion blur: exposure time, s, from the time of the frame or --time on; includes camera motion")
         ->check(in_range(0, 1e6))
         ->capture_default_str()
         ->group(kGroup);
-    c.add_flag("--seed-per-frame", o.seed_per_frame, "frame k has the seed --seed + k: noise that flickers")
+    c.add_flag("--seed-per-frame", o.seed_per_frame, "frame k has the seed --seed + k, for noise that flickers")
         ->group(kGroup)
         ->needs(frames)
-        ->excludes("--reuse"); // its frames continue one sequence of random numbers
+        ->excludes("--reuse"); // frames with reuse continue one sequence of random numbers
 }
 
 CameraMotion make_motion(RenderOptions const& o)
@@ -67,7 +67,7 @@ CameraMotion make_motion(RenderOptions const& o)
     if (o.camera_path.empty()) return motion;
     auto const refuse = [](std::string const& other) {
         return gi::InputError("--camera-path and " + other + " are both given",
-                              "each says alone where the camera is", "keep one of them");
+                              "each of them sets the camera", "keep one of them");
     };
     if (o.turns) throw refuse("--turntable");
     if (!o.camera.empty()) throw refuse("--camera");
@@ -85,7 +85,7 @@ FrameSettings make_frame_settings(RenderOptions const& o, gi::RenderSettings con
     f.range = parse_frame_range(o.frames);
     f.motion = make_motion(o);
     if (o.time_s && !f.motion.path && !o.turns)
-        throw gi::InputError("--time with --frames", "scene and camera would stand still in all of them",
+        throw gi::InputError("--time with --frames", "scene and camera would not move",
                              "leave --time out, or move the camera by --turntable or --camera-path");
     if (!o.out.empty()) {
         f.exr = parse_frame_name("--out", o.out);
@@ -98,7 +98,7 @@ FrameSettings make_frame_settings(RenderOptions const& o, gi::RenderSettings con
     for (int k = f.range.first; k < f.range.end; ++k) {
         if (f.exr) f.files.push_back(f.exr->of(k));
         if (f.png) f.files.push_back(f.png->of(k));
-        if (f.motion.path) // a path without a direction somewhere is found before the work
+        if (f.motion.path) // throws early if the path has no direction somewhere
             for (double const after_s : {0.0, o.shutter_s})
                 gi::camera_at(*f.motion.path, f.range.time_s(k) + after_s, 1);
     }

@@ -5,17 +5,17 @@
 
 namespace viewer {
 
-/// Everything about --frames, understood.
+/// Parsed options of --frames.
 struct FrameSettings {
     FrameRange range;
     std::optional<FrameName> exr, png;
-    std::string video, state;       ///< empty = none; state: a file that is there while frames are missing
-    std::vector<std::string> files; ///< all that may be written
+    std::string video, state;       ///< empty = none; state: a file that exists while frames are missing
+    std::vector<std::string> files; ///< all files that may be written
     CameraMotion motion;
 
-    /// Of the animation: that of the frame, or where --time holds it still.
+    /// Scene time of a frame; constant with --time.
     double scene_time_s(RenderOptions const& o, int frame) const { return o.time_s.value_or(range.time_s(frame)); }
-    /// Of all frames, at a moment after that of a frame.
+    /// Position in the sequence, 0..1, at `after_s` after a frame.
     double fraction(int frame, double after_s = 0) const
     {
         return (frame - range.first + after_s * range.fps()) / range.count();
@@ -23,9 +23,9 @@ struct FrameSettings {
 };
 
 void declare_frames(CLI::App& command, RenderOptions& options);
-/// Of --camera-path and --turntable. Throws InputError where they contradict other options.
+/// Motion by --camera-path and --turntable. Throws InputError if they contradict other options.
 CameraMotion make_motion(RenderOptions const& options);
-/// Checks, too, that all results can be written. Throws InputError.
+/// Parses the options and checks that all outputs can be written. Throws InputError.
 FrameSettings make_frame_settings(RenderOptions const& options, gi::RenderSettings const& settings);
 
 } // namespace viewer

@@ -28,7 +28,7 @@ void parse_rate(std::string const& text, std::string_view rate, FrameRange& rang
     if (!frames || !seconds || !(*frames > 0) || !(*seconds > 0) || !(*frames / *seconds >= kLowestFps) ||
         !(*frames / *seconds <= kHighestFps))
         throw bad(text,
-                  fmt::format("after @ stand frames per second, from {} to {:.0f}", kLowestFps, kHighestFps));
+                  fmt::format("after @, frames per second are needed, {} to {:.0f}", kLowestFps, kHighestFps));
     range.frames = *frames;
     range.per_seconds = *seconds;
 }
@@ -37,7 +37,7 @@ int parse_frame(std::string const& text, std::string_view part, FrameRange const
 {
     bool const in_seconds = part.ends_with('s');
     auto const value = to_number(part.substr(0, part.size() - (in_seconds ? 1 : 0)));
-    if (!value) throw bad(text, fmt::format("'{}' is no frame", part));
+    if (!value) throw bad(text, fmt::format("'{}' is not a frame", part));
     double const exact = in_seconds ? *value * range.fps() : *value, frame = std::round(exact);
     if (frame < 0 || frame > kLastFrame)
         throw bad(text, fmt::format("frames are counted from 0 to {}", kLastFrame));
@@ -59,9 +59,9 @@ FrameRange parse_frame_range(std::string const& text)
     range.first = parse_frame(text, all.substr(0, colon), range);
     range.end = parse_frame(text, all.substr(colon + 1, at - colon - 1), range);
     if (range.end <= range.first)
-        throw bad(text, "it holds no frame, as the second number is the frame after the last");
+        throw bad(text, "it has no frames, as the second number is the frame after the last");
     if (range.count() > kMostFrames)
-        throw bad(text, fmt::format("it holds {} frames, and {} are the most", range.count(), kMostFrames));
+        throw bad(text, fmt::format("it has {} frames, at most {} are possible", range.count(), kMostFrames));
     return range;
 }
 
@@ -92,16 +92,16 @@ FrameName parse_frame_name(std::string const& option, std::string const& pattern
         std::string const digits = pattern.substr(i + 1, end - i - 1);
         bool const plain = digits.empty(), padded = digits.size() == 2 && digits[0] == '0' && digits[1] > '0';
         if (end >= pattern.size() || pattern[end] != 'd' || !(plain || padded))
-            throw refuse("after % comes d or 04d, and %% stands for %");
-        if (found) throw refuse("the number of the frame stands in it twice");
+            throw refuse("% must be followed by d or 04d, and %% means %");
+        if (found) throw refuse("it contains the frame number twice");
         found = true;
         name.digits = padded ? digits[1] - '0' : 1;
         part = &name.after;
         i = end;
     }
-    if (!found) throw refuse("without the number of the frame all would be one file");
+    if (!found) throw refuse("without the frame number all frames would be one file");
     if (name.after.find('/') != std::string::npos)
-        throw refuse("the number of the frame stands in the name of a folder");
+        throw refuse("the frame number is in the name of a folder");
     return name;
 }
 

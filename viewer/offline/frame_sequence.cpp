@@ -44,9 +44,9 @@ public:
             video_ = std::make_unique<VideoWriter>(f_.video, settings.width, settings.height, f_.range.fps());
         scene_ = load_lit_scene(o_, report_);
         check_outputs(f_.files, scene_->files);
-        gi::Report unused; // the frame itself reports what its world lost
+        gi::Report unused; // losses of the world are reported with the frame
         gi::World const first = world_of(f_.range.first, unused);
-        if (o.reuse > 1) origin_ = first.origin; // one world is moved on through all of them
+        if (o.reuse > 1) origin_ = first.origin; // one world advances through all frames
         plan_ = to_json(gi::plan_scene(first));
         camera_ = std::make_unique<FrameCamera>(first, choice, f_.motion);
         if (!camera_->note().empty()) say(camera_->note());
@@ -68,7 +68,7 @@ public:
         try {
             render_all(there);
         } catch (gi::InputError const&) {
-            if (begins && records_.empty()) fs::remove(f_.state); // or a call that is right would be refused, too
+            if (begins && records_.empty()) fs::remove(f_.state); // otherwise the next call would be refused
             throw;
         }
         bar_.reset();
@@ -95,15 +95,15 @@ private:
         }
     }
 
-    /// The world of a frame.
+    /// Builds the world of a frame.
     gi::World world_of(int frame, gi::Report& report) const
     {
         gi::StageTimer const timer(report, "world");
         return gi::build_world(scene_, f_.scene_time_s(o_, frame), report, origin_);
     }
 
-    /// The same, moved on from the frame before.
-    gi::World const& advance(int frame, gi::Report& report)
+    /// Returns the world of a frame, advanced from the previous frame.
+    gi::World const& update_axes(int frame, gi::Report& report)
     {
         gi::StageTimer const timer(report, "world");
         double const time_s = f_.scene_time_s(o_, frame);
@@ -124,7 +124,7 @@ private:
                 [this, frame](gi::World const& now, double after_s) { return camera_of(now, frame, after_s); }};
     }
 
-    /// The options of one frame. Where the same picture can be had alone, by --time, they say so.
+    /// Options of one frame; those of a single picture with --time if that gives the same picture.
     RenderOptions options_of(int frame) const
     {
         RenderOptions o = o_;
@@ -147,7 +147,7 @@ private:
         return describe_call(o_, settings_, stop_option(settings_), "").at("command").get<std::string>();
     }
 
-    /// @param moving  where it blurs: the world, which is taken to the moment when the shutter closes
+    /// @param moving  with motion blur: the world, which is advanced to the closing of the shutter
     std::map<std::string, std::string> metadata(int frame, gi::World const& world, gi::Camera const& camera,
                                                 gi::RenderResult const& result, gi::MovingWorld* moving) const
     {
@@ -162,11 +162,11 @@ private:
         bool const unfinished = !f_.state.empty() && fs::exists(f_.state);
         if (o_.resume && !unfinished) say("there is no '" + f_.state + "': only missing frames are rendered");
         if (!o_.resume && unfinished)
-            throw gi::InputError("'" + f_.state + "' says that frames are unfinished",
-                                 "new ones would replace them", "add --resume to go on, or delete it");
+            throw gi::InputError("'" + f_.state + "' belongs to unfinished frames",
+                                 "new ones would replace them", "add --resume to continue, or delete it");
     }
 
-    /// Which frames are on disk, whole, and of this render. Throws InputError where one is of another render.
+    /// Flags of the frames that are complete on disk. Throws InputError if one is of another render.
     std::vector<char> find_frames()
     {
         std::vector<char> there(std::size_t(f_.range.count()), 0);
@@ -182,7 +182,7 @@ private:
                 report_.lose("frames that were damaged, rendered again", 1, file);
                 continue;
             }
-            gi::Report unused; // what it lost was said when it was rendered
+            gi::Report unused; // its losses were reported when it was rendered
             gi::World own;
             std::optional<gi::MovingWorld> moving;
             if (blurs_)
@@ -200,7 +200,7 @@ private:
         return there;
     }
 
-    /// Whether a frame that is there has light that a missing one reuses.
+    /// True if a missing frame reuses the light of this existing frame.
     bool is_history(std::vector<char> const& there, int frame) const
     {
         std::size_t const next = std::size_t(frame - f_.range.first) + 1,
@@ -216,12 +216,12 @@ private:
             again += there[std::size_t(k - f_.range.first)] != 0 && is_history(there, k);
         if (again > 0)
             say(fmt::format(
-                "{} frames that are there are rendered again, not saved: --reuse {} needs their light. "
-                "Those that follow differ by noise from the ones of a render in one go",
+                "{} existing frames are rendered again but not saved: --reuse {} needs their light. "
+                "Later frames differ in their noise from an uninterrupted render",
                 again, o_.reuse));
     }
 
-    /// Renders a frame that is there for the light that others reuse. @return false if it was interrupted
+    /// Renders an existing frame again for the light that others reuse. @return false if it was interrupted
     bool remember(int frame)
     {
         gi::Report report;
@@ -235,7 +235,7 @@ private:
         return done.result.end != gi::RenderEnd::interrupted;
     }
 
-    /// @return false if there is no more to do
+    /// Keeps an existing frame. @return false to stop
     bool reuse(int frame)
     {
         FrameRecord record;
@@ -248,7 +248,7 @@ private:
         return true;
     }
 
-    /// @return false if it was interrupted
+    /// Renders a missing frame. @return false if it was interrupted
     bool render(int frame)
     {
         auto const start = std::chrono::steady_clock::now();
@@ -301,10 +301,10 @@ private:
         return true;
     }
 
-    /// To its PNG and to the video.
+    /// Writes the frame to its PNG and to the video.
     void show_picture(int frame, gi::Picture const& picture)
     {
-        bool const filmed = video_ && work_.alone(); // else when all are there, in their order
+        bool const filmed = video_ && work_.alone(); // otherwise the video is made at the end
         if (!f_.png && !filmed) return;
         std::vector<unsigned char> const bytes = display_bytes(o_, picture);
         if (f_.png) gi::write_png(f_.png->of(frame), picture.width, picture.height, bytes);
@@ -314,14 +314,14 @@ private:
     void film(gi::Picture const& picture, std::vector<unsigned char> bytes)
     {
         if (std::size_t const pixels = picture.pixels(); bytes.size() == 4 * pixels) {
-            for (std::size_t p = 0; p < pixels; ++p) // a video has no alpha
+            for (std::size_t p = 0; p < pixels; ++p) // videos have no alpha
                 for (std::size_t c = 0; c < 3; ++c) bytes[3 * p + c] = bytes[4 * p + c];
             bytes.resize(3 * pixels);
         }
         video_->add(bytes);
     }
 
-    /// The leader gets the records of all frames, and makes the video of their files.
+    /// The leading rank collects the records of all frames and makes the video from their files.
     void gather()
     {
         work_.talk([&](Cluster& cluster) {
@@ -373,8 +373,8 @@ private:
         std::string const done =
             fmt::format("{}: {} of {} frames are complete", stop_.requested() ? "interrupted" : "ranks were lost",
                         f_.range.count() - missing_ + rendered_, f_.range.count());
-        say(done + (f_.exr ? "; the same command with --resume goes on" : "; with --out they could be resumed"));
-        if (has_video) say(fmt::format("'{}' can be played, as far as it goes", f_.video));
+        say(done + (f_.exr ? "; the same command with --resume continues" : "; with --out they could be resumed"));
+        if (has_video) say(fmt::format("'{}' contains the frames so far", f_.video));
         return stop_.requested() ? kInterrupted : 1;
     }
 
@@ -410,7 +410,7 @@ private:
         std::string line =
             fmt::format("{} frames of {} x {} pixels", records_.size(), settings_.width, settings_.height);
         if (int const kept = int(records_.size()) - rendered_; kept > 0)
-            line += fmt::format(", {} were there", kept);
+            line += fmt::format(", {} existed already", kept);
         if (seconds.is_null()) return line;
         auto const s = [&](char const* key) { return seconds.at(key).get<double>(); };
         return line + fmt::format(", {:.2f} s; per frame: median {:.3f} s, 95 % {:.3f} s, 99 % {:.3f} s",
@@ -423,19 +423,19 @@ private:
     FrameSettings f_;
     RankWork& work_;
     gi::StopRequest& stop_ = work_.stop();
-    InterruptGuard const guard_{stop_}; ///< from before the video begins, so that its hidden file is cleaned up
-    gi::Report report_;                 ///< of all frames together
-    std::map<std::string, gi::Report::Loss> loaded_; ///< before the first
+    InterruptGuard const guard_{stop_}; ///< set before the video starts, so that its hidden file is removed
+    gi::Report report_;                 ///< for all frames together
+    std::map<std::string, gi::Report::Loss> loaded_; ///< losses before the first frame
     std::unique_ptr<VideoWriter> video_;
     std::shared_ptr<gi::Scene const> scene_;
     std::unique_ptr<FrameCamera> camera_;
     std::unique_ptr<FrameFollower> follower_; ///< with --reuse
-    std::optional<gi::dvec3> origin_;         ///< of the worlds of all frames, with --reuse
+    std::optional<gi::dvec3> origin_;         ///< origin of the worlds of all frames, with --reuse
     Json plan_;
     std::optional<gi::ProgressBar> bar_;
-    std::vector<FrameRecord> records_; ///< in their order
-    int missing_ = 0, rendered_ = 0;   ///< frames that were to be rendered, and that are
-    bool blurs_ = false;               ///< by motion, while the shutter is open
+    std::vector<FrameRecord> records_; ///< in frame order
+    int missing_ = 0, rendered_ = 0;   ///< frames to render, and rendered so far
+    bool blurs_ = false;               ///< with motion blur
 };
 
 } // namespace

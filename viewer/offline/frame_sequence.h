@@ -4,8 +4,8 @@
 
 namespace viewer {
 
-/// `lightwell render --frames`: every frame to its files, and all of them to a video. Of several processes each
-/// renders every size-th frame, and the leading one writes the statistics and the video. @return the exit code
+/// Runs `lightwell render --frames`: writes every frame to its files and all frames to a video. With several
+/// processes each renders every size-th frame; the leading one writes statistics and video. @return exit code
 int render_frames(RenderOptions const& options, gi::RenderSettings const& settings,
                   gi::DenoiseSettings const& denoise_settings, CameraChoice const& choice, RankWork& work);
 

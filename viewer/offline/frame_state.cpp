@@ -28,11 +28,11 @@ std::string difference(gi::Picture const& there, std::map<std::string, std::stri
     for (char const* key : {"frame", "method", "size", "seed", "filter", "denoise", "bounces", "stop", "reuse",
                             "shutter", "layers", "numbers", "version", "git", "fingerprint", "motion"}) {
         auto const found = there.metadata.find(key);
-        if (found == there.metadata.end()) return "it is no frame of a sequence";
+        if (found == there.metadata.end()) return "it is not a frame of a sequence";
         std::string const& value = wanted.at(key);
         if (found->second == value) continue;
-        if (std::string(key) == "fingerprint") return "its scene, camera or settings are others";
-        if (std::string(key) == "motion") return "another motion blurs it";
+        if (std::string(key) == "fingerprint") return "its scene, camera or settings differ";
+        if (std::string(key) == "motion") return "its motion blur differs";
         return fmt::format("its {} is {}, not {}", key, found->second, value);
     }
     return {};

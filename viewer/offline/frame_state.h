@@ -1,5 +1,5 @@
 #pragma once
-// Whether a frame on disk is the one that would be rendered now.
+// Checks whether a frame on disk is the one that would be rendered now.
 
 #include "gi/image_io/picture.h"
 #include "viewer/offline/render_options.h"
@@ -10,15 +10,15 @@
 
 namespace viewer {
 
-/// Metadata of a frame: those of a picture, its number, and what tells whether it belongs to a render: when it was
-/// to stop, the layers that were asked for, and a fingerprint of world, camera and settings.
-/// @param motion  the same of what happens while the shutter is open; 0 = nothing
+/// Metadata of a frame: those of a picture, its number, and what identifies the render that it belongs to: stop
+/// condition, the requested layers, and a fingerprint of world, camera and settings.
+/// @param motion  fingerprint of the motion while the shutter is open; 0 = none
 std::map<std::string, std::string> frame_metadata(RenderOptions const& options, gi::RenderSettings const& settings,
                                                   gi::RenderResult const& result, int frame,
                                                   std::uint64_t fingerprint, std::uint64_t motion);
 
-/// What of a frame on disk differs from the one that is wanted ("its seed is 1, not 0"); empty = nothing.
-/// @param wanted by frame_metadata; what is only known once it is rendered is not compared
+/// First difference between a frame on disk and the wanted one ("its seed is 1, not 0"); empty = none.
+/// @param wanted  from frame_metadata; values that are known only after rendering are not compared
 std::string difference(gi::Picture const& there, std::map<std::string, std::string> const& wanted);
 
 } // namespace viewer

@@ -11,7 +11,7 @@
 namespace viewer {
 namespace {
 
-/// By its sky, by a lamp at some node or by a material of a mesh at some node.
+/// True if the scene has an environment map, a light or an emissive mesh at some node.
 bool is_lit(gi::Scene const& scene)
 {
     if (scene.environment) return true;
@@ -55,7 +55,7 @@ gi::Background parse_background(std::string const& text)
     if (text == "map") return {};
     if (text == "transparent") return {gi::BackgroundKind::transparent, gi::vec3{0}};
     if (text.find(',') == std::string::npos)
-        throw gi::InputError("--background '" + text + "' is not understood", "it is not known here",
+        throw gi::InputError("--background '" + text + "' is not understood", "there is no such background",
                              "write map, transparent or a colour: 0.1,0.2,0.3");
     return {gi::BackgroundKind::color, gi::vec3(parse_color("--background", text))};
 }

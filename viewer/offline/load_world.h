@@ -1,5 +1,5 @@
 #pragma once
-// From what the command line says of scene, sky and point of view to a world and a camera.
+// Makes a world and a camera from the command-line options of scene, sky and camera.
 
 #include "gi/scene/model/world.h"
 #include "viewer/offline/choose_camera.h"
@@ -7,15 +7,15 @@
 
 namespace viewer {
 
-/// Throws InputError on nonsense in the options; the world is not needed for that.
+/// Parses the camera options, without needing the world. Throws InputError if they are invalid.
 CameraChoice camera_choice(RenderOptions const& options);
 
-/// "map", "transparent" or a colour "R,G,B". Throws InputError on anything else.
+/// Parses "map", "transparent" or a colour "R,G,B". Throws InputError on anything else.
 gi::Background parse_background(std::string const& text);
 
-/// Loads the scene, sets or replaces its sky, and lights it where it has no light; says on stderr what it decided.
+/// Loads the scene, applies the environment map, and adds a white sky if it has no light. Prints notes on stderr.
 std::shared_ptr<gi::Scene const> load_lit_scene(RenderOptions const& options, gi::Report& report);
-/// The same, and its world at the time of the options.
+/// Loads the scene and builds its world at the time of the options.
 gi::World load_world(RenderOptions const& options, gi::Report& report);
 
 } // namespace viewer

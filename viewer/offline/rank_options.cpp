@@ -11,11 +11,11 @@ void declare_rank_options(CLI::App& c, RankOptions& o)
 {
     constexpr char const* kGroup = "Several machines (mpirun, see docs/cluster.md)";
     c.add_option("--on-rank-loss", o.on_loss,
-                 "where a process dies or stalls: stop all, or continue without it (mpirun --enable-recovery)")
+                 "if a process dies or stalls: stop all, or continue without it (mpirun --enable-recovery)")
         ->check(CLI::IsMember({"stop", "continue"}))
         ->capture_default_str()
         ->group(kGroup);
-    c.add_option("--rank-silence", o.silence_s, "s without a sign of life after which a process is lost")
+    c.add_option("--rank-silence", o.silence_s, "s without a message after which a process counts as lost")
         ->check(in_range(0.5, 3600))
         ->capture_default_str()
         ->group(kGroup);

@@ -1,5 +1,5 @@
 #pragma once
-// What the commands that mpirun can start several times have in common.
+// Options of the commands that mpirun can start as several processes.
 
 #include <string>
 
@@ -17,7 +17,7 @@ struct RankOptions {
 };
 
 void declare_rank_options(CLI::App& command, RankOptions& options);
-/// Throws InputError.
+/// Throws InputError on invalid options.
 ClusterSettings cluster_settings(RankOptions const& options);
 
 } // namespace viewer

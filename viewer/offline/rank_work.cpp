@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t(4) << 20;
 
-/// What goes before the pixels.
+/// Sent before the pixels.
 struct SumsHeader {
     std::uint32_t paths = 0;
     gi::PathCounts counts;
@@ -31,13 +31,13 @@ void give_sums(Cluster& cluster, gi::Accumulator const& sums)
         cluster.give({pixels + from, pixels + std::min(bytes, from + kPieceBytes)});
 }
 
-/// False where the rank is lost before all has come.
+/// Returns false if the rank is lost before everything is received.
 bool take_sums(Cluster& cluster, int from, gi::Accumulator& sums)
 {
     auto const head = cluster.take(from);
     if (!head) return false;
     SumsHeader header;
-    if (head->size() != sizeof header) throw std::runtime_error("sums of another rank have another form");
+    if (head->size() != sizeof header) throw std::runtime_error("sums of another rank have a different format");
     std::memcpy(&header, head->data(), sizeof header);
     sums.counts = header.counts;
     sums.seconds = header.seconds;
@@ -48,7 +48,7 @@ bool take_sums(Cluster& cluster, int from, gi::Accumulator& sums)
         auto const piece = cluster.take(from);
         if (!piece) return false;
         if (piece->empty() || piece->size() > bytes - at)
-            throw std::runtime_error("sums of another rank have another size");
+            throw std::runtime_error("sums of another rank have a different size");
         std::memcpy(pixels + at, piece->data(), piece->size());
         at += piece->size();
     }
@@ -97,7 +97,7 @@ void RankWork::merge(gi::Accumulator& sums)
     talk([&](Cluster& cluster) {
         if (!leads()) {
             give_sums(cluster, sums);
-            sums.counts = {}; // the leader has them now
+            sums.counts = {}; // they are counted by the leader now
             return;
         }
         for (int r = 1; r < size(); ++r) {
@@ -138,9 +138,9 @@ void RankWork::finish()
 {
     try {
         talk([](Cluster& cluster) { cluster.finish(); });
-    } catch (RankLoss const& e) { // whose part the leader has got
+    } catch (RankLoss const& e) { // the leader has received the part of that rank already
         if (!leads()) throw;
-        say(std::string(e.what()) + "; all its work was done");
+        say(std::string(e.what()) + "; all its work was complete");
     } catch (RankInterrupted const&) {
         if (!leads()) throw;
     }

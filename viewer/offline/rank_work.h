@@ -1,5 +1,5 @@
 #pragma once
-// One of the processes that render together; where mpirun did not start several, nothing here does anything.
+// One of several processes that render together. Without several processes by mpirun, nothing here has an effect.
 
 #include "gi/core/progress.h"
 #include "gi/core/report.h"
@@ -11,32 +11,32 @@
 
 namespace viewer {
 
-/// Ctrl-C came to a rank; the others have been told.
+/// Thrown if a rank was interrupted by Ctrl-C; the others have been notified.
 struct RankInterrupted {};
 
 class RankWork {
 public:
-    /// From now on the others hear that this rank is at work. The cluster outlives this.
+    /// Starts sending signs of life to the other ranks. The cluster must outlive this object.
     explicit RankWork(Cluster& cluster);
 
     bool alone() const { return cluster_.alone(); }
     bool leads() const { return cluster_.leads(); }
     int rank() const { return cluster_.rank(); }
     int size() const { return cluster_.size(); }
-    /// For all that renders: also asked for where this rank has to stop because another one is lost.
+    /// Stop request for rendering; also set if this rank has to stop because another one is lost.
     gi::StopRequest& stop() { return stop_; }
 
-    /// Talks to the others in between. Throws RankLoss; RankInterrupted where a stop was asked for.
+    /// Calls `what` to exchange messages with other ranks. Throws RankLoss; RankInterrupted after a stop request.
     void talk(std::function<void(Cluster&)> const& what);
 
-    /// The share of this rank of the paths of one picture; its merge gives all sums to the leader, who adds them
+    /// The share of this rank in the paths of one picture; its merge sends all sums to the leader, which adds them
     /// in the order of ranks.
     gi::PathShare share(std::uint32_t paths);
-    /// Afterwards: the leader gets what else the others counted.
-    /// @param loaded  losses of the report before the paths; every rank has them
+    /// Call after rendering: sends the other counts of all ranks to the leader.
+    /// @param loaded  losses of the report before path tracing, which every rank has
     void gather(gi::RenderResult& result, gi::Report& report,
                 std::map<std::string, gi::Report::Loss> const& loaded);
-    /// All that the leader had to do is done: no loss counts any more for it.
+    /// Call when the leader has finished its work: from then on it ignores lost ranks.
     void finish();
 
 private:
@@ -49,10 +49,10 @@ private:
     std::optional<KeepAlive> alive_;
 };
 
-/// Losses for a message to another rank, and from one.
+/// Convert losses to and from messages between ranks.
 nlohmann::json losses_json(std::map<std::string, gi::Report::Loss> const& losses);
 std::map<std::string, gi::Report::Loss> losses_of(nlohmann::json const& json);
-/// What another rank lost while it loaded the same scene: nothing new, but where it differs.
+/// Adds the losses of another rank in loading the same scene, if they differ from those of this rank.
 void add_other_losses(gi::Report& to, std::map<std::string, gi::Report::Loss> const& mine,
                       std::map<std::string, gi::Report::Loss> const& theirs, std::string const& name);
 

@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 9> kLayers{"color",  "L0",    "L1",      
                                                   "normal", "depth", "position", "variance"};
 constexpr std::uint32_t kDefaultPaths = 64, kNoLimit = 0x7fffffff;
 
-/// A picture that does not fit ends in swapping or in the kernel's killing the program, so it is refused before.
+/// Throws if the picture does not fit into memory; otherwise the machine would swap or kill the program.
 void check_memory(gi::RenderSettings const& s)
 {
     constexpr double kBytesPerPixel = 300; // sums in double and all layers in float
@@ -32,7 +32,7 @@ void check_memory(gi::RenderSettings const& s)
     if (needed > there)
         throw gi::InputError(
             fmt::format("--size {}x{} is too large", s.width, s.height),
-            fmt::format("it takes about {:.0f} GB of memory, of {:.0f}", needed * 1e-9, there * 1e-9),
+            fmt::format("it needs about {:.0f} GB of memory, and there are {:.0f}", needed * 1e-9, there * 1e-9),
             "choose a smaller one");
 }
 
@@ -47,17 +47,17 @@ void check_device(RenderOptions const& o, gi::SlhbSettings const& s)
 void check_shutter(RenderOptions const& o, gi::RenderSettings const& s)
 {
     if (!o.time_s && o.frames.empty())
-        throw gi::InputError("--shutter without --time or --frames", "it is not known when it opens",
+        throw gi::InputError("--shutter without --time or --frames", "its opening time is not known",
                              "add --time 0 or --frames 0:24@24");
     if (o.reuse > 1)
-        throw gi::InputError("--shutter with --reuse", "motion vectors lead from moment to moment",
+        throw gi::InputError("--shutter with --reuse", "motion vectors connect single moments",
                              "keep one of them");
     if (s.resume)
-        throw gi::InputError("--shutter with --resume", "a picture blurred by motion is rendered in one go",
+        throw gi::InputError("--shutter with --resume", "a picture with motion blur is rendered in one go",
                              "leave --resume out");
 }
 
-/// The scene's name, also where it is a folder with a slash at its end.
+/// File name from the name of the scene, which may be a folder with a trailing slash.
 std::string default_out(std::string const& scene, char const* ending)
 {
     std::filesystem::path const path = std::filesystem::absolute(scene).lexically_normal();
@@ -72,7 +72,7 @@ gi::Schedule parse_schedule(std::string const& name)
     if (name == "streamed") return gi::Schedule::streamed;
     if (name == "temporal") return gi::Schedule::temporal;
     if (name == "auto") return gi::Schedule::automatic;
-    throw gi::InputError("there is no schedule '" + name + "'", "slhb has others",
+    throw gi::InputError("there is no schedule '" + name + "'", "slhb does not have it",
                          "choose auto, stored, streamed or temporal");
 }
 
@@ -101,17 +101,17 @@ gi::RadianceCaching parse_cache(std::string const& name)
 gi::RenderSettings make_settings(RenderOptions& o)
 {
     if (int(o.paths.has_value()) + int(!o.budget.empty()) + int(!o.until.empty()) > 1)
-        throw gi::InputError("--paths, --budget and --until are given together", "each says alone when to stop",
+        throw gi::InputError("--paths, --budget and --until are given together", "each alone says when to stop",
                              "keep one of them");
     for (std::string const& layer : o.layers)
         if (std::find(kLayers.begin(), kLayers.end(), layer) == kLayers.end())
-            throw gi::InputError("there is no layer '" + layer + "'", "--aovs names layers of the picture",
+            throw gi::InputError("there is no layer '" + layer + "'", "the picture has no such layer",
                                  fmt::format("choose from: {}", fmt::join(kLayers, ", ")));
     bool const is_sequence = !o.frames.empty();
     if (o.out.empty() && o.png.empty() && o.video.empty())
         o.out = default_out(o.scene, is_sequence ? "_%04d.exr" : ".exr");
     if (o.out.empty() && (o.resume || o.half || !o.layers.empty()))
-        throw gi::InputError("--resume, --half and --aovs are about an EXR", "none is saved",
+        throw gi::InputError("--resume, --half and --aovs need an EXR output", "none is saved",
                              is_sequence ? "add --out f_%04d.exr" : "add --out F.exr");
 
     gi::RenderSettings s;
@@ -133,7 +133,7 @@ gi::RenderSettings make_settings(RenderOptions& o)
     s.slhb.shadows = parse_shadows(o.shadows);
     s.slhb.space = o.device == "cuda" ? gi::Space::device : gi::Space::host;
     check_device(o, s.slhb);
-    s.resume = o.resume && !is_sequence; // a sequence resumes by its frames
+    s.resume = o.resume && !is_sequence; // a sequence is resumed frame by frame
     if (o.shutter_s > 0) check_shutter(o, s);
     if (!o.out.empty() && !is_sequence && o.shutter_s == 0) s.checkpoint = o.out + ".state";
     return s;
@@ -146,33 +146,33 @@ gi::DenoiseSettings make_denoise_settings(RenderOptions const& o, gi::RenderSett
     d.threads = s.threads;
     if (d.denoiser != gi::Denoiser::none && !gi::can_filter(d, s.paths, o.reuse > 1))
         throw gi::InputError("--denoise atrous with --paths 1",
-                             "it goes by the variance, which one path does not tell",
+                             "it needs the variance, which one path does not give",
                              "trace two paths or more, add --reuse to frames, or choose --denoise discontinuity");
     return d;
 }
 
 void declare_view_options(CLI::App& c, RenderOptions& o)
 {
-    c.add_option("--camera", o.camera, "a camera of the scene (default: its first)");
-    c.add_option("--look-from", o.look_from, "x,y,z, m");
-    c.add_option("--look-at", o.look_at, "x,y,z, m (default: the middle of the scene)");
+    c.add_option("--camera", o.camera, "name of a camera of the scene (default: its first)");
+    c.add_option("--look-from", o.look_from, "position of the camera, x,y,z, m");
+    c.add_option("--look-at", o.look_at, "point to look at, x,y,z, m (default: middle of the scene)");
     c.add_option("--fov", o.fov_deg, "vertical field of view, degrees")->check(in_range(0.001, 179));
     c.add_option("--envmap", o.environment, "lat-long environment map, HDR or EXR");
     c.add_option("--envmap-rotate", o.environment_rotate_deg, "degrees about +Y, counter-clockwise from above")
         ->check(in_range(-1e6, 1e6));
-    c.add_option("--envmap-scale", o.environment_scale, "factor on its radiance")->check(in_range(0, 1e9));
-    c.add_option("--time", o.time_s, "moment of the animation, s")->check(in_range(-1e9, 1e9));
+    c.add_option("--envmap-scale", o.environment_scale, "scale factor of its radiance")->check(in_range(0, 1e9));
+    c.add_option("--time", o.time_s, "animation time, s")->check(in_range(-1e9, 1e9));
 }
 
 void declare_lens_options(CLI::App& c, RenderOptions& o)
 {
     c.add_option(
          "--aperture-radius", o.aperture_radius_m,
-         "m, of a thin lens: what is not in focus is blurred (default: that of the camera, else 0, a pinhole)")
+         "radius of a thin lens, m, for depth of field (default: the camera's, else 0, a pinhole)")
         ->check(in_range(0, gi::kWidestLens_m));
     c.add_option("--focus-distance", o.focus_distance_m,
-                 "m along the view, to the plane in focus (default: that of the camera, else to --look-at or the\n"
-                 "middle of the scene)")
+                 "distance of the plane in focus along the view, m (default: the camera's, else that of\n"
+                 "--look-at or the middle of the scene)")
         ->check(in_range(gi::kNearestFocus_m, gi::kFarthestFocus_m));
 }
 
@@ -180,17 +180,17 @@ void declare_eye_options(CLI::App& c, RenderOptions& o)
 {
     CLI::Option* const eye =
         c.add_option("--eye", o.eye,
-                     "left or right, of a stereo pair: beside the camera, with an off-axis view, "
-                     "so that both share a\nvirtual screen; render one after the other")
+                     "render one eye of a stereo pair, left or right: beside the camera, with an off-axis view\n"
+                     "of a virtual screen that both eyes share")
             ->check(CLI::IsMember({"left", "right"}));
-    c.add_option("--eye-distance", o.eye_distance_m, "m between the pupils")
+    c.add_option("--eye-distance", o.eye_distance_m, "distance between the pupils, m")
         ->check(in_range(0, 1))
         ->capture_default_str()
         ->needs(eye);
     c.add_option(
          "--screen-distance", o.screen_distance_m,
-         "m along the view, to the virtual screen, where the two pictures coincide (default: as far as the\n"
-         "middle of the scene)")
+         "distance of the virtual screen along the view, m; the two pictures coincide there (default: that of\n"
+         "the middle of the scene)")
         ->check(in_range(0.01, 1e6))
         ->needs(eye);
 }
@@ -202,8 +202,8 @@ void declare_denoise(CLI::App& c, RenderOptions& o)
         if (*f.meaning != 0) known += fmt::format("\n  {}: {}", f.name, f.meaning);
     c.add_option(
          "--denoise", o.denoise,
-         "filter of the finished picture, which stops at edges; changes color, L1 and L2, while variance and "
-         "the estimated error stay those of the unfiltered picture:" +
+         "edge-preserving filter of the finished picture; changes color, L1 and L2, but not the variance and "
+         "the estimated error:" +
              known)
         ->check(CLI::IsMember(gi::filter_names()))
         ->capture_default_str();
@@ -219,50 +219,50 @@ void slhb_number(CLI::App& c, char const* name, int& value, int low, int high, c
 void declare_slhb_quality(CLI::App& c, RenderOptions& o)
 {
     gi::SlhbSettings& s = o.slhb;
-    slhb_number(c, "--axes", s.axes, 1, 64, "per bounce in a pass, streamed and temporal");
-    slhb_number(c, "--fresh-axes", s.fresh_axes, 1, 64, "of these, replaced in a pass, temporal");
+    slhb_number(c, "--axes", s.axes, 1, 64, "axes per bounce in a pass; schedules streamed and temporal");
+    slhb_number(c, "--fresh-axes", s.fresh_axes, 1, 64, "axes replaced per pass; schedule temporal");
     slhb_number(c, "--light-samples,--lamps", s.light_samples, 1, 64,
-                "light samples that get a shadow map in a pass");
+                "number of light samples given a shadow map per pass");
     slhb_number(c, "--fresh-light-samples,--fresh-lamps", s.fresh_light_samples, 1, 64,
-                "of these, replaced in a pass (default: all; few in frames that follow each other)");
-    slhb_number(c, "--shadow-map", s.shadow_resolution, 2, 8192, "texels of a shadow map on a side");
+                "light samples replaced per pass (default: all; few in consecutive frames)");
+    slhb_number(c, "--shadow-map", s.shadow_resolution, 2, 8192, "size of a shadow map, texels on a side");
     slhb_number(c, "--interleave", s.interleave, 1, 16,
-                "n: one pixel of n x n takes indirect light in a pass (default: by the budget)");
+                "compute indirect light for one pixel in each n x n block per pass (default: by the budget)");
     slhb_number(c, "--memory", s.memory_mib, 1, 1 << 24,
-                "MiB that hit buffers may take, and shadow maps; they get fewer texels where it does not suffice\n"
-                "(default: a quarter of the machine's)");
-    slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "kept per texel, others are counted; 0 = all");
+                "MiB for hit buffers, and as much for shadow maps; they get fewer texels if it is not enough\n"
+                "(default: a quarter of the machine's memory)");
+    slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "most layers per texel, others counted; 0 = all");
     c.add_option(
          "--roulette", s.roulette,
-         "paths go on with a chance of that times their throughput; 0: all do up to the fourth scattering\n"
-         "(default: 2 with --until, frames, or a --budget for more than one path, 3 where paths end in a cache; "
-         "else 0)")
+         "Russian roulette: paths continue with a probability of this times their throughput; 0: all paths\n"
+         "continue up to the fourth scattering (default: 2 with --until, --frames, or a --budget for more than\n"
+         "one path; 3 if paths end in a cache; else 0)")
         ->check(in_range(0, 1000))
         ->group(kSlhbGroup);
-    c.add_option("--cone", s.cone, "texels, radius of the cone approximation")
+    c.add_option("--cone", s.cone, "radius of the cone approximation, texels")
         ->check(in_range(0, 64))
         ->group(kSlhbGroup);
-    c.add_flag("--packed", s.packed, "layers of 32 bits instead of 64, for up to 524288 triangles")
+    c.add_flag("--packed", s.packed, "use layers of 32 bits instead of 64, for up to 524288 triangles")
         ->group(kSlhbGroup);
-    c.add_flag("--gather", s.gather, "first bounce along all axes in turn instead of by chance")
+    c.add_flag("--gather", s.gather, "first bounce along all axes in turn instead of at random")
         ->group(kSlhbGroup);
 }
 
 namespace {
 
-/// Why a method, with its schedule, does not read an option; null = it does.
+/// Reason why a method, with its schedule, does not use an option; null if it does.
 char const* why_unread(NamedMethod const& method, std::string const& option)
 {
     if (method.method == "vpl_slhb") {
         for (char const* const read : {"--directions", "--hit-buffer", "--max-layers"})
             if (option == read) return nullptr;
-        return "its walks take the stored axes of --directions";
+        return "it uses only the stored axes of --directions";
     }
     gi::Schedule const schedule = method.schedule;
     bool const directions = option == "--directions", axes = option == "--axes", fresh = option == "--fresh-axes";
     switch (schedule) {
     case gi::Schedule::stored:
-        return axes ? "all axes of --directions are used" : fresh ? "axes stay as they are" : nullptr;
+        return axes ? "all axes of --directions are used" : fresh ? "its axes do not change" : nullptr;
     case gi::Schedule::streamed:
         if (fresh) return "all axes of a pass are new";
         [[fallthrough]];
@@ -281,7 +281,7 @@ void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods
     for (CLI::Option const* const option : command.get_options()) {
         if (option->get_group() != kSlhbGroup || option->count() == 0) continue;
         std::string const name = option->get_name();
-        NamedMethod const* unread = nullptr; // by the first of slhb
+        NamedMethod const* unread = nullptr; // by the first method that has options of slhb
         bool read = false;
         for (NamedMethod const& m : methods) {
             if (m.method != "slhb" && m.method != "vpl_slhb") continue;
@@ -289,7 +289,7 @@ void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods
             if (unread == nullptr) unread = &m;
         }
         if (unread == nullptr)
-            throw gi::InputError(name + " with --method " + methods.front().method, "it is about method slhb",
+            throw gi::InputError(name + " with --method " + methods.front().method, "it applies to method slhb",
                                  "add method slhb, or leave it out");
         if (!read)
             throw gi::InputError(name + " with " +
@@ -301,27 +301,27 @@ void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods
         methods, [](NamedMethod const& m) { return m.method != "slhb" || m.schedule == gi::Schedule::automatic; });
     if (any_schedule && given("--directions") && (given("--axes") || given("--fresh-axes")))
         throw gi::InputError("--directions with --axes or --fresh-axes",
-                             "a set of directions is stored, and axes are drawn by the other schedules",
+                             "only the stored schedule uses --directions, only the others draw axes",
                              "leave one of them out");
     for (auto const& [part, all] :
          {std::pair{"--fresh-axes", "--axes"}, std::pair{"--fresh-light-samples", "--light-samples"}})
         if (given(part) && given(all) && command.get_option(part)->as<int>() > command.get_option(all)->as<int>())
-            throw gi::InputError(std::string(part) + " is larger than " + all, "it is how many of these are new",
+            throw gi::InputError(std::string(part) + " is larger than " + all, "it is the part that is new",
                                  fmt::format("give at most {}", command.get_option(all)->as<int>()));
 }
 
 void declare_slhb(CLI::App& c, RenderOptions& o)
 {
     c.add_option("--device", o.device,
-                 "cpu; or cuda: all by kernels, also of frames with --reuse or --shutter; paths end at mirrors,\n"
+                 "cpu; or cuda: all by CUDA kernels, also with --reuse or --shutter; paths end at mirrors,\n"
                  "glass and narrow lobes, which is counted")
         ->check(CLI::IsMember({"cpu", "cuda"}))
         ->capture_default_str()
         ->group(kSlhbGroup);
     c.add_option(
          "--schedule", o.schedule,
-         "stored: one set of axes; streamed: new ones in every pass; temporal: some new; auto: "
-         "streamed,\nstored under a sky; where something moves stored with --reuse, streamed with --shutter")
+         "stored: one set of axes; streamed: new axes in every pass; temporal: some new; auto: "
+         "streamed,\nbut stored under a sky; in moving scenes stored with --reuse, streamed with --shutter")
         ->check(CLI::IsMember({"auto", "stored", "streamed", "temporal"}))
         ->capture_default_str()
         ->group(kSlhbGroup);
@@ -332,22 +332,22 @@ void declare_slhb(CLI::App& c, RenderOptions& o)
         ->group(kSlhbGroup);
     c.add_option(
          "--shadows", o.shadows,
-         "maps: shadow maps of --light-samples samples, which all paths of a pass share;\nrays: exact rays to "
-         "light samples of each path's own; auto: by the plan")
+         "maps: shadow maps of --light-samples samples, shared by all paths of a pass;\nrays: exact rays to "
+         "light samples of each path; auto: by the plan")
         ->check(CLI::IsMember({"auto", "maps", "rays"}))
         ->capture_default_str()
         ->group(kSlhbGroup);
     c.add_option(
          "--radiance-cache", o.radiance_cache,
-         "paths may end in cells of light that earlier ones found: far less noise in the same time, a little\n"
-         "blur of indirect light; auto: on with --budget, and in viewers while something moves")
+         "paths may end in cached cells of radiance from earlier paths: far less noise in the same time, but\n"
+         "slightly blurred indirect light; auto: on with --budget, and in viewers while something moves")
         ->check(CLI::IsMember({"auto", "on", "off"}))
         ->capture_default_str()
         ->group(kSlhbGroup);
-    c.add_option("--directions", o.slhb.directions, "FAMILY:COUNT of the stored set (default icosahedron:320)")
+    c.add_option("--directions", o.slhb.directions, "stored directions, FAMILY:COUNT (default icosahedron:320)")
         ->group(kSlhbGroup);
     slhb_number(c, "--hit-buffer", o.slhb.resolution, 2, 8192,
-                "texels of a hit buffer on a side (default: by the plan)");
+                "size of a hit buffer, texels on a side (default: by the plan)");
     declare_slhb_quality(c, o);
 }
 
@@ -359,24 +359,24 @@ void declare_options(CLI::App& c, RenderOptions& o)
         ->required();
     std::string known;
     for (gi::Method const& m : gi::methods()) known += fmt::format("\n  {}: {}", m.name, m.summary);
-    c.add_option("--method", o.method, "how light is computed:" + known)->capture_default_str();
+    c.add_option("--method", o.method, "light transport method:" + known)->capture_default_str();
     c.add_option("--size", o.size, "width x height, pixels")->capture_default_str();
     declare_view_options(c, o);
     declare_lens_options(c, o);
     declare_eye_options(c, o);
     c.add_option(
         "--background", o.background,
-        "what the camera sees past all surfaces (default: what the scene says, else map):"
+        "what the camera sees behind all surfaces (default: that of the scene, else map):"
         "\n  map: the environment map, black without one"
         "\n  R,G,B: a colour, radiance"
-        "\n  transparent: nothing; --out gets an alpha channel A, the share of paths that met a surface, by "
-        "which colours are multiplied, and --png one by which they are not"
-        "\nIt is about camera rays alone: surfaces are lit by the map, and mirrors and glass show it, as "
-        "surfaces of alpha 1");
-    c.add_option("--paths", o.paths, fmt::format("per pixel (default {})", kDefaultPaths))
+        "\n  transparent: nothing; adds an alpha channel A, the share of paths that hit a surface; colours are "
+        "premultiplied by it in --out but not in --png"
+        "\nAffects only camera rays: surfaces are lit by the map, and mirrors and glass show it, as surfaces "
+        "of alpha 1");
+    c.add_option("--paths", o.paths, fmt::format("paths per pixel (default {})", kDefaultPaths))
         ->check(CLI::Range(1u, kNoLimit));
     c.add_option("--budget", o.budget, "time for structures and paths: 500ms, 2s, 3min");
-    c.add_option("--until", o.until, "relmse=E: until the estimated relative error is below");
+    c.add_option("--until", o.until, "relmse=E: render until the estimated relMSE is below E");
     c.add_option("--bounces", o.bounces, "indirect bounces; 0 = direct light only")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
@@ -384,23 +384,23 @@ void declare_options(CLI::App& c, RenderOptions& o)
         ->check(CLI::IsMember({"box", "tent"}))
         ->capture_default_str();
     declare_denoise(c, o);
-    c.add_option("--seed", o.seed, "another seed, another noise")->check(check_seed)->capture_default_str();
-    c.add_option("--threads", o.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
-    c.add_option("--out", o.out, "EXR with all layers, .exr (default: the scene's name)");
-    c.add_flag("--half", o.half, "half floats where they suffice");
-    c.add_option("--png", o.png, "tone-mapped picture, .png");
-    c.add_option("--exposure", o.exposure_ev, "stops, for --png and --video")->check(in_range(-100, 100));
-    c.add_option("--tone", o.tone, "curve, for --png and --video")
+    c.add_option("--seed", o.seed, "seed of the random numbers")->check(check_seed)->capture_default_str();
+    c.add_option("--threads", o.threads, "threads; 0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
+    c.add_option("--out", o.out, "EXR file for all layers, .exr (default: the scene's name)");
+    c.add_flag("--half", o.half, "16-bit floats for layers for which they suffice");
+    c.add_option("--png", o.png, "PNG file for the tone-mapped picture, .png");
+    c.add_option("--exposure", o.exposure_ev, "in stops, for --png and --video")->check(in_range(-100, 100));
+    c.add_option("--tone", o.tone, "tone curve, for --png and --video")
         ->check(CLI::IsMember({"srgb", "filmic"}))
         ->capture_default_str();
-    c.add_option("--aovs", o.layers, fmt::format("layers to keep beside color, of: {}", fmt::join(kLayers, ", ")))
+    c.add_option("--aovs", o.layers, fmt::format("layers to save beside color, of: {}", fmt::join(kLayers, ", ")))
         ->delimiter(',')
         ->allow_extra_args(false);
-    c.add_option("--stats", o.stats, "JSON file: what was asked, built, lost and measured");
+    c.add_option("--stats", o.stats, "JSON file for statistics: settings, structures, losses, times");
     c.add_flag(
         "--resume", o.resume,
-        "go on from F.exr.state, which a render leaves that was interrupted, or stopped early with --resume;\n"
-        "of --frames: render those that are missing");
+        "continue from F.exr.state, which is left by interrupted renders and by those that stopped early with\n"
+        "--resume; with --frames: render the missing frames");
     c.add_flag("--json", o.json, "print the statistics instead of text");
     c.add_flag("--quiet", o.quiet, "no progress bar");
     declare_frames(c, o);
@@ -428,7 +428,7 @@ peak_memory_bytes); for --frames, instead of result, one record per frame (frame
 trace_s, paths_per_pixel, rays, relmse_estimate, end, losses) and frame_seconds (median, p95, p99, most, total).
 
 Ctrl-C saves the picture so far and F.exr.state, and exits with 130; a second one ends at once.
-Of --frames it keeps those that are complete, and the video so far.)");
+With --frames, complete frames and the video so far are kept.)");
 }
 
 } // namespace viewer

@@ -1,5 +1,5 @@
 #pragma once
-// What can be said on the command line of `lightwell render`.
+// Command-line options of `lightwell render`.
 
 #include "gi/filter/denoise.h"
 #include "gi/render/render_settings.h"
@@ -22,7 +22,7 @@ struct RenderOptions {
     std::vector<std::string> layers;
     std::optional<double> fov_deg, time_s, aperture_radius_m, focus_distance_m;
     double environment_rotate_deg = 0, environment_scale = 1, exposure_ev = 0, eye_distance_m = 0.063;
-    std::optional<double> screen_distance_m; ///< of --eye
+    std::optional<double> screen_distance_m; ///< with --eye
     std::optional<std::uint32_t> paths;
     std::uint64_t seed = 0;
     int bounces = 64, threads = 0;
@@ -35,40 +35,40 @@ struct RenderOptions {
     bool turns = false;                                ///< --turntable was given, maybe without a value
     bool seed_per_frame = false;
     int reuse = 1;        ///< frames
-    double shutter_s = 0; ///< open for so long from the moment on
+    double shutter_s = 0; ///< exposure time, from the frame's time on
     RankOptions ranks;
 };
 
-/// Throws InputError naming those that there are.
+/// Throws InputError listing the known schedules.
 gi::Schedule parse_schedule(std::string const& name);
 
-/// Those of the camera, the sky and the moment, for every command that renders.
+/// Options of camera, environment map and time, for every command that renders.
 void declare_view_options(CLI::App& command, RenderOptions& options);
-/// Of the camera's lens, for commands that render whole pictures.
+/// Options of the camera's lens, for commands that render whole pictures.
 void declare_lens_options(CLI::App& command, RenderOptions& options);
-/// Which eye of a pair sees it.
+/// Options of the eyes of a stereo pair.
 void declare_eye_options(CLI::App& command, RenderOptions& options);
 void declare_denoise(CLI::App& command, RenderOptions& options);
-/// A method that was chosen, and, of slhb, with which schedule.
+/// A chosen method, with its schedule in the case of slhb.
 struct NamedMethod {
     std::string method;
     gi::Schedule schedule;
     std::string as_given; ///< "--schedule stored"
 };
-/// Throws InputError where options of method slhb are given that none of the methods, at least one, reads.
+/// Throws InputError if an option of slhb is given that none of the methods (at least one) uses.
 void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods);
-/// All of method slhb; those that decide quality but not axes and buffers.
+/// Options of method slhb: all, or only those of quality without axes and buffers.
 void declare_slhb(CLI::App& command, RenderOptions& options);
 void declare_slhb_quality(CLI::App& command, RenderOptions& options);
-/// Of the methods vpl_*, see gi/methods/vpl; and the check that some method reads what is given.
+/// Options of the methods vpl_* (gi/methods/vpl), and the check that some method uses the given ones.
 void declare_virtual_lights(CLI::App& command, RenderOptions& options);
 void check_virtual_lights(CLI::App const& command, std::vector<NamedMethod> const& methods);
 void declare_options(CLI::App& command, RenderOptions& options);
 
-/// Fills in the default name of the picture and checks what the options say together. Throws InputError.
+/// Sets the default output name and checks that the options work together. Throws InputError.
 gi::RenderSettings make_settings(RenderOptions& options);
 
-/// Throws InputError where the denoiser cannot work with these settings.
+/// Throws InputError if the filter cannot work with these settings.
 gi::DenoiseSettings make_denoise_settings(RenderOptions const& options, gi::RenderSettings const& settings);
 
 } // namespace viewer

@@ -10,7 +10,7 @@ namespace viewer {
 
 namespace {
 
-bool g_silent = false; // of this process, for good
+bool g_silent = false; // set once, for the whole process
 
 }
 
@@ -28,12 +28,12 @@ std::string denoise(gi::Picture& picture, gi::DenoiseSettings const& settings, g
     gi::DenoiseReport const done = gi::denoise(picture, settings);
     report.count("pixels without a surface to filter on", double(done.without_surface));
     if (done.not_finite > 0) report.lose("pixels not filtered, as a value is not finite", done.not_finite);
-    return done.no_variance ? "--denoise atrous does nothing: nothing in the picture has a variance" : "";
+    return done.no_variance ? "--denoise atrous does nothing: the picture has no variance" : "";
 }
 
 namespace {
 
-/// The alpha channel goes with the colours.
+/// Makes alpha the fourth channel of color.
 void join_alpha(gi::Picture& picture)
 {
     gi::Layer const* const alpha = picture.find("alpha");
@@ -51,7 +51,7 @@ void join_alpha(gi::Picture& picture)
     std::erase_if(picture.layers, [](gi::Layer const& l) { return l.name == "alpha"; });
 }
 
-/// As it was before join_alpha.
+/// Inverse of join_alpha.
 std::pair<gi::Layer, gi::Layer> without_alpha(gi::Layer const& joined)
 {
     gi::Layer color{"color", 3, {}}, alpha{"alpha", 1, {}};

@@ -1,5 +1,5 @@
 #pragma once
-// The steps from a world to files that single pictures and frames share.
+// Steps from a rendered picture to files, shared by single pictures and frames.
 
 #include "gi/scene/model/world.h"
 #include "viewer/offline/render_options.h"
@@ -8,18 +8,18 @@
 
 namespace viewer {
 
-/// "note: TEXT" on stderr.
+/// Prints "note: TEXT" on stderr.
 void say(std::string const& text);
-/// Of the ranks of a cluster only the leading one says anything; called once, before.
+/// Turns off all notes of this process; called once by ranks of a cluster that do not lead.
 void be_silent();
 
-/// @return what is to be said about it; empty = nothing
+/// Filters the picture. @return note to the user; empty = none
 std::string denoise(gi::Picture& picture, gi::DenoiseSettings const& settings, gi::Report& report);
-/// Leaves color, with its alpha where it has one, and the layers that were asked for.
+/// Keeps only color (with alpha, if any) and the requested layers.
 void keep_layers(RenderOptions const& options, gi::Picture& picture);
 void save_exr(RenderOptions const& options, std::string const& file, gi::Picture const& picture,
               gi::Report& report);
-/// "color" as --exposure and --tone have it, 8 bits of red, green, blue and, where it has one, alpha.
+/// Layer "color", tone-mapped by --exposure and --tone: 8 bits of red, green, blue and, if present, alpha.
 std::vector<unsigned char> display_bytes(RenderOptions const& options, gi::Picture const& picture);
 
 } // namespace viewer

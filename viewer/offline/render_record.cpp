@@ -11,9 +11,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kSchema = 1; // of the statistics: counts up when a key changes its meaning or goes
+constexpr int kSchema = 1; // of the statistics; incremented if a key changes its meaning or is removed
 
-/// Every option that decides the values of the picture, in one order and with the defaults written out.
+/// All options that determine the picture, in a fixed order and with defaults written out.
 std::string normalised_command(RenderOptions const& o, gi::RenderSettings const& s, std::string const& amount,
                                std::string const& chosen)
 {
@@ -50,7 +50,7 @@ std::string normalised_command(RenderOptions const& o, gi::RenderSettings const&
     return command;
 }
 
-/// One path says nothing about its variance.
+/// False with one path, from which no variance can be estimated.
 bool knows_error(gi::RenderResult const& r) { return r.paths >= 2; }
 
 double rays_per_second(gi::RenderResult const& r) { return r.seconds > 0 ? r.rays / r.seconds : 0; }

@@ -1,5 +1,5 @@
 #pragma once
-// What is written down about a render: in the picture itself, and in the statistics.
+// Records of a render: metadata of the picture, and statistics.
 
 #include "gi/scene/model/plan.h"
 #include "viewer/offline/render_options.h"
@@ -9,29 +9,29 @@
 
 namespace viewer {
 
-/// Metadata of the picture. Only what decides its values, not threads, times or names of outputs: equal pictures
-/// are equal files.
+/// Metadata of the picture: only what determines its values, not threads, times or output names, so that equal
+/// pictures are equal files.
 std::map<std::string, std::string> make_metadata(RenderOptions const& options, gi::RenderSettings const& settings,
                                                  gi::RenderResult const& result);
 
-/// When to stop, as an option: "--paths 64", "--budget 2s" or "--until relmse=0.01".
+/// Stop condition as an option: "--paths 64", "--budget 2s" or "--until relmse=0.01".
 std::string stop_option(gi::RenderSettings const& settings);
 
-/// What --stats and --json say of the call: schema, program, command, settings and outputs.
-/// @param amount an option as above   @param chosen what the method chose for itself, as options
+/// The call, for --stats and --json: schema, program, command, settings and outputs.
+/// @param amount  stop condition as an option   @param chosen  settings chosen by the method, as options
 nlohmann::ordered_json describe_call(RenderOptions const& options, gi::RenderSettings const& settings,
                                      std::string const& amount, std::string const& chosen);
 nlohmann::ordered_json to_json(gi::ScenePlan const& plan);
 char const* end_text(gi::RenderEnd end);
-/// Null where one path says nothing about its variance.
+/// Estimated relMSE; null if unknown, as with one path.
 nlohmann::ordered_json relmse_json(gi::RenderResult const& result);
 
-/// For --stats and --json; the keys are listed in `lightwell render --help`. Values that are not known are null.
+/// Statistics for --stats and --json; `lightwell render --help` lists the keys. Unknown values are null.
 nlohmann::ordered_json make_stats(RenderOptions const& options, gi::RenderSettings const& settings,
                                   gi::ScenePlan const& plan, gi::RenderResult const& result,
                                   gi::Report const& report);
 
-/// One line for people.
+/// Summary of the render in one line.
 std::string summary_line(RenderOptions const& options, gi::RenderSettings const& settings,
                          gi::RenderResult const& result);
 

@@ -13,7 +13,7 @@
 namespace viewer {
 namespace {
 
-/// The size of the first view at its largest: videos have one size.
+/// Largest size of the first view, rounded down to even numbers, as videos have one size.
 std::pair<int, int> largest_view(RecordingReader& reader)
 {
     std::pair<int, int> size{0, 0};
@@ -24,7 +24,7 @@ std::pair<int, int> largest_view(RecordingReader& reader)
     return {size.first / 2 * 2, size.second / 2 * 2};
 }
 
-/// Frames at uneven times as a video at an even rate: each shows the last that was due.
+/// Resamples frames at irregular times to a constant frame rate; each video frame shows the last due frame.
 class TimedVideo {
 public:
     TimedVideo(std::string const& file, std::pair<int, int> size, double fps)
@@ -87,7 +87,7 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     nlohmann::json const settings = header.settings.value("settings", nlohmann::json::object());
     for (Change const& c : o.settings) overridden.insert(c.key);
     for (auto const& [key, value] : settings.items())
-        if (!overridden.contains(key)) session.apply({key, value}); // a device may not be here
+        if (!overridden.contains(key)) session.apply({key, value}); // e.g. a device that is missing here
     for (Change const& c : o.settings) session.apply(c);
     session.apply({"scene", header.scene});
     ReplaySummary summary;

@@ -1,5 +1,5 @@
 #pragma once
-// A recording rendered again, off-screen: as it was, bit for bit, or at any other quality.
+// Renders a recording again, off-screen: bit by bit as it was, or with other settings.
 
 #include "gi/core/progress.h"
 #include "viewer/devices/tracking/footsteps.h"
@@ -10,8 +10,8 @@ namespace viewer {
 
 struct ReplayOptions {
     std::string file;
-    std::vector<Change> settings;            ///< in place of what was set then, all the time
-    int paths = 0;                           ///< per pixel; 0 = as then
+    std::vector<Change> settings;            ///< override the recorded settings throughout
+    int paths = 0;                           ///< per pixel; 0 = as recorded
     std::optional<std::pair<int, int>> size; ///< of every view, pixels
     std::string out;                         ///< pattern of EXR or PNG frames of the first view; empty = none
     std::string video;                       ///< of the first view, at `fps`
@@ -20,25 +20,25 @@ struct ReplayOptions {
 };
 
 struct ReplaySummary {
-    std::uint64_t frames = 0, same = 0, other = 0, unknown = 0; ///< against the pixels of then
+    std::uint64_t frames = 0, same = 0, other = 0, unknown = 0; ///< compared with the recorded pixel hashes
     std::optional<std::uint64_t> first_other;
     RecordingEnd end;
     bool interrupted = false;
 };
 
-/// What a recording's scenes are read and moved with.
+/// Functions that load and animate the scenes of a recording.
 struct RecordedScenes {
     LoadScene load;
-    DriveBodies drive; ///< empty = nothing but their clips moves them
+    DriveBodies drive; ///< empty = scenes are moved only by their animation clips
     std::vector<AvatarOfUser> avatars;
 };
-/// From RecordingHeader::settings["load"].
+/// Makes them from RecordingHeader::settings["load"].
 using LoadRecorded = std::function<RecordedScenes(nlohmann::json const& load)>;
 
-/// True where nothing is rendered otherwise than then, so that pixels must be the same.
+/// True if no option changes the recorded settings, so that pixels must be equal.
 bool as_recorded(ReplayOptions const& options);
 
-/// Throws InputError on what cannot be read, rendered or written.
+/// Throws InputError if something cannot be read, rendered or written.
 ReplaySummary replay(ReplayOptions const& options, LoadRecorded const& load, gi::StopRequest const& stop,
                      gi::Report& report);
 

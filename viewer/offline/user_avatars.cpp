@@ -12,7 +12,7 @@ namespace viewer {
 
 namespace {
 
-/// Where his head rests tells how far above y = 0 his eyes are, unless the room has its origin elsewhere.
+/// True if the height of the resting head is a plausible eye height, so that the room's origin is on the floor.
 bool rests_above_floor(User const& user)
 {
     double const y = resting_head(user).position.y;
@@ -60,7 +60,7 @@ std::vector<AvatarChoice> avatar_choices(std::string const& avatar, double eye_h
     return choices;
 }
 
-// The first user's has keys of its own, as before others could have any.
+// The first user's avatar has its own keys, compatible with recordings from before other users could have one.
 void put_avatars(nlohmann::json& load, std::vector<AvatarChoice> const& avatars)
 {
     for (AvatarChoice const& a : avatars) {
@@ -85,14 +85,14 @@ std::vector<AvatarChoice> avatars_of(nlohmann::json const& load)
         std::string const file = j.value("avatar", "");
         if (file.empty()) return;
         if (std::ranges::find(avatars, user, &AvatarChoice::user) != avatars.end())
-            refuse("user " + std::to_string(user) + " has two");
+            refuse("user " + std::to_string(user) + " has two avatars");
         avatars.push_back({user, file, j.value("eye_height_m", 1.6)});
     };
     try {
         read(load, 0);
         nlohmann::json const others = load.value("avatars", nlohmann::json::array());
         if (!others.is_array() || others.size() > kMost)
-            refuse("they are no list of at most " + std::to_string(kMost));
+            refuse("they are not a list of at most " + std::to_string(kMost));
         for (nlohmann::json const& j : others) {
             auto const user = j.value("user", std::size_t(0));
             if (user >= kMost) refuse("one is of user " + std::to_string(user));
@@ -112,7 +112,7 @@ RecordedScenes scenes_with(RenderOptions const& options, std::vector<AvatarChoic
     for (AvatarChoice const& a : avatars) {
         if (a.file != "avatar" && !std::filesystem::exists(a.file))
             throw gi::InputError("there is no avatar '" + a.file + "'", "no such file",
-                                 "give a skinned model, or avatar: the one that is built in");
+                                 "give a skinned model, or avatar (built in)");
         all.push_back(std::make_shared<OwnAvatar const>(gi::load_scene(a.file, report), a.eye_height_m, a.user));
         s.avatars.push_back({a.user, a.on_floor ? all.back()->stance() : std::nullopt});
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Which users have avatars, as options, display files and recordings say it; scenes with them.
+// Avatars of users, from options, display files and recordings, and scenes with these avatars.
 
 #include "viewer/displays/display.h"
 #include "viewer/offline/render_options.h"
@@ -9,29 +9,29 @@ namespace viewer {
 
 struct AvatarChoice {
     std::size_t user = 0;
-    std::string file;        ///< of a skinned model, or the name of a generated one
-    double eye_height_m = 0; ///< of the user standing
-    bool on_floor = true;    ///< y = 0 of his room is what he stands on; else his feet are not asked for
+    std::string file;        ///< skinned model file, or name of a built-in avatar
+    double eye_height_m = 0; ///< of the standing user
+    bool on_floor = true;    ///< the user stands at y = 0 of the room; otherwise the feet are not used
 
     bool operator==(AvatarChoice const&) const = default;
 };
 
-/// Those of --avatar (the first user's, before what the display says) and of a display, by user.
-/// @param eye_height_m  of who does not say it, nor where his head rests   @param folder  of the display's file
+/// Avatars of --avatar (first user, overriding the display) and of a display, in the order of users.
+/// @param eye_height_m  for users without an eye height or resting head   @param folder  that of the display file
 std::vector<AvatarChoice> avatar_choices(std::string const& avatar, double eye_height_m,
                                          std::optional<Display> const& display,
                                          std::filesystem::path const& folder);
-/// Of a user standing; rooms whose origin is not on the floor do not tell.
+/// Eye height of a standing user; `otherwise_m` if the display does not give it or its origin is not on the floor.
 double standing_eye_height_m(std::optional<Display> const& display, std::size_t user, double otherwise_m);
-/// How far above the floor the first user's head rests: there the room hangs from the navigation's camera.
+/// Height of the first user's resting head above the floor, where the room is attached to the navigation camera.
 double resting_eye_height_m(std::optional<Display> const& display, double otherwise_m);
 
-/// What a recording keeps of them among what its scenes are read with, and back.
+/// Write avatars to the scene options of a recording, and read them back.
 void put_avatars(nlohmann::json& load, std::vector<AvatarChoice> const& avatars);
-/// Throws InputError where a recording has them otherwise.
+/// Throws InputError if the recording's avatars are invalid.
 std::vector<AvatarChoice> avatars_of(nlohmann::json const& load);
 
-/// Scenes as the options say, each with all of these avatars. Throws InputError where one is none.
+/// Scenes by the options, each with all of these avatars. Throws InputError if a file is no avatar.
 RecordedScenes scenes_with(RenderOptions const& options, std::vector<AvatarChoice> const& avatars,
                            gi::Report& report);
 

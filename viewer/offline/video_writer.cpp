@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 struct Codec {
     char const* extension;
     char const* name;
-    char const* code; ///< of four letters
+    char const* code; ///< FourCC
 };
 constexpr Codec kCodecs[]{{".mkv", "FFV1", "FFV1"}, {".mp4", "H.264", "avc1"}};
 
@@ -28,10 +28,10 @@ Codec const& codec_of(fs::path const& file)
 {
     for (Codec const& codec : kCodecs)
         if (file.extension() == codec.extension) return codec;
-    throw cannot(file, "its ending names no video that is written here", "choose .mkv (lossless) or .mp4 (H.264)");
+    throw cannot(file, "its ending is not a supported video format", "choose .mkv (lossless) or .mp4 (H.264)");
 }
 
-/// The module that knows FFmpeg, loaded by the first video.
+/// The module that links FFmpeg, loaded for the first video.
 VideoCodec& video_codec()
 {
     static VideoCodec& codec = [&]() -> VideoCodec& {
@@ -52,16 +52,16 @@ void check_video(fs::path const& file, int width, int height, double fps)
 {
     codec_of(file);
     if (width % 2 != 0 || height % 2 != 0)
-        throw cannot(file, fmt::format("{} x {} pixels: width and height of a video are even", width, height),
+        throw cannot(file, fmt::format("{} x {} pixels: width and height of a video must be even", width, height),
                      "change --size by one pixel");
     if (!(fps >= 0.01) || !(fps <= 1000))
-        throw cannot(file, fmt::format("{:g} frames per second: videos have 0.01 to 1000", fps),
+        throw cannot(file, fmt::format("{:g} frames per second: 0.01 to 1000 are possible", fps),
                      "change --frames");
 }
 
 VideoWriter::VideoWriter(fs::path const& file, int width, int height, double fps)
     : file_(file),
-      temporary_(fs::absolute(file).parent_path() / // absolute, or FFmpeg takes "a:" for a protocol
+      temporary_(fs::absolute(file).parent_path() / // absolute, as FFmpeg reads "a:" as a protocol
                  ("." + file.stem().string() + ".unfinished" + file.extension().string())),
       width_(width),
       height_(height)
@@ -98,7 +98,7 @@ void VideoWriter::finish()
     stream_.reset();
     int const read = video_codec().count_frames(temporary_, frames_ + 1);
     if (read != frames_)
-        throw cannot(file_, fmt::format("read back it has {} of {} frames", read, frames_),
+        throw cannot(file_, fmt::format("only {} of {} frames can be read back", read, frames_),
                      "free some space or choose another folder");
     fs::rename(temporary_, file_);
 }

@@ -8,24 +8,24 @@ namespace viewer {
 
 class VideoStream;
 
-/// Throws InputError where no video of this name, size and rate can be written: .mkv (FFV1, lossless) and .mp4
-/// (H.264), even sizes, 0.01 to 1000 frames per second. Writes nothing.
+/// Throws InputError if a video with this name, size and rate is impossible. Possible are .mkv (FFV1, lossless)
+/// and .mp4 (H.264), even sizes, 0.01 to 1000 frames per second. Writes nothing.
 void check_video(std::filesystem::path const& file, int width, int height, double fps);
 
-/// A video under way: it grows under a hidden name beside `file` and gets its own name when it is complete and was
-/// read back. Whatever is not finished is removed.
+/// Writes a video under a hidden name beside `file`; finish() checks it and renames it to `file`. An unfinished
+/// video is removed.
 class VideoWriter {
 public:
-    /// Throws InputError as check_video does, or where the codec is missing or the file cannot be written.
+    /// Throws InputError as check_video does, or if the codec is missing or the file cannot be written.
     VideoWriter(std::filesystem::path const& file, int width, int height, double fps);
     ~VideoWriter();
     VideoWriter(VideoWriter const&) = delete;
     VideoWriter& operator=(VideoWriter const&) = delete;
 
-    /// rgb8.size() == 3 * width * height, display-encoded.
+    /// Adds a display-encoded frame; rgb8.size() == 3 * width * height.
     void add(std::span<unsigned char const> rgb8);
     int frames() const { return frames_; }
-    /// Throws InputError unless all frames can be read back; OpenCV does not tell of a full disk otherwise.
+    /// Throws InputError unless all frames can be read back; OpenCV does not report a full disk.
     void finish();
 
 private:

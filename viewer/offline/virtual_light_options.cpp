@@ -14,7 +14,7 @@ constexpr char const* kVirtualLightGroup = "Methods vpl_*";
 
 struct VirtualLightOption {
     char const* name;
-    std::vector<std::string> methods; ///< that read it; empty = all
+    std::vector<std::string> methods; ///< methods that use it; empty = all
 };
 
 std::vector<VirtualLightOption> const& virtual_light_options()
@@ -40,7 +40,7 @@ void check_virtual_lights(CLI::App const& command, std::vector<NamedMethod> cons
         if (read) continue;
         std::string const readers = o.methods.empty() ? "vpl_*" : fmt::format("{}", fmt::join(o.methods, " and "));
         throw gi::InputError(std::string(o.name) + " with --method " + methods.front().method,
-                             "it is about " + readers, "add such a method, or leave it out");
+                             "it applies to " + readers, "add such a method, or leave it out");
     }
 }
 
@@ -50,19 +50,19 @@ void declare_virtual_lights(CLI::App& c, RenderOptions& o)
         return c.add_option(name, value, meaning)->group(kVirtualLightGroup);
     };
     option("--light-paths", o.vpl.light_paths,
-           "from the lamps in a pass (a path per pixel); every surface that one meets becomes a virtual light")
+           "light paths per pass (one camera path per pixel); each of their vertices becomes a virtual light")
         ->check(CLI::Range(1, 1 << 20))
         ->capture_default_str();
     option("--near", o.vpl.near_m,
-           "m; nearer than about that, paths from the camera bring light in place of virtual lights, of all vpl_* "
+           "m; below about this distance, camera paths replace virtual lights, in all vpl_* methods "
            "alike (default: 2 % of the scene's radius)")
         ->check(in_range(1e-9, 1e9));
     option("--points", o.points,
-           "vpl_imperfect: drawn into a shadow map, 1024; or 30%, of its texels (default 1024)");
-    option("--point-map", o.vpl.point_map, "vpl_imperfect: texels on a side of a shadow map, a power of two")
+           "vpl_imperfect: points per shadow map, e.g. 1024, or 30% of its texels (default 1024)");
+    option("--point-map", o.vpl.point_map, "vpl_imperfect: size of a shadow map, texels on a side, a power of two")
         ->check(CLI::Range(8, 1024))
         ->capture_default_str();
-    option("--ao-radius", o.vpl.ao_radius_m, "vpl_ao, vpl_dao: m; farther surfaces occlude nothing")
+    option("--ao-radius", o.vpl.ao_radius_m, "vpl_ao, vpl_dao: m; farther surfaces do not occlude")
         ->check(in_range(0, 1e9))
         ->capture_default_str();
 }

@@ -11,7 +11,7 @@
 namespace viewer {
 namespace {
 
-// Pixels of the drawing; the right margin holds the names of the curves.
+// Sizes in pixels; the right margin is for the names of the curves.
 constexpr double kWidth = 560, kHeight = 360, kLeft = 64, kRight = 100, kTop = 40, kBottom = 52;
 constexpr double kLine = 15, kMarker = 4, kCharacter = 7.5;
 
@@ -22,7 +22,7 @@ struct Frame {
 
     double px(double value) const { return kLeft + x.position(value) * (kWidth - kLeft - kRight); }
     double py(double value) const { return kHeight - kBottom - y.position(value) * (kHeight - kTop - kBottom); }
-    /// Within the axes: spreads and levels may go beyond them.
+    /// Clamps to the axes, as spreads and levels may exceed them.
     double clamped_py(double value) const { return py(std::clamp(value, y.low, y.high)); }
 };
 
@@ -37,7 +37,7 @@ std::string line(char const* css, double x0, double y0, double x1, double y1)
                        y0, x1, y1);
 }
 
-/// Its shape tells the curves apart where colours do not.
+/// Marker whose shape distinguishes the curves without colours.
 std::string marker(std::size_t curve, double x, double y, std::string const& note)
 {
     double const r = kMarker;
@@ -97,7 +97,7 @@ std::string end_labels(std::vector<Curve> const& curves, Frame const& f)
             labels.push_back({i, f.px(curves[i].points.back().x) + 10, f.py(curves[i].points.back().y) + 4});
     std::sort(labels.begin(), labels.end(), [](Label const& a, Label const& b) { return a.y < b.y; });
     for (std::size_t i = 1; i < labels.size(); ++i) labels[i].y = std::max(labels[i].y, labels[i - 1].y + kLine);
-    double lowest = kHeight - kBottom - 2; // and back up where the last ones fell below the axis
+    double lowest = kHeight - kBottom - 2; // and back up if the last ones are below the axis
     for (auto l = labels.rbegin(); l != labels.rend(); ++l, lowest -= kLine) l->y = std::min(l->y, lowest);
     std::string svg;
     for (Label const& l : labels)
@@ -135,7 +135,7 @@ std::string to_svg(Chart const& chart)
                 if (y > 0 && std::isnormal(y)) ys.push_back(y);
         }
     }
-    // A level that is near decides how the curves are read; one that is far would only squeeze them.
+    // Include the level only if it is near the curves; a distant one would compress them.
     constexpr double kNear = 10;
     if (!ys.empty() && chart.level * kNear > *std::min_element(ys.begin(), ys.end())) ys.push_back(chart.level);
     Frame const frame{make_axis(xs), make_axis(ys)};

@@ -11,7 +11,7 @@ inline constexpr std::size_t kCurveStyles = 6;
 
 struct CurvePoint {
     double x = 0, y = 0;
-    double y_low = 0, y_high = 0; ///< its spread
+    double y_low = 0, y_high = 0; ///< range of the measurements
 };
 
 struct Curve {
@@ -22,11 +22,11 @@ struct Curve {
 struct Chart {
     std::string title, x_label, y_label;
     std::vector<Curve> curves;
-    double level = 0; ///< a dashed line across; 0 = none
+    double level = 0; ///< horizontal dashed line; 0 = none
     std::string level_label;
 };
 
-/// Points that have no logarithm are left out; a last line below the axis counts them.
+/// Draws the chart as SVG. Points without a logarithm are left out; a note below the chart gives their number.
 std::string to_svg(Chart const& chart);
 
 } // namespace viewer

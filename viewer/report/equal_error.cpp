@@ -7,7 +7,7 @@
 namespace viewer {
 namespace {
 
-constexpr double kFlattest = -0.05; // exponent of error over time; above it nothing is extrapolated
+constexpr double kFlattest = -0.05; // exponent of error over time; flatter curves are not extrapolated
 
 bool usable(double v) { return std::isfinite(v) && v > 0; }
 

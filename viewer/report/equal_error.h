@@ -1,6 +1,6 @@
 #pragma once
-// How long a method needs to reach an error, by its measured errors after several times. Between two times error
-// is a power of time: a line on logarithmic axes.
+// Time that a method needs to reach an error, from its measured errors after several times. Between two times, the
+// error is interpolated as a power of time, i.e. linearly on logarithmic axes.
 
 #include <string_view>
 #include <vector>
@@ -13,11 +13,11 @@ struct ErrorAtTime {
 
 enum class Reached : int {
     between_budgets,
-    in_first_picture, ///< the shortest time already has no more error; the time is that one, an upper bound
-    beyond_budgets,   ///< extrapolated by the last two times
-    never             ///< the error no longer falls, or nothing was measured; the time is NaN
+    in_first_picture, ///< reached already after the shortest time, which is returned as an upper bound
+    beyond_budgets,   ///< extrapolated from the last two times
+    never             ///< the error does not fall any more, or nothing was measured; the time is NaN
 };
-/// "" for between_budgets.
+/// Description; "" for between_budgets.
 std::string_view to_text(Reached reached);
 
 struct TimeAtError {
@@ -25,7 +25,8 @@ struct TimeAtError {
     Reached reached = Reached::never;
 };
 
-/// When the curve first has no more than that error. Points in any order; those without a logarithm are left out.
+/// First time at which the curve is at or below `error`. Points may be in any order; those without a logarithm are
+/// ignored.
 TimeAtError time_at_error(std::vector<ErrorAtTime> curve, double error);
 
 } // namespace viewer

@@ -11,13 +11,13 @@ namespace fs = std::filesystem;
 
 BenchFolder read_bench_folder(fs::path const& folder)
 {
-    constexpr std::size_t kMostBytes = std::size_t(1) << 28; // of a file of rows
+    constexpr std::size_t kMostBytes = std::size_t(1) << 28; // largest file of rows
     auto const cannot = [&](std::string const& why, std::string const& suggestion) {
         return gi::InputError("cannot read tables from '" + folder.string() + "'", why, suggestion);
     };
     std::error_code error;
     if (!fs::exists(folder, error)) throw cannot("there is no such folder", "make one with lightwell bench sweep");
-    if (!fs::is_directory(folder, error)) throw cannot("it is no folder", "name the folder that --out named");
+    if (!fs::is_directory(folder, error)) throw cannot("it is not a folder", "name the folder that --out named");
     std::vector<fs::path> files;
     for (auto const& entry : fs::directory_iterator(folder, error))
         if (entry.path().extension() == ".json" && !entry.path().filename().string().starts_with('.'))

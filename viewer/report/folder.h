@@ -6,14 +6,15 @@
 
 namespace viewer {
 
-/// What commands of bench, and `render --stats`, have left in a folder.
+/// Tables of bench commands and statistics of `render --stats` in a folder.
 struct BenchFolder {
     std::filesystem::path path;
     std::vector<BenchTable> tables;
     std::vector<RenderStats> renders;
 };
 
-/// Every *.json of the folder, by name. Throws InputError where there is none, or one is damaged or neither.
+/// Reads every *.json of the folder, sorted by name. Throws InputError if there is none, or if one is damaged or
+/// of another kind.
 BenchFolder read_bench_folder(std::filesystem::path const& folder);
 
 } // namespace viewer

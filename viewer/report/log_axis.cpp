@@ -10,14 +10,14 @@ namespace {
 
 constexpr std::array kSteps{1.0, 2.0, 5.0};
 
-/// ... -3 -> 0.1, -2 -> 0.2, -1 -> 0.5, 0 -> 1, 1 -> 2, ...
+/// Value of a step: ... -3 -> 0.1, -2 -> 0.2, -1 -> 0.5, 0 -> 1, 1 -> 2, ...
 double step(int i)
 {
     int const decade = int(std::floor(double(i) / double(kSteps.size())));
     return kSteps[std::size_t(i - decade * int(kSteps.size()))] * std::pow(10.0, decade);
 }
 
-/// The last step that is not above the value, but for rounding.
+/// Largest step at or below the value, up to rounding.
 int step_below(double value)
 {
     constexpr double kRounding = 1 + 1e-9;

@@ -11,7 +11,7 @@
 namespace viewer {
 namespace {
 
-/// What stands behind "key :" in a file such as /proc/cpuinfo; empty = nothing.
+/// Text after "key :" in a file such as /proc/cpuinfo; empty if not found.
 std::string value_of(char const* file, std::string const& key)
 {
     std::ifstream in(file);

@@ -17,7 +17,7 @@ Measured summarise(std::span<double const> values)
 
 Measured ratio(std::span<double const> numerator, std::span<double const> denominator)
 {
-    if (numerator.size() != denominator.size()) throw std::logic_error("a ratio needs as many of both");
+    if (numerator.size() != denominator.size()) throw std::logic_error("a ratio needs equal numbers of both");
     std::vector<double> ratios;
     for (std::size_t i = 0; i < numerator.size(); ++i) ratios.push_back(numerator[i] / denominator[i]);
     return summarise(ratios);

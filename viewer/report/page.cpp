@@ -76,7 +76,7 @@ std::string section(BenchTable const& t, std::filesystem::path const& folder, Pa
     html +=
         origin_html(t) + figures + (figures.empty() ? "<h3>Rows</h3>\n" : "<details>\n<summary>rows</summary>\n");
     if (has_spread(t))
-        html += "<p class=\"note\">Medians; below them the least and the most that was measured.</p>\n";
+        html += "<p class=\"note\">Medians; below them the smallest and largest measured values.</p>\n";
     return html + rows_html(t) + (figures.empty() ? "" : "</details>\n") + "</section>\n";
 }
 

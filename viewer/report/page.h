@@ -1,33 +1,33 @@
 #pragma once
-// One HTML page of tables, that needs nothing beside itself: no scripts, drawings inline, pictures as data.
+// Self-contained HTML page of tables: no scripts, inline drawings, embedded pictures.
 
 #include "viewer/report/folder.h"
 
 namespace viewer {
 
 enum class PagePictures : std::uint8_t {
-    embedded, ///< the page needs nothing beside itself
-    linked    ///< they stay files; the page belongs in their folder
+    embedded, ///< the page is self-contained
+    linked    ///< as separate files; the page must be in their folder
 };
 
 struct Page {
     std::string title = "Lightwell bench";
-    std::string lead;                               ///< a paragraph below it; empty = none
-    std::vector<BenchFolder> folders;               ///< pictures that they name are looked for in them
-    PagePictures pictures = PagePictures::embedded; ///< of tables that have them per scene, budget and method
-    std::vector<std::string> next;                  ///< commands to try, at the end
+    std::string lead;                               ///< paragraph below the title; empty = none
+    std::vector<BenchFolder> folders;               ///< with the pictures that they name
+    PagePictures pictures = PagePictures::embedded; ///< for tables with pictures per scene, budget and method
+    std::vector<std::string> next;                  ///< commands to try, shown at the end
 };
 std::string make_page(Page const& page);
 
-/// Pictures, pairs and videos of a folder with what they cost; empty where nothing was rendered.
+/// Pictures, stereo pairs and videos of a folder with their times; empty if it has no renders.
 std::string render_figures(BenchFolder const& folder);
 
 /// Curves of error over time and strips of pictures, per scene; empty unless the table has the columns scene,
 /// method, budget_s, frame_s and relmse.
 std::string sweep_figures(BenchTable const& table, std::filesystem::path const& folder);
 
-/// Per scene and budget the pictures of all methods and filters beside the reference, the worst first; empty
-/// unless it is a table of `bench pictures`.
+/// For each scene and budget the pictures of all methods and filters beside the reference, worst first; empty
+/// unless the table is from `bench pictures`.
 std::string picture_grids(BenchTable const& table, std::filesystem::path const& folder, PagePictures pictures);
 
 std::string_view page_style();

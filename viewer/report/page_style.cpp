@@ -2,8 +2,8 @@
 
 namespace viewer {
 
-// Curves have the colours of Okabe & Ito 2008, which colour-blind people tell apart; brighter on dark paper. The
-// scale of FLIP is that of gi/metrics/difference_image.cpp.
+// Curves have the colours of Okabe & Ito 2008, which colour-blind people can distinguish; brighter on dark paper.
+// The scale of FLIP is that of gi/metrics/difference_image.cpp.
 std::string_view page_style()
 {
     return R"(:root { --paper: #fff; --ink: #1c1c1e; --faint: #63636b; --rule: #e2e2e7; --box: #f5f5f8;

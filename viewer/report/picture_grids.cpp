@@ -9,11 +9,11 @@
 namespace viewer {
 namespace {
 
-/// One scene with one budget.
+/// Pictures of one scene with one budget.
 struct PictureGroup {
     std::string scene, budget;
     std::vector<std::vector<Cell> const*> rows;
-    double worst = 0; ///< ratio of errors
+    double worst = 0; ///< largest ratio of errors
 };
 
 std::vector<PictureGroup> picture_groups(BenchTable const& t)
@@ -70,7 +70,7 @@ private:
     }
     double value(std::vector<Cell> const& row, char const* column) const { return number(cell(t_, row, column)); }
 
-    /// Only names within the folder: a table may come from anywhere.
+    /// Accepts only names within the folder, as tables may be from an untrusted source.
     std::string picture(std::vector<Cell> const& row, char const* column, std::string const& description) const
     {
         std::filesystem::path const file = folder_ / std::filesystem::path(text(row, column)).filename();
@@ -107,7 +107,7 @@ std::string picture_grids(BenchTable const& table, std::filesystem::path const& 
     if (table.rows.empty()) return "";
     GridWriter const writer(table, folder, pictures);
     std::string html = "<p class=\"note\">Below each picture its FLIP error: 0 <span class=\"scale\"></span> 1. "
-                       "Click a picture to see it in its own size.</p>\n";
+                       "Click a picture to see it at full size.</p>\n";
     for (PictureGroup const& g : picture_groups(table)) html += writer.group(g);
     return html;
 }

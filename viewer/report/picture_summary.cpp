@@ -36,7 +36,7 @@ std::vector<ErrorAtTime> curve_of(std::vector<PictureRow> const& rows, PictureRo
 
 double share(double a, double b) { return b > 0 ? a / b : std::nan(""); }
 
-/// NaN last.
+/// Order by value, NaN last.
 bool is_worse(PictureContest const& a, PictureContest const& b)
 {
     double const x = a.worst(), y = b.worst();
@@ -47,7 +47,7 @@ bool is_worse(PictureContest const& a, PictureContest const& b)
 
 double PictureContest::worst() const
 {
-    return std::fmax(relmse_ratio, flip_ratio); // of the one that is known
+    return std::fmax(relmse_ratio, flip_ratio); // ignores NaN
 }
 
 std::vector<PictureContest> contests(BenchTable const& pictures, std::string const& peer)

@@ -1,5 +1,5 @@
 #pragma once
-// What a table of pictures says in short: every method against its peer, row by row, the worst first.
+// Summary of a table of pictures: every method against the peer method, row by row, worst first.
 
 #include "viewer/report/equal_error.h"
 #include "viewer/report/table.h"
@@ -7,15 +7,15 @@
 namespace viewer {
 
 inline constexpr double kLostRatio =
-    1.02; ///< of errors; a method with more error than this times the peer's loses
+    1.02; ///< a method loses if its error exceeds this times that of the peer
 
-/// A method's picture against the peer's of the same scene, budget and filter.
+/// Comparison of a method's picture with the peer's for the same scene, budget and filter.
 struct PictureContest {
     std::string scene, budget, filter, method;
     double relmse_ratio = 0, flip_ratio = 0; ///< method / peer
-    double time_ratio = 0;                   ///< of whole times; no method can take less than one path takes
-    double relmse_time_factor = 0;           ///< how many times longer the peer needs for the same relMSE
-    double flip_time_factor = 0;             ///< and for the same FLIP
+    double time_ratio = 0;                   ///< method / peer, of whole times; at least one path is traced
+    double relmse_time_factor = 0;           ///< time of the peer for the same relMSE / time of the method
+    double flip_time_factor = 0;             ///< the same for FLIP
     Reached relmse_reached = Reached::never, flip_reached = Reached::never;
 
     double worst() const;
@@ -23,7 +23,7 @@ struct PictureContest {
 };
 
 /// @param pictures  a table with the columns scene, budget, method, filter, total_s, relmse and flip
-/// @return worst first; empty where the peer is not among the methods
+/// @return comparisons, worst first; empty if the peer is not among the methods
 std::vector<PictureContest> contests(BenchTable const& pictures, std::string const& peer);
 
 struct LostRows {
@@ -33,10 +33,10 @@ struct LostRows {
 /// One per method, in order of appearance.
 std::vector<LostRows> lost_rows(std::vector<PictureContest> const& contests);
 
-/// As facts of the table.
+/// Adds the lost rows as facts of the table.
 void add_lost_rows(std::vector<PictureContest> const& contests, std::string const& peer, BenchTable& table);
 
-/// @param table  empty, with columns of picture_summary_columns(); lost rows become facts
+/// @param table  empty, with the columns of picture_summary_columns(); lost rows are added as facts
 std::vector<std::string> picture_summary_columns(std::string const& peer);
 void fill_picture_summary(std::vector<PictureContest> const& contests, std::string const& peer, BenchTable& table);
 

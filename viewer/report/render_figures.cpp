@@ -24,7 +24,7 @@ std::string made_how(RenderStats const& r)
 
 std::string cost_sentence(RenderStats const& r)
 {
-    std::string words = fmt::format("{:.3g} s with all that was built for it", r.whole_s);
+    std::string words = fmt::format("{:.3g} s including all structures", r.whole_s);
     if (r.frames > 0 && std::isfinite(r.frame_s))
         words = fmt::format("{} in {:.3g} s; median {:.3g} s per frame", plural(r.frames, "frame"), r.whole_s,
                             r.frame_s);
@@ -42,10 +42,10 @@ std::string pair_html(BenchFolder const& folder, RenderStats const& left, Render
     auto const eye = [&](RenderStats const& r) {
         return captioned(embedded_png(folder.path / r.png, r.eye + " eye"), r.eye + " eye", r);
     };
-    std::string html = "<label><input type=\"checkbox\" class=\"swap\"> swap the pictures, to be looked at with "
+    std::string html = "<label><input type=\"checkbox\" class=\"swap\"> swap the pictures, for viewing with "
                        "crossed eyes</label>\n<div class=\"pair\">\n" +
                        eye(left) + eye(right) + "</div>\n";
-    std::string words = fmt::format("One moment from two places {:.3g} mm apart, through one virtual screen",
+    std::string words = fmt::format("The same moment from two eyes {:.3g} mm apart, with a common virtual screen",
                                     1000 * left.eye_distance_m);
     if (left.screen_distance_m > 0) words += fmt::format(" {:.3g} m away", left.screen_distance_m);
     html += "<p class=\"note\">" + gi::escaped(words) + ".</p>\n";
@@ -72,7 +72,7 @@ std::string cost_row(RenderStats const& r)
 
 std::string costs_html(std::vector<RenderStats const*> const& renders)
 {
-    std::string html = "<h3>What they cost</h3>\n";
+    std::string html = "<h3>Times and memory</h3>\n";
     if (std::string const& machine = renders.front()->machine; !machine.empty())
         html += "<p class=\"note\">" + gi::escaped(machine + "; " + renders.front()->program) + "</p>\n";
     html += "<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\">file</th><th scope=\"col\">what</th>";

@@ -34,7 +34,7 @@ double number_at(StatsJson const& json, char const* key, double otherwise)
     return value == nullptr ? otherwise : value->get<double>();
 }
 
-/// Only names: a file may come from anywhere, and what it names is looked for beside it.
+/// Accepts only plain file names beside the file, as it may be from an untrusted source.
 std::string file_at(StatsJson const& json, char const* key)
 {
     return std::filesystem::path(text_at(json, key)).filename().string();
@@ -108,7 +108,7 @@ RenderStats parse_render_stats(std::string const& json, std::string const& name)
 {
     auto const bad = [&](std::string const& why) {
         return gi::InputError("'" + name + "' holds no statistics of lightwell render", why,
-                              "delete it, or make it again with lightwell render --stats");
+                              "delete it, or create it again with lightwell render --stats");
     };
     try {
         StatsJson const parsed = StatsJson::parse(json);
@@ -119,7 +119,7 @@ RenderStats parse_render_stats(std::string const& json, std::string const& name)
         return r;
     } catch (gi::InputError const&) {
         throw;
-    } catch (std::exception const& e) { // of the parser, or of a wrong type
+    } catch (std::exception const& e) { // from the parser, or on a wrong type
         throw bad(e.what());
     }
 }

@@ -12,7 +12,7 @@ namespace {
 
 using Row = std::vector<Cell>;
 
-/// The rows of a table that share a value, in order.
+/// Rows of a table with the same value, in order.
 struct Group {
     std::string value;
     std::vector<Row const*> rows;
@@ -62,7 +62,7 @@ std::string chart_html(BenchTable const& t, Group const& scene, std::string cons
                        to_svg(chart));
 }
 
-/// Only names within the folder: a table may come from anywhere.
+/// Accepts only names within the folder, as tables may be from an untrusted source.
 std::string picture_html(BenchTable const& t, Row const& row, std::string const& column,
                          std::filesystem::path const& folder, std::string const& description)
 {
@@ -98,7 +98,7 @@ std::string pictures_html(BenchTable const& t, Group const& scene, std::filesyst
     }
     return html + "</div>\n</div>\n"
                   "<p class=\"note\">Below each picture its FLIP error: 0 <span class=\"scale\"></span> 1. "
-                  "Click a picture to see it in its own size.</p>\n";
+                  "Click a picture to see it at full size.</p>\n";
 }
 
 } // namespace

@@ -12,12 +12,12 @@ namespace {
 
 std::string number_text(double v)
 {
-    // Whole numbers that fit are shown whole: counts of paths are no 1.638e+04.
+    // Integers that fit are shown in full, e.g. counts of paths, not as 1.638e+04.
     if (v == std::round(v) && std::abs(v) < 1e6) return fmt::format("{:.0f}", v);
     return fmt::format("{:.4g}", v);
 }
 
-/// The spread as half of its width, so that many columns fit beside each other.
+/// Shows the range as +- half its width, so that more columns fit.
 std::string short_text(Cell const& cell)
 {
     auto const* m = std::get_if<Measured>(&cell);
@@ -26,7 +26,7 @@ std::string short_text(Cell const& cell)
     return number_text(m->median) + (m->repeats < 2 ? "" : fmt::format(" ±{:.0f}%", half));
 }
 
-/// Characters, not bytes.
+/// Length in characters, not bytes.
 std::size_t width(std::string const& text)
 {
     return std::size_t(std::count_if(text.begin(), text.end(),

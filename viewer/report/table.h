@@ -1,6 +1,6 @@
 #pragma once
-// Rows of measurements with named columns, and what is needed to believe and repeat them.
-// Names of columns are snake_case and end in their unit: "frame_s", "rays_per_s", "memory_bytes".
+// Rows of measurements with named columns, and what is needed to check and repeat them.
+// Column names are snake_case and end in their unit: "frame_s", "rays_per_s", "memory_bytes".
 
 #include "viewer/report/machine.h"
 #include "viewer/report/measure.h"
@@ -12,33 +12,33 @@
 
 namespace viewer {
 
-/// Nothing, a text, a number, or a number with its spread.
+/// Empty, a text, a number, or a measured number with its range.
 using Cell = std::variant<std::monostate, std::string, double, Measured>;
 
 struct BenchTable {
-    std::string name; ///< of its files: letters, digits, '-', '_'
+    std::string name; ///< file name: letters, digits, '-', '_'
     std::vector<std::string> columns;
     std::string title{}, program{}, command{}, date{};
     Machine machine{};
-    std::vector<std::pair<std::string, std::string>> facts{}; ///< "bounces", "64"; what one row cannot say
-    std::vector<std::vector<Cell>> rows{};                    ///< as many cells each as there are columns
+    std::vector<std::pair<std::string, std::string>> facts{}; ///< e.g. "bounces", "64"; facts about all rows
+    std::vector<std::vector<Cell>> rows{};                    ///< each with one cell per column
 
-    /// One row; throws std::logic_error where it has not a cell per column.
+    /// Adds a row; throws std::logic_error unless it has one cell per column.
     void add(std::vector<Cell> row);
-    /// -1 where there is no such column.
+    /// Index of a column; -1 if there is none.
     int column(std::string const& column_name) const;
 };
 
-/// Nothing where the column is not there.
+/// Cell of a row in a column; empty if there is no such column.
 Cell const& cell(BenchTable const& table, std::vector<Cell> const& row, std::string const& column_name);
-/// NaN where it is no number; the median where it was measured.
+/// Number in a cell: the median if measured, NaN if it is not a number.
 double number(Cell const& cell);
-/// For people: "0.1013 (0.1002 to 0.105)", four digits.
+/// Readable text with four digits: "0.1013 (0.1002 to 0.105)".
 std::string to_text(Cell const& cell);
-/// Names of files are for programs, and stay out of what people read.
+/// True if a column holds file names, which are left out of readable tables.
 bool names_file(std::string const& column_name);
 
-/// Aligned text, spreads as +-half of their width; columns of names of files are left out.
+/// Aligned text, with ranges as +- half their width; columns of file names are left out.
 std::string to_text(BenchTable const& table);
 void print(BenchTable const& table);
 

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kSchema = 1; // counts up when a key changes its meaning or goes
+constexpr int kSchema = 1; // incremented if a key changes its meaning or is removed
 
 Json to_json(double v) { return std::isfinite(v) ? Json(v) : Json(); }
 
@@ -99,7 +99,7 @@ std::string to_json(BenchTable const& t)
         return json.dump(indent, ' ', false, Json::error_handler_t::replace);
     };
     std::string text = dump(j, 1);
-    text.resize(text.size() - 2); // reopened: people find a row in a line of its own
+    text.resize(text.size() - 2); // reopened to write each row on its own line
     text += ",\n \"rows\": [";
     for (std::size_t r = 0; r < t.rows.size(); ++r) {
         Json cells = Json::array();
@@ -150,7 +150,7 @@ BenchTable parse_table(std::string const& json, std::string const& name)
 {
     auto const bad = [&](std::string const& why) {
         return gi::InputError("'" + name + "' is no table of lightwell bench", why,
-                              "delete it, or make it again with lightwell bench");
+                              "delete it, or create it again with lightwell bench");
     };
     try {
         Json const parsed = Json::parse(json);
@@ -160,7 +160,7 @@ BenchTable parse_table(std::string const& json, std::string const& name)
         return to_table(parsed);
     } catch (gi::InputError const&) {
         throw;
-    } catch (std::exception const& e) { // of the parser, of a wrong type, or a row with too few cells
+    } catch (std::exception const& e) { // from the parser, on a wrong type, or on a row with too few cells
         throw bad(e.what());
     }
 }

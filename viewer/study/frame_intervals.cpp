@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "step,attempt,shown,t_swap_s,..." -> what tells stimuli apart, and the time; false of other lines.
+/// Parses "step,attempt,shown,t_swap_s,...": key of the stimulus and swap time. Returns false for other lines.
 bool parse(std::string const& line, std::string& stimulus, double& swap_s)
 {
     std::size_t comma = 0;
@@ -29,7 +29,7 @@ bool parse(std::string const& line, std::string& stimulus, double& swap_s)
 
 void add(fs::path const& file, std::vector<double>& intervals)
 {
-    std::unique_ptr<gzFile_s, int (*)(gzFile)> const in(gzopen(file.c_str(), "rb"), gzclose); // plain files too
+    std::unique_ptr<gzFile_s, int (*)(gzFile)> const in(gzopen(file.c_str(), "rb"), gzclose); // or plain
     if (!in) return;
     std::array<char, 1024> buffer{};
     std::string last;

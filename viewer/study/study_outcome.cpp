@@ -7,7 +7,7 @@
 namespace viewer {
 namespace {
 
-/// What a participant waited for between trials; nothing where there were no trials.
+/// Waiting time between trials, as text; empty if there were no trials.
 std::string pause_text(study::SessionOutcome const& s)
 {
     if (s.bookkeeping_ms.empty()) return {};
@@ -36,7 +36,7 @@ nlohmann::ordered_json session_json(std::string const& id, study::SessionOutcome
 void print_session(std::string const& id, study::SessionOutcome const& s)
 {
     if (s.torn_bytes > 0)
-        std::fputs(fmt::format("{}: {} bytes of a line that was not whole were cut off the journal's end\n", id,
+        std::fputs(fmt::format("{}: {} bytes of an incomplete line were removed from the journal's end\n", id,
                                s.torn_bytes)
                        .c_str(),
                    stderr);
@@ -49,7 +49,7 @@ void keep_tables(std::filesystem::path const& dir, std::string const& script_fil
     try {
         rebuild_tables(dir, load_records(dir.string(), script_file));
     } catch (std::exception const& e) {
-        std::fputs(fmt::format("note: the tables were not made: {}\n", e.what()).c_str(), stderr);
+        std::fputs(fmt::format("note: the tables could not be made: {}\n", e.what()).c_str(), stderr);
     }
 }
 

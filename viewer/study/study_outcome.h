@@ -1,5 +1,5 @@
 #pragma once
-// What is left of a session of an experiment: its tables, and what it came to.
+// Results of a session of an experiment: its tables and its outcome.
 
 #include "study/run/session.h"
 
@@ -9,11 +9,11 @@
 
 namespace viewer {
 
-/// The tables of a data set made anew from its journals, and the script kept beside them, after a session. Where
-/// that cannot be (records of another script), says so on stderr: the journals are the truth, and study rebuild
-/// goes on.
+/// Rebuilds the tables of a data set from its journals after a session, and copies the script beside them. If that
+/// fails (records of another script), prints a note on stderr: no data are lost, as study rebuild can make the
+/// tables from the journals later.
 void keep_tables(std::filesystem::path const& dir, std::string const& script_file);
-/// What a session came to, as JSON and for people.
+/// Outcome of a session, as JSON and as readable text.
 nlohmann::ordered_json session_json(std::string const& id, study::SessionOutcome const& outcome);
 void print_session(std::string const& id, study::SessionOutcome const& outcome);
 

@@ -30,7 +30,7 @@ std::vector<int> parse_participants(std::string const& text, int count)
         auto const [end, failure] = std::from_chars(part.data(), part.data() + part.size(), n);
         if (failure != std::errc{} || end != part.data() + part.size() || part.empty() || n < 1 || n > count)
             throw gi::InputError(fmt::format("participants '{}'", text),
-                                 fmt::format("'{}' is none of 1 to {}", part, count),
+                                 fmt::format("'{}' is not one of 1 to {}", part, count),
                                  "write 3, 1..24 or 1,4,7..9, or raise participants.count");
         return n;
     };
@@ -40,7 +40,7 @@ std::vector<int> parse_participants(std::string const& text, int count)
         auto const dots = part.find("..");
         int const first = number(part.substr(0, dots));
         int const last = dots == std::string::npos ? first : number(part.substr(dots + 2));
-        if (last < first) number(""); // says what is right
+        if (last < first) number(""); // throws the message with the suggestion
         for (int n = first; n <= last; ++n) chosen.insert(n);
     }
     return {chosen.begin(), chosen.end()};

@@ -34,14 +34,15 @@ void declare_source_arguments(CLI::App& c, SourceArguments& a)
          "camera, camera:ID, device:0, gstreamer:PIPELINE, counter, a recorded session, a folder of pictures, "
          "names with %04d, a video")
         ->required();
-    c.add_option("--size", a.size, "of cameras, px")->capture_default_str();
-    c.add_option("--rate", a.rate_hz, "of cameras and pictures, frames per second")
+    c.add_option("--size", a.size, "size of camera frames, px")->capture_default_str();
+    c.add_option("--rate", a.rate_hz, "frame rate of cameras and pictures, Hz")
         ->check(in_range(0.01, 10000))
         ->capture_default_str();
-    c.add_option("--format", a.format, "of cameras; left out: what they like best")
+    c.add_option("--format", a.format, "pixel format of cameras (default: the camera's preference)")
         ->check(CLI::IsMember(format_names()));
-    c.add_option("--exposure", a.exposure_ms, "of cameras, ms; left out: automatic")->check(in_range(1e-3, 1e5));
-    c.add_option("--gain", a.gain, "of cameras, 1 = none; left out: automatic")->check(in_range(0.01, 1e4));
+    c.add_option("--exposure", a.exposure_ms, "exposure of cameras, ms (default: automatic)")
+        ->check(in_range(1e-3, 1e5));
+    c.add_option("--gain", a.gain, "gain of cameras, 1 = none (default: automatic)")->check(in_range(0.01, 1e4));
 }
 
 ar::OpenOptions open_options(SourceArguments const& a, ar::Pace pace, ar::Delivery delivery)
@@ -71,13 +72,13 @@ std::unique_ptr<ar::FrameSource> open(SourceArguments const& a, ar::Pace pace, a
 
 void declare_board_arguments(CLI::App& c, BoardArguments& a)
 {
-    c.add_option("--squares", a.squares, "of a ChArUco board, across and upwards, as 7x5");
+    c.add_option("--squares", a.squares, "squares of a ChArUco board, across x upwards, e.g. 7x5");
     c.add_option("--square", a.square_m, "side of a square, m")->check(in_range(1e-4, 100))->capture_default_str();
     c.add_option("--marker", a.marker_m, "side of a marker in a white square, m")
         ->check(in_range(1e-4, 100))
         ->capture_default_str();
-    c.add_option("--dictionary", a.dictionary, "of its markers, as OpenCV names it")->capture_default_str();
-    c.add_option("--first-id", a.first_id, "of its markers")->check(CLI::Range(0, 100000));
+    c.add_option("--dictionary", a.dictionary, "of its markers, as named by OpenCV")->capture_default_str();
+    c.add_option("--first-id", a.first_id, "id of its first marker")->check(CLI::Range(0, 100000));
 }
 
 glm::ivec2 parse_squares(std::string const& option, std::string const& text)
@@ -108,7 +109,7 @@ cv::Mat read_rgb(std::string const& file)
 {
     std::vector<unsigned char> const bytes = gi::read_bytes(file, std::size_t(1) << 30);
     std::string problem =
-        ar::is_picture(bytes) ? ar::what_is_missing(bytes) : "it is no picture that is known here";
+        ar::is_picture(bytes) ? ar::what_is_missing(bytes) : "it is not a known picture format";
     cv::Mat picture;
     if (problem.empty()) {
         try {

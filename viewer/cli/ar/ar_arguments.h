@@ -1,6 +1,6 @@
 #pragma once
-// What commands of `lightwell ar` take in common: where frames come from, a printed board, pictures and how long
-// each was exposed.
+// Arguments shared by the commands of `lightwell ar`: frame sources, printed boards, pictures and their exposure
+// times.
 
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map.h"
@@ -17,14 +17,15 @@ namespace viewer {
 struct SourceArguments {
     std::string source, size = "640x480", format;
     double rate_hz = 30;
-    double exposure_ms = 0, gain = 0; ///< 0: as the camera likes
+    double exposure_ms = 0, gain = 0; ///< 0: automatic
 };
 void declare_source_arguments(CLI::App& command, SourceArguments& a);
-/// Without controls, whose refusals only `FrameSource::set` tells. @throws gi::InputError --size
+/// Options to open the source, without its controls (`FrameSource::set` reports those that the source refuses).
+/// @throws gi::InputError on an invalid --size
 ar::OpenOptions open_options(SourceArguments const& a, ar::Pace pace, ar::Delivery delivery);
-/// Exposure and gain, as asked for.
+/// The requested exposure and gain.
 ar::Controls controls_of(SourceArguments const& a);
-/// Opens it and sets its controls; what it cannot set is a line each on stderr. @throws InputError
+/// Opens the source and sets its controls; prints a line on stderr for each that cannot be set. @throws InputError
 std::unique_ptr<ar::FrameSource> open(SourceArguments const& a, ar::Pace pace, ar::Delivery delivery);
 
 struct BoardArguments {
@@ -33,14 +34,14 @@ struct BoardArguments {
     int first_id = 0;
 };
 void declare_board_arguments(CLI::App& command, BoardArguments& a);
-/// In the origin of the world. @throws InputError naming what is wrong with it
+/// The board, placed at the origin of the world. @throws InputError if its values are invalid
 ar::CharucoBoard board_of(BoardArguments const& a);
-/// "7x5": whole numbers from 2 to 200. @throws gi::InputError
+/// Parses "7x5": whole numbers from 2 to 200. @throws gi::InputError
 glm::ivec2 parse_squares(std::string const& option, std::string const& text);
 
-/// CV_8UC3, RGB. @throws InputError not there, not whole, no picture
+/// Reads a picture as CV_8UC3, RGB. @throws InputError if it is missing, incomplete or not a picture
 cv::Mat read_rgb(std::string const& file);
-/// "1/30,1/60,0.004": seconds, each above 0. @throws gi::InputError
+/// Parses "1/30,1/60,0.004": seconds, each > 0. @throws gi::InputError
 std::vector<double> parse_exposures(std::string const& text);
 
 } // namespace viewer

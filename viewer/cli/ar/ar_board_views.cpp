@@ -13,14 +13,14 @@
 namespace viewer {
 namespace {
 
-constexpr int kFiner = 2; ///< rays each way per pixel
+constexpr int kFiner = 2; ///< rays per pixel in x and in y
 
 ar::CameraModel camera()
 {
     return {ar::LensModel::radial_tangential, {480, 360}, 394, 396, 238.5, 182.25, {-0.2, 0.06, 6e-4, -9e-4}};
 }
 
-/// Rays of the picture at kFiner times its size, z = 1: CV_64FC2; where the lens sees nothing: far outside.
+/// Rays (x, y at z = 1) of the picture at kFiner times its size, CV_64FC2; far outside if the lens sees nothing.
 cv::Mat rays(ar::CameraModel const& c)
 {
     cv::Mat out(kFiner * c.size_px.y, kFiner * c.size_px.x, CV_64FC2, cv::Scalar::all(1e6));
@@ -33,7 +33,7 @@ cv::Mat rays(ar::CameraModel const& c)
     return out;
 }
 
-/// From in front, up to 35 degrees from the side, the board anywhere in the picture.
+/// Random pose in front of the board, up to 35 degrees off its normal, with the board anywhere in the picture.
 ar::Pose board_from_camera(cv::RNG& rng, glm::dvec2 size_m)
 {
     glm::dvec3 const middle(0.5 * size_m, 0);

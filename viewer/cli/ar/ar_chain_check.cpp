@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder for the time of the test.
+/// Temporary folder, removed at the end of the test.
 class Scratch {
 public:
     Scratch()
@@ -22,7 +22,7 @@ public:
         std::string name = (fs::temp_directory_path() / "lightwell_counter_XXXXXX").string();
         if (mkdtemp(name.data()) == nullptr)
             throw gi::InputError("no folder can be made in " + fs::temp_directory_path().string(),
-                                 "the test's session has files", "set TMPDIR");
+                                 "the test writes a session", "set TMPDIR");
         path_ = name;
     }
     ~Scratch()
@@ -55,7 +55,7 @@ ChainChecked check_chain(ChainCheckSettings const& s, gi::StopRequest& stop, gi:
         CounterCheck check(c);
         ArRunOptions o;
         o.frames = s.frames;
-        // By when it was captured, so that a frame with the time of another is noticed.
+        // The pose depends on the capture time, so that a frame with a wrong time is detected.
         o.tracked = [&c, start_s = std::optional<double>()](ar::Frame const& f) mutable {
             if (!start_s) start_s = f.captured_s - double(f.sequence) / c.rate_hz;
             return std::optional(c.camera_at(f.captured_s - *start_s));

@@ -13,7 +13,7 @@
 namespace viewer {
 namespace {
 
-/// From the picture that shows the most markers: dark ones of a bracket show none.
+/// Camera pose from the picture with the most markers; dark pictures of an exposure bracket show none.
 ar::Pose camera_of(std::vector<cv::Mat> const& rgb, ar::MarkerMap const& map, ar::CameraModel const& camera,
                    std::string const& name)
 {
@@ -28,9 +28,9 @@ ar::Pose camera_of(std::vector<cv::Mat> const& rgb, ar::MarkerMap const& map, ar
     if (!pose.found())
         throw gi::InputError(
             "the camera is not found in " + name,
-            fmt::format("{} points of markers are seen: {}", best.points.size(), name_of(pose.failure)),
-            "have the markers in the picture, lit and sharp");
-    fmt::print("{}: camera found by {} points, {:.2f} px RMS{}\n", name, pose.points_used, pose.rms_px,
+            fmt::format("{} marker points are seen: {}", best.points.size(), name_of(pose.failure)),
+            "take pictures with the markers lit and sharp");
+    fmt::print("{}: camera found from {} points, {:.2f} px RMS{}\n", name, pose.points_used, pose.rms_px,
                pose.ambiguous ? "; another pose would fit as well" : "");
     return pose.world_from_camera;
 }
@@ -51,7 +51,7 @@ std::vector<ProbeSide> read_probe_sides(std::vector<std::string> const& pictures
         auto sorted = seconds;
         std::sort(sorted.begin(), sorted.end());
         photometry.reference.time_s = sorted[sorted.size() / 2];
-        fmt::print(stderr, "the calibration has no reference exposure: light is told as of {:.6g} s\n",
+        fmt::print(stderr, "the calibration has no reference exposure: radiance is relative to {:.6g} s\n",
                    photometry.reference.time_s);
     }
     ar::MergeOptions merging;
@@ -66,7 +66,7 @@ std::vector<ProbeSide> read_probe_sides(std::vector<std::string> const& pictures
                 throw gi::InputError(fmt::format("{} has {} x {} px", pictures[first + i], is.x, is.y),
                                      fmt::format("the calibration is of {} x {}", calibration.camera.size_px.x,
                                                  calibration.camera.size_px.y),
-                                     "give pictures as they came from that camera");
+                                     "give pictures as they come from that camera");
             ar::Exposure e;
             if (!seconds.empty()) e.time_s = seconds[i];
             bracket.exposures.push_back(e);
@@ -79,7 +79,7 @@ std::vector<ProbeSide> read_probe_sides(std::vector<std::string> const& pictures
                        m.saturated, m.dark, m.inconsistent);
         } else {
             side.radiance = ar::radiance_of(bracket.rgb[0], photometry, bracket.exposures[0]);
-            fmt::print("  {} px at an end of their range: lamps are brighter than they seem\n",
+            fmt::print("  {} px at an end of their range: lights are brighter than measured\n",
                        cv::countNonZero(ar::is_clipped(bracket.rgb[0])));
         }
         sides.push_back(std::move(side));

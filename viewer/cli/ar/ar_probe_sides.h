@@ -1,5 +1,5 @@
 #pragma once
-// Pictures of a mirror ball beside markers, side by side of it: their light, and where the camera was.
+// Pictures of a mirror ball beside markers, taken from several sides: radiance and camera pose of each side.
 
 #include "ar/calibration/calibration_file.h"
 #include "ar/camera/pose.h"
@@ -10,16 +10,16 @@
 
 namespace viewer {
 
-/// Pictures from one place, one for each exposure.
+/// The pictures from one place, merged over their exposures.
 struct ProbeSide {
-    std::string name; ///< of the first picture
+    std::string name; ///< file name of the first picture
     cv::Mat radiance; ///< CV_32FC3
     ar::Pose world_from_camera;
 };
 
-/// @param pictures all of one side, then all of the next
-/// @param seconds exposures of the pictures of each side; empty: each picture is a side
-/// @throws InputError pictures and exposures that do not go together, another size, no camera found by the markers
+/// @param pictures all pictures of one side, then all of the next
+/// @param seconds exposure times of the pictures of each side; empty: each picture is a side of its own
+/// @throws InputError if numbers of pictures and exposures do not match, on a wrong size, or without a camera pose
 std::vector<ProbeSide> read_probe_sides(std::vector<std::string> const& pictures,
                                         std::vector<double> const& seconds, ar::Calibration const& calibration,
                                         ar::MarkerMap const& map);

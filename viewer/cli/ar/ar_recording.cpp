@@ -39,13 +39,13 @@ void ArRecording::add_input(ar::Frame const& frame)
     if (input_) input_->append(frame);
 }
 
-/// Videos have one rate: a picture stays until the next one's time.
+/// Videos have a constant frame rate: each picture is repeated until the next one is due.
 void ArRecording::add_to_video(NumberedPicture const& p)
 {
-    constexpr double longest_s = 10; // of one picture, whatever clocks say
+    constexpr double longest_s = 10; // longest time that one picture is shown, even if the clock jumps
     cv::Mat const rgb = p.rgb.isContinuous() ? p.rgb : p.rgb.clone();
     double const early_s = video_->frames() / video_hz_ - (p.time_s - cut_s_);
-    if (early_s > 1.25 / video_hz_) { // clocks jitter: one picture early is none too many
+    if (early_s > 1.25 / video_hz_) { // tolerates jitter of about one picture
         ++left_out_;
         return;
     }
@@ -89,17 +89,17 @@ std::string ArRecording::text() const
 {
     std::string text;
     if (to_folder_ && to_folder_->lost() > 0)
-        text += fmt::format("{}: {} composites were not written, the disk was too slow\n", settings_.pictures,
+        text += fmt::format("{}: {} composites were not written (the disk was too slow)\n", settings_.pictures,
                             to_folder_->lost());
     if (video_)
-        text += fmt::format("{}: {} pictures at {:g} Hz, {} of them repeated for frames that did not come; {} "
+        text += fmt::format("{}: {} pictures at {:g} Hz, {} of them repeated for missing frames; {} "
                             "composites lost to a slow encoder\n",
                             settings_.video, video_->frames(), video_hz_, repeated_, to_video_->lost());
-    if (is_video_lost_) text += fmt::format("{}: none of it could be kept\n", settings_.video);
+    if (is_video_lost_) text += fmt::format("{}: the video could not be saved\n", settings_.video);
     if (left_out_ > 0)
         text +=
-            fmt::format("{}: {} composites left out, they came faster than that\n", settings_.video, left_out_);
-    if (cut_s_ > 0) text += fmt::format("{}: {:.1f} s without frames are not in it\n", settings_.video, cut_s_);
+            fmt::format("{}: {} composites left out (faster than this rate)\n", settings_.video, left_out_);
+    if (cut_s_ > 0) text += fmt::format("{}: {:.1f} s without frames were cut\n", settings_.video, cut_s_);
     if (input_)
         text += fmt::format("{}: {} frames; {} lost by the queue to the disk\n", settings_.input,
                             input_->written(), input_->lost());

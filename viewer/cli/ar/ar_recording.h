@@ -1,7 +1,6 @@
 #pragma once
-// What `lightwell ar run` keeps while it runs: composites as pictures and as a video, and the camera's frames as a
-// recorded session. Whoever renders and shows waits for none of them, but where frames are read as fast as
-// possible.
+// Files that `lightwell ar run` writes while it runs: composites as pictures and as a video, and the camera's
+// frames as a recorded session. Rendering and display wait for them only if frames are read as fast as possible.
 
 #include "ar/capture/session_writer.h"
 #include "ar/runtime/picture_folder.h"
@@ -16,27 +15,27 @@ namespace viewer {
 
 struct ArRecordingSettings {
     std::string pictures, video, input; ///< folder, file, folder; empty = none
-    std::string calibration;            ///< noted with the input
+    std::string calibration;            ///< file name stored with the input
     PictureThread::WhenFull when_full = PictureThread::WhenFull::lose;
 };
 
 class ArRecording {
 public:
-    /// Makes the folder of pictures; nothing else before `begin`. @throws gi::InputError
+    /// Makes the folder of pictures; all else is created by `begin`. @throws gi::InputError
     explicit ArRecording(ArRecordingSettings settings);
 
-    /// @throws gi::InputError the video or the session cannot be made
+    /// @throws gi::InputError, gi::InputError if the video or the session cannot be created
     void begin(ar::SourceDescription const& source);
-    /// By the thread that takes frames.
+    /// Called by the thread that captures frames.
     void add_input(ar::Frame const& frame);
-    /// @throws what went wrong with an earlier one
+    /// @throws the error of an earlier picture
     void add(ArFrameRecord const& record, cv::Mat const& rgb);
-    /// Waits until all is kept, whatever goes wrong with one of them; the video gets its name. @throws the first
-    /// that went wrong
+    /// Waits until all files are written, also if one of them fails, and renames the video to its final name.
+    /// @throws the first error
     void finish();
-    /// What was kept and what was lost, a line each; after `finish`.
+    /// One line for each output: what was written and lost. Call after `finish`.
     std::string text() const;
-    /// Why the input is not whole; empty = it is.
+    /// Why the recorded input is incomplete; empty if it is complete.
     std::string failure() const { return input_ ? input_->failure() : std::string(); }
 
 private:
@@ -47,12 +46,12 @@ private:
     std::unique_ptr<VideoWriter> video_;
     std::unique_ptr<ar::SessionWriter> input_;
     double video_hz_ = 30;
-    cv::Mat held_;     ///< the video's last picture
-    double cut_s_ = 0; ///< of time that passed while nothing came, not in the video
-    int left_out_ = 0; ///< pictures that came before they were due
+    cv::Mat held_;     ///< last picture of the video
+    double cut_s_ = 0; ///< seconds without frames that were cut from the video
+    int left_out_ = 0; ///< pictures dropped because they came too early
     bool is_video_done_ = false, is_video_lost_ = false;
-    int repeated_ = 0; ///< pictures of the video that stand for frames that did not come
-    std::unique_ptr<PictureThread> to_folder_, to_video_; // end before what they fill
+    int repeated_ = 0; ///< pictures repeated in place of missing frames
+    std::unique_ptr<PictureThread> to_folder_, to_video_; // destroyed before the outputs they fill
 };
 
 } // namespace viewer

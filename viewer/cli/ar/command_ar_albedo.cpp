@@ -36,7 +36,7 @@ struct SeenFrames {
     int found = 0, without_pose = 0, refused = 0;
 };
 
-/// Where the camera was: from the file, by what a tracker recorded, or by what the frame shows.
+/// Camera poses from the --poses file, from a recorded tracker, or from the markers in the frame.
 class CameraPath {
 public:
     CameraPath(AlbedoArguments const& a, ArSession const& session, ArCamera const& camera, gi::Report& report)
@@ -47,7 +47,7 @@ public:
         else if (session.tracked)
             poses_ = recorded_poses(*session.tracked, report);
     }
-    /// Its confidence, too.
+    /// Pose and its confidence.
     std::optional<std::pair<ar::Pose, double>> at(ar::Frame const& frame, double time_s)
     {
         if (!poses_.empty()) {
@@ -77,8 +77,8 @@ SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera con
     open.pace = ar::Pace::fastest;
     auto const source = ar::open_source(session.frames.source, open);
     if (a.frames == 0 && (source->description().is_live || session.frames.source == "counter"))
-        throw gi::InputError("frames of '" + session.frames.source + "', all of them", "they never end",
-                             "say how many to look at: --frames 300");
+        throw gi::InputError("frames of '" + session.frames.source + "', all of them", "the source never ends",
+                             "limit their number: --frames 300");
     FrameClock clock(session.frames.source, source->description(), false);
     SeenFrames seen;
     SpacedFrames<AlbedoFrame> kept(std::size_t(a.views));
@@ -103,7 +103,7 @@ SeenFrames look(AlbedoArguments const& a, ArSession const& session, ArCamera con
             }
             cv::Mat const rgb = ar::rgb_of(*frame);
             if (rgb.size() != cv::Size(camera.model.size_px.x, camera.model.size_px.y))
-                throw gi::InputError("a frame of another size", "the calibration is not of it", "calibrate again");
+                throw gi::InputError("a frame of another size", "the calibration differs", "calibrate again");
             kept.add({rgb.clone(), frame->exposure, pose->first, pose->second});
         } catch (gi::InputError const& e) {
             ++seen.refused;
@@ -125,7 +125,7 @@ void write_texture(fs::path const& file, cv::Mat const& linear)
 std::string describe(AlbedoEstimate const& e, SeenFrames const& seen)
 {
     ar::AlbedoFit const& fit = e.solution.fit;
-    std::string text = fmt::format("camera found in {} frames ({} without it, {} refused); {} compared\n",
+    std::string text = fmt::format("camera found in {} frames ({} without, {} unusable); {} compared\n",
                                    seen.found, seen.without_pose, seen.refused, seen.kept.size());
     text += fmt::format("{:<28} {:^23} {:^23} {:>8}\n", "", "albedo", "spread of pixels", "pixels");
     for (AlbedoEntry const& p : e.entries)
@@ -138,9 +138,9 @@ std::string describe(AlbedoEstimate const& e, SeenFrames const& seen)
                     "values clamped\n",
                     fit.clipped, fit.dark, fit.border, fit.specular, fit.not_finite, fit.clamped);
     if (e.texels > 0)
-        text += fmt::format("textures: {} texels, {} not seen (the surface's median), {} pixels outside\n",
+        text += fmt::format("textures: {} texels, {} not seen (set to the surface's median), {} pixels outside\n",
                             e.texels, e.filled, e.outside);
-    text += fmt::format("{} turns, last change {:.4f}{}\n", e.solution.iterations, e.solution.last_change,
+    text += fmt::format("{} iterations, last change {:.4f}{}\n", e.solution.iterations, e.solution.last_change,
                         e.solution.converged ? "" : " (not converged)");
     return text;
 }
@@ -150,7 +150,7 @@ fs::path texture_beside(fs::path const& out, std::size_t patch)
     return out.parent_path() / fmt::format("{}-{}.png", out.stem().string(), patch + 1);
 }
 
-/// Nothing that is read may be written over, but estimates of before.
+/// Throws if an input would be overwritten; earlier estimates may be.
 void check_albedo_outputs(AlbedoArguments const& a, ArSession session, fs::path const& out, RealScene const& real)
 {
     session.real.estimates.clear();
@@ -182,7 +182,7 @@ int run_albedo(AlbedoArguments const& a)
     if (stop.requested()) return kInterrupted;
     AlbedoEstimate estimate = estimate_albedos(std::move(real), PlaceLight(session).begin(), camera, seen.kept,
                                                a.settings, stop, report);
-    if (stop.requested()) return kInterrupted; // of few paths: not to be kept
+    if (stop.requested()) return kInterrupted; // too few paths to keep
     for (std::size_t k = 0; k < estimate.entries.size(); ++k) {
         if (estimate.textures[k].empty()) continue;
         estimate.entries[k].texture = texture_beside(out, k);
@@ -200,22 +200,22 @@ void add_ar_albedo(CLI::App& ar, int& exit_code)
 {
     auto const a = std::make_shared<AlbedoArguments>();
     CLI::App* const c = ar.add_subcommand(
-        "albedo", "Estimate the colours of the real things of a session from its frames and the captured light");
+        "albedo", "Estimate the albedo of a session's real objects from its frames and the captured light");
     c->add_option("session", a->session,
-                  "with 'albedo: estimate' or 'texture: estimate' at what is to be estimated")
+                  "with 'albedo: estimate' or 'texture: estimate' on the objects to estimate")
         ->required();
-    c->add_option("--out", a->out, "File of the albedos; left out: the one that the session reads");
-    c->add_option("--poses", a->poses, "Where the camera was (CSV or TUM), in place of its markers");
-    c->add_flag("--scene", a->scene, "Also of the scene's materials, where the session does not say it");
-    c->add_option("--views", a->views, "Frames to compare, spread over the session")
+    c->add_option("--out", a->out, "File for the albedos (default: the one that the session reads)");
+    c->add_option("--poses", a->poses, "Camera poses (CSV or TUM), instead of using the markers");
+    c->add_flag("--scene", a->scene, "Also estimate the scene's materials, if the session does not request it");
+    c->add_option("--views", a->views, "Number of frames to compare, spread over the session")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    c->add_option("--frames", a->frames, "Looks at no more than so many; 0 = all, of files")
+    c->add_option("--frames", a->frames, "Read at most this many frames; 0 = all (files only)")
         ->check(CLI::NonNegativeNumber);
     c->add_option("--resolution", a->settings.resolution, "Pixels compared per pixel of the camera")
         ->check(CLI::Range(0.05, 1.0))
         ->capture_default_str();
-    c->add_option("--paths", a->settings.paths, "Of the reference renderer, per pixel compared")
+    c->add_option("--paths", a->settings.paths, "Paths of the reference renderer per compared pixel")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     c->footer(R"(Examples:

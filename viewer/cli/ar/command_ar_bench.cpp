@@ -37,7 +37,7 @@ struct BenchArguments {
 
 std::string size_text(glm::ivec2 px) { return fmt::format("{}x{}", px.x, px.y); }
 
-/// Made if it is not there, kept for the next time.
+/// Session of a synthetic desk, created if it does not exist and kept for later runs.
 fs::path synthetic_session(BenchArguments const& a, glm::ivec2 size_px, gi::StopRequest const& stop,
                            gi::Report& report)
 {
@@ -61,7 +61,7 @@ std::vector<double> values_of(std::vector<ArFrameRecord> const& frames, double (
     return values;
 }
 
-/// Frames whose camera was found: into others nothing is rendered.
+/// Frames whose camera pose was found; nothing is rendered into others.
 double found_percent(std::vector<ArFrameRecord> const& frames)
 {
     auto const found = std::count_if(frames.begin(), frames.end(),
@@ -69,7 +69,7 @@ double found_percent(std::vector<ArFrameRecord> const& frames)
     return frames.empty() ? 0 : 100 * double(found) / double(frames.size());
 }
 
-/// Median, 95 % and most of each stage.
+/// Median, 95th percentile and maximum of each stage.
 void add_stages(BenchTable& table, std::string const& size, std::uint32_t paths, double resolution,
                 std::string const& pace, std::vector<ArFrameRecord> const& frames)
 {
@@ -96,7 +96,7 @@ void add_stages(BenchTable& table, std::string const& size, std::uint32_t paths,
     }
 }
 
-/// What of finding markers is the search of the library (OpenCV, or apriltag), in the same round.
+/// Share of marker detection that the library's search (OpenCV or apriltag) takes, measured in the same rounds.
 Cell share_of_search(ArSession const& session, ArResult const& last)
 {
     ar::MarkerMap const map = ar::read_marker_map(session.markers);
@@ -119,7 +119,8 @@ Cell share_of_search(ArSession const& session, ArResult const& last)
     return ratio(times[1], times[0]);
 }
 
-/// Plain OpenCV's time over ours, in the same round, and by how many bytes they differ. Only for sRGB bytes.
+/// Time of compositing by plain OpenCV relative to ours, in the same rounds, and their mean difference in byte
+/// values. Only for sRGB bytes.
 std::pair<Cell, Cell> plain_over_ours(MeasuredRun const& m)
 {
     if (!m.last.pair || !m.compositor) return {};
@@ -127,7 +128,7 @@ std::pair<Cell, Cell> plain_over_ours(MeasuredRun const& m)
     if (p.unit_of_byte != srgb.unit_of_byte || p.vignetting != srgb.vignetting || p.colour != srgb.colour ||
         p.radiance_per_unit != 1)
         return {};
-    ar::Compositor compositor(p); // differences, without noise
+    ar::Compositor compositor(p); // without noise, so that differences are comparable
     cv::Mat ours, plain, difference;
     auto const times = measure_interleaved(7, {[&] { compositor(m.last.camera, *m.last.pair, {}, ours); },
                                                [&] { plain = plain_composite(m.last.camera, *m.last.pair); }});
@@ -196,7 +197,7 @@ int run_bench(BenchArguments const& a)
                     {"size", "paths", "resolution", "pace", "stage", "median_ms", "p95_ms", "most_ms"});
     if (!a.window)
         table.facts.emplace_back("latency", "without a window: until the composite is ready, not shown");
-    table.facts.emplace_back("first frames", "left out: they build what lasts");
+    table.facts.emplace_back("first frames", "left out: they build lasting structures");
     if (!a.session.empty()) {
         ArSession const session = read_ar_session(a.session);
         fs::path const folder = fs::path(a.session).parent_path();
@@ -230,7 +231,7 @@ int run_counter(BenchArguments const& a)
     keep({&checked.table}, a);
     print_losses(report);
     if (stop.requested()) return kInterrupted;
-    if (!checked.good) std::fputs("lightwell: what was shown is not what the records say\n", stderr);
+    if (!checked.good) std::fputs("lightwell: what was shown does not match the records\n", stderr);
     return checked.good ? 0 : 1;
 }
 
@@ -249,14 +250,15 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
 {
     auto const a = std::make_shared<BenchArguments>();
     CLI::App* const c = ar.add_subcommand(
-        "bench", "Frames per second, latency from capture to what is shown, and the error of both");
+        "bench", "Measure frames per second, latency from capture to display, and the error");
     CLI::Option* const session =
-        c->add_option("session", a->session, "As of run, with its own quality; left out: desks made for it");
-    c->add_option("--size", a->sizes, "Of frames, WIDTHxHEIGHT; repeatable")
+        c->add_option("session", a->session,
+                      "Session as for run, with its own quality (default: generated desk sessions)");
+    c->add_option("--size", a->sizes, "Frame size, WIDTHxHEIGHT; repeatable")
         ->take_all()
         ->excludes(session)
         ->capture_default_str();
-    c->add_option("--paths", a->paths, "Per rendered pixel and side, comma-separated")
+    c->add_option("--paths", a->paths, "Paths per rendered pixel and side, comma-separated")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(CLI::Range(1, 1024))
@@ -268,26 +270,28 @@ void add_ar_bench(CLI::App& ar, int& exit_code)
         ->check(in_range(0.05, 4))
         ->excludes(session)
         ->capture_default_str();
-    c->add_option("--frames", a->frames, "Of each desk or session; with --counter: to be shown")
+    c->add_option("--frames", a->frames, "Frames of each desk or session; with --counter: frames to show")
         ->check(CLI::Range(2, 100000))
         ->capture_default_str();
-    c->add_option("--truth-paths", a->truth_paths, "Of the desk's frames and truth, per pixel; 0 = no truth")
+    c->add_option("--truth-paths", a->truth_paths,
+                  "Paths per pixel of the desks' frames and reference pictures; 0 = no reference pictures")
         ->check(CLI::Range(0, 100000))
         ->capture_default_str();
-    c->add_option("--folder", a->folder, "Where desks are kept for the next time; left out: of temporary files");
-    c->add_flag("--window", a->window, "At own pace, show it: the latency is that of the swap");
+    c->add_option("--folder", a->folder, "Folder that keeps desks for later runs (default: the temporary folder)");
+    c->add_flag("--window", a->window, "Show the frames at the camera's pace in a window: latency until the swap");
     c->add_flag("--counter", a->counter,
-                "Instead, check that what is shown belongs together: frames that show their number, and a ball "
-                "that moves with the camera. Exit code 1 if not");
+                "Instead, check that shown frames and rendering match: frames show their number, and a ball "
+                "moves with the camera. Exit code 1 if they do not");
     c->add_option("--out", a->out, "Folder for the tables, as JSON and CSV");
     c->add_flag("--json", a->json, "Print the tables as JSON");
     c->footer(R"(Examples:
   lightwell ar bench --size 320x240 --frames 3 --paths 1,2 --resolution 0.5 --truth-paths 2 --folder desks --out table
   lightwell ar bench --counter --size 320x240 --frames 10
 
-Each quality is run twice: as fast as possible (frames per second, error; nothing is given up) and at the camera's own pace of
-30 Hz (latency; what newer frames overtake is counted). Beside them, in the same rounds: the share of the library's own search
-(OpenCV's, or apriltag's) in finding markers, and compositing by plain OpenCV, a whole picture per step, over ours.)");
+Each quality is run twice: as fast as possible (frames per second, error; no frame is skipped) and at the camera's
+own pace of 30 Hz (latency; frames overtaken by newer ones are counted). The same rounds also measure the share
+of the library's search (OpenCV or apriltag) in marker detection, and the time of compositing by plain OpenCV, one
+whole picture per step, relative to ours.)");
     c->callback([a, &exit_code] { exit_code = run(*a); });
 }
 

@@ -38,7 +38,7 @@ int run_board(BoardOptions const& o)
         double const dots_per_m = o.dpi / 0.0254;
         ar::write_png(out, ar::draw(sheet, dots_per_m), dots_per_m);
     } else {
-        throw gi::InputError("--out '" + o.out + "' is of an unknown kind", "its ending says what is written",
+        throw gi::InputError("--out '" + o.out + "' is of an unknown kind", "its ending decides the format",
                              "end it with .svg or .png");
     }
     if (!o.markers.empty()) ar::write_marker_map(o.markers, map);
@@ -48,10 +48,10 @@ int run_board(BoardOptions const& o)
         board.squares_x, 1e3 * board.square_m * board.squares_x);
     if (!o.markers.empty())
         fmt::print("{}: the board {}, its lower left corner in the origin\n", o.markers,
-                   o.upright ? "stands upright, faces z" : "lies flat, its top away from z");
+                   o.upright ? "stands upright, faces z" : "lies flat, its top towards -z");
     if (!o.views.empty()) {
         write_board_views(o.views, board, kViews);
-        fmt::print("{}: {} views of it by the camera of truth.yaml\n", o.views, kViews);
+        fmt::print("{}: {} views of it from the camera in truth.yaml\n", o.views, kViews);
     }
     return 0;
 }
@@ -61,21 +61,21 @@ int run_board(BoardOptions const& o)
 void add_ar_board(CLI::App& ar, int& exit_code)
 {
     auto const o = std::make_shared<BoardOptions>();
-    CLI::App* const c = ar.add_subcommand("board", "Draw a board to be printed at its size, and describe it.");
+    CLI::App* const c = ar.add_subcommand("board", "Draw a marker board for printing, and write its map.");
     declare_board_arguments(*c, o->board);
     c->get_option("--squares")->required();
-    c->add_option("--out", o->out, "drawing: .svg (in mm) or .png")->required();
-    c->add_option("--markers", o->markers, "marker map of it (YAML), for ar run, track, calibrate and probe");
-    c->add_option("--dpi", o->dpi, "of a PNG, dots per inch")->check(in_range(20, 4800))->capture_default_str();
-    c->add_option("--margin", o->margin_m, "white around it, m; left out: a cell of a marker")
+    c->add_option("--out", o->out, "drawing to write: .svg (in mm) or .png")->required();
+    c->add_option("--markers", o->markers, "marker map to write (YAML), for ar run, track, calibrate and probe");
+    c->add_option("--dpi", o->dpi, "dots per inch of a PNG")->check(in_range(20, 4800))->capture_default_str();
+    c->add_option("--margin", o->margin_m, "white margin, m (default: one cell of a marker)")
         ->check(in_range(0, 10));
-    c->add_flag("--upright", o->upright, "in the map it stands; left out: it lies on a table");
-    c->add_option("--views", o->views, "folder for views of it by a camera that is known, to try ar calibrate");
+    c->add_flag("--upright", o->upright, "the board stands upright in the map (default: it lies flat)");
+    c->add_option("--views", o->views, "folder for synthetic views from a known camera, to try ar calibrate");
     c->footer(R"(Examples:
   lightwell ar board --squares 7x5 --square 0.04 --marker 0.03 --out board.svg --markers markers.yaml
   lightwell ar board --squares 8x6 --square 0.02 --marker 0.014 --dictionary DICT_5X5_100 --out board.png
 
-Printers scale: measure the whole board with a ruler, and where it is off, call again with the sides that were measured.)");
+Printers may scale: measure the whole board with a ruler; if it is off, call again with the measured sides.)");
     c->callback([o, &exit_code] { exit_code = run_board(*o); });
 }
 

@@ -21,7 +21,7 @@ namespace viewer {
 namespace {
 
 constexpr int kFewestViews = 4;
-constexpr std::size_t kMostViews = 60; ///< of files; each that is taken is a fit of all
+constexpr std::size_t kMostViews = 60; ///< from files; each accepted view refits all views
 
 struct CalibrateOptions {
     SourceArguments source;
@@ -31,19 +31,19 @@ struct CalibrateOptions {
     bool stills = false;
 };
 
-/// What a picture shows of the board; few or no points where it does not.
+/// Finds the board in a picture; few or no points if it is not visible.
 using Finder = std::function<ar::BoardView(cv::Mat const&, std::string const&)>;
 
 Finder finder(CalibrateOptions const& o)
 {
     int const given = int(!o.markers.empty()) + int(!o.chessboard.empty()) + int(!o.board.squares.empty());
     if (given != 1)
-        throw gi::InputError("it is not clear what the pictures show", "the board has to be known",
+        throw gi::InputError("the board is not known", "no board or several boards are given",
                              "give one of --markers FILE, --squares 7x5 and --chessboard 9x6");
     if (!o.chessboard.empty()) {
         glm::ivec2 const n = parse_squares("--chessboard", o.chessboard);
         if (n.x < 3 || n.y < 3)
-            throw gi::InputError("--chessboard " + o.chessboard, "3 inner corners each way are the fewest",
+            throw gi::InputError("--chessboard " + o.chessboard, "at least 3 inner corners each way are needed",
                                  "count corners where four squares meet");
         return [n, square_m = o.board.square_m](cv::Mat const& gray, std::string const& name) {
             return ar::find_chessboard(gray, n.x, n.y, square_m, name).value_or(ar::BoardView{name, {}, {}});
@@ -52,7 +52,7 @@ Finder finder(CalibrateOptions const& o)
     ar::MarkerMap const map =
         o.markers.empty() ? ar::MarkerMap{{}, {board_of(o.board)}, {}} : ar::read_marker_map(o.markers);
     if (map.boards.empty())
-        throw gi::InputError("there is no board in " + o.markers, "lenses are calibrated by flat boards",
+        throw gi::InputError("there is no board in " + o.markers, "calibrating a lens needs a flat board",
                              "add it under boards:, see lightwell ar board --help");
     return [map](cv::Mat const& gray, std::string const& name) {
         ar::Sighting const sighting = ar::detect(gray, map);
@@ -66,7 +66,7 @@ Finder finder(CalibrateOptions const& o)
 
 struct Search {
     std::uint64_t looked_at = 0, refused = 0;
-    cv::Mat last; ///< picture of a view that was taken
+    cv::Mat last; ///< picture of the last accepted view
 };
 
 Search search(ar::FrameSource& source, ar::Collector& collector, Finder const& find, CalibrateOptions const& o,
@@ -104,10 +104,10 @@ void print(ar::LensCalibration const& c)
     fmt::print("reprojection: {:.3f} px RMS of {} views\n", c.rms_px, c.used_views());
     for (ar::ViewResult const& v : c.views)
         fmt::print("  {:<14} {:.3f} px, {} points{}\n", v.name, v.rms_px, v.residuals_px.size(),
-                   v.used ? "" : "; left out: " + v.why);
+                   v.used ? "" : "; excluded: " + v.why);
 }
 
-/// Response, vignetting, colour and noise belong to the sensor: what the file that is replaced knew of them stays.
+/// Response, vignetting, colour and noise belong to the sensor; they are kept from the file that is replaced.
 ar::Calibration known_sensor(std::string const& file)
 {
     ar::Calibration known;
@@ -127,7 +127,7 @@ void say_what_is_kept(ar::Calibration& c, glm::ivec2 size_px, std::string const&
 {
     if (!c.photometry && !c.noise && c.provenance.empty()) return;
     if (c.camera.size_px == size_px) {
-        fmt::print("{}: response, vignetting, colour and noise are those that it had\n", file);
+        fmt::print("{}: response, vignetting, colour and noise are kept from before\n", file);
         return;
     }
     fmt::print("warning: {} had response, vignetting, colour or noise for pictures of {} x {}: left out\n", file,
@@ -155,13 +155,13 @@ int run_calibrate(CalibrateOptions const& o)
     if (stop.requested()) return kInterrupted;
     auto const& counts = collector.counts();
     fmt::print(
-        "{}; of {} frames looked at {} are new views, {} like others, {} show too little of the board, in {} "
-        "it moves, {} cannot be decoded\n",
+        "{}; of {} frames examined, {} are new views, {} like others, {} show too little of the board, {} "
+        "show it moving, {} cannot be decoded\n",
         describe(source->counts()), s.looked_at, counts.taken, counts.alike, counts.too_few_points, counts.moving,
         s.refused);
     auto const too_few = [&](std::string const& why) {
-        fmt::print(stderr, "lightwell: these views do not suffice ({}) {}\n", why,
-                   collector.enough() ? "take others" : collector.next());
+        fmt::print(stderr, "lightwell: these views are not enough ({}) {}\n", why,
+                   collector.enough() ? "take other views" : collector.next());
         return 1;
     };
     if (counts.taken < kFewestViews) return too_few(fmt::format("{} of {}", counts.taken, kFewestViews));
@@ -194,7 +194,7 @@ int run_calibrate(CalibrateOptions const& o)
     if (report.choice) fmt::print("lens: {}\n", report.choice->why);
     print(report.lens);
     fmt::print("coverage: {:.0f} % of the picture{}\n", 100 * report.lens.coverage,
-               collector.enough() ? "" : "; to be surer: " + collector.next());
+               collector.enough() ? "" : "; to improve it: " + collector.next());
     for (std::string const& w : report.lens.warnings) fmt::print("warning: {}\n", w);
     fmt::print("{}\n", o.out);
     return 0;
@@ -205,30 +205,30 @@ int run_calibrate(CalibrateOptions const& o)
 void add_ar_calibrate(CLI::App& ar, int& exit_code)
 {
     auto const o = std::make_shared<CalibrateOptions>();
-    CLI::App* const c = ar.add_subcommand("calibrate", "Find a camera's lens by views of a printed board.");
+    CLI::App* const c = ar.add_subcommand("calibrate", "Calibrate a camera's lens from views of a printed board.");
     declare_source_arguments(*c, o->source);
-    c->add_option("--markers", o->markers, "marker map with the board, as lightwell ar board writes it");
+    c->add_option("--markers", o->markers, "marker map with the board, as written by lightwell ar board");
     declare_board_arguments(*c, o->board);
-    c->add_option("--chessboard", o->chessboard, "a plain one: inner corners, as 9x6, of squares of --square");
-    c->add_option("--lens", o->lens, "automatic: which predicts unseen views best")
+    c->add_option("--chessboard", o->chessboard, "plain chessboard: inner corners, e.g. 9x6; see --square");
+    c->add_option("--lens", o->lens, "lens model; automatic: the one that predicts unseen views best")
         ->check(CLI::IsMember({"automatic", "pinhole", "radial_tangential", "rational", "fisheye"}))
         ->capture_default_str();
-    c->add_option("--out", o->out, "calibration to write (YAML, OpenCV reads it too)")->required();
+    c->add_option("--out", o->out, "calibration to write (YAML, readable by OpenCV)")->required();
     c->add_option("--report", o->report, "HTML page: residuals, coverage, parameters");
-    c->add_option("--every", o->every, "looks at every so many frames")
+    c->add_option("--every", o->every, "use only every Nth frame")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    c->add_option("--views", o->views, "wanted; a camera is watched until there are as many")
+    c->add_option("--views", o->views, "wanted number; a camera is read until it is reached")
         ->check(CLI::Range(kFewestViews, int(kMostViews)))
         ->capture_default_str();
-    c->add_flag("--stills", o->stills, "nothing moves in the frames: as of a folder of pictures");
+    c->add_flag("--stills", o->stills, "the frames are stills, as in a folder of pictures");
     c->footer(R"(Examples:
   lightwell ar board --squares 7x5 --out board.svg --markers markers.yaml --views views
   lightwell ar calibrate views --markers markers.yaml --lens radial_tangential --out camera.yaml --report report.html
   lightwell ar calibrate views --squares 7x5 --every 2 --lens fisheye --out fisheye.yaml
 
-Of cameras, videos and sessions only frames count between which the board was held still. Exit code 1: views do not suffice.
-Of a calibration that is replaced, response, vignetting, colour and noise stay.)");
+From cameras, videos and sessions only frames in which the board is held still are used. A calibration that is
+replaced keeps its response, vignetting, colour and noise. Exit code 1: too few usable views.)");
     c->callback([o, &exit_code] { exit_code = run_calibrate(*o); });
 }
 

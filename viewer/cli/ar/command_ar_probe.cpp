@@ -28,7 +28,7 @@ struct ProbeOptions {
     int size = 512;
 };
 
-/// Printed squares would be taken for rims: they become as bright as what is around them.
+/// Fills markers with the brightness around them, as their squares could be taken for the rim of the ball.
 cv::Mat without_markers(ProbeSide const& side, ar::MarkerMap const& map, ar::CameraModel const& camera)
 {
     cv::Mat picture = side.radiance.clone();
@@ -59,12 +59,12 @@ ar::BallSight find_ball(ProbeSide const& side, ProbeOptions const& o, ar::Marker
         return ar::find_ball(side.radiance, camera, ar::find_ball(without_markers(side, map, camera), camera));
     auto const near = ar::predicted_ball(side.world_from_camera, parse_point("--ball", o.ball), o.radius_m);
     if (!near)
-        throw gi::InputError("--ball " + o.ball, "it is not ahead of the camera",
+        throw gi::InputError("--ball " + o.ball, "it is not in front of the camera",
                              "give its centre in the markers' world, in m");
     return ar::find_ball(side.radiance, camera, *near);
 }
 
-/// @param[in,out] ball_m where an earlier side found it; it has not moved since
+/// @param[in,out] ball_m position found by the first side; the ball must not move between sides
 ar::PartialMap unwrapped(ProbeSide const& side, ProbeOptions const& o, ar::MarkerMap const& markers,
                          ar::CameraModel const& camera, std::optional<glm::dvec3>& ball_m)
 {
@@ -72,7 +72,7 @@ ar::PartialMap unwrapped(ProbeSide const& side, ProbeOptions const& o, ar::Marke
     try {
         ball = find_ball(side, o, markers, camera);
     } catch (gi::InputError const& e) {
-        throw gi::InputError("no ball is found in " + side.name, e.what(),
+        throw gi::InputError("no ball was found in " + side.name, e.what(),
                              o.ball.empty() ? "give --ball X,Y,Z" : "measure --ball and --ball-radius again");
     }
     glm::dvec3 const at = side.world_from_camera * (ar::ball_distance_m(ball, o.radius_m) * ball.axis);
@@ -80,7 +80,7 @@ ar::PartialMap unwrapped(ProbeSide const& side, ProbeOptions const& o, ar::Marke
     if (double const off_m = glm::distance(at, *ball_m); off_m > 0.5 * o.radius_m)
         throw gi::InputError(
             fmt::format("{} shows the ball {:.0f} mm from where the first side does", side.name, 1e3 * off_m),
-            "something else was taken for it, or it was moved", "give --ball X,Y,Z");
+            "something else was found, or the ball was moved", "give --ball X,Y,Z");
     ar::BallSettings settings;
     settings.size = {o.size, o.size / 2};
     glm::dvec3 const colour = parse_color("--reflectivity", o.reflectivity);
@@ -96,7 +96,7 @@ ar::PartialMap unwrapped(ProbeSide const& side, ProbeOptions const& o, ar::Marke
 
 void print_light(cv::Mat const& map)
 {
-    fmt::print("irradiance of faces (red, green, blue)\n");
+    fmt::print("irradiance of surfaces facing (red, green, blue)\n");
     static constexpr struct {
         char const* name;
         glm::dvec3 normal;
@@ -107,7 +107,7 @@ void print_light(cv::Mat const& map)
         fmt::print("  {:<12} {:>10.4f} {:>10.4f} {:>10.4f}\n", f.name, e[0], e[1], e[2]);
     }
     ar::SplitMap const split = ar::split_lamps(map);
-    fmt::print("{} lamps with {:.1f} % of the light\n", split.lamps.size(), 100 * split.lamp_share);
+    fmt::print("{} lights with {:.1f} % of all light\n", split.lamps.size(), 100 * split.lamp_share);
     for (ar::Lamp const& l : split.lamps)
         fmt::print(
             "  towards {:.4f}, {:.4f}, {:.4f}: half angle {:.2f} degrees, irradiance {:.4f} {:.4f} {:.4f}\n",
@@ -126,7 +126,7 @@ int run_probe(ProbeOptions const& o)
     ar::Calibration const calibration = ar::read_calibration(o.calibration);
     ar::MarkerMap const markers = ar::read_marker_map(o.markers);
     if (!calibration.photometry)
-        fmt::print(stderr, "{}: no response in it, bytes are taken for sRGB\n", o.calibration);
+        fmt::print(stderr, "{}: it has no response, bytes are assumed to be sRGB\n", o.calibration);
     auto const seconds = o.exposures.empty() ? std::vector<double>() : parse_exposures(o.exposures);
     std::vector<ar::PartialMap> maps;
     std::optional<glm::dvec3> ball_m;
@@ -135,7 +135,7 @@ int run_probe(ProbeOptions const& o)
     ar::PartialMap const seen = ar::merged(maps);
     ar::FilledMap const map = ar::filled(seen);
     ar::write_map(o.out, map.radiance);
-    fmt::print("{}: {} x {}, {:.2f} % measured, {:.2f} % filled from around it\n", o.out, o.size, o.size / 2,
+    fmt::print("{}: {} x {}, {:.2f} % measured, {:.2f} % filled in from neighbours\n", o.out, o.size, o.size / 2,
                100 * ar::covered_share(seen), 100 * std::max(0.0, map.filled_share));
     print_light(map.radiance);
     return 0;
@@ -147,27 +147,27 @@ void add_ar_probe(CLI::App& ar, int& exit_code)
 {
     auto const o = std::make_shared<ProbeOptions>();
     CLI::App* const c =
-        ar.add_subcommand("probe", "The light of all directions from pictures of a mirror ball beside markers.");
-    c->add_option("PICTURES", o->pictures, "one or more from each side: the whole ball, and markers")->required();
-    c->add_option("--calibration", o->calibration, "of the camera, with its response")->required();
-    c->add_option("--markers", o->markers, "marker map: the world that light is told in")->required();
+        ar.add_subcommand("probe", "Measure an environment map from pictures of a mirror ball beside markers.");
+    c->add_option("PICTURES", o->pictures, "one or more from each side: whole ball and markers")->required();
+    c->add_option("--calibration", o->calibration, "calibration of the camera, with its response")->required();
+    c->add_option("--markers", o->markers, "marker map, which defines the map's axes")->required();
     c->add_option("--ball-radius", o->radius_m, "m")->required()->check(in_range(1e-4, 100));
     c->add_option("--ball", o->ball,
-                  "about where its centre is, X,Y,Z; left out: the strongest circle of the picture");
-    c->add_option("--reflectivity", o->reflectivity, "of the ball, or of each channel; steel: about 0.6")
+                  "approximate centre of the ball, X,Y,Z, m (default: strongest circle in the picture)");
+    c->add_option("--reflectivity", o->reflectivity, "reflectivity, one value or R,G,B; steel: about 0.6")
         ->capture_default_str();
-    c->add_option("--exposures", o->exposures, "of the pictures of each side, s: 1/30,1/60,1/120");
+    c->add_option("--exposures", o->exposures, "exposure times of the pictures of each side, s: 1/30,1/60,1/120");
     c->add_option("--camera-angle", o->camera_deg,
-                  "half angle of camera and tripod as the ball sees them, degrees")
+                  "half angle of camera and tripod seen from the ball, degrees")
         ->check(in_range(0, 60))
         ->capture_default_str();
     c->add_option("--size", o->size, "width of the map")->check(CLI::Range(16, 16384))->capture_default_str();
-    c->add_option("--out", o->out, "map to write: .exr, .hdr or .png (no light above 1)")->required();
+    c->add_option("--out", o->out, "map to write: .exr, .hdr or .png (clipped at 1)")->required();
     c->footer(R"(Example:
   lightwell ar probe a1.png a2.png b1.png b2.png --exposures 1/30,1/500 --calibration camera.yaml --markers markers.yaml
       --ball-radius 0.05 --out probe.exr
 
-Pictures of one side follow each other, then those of the next. Two sides at 90 degrees leave no hole.)");
+Give all pictures of one side, then those of the next. Two sides at 90 degrees leave no gap.)");
     c->callback([o, &exit_code] { exit_code = run_probe(*o); });
 }
 

@@ -30,7 +30,7 @@ int run_cameras(bool json)
     }
     for (ar::CameraEntry const& c : cameras) fmt::print("camera:{}  {}\n", c.id, c.name);
     if (cameras.empty())
-        fmt::print("libcamera {} sees no camera; a V4L2 one may still be there as device:0\n",
+        fmt::print("libcamera {} finds no camera; a V4L2 camera may still be available as device:0\n",
                    ar::libcamera_version());
     return 0;
 }
@@ -43,13 +43,13 @@ struct RecordOptions {
     bool json = false;
 };
 
-/// A lens of other pictures would be of no use to who plays the session.
+/// Throws if the calibration is for another picture size and so useless for the session.
 void check_calibration(RecordOptions const& o, ar::SourceDescription const& camera)
 {
     if (o.calibration.empty()) return;
     glm::ivec2 const is = camera.size_px, was = ar::read_calibration(o.calibration, is).camera.size_px;
     if (is != was)
-        throw gi::InputError(fmt::format("{} is of pictures of {} x {} px", o.calibration, was.x, was.y),
+        throw gi::InputError(fmt::format("{} is for pictures of {} x {} px", o.calibration, was.x, was.y),
                              fmt::format("{} gives {} x {}", o.source.source, is.x, is.y),
                              "record at that size, or without --calibration");
 }
@@ -121,14 +121,14 @@ int run_record(RecordOptions const& o)
         fmt::print("{}: {}\n", header.camera.name, describe(counts));
     }
     if (!writer.failure().empty())
-        fmt::print(stderr, "lightwell: '{}' was cut off ({}) what was written until then can be played\n", o.out,
+        fmt::print(stderr, "lightwell: '{}' was cut off ({}) frames written before can be played\n", o.out,
                    writer.failure());
     bool const broke_off = end.kind == ar::SourceState::Kind::lost;
     if (broke_off)
-        fmt::print(stderr, "lightwell: {} broke off ({}) what came until then was kept\n", o.source.source,
+        fmt::print(stderr, "lightwell: {} broke off ({}) frames received before were kept\n", o.source.source,
                    end.reason);
     if (broke_off || !writer.failure().empty()) return 1;
-    // Without a limit, Ctrl-C is how a recording ends.
+    // Without a limit, Ctrl-C is the normal end of a recording.
     return stop.requested() && !r.limit_reached && (o.frames > 0 || o.seconds > 0) ? kInterrupted : 0;
 }
 
@@ -137,8 +137,8 @@ int run_record(RecordOptions const& o)
 void add_ar_cameras(CLI::App& ar, int& exit_code)
 {
     auto const json = std::make_shared<bool>(false);
-    CLI::App* const c = ar.add_subcommand("cameras", "List the cameras that libcamera sees.");
-    c->add_flag("--json", *json, "as JSON");
+    CLI::App* const c = ar.add_subcommand("cameras", "List the cameras that libcamera finds.");
+    c->add_flag("--json", *json, "print JSON");
     c->footer(R"(Examples:
   lightwell ar cameras
   lightwell ar cameras --json)");
@@ -148,20 +148,20 @@ void add_ar_cameras(CLI::App& ar, int& exit_code)
 void add_ar_record(CLI::App& ar, int& exit_code)
 {
     auto const o = std::make_shared<RecordOptions>();
-    CLI::App* const c = ar.add_subcommand("record", "Record frames, bit by bit, with their times.");
+    CLI::App* const c = ar.add_subcommand("record", "Record unchanged camera frames with their times.");
     declare_source_arguments(*c, o->source);
-    c->add_option("--out", o->out, "folder to make; one that is there is not touched")->required();
-    c->add_option("--frames", o->frames, "ends after so many")->check(in_range(1, 1e9));
-    c->add_option("--seconds", o->seconds, "ends after so long")->check(in_range(1e-3, 1e6));
-    c->add_option("--calibration", o->calibration, "of the camera: is checked, and its name noted");
-    c->add_option("--note", o->note, "kept with the session");
-    c->add_flag("--json", o->json, "the counts as JSON");
+    c->add_option("--out", o->out, "folder to create; must not exist")->required();
+    c->add_option("--frames", o->frames, "end after this many frames")->check(in_range(1, 1e9));
+    c->add_option("--seconds", o->seconds, "end after this many seconds")->check(in_range(1e-3, 1e6));
+    c->add_option("--calibration", o->calibration, "of the camera: it is checked and its name is stored");
+    c->add_option("--note", o->note, "text stored with the session");
+    c->add_flag("--json", o->json, "print the counts as JSON");
     c->footer(R"(Examples:
   lightwell ar record counter --out walk --seconds 0.5
   lightwell ar record counter --out short --frames 5 --size 320x240 --rate 60 --json
 
-Without --frames or --seconds it records until Ctrl-C. Whatever ends it, the frames that were written until then can be played.
-Exit code 1: the camera broke off, or the disk was full.)");
+Without --frames or --seconds it records until Ctrl-C. However it ends, all frames written so far can be played.
+Exit code 1: the camera failed or the disk was full.)");
     c->callback([o, &exit_code] { exit_code = run_record(*o); });
 }
 

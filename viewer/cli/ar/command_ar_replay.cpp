@@ -24,7 +24,7 @@ struct ReplayOptions {
 
 struct Played {
     std::uint64_t frames = 0, gaps = 0, longest_gap = 0;
-    double first_s = 0, last_s = 0; ///< captured
+    double first_s = 0, last_s = 0; ///< capture times
     std::vector<double> ages_ms;
     ar::SourceCounts counts;
     ar::SourceState end;
@@ -32,13 +32,13 @@ struct Played {
 
     double span_s() const { return last_s - first_s; }
     double rate_hz() const { return span_s() > 0 ? double(frames - 1) / span_s() : 0; }
-    /// Each kind of loss, in words.
+    /// Description of each kind of loss.
     std::vector<std::string> losses() const
     {
         std::vector<std::string> all;
         if (counts.dropped > 0) all.push_back(fmt::format("{} frames dropped", counts.dropped));
         if (counts.refused > 0)
-            all.push_back(fmt::format("{} damaged or gone ({})", counts.refused, counts.last_refusal));
+            all.push_back(fmt::format("{} damaged or missing ({})", counts.refused, counts.last_refusal));
         if (lost_while_recording > 0) all.push_back(fmt::format("{} lost while recording", lost_while_recording));
         if (end.kind == ar::SourceState::Kind::lost) all.push_back(end.reason);
         return all;
@@ -108,7 +108,7 @@ void print(Played const& p, ar::SourceDescription const& d)
     fmt::print("{}: {} x {} px, {}\n", d.name, d.size_px.x, d.size_px.y, name_of(d.format));
     fmt::print("{} frames in {:.2f} s: {:.2f} per second ({:g} nominal)\n", p.frames, p.span_s(), p.rate_hz(),
                d.frames_per_s);
-    fmt::print("age when they arrived: median {:.2f} ms, 95 % {:.2f}, most {:.2f}\n", age.median, age.p95,
+    fmt::print("age at arrival: median {:.2f} ms, 95 % {:.2f}, most {:.2f}\n", age.median, age.p95,
                age.most);
     fmt::print("gaps: {}, the longest of {} frames\n", p.gaps, p.longest_gap);
     auto const losses = p.losses();
@@ -135,13 +135,13 @@ void add_ar_replay(CLI::App& ar, int& exit_code)
 {
     auto const o = std::make_shared<ReplayOptions>();
     CLI::App* const c =
-        ar.add_subcommand("replay", "Play a recorded session, or any source, and say how its frames came.");
+        ar.add_subcommand("replay", "Play a recorded session or any source, and print the timing of its frames.");
     declare_source_arguments(*c, o->source);
-    c->add_option("--frames", o->frames, "ends after so many")->check(in_range(1, 1e9));
-    c->add_option("--seconds", o->seconds, "ends after so long")->check(in_range(1e-3, 1e6));
-    c->add_flag("--fast", o->fast, "files: as fast as they can be read");
-    c->add_flag("--check", o->check, "exit code 1 where a frame was lost or damaged");
-    c->add_flag("--json", o->json, "as JSON");
+    c->add_option("--frames", o->frames, "end after this many frames")->check(in_range(1, 1e9));
+    c->add_option("--seconds", o->seconds, "end after this many seconds")->check(in_range(1e-3, 1e6));
+    c->add_flag("--fast", o->fast, "read files as fast as possible");
+    c->add_flag("--check", o->check, "exit code 1 if a frame was lost or damaged");
+    c->add_flag("--json", o->json, "print JSON");
     c->footer(R"(Examples:
   lightwell ar record counter --out walk --frames 10
   lightwell ar replay walk

@@ -24,7 +24,7 @@ int run_response(ResponseOptions const& o)
     auto const seconds = parse_exposures(o.exposures);
     if (seconds.size() != o.pictures.size())
         throw gi::InputError(fmt::format("{} pictures and {} exposures", o.pictures.size(), seconds.size()),
-                             "each picture has one", "give --exposures in the order of the pictures");
+                             "each picture needs one", "give --exposures in the order of the pictures");
     ar::Bracket bracket;
     for (std::size_t i = 0; i < seconds.size(); ++i) {
         bracket.rgb.push_back(read_rgb(o.pictures[i]));
@@ -33,7 +33,7 @@ int run_response(ResponseOptions const& o)
         bracket.exposures.push_back(e);
     }
     ar::ResponseFit fit = ar::calibrate_response(bracket);
-    if (calibration.photometry) { // measured apart from the response
+    if (calibration.photometry) { // measured separately from the response
         fit.photometry.vignetting = calibration.photometry->vignetting;
         fit.photometry.colour = calibration.photometry->colour;
     }
@@ -54,15 +54,15 @@ void add_ar_response(CLI::App& ar, int& exit_code)
 {
     auto const o = std::make_shared<ResponseOptions>();
     CLI::App* const c = ar.add_subcommand(
-        "response", "Add what bytes mean as light to a calibration, from pictures under several exposures.");
-    c->add_option("PICTURES", o->pictures, "of one scene from one place, 8 bits")->required();
-    c->add_option("--exposures", o->exposures, "of each, s: 1/30,1/60,1/120")->required();
-    c->add_option("--calibration", o->calibration, "file to add it to")->required();
-    c->add_option("--out", o->out, "writes there, and leaves --calibration as it is");
+        "response", "Add the response (radiance of each byte) to a calibration, from several exposures.");
+    c->add_option("PICTURES", o->pictures, "pictures of a static scene from one place, 8 bits")->required();
+    c->add_option("--exposures", o->exposures, "exposure time of each picture, s: 1/30,1/60,1/120")->required();
+    c->add_option("--calibration", o->calibration, "calibration file to add it to")->required();
+    c->add_option("--out", o->out, "write to this file and leave --calibration unchanged");
     c->footer(R"(Example:
   lightwell ar response a.png b.png c.png --exposures 1/30,1/60,1/120 --calibration camera.yaml
 
-The response that was in the file is replaced; vignetting and colour stay.)");
+An earlier response in the file is replaced; vignetting and colour are kept.)");
     c->callback([o, &exit_code] { exit_code = run_response(*o); });
 }
 

@@ -28,7 +28,7 @@ struct RunArguments {
     bool hmd = false, seated = false;
 };
 
-/// Nothing that is read may be written over.
+/// Throws if an input would be overwritten.
 void check_arguments(RunArguments const& a, ArSession const& session)
 {
     std::vector<std::string> read{a.poses, a.true_poses};
@@ -48,7 +48,7 @@ void check_arguments(RunArguments const& a, ArSession const& session)
     check_outputs({(eyes / "left.png").string(), (eyes / "right.png").string(), a.stats}, read);
 }
 
-/// With what the command line says of the tracker.
+/// Reads the session and applies the tracker options of the command line.
 ArSession session_of(RunArguments const& a)
 {
     ArSession session = read_ar_session(a.session);
@@ -156,7 +156,7 @@ int run_session(RunArguments const& a, bool poses_only)
     } catch (...) {
         try {
             recording.finish();
-        } catch (std::exception const&) { // the first problem is the one to tell
+        } catch (std::exception const&) { // only the first error is reported
         }
         if (!summary.frames.empty()) keep(recording.text());
         throw;
@@ -167,7 +167,7 @@ int run_session(RunArguments const& a, bool poses_only)
         return 1;
     }
     if (!recording.failure().empty()) {
-        std::fputs(fmt::format("lightwell: '{}' was cut off ({}) what was written until then can be played\n",
+        std::fputs(fmt::format("lightwell: '{}' was cut off ({}) frames written before can be played\n",
                                a.record_input, recording.failure())
                        .c_str(),
                    stderr);
@@ -181,15 +181,15 @@ int run_session(RunArguments const& a, bool poses_only)
 
 void add_session_options(CLI::App& c, RunArguments& a)
 {
-    c.add_option("session", a.session, "What is filmed, where the markers are, what is added: see docs/ar.md")
+    c.add_option("session", a.session, "Session file: frame source, markers and virtual objects (docs/ar.md)")
         ->required();
-    c.add_option("--frames", a.frames, "At most so many; 0 = all")->check(CLI::NonNegativeNumber);
-    c.add_flag("--fast", a.fast, "Files: a frame as soon as the one before is done, not at their own pace");
-    c.add_option("--table", a.frame_table, "CSV with a line for each frame: times, pose, counts");
-    c.add_option("--stats", a.stats, "JSON: seconds of the renderer's stages, counts, losses");
+    c.add_option("--frames", a.frames, "Process at most this many; 0 = all")->check(CLI::NonNegativeNumber);
+    c.add_flag("--fast", a.fast, "Read files as fast as frames are processed, not at their own rate");
+    c.add_option("--table", a.frame_table, "CSV file with one row per frame: times, pose, counts");
+    c.add_option("--stats", a.stats, "JSON file: seconds of the renderer's stages, counts, losses");
     c.add_option("--display", a.display,
-                 "A room whose tracker says where the camera is, in place of its markers (docs/displays.md)");
-    c.add_option("--true-poses", a.true_poses, "Where the camera really was (CSV or TUM): the error is told");
+                 "Display file whose tracker gives the camera pose, instead of markers (docs/displays.md)");
+    c.add_option("--true-poses", a.true_poses, "True camera poses (CSV or TUM), to report the pose error");
 }
 
 } // namespace
@@ -197,31 +197,31 @@ void add_session_options(CLI::App& c, RunArguments& a)
 void add_ar_run(CLI::App& ar, int& exit_code)
 {
     auto const run = std::make_shared<RunArguments>();
-    CLI::App* const run_command = ar.add_subcommand("run", "Add virtual things to frames, live or from files");
+    CLI::App* const run_command = ar.add_subcommand("run", "Add virtual objects to frames, live or from files");
     add_session_options(*run_command, *run);
     run_command->add_option("--out", run->out, "Folder for the composites, as PNG");
     run_command->add_option("--video", run->video,
-                            "The composites as a video, .mkv (lossless) or .mp4, each shown until the next");
+                            "Video of the composites, .mkv (lossless) or .mp4; each is shown until the next");
     run_command
-        ->add_option("--record-input", run->record_input, "Folder to make: the camera's frames as a session")
+        ->add_option("--record-input", run->record_input, "Folder to create: the camera's frames as a session")
         ->excludes("--fast");
-    run_command->add_option("--poses", run->poses, "Where the camera was (CSV or TUM), in place of its markers");
+    run_command->add_option("--poses", run->poses, "Camera poses (CSV or TUM), instead of using the markers");
     CLI::Option* const window =
-        run_command->add_flag("--window", run->window, "Show it: S before and after, H panel, Escape ends");
-    run_command->add_option("--monitor", run->monitor, "Full screen on the one of this number or name")
+        run_command->add_flag("--window", run->window, "Show a window: S before/after, H panel, Escape ends");
+    run_command->add_option("--monitor", run->monitor, "Full screen on the monitor with this number or name")
         ->needs("--window");
     CLI::Option* const hmd = run_command->add_flag(
-        "--hmd", run->hmd, "In the headset of the OpenXR runtime that carries the camera (docs/hmd.md)");
-    run_command->add_flag("--seated", run->seated, "Of --hmd: no floor")->needs(hmd);
-    run_command->add_option("--eyes", run->eyes, "Of --hmd: folder for the last pictures of both eyes, as PNG")
+        "--hmd", run->hmd, "Show in the OpenXR headset that carries the camera (docs/hmd.md)");
+    run_command->add_flag("--seated", run->seated, "With --hmd: space without a floor")->needs(hmd);
+    run_command->add_option("--eyes", run->eyes, "With --hmd: folder for the last pictures of both eyes, as PNG")
         ->needs(hmd);
     run_command->add_option("--truth", run->truth,
-                            "Folder of pictures with the things really there: FLIP is told");
+                            "Folder of reference pictures, with the virtual objects as real ones, to report FLIP");
     for (char const* other :
          {"--window", "--out", "--video", "--record-input", "--table", "--truth", "--true-poses"})
         hmd->excludes(run_command->get_option(other));
     run_command
-        ->add_flag("--gpu", run->gpu, "Composites are made by the window's GPU: the same within a byte, no counts")
+        ->add_flag("--gpu", run->gpu, "Composite on the window's GPU: at most 1 different per byte, no counts")
         ->needs(window)
         ->excludes("--out")
         ->excludes("--video")
@@ -231,7 +231,7 @@ void add_ar_run(CLI::App& ar, int& exit_code)
   lightwell ar run desk/session.yaml --fast --poses desk/poses.csv --table frames.csv --stats stages.json
   lightwell ar run desk/session.yaml --poses desk/poses.csv --video desk.mkv --record-input desk/recorded
 
-A frame that is rendered too late for a newer one is given up and counted as overtaken; with --fast none is.)");
+A frame is dropped and counted as overtaken if a newer one arrives before it is rendered; never with --fast.)");
     run_command->callback([run, &exit_code] { exit_code = run_session(*run, false); });
 }
 
@@ -239,7 +239,7 @@ void add_ar_track(CLI::App& ar, int& exit_code)
 {
     auto const track = std::make_shared<RunArguments>();
     CLI::App* const track_command =
-        ar.add_subcommand("track", "Find the camera in each frame, and how sure that is");
+        ar.add_subcommand("track", "Find the camera pose in each frame, with its confidence");
     add_session_options(*track_command, *track);
     track_command->footer(R"(Examples:
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth

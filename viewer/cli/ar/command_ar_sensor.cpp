@@ -1,4 +1,4 @@
-// Vignetting, noise and colour of a camera, each from pictures made for it, added to its calibration file.
+// Commands that add vignetting, noise and colour of a camera to its calibration file, each from special pictures.
 
 #include "ar/calibration/calibration_file.h"
 #include "ar/calibration/sensor_report.h"
@@ -19,17 +19,17 @@ namespace {
 struct SensorOptions {
     std::vector<std::string> pictures, centres;
     std::string calibration, out, report;
-    double half_px = 0; ///< 0: by the distance of patches
+    double half_px = 0; ///< 0: from the distance of patches
 };
 
 void declare_sensor_options(CLI::App& c, SensorOptions& o)
 {
-    c.add_option("--calibration", o.calibration, "file to add it to")->required();
-    c.add_option("--out", o.out, "writes there, and leaves --calibration as it is");
-    c.add_option("--report", o.report, "HTML page: what was fitted, beside the pictures' values");
+    c.add_option("--calibration", o.calibration, "calibration file to add it to")->required();
+    c.add_option("--out", o.out, "write to this file and leave --calibration unchanged");
+    c.add_option("--report", o.report, "HTML page with the fit and the measured values");
 }
 
-/// A calibration that is being added to, with the pictures for it.
+/// A calibration to extend, with the pictures to do it from.
 struct SensorSession {
     SensorOptions const& options;
     ar::Calibration calibration;
@@ -45,18 +45,18 @@ struct SensorSession {
         for (std::string const& file : o.pictures) {
             rgb.push_back(read_rgb(file));
             if (rgb.back().cols != size.x || rgb.back().rows != size.y)
-                throw gi::InputError(fmt::format("{} has {} x {} pixels, {} is of {} x {}", file, rgb.back().cols,
+                throw gi::InputError(fmt::format("{} has {} x {} pixels, {} is for {} x {}", file, rgb.back().cols,
                                                  rgb.back().rows, o.calibration, size.x, size.y),
-                                     "both have to be of one camera, neither scaled nor cut",
-                                     "take the pictures as the camera gives them");
+                                     "both must be from one camera, neither scaled nor cropped",
+                                     "use the pictures as the camera delivers them");
         }
         if (calibration.photometry) return;
-        calibration.photometry = ar::srgb_photometry(); // as `ar run` reads its pictures
-        fmt::print("{} has no response: bytes are taken to be sRGB (measure it by lightwell ar response)\n",
+        calibration.photometry = ar::srgb_photometry(); // as `ar run` does
+        fmt::print("{} has no response: bytes are assumed to be sRGB (measure it with lightwell ar response)\n",
                    o.calibration);
     }
 
-    /// @param fit what was fitted, with its error, for the file's provenance
+    /// @param fit description of the fit and its error, for the file's provenance
     void write(std::string const& name, std::string const& fit)
     {
         auto& p = calibration.provenance;
@@ -78,11 +78,11 @@ int run_vignetting(SensorOptions const& o)
     s.report.vignetting = fit;
     fmt::print("vignetting: 1 {:+.4f} r^2 {:+.4f} r^4 {:+.4f} r^6, {:.1f} % of the light in the corners\n", v[0],
                v[1], v[2], 100 * (1 + v[0] + v[1] + v[2]));
-    std::string const error = fmt::format("{:.2f} % RMS of {} parts of {} pictures", 100 * fit.rms,
+    std::string const error = fmt::format("{:.2f} % RMS of {} regions of {} pictures", 100 * fit.rms,
                                           fit.points.size(), o.pictures.size());
     fmt::print("error: {}\n", error);
     if (fit.rms > 0.03)
-        fmt::print("warning: what the pictures show is hardly evenly bright: turn it and compare\n");
+        fmt::print("warning: the surface seems not to be evenly bright: rotate it and compare\n");
     s.write("vignetting", error);
     return 0;
 }
@@ -95,11 +95,11 @@ int run_noise(SensorOptions const& o)
     s.report.noise = fit;
     fmt::print("noise: variance {:.4g} + {:.4g} unit; sigma {:.4f} at 0.18\n", fit.noise.read, fit.noise.photon,
                fit.noise.sigma(0.18));
-    std::string const error = fmt::format("{:.1f} % RMS of the variances at {} brightnesses of {} pairs",
+    std::string const error = fmt::format("{:.1f} % RMS of the variances at {} brightness levels of {} pairs",
                                           100 * fit.rms, fit.points.size(), o.pictures.size() / 2);
     fmt::print("error: {}\n", error);
     if (fit.rms > 0.5)
-        fmt::print("warning: no line fits the variances: did anything move, or the light flicker?\n");
+        fmt::print("warning: no line fits the variances: did something move, or did the light flicker?\n");
     s.write("noise", error);
     return 0;
 }
@@ -114,7 +114,7 @@ cv::Point2d parse_pixel(std::string const& text)
         if (y.ec == std::errc() && y.ptr == end && std::isfinite(p.x) && std::isfinite(p.y)) return p;
     }
     throw gi::InputError("--patches " + text,
-                         "a patch's centre is two numbers of pixels, from 0,0 at the upper left",
+                         "the centre of a patch is two numbers, px from the upper left",
                          "write it as 120,85.5");
 }
 
@@ -125,11 +125,11 @@ std::vector<cv::Point2d> patch_centres(SensorOptions const& o, ar::CameraModel c
     if (given.size() == ar::chart_linear_rgb().size()) return given;
     if (given.size() == 4) return ar::chart_centres({given[0], given[1], given[2], given[3]}, camera);
     throw gi::InputError(fmt::format("--patches has {} centres", given.size()),
-                         "the chart has 24 patches, 4 at its corners",
+                         "the chart has 24 patches, 4 of them in its corners",
                          "give dark skin, bluish green, black and white, or all 24 row by row");
 }
 
-/// A fifth of the smallest distance between patches: well inside them.
+/// A fifth of the smallest distance between patches, so that squares lie well inside the patches.
 double default_half_px(std::vector<cv::Point2d> const& centres)
 {
     double least = 1e9;
@@ -166,15 +166,17 @@ void add_ar_vignetting(CLI::App& ar, int& exit_code)
     auto const o = std::make_shared<SensorOptions>();
     CLI::App* const c = ar.add_subcommand(
         "vignetting",
-        "Add how the light falls off to the corners to a calibration, from pictures of something evenly bright.");
-    c->add_option("PICTURES", o->pictures, "of a lit wall through paper, or of a clear sky, out of focus; 8 bits")
+        "Add a lens's vignetting to a calibration, from pictures of an evenly bright surface.");
+    c->add_option("PICTURES", o->pictures,
+                  "pictures of a lit wall through paper, or of a clear sky, out of focus; 8 bits")
         ->required();
     declare_sensor_options(*c, *o);
     c->footer(R"(Example:
   lightwell ar vignetting flat1.png flat2.png --calibration camera.yaml --report vignetting.html
 
-Two pictures with the camera turned upside down between them show whether it was evenly bright. Parts with clipped pixels do not count.
-The response comes first (lightwell ar response): light is read by it.)");
+Two pictures, with the camera turned upside down in between, show whether the surface is evenly bright. Regions
+with clipped pixels are ignored. Measure the response first (lightwell ar response): it makes bytes
+linear.)");
     c->callback([o, &exit_code] { exit_code = run_vignetting(*o); });
 }
 
@@ -182,14 +184,16 @@ void add_ar_noise(CLI::App& ar, int& exit_code)
 {
     auto const o = std::make_shared<SensorOptions>();
     CLI::App* const c = ar.add_subcommand(
-        "noise", "Add a sensor's noise to a calibration, from pairs of pictures of a scene at rest.");
-    c->add_option("PICTURES", o->pictures, "first, second, first, second, ... of equal exposure; 8 bits, not JPEG")
+        "noise", "Add a sensor's noise to a calibration, from pairs of pictures of a static scene.");
+    c->add_option("PICTURES", o->pictures,
+                  "pairs: first, second, first, second, ... with equal exposure; 8 bits, not JPEG")
         ->required();
     declare_sensor_options(*c, *o);
     c->footer(R"(Example:
   lightwell ar noise a1.png a2.png b1.png b2.png --calibration camera.yaml --report noise.html
 
-At the exposure and gain that the camera will have: noise is of a unit of light at that exposure. The scene has dark and bright parts.)");
+Use the exposure and gain of the later frames: noise is given per unit of light at that exposure. The scene needs
+dark and bright parts.)");
     c->callback([o, &exit_code] { exit_code = run_noise(*o); });
 }
 
@@ -200,18 +204,19 @@ void add_ar_colour(CLI::App& ar, int& exit_code)
     CLI::App* const c = ar.add_subcommand(
         "colour",
         "Add a camera's colour matrix to a calibration, from a picture of a ColorChecker with 24 patches.");
-    c->add_option("PICTURE", o->pictures[0], "of the chart, evenly lit, nothing clipped; 8 bits")->required();
+    c->add_option("PICTURE", o->pictures[0], "the chart, evenly lit, nothing clipped; 8 bits")->required();
     c->add_option("--patches", o->centres,
-                  "centres X,Y in pixels of dark skin, bluish green, black and white (the corners), or of all 24")
+                  "centres X,Y, px, of dark skin, bluish green, black and white (the corners), or of all 24")
         ->required()
         ->expected(1, 24);
-    c->add_option("--half", o->half_px, "pixels: half the side of the square of a patch that is averaged")
+    c->add_option("--half", o->half_px, "half the side of the square averaged in each patch, px")
         ->check(CLI::Range(0.5, 1000.0));
     declare_sensor_options(*c, *o);
     c->footer(R"(Example:
   lightwell ar colour chart.png --patches 92,80 548,82 545,388 95,385 --calibration camera.yaml --report colour.html
 
-Response and vignetting come first (lightwell ar response, lightwell ar vignetting). The matrix holds for the light it was measured in.)");
+Measure response and vignetting first (lightwell ar response, lightwell ar vignetting). The matrix is valid only
+for the illumination of the picture.)");
     c->callback([o, &exit_code] { exit_code = run_colour(*o); });
 }
 

@@ -41,18 +41,19 @@ void add_ar_synthesize(CLI::App& ar, int& exit_code)
     auto const made = std::make_shared<SynthesizeArguments>();
     CLI::App* const synthesize = ar.add_subcommand(
         "synthesize",
-        "Make a session in which all is known: frames, true poses, probe, pictures with the things there");
-    synthesize->add_option("folder", made->folder, "Where its files go")->required();
-    synthesize->add_option("--size", made->size, "Of frames, WIDTHxHEIGHT")->capture_default_str();
-    synthesize->add_option("--frames", made->options.frames, "How many")
+        "Render a synthetic session: frames, true poses, environment map, reference pictures");
+    synthesize->add_option("folder", made->folder, "Folder for its files")->required();
+    synthesize->add_option("--size", made->size, "Frame size, WIDTHxHEIGHT")->capture_default_str();
+    synthesize->add_option("--frames", made->options.frames, "Number of frames")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    synthesize->add_option("--paths", made->options.quality.paths, "Of the reference renderer, per pixel")
+    synthesize->add_option("--paths", made->options.quality.paths, "Paths per pixel of the reference renderer")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     synthesize->add_option("--threads", made->options.quality.threads, "0 = all")->check(CLI::NonNegativeNumber);
-    synthesize->add_flag("--no-truth", made->no_truth, "Leave out the pictures with the things really there");
-    synthesize->add_flag("--no-denoise", made->no_denoise, "Leave frames as noisy as paths are");
+    synthesize->add_flag("--no-truth", made->no_truth,
+                         "Do not render the reference pictures, which show the virtual objects as real ones");
+    synthesize->add_flag("--no-denoise", made->no_denoise, "Do not denoise the frames");
     synthesize->footer(R"(Example:
   lightwell ar synthesize desk --frames 2 --size 160x120 --paths 4 --no-truth)");
     synthesize->callback([made, &exit_code] { exit_code = run_synthesize(*made); });

@@ -1,6 +1,6 @@
-// Bias of slhb by paired differences. Renders of one seed share axes, lamps and random numbers; what differs is
-// whether look-ups or exact rays answer, and whether paths take axes or directions of their own. So the difference
-// of two means has far less noise than either, and seeds give its standard error.
+// Measures the bias of slhb by paired differences. Renders with the same seed share axes, light samples and random
+// numbers; they differ in using look-ups or exact rays, and shared axes or a direction of each path's own. So the
+// difference of two means has far less noise than either; several seeds give its standard error.
 
 #include "gi/core/durable_file.h"
 #include "gi/methods/registry.h"
@@ -31,7 +31,7 @@ struct AccuracyOptions {
     std::string out;
 };
 
-/// The light of one render, or a difference of two.
+/// Light of one render, or the difference of two renders.
 struct Light {
     std::vector<float> direct, indirect;
 };
@@ -59,7 +59,7 @@ struct Estimate {
     double value = 0, error = 0; ///< a mean and its standard error
 };
 
-/// Of the picture's mean, in units of `unit`.
+/// Estimate of the picture's mean, in units of `unit`.
 Estimate estimate(Lights const& lights, Part part, double unit)
 {
     double const n = double(lights.size());
@@ -79,8 +79,8 @@ std::vector<float> mean_picture(Lights const& lights, Part part)
     return sum;
 }
 
-/// relMSE that no number of paths and seeds takes away. Products of different seeds have no noise in the mean; so
-/// this may be a little below 0.
+/// relMSE that remains with any number of paths and seeds. Uses products of different seeds, in which noise
+/// averages out; so it may be slightly below 0.
 double systematic_relmse(Lights const& differences, std::vector<float> const& reference)
 {
     double const n = double(differences.size());
@@ -96,7 +96,7 @@ double systematic_relmse(Lights const& differences, std::vector<float> const& re
     return total / double(reference.size());
 }
 
-/// Of one row; those of one cause are of indirect light.
+/// Biases of one row; those of a single cause (of_*) are of indirect light.
 struct Biases {
     Estimate direct, indirect, of_hit_buffers, of_shadow_maps, of_directions;
 };
@@ -106,7 +106,7 @@ struct Rendered {
     double seconds = 0, lost_layers = 0;
 };
 
-/// One scene with everything that its rows are measured against.
+/// One scene with its reference and its exact renders.
 class Bench {
 public:
     Bench(AccuracyOptions const& options, RenderOptions render, BenchTable& table, Report& report)
@@ -178,7 +178,7 @@ private:
         s.exact = {.queries = true, .shadows = true, .directions = free};
         return render_seeds("slhb", s, paths, 1);
     }
-    /// As a share of all light.
+    /// Estimate relative to the mean light of that part.
     Estimate part(Lights const& l, Part p) const
     {
         return estimate(l, p, p == &Light::direct ? direct_ : indirect_);
@@ -213,8 +213,8 @@ private:
 
 void Bench::add_rows(char const* schedule, std::string const& directions)
 {
-    // Streamed axes are uniform: their part is 0 by construction, and the noise of axes that all pixels share is
-    // not added to it.
+    // Streamed axes are uniform: their bias is 0 by construction. Not measuring it avoids the noise of axes that
+    // all pixels share.
     bool const streamed = directions.empty();
     Lights const of_directions =
         streamed ? Lights{} : differences(render_exactly(directions, false, o_.direction_paths).lights, free_);
@@ -275,7 +275,7 @@ void add_bench_accuracy(CLI::App& bench, int& exit_code)
     o->render.size = "64x64";
     o->render.bounces = 2;
     CLI::App* const c =
-        bench.add_subcommand("accuracy", "Bias of slhb by directions and texels of its hit buffers.");
+        bench.add_subcommand("accuracy", "Measure the bias of slhb for sets of directions and hit buffer sizes.");
     auto const list = [&](char const* name, auto& values, char const* help) {
         c->add_option(name, values, help)->delimiter(',')->capture_default_str()->allow_extra_args(false);
     };
@@ -283,20 +283,20 @@ void add_bench_accuracy(CLI::App& bench, int& exit_code)
         c->add_option(name, value, help)->check(CLI::Range(1u, 1u << 24))->capture_default_str();
     };
     list("--scene", o->scenes, "files or names, comma-separated");
-    list("--directions", o->directions, "of the stored schedule, comma-separated");
-    list("--hit-buffers", o->resolutions, "texels on a side, comma-separated");
+    list("--directions", o->directions, "direction sets of the stored schedule, comma-separated");
+    list("--hit-buffers", o->resolutions, "hit buffer sizes, texels on a side, comma-separated");
     declare_view_options(*c, o->render);
     declare_lens_options(*c, o->render);
     c->add_option("--size", o->render.size, "width x height, pixels")->capture_default_str();
     c->add_option("--bounces", o->render.bounces, "indirect bounces")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    c->add_option("--seeds", o->seeds, "renders of each kind, which give the standard errors")
+    c->add_option("--seeds", o->seeds, "renders of each kind, for the standard errors")
         ->check(CLI::Range(2, 1000))
         ->capture_default_str();
-    paths("--paths", o->paths, "per pixel and seed");
-    paths("--direction-paths", o->direction_paths, "the same, where directions are compared by exact rays");
-    paths("--reference-paths", o->reference_paths, "per pixel, of the reference, all seeds together");
+    paths("--paths", o->paths, "paths per pixel and seed");
+    paths("--direction-paths", o->direction_paths, "the same, for comparing directions by exact rays");
+    paths("--reference-paths", o->reference_paths, "paths per pixel of the reference, all seeds together");
     c->add_option("--threads", o->render.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     declare_slhb_quality(*c, o->render);
     c->add_option("--out", o->out, "folder for accuracy.json and accuracy.csv")->required();
@@ -304,15 +304,17 @@ void add_bench_accuracy(CLI::App& bench, int& exit_code)
     c->footer(R"(Example:
   lightwell bench accuracy --scene cornell --directions icosahedron:80 --hit-buffers 32 --size 16x16 --seeds 2 --paths 8 --direction-paths 8 --reference-paths 32 --out accuracy
 
-bias_direct and bias_indirect are what the means of L1 and L2 over all channels differ by from the truth, as a share
-of it; columns that end in _error are standard errors over the seeds. bias_indirect is the sum of three parts, each a
-difference of renders with the same seeds and lamps, the first two with the same axes and random numbers too:
-  of_hit_buffers  slhb less slhb with exact rays along its axes
-  of_shadow_maps  that less the same with exact rays to its lamps
-  of_directions   stored: that less exact rays by the cosine, each path its own; streamed axes are uniform: 0
-The row "exact rays" is the last of these less the reference: it should be 0 within its error.
-systematic_relmse_indirect is the relMSE of L2 that no number of paths and seeds takes away (from products of
-different seeds, so noise may make it negative; seeds turn stored sets, whose own error it does not see); relmse_indirect that of the mean of all seeds against the reference.)");
+bias_direct and bias_indirect are the relative biases of L1 and L2, averaged over pixels and channels; columns
+ending in _error are standard errors over the seeds. bias_indirect is the sum of three parts, each a difference of
+renders with the same seeds and light samples, the first two also with the same axes and random numbers:
+  of_hit_buffers  slhb minus A, A = slhb with exact rays along its axes
+  of_shadow_maps  A minus B, B = A with exact rays to its light samples
+  of_directions   stored: B minus C, C = exact rays, cosine-distributed, separately for each path; streamed: 0, as
+                  its axes are uniform
+The row "exact rays" is C minus the reference: it should be 0 within its standard error.
+systematic_relmse_indirect is the relMSE of L2 that remains with any number of paths and seeds. It is computed from
+products of different seeds, so noise may make it negative; it does not contain the error of the stored set itself,
+which every seed rotates. relmse_indirect is the relMSE of the mean of all seeds against the reference.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

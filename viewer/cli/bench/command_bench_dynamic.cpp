@@ -30,7 +30,7 @@ void add_bench_dynamic(CLI::App& bench, int& exit_code)
     auto const o = std::make_shared<DynamicOptions>();
     o->render.bounces = 2;
     o->render.denoise = "discontinuity";
-    CLI::App* const c = bench.add_subcommand("dynamic", "Frames of what moves: what each part of them costs.");
+    CLI::App* const c = bench.add_subcommand("dynamic", "Measure the cost of each part of moving frames.");
     auto const list = [&](char const* name, auto& values, char const* help) {
         c->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
     };
@@ -38,38 +38,39 @@ void add_bench_dynamic(CLI::App& bench, int& exit_code)
         c->add_option(name, value, help)->check(CLI::Range(low, high))->capture_default_str();
     };
     list("--scene", o->scenes, "files or names, comma-separated");
-    list("--triangles", o->triangles, "rooms of so many triangles, in which a figure walks, comma-separated");
+    list("--triangles", o->triangles, "triangles of rooms in which a figure walks, comma-separated");
     list("--structures", o->structures,
-         "comma-separated, of: static (nothing moves), rebuilt (all hit buffers, in every frame), appended (what "
-         "moves to what stays), temporal, streamed");
+         "comma-separated, of: static (nothing moves), rebuilt (all hit buffers in every frame), appended (moving "
+         "triangles to static ones), temporal, streamed");
     c->add_option("--size", o->render.size, "width x height, pixels")->capture_default_str();
     declare_view_options(*c, o->render);
-    number("--frames", o->frames, 2, 100000, "of each structure");
+    number("--frames", o->frames, 2, 100000, "number of frames for each structure");
     c->add_option("--fps", o->fps, "frames per second of the animation")
         ->check(CLI::Range(1e-3, 1e6))
         ->capture_default_str();
     c->add_option("--budget", o->render.budget,
-                  "time for a frame, less reuse and filter (default: one path per pixel)");
+                  "time per frame, without reuse and filter (default: one path per pixel)");
     number("--bounces", o->render.bounces, 0, 1000, "indirect bounces");
     number("--reuse", o->most_frames, 1, 1000,
-           "frames that a pixel is the mean of at most; 1 = no temporal reuse");
-    number("--reference-paths", o->reference_paths, 0, 1 << 24, "per pixel and frame; 0 = no errors");
-    number("--seeds", o->seeds, 1, 64, "sequences; from 4 on the lag of reuse is told from noise");
+           "largest number of frames averaged per pixel; 1 = no temporal reuse");
+    number("--reference-paths", o->reference_paths, 0, 1 << 24, "paths per pixel and frame; 0 = no errors");
+    number("--seeds", o->seeds, 1, 64, "number of sequences; 4 or more separate the lag of reuse from noise");
     declare_denoise(*c, o->render);
     declare_slhb(*c, o->render);
-    c->remove_option(c->get_option("--schedule")); // --structures say it
+    c->remove_option(c->get_option("--schedule")); // set by --structures
     c->add_option("--threads", o->render.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c->add_option("--out", o->out, "folder for the tables")->required();
     c->add_flag("--json", o->render.json, "print the table as JSON");
     c->footer(R"(Example:
   lightwell bench dynamic --triangles 2000 --frames 3 --size 16x16 --reference-paths 2 --out dynamic
 
-Times are of one frame: world_ms, skinning and what follows from it in the world; structures_ms, hit buffers
-(rebuilt: all that a renderer starts with); direct_ms and indirect_ms share the time of the paths as their threads'
-times do. Errors are against the reference of the same moment; _alone: of the same frames without reuse. lag_relmse:
-error that reuse adds apart from noise, from several seeds. The summary leaves out the first frame, which builds what
-lasts; memory_MiB there is that of the last frame, with what was seen from frame 100 on; raised counts frames with
-more error than alone; not_finite, values of all pictures. The last frame is kept as a picture, with its FLIP.)");
+Times are per frame. world_ms: skinning and the resulting updates of the world. structures_ms: hit buffers
+(rebuilt: everything that a renderer builds at its start). direct_ms and indirect_ms: the time of the paths,
+divided in proportion to their thread times. Errors are against the reference of the same moment; _alone: of the
+same frames without reuse. lag_relmse: error added by reuse apart from noise, from several seeds. The summary
+leaves out the first frame, which builds lasting structures. In the summary, memory_MiB is that of the last frame,
+with its range from frame 100 on; raised counts frames with more error than without reuse; not_finite counts values
+in all pictures. The last frame is saved as a picture, with its FLIP map.)");
     c->callback([o, c, &exit_code] {
         std::vector<NamedMethod> methods;
         for (std::string const& s : o->structures)

@@ -35,11 +35,11 @@ int run(PicturesOptions const& o)
     std::fflush(stdout);
     if (!result.interrupted) return 0;
     fmt::print(stderr, "note: interrupted: the rows so far are saved; {}\n",
-               o.interactive ? "the same command starts again, but for the references" : "add --resume to go on");
+               o.interactive ? "the same command keeps only the references" : "add --resume to continue");
     return kInterrupted;
 }
 
-/// Methods without motion vectors cannot take part, and sixty frames have sixty references.
+/// Defaults differ as methods without motion vectors cannot take part and each frame needs its own reference.
 void set_interactive_defaults(CLI::App const& command, PicturesOptions& o)
 {
     auto const is_given = [&](char const* name) { return command.get_option(name)->count() > 0; };
@@ -63,21 +63,21 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
     r.bounces = 3;
     r.seed = 1;
     CLI::App* const c =
-        bench.add_subcommand("pictures", "Methods judged by their pictures: scenes, budgets, filters.");
+        bench.add_subcommand("pictures", "Compare the pictures of methods over scenes, budgets and filters.");
     auto const list = [&](char const* name, std::vector<std::string>& values, std::string const& help) {
         return c->add_option(name, values, help)->delimiter(',')->capture_default_str()->allow_extra_args(false);
     };
     c->add_option("--list", o->list, "YAML file that names the scenes")->capture_default_str();
     list("--scenes", o->scenes,
          "names in the list, files or built-in scenes, comma-separated (default: all of the list)");
-    list("--budgets", o->budgets, "of a render, comma-separated: times, or paths per pixel (1path, 16paths)");
-    list("--denoise", o->filters, "filters, comma-separated, as lightwell render --denoise knows them");
+    list("--budgets", o->budgets, "per render, comma-separated: times, or paths per pixel (1path, 16paths)");
+    list("--denoise", o->filters, "filters, comma-separated, as for lightwell render --denoise");
     list("--methods", o->methods,
-         "comma-separated, as in lightwell bench sweep; 'reference' is the peer of all others");
+         "comma-separated, as for lightwell bench sweep; all are compared with 'reference'");
     c->add_option("--repeats", o->repeats, "renders per row, each with its own seed; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    c->add_option("--seed", r.seed, "of the first repeat")->check(check_seed)->capture_default_str();
+    c->add_option("--seed", r.seed, "seed of the first repeat")->check(check_seed)->capture_default_str();
     c->add_option("--size", r.size, "width x height, pixels")->capture_default_str();
     c->add_option("--bounces", r.bounces, "indirect bounces; 0 = direct light only")
         ->check(CLI::Range(0, 1000))
@@ -87,33 +87,33 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
         ->capture_default_str();
     c->add_option(
         "--references", o->references,
-        "folder that keeps the reference pictures; taken from there where scene and settings are the same\n"
+        "folder of the reference pictures; existing ones with the same scene and settings are used\n"
         "(default: DIR/references)");
     constexpr char const* kInteractive = "Interactive frames";
     CLI::Option* const interactive =
         c->add_flag("--interactive", o->interactive,
-                    "sequences of the list in place of its scenes: frames that follow each other, with reuse")
+                    "render the list's sequences instead of its scenes: consecutive frames, with temporal reuse")
             ->excludes("--budgets")
             ->excludes("--repeats")
             ->group(kInteractive);
     auto const of_frames = [&](CLI::Option* option) {
         return option->needs(interactive)->group(kInteractive)->capture_default_str();
     };
-    of_frames(c->add_option("--frames", o->frames, "of each sequence"))->check(CLI::Range(1, 100000));
-    of_frames(c->add_option("--frame-budget", o->frame_budget, "time for a render; reuse and filter add to it"));
-    of_frames(c->add_option("--reuse", o->reuse, "frames that a pixel is the mean of at most; 1 = no reuse"))
+    of_frames(c->add_option("--frames", o->frames, "frames of each sequence"))->check(CLI::Range(1, 100000));
+    of_frames(c->add_option("--frame-budget", o->frame_budget, "time per render; reuse and filter add to it"));
+    of_frames(c->add_option("--reuse", o->reuse, "largest number of frames averaged per pixel; 1 = no reuse"))
         ->check(CLI::Range(1, 1000));
     of_frames(c->add_option("--fps", o->fps, "frames per second of the animation"))->check(in_range(1e-3, 1e6));
     of_frames(c->add_option("--scored-frames", o->scored_frames,
-                            "counted from 1, comma-separated; rows are these and\n"
-                            "their mean"))
+                            "frames to score, counted from 1, comma-separated; rows are\n"
+                            "these and their mean"))
         ->delimiter(',')
         ->allow_extra_args(false);
     declare_slhb(*c, r);
     declare_virtual_lights(*c, r);
     c->add_option("--threads", r.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
     c->add_option("--out", o->out, "folder for tables, pictures and pictures.html")->required();
-    c->add_flag("--resume", o->resume, "keep the rows that the folder has from the same program and settings");
+    c->add_flag("--resume", o->resume, "keep existing rows in the folder from the same program and settings");
     c->add_flag("--json", r.json, "print both tables as JSON");
     c->add_flag("--quiet", r.quiet, "no progress bar");
     c->footer(fmt::format(R"(Examples:
@@ -121,22 +121,24 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
   lightwell bench pictures --scenes cornell --methods reference,slhb --budgets 1path,20ms,40ms --repeats 1 --size 32x32 --reference-paths 16 --resume --out pictures
   lightwell bench pictures --scenes atrium --interactive --frames 4 --scored-frames 1,4 --size 24x16 --frame-budget 20ms --reference-paths 4 --out frames
 
-Every render (scene, budget, method, repeat) goes through every filter. render_s is the whole call; of this, structures_s is
-for hit buffers, shadow maps and BVHs, and paths_s for paths and first surfaces. filter_s is the filter's time, total_s the sum.
-relmse is given without relmse_of_reference, the part that the noise of the reference picture adds. relmse_estimated is
-what the program itself estimates for the unfiltered picture. bias is mean / mean of the reference: of all light, of direct
-light (L1) and of indirect light (L2), with standard errors over the repeats. neighbour_correlation is the correlation of the
-errors of neighbouring pixels: 0 for independent noise, near 1 for an error that regions share.
+Every render (scene, budget, method, repeat) is filtered by every filter. render_s is the time of the whole call;
+it contains structures_s for hit buffers, shadow maps and BVHs, and paths_s for paths and first surfaces. filter_s
+is the time of the filter, total_s the sum. relmse does not contain relmse_of_reference, the part caused by noise
+of the reference picture. relmse_estimated is the program's own estimate for the unfiltered picture. bias is the
+mean divided by that of the reference: of all light, direct light (L1) and indirect light (L2), with standard
+errors over the repeats. neighbour_correlation is the correlation between the errors of neighbouring pixels: 0 for
+independent noise, near 1 for errors shared by regions.
 
-The summary divides errors and times of each method by those of 'reference' (lost: an error above {}; times differ where one
-path takes longer than the budget), and says how many times longer 'reference' needs for the same error, filter included, by
-its errors at all budgets.
+The summary divides errors and times of each method by those of 'reference'; above an error ratio of {} a row
+is lost. Times differ where one path takes longer than the budget. The summary also gives how many times longer
+'reference' needs for the same error, filter included, estimated from its errors at all budgets.
 
---interactive renders frames that follow each other, all methods with the same temporal reuse and filters. Its defaults are
---methods reference,slhb --denoise none,atrous --size 512x512 --reference-paths 256. frame_s is for the world, the render and
-the reuse; in the row 'mean' it is the median of all frames but the first, which builds what lasts.
+--interactive renders consecutive frames, with the same temporal reuse and filters for all methods. Its defaults
+are --methods reference,slhb --denoise none,atrous --size 512x512 --reference-paths 256. frame_s is the time of
+world, render and reuse; in the row 'mean' it is the median of all frames except the first, which builds lasting
+structures.
 
-Ctrl-C drops the renders of the current budget, saves the rows so far and exits with 130.)",
+Ctrl-C discards the renders of the current budget, saves the rows so far and exits with 130.)",
                           kLostRatio));
     c->callback([o, c, &exit_code] {
         if (o->interactive) set_interactive_defaults(*c, *o);

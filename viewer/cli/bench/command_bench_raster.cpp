@@ -44,7 +44,7 @@ RasterGrid random_grid(World const& world, Pcg32& rng, std::uint32_t resolution)
     return make_grid(world.bounds, axis, resolution, jitter, 2 * kPi * rng.uniform());
 }
 
-/// A closed mesh: a lattice on a sphere whose vertices are moved about; every other one stays convex.
+/// Random closed mesh: a stretched lattice on a sphere, with vertices displaced radially unless convex.
 Scene random_closed_mesh(Pcg32& rng, bool convex)
 {
     Scene scene;
@@ -75,8 +75,8 @@ Scene random_closed_mesh(Pcg32& rng, bool convex)
     return scene;
 }
 
-/// Texels whose entering and leaving layers differ in number, and texels of convex meshes that hold neither none
-/// nor two.
+/// Counts texels with different numbers of entering and leaving layers, and texels of convex meshes with neither
+/// 0 nor 2 layers.
 void check_watertight(RasterOptions const& o, BenchTable& table)
 {
     Pcg32 rng(2026, 1);
@@ -106,7 +106,7 @@ void check_watertight(RasterOptions const& o, BenchTable& table)
                std::string("(holes and doubles)"), Cell()});
 }
 
-/// Every layer of every texel against the rays through its centre.
+/// Compares the layers of every texel with rays through its centre.
 void check_against_embree(char const* name, World const& world, double wanted, BenchTable& table)
 {
     ExactVisibility const exact(world, false, 0);
@@ -146,14 +146,14 @@ void check_against_embree(char const* name, World const& world, double wanted, B
                 continue;
             }
             ++other;
-            // Twins in one plane, or surfaces that touch: the same depth, another name.
+            // Coplanar duplicates or touching surfaces: the same depth, but another triangle.
             double const depth = none ? 1e30 : double(b.layers[b.offset[t]].depth) - double(start);
             if (hits[t].triangle != kNoTriangle &&
                 std::abs(depth - double(hits[t].distance)) < 1e-5 * double(world.bounds.radius())) {
                 ++twins;
                 continue;
             }
-            // Within rounding of an edge? A ray a hundredth of a texel beside finds the same triangle.
+            // Is the sample within rounding of an edge? Then a ray 0.01 texel beside it finds the same triangle.
             bool near = false;
             for (int k = 0; k < 64 && !near; ++k) {
                 float const angle = 2 * kPi * float(k) / 64, reach = k % 2 == 0 ? 1e-2f : 1e-3f;
@@ -210,11 +210,11 @@ void measure_builds(RasterOptions const& o, BenchTable& table)
                std::string("s on one core"), bvh, std::string(), Cell()});
 }
 
-/// The three ways to take large triangles apart, and one by one against vectors.
+/// Compares the three ways to subdivide large triangles.
 void measure_macro(RasterOptions const& o, BenchTable& table)
 {
     for (double const side : {4.0, 8.0, 16.0, 64.0, 256.0}) {
-        // Triangles of that many texels on a side, at random in a square of 512 texels.
+        // Triangles with sides of that many texels, at random in a square of 512 texels.
         TriangleSoup soup;
         soup.count = 4096;
         Pcg32 rng(4, 4);
@@ -252,7 +252,7 @@ int run(RasterOptions const& o)
 {
     check_folder(o.out);
     gi::make_folder(o.out);
-    BenchTable table = start_table("raster", "The deep rasteriser: exact, and how fast",
+    BenchTable table = start_table("raster", "The deep rasteriser: correctness and speed",
                                    {"what", "unit", "value", "also", "second"});
     check_watertight(o, table);
     check_against_embree("room with a displaced sphere", world_of(generate_sphere(o.triangles, 0)), o.samples / 2,
@@ -271,17 +271,17 @@ void add_bench_raster(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<RasterOptions>();
     CLI::App* const c =
-        bench.add_subcommand("raster", "The deep rasteriser: watertight, like Embree, and how fast.");
-    c->add_option("--meshes", o->meshes, "random closed meshes that are checked")
+        bench.add_subcommand("raster", "Test and time the deep rasteriser: watertight, equal to Embree, fast.");
+    c->add_option("--meshes", o->meshes, "number of random closed meshes to check")
         ->check(CLI::Range(1, 10'000'000))
         ->capture_default_str();
-    c->add_option("--samples", o->samples, "texel centres that are checked against Embree")
+    c->add_option("--samples", o->samples, "number of texel centres to check against Embree")
         ->check(CLI::Range(1.0, 1e9))
         ->capture_default_str();
-    c->add_option("--triangles", o->triangles, "of the largest model")
+    c->add_option("--triangles", o->triangles, "triangles of the largest model")
         ->check(CLI::Range(1000u, 100'000'000u))
         ->capture_default_str();
-    c->add_option("--repeats", o->repeats, "of each time; rows hold medians")
+    c->add_option("--repeats", o->repeats, "measurements of each time; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     c->add_option("--out", o->out, "folder for raster.json and raster.csv")->required();

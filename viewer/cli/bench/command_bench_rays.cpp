@@ -30,11 +30,11 @@ struct RaysOptions {
 };
 
 struct Origin {
-    vec3 position, normal; ///< unit, on the side that was met
+    vec3 position, normal; ///< normal: unit length, on the side that was hit
     std::uint32_t triangle;
 };
 
-/// Surfaces after the camera and one diffuse bounce: where indirect rays start.
+/// Surface points after the camera ray and one diffuse bounce, at which indirect rays start.
 std::vector<Origin> find_origins(World const& world, Camera const& camera, ExactVisibility const& exact,
                                  Pcg32& rng)
 {
@@ -126,7 +126,7 @@ void measure_scene(RaysOptions const& o, std::string const& scene, BenchTable& t
         rays.push_back({{from.position + off * from.normal,
                          Frame::about(from.normal).to_world(square_to_cosine_hemisphere(rng.uniform2()))}});
     }
-    // Axes in proportion to the cosine, as paths draw them: among all, among 16, or one for a whole pass.
+    // Axes drawn in proportion to the cosine, as paths do: from all, from 16, or one for a whole pass.
     auto const draw = [&](Origin const& from, std::size_t step, std::size_t count) {
         while (true) {
             std::size_t const a = step * (rng.next() % count);
@@ -179,8 +179,8 @@ void measure_scene(RaysOptions const& o, std::string const& scene, BenchTable& t
         throw InputError("no ray of '" + scene + "' hits anything", "the camera sees nothing",
                          "choose another view");
 
-    // Beside every rate its error: the same walks by exact rays. Escapes that should have hit less hits that
-    // should not.
+    // Errors of the look-ups against exact rays along the same axes: escapes that should hit, and hits that should
+    // escape.
     std::vector<RayQuery> same;
     for (std::size_t k = 0; k < n; ++k) {
         vec3 const axis = pool.grids[random.axis[k]].axis;
@@ -238,7 +238,7 @@ void add_bench_rays(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<RaysOptions>();
     CLI::App* const c =
-        bench.add_subcommand("rays", "Queries per second: hit buffers against Embree, with their error.");
+        bench.add_subcommand("rays", "Measure speed and error of look-ups in hit buffers against Embree.");
     c->add_option("--scene", o->scenes, "files or names, comma-separated")
         ->delimiter(',')
         ->capture_default_str()
@@ -248,7 +248,7 @@ void add_bench_rays(CLI::App& bench, int& exit_code)
     c->add_option("--hit-buffer", o->resolution, "texels on a side")
         ->check(CLI::Range(2, 8192))
         ->capture_default_str();
-    c->add_option("--repeats", o->repeats, "rounds in which all take turns; rows hold medians")
+    c->add_option("--repeats", o->repeats, "rounds in which all are measured in turn; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     c->add_option("--out", o->out, "folder for rays.json and rays.csv")->required();
@@ -256,8 +256,8 @@ void add_bench_rays(CLI::App& bench, int& exit_code)
     c->footer(R"(Example:
   lightwell bench rays --scene cornell --directions icosahedron:80 --hit-buffer 64 --repeats 2 --out rays
 
-Origins are what the camera sees after one diffuse bounce; axes are drawn in proportion to the cosine. false_escapes
-and false_hits are shares of queries that exact rays along the same axes answer otherwise.)");
+Origins are surface points after one diffuse bounce; axes are drawn in proportion to the cosine. false_escapes and
+false_hits are shares of look-ups that differ from exact rays along the same axes.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

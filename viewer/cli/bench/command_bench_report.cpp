@@ -23,13 +23,13 @@ struct BenchReportOptions {
     Page page;
 };
 
-/// As it was before the sRGB encoding was undone.
+/// The sRGB bytes of the PNG file that the picture was read from.
 std::vector<unsigned char> png_bytes(gi::Picture const& picture)
 {
     return gi::tone_map_bytes(*picture.find("color"), {});
 }
 
-/// Beside the left eye's picture; a pair that cannot be read is left to the page, which says so.
+/// Writes an anaglyph beside each left picture. Pairs that cannot be read are skipped; the page reports them.
 void make_anaglyphs(BenchFolder& folder)
 {
     for (auto const& [l, r] : stereo_pairs(folder.renders)) {
@@ -52,7 +52,7 @@ void make_anaglyphs(BenchFolder& folder)
 int run_bench_report(BenchReportOptions o)
 {
     if (o.out.empty() && o.folders.size() > 1)
-        throw gi::InputError("several folders without --out", "it is not known in which the page belongs",
+        throw gi::InputError("several folders without --out", "the folder for the page is not known",
                              "add --out page.html");
     check_ending(o.out, ".html", "a page", "end it with .html");
     for (std::string const& folder : o.folders) o.page.folders.push_back(read_bench_folder(folder));
@@ -71,14 +71,14 @@ void add_bench_report(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<BenchReportOptions>();
     CLI::App* const c = bench.add_subcommand(
-        "report", "One page of all tables, and of all that render --stats tells, in folders.");
+        "report", "Make one HTML page of all tables and render --stats files in folders.");
     c->add_option("DIR", o->folders,
-                  "where bench commands have put their tables, and render --stats F.json its pictures and videos")
+                  "folder with tables of bench commands, and F.json, pictures and videos of render --stats F.json")
         ->required();
-    c->add_option("--out", o->out, "the page, .html (default: DIR/report.html)");
+    c->add_option("--out", o->out, "page to write, .html (default: DIR/report.html)");
     c->add_option("--title", o->page.title)->capture_default_str();
-    c->add_option("--lead", o->page.lead, "a paragraph below the title");
-    c->add_option("--next", o->page.next, "a command to show at the end; repeatable")
+    c->add_option("--lead", o->page.lead, "text of a paragraph below the title");
+    c->add_option("--next", o->page.next, "command to show at the end; repeatable")
         ->take_all()
         ->allow_extra_args(false);
     c->footer(R"(Examples:
@@ -88,8 +88,8 @@ void add_bench_report(CLI::App& bench, int& exit_code)
   lightwell render cornell --eye right --paths 4 --size 64x48 --out sweep/right.exr --png sweep/right.png --stats sweep/right.json
   lightwell bench report sweep --out index.html --title Cornell
 
-The page needs nothing beside itself: pictures (PNG) and videos (MP4) are in it. Two renders that differ in --eye alone are shown as a
-stereo pair, and for red and cyan glasses as DIR/LEFT_anaglyph.png.)");
+The page is self-contained: pictures (PNG) and videos (MP4) are embedded. Two renders that differ only in --eye are
+shown as a stereo pair, and as an anaglyph for red and cyan glasses, which is saved as DIR/LEFT_anaglyph.png.)");
     c->callback([o, &exit_code] { exit_code = run_bench_report(*o); });
 }
 

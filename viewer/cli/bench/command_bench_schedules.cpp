@@ -37,7 +37,7 @@ struct Variant {
     double relmse = 0;
 };
 
-/// "stored/16": 16 of the stored directions of each bounce follow what moves.
+/// Settings of a schedule; "stored/16" updates 16 of the stored directions of each bounce per frame.
 std::vector<Change> changes_of(std::string const& text)
 {
     std::size_t const slash = text.find('/');
@@ -47,12 +47,12 @@ std::vector<Change> changes_of(std::string const& text)
     auto const [end, error] = std::from_chars(from, to, updated);
     if (text.substr(0, slash) != "stored" || error != std::errc() || end != to)
         throw gi::InputError("'" + text + "' is no schedule",
-                             "only of the stored directions a part can follow what moves",
+                             "only the stored schedule can update a part of its directions",
                              "give stored, stored/16, temporal or streamed");
     return {{"schedule", "auto"}, {"updated_axes", updated}};
 }
 
-constexpr int kFirstMeasured = 4; ///< those before build what lasts
+constexpr int kFirstMeasured = 4; ///< earlier frames build lasting structures and are not measured
 
 class Measurement {
 public:
@@ -74,7 +74,7 @@ public:
     {
         for (int f = 0; f < o_.frames; ++f) {
             std::vector<gi::Layer> pictures;
-            for (Variant& v : variants_) pictures.push_back(frame(f, v)); // they take turns
+            for (Variant& v : variants_) pictures.push_back(frame(f, v)); // variants take turns
             if (f < o_.frames - o_.judged) continue;
             gi::Layer const truth =
                 reference_of(*variants_[0].session, order(f, 1).views[0], o_.reference_paths, reference_report_);
@@ -137,7 +137,7 @@ private:
 int run(SchedulesOptions const& o)
 {
     if (o.judged > o.frames)
-        throw gi::InputError(fmt::format("--judged {} of {} frames", o.judged, o.frames), "there are not so many",
+        throw gi::InputError(fmt::format("--judged {} of {} frames", o.judged, o.frames), "there are fewer",
                              "judge fewer, or render more");
     for (std::string const& schedule : o.schedules) {
         Settings settings;
@@ -145,7 +145,7 @@ int run(SchedulesOptions const& o)
     }
     check_folder(o.out);
     gi::make_folder(o.out);
-    BenchTable table = start_table("schedules", "Schedules of the hit buffers where things move",
+    BenchTable table = start_table("schedules", "Schedules of hit buffers in moving scenes",
                                    {"scene", "schedule", "paths_per_pixel", "frame_ms", "following_ms", "relmse"});
     table.facts = {{"size", o.size},
                    {"frames", std::to_string(o.frames)},
@@ -170,33 +170,33 @@ void add_bench_schedules(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<SchedulesOptions>();
     CLI::App* const c = bench.add_subcommand(
-        "schedules", "Which schedule leaves the least error in a frame's time where things move.");
+        "schedules", "Compare time and error of hit buffer schedules for moving scenes.");
     c->add_option("--scene", o->scenes, "files or names, comma-separated")
         ->delimiter(',')
         ->capture_default_str()
         ->allow_extra_args(false);
     c->add_option("--schedules", o->schedules,
-                  "stored/N: N of the stored directions of each bounce follow what moves; comma-separated")
+                  "stored/N: update N stored directions of each bounce per frame; comma-separated")
         ->delimiter(',')
         ->capture_default_str()
         ->allow_extra_args(false);
-    c->add_option("--paths", o->paths, "per pixel, comma-separated")
+    c->add_option("--paths", o->paths, "paths per pixel, comma-separated")
         ->delimiter(',')
         ->check(CLI::Range(1, 64))
         ->capture_default_str()
         ->allow_extra_args(false);
-    c->add_option("--set", o->settings, "KEY=VALUE as of view; repeatable")->take_all();
-    c->add_option("--size", o->size, "pixels")->capture_default_str();
-    c->add_option("--frames", o->frames, "each; the camera moves by 1 cm a frame")
+    c->add_option("--set", o->settings, "KEY=VALUE as for view; repeatable")->take_all();
+    c->add_option("--size", o->size, "width x height, pixels")->capture_default_str();
+    c->add_option("--frames", o->frames, "frames per variant; the camera moves by 1 cm per frame")
         ->check(CLI::Range(8, 10000))
         ->capture_default_str();
-    c->add_option("--rate", o->rate_hz, "Hz, of the scene's time")
+    c->add_option("--rate", o->rate_hz, "frames per second of scene time")
         ->check(CLI::Range(1.0, 1000.0))
         ->capture_default_str();
-    c->add_option("--judged", o->judged, "frames at the end whose errors are averaged")
+    c->add_option("--judged", o->judged, "number of last frames whose errors are averaged")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
-    c->add_option("--reference-paths", o->reference_paths, "per pixel")
+    c->add_option("--reference-paths", o->reference_paths, "paths per pixel of the reference")
         ->check(CLI::Range(1, 1 << 20))
         ->capture_default_str();
     c->add_option("--out", o->out, "folder for schedules.json and schedules.csv")->required();
@@ -204,8 +204,8 @@ void add_bench_schedules(CLI::App& bench, int& exit_code)
     c->footer(R"(Example:
   lightwell bench schedules --schedules stored,stored/16 --paths 1 --size 32x24 --frames 8 --reference-paths 4 --out schedules
 
-Frames as those of view, with reuse and filter; variants take turns. following_ms: what moves, drawn into the layers of
-stored directions. relMSE has the noise of the reference in it.)");
+Frames are rendered as in view, with reuse and filter; variants take turns. following_ms: time to draw moving
+geometry into the layers of stored directions. relmse contains the noise of the reference.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

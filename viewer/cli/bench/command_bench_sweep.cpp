@@ -19,8 +19,8 @@ int run(SweepOptions const& o)
     show(result.table, o.out, o.render.json);
     if (!result.interrupted) return 0;
     std::fputs(
-        "note: interrupted: the rows so far are saved; the same command starts again, but for the reference "
-        "pictures\n",
+        "note: interrupted: the rows so far are saved; the same command starts again, but keeps the "
+        "reference pictures\n",
         stderr);
     return kInterrupted;
 }
@@ -36,15 +36,15 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
         known += fmt::format("\n  {}: {}", m.name, m.summary);
     }
     o->budgets = {"30ms", "100ms", "300ms", "1s", "3s", "10s"};
-    CLI::App* const c = bench.add_subcommand("sweep", "The error that methods leave after budgets of time.");
+    CLI::App* const c = bench.add_subcommand("sweep", "Compare the errors of methods at equal time budgets.");
     auto const list = [&](char const* name, std::vector<std::string>& values, std::string const& help) {
         return c->add_option(name, values, help)->delimiter(',')->allow_extra_args(false);
     };
     list("--scene", o->scenes, "files or names, comma-separated")->required();
     list("--methods", o->methods,
-         "comma-separated, of:" + known +
-             "\n  slhb:auto, slhb:stored, slhb:streamed, slhb:temporal: with that schedule"
-             "\n  vpl_imperfect:30%, vpl_slhb:icosahedron:80, vpl_ao:0.5, vpl_dao:0.5: with those points, "
+         "comma-separated; methods:" + known +
+             "\n  slhb:auto, slhb:stored, slhb:streamed, slhb:temporal: slhb with this schedule"
+             "\n  vpl_imperfect:30%, vpl_slhb:icosahedron:80, vpl_ao:0.5, vpl_dao:0.5: with these points, "
              "directions, radius (m)")
         ->capture_default_str();
     list("--budgets", o->budgets, "times for a frame, comma-separated")->capture_default_str();
@@ -59,7 +59,7 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
                                              "paths per pixel of the reference picture, which is kept in DIR")
                                    ->check(CLI::Range(2, 1 << 24))
                                    ->capture_default_str();
-    c->add_option("--reference", o->reference, "a picture to take as reference, for one scene")->excludes(paths);
+    c->add_option("--reference", o->reference, "picture to use as reference; for one scene")->excludes(paths);
     c->add_option("--repeats", o->repeats, "renders per row, each with its own seed; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
@@ -75,12 +75,13 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
   lightwell bench sweep --scene cornell,atrium --methods slhb:stored,slhb:streamed --budgets 20ms --repeats 1 --size 24x24 --reference-paths 8 --out both --json
   lightwell bench sweep --scene cornell --methods vpl_exact,vpl_slhb,vpl_imperfect:30%,vpl_imperfect:5%,vpl_ao:0.1,vpl_dao:0.1,vpl_none --light-paths 64 --budgets 20ms --repeats 1 --size 24x24 --reference-paths 8 --out visibility
 
-Columns: budget_s, what was asked for, structures, paths and filter together; frame_s, the whole call with all that the method builds for it (a method
-finishes at least one path per pixel, so it may be more); trace_s, the tracing alone; paths per pixel; Mrays_per_s;
-relmse (relmse_indirect: of L2 alone), flip and bias against the reference, which is rendered with a seed of its own; reference_relmse, what the
-noise of the reference adds to relmse.
+Columns: budget_s, the requested time for structures, paths and filter together; frame_s, the time of the whole
+call, with all that the method builds for it (it may exceed the budget, as at least one path per pixel is
+finished); trace_s, the time of tracing alone; paths per pixel; Mrays_per_s; relmse (relmse_indirect: of L2 alone),
+flip and bias against the reference, which has its own seed; reference_relmse, the part of relmse caused by noise
+of the reference.
 
-Ctrl-C drops the render at hand, saves the rows so far and exits with 130; a second one ends at once.)");
+Ctrl-C discards the current render, saves the rows so far and exits with 130; a second one ends at once.)");
     c->callback([o, c, &exit_code] {
         check_sweep_methods(*c, o->render, o->methods);
         exit_code = run(*o);

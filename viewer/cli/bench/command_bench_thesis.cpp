@@ -24,7 +24,7 @@ struct ThesisOptions {
     bool json = false;
 };
 
-/// The room with a displaced sphere, of 2K to 1M triangles like the thesis's statue; one world and reference each.
+/// Room with a displaced sphere, of 2K to 1M triangles like the statue of the thesis, with its reference pictures.
 struct Model {
     World world;
     std::map<int, Picture> reference; ///< by bounces
@@ -137,18 +137,18 @@ int run(ThesisOptions const& o)
 void add_bench_thesis(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<ThesisOptions>();
-    CLI::App* const c = bench.add_subcommand("thesis", "The sweeps of tables 6.1 to 6.4 of Yu 2012, with errors.");
+    CLI::App* const c = bench.add_subcommand("thesis", "Repeat tables 6.1 to 6.4 of Yu 2012, with errors.");
     c->add_option("--size", o->size, "pixels on a side")->check(CLI::Range(1, 8192))->capture_default_str();
-    c->add_option("--paths", o->paths, "per pixel, tables 6.1 to 6.3")
+    c->add_option("--paths", o->paths, "paths per pixel, tables 6.1 to 6.3")
         ->check(CLI::Range(1, 1 << 20))
         ->capture_default_str();
     c->add_option("--most-triangles", o->most_triangles, "leave out larger models")
         ->check(CLI::Range(2000u, 100'000'000u))
         ->capture_default_str();
-    c->add_option("--reference-paths", o->reference_paths, "per pixel")
+    c->add_option("--reference-paths", o->reference_paths, "paths per pixel of the reference")
         ->check(CLI::Range(1u, 1u << 24))
         ->capture_default_str();
-    c->add_option("--repeats", o->repeats, "of each time; rows hold medians")
+    c->add_option("--repeats", o->repeats, "measurements of each time; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     c->add_option("--out", o->out, "folder for thesis.json and thesis.csv")->required();
@@ -156,7 +156,8 @@ void add_bench_thesis(CLI::App& bench, int& exit_code)
     c->footer(R"(Example:
   lightwell bench thesis --size 16 --paths 2 --most-triangles 2000 --reference-paths 8 --out thesis
 
-frame_ms is the whole frame: hit buffers of all axes (build_ms of it), shadow maps, G-buffers and paths. The thesis has 512 x 512 pixels on a GTX 480.)");
+frame_ms is the time of the whole frame: hit buffers of all axes (build_ms alone), shadow maps, G-buffers and
+paths. The thesis used 512 x 512 pixels on a GTX 480.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

@@ -28,7 +28,7 @@ struct ViewsOptions {
     bool json = false;
 };
 
-/// The views of a variant, seen from a camera.
+/// Returns the views of a variant for a camera.
 using Views = std::function<std::vector<ViewCommand>(gi::Camera const&)>;
 
 gi::Camera aside(gi::Camera camera, double m)
@@ -37,7 +37,7 @@ gi::Camera aside(gi::Camera camera, double m)
     return camera;
 }
 
-/// Who stands in a CAVE stands in the scene: a camera that looks into it from outside goes to its middle.
+/// The user of a CAVE stands inside the scene, so a camera outside of it is moved to its middle.
 gi::Camera inside(gi::Camera camera, gi::World const& world)
 {
     gi::vec3 const at = gi::vec3(gi::dvec3(camera.world_from_camera[3]) - world.origin);
@@ -47,7 +47,7 @@ gi::Camera inside(gi::Camera camera, gi::World const& world)
     return camera;
 }
 
-/// Left, right, below and before the eye, 90 degrees each.
+/// Walls to the left, right, below and in front of the eye, 90 degrees each.
 std::vector<ViewCommand> walls(gi::Camera const& eye, int size)
 {
     std::vector<ViewCommand> views;
@@ -80,7 +80,7 @@ void write_picture(gi::Layer const& color, ViewCommand const& view, std::filesys
     gi::write_png(file, view.width, view.height, gi::tone_map_bytes(color, {}));
 }
 
-/// relMSE of the last view of a frame against the reference from the same place; both are written as pictures.
+/// relMSE of the last view of a frame against the reference from the same camera; writes both as pictures.
 double error_of(RenderSession const& session, FrameCommand const& order, SessionFrame const& frame, int paths,
                 std::filesystem::path const& pictures, gi::Report& report)
 {
@@ -92,7 +92,7 @@ double error_of(RenderSession const& session, FrameCommand const& order, Session
     return gi::measure_errors(seen.data, right.data, 3).relmse;
 }
 
-/// What the frames of a variant spent their time on, median of each stage, ms.
+/// Median time of each stage in the frames of a variant, ms.
 std::string stages_of(ViewVariant const& v)
 {
     std::string text;
@@ -133,13 +133,13 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
     double const step = 0.002 * double(variants[0].session->world().bounds.radius());
     auto const eye = [&](ViewVariant const& v, int f) { return aside(v.in_cave ? in_cave : start, step * f); };
     FrameCommand order;
-    for (int f = 0; f < o.frames; ++f) // they take turns
+    for (int f = 0; f < o.frames; ++f) // variants take turns
         for (ViewVariant& v : variants) {
             order.frame = std::uint64_t(f);
             order.scene_s = f / 20.0;
             order.views = v.views(eye(v, f));
             double const s = seconds_of([&] { v.last = v.session->render(order, {}); });
-            if (f < 4) continue; // they build what lasts
+            if (f < 4) continue; // the first frames build lasting structures
             v.ms.push_back(1e3 * s);
             for (auto const& [stage, stage_s] : v.last.stages_s) v.stages_ms[stage].push_back(1e3 * stage_s);
         }
@@ -147,7 +147,7 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
         ViewVariant& v = variants[k];
         order.views = v.views(eye(v, o.frames - 1));
         double const more = double(order.views.size()) - 1;
-        // Against the variant of one view that came in the same round.
+        // Relative to the single-view variant of the same round.
         std::vector<double> const& first = variants[v.in_cave ? 4 : 0].ms;
         std::vector<double> extra;
         for (std::size_t f = 0; f < v.ms.size(); ++f) extra.push_back((v.ms[f] - first[f]) / std::max(1.0, more));
@@ -168,7 +168,7 @@ int run(ViewsOptions const& o)
     check_folder(o.out);
     gi::make_folder(o.out);
     BenchTable table = start_table(
-        "views", "What further views of a frame cost",
+        "views", "Cost of further views of a frame",
         {"scene", "views", "count", "size", "frame_ms", "each_further_over_first", "relmse_of_last_view"});
     for (std::string const& scene : o.scenes) {
         measure(o, scene, table);
@@ -184,25 +184,25 @@ void add_bench_views(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<ViewsOptions>();
     CLI::App* const c =
-        bench.add_subcommand("views", "What a second eye and further walls cost, with their error.");
+        bench.add_subcommand("views", "Measure the cost of a second eye and further walls, with their error.");
     c->add_option("--scene", o->scenes, "files or names, comma-separated")
         ->delimiter(',')
         ->capture_default_str()
         ->allow_extra_args(false);
-    c->add_option("--set", o->settings, "KEY=VALUE as of view; repeatable")->take_all();
-    c->add_option("--size", o->size, "of an eye; walls are as high and square")->capture_default_str();
-    c->add_option("--frames", o->frames, "each; the camera moves")
+    c->add_option("--set", o->settings, "KEY=VALUE as for view; repeatable")->take_all();
+    c->add_option("--size", o->size, "of an eye, pixels; walls are square, of its height")->capture_default_str();
+    c->add_option("--frames", o->frames, "frames per variant; the camera moves")
         ->check(CLI::Range(8, 10000))
         ->capture_default_str();
-    c->add_option("--eye-distance", o->eye_distance_m, "m")->capture_default_str();
-    c->add_option("--reference-paths", o->reference_paths, "per pixel")->capture_default_str();
+    c->add_option("--eye-distance", o->eye_distance_m, "distance of the eyes, m")->capture_default_str();
+    c->add_option("--reference-paths", o->reference_paths, "paths per pixel")->capture_default_str();
     c->add_option("--out", o->out, "folder for views.json, views.csv and pictures")->required();
     c->add_flag("--json", o->json, "print the table as JSON");
     c->footer(R"(Example:
   lightwell bench views --scene cornell --size 48x36 --frames 8 --reference-paths 16 --out views
 
-Frames as those of view, with reuse and filter, while the camera moves; variants take turns. relMSE is that of the last
-view in the last frame.)");
+Frames are rendered as in view, with reuse and filter, while the camera moves; variants take turns. relMSE is that
+of the last view in the last frame.)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

@@ -1,4 +1,4 @@
-// Becomes the program that has the command, with the same arguments; what names no command is answered here.
+// Executes the program of the command with the same arguments. Calls without a known command are handled here.
 
 #include "viewer/cli/command_table.h"
 #include "viewer/cli/program.h"

@@ -43,8 +43,8 @@ int run(CompareOptions const& o)
     for (auto const& [name, value] : limits)
         if (std::none_of(result.values.begin(), result.values.end(),
                          [&, wanted = name](auto const& v) { return v.name == wanted; }))
-            throw gi::InputError("--fail-above knows no '" + name + "'", "no metric gives a value of that name",
-                                 "see the names that compare prints");
+            throw gi::InputError("--fail-above knows no '" + name + "'", "no metric gives a value with this name",
+                                 "use a name that compare prints");
     if (!o.difference.empty()) {
         int width = 0, height = 0;
         auto const pixels = gi::difference_image(image, reference, o.layer, width, height);
@@ -84,17 +84,17 @@ void add_compare(CLI::App& app, int& exit_code)
     auto const o = std::make_shared<CompareOptions>();
     CLI::App* const c = app.add_subcommand("compare", about("compare"));
     c->add_option("IMAGE", o->image, "EXR, HDR, PNG, JPEG, ...")->required();
-    c->add_option("REFERENCE", o->reference, "the truth; may be a whole multiple larger or smaller")->required();
+    c->add_option("REFERENCE", o->reference, "reference; may be an integer factor larger or smaller")->required();
     std::string known;
     for (gi::MetricInfo const& m : gi::metrics()) known += fmt::format("\n  {}: {}", m.name, m.meaning);
-    c->add_option("--metrics", o->metrics, "comma-separated, of:" + known)
+    c->add_option("--metrics", o->metrics, "comma-separated; known metrics:" + known)
         ->delimiter(',')
         ->allow_extra_args(false);
-    c->add_option("--layer", o->layer, "which layer to compare")->capture_default_str();
-    c->add_option("--fail-above", o->limits, "NAME=LIMIT: exit with 1 where a value is larger")
+    c->add_option("--layer", o->layer, "layer to compare")->capture_default_str();
+    c->add_option("--fail-above", o->limits, "NAME=LIMIT: exit with code 1 if this value is larger")
         ->delimiter(',')
         ->allow_extra_args(false);
-    c->add_option("--diff", o->difference, "PNG of the FLIP error, .png; black = none");
+    c->add_option("--diff", o->difference, "map of the FLIP error to write (.png); black = no error");
     c->add_flag("--json", o->json, "print JSON");
     c->footer(R"(Examples:
   lightwell render cornell --size 64x64 --paths 16 --out a.exr

@@ -24,7 +24,7 @@
 namespace viewer {
 namespace {
 
-/// @param render  called with what stops it and shows how far it is
+/// @param render  called with the stop request and a progress callback
 gi::RenderResult
 trace(RenderOptions const& o, RankWork& work,
       std::function<gi::RenderResult(gi::StopRequest const&, gi::RenderProgress const&)> const& render)
@@ -50,7 +50,7 @@ void save(RenderOptions const& o, gi::RenderSettings const& settings, gi::Render
 struct Shot {
     gi::ScenePlan plan;
     gi::RenderResult result;
-    std::map<std::string, gi::Report::Loss> loaded; ///< losses before the paths
+    std::map<std::string, gi::Report::Loss> loaded; ///< losses before path tracing
 };
 
 Shot shoot_moment(RenderOptions const& o, gi::RenderSettings const& settings, gi::World const& world,
@@ -64,7 +64,7 @@ Shot shoot_moment(RenderOptions const& o, gi::RenderSettings const& settings, gi
     return {gi::plan_scene(world), std::move(result), loaded};
 }
 
-/// While the shutter is open.
+/// Renders with motion blur, over the time that the shutter is open.
 Shot shoot_motion(RenderOptions const& o, gi::RenderSettings const& settings, gi::MovingWorld& world,
                   FrameCamera const& eye, RankWork& work, gi::Report& report)
 {
@@ -104,13 +104,13 @@ Shot shoot(RenderOptions const& o, gi::RenderSettings const& settings, CameraCho
                  : shoot_moment(o, settings, still, eye, work, report);
 }
 
-/// Options that no output reads.
+/// Throws if tone mapping options are given without an output that uses them.
 void check_display(CLI::App const& command, RenderOptions const& o)
 {
     for (char const* name : {"--exposure", "--tone"})
         if (command.get_option(name)->count() > 0 && o.png.empty() && o.video.empty())
             throw gi::InputError(std::string(name) + " without --png or --video",
-                                 "it is about pictures for a display", "add --png F.png, or leave it out");
+                                 "it applies only to tone-mapped pictures", "add --png F.png, or leave it out");
 }
 
 void check_endings(RenderOptions const& o)
@@ -119,7 +119,7 @@ void check_endings(RenderOptions const& o)
     check_ending(o.png, ".png", "a PNG", "use --out for an OpenEXR picture, or end it with .png");
 }
 
-/// What several processes cannot share.
+/// Throws on options that do not work with several processes.
 void check_ranks(RenderOptions const& o, gi::RenderSettings const& s)
 {
     auto const refuse = [](std::string const& option, std::string const& why, std::string const& suggestion) {
@@ -128,17 +128,17 @@ void check_ranks(RenderOptions const& o, gi::RenderSettings const& s)
     if (o.frames.empty()) {
         if (s.budget_s > 0 || s.until_relmse > 0)
             throw refuse(s.budget_s > 0 ? "--budget" : "--until",
-                         "which paths each has to trace must be known before", "give --paths");
-        if (o.resume) throw refuse("--resume", "they keep no state of a single picture", "leave it out");
-        if (o.shutter_s > 0) throw refuse("--shutter", "it takes one world through all moments", "leave it out");
+                         "the paths of each process must be known in advance", "give --paths");
+        if (o.resume) throw refuse("--resume", "they save no state of a single picture", "leave it out");
+        if (o.shutter_s > 0) throw refuse("--shutter", "one world moves through the exposure", "leave it out");
         return;
     }
     if (o.reuse > 1)
-        throw refuse("--reuse", "a frame takes light from those before it, which other processes have",
+        throw refuse("--reuse", "a frame reuses light of earlier frames, which other processes render",
                      "render with one process, or leave --reuse out");
     if (!o.video.empty() && o.out.empty())
-        throw refuse("--video", "it is made from the frames of all of them, by their files",
-                     "add --out F_%04d.exr, on a disk that all of them see");
+        throw refuse("--video", "the video is made from the frame files of all processes",
+                     "add --out F_%04d.exr on a disk that all of them share");
 }
 
 int render_picture(RenderOptions const& o, gi::RenderSettings settings,
@@ -146,7 +146,7 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
 {
     CameraMotion const motion = make_motion(o);
     check_outputs(outputs_of(o, settings), {o.scene, o.environment, o.camera_path});
-    std::string const state = o.out.empty() ? "" : o.out + ".state"; // also where this render keeps none
+    std::string const state = o.out.empty() ? "" : o.out + ".state"; // may exist although this render writes none
     bool const has_state = !state.empty() && std::filesystem::exists(state);
     if (!work.alone()) {
         settings.checkpoint.clear();
@@ -155,7 +155,7 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
     if (o.resume && !has_state) say("there is no '" + state + "': starting afresh");
     if (!o.resume && has_state && work.leads())
         throw gi::InputError("'" + state + "' holds an unfinished render", "a new one would replace it",
-                             "add --resume to go on, or delete it");
+                             "add --resume to continue, or delete it");
 
     gi::Report report;
     auto [plan, result, loaded] = shoot(o, settings, choice, motion, work, report);
@@ -185,8 +185,8 @@ int render_picture(RenderOptions const& o, gi::RenderSettings settings,
     say(std::string("interrupted: the picture so far is saved") +
         (o.shutter_s > 0               ? "; with --shutter it cannot be resumed"
          : settings.checkpoint.empty() ? "; with --out it could be resumed"
-         : !result.resumable           ? "; its state could not be written, so that it cannot be resumed"
-                                       : "; the same command with --resume goes on"));
+         : !result.resumable           ? "; its state could not be written, so it cannot be resumed"
+                                       : "; the same command with --resume continues"));
     return kInterrupted;
 }
 
@@ -203,9 +203,9 @@ int run(RenderOptions o)
     Cluster cluster({version_text(), command, Cluster::started_by_mpirun() ? file_hash(o.scene) : 0},
                     cluster_settings(o.ranks));
     if (!cluster.leads()) be_silent();
-    std::string const what_stays = o.frames.empty() ? "of a picture that several processes share nothing is kept"
-                                   : o.out.empty()  ? "frames that are complete stay"
-                                                    : "the same command with --resume renders what is missing";
+    std::string const what_stays = o.frames.empty() ? "nothing is kept of a picture that several processes share"
+                                   : o.out.empty()  ? "complete frames are kept"
+                                                    : "the same command with --resume renders the missing frames";
     try {
         RankWork work(cluster);
         return o.frames.empty() ? render_picture(o, settings, denoise_settings, choice, work)

@@ -30,7 +30,7 @@ struct GenerateOptions {
     std::string out;
 };
 
-/// Refuses before anything is written, also where a scene file of somebody's own would be replaced.
+/// Throws before anything is written if a file cannot be written or would replace a scene that was not generated.
 void check_bundle(gi::Scene const& scene, std::string const& out)
 {
     std::vector<std::string> names;
@@ -79,15 +79,15 @@ int save_sky(GenerateOptions const& o)
 void declare_sky(CLI::App& generate, std::shared_ptr<GenerateOptions> const& o, int& exit_code)
 {
     CLI::App* const c = generate.add_subcommand(
-        "sky", "a clear sky (Preetham et al. 1999) as a lat-long map; its luminance is in kcd/m2");
+        "sky", "a clear sky (Preetham et al. 1999) as a lat-long map, luminance in kcd/m2");
     gi::SkyOptions& s = o->sky;
     c->add_option("--turbidity", s.turbidity, "2 (very clear) to 10 (hazy)")->capture_default_str();
     c->add_option("--sun-elevation", s.sun_elevation_deg, "degrees, 0 to 90")->capture_default_str();
     c->add_option("--sun-azimuth", s.sun_azimuth_deg, "degrees from -Z towards +X")->capture_default_str();
-    c->add_flag("--no-sun", o->no_sun, "leave its disc out; the ground stays lit by it");
-    c->add_option("--ground-albedo", o->ground, "below the horizon: one number or R,G,B (default: 0.2)");
-    c->add_option("--size", o->sky_size, "texels")->capture_default_str();
-    c->add_option("--out", o->out, "EXR to write, .exr")->required();
+    c->add_flag("--no-sun", o->no_sun, "omit the sun's disc; the ground is still lit by it");
+    c->add_option("--ground-albedo", o->ground, "albedo below the horizon: one number or R,G,B (default: 0.2)");
+    c->add_option("--size", o->sky_size, "width x height, texels")->capture_default_str();
+    c->add_option("--out", o->out, "EXR file to write (.exr)")->required();
     c->callback([o, &exit_code] {
         check_ending(o->out, ".exr", "an OpenEXR picture", "end it with .exr");
         check_outputs({o->out}, {});
@@ -112,11 +112,11 @@ void add_generate(CLI::App& app, int& exit_code)
   lightwell generate sky --turbidity 3 --sun-elevation 40 --sun-azimuth 120 --size 256x128 --out sky.exr
   lightwell render cornell --envmap sky.exr --envmap-scale 0.05 --size 32x32 --paths 4 --out lit.exr
 
-A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them.)");
+A scene with a sky is saved as three files: F.glb, F_sky.exr and F.yaml, which refers to both.)");
     using Make = std::function<gi::Scene()>;
     auto const add = [&](char const* name, char const* help, Make const& make) {
         CLI::App* const kind = c->add_subcommand(name, help);
-        kind->add_option("--out", o->out, "GLB to write, .glb")->required();
+        kind->add_option("--out", o->out, "GLB file to write (.glb)")->required();
         kind->callback([o, make, &exit_code] {
             check_ending(o->out, ".glb", "a binary glTF scene", "end it with .glb");
             check_outputs({o->out}, {});
@@ -129,22 +129,22 @@ A scene with a sky is three files: F.glb, F_sky.exr and F.yaml, which joins them
         return gi::generate_atrium(o->atrium);
     });
     atrium->add_option("--bays", o->atrium.bays, "arches along the gallery")->capture_default_str();
-    atrium->add_option("--detail", o->atrium.detail, "tessellation; 1 = about 50K triangles")
+    atrium->add_option("--detail", o->atrium.detail, "tessellation; 1 = about 50,000 triangles")
         ->capture_default_str();
     atrium->add_option("--sun-elevation", o->atrium.sun_elevation_deg, "degrees")->capture_default_str();
     atrium->add_option("--sun-azimuth", o->atrium.sun_azimuth_deg, "degrees from -Z towards +X")
         ->capture_default_str();
     atrium->add_flag("--no-figure", o->no_figure, "leave out the walking figure");
-    add("cornell", "the Cornell box by its published measurements", [] { return gi::generate_cornell(); });
-    add("mirror", "a room with a mirror before the camera", [] { return gi::generate_mirror(); });
+    add("cornell", "the Cornell box with its published measurements", [] { return gi::generate_cornell(); });
+    add("mirror", "a room with a mirror in front of the camera", [] { return gi::generate_mirror(); });
     add("avatar", "a skinned mannequin, for view --avatar", [] { return gi::generate_avatar(); });
     CLI::App* const boxes =
         add("boxes", "randomly turned boxes on a grid", [o] { return gi::generate_boxes(o->triangles, o->seed); });
     CLI::App* const sphere =
         add("sphere", "a displaced sphere", [o] { return gi::generate_sphere(o->triangles, o->seed); });
     for (CLI::App* const kind : {boxes, sphere}) {
-        kind->add_option("--triangles", o->triangles, "about so many")->capture_default_str();
-        kind->add_option("--seed", o->seed, "another seed, another scene")
+        kind->add_option("--triangles", o->triangles, "approximate number of triangles")->capture_default_str();
+        kind->add_option("--seed", o->seed, "seed of the random numbers")
             ->check(check_seed)
             ->capture_default_str();
     }

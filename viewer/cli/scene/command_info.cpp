@@ -26,7 +26,7 @@ struct InfoOptions {
     bool json = false;
 };
 
-/// A set of directions, how even it is, and its maps.
+/// Prints a direction set, how uniform it is, and the errors of its look-up maps.
 int run_directions(InfoOptions const& o)
 {
     constexpr std::size_t kSamples = std::size_t(1) << 18;
@@ -85,7 +85,7 @@ int run(InfoOptions const& o)
         throw gi::InputError("info needs a SCENE or --directions", "it was given both or none",
                              "give one of them");
     if (!o.directions.empty()) return run_directions(o);
-    if (!o.png.empty()) throw gi::InputError("--png is for --directions", "a scene has no drawing", "use render");
+    if (!o.png.empty()) throw gi::InputError("--png without --directions", "info draws no scenes", "use render");
     gi::Report report;
     auto const scene = std::make_shared<gi::Scene const>(gi::load_scene(o.scene, report));
     gi::World const world = gi::build_world(scene, o.time_s, report);
@@ -111,8 +111,8 @@ int run(InfoOptions const& o)
         for (gi::PlanItem const& item : items)
             fmt::print("  {:<4} {:<38} {}\n", item.build ? "yes" : "no", item.what, item.reason);
     };
-    print_plan("What is built for it", plan.items);
-    print_plan("By the method slhb, at 512 x 512 pixels", slhb);
+    print_plan("What is built for the scene", plan.items);
+    print_plan("What method slhb builds, at 512 x 512 pixels", slhb);
     std::fflush(stdout);
     print_losses(report);
     return 0;
@@ -125,20 +125,20 @@ void add_info(CLI::App& app, int& exit_code)
     auto const o = std::make_shared<InfoOptions>();
     CLI::App* const c = app.add_subcommand("info", about("info"));
     c->add_option("SCENE", o->scene,
-                  "a scene file, a folder of OBJ or PLY frames, or atrium, cornell, mirror, avatar");
+                  "scene file, folder of OBJ or PLY frames, or atrium, cornell, mirror, avatar");
     c->add_option("--directions", o->directions,
-                  "instead of a scene: FAMILY:COUNT, a set of directions; families are\n"
+                  "instead of a scene: a direction set FAMILY:COUNT; families are\n"
                   "icosahedron, octahedron, tetrahedron, uv_grid, halton, fibonacci");
-    c->add_option("--png", o->png, "with --directions: a drawing of them");
-    c->add_option("--time", o->time_s, "moment of the animation, s")->check(in_range(-1e9, 1e9));
+    c->add_option("--png", o->png, "with --directions: PNG file for a drawing of them");
+    c->add_option("--time", o->time_s, "animation time, s")->check(in_range(-1e9, 1e9));
     c->add_flag("--json", o->json, "print JSON");
     c->footer(R"(Examples:
   lightwell info atrium
   lightwell info cornell --json
   lightwell info --directions icosahedron:320 --png icosahedron.png
 
-Below "environment map" stands what it sends: irradiance (red, green, blue) of unshadowed faces that look up, down and
-where most comes from; and how much of the map is smooth, by squared radiance: little, where it has a sun.)");
+The lines below "environment map" give the irradiance (red, green, blue) of unshadowed surfaces that face up, down
+and to the most light, and the share of the map, by squared radiance, that is smooth (small if it has a sun).)");
     c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

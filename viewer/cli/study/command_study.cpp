@@ -87,7 +87,7 @@ int run_example(StudyOptions const& o)
         fmt::print("{}\n", o.out);
         return 0;
     }
-    throw gi::InputError("there is no example '" + o.example + "'", "the program carries others",
+    throw gi::InputError("there is no example '" + o.example + "'", "no built-in experiment has this name",
                          "there are: " + known);
 }
 
@@ -100,22 +100,22 @@ void add_study(CLI::App& app, int& exit_code)
     study->require_subcommand(1);
 
     CLI::App* const plan = study->add_subcommand(
-        "plan", "What will happen to a participant: order, counts, transitions, expected duration.");
+        "plan", "Print a participant's plan: order, counts, transitions, expected duration.");
     plan->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
     plan->add_option("--participant", o->participant, "number, from 1")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    plan->add_option("--out", o->out, "write the plan as a table (TSV)");
-    plan->add_flag("--json", o->json, "print JSON, without the single steps");
+    plan->add_option("--out", o->out, "file for the plan as a table (TSV)");
+    plan->add_flag("--json", o->json, "print JSON, without the steps");
     plan->callback([o, &exit_code] { exit_code = run_plan(*o); });
 
     CLI::App* const example =
-        study->add_subcommand("example", "Write one of the experiments that the program carries.");
+        study->add_subcommand("example", "Write one of the built-in example experiments.");
     example->add_option("NAME", o->example, "visibility2026, pairs, staircase, rating or ar_paths")->required();
     example->add_option("--out", o->out, "file to write")->required();
     example->callback([o, &exit_code] { exit_code = run_example(*o); });
 
-    for (CommandRow const& c : commands()) // those of another program, for --help
+    for (CommandRow const& c : commands()) // commands of the other program, for --help
         if (c.name.starts_with("study ")) add_elsewhere(*study, c);
     add_study_simulate(*study, exit_code);
     add_study_tables(*study, exit_code);
@@ -128,8 +128,8 @@ void add_study(CLI::App& app, int& exit_code)
   lightwell study simulate visibility2026.yaml --participants 1..2 --out simulated
   lightwell study report simulated --out report.html
 
-The same script and participant give the same plan, byte by byte. What is doubtful, such as more than 60 minutes, is said on
-stderr. docs/study.md has every key of a script.)");
+A script and a participant always give the same plan, byte for byte. Doubtful choices, such as sessions of
+more than 60 minutes, are reported on stderr. docs/study.md describes every key of a script.)");
 }
 
 } // namespace viewer

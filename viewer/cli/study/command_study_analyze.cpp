@@ -21,7 +21,7 @@ struct AnalyzeOptions {
     bool json = false;
 };
 
-/// The CSV of each table.
+/// Each table as CSV.
 std::vector<study::TextFile> csv_files(study::Analysis const& analysis)
 {
     std::vector<study::TextFile> files;
@@ -65,15 +65,15 @@ int run_report(AnalyzeOptions const& o)
 void add_options(CLI::App& command, AnalyzeOptions& o)
 {
     command.add_option("DIR", o.dir, "folder of the records")->required();
-    command.add_option("--script", o.script, "the experiment; otherwise the one that lies in DIR/code");
-    command.add_option("--exclude", o.settings.exclude, "participants to leave out: P003,P007")->delimiter(',');
-    command.add_option("--replicates", o.settings.replicates, "of bootstraps over observers")
+    command.add_option("--script", o.script, "script of the experiment (default: the one in DIR/code)");
+    command.add_option("--exclude", o.settings.exclude, "participants to exclude: P003,P007")->delimiter(',');
+    command.add_option("--replicates", o.settings.replicates, "number of bootstrap samples over observers")
         ->check(CLI::Range(100, 100000))
         ->capture_default_str();
-    command.add_option("--confidence", o.settings.confidence, "of intervals")
+    command.add_option("--confidence", o.settings.confidence, "confidence level of intervals")
         ->check(CLI::Range(0.5, 0.999))
         ->capture_default_str();
-    command.add_option("--seed", o.settings.seed, "of bootstraps")->capture_default_str();
+    command.add_option("--seed", o.settings.seed, "seed of the bootstraps")->capture_default_str();
 }
 
 } // namespace
@@ -82,10 +82,10 @@ void add_study_analyze(CLI::App& study, int& exit_code)
 {
     auto const o = std::make_shared<AnalyzeOptions>();
     CLI::App* const analyze = study.add_subcommand(
-        "analyze", "What the records say: exclusions, scales, thresholds, tests, timing, with their uncertainty.");
+        "analyze", "Analyse the records: exclusions, scales, thresholds, tests, timing, with uncertainties.");
     add_options(*analyze, *o);
     analyze->add_flag("--json", o->json, "print JSON");
-    analyze->add_option("--out", o->out, "folder for every table as CSV, and all of it as JSON");
+    analyze->add_option("--out", o->out, "folder for each table as CSV and the whole analysis as JSON");
     analyze->callback([o, &exit_code] { exit_code = run_analyze(*o); });
     analyze->footer(R"(Examples:
   lightwell study example pairs --out pairs.yaml
@@ -93,7 +93,7 @@ void add_study_analyze(CLI::App& study, int& exit_code)
   lightwell study analyze compared --script pairs.yaml --exclude P002)");
 
     CLI::App* const report =
-        study.add_subcommand("report", "The same as one page (HTML) with drawings: for reading and for print.");
+        study.add_subcommand("report", "Write the same analysis as one HTML page with figures, also for print.");
     add_options(*report, *o);
     report->add_option("--out", o->out, "file to write (HTML)")->required();
     report->callback([o, &exit_code] { exit_code = run_report(*o); });

@@ -13,7 +13,7 @@ void add_study_control(CLI::App& study, int& exit_code)
 {
     auto const where = std::make_shared<std::string>();
     CLI::App* const c = study.add_subcommand("control", about("study control"));
-    c->add_option("SOCKET", *where, "the --remote of study run, or the digits of its --remote-port")->required();
+    c->add_option("SOCKET", *where, "the session's --remote (a path) or --remote-port (a number)")->required();
     c->callback([where, &exit_code] {
         gi::Report report;
         gi::StopRequest stop;
@@ -22,10 +22,10 @@ void add_study_control(CLI::App& study, int& exit_code)
         print_losses(report);
         exit_code = 0;
     });
-    c->footer(R"(Example (beside a session that runs):
+    c->footer(R"(Example (while a session runs):
   lightwell study control /tmp/session.sock
 
-It ends with the session.)");
+The window closes when the session ends.)");
 }
 
 } // namespace viewer

@@ -32,7 +32,7 @@ int run(PrepareOptions const& o)
     auto const list = prepared_list(loaded.script, {width, height}, float(o.font_px), version_text());
     if (list.empty())
         throw gi::InputError("nothing to prepare in " + o.script, "no block has stimuli: prepared",
-                             "write it in the block, or run with live stimuli");
+                             "add it to a block, or run with live stimuli");
     gi::make_folder(o.out);
     Cluster cluster(
         {version_text(), "study prepare " + o.size, Cluster::started_by_mpirun() ? file_hash(o.script) : 0},
@@ -53,7 +53,7 @@ int run(PrepareOptions const& o)
             } catch (gi::InputError const& e) {
                 is_interrupted = work.stop().requested();
                 if (is_interrupted) break;
-                throw gi::InputError(wanted.where, e.what(), "stimuli that are complete stay");
+                throw gi::InputError(wanted.where, e.what(), "complete stimuli are kept");
             }
         }
         work.talk([&](Cluster& c) {
@@ -70,17 +70,17 @@ int run(PrepareOptions const& o)
         work.finish();
         if (!leads) return 0;
     } catch (RankInterrupted const&) {
-        fmt::print(stderr, "interrupted: stimuli that are complete stay\n");
+        fmt::print(stderr, "interrupted: complete stimuli are kept\n");
         return kInterrupted;
     } catch (RankLoss const& e) {
-        fmt::print(stderr, "lightwell: {} stops: {}; stimuli that are complete stay\n", cluster.name(), e.what());
+        fmt::print(stderr, "lightwell: {} stops: {}; complete stimuli are kept\n", cluster.name(), e.what());
         return 1;
     } catch (std::exception const& e) {
         cluster.leave(e.what());
         throw;
     }
     print_losses(report);
-    fmt::print("{}: {} stimuli, {} rendered, {} there already\n", o.out, list.size(), made, list.size() - made);
+    fmt::print("{}: {} stimuli, {} rendered, {} existed already\n", o.out, list.size(), made, list.size() - made);
     return 0;
 }
 
@@ -91,12 +91,12 @@ void add_study_prepare(CLI::App& study, int& exit_code)
     auto const o = std::make_shared<PrepareOptions>();
     CLI::App* const c = study.add_subcommand("prepare", about("study prepare"));
     c->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
-    c->add_option("--size", o->size, "of the participant's window, px")->capture_default_str();
-    c->add_option("--font", o->font_px, "height of its letters, px")
+    c->add_option("--size", o->size, "size of the participant's window, px")->capture_default_str();
+    c->add_option("--font", o->font_px, "height of text in the window, px")
         ->check(CLI::Range(8, 200))
         ->capture_default_str();
     c->add_option("--out", o->out, "folder for the pictures")->required();
-    c->add_option("--threads", o->threads, "that render, 0 = all")
+    c->add_option("--threads", o->threads, "render threads, 0 = all")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
     declare_rank_options(*c, o->ranks);
@@ -104,8 +104,8 @@ void add_study_prepare(CLI::App& study, int& exit_code)
     c->footer(R"(Example:
   mpirun -n 2 lightwell study prepare faces.yaml --size 1280x720 --out prepared
 
-Stimuli are known by a hash of scene, settings, size and the program's version. Under mpirun they are spread over the processes,
-which have to see one disk.)");
+Stimuli are identified by a hash of scene, settings, size and program version. Under mpirun they are distributed
+over the processes, which must share a disk.)");
 }
 
 } // namespace viewer

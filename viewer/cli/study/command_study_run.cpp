@@ -32,16 +32,22 @@ struct RunOptions {
     bool hmd = false, seated = false, resume = false, no_vsync = false, json = false;
 };
 
-/// Before anybody sits down: everything that will be shown can be set, read, and seen from its camera.
+std::string host_name()
+{
+    char name[256] = {};
+    return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
+}
+
+/// Checks before the session that all stimuli can be loaded, set up and seen from their cameras.
 void check_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scenes)
 {
-    gi::Report report; // what scenes lose counts when they are shown
+    gi::Report report; // losses are reported when the scenes are shown
     RenderSession session(scenes.load, 0, report);
     std::stable_sort(stimuli.begin(), stimuli.end(),
                      [](auto const& a, auto const& b) { return a.settings.scene < b.settings.scene; });
     bool is_edited = false;
     for (auto const& [s, where] : stimuli) {
-        if (s.ar) continue; // ArStimulusCheck has looked at it
+        if (s.ar) continue; // checked by ArStimulusCheck
         try {
             if (s.scene != session.scene_name() || is_edited) session.apply({"scene", s.scene});
             scenes.camera(session.world(), s.camera);
@@ -49,7 +55,7 @@ void check_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scen
         } catch (gi::InputError const& e) {
             throw gi::InputError(
                 where, e.what(),
-                "mend its settings; scenes are looked for beside the script, then in the current folder");
+                "correct its settings; scenes are searched beside the script, then in the current folder");
         }
         is_edited = !s.edits.empty();
     }
@@ -70,7 +76,7 @@ void check_prepared(study::Script const& script, glm::ivec2 screen_px, RunOption
     }
 }
 
-/// Walls and headsets show one stimulus at a time, rendered as heads move.
+/// Throws unless walls or a headset show one stimulus at a time, rendered live.
 void check_one_at_a_time(study::Script const& script, study::Plan const& plan, bool in_headset, bool on_walls)
 {
     for (study::PlanStep const& step : plan.steps) {
@@ -87,7 +93,7 @@ void check_one_at_a_time(study::Script const& script, study::Plan const& plan, b
             if (i > 0 && is_in_it != headset)
                 throw gi::InputError(fmt::format("{}: block {}", script.file, block.name),
                                      "stimuli of one trial have different displays (view)",
-                                     "let trials differ in it: per: FACTOR, or cross");
+                                     "vary it between trials: per: FACTOR, or cross");
             headset = is_in_it;
         }
         if (is_ar && on_walls)
@@ -129,11 +135,11 @@ int run(RunOptions const& o)
     gi::StopRequest stop;
     InterruptGuard const guard(stop);
     if (o.hmd && !o.display.empty())
-        throw gi::InputError("--hmd with --display", "a session is seen in one of them", "give one");
+        throw gi::InputError("--hmd with --display", "a session is shown in only one of them", "give one");
     ArStimulusCheck ar(loaded);
     ar.add(plan);
     ar.check();
-    std::vector<PlannedStimulus> const stimuli = stimuli_of(script, plan); // refuses settings, naming their block
+    std::vector<PlannedStimulus> const stimuli = stimuli_of(script, plan); // throws on invalid settings
     check_one_at_a_time(script, plan, o.hmd, !o.display.empty());
     check_stimuli(stimuli, trials.scenes);
     if (!o.display.empty()) trials.screen.display = load_display(o.display, report);
@@ -182,33 +188,34 @@ void add_study_run(CLI::App& study, int& exit_code)
     c->add_option("--session", o->session, "number of the session")
         ->check(CLI::Range(1, 99))
         ->capture_default_str();
-    c->add_flag("--resume", o->resume, "go on with a session that was cut off: same order, nothing twice");
-    c->add_option("--dir", o->dir, "folder of the data set; record.dir of the script otherwise");
-    c->add_option("--size", o->size, "of the window, px")->capture_default_str();
-    c->add_option("--fullscreen", o->fullscreen, "on the monitor of this number or name");
-    c->add_option("--display", o->display, "walls in place of a window (docs/displays.md)");
+    c->add_flag("--resume", o->resume, "continue an interrupted session: same order, nothing is repeated");
+    c->add_option("--dir", o->dir, "folder of the data set (default: record.dir of the script)");
+    c->add_option("--size", o->size, "window size, px")->capture_default_str();
+    c->add_option("--fullscreen", o->fullscreen, "full screen on the monitor with this number or name");
+    c->add_option("--display", o->display, "display file: walls instead of a window (docs/displays.md)");
     c->add_flag("--hmd", o->hmd,
-                "stimuli in a headset through OpenXR (docs/hmd.md), where `view` says nothing else");
-    c->add_flag("--seated", o->seated, "of a headset: as of view");
-    c->add_option("--font", o->font_px, "height of letters, px")->check(CLI::Range(8, 200))->capture_default_str();
-    c->add_option("--prepared", o->prepared, "folder of study prepare, for blocks with stimuli: prepared");
-    c->add_option("--threads", o->threads, "that render, 0 = all")
+                "show stimuli in a headset (OpenXR, docs/hmd.md) unless their `view` is set otherwise");
+    c->add_flag("--seated", o->seated, "with --hmd: space without a floor, as in lightwell view");
+    c->add_option("--font", o->font_px, "height of text, px")->check(CLI::Range(8, 200))->capture_default_str();
+    c->add_option("--prepared", o->prepared, "output folder of study prepare, for blocks with stimuli: prepared");
+    c->add_option("--threads", o->threads, "render threads, 0 = all")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
     c->add_option("--remote", o->remote, "Unix socket for the experimenter (study control, docs/remote.md)");
-    c->add_option("--remote-port", o->remote_port, "the same on 127.0.0.1; 0 = a free one")
+    c->add_option("--remote-port", o->remote_port, "port on 127.0.0.1 for the experimenter; 0 = any free port")
         ->check(CLI::Range(0, 65535));
     c->add_option("--marker-port", o->marker_port, "UDP port of 127.0.0.1 for markers")
         ->check(CLI::Range(1, 65535))
         ->capture_default_str();
-    c->add_flag("--no-vsync", o->no_vsync, "swaps do not wait for the display (trying out)");
+    c->add_flag("--no-vsync", o->no_vsync, "do not wait for the display's refresh (only for testing)");
     c->add_flag("--json", o->json, "print JSON");
     c->callback([o, &exit_code] { exit_code = run(*o); });
     c->footer(R"(Example (needs a display):
   lightwell study run pairs.yaml --participant 1 --dir data --fullscreen 0 --remote /tmp/session.sock
 
-Escape twice ends the session; what is done is kept, and --resume goes on. Exit codes: 0 every step is done, 1 not every one,
-2 the input or the call is wrong, the display does not keep time and the script requires it, or the disk fails.)");
+Pressing Escape twice ends the session; completed trials are kept, and --resume continues it.
+Exit codes: 0 all steps are done, 1 not all steps are done, 2 the input or the call is wrong, the disk failed,
+or the display does not keep time although the script requires it.)");
 }
 
 } // namespace viewer

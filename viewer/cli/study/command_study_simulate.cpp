@@ -32,7 +32,7 @@ study::ObserverModel observers(SimulateOptions const& o, study::Script const& s)
     return study::read_observers({bytes.begin(), bytes.end()}, o.observer, s);
 }
 
-/// One line once an entry is on the disk.
+/// Prints one line per entry once it is on disk.
 void print_kept(std::string const& id, study::JournalEntry const& entry)
 {
     if (auto const* const trial = std::get_if<study::TrialDone>(&entry))
@@ -95,22 +95,22 @@ void add_study_simulate(CLI::App& study, int& exit_code)
 {
     auto const o = std::make_shared<SimulateOptions>();
     CLI::App* const simulate = study.add_subcommand(
-        "simulate", "Sessions with model observers instead of people: for trying a script, for power, for tests.");
+        "simulate", "Simulate sessions with model observers: to try a script, for power analysis, for tests.");
     simulate->add_option("SCRIPT", o->script, "experiment (YAML, schema study/1)")->required();
-    simulate->add_option("--participants", o->participants, "3, 1..24 or 1,4,7..9; all of the script otherwise");
-    simulate->add_option("--out", o->out, "folder of the data set; simulated-ID otherwise");
-    simulate->add_option("--observer", o->observer, "who answers (YAML, docs/study.md)");
-    simulate->add_option("--seed", o->seed, "of the observers and their answers; that of the script otherwise");
+    simulate->add_option("--participants", o->participants, "3, 1..24 or 1,4,7..9 (default: all of the script)");
+    simulate->add_option("--out", o->out, "folder of the data set (default: simulated-ID)");
+    simulate->add_option("--observer", o->observer, "model of the observers (YAML, docs/study.md)");
+    simulate->add_option("--seed", o->seed, "seed of the observers and their answers (default: the script's)");
     simulate->add_option("--session", o->session, "number of the session")
         ->check(CLI::Range(1, 99))
         ->capture_default_str();
     CLI::Option* const resume = simulate->add_flag(
-        "--resume", o->resume, "go on with sessions that were cut off, begin those that are missing");
-    simulate->add_option("--gap-min", o->gap_min, "with --resume: minutes since the session was cut off")
+        "--resume", o->resume, "continue interrupted sessions and start missing ones");
+    simulate->add_option("--gap-min", o->gap_min, "with --resume: minutes since the session was interrupted")
         ->check(CLI::Range(-1e6, 1e6))
         ->needs(resume)
         ->capture_default_str();
-    simulate->add_flag("--each", o->each, "print a line for each step, once it is on the disk");
+    simulate->add_flag("--each", o->each, "print a line for each step once it is on disk");
     simulate->add_flag("--json", o->json, "print JSON");
     simulate->callback([o, &exit_code] { exit_code = run_simulate(*o); });
     simulate->footer(R"(Examples:
@@ -118,7 +118,7 @@ void add_study_simulate(CLI::App& study, int& exit_code)
   lightwell study simulate staircase.yaml --participants 1..3 --out simulated
   lightwell study simulate staircase.yaml --participants 4 --seed 7 --out other --each
 
-Exit codes: 0 every session is complete, 1 one is not, 2 the input or the call is wrong, or the disk fails.)");
+Exit codes: 0 all sessions are complete, 1 not all are, 2 the input or the call is wrong, or the disk failed.)");
 }
 
 } // namespace viewer

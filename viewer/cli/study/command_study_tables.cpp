@@ -43,7 +43,7 @@ int run_export(TablesOptions const& o)
 void add_records(CLI::App& command, TablesOptions& o)
 {
     command.add_option("DIR", o.dir, "folder of the records")->required();
-    command.add_option("--script", o.script, "the experiment; otherwise the one that lies in DIR/code");
+    command.add_option("--script", o.script, "script of the experiment (default: the one in DIR/code)");
 }
 
 } // namespace
@@ -52,7 +52,7 @@ void add_study_tables(CLI::App& study, int& exit_code)
 {
     auto const o = std::make_shared<TablesOptions>();
     CLI::App* const rebuild =
-        study.add_subcommand("rebuild", "Make the tables of an experiment anew from its journals (BIDS).");
+        study.add_subcommand("rebuild", "Rebuild the tables (BIDS) of an experiment from its journals.");
     add_records(*rebuild, *o);
     rebuild->callback([o, &exit_code] { exit_code = run_rebuild(*o); });
     rebuild->footer(R"(Examples:
@@ -60,13 +60,13 @@ void add_study_tables(CLI::App& study, int& exit_code)
   lightwell study simulate rating.yaml --participants 1..2 --out records
   lightwell study rebuild records --script rating.yaml
 
-The script is kept in records/code, so that later commands find it.)");
+The script is copied to records/code, where later commands find it.)");
 
     CLI::App* const exported =
-        study.add_subcommand("export", "All trials in one table, with a script of mixed models; SQLite.");
+        study.add_subcommand("export", "Export all trials as one table with a script for mixed models; SQLite.");
     add_records(*exported, *o);
-    exported->add_option("--out", o->out, "folder for CSV (Psych-DS) and analysis.R (lme4)");
-    exported->add_option("--sqlite", o->sqlite, "file for a database with the same tables");
+    exported->add_option("--out", o->out, "folder for CSV tables (Psych-DS) and analysis.R (lme4)");
+    exported->add_option("--sqlite", o->sqlite, "SQLite database to write, with the same tables");
     exported->callback([o, &exit_code] { exit_code = run_export(*o); });
     exported->footer(R"(Examples:
   lightwell study example rating --out rating.yaml

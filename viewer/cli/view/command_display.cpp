@@ -124,7 +124,7 @@ int run_calibrate(DisplayOptions const& o)
         std::string known;
         for (CalibrationPattern const p : kCalibrationPatterns)
             known += (known.empty() ? "" : ", ") + std::string(name_of(p));
-        throw gi::InputError("'" + o.pattern + "' is no pattern", "it is not known what to draw",
+        throw gi::InputError("'" + o.pattern + "' is no pattern", "no pattern has this name",
                              "there are: " + known);
     }
     gi::Report report;
@@ -157,7 +157,7 @@ int run_example(DisplayOptions const& o)
         std::fflush(stdout);
         return 0;
     }
-    throw gi::InputError("there is no example '" + o.example + "'", "the program carries others",
+    throw gi::InputError("there is no example '" + o.example + "'", "no built-in display has this name",
                          "there are: " + known);
 }
 
@@ -170,30 +170,30 @@ void add_display(CLI::App& app, int& exit_code)
     display->require_subcommand(1);
 
     CLI::App* const check =
-        display->add_subcommand("check", "What a display file describes, seen from the resting head.");
+        display->add_subcommand("check", "Print what a display file describes, as seen from the resting head.");
     check->add_option("FILE", o->file, "display file (YAML)")->required();
     check->add_flag("--json", o->json, "print JSON");
     check->callback([o, &exit_code] { exit_code = run_check(*o); });
 
     CLI::App* const import =
-        display->add_subcommand("import", "Turn the configuration of another program into a display file.");
+        display->add_subcommand("import", "Convert the configuration of another program to a display file.");
     import->add_option("FILE", o->file, ".json (SGCT), .pvx (ParaView), .eqc (Equalizer) or .cfg (Vrui)")
         ->required();
     import->add_option("--out", o->out, "display file to write")->required();
-    import->add_option("--section", o->section, "of Vrui: the environment, usually the name of a machine");
+    import->add_option("--section", o->section, "Vrui only: name of the environment, usually that of a machine");
     import->callback([o, &exit_code] { exit_code = run_import(*o);
 });
 
 CLI::App* const calibrate =
-    display->add_subcommand("calibrate", "One PNG per wall and eye, to be shown full screen.");
+    display->add_subcommand("calibrate", "Draw one PNG per wall and eye, to be shown full screen.");
 calibrate->add_option("FILE", o->file, "display file (YAML)")->required();
 calibrate->add_option("--pattern", o->pattern, "grid, corners, eyes, colours, crosstalk or blend")
     ->capture_default_str();
-calibrate->add_option("--out-dir", o->out_folder, "folder for the pictures")->required();
+calibrate->add_option("--out-dir", o->out_folder, "folder for the PNG files")->required();
 calibrate->callback([o, &exit_code] { exit_code = run_calibrate(*o); });
 
 CLI::App* const example =
-    display->add_subcommand("example", "Write one of the displays that the program carries.");
+    display->add_subcommand("example", "Write one of the built-in example displays.");
 example
     ->add_option("NAME", o->example,
                  "desktop3d.yaml, powerwall.yaml, cave4.yaml, cave5.yaml, dome.yaml,\n"
@@ -209,8 +209,8 @@ display->footer(R"(Examples:
   lightwell display example cave.pvx --out cave.pvx
   lightwell display import cave.pvx --out imported.yaml
 
-Angles and pixels per degree are those of one eye at the resting head; the latter in the middle of the wall. docs/displays.md
-says what the files hold.)");
+Angles and pixels per degree are for one eye at the resting head, pixels per degree in the middle of the wall.
+docs/displays.md describes the files.)");
 } // namespace viewer
 
 } // namespace viewer

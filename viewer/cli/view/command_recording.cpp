@@ -100,17 +100,19 @@ void add_recording(CLI::App& app, int& exit_code)
     auto const o = std::make_shared<RecordingOptions>();
     CLI::App* const c = app.add_subcommand("recording", about("recording"));
     c->require_subcommand(1);
-    CLI::App* const info = c->add_subcommand("info", "Scene, settings, frames, times, and whether it is whole.");
-    info->add_option("FILE", o->file, "made by --record")->required();
+    CLI::App* const info =
+        c->add_subcommand("info", "Print scene, settings, frames, times, and whether the file is complete.");
+    info->add_option("FILE", o->file, "recording made by --record")->required();
     info->add_flag("--json", o->json, "print JSON");
     info->footer(R"(Examples (view needs a display):
   lightwell view atrium --record walk.lwr
   lightwell recording info walk.lwr
   lightwell recording info walk.lwr --json)");
     info->callback([o, &exit_code] { exit_code = run_info(*o); });
-    CLI::App* const out = c->add_subcommand("export", "One row per frame: poses, cameras, changes, times.");
-    out->add_option("FILE", o->file, "made by --record")->required();
-    out->add_option("--csv", o->csv, "the table; its first lines explain the columns")->required();
+    CLI::App* const out =
+        c->add_subcommand("export", "Write one CSV row per frame: poses, cameras, changes, times.");
+    out->add_option("FILE", o->file, "recording made by --record")->required();
+    out->add_option("--csv", o->csv, "CSV file to write; its first lines explain the columns")->required();
     out->footer(R"(Examples (view needs a display):
   lightwell view atrium --record walk.lwr
   lightwell recording export walk.lwr --csv walk.csv)");

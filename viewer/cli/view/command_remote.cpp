@@ -25,14 +25,14 @@ int run(RemoteCommand const& o)
     std::vector<nlohmann::json> requests;
     for (std::string const& text : o.requests) {
         requests.push_back(parse_request(text));
-        check_request(requests.back()); // all of them, before the first is sent
+        check_request(requests.back()); // check all before the first is sent
     }
     RemoteClient client(o.where);
     for (nlohmann::json const& request : requests) {
         nlohmann::json const answer = client.ask(request, timeout);
         if (!answer.contains("result"))
             throw gi::InputError("the viewer refused " + json_line(request),
-                                 answer.contains("error") ? json_line(answer["error"]) : "it gives no reason",
+                                 answer.contains("error") ? json_line(answer["error"]) : "it gave no reason",
                                  "see docs/remote.md");
         std::fputs((json_line(answer["result"]) + "\n").c_str(), stdout);
         std::fflush(stdout);
@@ -46,8 +46,8 @@ void add_remote(CLI::App& app, int& exit_code)
 {
     auto const o = std::make_shared<RemoteCommand>();
     CLI::App* const c = app.add_subcommand("remote", about("remote"));
-    c->add_option("WHERE", o->where, "the socket's path, or the port, that the viewer was given")->required();
-    c->add_option("REQUESTS", o->requests, "JSON objects such as '{\"do\": \"stats\"}', asked in turn")
+    c->add_option("WHERE", o->where, "the viewer's --remote (path of the socket) or --remote-port")->required();
+    c->add_option("REQUESTS", o->requests, "JSON objects such as '{\"do\": \"stats\"}', sent in order")
         ->required();
     c->add_option("--timeout", o->timeout, "longest wait for each answer")->capture_default_str();
     c->footer("Requests:\n" + requests_as_text());

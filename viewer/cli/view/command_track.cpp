@@ -29,7 +29,7 @@ struct TrackOptions {
     bool json = false, quiet = false;
 };
 
-/// Of UDP, from `least` on.
+/// Accepts UDP ports from `least` to 65535.
 CLI::Validator port_from(int least)
 {
     return CLI::Validator(
@@ -70,8 +70,8 @@ struct Outgoing {
     std::vector<unsigned char> bytes;
 };
 
-/// DTrack has no names: the head is body 0, the hands are flysticks 0 (left) and 1, the feet bodies 1 (left)
-/// and 2.
+/// DTrack numbers bodies instead of naming them: the head is body 0, the hands are flysticks 0 (left) and 1
+/// (right), the feet are bodies 1 (left) and 2 (right).
 std::string dtrack_name(std::string const& body)
 {
     constexpr std::array<char const*, kBodies> kIds{"0", "flystick0", "flystick1", "1", "2"};
@@ -80,7 +80,7 @@ std::string dtrack_name(std::string const& body)
     return body;
 }
 
-/// Packets of all samples of one time, as a network delivers them.
+/// One packet for all samples of the same time, with simulated loss and jitter, in the order of sending.
 std::vector<Outgoing> packets_of(std::vector<TrackerSample> samples, TrackOptions const& o, std::size_t& lost)
 {
     std::mt19937 rng{unsigned(o.seed)};
@@ -128,9 +128,9 @@ int run_send(TrackOptions const& o)
     for (Outgoing const& p : packets) {
         if (!wait_until(start_s + p.at_s, stop)) break;
         ++sent;
-        refused += !sender.send(p.bytes); // that nobody listens is told with the packet after
+        refused += !sender.send(p.bytes); // a missing receiver is reported only with the next packet
     }
-    fmt::print("sent {} packets, left out {}, not taken {}\n", sent, lost, refused);
+    fmt::print("sent {} packets, left out {}, refused {}\n", sent, lost, refused);
     return stop.requested() ? kInterrupted : 0;
 }
 
@@ -233,52 +233,55 @@ int run_listen(TrackOptions const& o)
 void add_listen(CLI::App& track, int& exit_code)
 {
     auto const o = std::make_shared<TrackOptions>();
-    CLI::App* const c = track.add_subcommand("listen", "Print what a tracker sends, and its latency.");
+    CLI::App* const c = track.add_subcommand("listen", "Print the poses that a tracker sends, and their latency.");
     c->add_option("--type", o->type, "osc, dtrack or file")
         ->check(CLI::IsMember({"osc", "dtrack", "file"}))
         ->capture_default_str();
     c->add_option("--address", o->address,
-                  "where to receive: an address or interface of this machine; 0.0.0.0 = all")
+                  "address of this machine to receive at; 0.0.0.0 = all")
         ->capture_default_str();
-    c->add_option("--port", o->port, "UDP port; usual: osc 9000, dtrack 5000; 0 = any")->check(port_from(0));
-    c->add_option("--file", o->file, "of --type file: recorded poses (docs/trackers.md)");
-    c->add_option("--seconds", o->seconds, "how long")->check(in_range(0, 1e9))->capture_default_str();
-    c->add_option("--frame-rate", o->frame_rate_hz, "of a sender that counts frames and sends no time, Hz")
+    c->add_option("--port", o->port, "UDP port; default: osc 9000, dtrack 5000; 0 = any")->check(port_from(0));
+    c->add_option("--file", o->file, "with --type file: recorded poses (docs/trackers.md)");
+    c->add_option("--seconds", o->seconds, "duration")->check(in_range(0, 1e9))->capture_default_str();
+    c->add_option("--frame-rate", o->frame_rate_hz, "Hz, for senders that send a frame number but no time")
         ->check(in_range(0, 1e5));
-    c->add_option("--head", o->head, "the sender's name of the head")->capture_default_str();
-    c->add_option("--left-hand", o->left_hand, "of the left hand")->capture_default_str();
-    c->add_option("--right-hand", o->right_hand, "of the right hand")->capture_default_str();
-    c->add_option("--left-foot", o->left_foot, "of the left foot")->capture_default_str();
-    c->add_option("--right-foot", o->right_foot, "of the right foot")->capture_default_str();
-    c->add_flag("--quiet", o->quiet, "no samples, only the counts at the end");
-    c->add_flag("--json", o->json, "the counts as JSON");
+    c->add_option("--head", o->head, "name that the sender uses for the head")->capture_default_str();
+    c->add_option("--left-hand", o->left_hand, "the same for the left hand")->capture_default_str();
+    c->add_option("--right-hand", o->right_hand, "the same for the right hand")->capture_default_str();
+    c->add_option("--left-foot", o->left_foot, "the same for the left foot")->capture_default_str();
+    c->add_option("--right-foot", o->right_foot, "the same for the right foot")->capture_default_str();
+    c->add_flag("--quiet", o->quiet, "print only the counts at the end, no samples");
+    c->add_flag("--json", o->json, "print the counts as JSON");
     c->footer(R"(Examples:
   lightwell track walk --seconds 1 --out walk.csv
   lightwell track listen --type file --file walk.csv --seconds 0.2
   lightwell track listen --type osc --port 9123 --seconds 0.2 --json
 
-Of dtrack, head, left_hand and right_hand are body 0 and flysticks 0 and 1, left_foot and right_foot bodies 1 and 2, unless
-others are named. Poses are printed as sent, in m, in the tracker's own axes: x y z, then the quaternion x y z w, then buttons. Delays are above that of the fastest packet.)");
+With --type dtrack the defaults are body 0 (head), flysticks 0 and 1 (left and right hand), bodies 1 and 2 (left
+and right foot). Poses are printed as sent, in the tracker's own axes: x y z (m), quaternion x y z w, buttons.
+Delays are relative to that of the fastest packet.)");
     c->callback([o, &exit_code] { exit_code = run_listen(*o); });
 }
 
 void add_send(CLI::App& track, int& exit_code)
 {
     auto const o = std::make_shared<TrackOptions>();
-    CLI::App* const c = track.add_subcommand("send", "Play recorded poses as a tracker would send them.");
+    CLI::App* const c = track.add_subcommand("send", "Send recorded poses as a tracker would.");
     c->add_option("--type", o->type, "osc or dtrack")
         ->check(CLI::IsMember({"osc", "dtrack"}))
         ->capture_default_str();
-    c->add_option("--file", o->file, "recorded poses (docs/trackers.md); without it a walk");
-    c->add_option("--address", o->address, "to whom, numeric")->capture_default_str();
-    c->add_option("--port", o->port, "UDP port; usual: osc 9000, dtrack 5000")->check(port_from(1));
-    c->add_option("--seconds", o->seconds, "at most")->check(in_range(0, 86400))->capture_default_str();
-    c->add_option("--rate", o->rate_hz, "of the walk, Hz")->check(in_range(1, 1000))->capture_default_str();
-    c->add_option("--loss", o->loss, "share of packets left out")->check(in_range(0, 1))->capture_default_str();
-    c->add_option("--jitter", o->jitter_ms, "delays from 0 to this, ms; packets overtake each other")
+    c->add_option("--file", o->file, "recorded poses (docs/trackers.md); default: a generated walk");
+    c->add_option("--address", o->address, "numeric address of the receiver")->capture_default_str();
+    c->add_option("--port", o->port, "UDP port; default: osc 9000, dtrack 5000")->check(port_from(1));
+    c->add_option("--seconds", o->seconds, "longest duration")->check(in_range(0, 86400))->capture_default_str();
+    c->add_option("--rate", o->rate_hz, "poses per second of the generated walk")
+        ->check(in_range(1, 1000))
+        ->capture_default_str();
+    c->add_option("--loss", o->loss, "share of packets not sent")->check(in_range(0, 1))->capture_default_str();
+    c->add_option("--jitter", o->jitter_ms, "random delay of packets, 0 to this, ms; packets may overtake others")
         ->check(in_range(0, 1e4))
         ->capture_default_str();
-    c->add_option("--seed", o->seed, "of loss and jitter")->check(in_range(0, 2147483647));
+    c->add_option("--seed", o->seed, "seed of loss and jitter")->check(in_range(0, 2147483647));
     c->footer(R"(Examples:
   lightwell track walk --seconds 1 --out walk.csv
   lightwell track send --type osc --file walk.csv --port 9123 --seconds 0.2
@@ -290,8 +293,8 @@ void add_walk(CLI::App& track, int& exit_code)
 {
     auto const o = std::make_shared<TrackOptions>();
     CLI::App* const c =
-        track.add_subcommand("walk", "Write a walk on a circle, with turns of the head, as recorded poses.");
-    c->add_option("--seconds", o->seconds, "how long")->check(in_range(0, 86400))->capture_default_str();
+        track.add_subcommand("walk", "Write the poses of a generated walk on a circle with head turns.");
+    c->add_option("--seconds", o->seconds, "duration")->check(in_range(0, 86400))->capture_default_str();
     c->add_option("--rate", o->rate_hz, "poses per second")->check(in_range(1, 1000))->capture_default_str();
     c->add_option("--out", o->out, "file to write")->required();
     c->footer(R"(Examples:

@@ -46,7 +46,7 @@ struct ViewArguments {
     bool no_vsync = false;
 };
 
-/// As it was given, from what the system knows of this process.
+/// The command line of this process, from /proc.
 std::string command_line()
 {
     std::ifstream in("/proc/self/cmdline", std::ios::binary);
@@ -60,10 +60,10 @@ NavigationMode parse_navigation(std::string const& name)
 {
     for (NavigationMode const m : {NavigationMode::fly, NavigationMode::walk, NavigationMode::orbit})
         if (name == name_of(m)) return m;
-    throw gi::InputError("--navigate " + name, "it is not known here", "choose fly, walk or orbit");
+    throw gi::InputError("--navigate " + name, "there is no such mode", "choose fly, walk or orbit");
 }
 
-/// Of options and display. Those of a display's file are in its folder.
+/// Avatars of --avatar and of the display; file names in a display file are relative to its folder.
 std::vector<AvatarChoice> choices_of(ViewArguments const& a, std::optional<Display> const& display)
 {
     return avatar_choices(a.avatar, a.eye_height_m, display, std::filesystem::path(a.display).parent_path());
@@ -110,7 +110,7 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
     return o;
 }
 
-/// Which rank this is, before MPI has begun.
+/// Rank of this process, known before MPI is initialised; -1 if mpirun did not start it.
 int rank_of_environment()
 {
     char const* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
@@ -123,7 +123,7 @@ int ranks_of_environment()
     return ranks == nullptr ? 1 : std::atoi(ranks);
 }
 
-/// Throws InputError where windows of the display belong to ranks that were not started.
+/// Throws InputError if windows of the display belong to ranks that were not started.
 void check_ranks(Display const& display, int ranks)
 {
     std::vector<std::string> windows;
@@ -139,11 +139,11 @@ void check_ranks(Display const& display, int ranks)
                                      windows.size() == 1 ? "" : "s", fmt::join(windows, ", "),
                                      windows.size() == 1 ? "s" : "", one ? "" : "s", fmt::join(missing, ", "),
                                      ranks),
-                         "ranks count from 0, and nobody would show them",
+                         "ranks count from 0, and no process would show them",
                          fmt::format("start with mpirun -n {}", *missing.rbegin() + 1));
 }
 
-/// Followers have no sockets, files and people of their own.
+/// Removes the options of outputs that only the leading rank has.
 void follow(ViewOptions& o)
 {
     if (o.rank <= 0) return;
@@ -180,7 +180,7 @@ int finish(ViewArguments const& a, ViewRunSummary const& done, ClusterLink const
     return done.files_whole ? 0 : 1;
 }
 
-/// Before the session: afterwards it would be lost.
+/// Checks before the start that all results can be written.
 void check_results(ViewArguments const& a)
 {
     std::string const screenshot = a.screenshots.empty() ? "" : a.screenshots + "lightwell_000000.png";
@@ -201,7 +201,7 @@ int run(ViewArguments const& a, std::string const& command_line)
             check_ranks(*o.display, ranks_of_environment());
         } catch (gi::InputError const&) {
             if (o.rank == 0) throw;
-            return 0; // else mpirun may end the leader before it has said why
+            return 0; // otherwise mpirun may end the leader before it has printed the message
         }
     }
     if (o.rank < 0) check_results(a);
@@ -210,16 +210,16 @@ int run(ViewArguments const& a, std::string const& command_line)
                       nullptr, report);
     if (o.rank < 0) return finish(a, run_view(o, nullptr, stop, report), nullptr, report);
     if (!o.display)
-        throw gi::InputError("view by several ranks without --display", "it is not known which walls each shows",
+        throw gi::InputError("view by several ranks without --display", "no walls are assigned to the ranks",
                              "add --display FILE.yaml whose walls have ranks");
     std::string what = o.scene + " on " + a.display;
     std::uint64_t hash = file_hash(o.scene) ^ file_hash(a.display);
     for (AvatarChoice const& avatar : choices_of(a, o.display)) {
         what += " with " + avatar.file;
-        hash ^= file_hash(avatar.file) * (2 * avatar.user + 1); // the same for two users does not cancel out
+        hash ^= file_hash(avatar.file) * (2 * avatar.user + 1); // so that equal files do not cancel out
     }
     ClusterLink link({version_text(), what, hash}, cluster_settings(a.ranks));
-    if (o.rank == 0) check_results(a); // by now the others learn of a leader that leaves
+    if (o.rank == 0) check_results(a); // from here on the others are notified if the leader exits
     ViewRunSummary const done = run_view(o, &link, stop, report);
     if (o.rank == 0) return finish(a, done, &link, report);
     print_losses(report, fmt::format("rank {}: ", o.rank));
@@ -251,7 +251,7 @@ int run_replay(ViewArguments const& a)
                 options.environment_scale = load.value("environment_scale", 1.0);
                 options.background = load.value("background", "");
             } catch (nlohmann::json::exception const& e) {
-                throw gi::InputError("what the recording's scenes are read with cannot be read", e.what(),
+                throw gi::InputError("the recording's scene options cannot be read", e.what(),
                                      "record the walk again");
             }
             return scenes_with(options, avatars_of(load), report);
@@ -261,7 +261,7 @@ int run_replay(ViewArguments const& a)
     if (as_recorded(o))
         fmt::print(": {} as recorded bit by bit, {} not, {} unknown", done.same, done.other, done.unknown);
     fmt::print("\n");
-    if (done.first_other) fmt::print("first other frame: {}\n", *done.first_other);
+    if (done.first_other) fmt::print("first different frame: {}\n", *done.first_other);
     std::string const loss = describe_loss(done.end);
     if (!loss.empty()) say(loss);
     std::fflush(stdout);
@@ -269,14 +269,14 @@ int run_replay(ViewArguments const& a)
     return done.interrupted ? kInterrupted : done.other > 0 ? 1 : 0;
 }
 
-/// Options of walks that a replay does not read, and the other way round.
+/// Throws if an option is given that has no effect in the chosen mode.
 void check_mode(CLI::App const& command, ViewArguments const& a)
 {
     bool const replays = !a.replay.empty();
     auto const refuse = [&](std::initializer_list<char const*> names, std::string const& when) {
         for (char const* name : names)
             if (command.get_option(name)->count() > 0)
-                throw gi::InputError(std::string(name) + " " + when, "it would not be read", "leave it out");
+                throw gi::InputError(std::string(name) + " " + when, "it would have no effect", "leave it out");
     };
     if (replays)
         refuse({"scene", "--record", "--frame-log", "--remote", "--remote-port", "--display", "--hmd",
@@ -292,8 +292,8 @@ void check_mode(CLI::App const& command, ViewArguments const& a)
         refuse({"--size", "--fullscreen"}, "with --display");
         for (std::string const& s : a.settings)
             if (parse_change(s).key == "stereo")
-                throw gi::InputError("--set " + s + " with --display", "it would not be read",
-                                     "set the stereo of each wall in the display's file");
+                throw gi::InputError("--set " + s + " with --display", "it would have no effect",
+                                     "set the stereo mode of each wall in the display file");
     }
     if (!replays && a.scene.scene.empty())
         throw gi::InputError("nothing to view", "neither a scene nor --replay is given", "lightwell view atrium");
@@ -307,49 +307,51 @@ void add_view(CLI::App& app, int& exit_code)
 {
     auto const a = std::make_shared<ViewArguments>();
     CLI::App* const c = app.add_subcommand("view", about("view"));
-    c->add_option("scene", a->scene.scene, "a file or a generated scene, as of render");
+    c->add_option("scene", a->scene.scene, "scene file or name of a generated scene, as for render");
     declare_view_options(*c, a->scene);
     c->add_option("--set", a->settings,
-                  "KEY=VALUE before the first frame, e.g. stereo=anaglyph-dubois, or device=cuda; repeatable")
+                  "KEY=VALUE, set before the first frame, e.g. stereo=anaglyph-dubois or device=cuda; repeatable")
         ->take_all();
-    c->add_option("--size", a->size, "of the window, pixels (default: 1280x720); of a replay: of each view");
+    c->add_option("--size", a->size, "window size, pixels (default: 1280x720); with --replay: size of each view");
     c->add_option("--fullscreen", a->fullscreen,
-                  "on the monitor of this number or name; LEFT,RIGHT for stereo=two-windows")
+                  "full screen on the monitor with this number or name; LEFT,RIGHT for stereo=two-windows")
         ->delimiter(',');
-    c->add_flag("--no-vsync", a->no_vsync, "swap at once");
-    c->add_option("--display", a->display, "walls, users and trackers, YAML (docs/displays.md)");
-    c->add_flag("--hmd", a->hmd, "in the headset of the OpenXR runtime (docs/hmd.md)");
+    c->add_flag("--no-vsync", a->no_vsync, "do not wait for the display's refresh");
+    c->add_option("--display", a->display, "display file with walls, users and trackers, YAML (docs/displays.md)");
+    c->add_flag("--hmd", a->hmd, "show in the headset of the OpenXR runtime (docs/hmd.md)");
     c->add_option("--avatar", a->avatar,
-                  "a skinned model, or avatar: driven by the first user's head and hands, seen in mirrors");
-    c->add_flag("--seated", a->seated, "of --hmd: no floor; the eyes begin at --eye-height");
+                  "skinned model, or avatar (built in): follows the first user's head and hands, seen in mirrors");
+    c->add_flag("--seated", a->seated, "with --hmd: space without a floor; the eyes start at --eye-height");
     c->add_option(
          "--eye-height", a->eye_height_m,
-         "m above the floor: of who walks, of an avatar's user, of --seated; a display's user says his own")
+         "m above the floor, when walking, with --avatar or --seated; display files set their users' own")
         ->check(in_range(0.2, 3))
         ->capture_default_str();
     declare_rank_options(*c, a->ranks);
-    c->add_option("--navigate", a->navigate, "fly, walk or orbit")->capture_default_str();
-    c->add_option("--threads", a->scene.threads, "0 = all")->check(in_range(0, 1024));
-    c->add_option("--record", a->record, "recording (.lwr) of everything that decides the pixels");
-    c->add_option("--frame-log", a->frame_log, "CSV of the times of every frame");
-    c->add_option("--remote", a->remote, "Unix socket to be controlled by (docs/remote.md)");
-    c->add_option("--remote-port", a->remote_port, "the same on 127.0.0.1; 0 = a free one");
-    c->add_option("--replay", a->replay, "render a recording again, off-screen; with --set otherwise than then");
-    c->add_option("--paths", a->paths, "of --replay: per pixel and frame; 0 = as then")
+    c->add_option("--navigate", a->navigate, "navigation: fly, walk or orbit")->capture_default_str();
+    c->add_option("--threads", a->scene.threads, "render threads; 0 = all")->check(in_range(0, 1024));
+    c->add_option("--record", a->record, "recording (.lwr) to write, of everything that determines the pixels");
+    c->add_option("--frame-log", a->frame_log, "CSV file with the times of every frame");
+    c->add_option("--remote", a->remote, "Unix socket for remote control (docs/remote.md)");
+    c->add_option("--remote-port", a->remote_port, "port on 127.0.0.1 for remote control; 0 = any free port");
+    c->add_option("--replay", a->replay, "render a recording again, off-screen; --set changes settings");
+    c->add_option("--paths", a->paths, "with --replay: paths per pixel and frame; 0 = as recorded")
         ->check(in_range(0, 1 << 20));
-    c->add_option("--out", a->out, "of --replay: frames of the first view, e.g. walk_%05d.png or .exr");
-    c->add_option("--video", a->video, "of --replay: .mkv (FFV1) or .mp4 (H.264)");
-    c->add_option("--fps", a->fps, "of --video")->check(in_range(0.01, 1000))->capture_default_str();
-    c->add_option("--screenshots", a->screenshots, "prefix of pictures saved by F2");
-    c->add_option("--time-limit", a->time_limit_s, "end after so many seconds; 0 = never")
+    c->add_option("--out", a->out, "with --replay: frames of the first view, e.g. walk_%05d.png or .exr");
+    c->add_option("--video", a->video, "with --replay: video of the first view, .mkv (FFV1) or .mp4 (H.264)");
+    c->add_option("--fps", a->fps, "frame rate of --video")->check(in_range(0.01, 1000))->capture_default_str();
+    c->add_option("--screenshots", a->screenshots, "prefix of the files of screenshots (F2)");
+    c->add_option("--time-limit", a->time_limit_s, "end after this many seconds; 0 = never")
         ->check(in_range(0, 1e9));
-    c->add_option("--stats", a->stats, "JSON about the whole session");
+    c->add_option("--stats", a->stats, "JSON file with statistics of the whole run");
     c->footer(
-        R"(Keys: W A S D Q E move, drag looks, wheel nears, click selects, control + drag moves what is selected,
-1..9 0 stereo, V split/flicker/difference, C compare with the reference, M method, + - exposure, space plays,
-Tab fly/walk/orbit, Z X raise the avatar's hands, R first camera, P reprojection, F1 panel, F2 screenshot, F11 swaps eyes, Esc ends.
-All settings: docs/viewer.md. Exit code 1: the recording or the frame log was not written to its end, or a rank was lost.
-Esc, Ctrl-C and the end of --time-limit close all files and exit with 0; a replay that Ctrl-C cuts short exits with 130.
+        R"(Keys: W A S D Q E move, drag to look around, wheel to approach, click to select,
+Ctrl + drag to move the selection, 1..9 0 stereo mode, V split/flicker/difference, C compare with the reference,
+M method, + - exposure, Space play/pause, Tab fly/walk/orbit, Z X raise the avatar's hands, P reprojection,
+R back to the first camera, F1 panel, F2 screenshot, F11 swap eyes, Esc end. All settings: docs/viewer.md.
+
+Exit code 1: the recording or the frame log is not complete, or a rank was lost.
+Esc, Ctrl-C and --time-limit close all files and exit with 0; a replay interrupted by Ctrl-C exits with 130.
 
 Examples (they need a display):
   lightwell view atrium

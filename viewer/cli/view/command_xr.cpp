@@ -52,13 +52,13 @@ void add_xr(CLI::App& app, int& exit_code)
     CLI::App* const c = app.add_subcommand("xr", about("xr"));
     c->require_subcommand(1);
     auto const as_json = std::make_shared<bool>(false);
-    CLI::App* const info = c->add_subcommand("info", "What the OpenXR runtime and its headset say of themselves.");
+    CLI::App* const info = c->add_subcommand("info", "Print properties of the OpenXR runtime and its headset.");
     info->add_flag("--json", *as_json, "print JSON");
     info->footer(R"(Examples:
   lightwell xr info
   XR_RUNTIME_JSON=/usr/share/openxr/1/openxr_monado.json lightwell xr info --json
 
-Exit code 2 where there is no runtime or no headset; see docs/hmd.md.)");
+Exit code 2 if there is no runtime or no headset; see docs/hmd.md.)");
     info->callback([as_json, &exit_code] { exit_code = run_info(*as_json); });
 }
 

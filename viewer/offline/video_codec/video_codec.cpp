@@ -24,7 +24,7 @@ public:
     std::unique_ptr<VideoStream> open(std::filesystem::path const& file, char const* code, double fps, int width,
                                       int height) override
     {
-        cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); // the caller says it
+        cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); // the caller reports errors
         auto stream = std::make_unique<FfmpegStream>();
         if (!stream->open(file, code, fps, {width, height})) return nullptr;
         return stream;

@@ -1,6 +1,6 @@
 #pragma once
-// FFmpeg through OpenCV, in a module of its own (liblightwell_video.so) that is loaded by the first video: its 240
-// libraries take 0.2 s.
+// FFmpeg through OpenCV, in its own module (liblightwell_video.so), which is loaded for the first video, as its
+// 240 libraries take 0.2 s to load.
 
 #include <filesystem>
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace viewer {
 
-/// A video that is being written; complete once it is destroyed.
+/// A video being written; it is complete when this object is destroyed.
 class VideoStream {
 public:
     virtual ~VideoStream() = default;
@@ -19,14 +19,14 @@ public:
 class VideoCodec {
 public:
     virtual ~VideoCodec() = default;
-    /// @param code four letters ("FFV1"). Null where there is no such encoder or the file cannot be written.
+    /// @param code FourCC ("FFV1"). Returns null if there is no such encoder or the file cannot be written.
     virtual std::unique_ptr<VideoStream> open(std::filesystem::path const& file, char const* code, double fps,
                                               int width, int height) = 0;
-    /// How many frames can be decoded; stops counting at `most`.
+    /// Number of frames that can be decoded; stops counting at `most`.
     virtual int count_frames(std::filesystem::path const& file, int most) = 0;
 };
 
 } // namespace viewer
 
-/// What the module exports.
+/// Function exported by the module.
 extern "C" viewer::VideoCodec* lightwell_video_codec();
