@@ -26,8 +26,8 @@ def fisheye(p):
 
 def main():
     out = [
-        "# A dome of 4 m radius behind a fisheye lens, written by make_dome.py: five walls of a cube, each bent to its",
-        "# place in the round picture. The origin is the middle of the dome, where the eyes are; the front is at -z.",
+        "# A dome of 4 m radius with a fisheye projector, written by make_dome.py: five walls of a cube, each warped to its",
+        "# place in the round picture. The origin is the centre of the dome, where the eyes are; the front is at -z.",
         "name: dome",
         "walls:",
     ]
