@@ -3,6 +3,7 @@
 #include "gi/core/error.h"
 #include "tests/viewer/run_program.h"
 #include "viewer/report/chart.h"
+#include "gi/core/html.h"
 #include "viewer/report/html.h"
 #include "viewer/report/log_axis.h"
 #include "viewer/report/page.h"
@@ -153,7 +154,7 @@ TEST(Chart, SaysWhatItLeavesOut)
 
 TEST(Page, EscapesAllText)
 {
-    EXPECT_EQ(escaped("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&#39;");
+    EXPECT_EQ(gi::escaped("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&#39;");
     EXPECT_EQ(readable("frame_s"), "frame, s");
     EXPECT_EQ(readable("Mrays_per_s"), "Mrays per s");
     BenchTable t{"<t>", {"<c>", "scene", "method", "budget_s", "frame_s", "relmse", "picture_file"}};

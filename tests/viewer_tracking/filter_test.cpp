@@ -35,8 +35,8 @@ TEST(OneEuro, StepResponseIsThatOfALowPass)
     // beta = 0: y_n = 1 - (1 - alpha)^n with alpha = dt / (dt + tau), tau = 1 / (2 pi fc).
     gi::OneEuroSettings const s{2, 0, 1, 1, 6};
     double const dt = 0.01, tau = 1 / (2 * 3.14159265358979 * 2), alpha = dt / (dt + tau);
-    gi::OneEuroPosition p = start(gi::dvec3(0));
-    gi::OneEuroRotation r = start(gi::dquat(1, 0, 0, 0));
+    gi::OneEuroPosition p = gi::start(gi::dvec3(0));
+    gi::OneEuroRotation r = gi::start(gi::dquat(1, 0, 0, 0));
     for (int n = 1; n < 50; ++n) {
         p = step(s, p, {1, -2, 3}, dt);
         r = step(s, r, gi::exp_rotation({0, 1, 0}), dt);
@@ -50,8 +50,8 @@ TEST(OneEuro, LagOfAConstantMotionIsTau)
 {
     gi::OneEuroSettings const s{1.5, 4, 1, 1, 6};
     gi::dvec3 const v{0.5, 0, -1.2}, turn{0, 1.5, 0};
-    gi::OneEuroPosition p = start(gi::dvec3(0));
-    gi::OneEuroRotation r = start(gi::dquat(1, 0, 0, 0));
+    gi::OneEuroPosition p = gi::start(gi::dvec3(0));
+    gi::OneEuroRotation r = gi::start(gi::dquat(1, 0, 0, 0));
     double t = 0;
     for (int i = 0; i < 600; ++i) {
         t += 1 / 60.0;
@@ -70,7 +70,7 @@ TEST(OneEuro, RestIsQuietAndMotionIsQuick)
     gi::OneEuroSettings const s{1, 4, 1, 1, 6};
     std::mt19937 rng(7);
     std::normal_distribution<double> noise(0, 0.001);
-    gi::OneEuroPosition p = start(gi::dvec3(0));
+    gi::OneEuroPosition p = gi::start(gi::dvec3(0));
     double in = 0, out = 0;
     for (int i = 0; i < 6000; ++i) {
         double const x = noise(rng);

@@ -103,7 +103,7 @@ private:
     }
 
     /// Returns the world of a frame, advanced from the previous frame.
-    gi::World const& update_axes(int frame, gi::Report& report)
+    gi::World const& advance(int frame, gi::Report& report)
     {
         gi::StageTimer const timer(report, "world");
         double const time_s = f_.scene_time_s(o_, frame);

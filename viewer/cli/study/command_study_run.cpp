@@ -32,12 +32,6 @@ struct RunOptions {
     bool hmd = false, seated = false, resume = false, no_vsync = false, json = false;
 };
 
-std::string host_name()
-{
-    char name[256] = {};
-    return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
-}
-
 /// Checks before the session that all stimuli can be loaded, set up and seen from their cameras.
 void check_stimuli(std::vector<PlannedStimulus> stimuli, SceneAccess const& scenes)
 {

@@ -79,8 +79,8 @@ void PoseTrack::filter_from(std::size_t first)
         Entry& e = entries_[i];
         double const dt = i > 0 ? e.time_s - entries_[i - 1].time_s : kLongGap + 1;
         if (dt > kLongGap) {
-            e.position = start(e.raw.position);
-            e.rotation = start(e.raw.rotation);
+            e.position = gi::start(e.raw.position);
+            e.rotation = gi::start(e.raw.rotation);
         } else {
             e.position = step(filter_.position, entries_[i - 1].position, e.raw.position, dt);
             e.rotation = step(filter_.rotation, entries_[i - 1].rotation, e.raw.rotation, dt);
