@@ -7,11 +7,11 @@
 namespace viewer {
 namespace {
 
-constexpr double kBesides = 1.0; // k, in paths
+constexpr double kBesides = 1.0; // k (governor.h), in paths
 constexpr double kMargin = 0.85; // of the time between frames
 constexpr double kScales[] = {1, 0.75, 0.5, 0.375, 0.25};
 constexpr int kMostPaths = 256;
-/// A larger picture has to fit by so much: a change of size costs the light that was reused.
+/// A larger picture must fit with this margin, because a change of size discards the temporally reused light.
 constexpr double kToGrow = 1.15;
 
 } // namespace
