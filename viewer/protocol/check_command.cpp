@@ -69,12 +69,12 @@ bool is_finite(nlohmann::json const& value)
 void check_change(Change const& c)
 {
     check_name(c.key);
-    if (c.key.empty()) refuse("a change without a key", "nothing says what is set");
+    if (c.key.empty()) refuse("a change without a key", "the key names what is set");
     if (depth_of(c.value, CommandLimits::value_depth) > CommandLimits::value_depth)
         refuse("a value of '" + c.key + "' nested too deep",
                fmt::format("{} levels are the most", CommandLimits::value_depth));
     if (c.value.is_binary() || c.value.is_discarded())
-        refuse("a value of '" + c.key + "' of a type that JSON text has not", "it would not come back");
+        refuse("a value of '" + c.key + "' of a type that JSON text lacks", "it could not be read back");
     if (!is_finite(c.value)) refuse("a value of '" + c.key + "' that is no finite number", "JSON has none");
 }
 

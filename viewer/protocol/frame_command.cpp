@@ -60,7 +60,7 @@ gi::Camera get_camera(ByteReader& from)
     gi::Camera c;
     c.name = from.text(CommandLimits::name_bytes);
     std::uint8_t const flags = from.byte();
-    if (flags > 3) throw BadBytes("a camera is of an unknown kind");
+    if (flags > 3) throw BadBytes("a camera has an unknown kind");
     c.orthographic = (flags & 1) != 0;
     if ((flags & 2) != 0) {
         c.off_axis.emplace();
@@ -78,7 +78,7 @@ gi::Camera get_camera(ByteReader& from)
     return c;
 }
 
-// As text: nlohmann's reader of CBOR recurses, so that nested bytes could exhaust the stack.
+// As text, because nlohmann's CBOR reader recurses: deeply nested bytes could exhaust the stack.
 std::string text_of(Change const& c)
 {
     try {
@@ -99,8 +99,8 @@ Change get_change(ByteReader& from)
     return c;
 }
 
-// A byte that says which bodies are tracked, and whether another user follows; then their poses. Before there were
-// feet and further users, these bits were not set.
+// A byte with a bit per tracked body and one bit if another user follows; then the poses. Older versions, without
+// feet and further users, never set those bits.
 constexpr std::size_t kBodies = kBodyMembers.size();
 
 void put(ByteWriter& to, Tracked const& t, bool another)

@@ -16,7 +16,7 @@ public:
 
     struct Touch {
         double distance_m = 0;
-        gi::dvec3 normal{0}; ///< unit, towards where the ray came from
+        gi::dvec3 normal{0}; ///< unit, towards the ray's origin
     };
     /// Nearest surface on a ray. @param from  m, absolute  @param direction  unit  @param reach_m  > 0
     std::optional<Touch> touch(gi::dvec3 from, gi::dvec3 direction, double reach_m) const;
