@@ -10,12 +10,12 @@ namespace {
 
 using gi::YamlReader;
 
-constexpr double kAny = 1e9; ///< what is read is judged in check.cpp
+constexpr double kAny = 1e9; ///< ranges are validated in check.cpp
 
 YamlReader needed(YamlReader const& map, char const* key, char const* example)
 {
     if (!map.has(key))
-        throw map.error(fmt::format("{} is missing", key), "it has no usual value",
+        throw map.error(fmt::format("{} is missing", key), "it has no default",
                         fmt::format("{}: {}", key, example));
     return map.at(key);
 }
@@ -24,7 +24,7 @@ std::vector<double> numbers(YamlReader const& list, std::size_t count, double lo
 {
     auto const items = list.items();
     if (items.size() != count)
-        throw list.error(fmt::format("{} numbers, not {}", items.size(), count), "each has its meaning",
+        throw list.error(fmt::format("{} numbers, not {}", items.size(), count), "each number has its own meaning",
                          fmt::format("write a list of {}", count));
     std::vector<double> out;
     for (YamlReader const& item : items) out.push_back(item.number(low, high));
@@ -40,7 +40,7 @@ int index_of(std::vector<Part> const& parts, YamlReader const& name, char const*
         if (parts[i].name == wanted) return int(i);
         if (i < 20) known += (i ? ", " : "") + parts[i].name;
     }
-    throw name.error(fmt::format("'{}' is not in {}", wanted.substr(0, 64), list), "there is nothing of that name",
+    throw name.error(fmt::format("'{}' is not in {}", wanted.substr(0, 64), list), "no entry has this name",
                      parts.empty() ? fmt::format("add {}", list) : "there are: " + known);
 }
 
@@ -217,7 +217,7 @@ DisplayTracker read_tracker(YamlReader const& y)
     return tracker;
 }
 
-/// The error at the place that the fault names, or as near as the file has it.
+/// The error at the fault's position in the file, or as near as possible.
 gi::InputError error_of(DisplayFault const& f, YamlReader const& root)
 {
     if (f.list.empty()) return root.error(f.problem, f.why, f.suggestion);

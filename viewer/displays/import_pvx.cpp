@@ -1,5 +1,5 @@
-// ParaView's display configuration (vtkDisplayConfiguration): one Machine element per process. Walls hold
-// LowerLeft, LowerRight and UpperRight; files of before version 5 UpperLeft in its place.
+// ParaView's display configuration (vtkDisplayConfiguration): one Machine element per process. Walls have
+// LowerLeft, LowerRight and UpperRight; files from before version 5 have UpperLeft instead of UpperRight.
 
 #include "viewer/displays/import.h"
 #include "viewer/displays/import_common.h"
@@ -126,7 +126,7 @@ void read_machine(XMLElement const& m, int rank, bool default_fullscreen, PvxCon
     c.display.walls.push_back(wall);
 }
 
-/// The first value of that name below the element.
+/// The first value of this name below the element.
 char const* setting(XMLElement const& e, char const* name)
 {
     XMLElement const* const child = e.FirstChildElement(name);
