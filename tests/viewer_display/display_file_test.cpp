@@ -155,7 +155,8 @@ TEST(DisplayFile, EveryRefusalHasItsPlaceAndItsWords)
         {"body: /head", "body: /head, latency_ms: -3", "a latency of -3 ms"},
         {"body: /head", "body: /head, filter: {type: kalman}", "'kalman' is no filter"},
         {"body: /head", "body: /head, filter: {type: one-euro, min_cutoff_hz: 0}", "the filter is out of range"},
-        {"body: /head", "body: /head, room_from_tracker: {translation_m: [1e9, 0, 0]}", "the tracker's pose is invalid"},
+        {"body: /head", "body: /head, room_from_tracker: {translation_m: [1e9, 0, 0]}",
+         "the tracker's pose is invalid"},
         {"body: /head", "body: /head, address: ''", "no address"},
     };
     for (Refusal const& r : refusals) {
