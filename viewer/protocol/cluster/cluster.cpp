@@ -141,11 +141,11 @@ void Cluster::give(std::vector<std::uint8_t> bytes)
 {
     State& s = *state_;
     s.await([&s] { return s.wants > 0; }, [](int who) { return who == 0; }, s.settings.silence_s,
-            "while it took what this rank had made");
+            "while it took the data of this rank");
     --s.wants;
     s.send(0, std::move(Writer(MessageKind::data).append(bytes)));
     s.await([&s] { return s.messenger->sent_all(0); }, [](int who) { return who == 0; }, s.settings.silence_s,
-            "while it took what this rank had made");
+            "while it took the data of this rank");
 }
 
 std::optional<std::vector<std::uint8_t>> Cluster::take(int from)
