@@ -7,8 +7,8 @@
 //   drag              look around     C          compare with the    Tab  fly, walk, orbit
 //   wheel             nearer, farther            reference           R    to the first camera
 //   click             select          M          next method         P    reproject
-//   control + drag    move what is    + -        exposure            Esc  end
-//                     selected        space      play, pause
+//   control + drag    move selected   + -        exposure            Esc  quit
+//                     object          space      play, pause
 //   Z, X (held)       raise the avatar's left, right hand
 //   Gamepad: left stick moves, right stick looks, triggers down and up, A selects, start plays and pauses.
 

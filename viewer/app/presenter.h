@@ -42,7 +42,7 @@ public:
               PresentSettings const& settings, std::vector<gi::Camera> const& now);
 
 private:
-    /// Of one view.
+    /// Draws one view.
     struct Shown {
         PictureTexture picture, other;
         Reprojection reprojection, other_reprojection;

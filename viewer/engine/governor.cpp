@@ -40,7 +40,7 @@ void Governor::measured(FrameBudget const& budget, double pixels, double seconds
     double const done = pixels * budget.scale * budget.scale * (budget.paths + kBesides);
     double const fits = kMargin / rate_hz / seconds;
     if (!(done > 0) || !(fits > 0)) return; // nothing was rendered, or in no time
-    // Paths are whole numbers: what is left over is saved up for one more.
+    // Paths are whole numbers: the remainder accumulates until it allows one more.
     work_ = fits < 1 ? done * std::max(fits, kLeast) : std::min(kGrowth * std::max(work_, done), done * fits);
     last_scale_ = budget.scale;
 }

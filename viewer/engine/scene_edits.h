@@ -1,9 +1,17 @@
 #pragma once
 // Edits of a scene while the viewer runs, by key:
-//   object.NODE.position [x, y, z]  m, world      light.N.intensity [r, g, b]     material.NAME.base_color [r, g,
-//   b] object.NODE.rotation [x, y, z, w]             light.N.position [x, y, z]      material.NAME.roughness 0..1
-//   object.NODE.scale s                           environment.rotation radians    material.NAME.metallic 0..1
-//                                                 environment.scale s             material.NAME.emission [r, g, b]
+//   object.NODE.position [x, y, z]     m, world
+//   object.NODE.rotation [x, y, z, w]
+//   object.NODE.scale s
+//   light.N.intensity [r, g, b]
+//   light.N.position [x, y, z]
+//   material.NAME.base_color [r, g, b]
+//   material.NAME.roughness 0..1
+//   material.NAME.metallic 0..1
+//   material.NAME.emission [r, g, b]
+//   environment.rotation radians
+//   environment.scale s
+//
 // NODE and NAME are names or numbers. When an object is moved for the first time, the world is rebuilt, because
 // static and dynamic geometry are kept apart.
 

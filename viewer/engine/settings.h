@@ -30,7 +30,7 @@ struct Settings {
     bool radiance_cache = true; ///< paths may end in the radiance cache while anything moves
     double exposure_ev = 0;
     std::string tone = "srgb";
-    // Of the interactive loop
+    // Settings of the interactive loop
     double rate_hz = 20;           ///< target frame rate
     int paths = 0;                 ///< per pixel and frame; 0 = as many as the frame rate allows
     double scale = 0;              ///< picture side over window side; 0 = as the frame rate allows

@@ -88,7 +88,7 @@ std::string text_of(Change const& c)
         throw gi::InputError("the value of '" + c.key + "' cannot be written", e.what(), "use UTF-8");
     }
     throw gi::InputError("the value of '" + c.key + "' is too long",
-                         fmt::format("{} bytes are the most", CommandLimits::value_bytes), "set it in parts");
+                         fmt::format("at most {} bytes", CommandLimits::value_bytes), "set it in parts");
 }
 
 Change get_change(ByteReader& from)
@@ -182,8 +182,8 @@ std::vector<std::uint8_t> to_bytes(FrameCommand const& o)
     }
     if (to.bytes().size() > CommandLimits::bytes)
         throw gi::InputError(
-            "a frame order is too long",
-            fmt::format("it has {} bytes, {} are the most", to.bytes().size(), CommandLimits::bytes),
+            "a frame command is too long",
+            fmt::format("it has {} bytes, the limit is {}", to.bytes().size(), CommandLimits::bytes),
             "spread its changes over several frames");
     return to.take();
 }
@@ -197,7 +197,7 @@ FrameCommand command_from_bytes(std::span<std::uint8_t const> bytes)
         check_command(order);
         return order;
     } catch (BadBytes const& e) {
-        throw gi::InputError(fmt::format("{} bytes are no frame order", bytes.size()), e.what(),
+        throw gi::InputError(fmt::format("{} bytes are no frame command", bytes.size()), e.what(),
                              "use the same version of the program on both sides");
     }
 }

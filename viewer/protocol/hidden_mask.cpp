@@ -48,7 +48,7 @@ nlohmann::json const& list(Change const& c, char const* name, std::size_t most)
     auto const found = c.value.is_object() ? c.value.find(name) : c.value.end();
     if (found == c.value.end() || !found->is_array()) refuse(c, fmt::format("it has no list '{}'", name));
     if (found->size() > most)
-        refuse(c, fmt::format("its list '{1}' has {0} entries, and {2} are the most", found->size(), name, most));
+        refuse(c, fmt::format("its list '{1}' has {0} entries, limit {2}", found->size(), name, most));
     return *found;
 }
 

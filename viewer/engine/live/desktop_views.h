@@ -8,7 +8,7 @@ namespace viewer {
 struct DesktopStereo {
     bool on = false;
     double eye_distance_m = 0.063;
-    double screen_distance_m = 1; ///< > 0; what lies there has no disparity
+    double screen_distance_m = 1; ///< > 0; points at this distance have no disparity
 };
 
 /// Returns one view for both eyes, or a left and a right view with off-axis frusta that share the screen. Each eye

@@ -148,7 +148,7 @@ private:
     bool resting_ = false;
     std::atomic<bool> quit_{false}, stopped_{false};
 
-    // Of the rendering thread
+    // Used only by the rendering thread
     Governor governor_;
     UpdateGovernor follow_governor_;
     int stored_ = 0; ///< stored axes in the last measured frame

@@ -29,7 +29,7 @@ Bytes header_bytes(RecordingHeader const& h)
         if (text.size() > kMostHeaderText)
             throw gi::InputError(
                 "a recording's header is too long",
-                fmt::format("a text of {} bytes is in it, {} are the most", text.size(), kMostHeaderText),
+                fmt::format("it has a text of {} bytes, the limit is {}", text.size(), kMostHeaderText),
                 "record without so many settings");
         payload.put_text(text);
     }

@@ -150,7 +150,7 @@ void RemoteServer::handle_lines(std::uint64_t number, Client& client)
         if (!client.skipping)
             send_error(
                 number, client, nullptr,
-                fmt::format("the line is too long ({} bytes are the most) send less at once", limits_.line_bytes));
+                fmt::format("the line is too long (at most {} bytes) send less at once", limits_.line_bytes));
         client.skipping = true;
         client.in.clear();
         client.searched = 0;
@@ -171,7 +171,7 @@ void RemoteServer::handle_line(std::uint64_t number, Client& client, std::string
     if (line.size() > limits_.line_bytes)
         return send_error(
             number, client, nullptr,
-            fmt::format("the line is too long ({} bytes are the most) send less at once", limits_.line_bytes));
+            fmt::format("the line is too long (at most {} bytes) send less at once", limits_.line_bytes));
     if (line.ends_with('\r')) line.remove_suffix(1);
     if (line.find_first_not_of(" \t") == std::string_view::npos) return;
     nlohmann::json request;
@@ -242,7 +242,7 @@ void RemoteServer::send(std::uint64_t number, Client& client, nlohmann::ordered_
     flush(client);
     if (client.out.size() <= limits_.output_bytes) return;
     report_.lose("remote clients dropped", 1,
-                 fmt::format("client {} left {} bytes of answers unread, {} are the most", number,
+                 fmt::format("client {} left {} bytes of answers unread, limit {}", number,
                              client.out.size(), limits_.output_bytes));
     client.dead = true;
 }

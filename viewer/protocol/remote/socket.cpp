@@ -27,7 +27,7 @@ sockaddr_un address_of(std::filesystem::path const& path)
     if (text.empty() || text.size() >= sizeof address.sun_path)
         throw gi::InputError(
             "'" + text + "' cannot be a socket",
-            fmt::format("its path has {} bytes, 1 to {} can be", text.size(), sizeof address.sun_path - 1),
+            fmt::format("its path has {} bytes, 1 to {} are allowed", text.size(), sizeof address.sun_path - 1),
             "choose a shorter one");
     std::memcpy(address.sun_path, text.c_str(), text.size() + 1);
     return address;
