@@ -142,10 +142,10 @@ Fault wall_fault(Display const& d, std::size_t i)
         return fault("lower_left_m", "wall '" + wall.name + "': " + corners->problem, corners->why,
                      corners->suggestion);
     if (wall.window < 0 || std::size_t(wall.window) >= d.windows.size())
-        return fault("window", "wall '" + wall.name + "' has no window", "it is not known where to draw it",
+        return fault("window", "wall '" + wall.name + "' has no window", "it needs one to be drawn in",
                      "name one of windows");
     if (wall.user < 0 || std::size_t(wall.user) >= d.users.size())
-        return fault("user", "wall '" + wall.name + "' has no user", "it is not known for whose eyes to draw it",
+        return fault("user", "wall '" + wall.name + "' has no user", "it is drawn for a user's eyes",
                      "name one of users");
     bool const two = wall.stereo == StereoMode::two_windows;
     if (two != (wall.second_window >= 0))

@@ -123,7 +123,7 @@ Wall read_wall(YamlReader const& y, Display const& d, std::filesystem::path cons
         auto const mode = stereo_mode(y.at("stereo").text());
         if (!mode)
             throw y.at("stereo").error("'" + y.at("stereo").text().substr(0, 64) + "' is no stereo mode",
-                                       "it is not known how to show two eyes",
+                                       "the name is unknown",
                                        "there are: " + stereo_mode_names());
         wall.stereo = *mode;
     }
@@ -179,7 +179,7 @@ TrackerFilter read_filter(YamlReader const& y)
     TrackerFilter filter;
     std::string const type = needed(y, "type", "one-euro").text();
     if (type != "none" && type != "one-euro")
-        throw y.at("type").error("'" + type.substr(0, 64) + "' is no filter", "it is not known how to smooth",
+        throw y.at("type").error("'" + type.substr(0, 64) + "' is no filter", "the name is unknown",
                                  "none or one-euro");
     filter.type = type == "none" ? FilterType::none : FilterType::one_euro;
     if (y.has("min_cutoff_hz")) filter.min_cutoff_hz = y.at("min_cutoff_hz").number(-kAny, kAny);
@@ -196,7 +196,7 @@ DisplayTracker read_tracker(YamlReader const& y)
     auto const known = tracker_type(type);
     if (!known)
         throw y.at("type").error("'" + type.substr(0, 64) + "' is no type of tracker",
-                                 "it is not known how to listen to it", "osc, dtrack, openxr, file or fake");
+                                 "the name is unknown", "osc, dtrack, openxr, file or fake");
     tracker.type = *known;
     if (y.has("address")) tracker.address = y.at("address").text();
     if (y.has("port")) tracker.port = int(y.at("port").integer(-1000000, 1000000));

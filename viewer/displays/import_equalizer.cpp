@@ -228,7 +228,7 @@ void add_wall(TextNode const& node, WallCorners const& corners, StereoMode stere
     std::string const name = node.text("channel");
     auto const channel = c.channels.find(name);
     if (channel == c.channels.end())
-        throw c.error(node, "there is no channel '" + name.substr(0, 64) + "'", "it is not known where to draw it",
+        throw c.error(node, "there is no channel '" + name.substr(0, 64) + "'", "a wall needs one to be drawn in",
                       "name the channel of a window");
     Wall wall;
     wall.name = free_name(c.display.walls, node.text("name", name));

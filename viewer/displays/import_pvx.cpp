@@ -111,7 +111,7 @@ void read_machine(XMLElement const& m, int rank, bool default_fullscreen, PvxCon
         c.report.lose("windows whose size the file does not tell, taken as 1920 x 1080", 1, where);
     } else if (!read_geometry(attribute(m, "Geometry"), window))
         throw c.error(m, "Geometry '" + attribute(m, "Geometry").substr(0, 64) + "' is no place of a window",
-                      "it is not known how large the window is", "Geometry=\"640x360+60+1200\"");
+                      "it gives no size of the window", "Geometry=\"640x360+60+1200\"");
     Wall wall;
     wall.name = free_name(c.display.walls, window.name);
     gi::dvec3 const ll = point(m, "LowerLeft", c), lr = point(m, "LowerRight", c);

@@ -147,7 +147,7 @@ void read_viewport(YamlReader const& v, int window, int rank, Stereo stereo, std
     auto const known = users.find(user);
     if (known == users.end())
         throw v.at("user").error("there is no user '" + user.substr(0, 64) + "'",
-                                 "it is not known whose eyes see it", "name one of users");
+                                 "a viewport is drawn for a user's eyes", "name one of users");
     wall.user = known->second;
     c.display.walls.push_back(wall);
 }

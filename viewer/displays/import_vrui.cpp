@@ -289,7 +289,7 @@ Display parse_vrui(std::string const& text, std::string const& name, std::string
         throw c.error(*vrui,
                       section.empty() ? "no environment has screenNames"
                                       : "there is no environment '" + section + "'",
-                      "it is not known which walls there are", "there are: " + (others.empty() ? "none" : others));
+                      "the environment lists the walls", "there are: " + (others.empty() ? "none" : others));
     if (other_count)
         report.lose("Vrui environments other than the one imported", std::uint64_t(other_count),
                     others.substr(0, 500));

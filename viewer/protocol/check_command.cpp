@@ -108,7 +108,7 @@ void check_command(FrameCommand const& o)
         refuse(fmt::format("{} users", o.others.size()), fmt::format("the limit is {}", CommandLimits::users));
     for (Tracked const& t : o.others) check_tracked(t);
     if (o.paths < 1 || o.paths > CommandLimits::paths)
-        refuse(fmt::format("{} paths per pixel", o.paths), fmt::format("1 to {} are possible", CommandLimits::paths));
+        refuse(fmt::format("{} paths per pixel", o.paths), fmt::format("allowed: 1 to {}", CommandLimits::paths));
     if (o.changes.size() > CommandLimits::changes)
         refuse(fmt::format("{} changes", o.changes.size()),
                fmt::format("the limit is {}", CommandLimits::changes));

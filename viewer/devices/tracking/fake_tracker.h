@@ -10,7 +10,7 @@ class FakeTracker : public Tracker {
 public:
     void poll(double now_s, std::vector<TrackerSample>& samples) override;
     TrackerCounts counts() const override { return counts_; }
-    std::string description() const override { return "a person who stands still"; }
+    std::string description() const override { return "a simulated person standing still"; }
 
 private:
     TrackerCounts counts_;

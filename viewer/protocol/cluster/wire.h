@@ -16,7 +16,7 @@ enum class MessageKind : std::uint8_t {
     hello,   ///< follower: its identity
     refused, ///< leader: the follower's identity differs; the reason
     started, ///< leader: all ranks have started; their names
-    ping,    ///< leader: Stamp
+    ping,    ///< leader: its time, s
     pong,    ///< follower: Echo
     order,   ///< leader: to_bytes of a FrameCommand
     arrived, ///< follower: ready to swap; with a note
