@@ -206,7 +206,7 @@ TEST_F(Ranks, FollowersStopWithoutTheirLeader)
     auto const mpirun = start(100000, "5 continue", kRecovery); // without a leader nobody can go on
     std::string const victim = signal_at(0, 20, SIGKILL);
     expect_all_say(victim, 0, "has died", 5);
-    EXPECT_NE(log(1).all_said().find("it led"), std::string::npos);
+    EXPECT_NE(log(1).all_said().find("it was the leader"), std::string::npos);
     mpirun->wait(std::chrono::seconds(20));
 }
 
@@ -262,7 +262,7 @@ TEST_F(Ranks, OneThatComputesSomethingElseIsFound)
     for (int r = 0; r < kRanks; ++r) {
         EXPECT_EQ(log(r).code, 1) << r;
         EXPECT_EQ(log(r).frames.size(), 31u);
-        EXPECT_NE(log(r).all_said().find("has another scene or other orders"), std::string::npos)
+        EXPECT_NE(log(r).all_said().find("has another scene or other commands"), std::string::npos)
             << log(r).all_said();
     }
 }

@@ -135,7 +135,7 @@ TEST(DisplayFile, EveryRefusalHasItsPlaceAndItsWords)
         {"head_position_m: [0, 1.7, 0]", "head_position_m: [0, 1.7, 0], interpupillary_m: 6.3",
          "metres? 6.3 centimetres are 0.063 m"},
         {"head_position_m: [0, 1.7, 0]", "head_position_m: [0, 1.7, 0], interpupillary_m: 0", "eyes 0 m apart"},
-        {"head_position_m: [0, 1.7, 0]", "head_position_m: [0, 1e8, 0]", "the head is nowhere"},
+        {"head_position_m: [0, 1.7, 0]", "head_position_m: [0, 1e8, 0]", "the head's pose is invalid"},
         {"head_position_m: [0, 1.7, 0]", "head_position_m: [0, 1, 0], eye_offset_m: [0, 80, 0]",
          "more than a metre from the tracked point"},
         {"head_position_m: [0, 1.7, 0]", "head_position_m: [0, 1, 0], head_tracker: x", "'x' is not in trackers"},
@@ -155,7 +155,8 @@ TEST(DisplayFile, EveryRefusalHasItsPlaceAndItsWords)
         {"body: /head", "body: /head, latency_ms: -3", "a latency of -3 ms"},
         {"body: /head", "body: /head, filter: {type: kalman}", "'kalman' is no filter"},
         {"body: /head", "body: /head, filter: {type: one-euro, min_cutoff_hz: 0}", "the filter is out of range"},
-        {"body: /head", "body: /head, room_from_tracker: {translation_m: [1e9, 0, 0]}", "the tracker is nowhere"},
+        {"body: /head", "body: /head, room_from_tracker: {translation_m: [1e9, 0, 0]}",
+         "the tracker's pose is invalid"},
         {"body: /head", "body: /head, address: ''", "no address"},
     };
     for (Refusal const& r : refusals) {

@@ -18,7 +18,7 @@ std::string to_bytes(FrameWork const& work) { return {reinterpret_cast<char cons
 FrameWork work_from(std::string const& bytes)
 {
     FrameWork work;
-    if (bytes.size() != sizeof work) throw std::runtime_error("a rank's note on its frame has another length");
+    if (bytes.size() != sizeof work) throw std::runtime_error("a rank's note on its frame has the wrong length");
     std::memcpy(&work, bytes.data(), sizeof work);
     return work;
 }
@@ -94,7 +94,7 @@ void ClusterLink::check()
 FrameWork ClusterLink::wait_for_all(FrameCommand const& order, FrameWork const& own)
 {
     {
-        // A window may be hidden, or its loop about to end: nobody waits for that for ever.
+        // The window may be hidden or its loop about to end, so this wait has a time limit.
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, kLongestDrawing, [&] { return drawn_ > order.frame; });
     }

@@ -7,7 +7,7 @@
 
 namespace viewer {
 
-/// The ranks of mpirun as a FrameLink: frames in lock step, lost ranks named.
+/// FrameLink between the ranks of mpirun: frames in lock step; lost ranks are reported by name.
 class ClusterLink : public FrameLink {
 public:
     ClusterLink(ClusterIdentity identity, ClusterSettings const& settings)
@@ -24,7 +24,7 @@ public:
     void drawn(std::uint64_t frame) override;
     void swapped(std::uint64_t frame, double steady_s) override;
 
-    /// When all is over: of the leader. Why it ended early; empty = it did not.
+    /// Swap skew, on the leader, valid after the end. failure(): why the link ended early; empty if it did not.
     SwapSkew const& skew() const { return skew_; }
     std::string const& failure() const { return failure_; }
 
@@ -35,8 +35,8 @@ private:
 
     ClusterIdentity identity_;
     ClusterSettings settings_;
-    std::unique_ptr<Cluster> cluster_; ///< of the rendering thread
-    std::unique_ptr<KeepAlive> alive_; ///< between calls, which may be far apart
+    std::unique_ptr<Cluster> cluster_; ///< used by the rendering thread
+    std::unique_ptr<KeepAlive> alive_; ///< keeps the link alive between calls, which may be far apart
     SwapSkew skew_;
     std::string failure_;
     std::mutex mutex_;

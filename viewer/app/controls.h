@@ -1,5 +1,5 @@
 #pragma once
-// What keys, mouse and gamepads mean: motion through the world, and commands.
+// Maps keys, mouse and gamepads to motion through the world and to commands.
 //
 //   W A S D, arrows   move            1 .. 9, 0  stereo modes        F1   panel
 //   Q, E              down, up        V          picture, split,     F2   screenshot
@@ -7,8 +7,8 @@
 //   drag              look around     C          compare with the    Tab  fly, walk, orbit
 //   wheel             nearer, farther            reference           R    to the first camera
 //   click             select          M          next method         P    reproject
-//   control + drag    move what is    + -        exposure            Esc  end
-//                     selected        space      play, pause
+//   control + drag    move selected   + -        exposure            Esc  quit
+//                     object          space      play, pause
 //   Z, X (held)       raise the avatar's left, right hand
 //   Gamepad: left stick moves, right stick looks, triggers down and up, A selects, start plays and pauses.
 
@@ -36,28 +36,28 @@ enum class Command {
     play,
     reproject,
     select, ///< at (x, y)
-    drag    ///< what is selected, by (x, y)
+    drag    ///< moves the selected object by (x, y)
 };
 
 struct CommandEvent {
     Command command;
-    double x = 0, y = 0; ///< px in the window, from its top left corner
+    double x = 0, y = 0; ///< px from the window's top left corner
     int window = 0;
 };
 
 class Controls {
 public:
-    /// @param height_px  of the window: a drag over all of it turns by a right angle
+    /// @param height_px  of the window: a drag over this length turns by 90 degrees
     void take(InputEvent const& event, double height_px);
-    /// What was done since the last call.
+    /// Commands since the last call.
     NavigationInput motion(double seconds);
     std::vector<CommandEvent> commands();
-    /// A stereo mode by number, -1 = none was asked for since the last call.
+    /// Number of the stereo mode chosen since the last call; -1 = none.
     int stereo_mode();
-    /// The key that raises a hand of the avatar is held.
+    /// True while the key that raises the avatar's hand is held.
     bool raises_left() const;
     bool raises_right() const;
-    /// All keys are up: the window has lost its focus.
+    /// Releases all keys, because the window lost its focus.
     void release_all();
 
 private:
@@ -66,14 +66,14 @@ private:
 
     std::set<int> held_;
     std::vector<CommandEvent> commands_;
-    double axes_[6] = {}; ///< of the gamepad
+    double axes_[6] = {}; ///< axes of the gamepad
     double turn_right_ = 0, turn_up_ = 0, closer_ = 0;
     double mouse_x_ = 0, mouse_y_ = 0, moved_px_ = 0;
     bool dragging_ = false, moving_object_ = false;
     int stereo_mode_ = -1;
 };
 
-/// GLFW's code of a key by its name ("w", "F1", "escape"); -1 = there is none.
+/// GLFW's key code for a name ("w", "F1", "escape"); -1 if unknown.
 int key_code(std::string const& name);
 
 } // namespace viewer

@@ -6,16 +6,16 @@
 
 namespace viewer {
 
-/// The windows of a display that this process shows.
+/// Windows of a display that this process shows.
 struct DisplayWindows {
     std::vector<std::unique_ptr<ShownWindow>> windows;
-    std::vector<int> of; ///< per window of the display: index into windows; -1 = another process's
+    std::vector<int> of; ///< per window of the display: index into windows; -1 = shown by another process
 };
 
-/// Opens them. Walls whose window has no quad buffers are set side by side. Throws InputError.
-/// @param rank  as of windows_of; -1 = all
+/// Opens the windows. Falls back to side by side for walls whose window lacks quad buffers. Throws InputError.
+/// @param rank  as in windows_of; -1 = all
 DisplayWindows open_windows(Display& display, int rank, int swap_interval, gi::Report& report);
-/// The windows' sizes as they are, which may not be what the file wishes.
+/// Sets the actual sizes of the windows, which may differ from those in the file.
 void note_sizes(Display& display, DisplayWindows const& shown);
 
 } // namespace viewer

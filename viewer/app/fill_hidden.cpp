@@ -6,7 +6,7 @@
 namespace viewer {
 namespace {
 
-/// False where all of the row is hidden.
+/// Fills one row. Returns false if all of it is hidden.
 bool fill_row(std::span<std::uint8_t const> hidden, std::span<float> values, std::size_t channels)
 {
     std::size_t const width = hidden.size();
@@ -43,7 +43,7 @@ void fill_hidden(std::span<std::uint8_t const> hidden, int width, std::span<floa
         bool const seen = fill_row(hidden.subspan(y * across, across), values.subspan(y * stride, stride),
                                    std::size_t(channels));
         if (seen) {
-            // Rows in between: the upper half from above, the lower one from here.
+            // Hidden rows in between: copy the upper half from above, the lower half from this row.
             std::size_t const first = last ? *last + 1 : 0, middle = last ? (*last + 1 + y) / 2 : 0;
             for (std::size_t r = first; r < y; ++r) copy_row(r < middle ? *last : y, r);
             last = y;

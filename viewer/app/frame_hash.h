@@ -4,7 +4,7 @@
 
 namespace viewer {
 
-/// Of the colours of all views.
+/// Hash of the colours of all views.
 inline std::uint64_t frame_hash(SessionFrame const& frame)
 {
     std::uint64_t hash = 0;

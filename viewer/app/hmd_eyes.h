@@ -1,6 +1,6 @@
 #pragma once
-// The two pictures of a frame as a headset's eyes see them: brought to where the eyes are now, on textures that
-// can be handed to the runtime.
+// The two eye pictures of a frame for a headset, reprojected to the current eye poses, in textures for the
+// runtime.
 
 #include "viewer/devices/gl/display_pass.h"
 #include "viewer/devices/gl/reprojection.h"
@@ -9,7 +9,7 @@
 
 namespace viewer {
 
-/// Surfaceless where there is no display server, else of a window.
+/// OpenGL context: surfaceless without a display server, else of a window.
 struct HmdContext {
     std::unique_ptr<Window> window;
     std::optional<GlContext> own;
@@ -19,15 +19,15 @@ struct HmdContext {
     GlContext const& gl() const { return window ? window->gl() : *own; }
 };
 
-/// The context is current in all calls.
+/// The context must be current in all calls.
 class HmdEyes {
 public:
-    /// Uploads the pictures of both eyes; hidden pixels as fill_hidden has it.
+    /// Uploads the pictures of both eyes, with hidden pixels filled (fill_hidden).
     void take(LiveFrame const& frame);
-    /// Of the frame taken last, seen from `now`, into the targets.
+    /// Draws the frame taken last, reprojected to `now`, into the targets.
     void draw(LiveFrame const& frame, std::array<gi::Camera, 2> const& now,
               std::array<glm::ivec2, 2> const& sizes_px, bool reproject, gi::ToneMapSettings const& tone);
-    /// Empty ones, in one grey (0..1).
+    /// Fills both targets with one grey (0..1).
     void clear(std::array<glm::ivec2, 2> const& sizes_px, float grey);
     DrawTarget target(std::size_t eye) const { return targets_[eye]->target(); }
     std::array<unsigned, 2> textures() const
@@ -43,7 +43,7 @@ private:
     std::array<Reprojection, 2> reprojections_;
     std::array<std::optional<TextureTarget>, 2> targets_;
     std::array<glm::ivec2, 2> sizes_{};
-    std::vector<float> color_, depth_; ///< that hidden pixels were filled in
+    std::vector<float> color_, depth_; ///< copies with filled hidden pixels
 };
 
 } // namespace viewer

@@ -24,7 +24,7 @@ WindowSettings hidden()
     return settings;
 }
 
-/// Bit by bit: what is no number is equal to itself.
+/// Compares bit by bit, so that NaN equals itself.
 bool same(HiddenMask const& a, HiddenMask const& b)
 {
     return a.triangles == b.triangles &&
@@ -93,18 +93,18 @@ private:
         state_.navigation.step(in, seconds);
         for (CommandEvent const& c : core_.controls.commands()) {
             core_.obey(c.command);
-            // Who goes to the first camera looks the way it does, wherever head and body are turned.
+            // At the first camera the user faces its direction, however head and body are turned.
             if (c.command == Command::first_camera && session.recentre()) started_ = false;
         }
     }
 
     gi::dmat4 world_from_room() const
     {
-        // The head that stands at the room's middle, at the height of the first frame, is where the navigation is.
+        // The navigation pose is that of a head at the room's centre, at its height in the first frame.
         return state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -start_);
     }
 
-    /// What the lenses hide is not rendered.
+    /// Passes on the areas that the lenses hide, so that they are not rendered.
     void tell_hidden(HmdSession const& session)
     {
         for (std::size_t eye = 0; eye < 2; ++eye) {
@@ -125,7 +125,7 @@ private:
         }
     }
 
-    /// @param seconds  since the frame before
+    /// @param seconds  since the previous frame
     void show(HmdSession& session, HmdFrame const& frame, double seconds)
     {
         tell_hidden(session);
@@ -155,7 +155,7 @@ private:
         double const begun = state_.clock.now_s();
         if (fresh) {
             state_.frame = newest;
-            state_.settings.updated_axes = newest->settings.updated_axes; // which the renderer sets
+            state_.settings.updated_axes = newest->settings.updated_axes; // set by the renderer
             eyes_.take(*newest);
             note_hidden(*newest);
         }
@@ -202,7 +202,7 @@ private:
     ViewState& state_;
     HmdContext context_;
     HmdEyes eyes_;
-    HmdKeeper keeper_; ///< its sessions end before the context
+    HmdKeeper keeper_; ///< declared after the context, so that its sessions end first
     UserBodies bodies_;
     gi::dvec3 start_{0};
     bool started_ = false;

@@ -4,9 +4,9 @@
 
 namespace viewer {
 
-/// `lightwell view --hmd`: the same session in a headset. Its runtime sets the pace of what is shown; pictures
-/// come as fast as they are rendered, and the last one is shown as seen from where the head is now. A lost headset
-/// is waited for. Throws InputError where there is no runtime.
+/// `lightwell view --hmd`: the same session in a headset. The runtime sets the display rate; pictures are rendered
+/// as fast as possible, and the newest is reprojected to the current head pose. If the headset is lost, waits for
+/// it. Throws InputError if there is no runtime.
 ViewRunSummary run_hmd(ViewOptions const& options, HmdOptions const& headset, gi::StopRequest const& stop,
                        gi::Report& report);
 

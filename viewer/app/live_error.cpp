@@ -9,7 +9,7 @@
 namespace viewer {
 namespace {
 
-/// Linear, exposed, in [0, 1]: what FLIP takes.
+/// Linear colours with exposure applied, in [0, 1], as FLIP expects.
 std::vector<float> exposed(std::vector<float> const& radiance, double ev)
 {
     std::vector<float> out(radiance.size());

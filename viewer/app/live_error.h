@@ -6,18 +6,18 @@
 
 namespace viewer {
 
-/// How far the picture of the method is from that of the second one.
+/// Error of the method's picture relative to the second method's.
 struct LiveError {
     std::uint64_t frame = 0;
     double relmse = 0, flip = 0; ///< flip: mean over the picture, at its exposure
 };
 
-/// Measures in the background, one frame at a time, so that neither input nor rendering waits.
+/// Measures the error in the background, one frame at a time, so that neither input nor rendering waits.
 class ErrorMeter {
 public:
-    /// Starts on a frame that has two pictures, unless one is being measured.
+    /// Starts measuring a frame that has two pictures, unless a measurement is running.
     void see(std::shared_ptr<LiveFrame const> const& frame);
-    /// The newest that is finished.
+    /// The newest finished result.
     std::optional<LiveError> const& latest();
 
 private:

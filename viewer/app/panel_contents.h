@@ -3,8 +3,8 @@
 
 namespace viewer {
 
-/// Between Panel::begin and end: what can be seen and set. Every setting has its place here by its entry in the
-/// table of settings.
+/// Draws the contents of the panel, between Panel::begin and end. Every entry of the settings table appears here
+/// automatically.
 void fill_panel(ViewState& state, double frames_per_s);
 
 } // namespace viewer

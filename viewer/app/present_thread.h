@@ -1,6 +1,6 @@
 #pragma once
-// The thread that draws and swaps: with a software driver, or waiting for a monitor, that takes longer than input
-// may wait. It has the contexts of all windows while it works.
+// Thread that draws and swaps, because with a software driver or when waiting for a monitor this takes longer than
+// input may wait. It owns the contexts of all windows while it works.
 
 #include <condition_variable>
 #include <functional>
@@ -12,11 +12,11 @@ namespace viewer {
 class PresentThread {
 public:
     PresentThread();
-    /// Waits for the work at hand.
+    /// Waits for the current work.
     ~PresentThread();
 
     bool busy() const;
-    /// Only where it is not busy. @param done  called afterwards, on that thread
+    /// Starts work; call only if the thread is not busy. @param done  called afterwards, on that thread
     void start(std::function<void()> work, std::function<void()> done);
 
 private:

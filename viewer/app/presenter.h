@@ -1,6 +1,6 @@
 #pragma once
-// What one window shows of the newest frame: pictures uploaded once, brought to where the head is now, composed
-// for stereo, bent and blended for walls.
+// Shows the newest frame in one window: pictures are uploaded once, reprojected to the current head pose, composed
+// for stereo, and warped and blended for walls.
 
 #include "viewer/devices/gl/display_pass.h"
 #include "viewer/devices/gl/reprojection.h"
@@ -11,13 +11,13 @@
 
 namespace viewer {
 
-/// A part of a window and the views of a frame that it shows.
+/// Part of a window and the views that it shows.
 struct Pane {
     glm::ivec2 corner_px{}, size_px{}; ///< from the window's top left corner
     StereoMode stereo = StereoMode::off;
-    int left = -1, right = -1; ///< views of the frame; -1 = none: it stays dark
-    bool right_alone = false;  ///< the second of two windows
-    int wall = -1;             ///< index into the walls' settings; -1 = flat, as it is
+    int left = -1, right = -1; ///< views of the frame; -1 = none, stays dark
+    bool right_alone = false;  ///< shows only the right eye: second of two windows
+    int wall = -1;             ///< index into the walls' settings; -1 = flat, without a wall pass
 };
 
 struct PresentSettings {
@@ -29,21 +29,20 @@ struct PresentSettings {
 
 class Presenter {
 public:
-    /// The window's context is current, here and in all calls.
-    /// @param walls  settings of the walls that panes name; their passes are made here
+    /// The window's context must be current, here and in all calls.
+    /// @param walls  settings of the walls that panes refer to; creates their passes
     explicit Presenter(std::vector<WallSettings> const& walls);
 
-    /// Uploads the views that these panes show.
+    /// Uploads the views shown by these panes.
     void take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> const& panes);
-    /// Over what is there; nothing outside of the panes is touched.
-    /// @param on_screen_px  of the target's top left corner   @param now  a camera per view, for reprojection;
-    /// empty =
-    ///                      as rendered
+    /// Draws the panes; pixels outside of them stay unchanged.
+    /// @param on_screen_px  position of the target's top left corner
+    /// @param now  one camera per view, for reprojection; empty = as rendered
     void draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vector<Pane> const& panes,
               PresentSettings const& settings, std::vector<gi::Camera> const& now);
 
 private:
-    /// Of one view.
+    /// Draws one view.
     struct Shown {
         PictureTexture picture, other;
         Reprojection reprojection, other_reprojection;

@@ -22,12 +22,12 @@ gi::dvec3 point(Json const& v) { return {v[0].get<double>(), v[1].get<double>(),
 constexpr double kTap_s = 0.05;
 constexpr double kFarthest_m = 1e9, kLatest_s = 1e9;
 
-/// Throws InputError where a number is beyond the limit to either side.
+/// Throws InputError if the absolute value exceeds the limit.
 void check_within(char const* what, double value, double limit, char const* unit)
 {
     if (std::abs(value) > limit)
         throw gi::InputError(fmt::format("'{}' = {:g}", what, value),
-                             fmt::format("it goes from {:g} to {:g} {}", -limit, limit, unit), "give less");
+                             fmt::format("the range is {:g} to {:g} {}", -limit, limit, unit), "give less");
 }
 
 } // namespace
@@ -72,7 +72,7 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
         std::string const file = r.arguments.at("file").get<std::string>();
         if (!file.ends_with(".png") && !file.ends_with(".exr"))
             throw gi::InputError("a screenshot called '" + file + "'",
-                                 "its end does not say which kind of file it is", "end it in .png or .exr");
+                                 "its file format is unknown", "end the name in .png or .exr");
         if (r.has("view") && r.arguments.at("view").get<int>() < 0)
             throw gi::InputError(fmt::format("view {}", r.arguments.at("view").get<int>()), "there is none",
                                  "count from 0");
@@ -85,7 +85,7 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
     } else if (r.what == "pick") {
         pick(r);
     } else {
-        throw gi::InputError("'" + r.what + "' cannot be done here", "the viewer does not know it",
+        throw gi::InputError("'" + r.what + "' cannot be done here", "the viewer does not support it",
                              "see docs/remote.md");
     }
     return std::nullopt;
@@ -125,7 +125,7 @@ Json Requests::camera(RemoteRequest const& r)
     if (r.has("fov_deg")) {
         double const fov = r.arguments.at("fov_deg").get<double>();
         if (!(fov > 0.001 && fov < 179))
-            throw gi::InputError(fmt::format("a field of view of {} degrees", fov), "it goes from 0.001 to 179",
+            throw gi::InputError(fmt::format("a field of view of {} degrees", fov), "the range is 0.001 to 179",
                                  "45 is usual");
         state_.camera.yfov_rad = glm::radians(fov);
     }
@@ -144,7 +144,7 @@ void Requests::load(RemoteRequest const& r)
             server_->refuse(token, wrong);
             return;
         }
-        // Behind the question for the scene's first camera, which comes back by the same way.
+        // Queued after the job that reads the scene's first camera, so that its result arrives first.
         state_.renderer->ask([this, token](RenderSession&) {
             state_.inbox.put([this, token] {
                 changed_s_ = state_.clock.now_s();
@@ -159,7 +159,7 @@ void Requests::press(RemoteRequest const& r)
     std::string const name = r.arguments.at("key").get<std::string>();
     int const code = key_code(name);
     if (code < 0)
-        throw gi::InputError("there is no key '" + name + "'", "it has no name here", "see docs/viewer.md");
+        throw gi::InputError("there is no key '" + name + "'", "the name is unknown", "see docs/viewer.md");
     std::string const action = r.has("action") ? r.arguments.at("action").get<std::string>() : "tap";
     double const now = state_.clock.now_s();
     keys_.push_back({now, r.token, state_.navigation.world_from_camera()});
@@ -174,7 +174,7 @@ void Requests::press(RemoteRequest const& r)
 void Requests::step()
 {
     double const now = stepped_s_ = state_.clock.now_s();
-    // Who waits for a frame gets one, also of a picture that rests.
+    // Requests that wait for a frame get one, even if the picture rests.
     bool waits = !keys_.empty() || !loads_.empty();
     for (Shot& s : shots_) waits |= !std::exchange(s.has_frame, true) && !has_seen(s.since_s);
     if (waits) state_.renderer->again();
@@ -191,7 +191,7 @@ void Requests::step()
 
 void Requests::pick(RemoteRequest const& r)
 {
-    if (!state_.frame) throw gi::InputError("nothing to pick", "no frame was shown yet", "ask again");
+    if (!state_.frame) throw gi::InputError("nothing to pick", "no frame was shown yet", "try again later");
     ViewCommand const& v = state_.frame->order.views[0];
     double const scale = state_.frame->budget.scale > 0 ? state_.frame->budget.scale : 1;
     double const width = v.width / scale, height = v.height / scale;
@@ -232,7 +232,7 @@ void write(std::string const& file, int view, LiveFrame const& f, glm::ivec2 win
 
 } // namespace
 
-/// In the background: input does not wait for files.
+/// Runs in the background, so that input does not wait for files.
 void Requests::save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned char> const& bytes)
 {
     saving_.push_back(std::async(std::launch::async, [this, shot, window_px, bytes, frame = state_.frame] {

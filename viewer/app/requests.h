@@ -1,5 +1,5 @@
 #pragma once
-// What the remote control can ask of the viewer (docs/remote.md).
+// Handles the requests of the remote control (docs/remote.md).
 
 #include "viewer/app/controls.h"
 #include "viewer/app/view_state.h"
@@ -12,19 +12,20 @@ namespace viewer {
 
 class Requests {
 public:
-    /// Both outlive it.
+    /// All arguments must outlive it.
     Requests(ViewState& state, Controls& controls, gi::Report& report)
         : state_(state), controls_(controls), report_(report)
     {
     }
     /// As RemoteServer::Handler.
     std::optional<nlohmann::json> handle(RemoteRequest const& request);
-    /// Answers those that waited for it. @param shown_s  when the window showed what there is
+    /// Answers requests that waited for a frame to be shown. @param shown_s  when the window showed the current
+    /// frame
     void presented(double shown_s, glm::ivec2 window_px, std::vector<unsigned char> const& window_bytes);
-    /// Before input is read: releases of keys that were tapped.
+    /// Call before input is read: releases tapped keys.
     void step();
     void answer_with(RemoteServer* server) { server_ = server; }
-    /// Window bytes are needed with the next presentation.
+    /// True if the next call of presented() needs the window's bytes.
     bool wants_bytes() const { return !shots_.empty(); }
     nlohmann::json stats() const;
 
@@ -33,14 +34,14 @@ private:
         std::string file;
         int view = -1; ///< -1 = the window
         bool converged = false;
-        double since_s = 0;     ///< the last change before it
-        bool has_frame = false; ///< that comes even where the picture rests
+        double since_s = 0;     ///< time of the last change before the request
+        bool has_frame = false; ///< a new frame was requested, in case the picture rests
         std::uint64_t token = 0;
     };
     struct Key {
         double pressed_s = 0;
         std::uint64_t token = 0;
-        gi::dmat4 camera{1}; ///< before
+        gi::dmat4 camera{1}; ///< before the key press
     };
     struct Loaded {
         double asked_s = 0;
@@ -61,8 +62,8 @@ private:
     std::list<Shot> shots_;
     std::list<Key> keys_;
     std::list<Loaded> loads_;
-    double changed_s_ = 0;                         ///< when something was asked last that pictures may show
-    double stepped_s_ = 0;                         ///< what was asked before is on its way to the renderer
+    double changed_s_ = 0;                         ///< time of the last request that may change the picture
+    double stepped_s_ = 0;                         ///< requests before this time were passed to the renderer
     std::vector<std::pair<double, int>> releases_; ///< session time, key code
 };
 

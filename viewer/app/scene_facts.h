@@ -3,8 +3,8 @@
 
 namespace viewer {
 
-/// What the panel and the remote control need to know of the scene: a copy, as the session is the rendering
-/// thread's.
+/// Copy of the scene's data for the panel and the remote control, because the session belongs to the rendering
+/// thread.
 struct SceneFacts {
     struct Named {
         std::string name;

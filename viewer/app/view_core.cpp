@@ -58,7 +58,7 @@ ViewCore::~ViewCore()
 void ViewCore::start_at(gi::Camera const& camera)
 {
     state.first_camera = state.camera = camera;
-    // A walk through a scene takes seconds, whatever its size.
+    // Crossing a scene takes seconds, whatever its size.
     double const speed = std::clamp(0.2 * state.facts.radius_m, 0.05, 20.0);
     NavigationMode const mode = state.navigation.mode();
     state.navigation = Navigation(camera.world_from_camera, speed, state.facts.center);
@@ -76,7 +76,7 @@ void ViewCore::reset_view()
                 state.selection.reset();
                 start_at(camera);
             });
-        } catch (gi::InputError const& e) { // it has no camera of the name that was asked for
+        } catch (gi::InputError const& e) { // the scene has no camera of the requested name
             state.inbox.put([this, why = std::string(e.what())] { state.message = why; });
         }
     });
@@ -86,7 +86,7 @@ void ViewCore::make_files()
 {
     for (auto const& file : {options.record, options.frame_log})
         if (!file.empty() && std::filesystem::exists(file))
-            throw gi::InputError("'" + file.string() + "' is there already", "it would be replaced",
+            throw gi::InputError("'" + file.string() + "' exists already", "it would be replaced",
                                  "give another name, or delete it");
     if (!options.frame_log.empty())
         log_ = std::make_unique<FrameLog>(options.frame_log,
@@ -112,7 +112,8 @@ void ViewCore::start(FrameLink* link, std::function<void()> published,
         if (!recorder_) return;
         FrameCommand order = f.order;
         if (!f.ordered.empty()) order.views = f.ordered;
-        // What a rank of a cluster has rendered is not what a replay of all walls renders.
+        // A rank of a cluster renders only its own views, a replay renders all walls, so pixel hashes would
+        // differ.
         recorder_->append({order, f.ordered.empty() ? std::optional(frame_hash(f.result)) : std::nullopt, {}});
     };
     hooks.published = std::move(published);
@@ -207,8 +208,8 @@ void ViewCore::report_failure(std::filesystem::path const& file, std::string con
 {
     if (why.empty() || !unwritten_.insert(file).second) return;
     summary.files_whole = false;
-    state.message = fmt::format("'{}' cannot be written any further ({}) what came before is kept; make room and "
-                                "begin anew",
+    state.message = fmt::format("'{}' cannot be written any further ({}) earlier data is kept; make room and "
+                                "start again",
                                 file.string(), why);
     std::fputs(("lightwell: " + state.message + "\n").c_str(), stderr);
 }

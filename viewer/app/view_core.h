@@ -1,6 +1,6 @@
 #pragma once
-// What a viewer has whatever it shows its pictures on: the session and its rendering thread, settings and
-// commands, remote control, recording and the log of frames.
+// The parts of a viewer that do not depend on the output device: the session and its rendering thread, settings
+// and commands, remote control, recording and frame log.
 
 #include "viewer/app/requests.h"
 #include "viewer/app/view_program.h"
@@ -14,28 +14,28 @@ namespace viewer {
 
 class ViewCore {
 public:
-    /// Loads the scene, opens sockets. Throws InputError. All arguments outlive it.
+    /// Loads the scene and opens sockets. Throws InputError. All arguments must outlive it.
     ViewCore(ViewOptions const& options, gi::Report& report);
     ~ViewCore();
 
-    /// Makes the files that are written, after everything that can be refused; begins to render. Throws
-    /// InputError.
-    /// @param link  null where this process is alone   @param published  called on the rendering thread
+    /// Creates the output files, after all checks that may fail, and starts rendering. Throws InputError.
+    /// @param link  null without other ranks   @param published  called on the rendering thread
     void start(FrameLink* link, std::function<void()> published,
                std::function<std::vector<ViewCommand>(FrameCommand const&)> own_views = {});
-    /// Answers from the rendering thread, taps, sockets. False where it is time to end.
+    /// Handles answers from the rendering thread, tapped keys and sockets. Returns false when the viewer should
+    /// end.
     bool poll(gi::StopRequest const& stop);
-    /// What a key or button means, but for selecting and dragging.
+    /// Executes a command, except selecting and dragging.
     void obey(Command command);
     void log(FrameTimes const& times);
-    /// Ends the thread, closes files.
+    /// Ends the rendering thread and closes files.
     void finish();
 
-    /// A screenshot by key: the window's bytes, and all layers of its first view.
+    /// Saves a screenshot requested by key: the window's bytes, and all layers of its first view.
     void save_screenshot(glm::ivec2 window_px, std::vector<unsigned char> const& bytes);
 
     ViewOptions const& options;
-    std::optional<Display> display; ///< as far as the windows can show it
+    std::optional<Display> display; ///< adapted to the capabilities of the windows
     gi::Report& report;
     ViewState state;
     RenderSession session;
@@ -47,15 +47,15 @@ public:
 private:
     void start_at(gi::Camera const& camera);
     void make_files();
-    /// Tells once of each file that cannot be written any more.
+    /// Reports each file that can no longer be written, once.
     void watch_files();
     void report_failure(std::filesystem::path const& file, std::string const& why);
-    void reset_view(); ///< at a scene that was loaded, from its first camera
+    void reset_view(); ///< to the first camera of a newly loaded scene
 
     std::unique_ptr<RemoteServer> remote_;
     std::unique_ptr<Recorder> recorder_;
     std::unique_ptr<FrameLog> log_;
-    std::set<std::filesystem::path> unwritten_; ///< not to their end
+    std::set<std::filesystem::path> unwritten_; ///< files that could not be completed
     double last_poll_s_ = 0;
 };
 

@@ -22,8 +22,8 @@
 namespace viewer {
 namespace {
 
-constexpr double kLook_s = 0.004;       // between two looks at input and sockets
-constexpr double kPresentation_Hz = 60; // of old pictures seen from new places
+constexpr double kLook_s = 0.004;       // between two reads of input and sockets
+constexpr double kPresentation_Hz = 60; // rate of reprojecting an old picture
 constexpr double kFlicker_Hz = 2;
 
 double steady_s()
@@ -42,7 +42,7 @@ public:
         } else {
             open_desktop();
         }
-        if (!shown_.windows.empty()) shown_.windows.front()->window.gl().release(); // to the thread that draws
+        if (!shown_.windows.empty()) shown_.windows.front()->window.gl().release(); // to the presenting thread
         std::function<std::vector<ViewCommand>(FrameCommand const&)> own;
         if (link != nullptr && options.display)
             own = [this](FrameCommand const& order) {
@@ -135,7 +135,7 @@ private:
     }
     double height_px() const { return std::max(1, first_px().y); }
 
-    /// Of one eye's picture in the window.
+    /// Size of one eye's picture in the window.
     glm::dvec2 eye_px()
     {
         StereoMode const mode = core_.display ? StereoMode::off : possible_mode();
@@ -153,7 +153,7 @@ private:
         });
     }
 
-    /// Along the picture plane, so that the place that was picked stays under the mouse.
+    /// Moves along the picture plane, so that the picked point stays under the mouse.
     void drag(glm::dvec2 by_px)
     {
         if (!state_.selection) return;
@@ -164,7 +164,7 @@ private:
         state_.move_selection(by_m.x * gi::dvec3(m[0]) - by_m.y * gi::dvec3(m[1]));
     }
 
-    /// Where the windows have no buffers of the eyes, these are shown side by side.
+    /// Falls back to side by side if the windows have no quad buffers.
     StereoMode possible_mode()
     {
         StereoMode const mode = *stereo_mode(state_.settings.stereo);
@@ -207,7 +207,7 @@ private:
         if (core_.display) {
             Display const& display = *core_.display;
             double const seen_s = steady_s() + expected_s_;
-            // The head that rests stands where the navigation is.
+            // The resting head is at the navigation pose.
             at.world_from_room = state_.navigation.world_from_room() * glm::translate(gi::dmat4(1), -rest());
             at.tracked = tracking_->bodies(0, seen_s);
             bodies_.put(
@@ -233,7 +233,7 @@ private:
         core_.renderer->look(std::move(at));
     }
 
-    /// Where the first user's head rests, in the room.
+    /// Resting pose of the first user's head, in the room.
     gi::dvec3 rest() const
     {
         return core_.display->users.empty() ? gi::dvec3{0} : resting_head(core_.display->users[0]).position;
@@ -255,7 +255,7 @@ private:
         if (fresh || moved || flickers || dirty_ || resized || state_.wants_screenshot) present(newest, fresh);
     }
 
-    /// What the presenting thread is given, and gives back.
+    /// Data passed to the presenting thread and back.
     struct Presentation {
         std::shared_ptr<LiveFrame const> frame;
         bool fresh = false, panel = false, wants_bytes = false, reprojected = false;
@@ -287,7 +287,7 @@ private:
         p->reprojected = !(shown_cameras_ == rendered);
         if (fresh) {
             state_.frame = newest;
-            state_.settings.updated_axes = newest->settings.updated_axes; // which the renderer sets
+            state_.settings.updated_axes = newest->settings.updated_axes; // set by the renderer
             if (link_ != nullptr && core_.display) set_panes(display_panes(*core_.display, newest->order.views));
             meter_.see(newest);
         }
@@ -310,7 +310,7 @@ private:
                            });
     }
 
-    /// On the presenting thread.
+    /// Called on the presenting thread.
     void draw(Presentation& p)
     {
         for (std::size_t w = 0; w < shown_.windows.size(); ++w) {
@@ -329,7 +329,7 @@ private:
         }
         p.swap.time = SwapTime::Clock::now();
         if (link_ != nullptr && p.fresh) {
-            for (auto const& w : shown_.windows) { // drawn, not only asked for
+            for (auto const& w : shown_.windows) { // wait until drawing has finished
                 w->window.gl().make_current();
                 glFinish();
             }
@@ -374,7 +374,7 @@ private:
             times.width = f.order.views[0].width;
             times.height = f.order.views[0].height;
         }
-        // While nothing moves no frame is due at any time.
+        // While nothing moves, frames have no due time.
         bool const due = f.result.still_frames <= 1 && last_fresh_s_ > 0;
         times.dropped =
             due ? std::max(0, int(std::floor((shown_s - last_fresh_s_) * f.settings.rate_hz - 0.5))) : 0;
@@ -412,7 +412,7 @@ private:
     std::unique_ptr<Panel> panel_; ///< not on the walls of a display
     std::unique_ptr<PresentThread> presenting_ = std::make_unique<PresentThread>();
     ErrorMeter meter_;
-    std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: now, and as shown
+    std::vector<gi::Camera> cameras_, shown_cameras_; ///< of the views: current, and as shown
     bool dirty_ = true, fallback_told_ = false;
     double last_swap_s_ = 0, last_fresh_s_ = 0, expected_s_ = 0, frames_per_s_ = 0;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// `lightwell view`: windows on a desktop or the walls of a display. The loop of the main thread never waits for a
-// picture: it takes input, tells the renderer where the users are, and shows what there is.
+// `lightwell view`: windows on a desktop or the walls of a display. The main loop never waits for a picture: it
+// reads input, passes the users' poses to the renderer, and shows the newest frame.
 
 #include "gi/core/progress.h"
 #include "viewer/devices/tracking/footsteps.h"
@@ -15,39 +15,39 @@ namespace viewer {
 
 struct ViewOptions {
     LoadScene load;
-    DriveBodies drive; ///< moves the avatars that `load` has added to the scene; empty = there are none
-    std::vector<AvatarOfUser> avatars; ///< that `drive` moves
+    DriveBodies drive; ///< moves the avatars that `load` added to the scene; empty = none
+    std::vector<AvatarOfUser> avatars; ///< moved by `drive`
     std::string scene;
-    std::function<gi::Camera(gi::World const&)> first_camera; ///< where a scene is looked at from at first
+    std::function<gi::Camera(gi::World const&)> first_camera; ///< start camera of a scene
     std::vector<Change> settings;                             ///< set before the first frame
     glm::ivec2 size_px{1280, 720};
-    std::vector<std::string> monitors; ///< full screen there, one for each window; empty = windows
+    std::vector<std::string> monitors; ///< for full screen, one per window; empty = windowed
     int swap_interval = 1;
     int threads = 0;
     NavigationMode navigation = NavigationMode::fly;
-    double eye_height_m = 1.6; ///< of the first user above the floor; a headset says it itself
-    std::string screenshots;   ///< prefix of those taken by key
+    double eye_height_m = 1.6; ///< of the first user above the floor; a headset measures it
+    std::string screenshots;   ///< file-name prefix of screenshots taken by key
     std::optional<Display> display;
     std::filesystem::path record, frame_log;
-    RecordingHeader header;      ///< of the recording, but for its settings
-    nlohmann::json load_options; ///< what load needs to know besides the scene's name, for replays
+    RecordingHeader header;      ///< of the recording, without the settings
+    nlohmann::json load_options; ///< options of `load` besides the scene's name, for replays
     RemoteOptions remote;
     double time_limit_s = 0; ///< 0 = none
-    int rank = -1;           ///< of a cluster; -1 = alone
+    int rank = -1;           ///< in a cluster; -1 = no cluster
 };
 
 struct ViewRunSummary {
     FrameSummary frames;
     std::uint64_t rendered = 0, recorded = 0, presented = 0;
-    bool files_whole = true;     ///< recording and frame log have all that came
-    double longest_block_ms = 0; ///< of the main thread: between two looks at the input
+    bool files_whole = true;     ///< recording and frame log are complete
+    double longest_block_ms = 0; ///< longest time between two reads of input on the main thread
     std::string gl;
-    std::string schedule; ///< of slhb: the one in use in the last frame and why; empty of other methods
+    std::string schedule; ///< of slhb: schedule of the last frame and why; empty for other methods
     nlohmann::json trackers, headset;
 };
 
-/// Until the user, the remote control, the limit or `stop` ends it. Throws InputError on what cannot be opened.
-/// @param link  to the other ranks; null where there are none
+/// Runs until the user, the remote control, the time limit or `stop` ends it. Throws InputError if something
+/// cannot be opened. @param link  to the other ranks; null if there are none
 ViewRunSummary run_view(ViewOptions const& options, FrameLink* link, gi::StopRequest const& stop,
                         gi::Report& report);
 

@@ -13,7 +13,7 @@ void ViewState::change(Change const& c, std::function<void(std::string const&)> 
         set(changed, c);
         if (c.key == "device") {
             if (is_one_of_ranks)
-                throw gi::InputError("'device' while several ranks run", "each has to have such a device",
+                throw gi::InputError("'device' while several ranks run", "every rank needs such a device",
                                      "start them with --set device=" + changed.device);
             gi::check_device(changed.device == "cuda" ? gi::Space::device : gi::Space::host);
         }
@@ -77,7 +77,7 @@ gi::Camera ViewState::now() const
 
 void ViewState::pick(glm::dvec2 at, double aspect, std::function<void(std::optional<Selection> const&)> done)
 {
-    // Pixels of an eye are not square where the halves of a window hold the whole view each.
+    // Pixels are not square if each half of a window holds a whole view.
     if (frame && !frame->order.views.empty() && frame->order.views[0].camera.off_axis) {
         gi::ViewTangents const edge = *frame->order.views[0].camera.off_axis;
         aspect = (edge.right - edge.left) / (edge.top - edge.bottom);
@@ -86,7 +86,7 @@ void ViewState::pick(glm::dvec2 at, double aspect, std::function<void(std::optio
         std::optional<Selection> found;
         if (auto const hit = viewer::pick(s.world(), eye, aspect, at)) {
             gi::Scene const& scene = *s.world().scene;
-            // The nearest node above it that has a name: what its author would call the thing.
+            // Use the nearest named ancestor, which is what the scene's author would call the object.
             std::int32_t node = std::int32_t(hit->node);
             while (node >= 0 && scene.nodes[std::size_t(node)].name.empty())
                 node = scene.nodes[std::size_t(node)].parent;

@@ -1,6 +1,6 @@
 #pragma once
-// What the parts of the main loop share: settings as shown, the scene's facts, what is selected, and the way to
-// change things.
+// State shared by the parts of the main loop: current settings, scene data, selection, and functions to change
+// them.
 
 #include "viewer/app/live_error.h"
 #include "viewer/app/scene_facts.h"
@@ -14,10 +14,10 @@ namespace viewer {
 
 struct Selection {
     Picked picked;
-    std::string object, material; ///< names; the node's number where it has none
+    std::string object, material; ///< names; the node's number if it has none
 };
 
-/// Answers that come from the rendering thread, to be read by the main loop.
+/// Messages from the rendering thread to the main loop.
 class Inbox {
 public:
     void put(std::function<void()> message)
@@ -44,38 +44,38 @@ struct ViewState {
     SessionClock clock;
     Settings settings;
     SceneFacts facts;
-    gi::Camera first_camera, camera; ///< the second: its lens; where it is, navigation says
+    gi::Camera first_camera, camera; ///< `camera`: only its lens counts; the pose is that of `navigation`
     Navigation navigation{gi::dmat4(1), 1, {}};
     std::optional<Selection> selection;
-    std::shared_ptr<LiveFrame const> frame; ///< that is shown
-    bool drawing = false;                   ///< it is not in the windows yet
+    std::shared_ptr<LiveFrame const> frame; ///< currently shown
+    bool drawing = false;                   ///< `frame` is not in the windows yet
     std::optional<LiveError> live_error;
-    double screen_distance_m = 2; ///< where both eyes' pictures coincide
+    double screen_distance_m = 2; ///< distance where both eyes' pictures coincide
     bool ends = false;
-    std::string message; ///< the last that went wrong, for the panel
+    std::string message; ///< last error, for the panel
     Inbox inbox;
     LiveRenderer* renderer = nullptr;
-    bool is_one_of_ranks = false;                          ///< others render the same orders
+    bool is_one_of_ranks = false;                          ///< other ranks render the same frame commands
     bool has_two_windows = false;                          ///< for StereoMode::two_windows
     std::function<void()> loaded;                          ///< called after another scene was loaded
-    bool wants_screenshot = false, own_screenshot = false; ///< the second: by key
+    bool wants_screenshot = false, own_screenshot = false; ///< own_screenshot: requested by key
 
-    /// Settings take effect on what is shown at once, and in the picture with the next frame. Throws InputError
-    /// where a setting cannot be so; what is wrong with an edit of the scene goes to `done`, later, by the inbox.
+    /// Applies a setting to the display at once and to the rendering with the next frame. Throws InputError if a
+    /// setting is invalid. Errors in edits of the scene are passed to `done` later, through the inbox.
     void change(Change const& change, std::function<void(std::string const&)> done = {});
-    /// By so much, m, in the world.
+    /// Moves the selected object by an offset, m, in the world.
     void move_selection(gi::dvec3 by);
-    /// Reads the facts anew, soon; the ground too, where it is walked on.
+    /// Requests an update of the facts, and of the ground in walk mode.
     void refresh_facts();
-    /// Looks soon whether the ground is still what stays in the scene. Nothing where nobody walks.
+    /// Requests an update of the ground if the scene's static geometry changed. Does nothing outside walk mode.
     void refresh_ground();
-    /// The camera as it is now.
+    /// The current camera.
     gi::Camera now() const;
-    /// @param at  in [0, 1]^2 of one eye's picture   @param aspect  of the view, where its camera does not say it
+    /// @param at  in [0, 1]^2 of one eye's picture   @param aspect  of the view, if its camera does not define it
     void pick(glm::dvec2 at, double aspect, std::function<void(std::optional<Selection> const&)> done);
 
 private:
-    std::weak_ptr<gi::Scene const> ground_of_; ///< whose ground the navigation has
+    std::weak_ptr<gi::Scene const> ground_of_; ///< scene of the navigation's ground
 };
 
 } // namespace viewer

@@ -14,7 +14,7 @@ using Colour = cv::Scalar; // red, green, blue
 Colour const kBlack{0, 0, 0}, kWhite{255, 255, 255}, kGrey{110, 110, 110}, kRed{255, 0, 0}, kGreen{0, 200, 0},
     kBlue{60, 90, 255}, kYellow{240, 220, 0}, kCyan{0, 230, 230};
 
-/// A canvas that knows the wall: (u, v) from the lower left corner.
+/// Canvas in wall coordinates: (u, v) from the lower left corner.
 struct Canvas {
     cv::Mat image;
     Wall const& wall;
@@ -27,12 +27,12 @@ struct Canvas {
     cv::Point at(double u, double v) const
     {
         auto const pixel = [](double t, int size) {
-            return std::clamp(int(std::floor(t * size)), 0, size - 1); // the last line is still inside
+            return std::clamp(int(std::floor(t * size)), 0, size - 1); // keep the last line inside
         };
         return {pixel(u, width()), pixel(1 - v, height())};
     }
-    /// Letters of size 1 are 4.5 % of the shorter side high; what is wider than `room` of the width is made
-    /// smaller.
+    /// Letters of size 1 have a height of 4.5 % of the shorter side; text wider than the share `room` of the width
+    /// is reduced.
     void text(std::string const& words, double u, double v, double size, Colour colour, double room = 0.9) const
     {
         double const scale = size * 0.045 * std::min(width(), height()) / 22.0;
@@ -107,7 +107,7 @@ void draw_corners(Canvas const& c)
     draw_border(c, kWhite);
 }
 
-/// Crosses on the line through the wall's middle along its normal, where this eye sees them.
+/// Crosses on the line through the wall's centre along its normal, at the positions where this eye sees them.
 void draw_eyes(Canvas const& c)
 {
     Colour const mine = colour_of(c.view.eye);
@@ -134,12 +134,12 @@ void draw_eyes(Canvas const& c)
     };
     for (Mark const& mark : {Mark{0.5, 0.55, "half way to you"}, Mark{0, 0.4, "on the wall"},
                              Mark{-1, 0.25, "twice as far as the wall"}, Mark{-1e6, 0.1, "at infinity"}}) {
-        // Where the line from this eye to the point meets the wall.
+        // Intersection of the wall with the line from this eye to the point.
         gi::dvec3 const point = c.frame.point(0.5, mark.v) + mark.toward * distance * c.frame.normal;
         gi::dvec3 const to = point - eye;
         double const depth = -glm::dot(to, gi::dvec3(m[2]));
         double const u = (glm::dot(to, gi::dvec3(m[0])) / depth - t.left) / (t.right - t.left);
-        // Height is that of the mark on the wall, so that the rows stay apart: only the disparity is shown.
+        // Use a fixed height per mark, so that the rows stay apart: only the disparity matters.
         if (!(u >= 0 && u <= 1)) {
             c.text(fmt::format("{}: outside", mark.words), 0.5, mark.v, 0.5, mine);
             continue;
@@ -173,7 +173,7 @@ void draw_colours(Canvas const& c)
     c.text("as bright as the lines: gamma 2.2", 0.5, 0.125, 0.6, kBlack, 0.28);
 }
 
-/// Rows tell what this eye should see, columns what the other one does: off the diagonal, what differs leaked.
+/// Rows give this eye's value, columns the other eye's: differences within a row are leakage.
 void draw_crosstalk(Canvas const& c)
 {
     bool const is_right = c.view.eye == Eye::right;
@@ -184,7 +184,7 @@ void draw_crosstalk(Canvas const& c)
             c.text(fmt::format("L {} R {}", left ? "white" : "black", right ? "white" : "black"),
                    0.25 + 0.5 * right, 0.95 - 0.45 * left, 0.8, kGrey, 0.45);
         }
-    // Greys of this eye against the other eye's black and white: matched where leakage is cancelled.
+    // Greys for this eye against the other eye's black and white: they match where leakage is cancelled.
     for (int i = 0; i < 8; ++i) {
         double const grey = 8 * i;
         c.box(i / 8.0, 0, (i + 1) / 8.0, 0.1, is_right ? Colour{grey, grey, grey} : kWhite);

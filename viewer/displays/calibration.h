@@ -1,5 +1,6 @@
 #pragma once
-// Pictures for setting a display up, as pure functions of it: what to look at is said of each pattern.
+// Calibration pictures for setting up a display, as pure functions of it. Each pattern's comment lists what to
+// check.
 
 #include "viewer/displays/views.h"
 
@@ -12,12 +13,12 @@
 namespace viewer {
 
 enum class CalibrationPattern {
-    grid,    ///< lines in metres of the wall, a circle in its middle: sizes, aspect, edges, joints with neighbours
-    corners, ///< each corner in its colour with its name and place: which wall is which, what is up
-    eyes,    ///< the eye's letter, and marks before, on and behind the wall: separation, swapped eyes
-    colours, ///< bars, a ramp of grey, and lines that look as bright as the patch of gamma 2.2
-    crosstalk, ///< fields black or white for one eye only: what leaks into the other
-    blend,     ///< white, faded and coloured as the wall's blend and gain say: the overlap should be even
+    grid,    ///< lines at metric distances, a circle in the centre: sizes, aspect, edges, joints with neighbours
+    corners, ///< each corner with its colour, name and position: identity and orientation of the wall
+    eyes,    ///< the eye's letter, and marks in front of, on and behind the wall: eye separation, swapped eyes
+    colours, ///< colour bars, grey ramp, and lines as bright as the patch at gamma 2.2
+    crosstalk, ///< fields that are black or white for one eye only: leakage into the other eye
+    blend,     ///< white with the wall's blend and gain applied: the overlap should be even
 };
 inline constexpr std::array kCalibrationPatterns = {CalibrationPattern::grid,      CalibrationPattern::corners,
                                                     CalibrationPattern::eyes,      CalibrationPattern::colours,
@@ -25,17 +26,17 @@ inline constexpr std::array kCalibrationPatterns = {CalibrationPattern::grid,   
 char const* name_of(CalibrationPattern pattern);
 std::optional<CalibrationPattern> calibration_pattern(std::string_view name);
 
-/// Display-encoded, three bytes a pixel, rows from the top.
+/// Display-encoded, three bytes per pixel, rows from the top.
 struct CalibrationPicture {
     int width = 0, height = 0;
     std::vector<unsigned char> rgb;
 };
 
-/// What one eye sees on one wall, of the view's size. A view without a camera gets the patterns that need none;
-/// `eyes` then says so in its picture.
+/// Picture for one eye on one wall, of the view's size. Without a camera, only patterns that need none are drawn;
+/// `eyes` then shows a message.
 CalibrationPicture draw_calibration(CalibrationPattern pattern, Display const& display, DisplayView const& view);
 
-/// Distance between lines so that there are 6 to 24 along the longer edge: 1, 2 or 5 times a power of ten, m.
+/// Distance between grid lines for 6 to 24 lines along the longer edge: 1, 2 or 5 times a power of ten, m.
 double grid_step_m(WallFrame const& wall);
 
 } // namespace viewer

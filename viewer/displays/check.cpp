@@ -26,13 +26,13 @@ Fault names_fault(std::vector<Part> const& parts, char const* list)
     std::set<std::string> seen;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (parts[i].name.empty())
-            return DisplayFault{list,     i, "name", "the name is empty", "messages and pictures go by names",
+            return DisplayFault{list,     i, "name", "the name is empty", "messages and pictures use names",
                                 "name it"};
         if (!seen.insert(parts[i].name).second)
             return DisplayFault{list,
                                 i,
                                 "name",
-                                "'" + parts[i].name + "' is there twice",
+                                "'" + parts[i].name + "' is used twice",
                                 "others refer to it by its name",
                                 "give each its own"};
     }
@@ -106,7 +106,7 @@ Fault finish_fault(Wall const& wall, std::size_t i)
                             i,
                             "blend",
                             fmt::format("a power of {:g}", b.power),
-                            "the light's rise has 0.1 to 10",
+                            "the range is 0.1 to 10",
                             "2 is usual, 1 is straight"};
     if (!is_within(b.gamma, 1, 4))
         return DisplayFault{
@@ -142,10 +142,10 @@ Fault wall_fault(Display const& d, std::size_t i)
         return fault("lower_left_m", "wall '" + wall.name + "': " + corners->problem, corners->why,
                      corners->suggestion);
     if (wall.window < 0 || std::size_t(wall.window) >= d.windows.size())
-        return fault("window", "wall '" + wall.name + "' has no window", "it is not known where to draw it",
+        return fault("window", "wall '" + wall.name + "' has no window", "it needs one to be drawn in",
                      "name one of windows");
     if (wall.user < 0 || std::size_t(wall.user) >= d.users.size())
-        return fault("user", "wall '" + wall.name + "' has no user", "it is not known for whose eyes to draw it",
+        return fault("user", "wall '" + wall.name + "' has no user", "it is drawn for a user's eyes",
                      "name one of users");
     bool const two = wall.stereo == StereoMode::two_windows;
     if (two != (wall.second_window >= 0))
@@ -211,7 +211,7 @@ Fault user_fault(Display const& d, std::size_t i)
         return DisplayFault{"users",
                             i,
                             "head_position_m",
-                            "the head is nowhere",
+                            "the head's pose is invalid",
                             "a value is not finite or too large",
                             "metres and degrees"};
     if (!is_within(glm::length(user.eye_offset_m), 0, 1))
@@ -220,28 +220,28 @@ Fault user_fault(Display const& d, std::size_t i)
                             "eye_offset_m",
                             "the eyes are more than a metre from the tracked point",
                             "it is worn on the head",
-                            "metres? 0.1 is usual"};
+                            "is it in metres? 0.1 is usual"};
     if (user.tracker < -1 || user.tracker >= int(d.trackers.size()))
         return DisplayFault{"users",
                             i,
                             "head_tracker",
                             "there is no such tracker",
-                            "nothing would move the head",
+                            "the head could not be tracked",
                             "name one of trackers, or leave it out"};
     if (user.eye_height_m && !is_within(*user.eye_height_m, 0.3, 3))
         return DisplayFault{"users",
                             i,
                             "eye_height_m",
                             fmt::format("eyes {} m above the floor", *user.eye_height_m),
-                            "those of people who stand are 0.3 to 3 m above it",
-                            "metres? 1.65 is usual"};
+                            "the range for standing people is 0.3 to 3 m",
+                            "is it in metres? 1.65 is usual"};
     if (!user.avatar.empty() && i > CommandLimits::users)
         return DisplayFault{"users",
                             i,
                             "avatar",
                             "too many users with avatars",
-                            fmt::format("orders hold {} besides the first", CommandLimits::users),
-                            "give avatars to the first of them"};
+                            fmt::format("frame commands hold {} besides the first", CommandLimits::users),
+                            "give avatars only to the first users"};
     return {};
 }
 
@@ -253,18 +253,18 @@ Fault tracker_fault(DisplayTracker const& t, std::size_t i)
     };
     bool const is_network = t.type == DisplayTrackerType::osc || t.type == DisplayTrackerType::dtrack;
     if (is_network && !is_within(t.port, 1, 65535))
-        return fault("port", fmt::format("port {}", t.port), "its packets come to a port, 1 to 65535",
+        return fault("port", fmt::format("port {}", t.port), "packets are received on a port, 1 to 65535",
                      t.type == DisplayTrackerType::osc ? "port: 9000" : "port: 5000");
     if (is_network && t.address.empty())
-        return fault("address", "no address", "it is bound to one interface only", "address: 127.0.0.1");
+        return fault("address", "no address", "it listens on one interface only", "address: 127.0.0.1");
     if (t.type == DisplayTrackerType::osc && (t.body.empty() || t.body[0] != '/'))
-        return fault("body", "'" + t.body + "' is no OSC path", "paths tell the bodies apart", "body: /head");
+        return fault("body", "'" + t.body + "' is no OSC path", "bodies are identified by paths", "body: /head");
     if (t.type == DisplayTrackerType::dtrack &&
         (t.body.empty() || t.body.size() > 4 || t.body.find_first_not_of("0123456789") != std::string::npos))
-        return fault("body", "'" + t.body + "' is no body of DTrack", "they have numbers from 0", "body: 0");
+        return fault("body", "'" + t.body + "' is no body of DTrack", "bodies have numbers from 0", "body: 0");
     if (t.type == DisplayTrackerType::openxr && t.body != "head" && t.body != "left_hand" &&
         t.body != "right_hand")
-        return fault("body", "'" + t.body + "' is nothing that OpenXR tracks", "it has a head and two hands",
+        return fault("body", "'" + t.body + "' is nothing that OpenXR tracks", "it tracks a head and two hands",
                      "head, left_hand or right_hand");
     bool const has_limbs = is_network || t.type == DisplayTrackerType::file;
     auto const name = [](std::string const& id) { return id.starts_with('/') ? id.substr(1) : id; };
@@ -283,7 +283,7 @@ Fault tracker_fault(DisplayTracker const& t, std::size_t i)
         return fault("file", t.file.empty() ? "no file" : "a file with type: " + std::string(name_of(t.type)),
                      "poses are read from one with type: file, and only then", "give it, or remove it");
     if (!is_placed(t.room_from_tracker))
-        return fault("room_from_tracker", "the tracker is nowhere", "a value is not finite or too large",
+        return fault("room_from_tracker", "the tracker's pose is invalid", "a value is not finite or too large",
                      "metres and degrees");
     if (!is_within(t.latency_ms, 0, 1000))
         return fault("latency_ms", fmt::format("a latency of {} ms", t.latency_ms), "it is 0 to 1000",
@@ -321,7 +321,7 @@ bool overlap(PixelRectangle const& a, PixelRectangle const& b)
     return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-/// Walls that would draw over each other, or windows that two processes would open.
+/// Finds walls that would draw over each other, and windows that two processes would open.
 Fault sharing_fault(Display const& d)
 {
     for (std::size_t i = 0; i < d.walls.size(); ++i)
@@ -339,7 +339,7 @@ Fault sharing_fault(Display const& d)
                             fmt::format("window '{}' is on ranks {} and {}", window.name, b.rank, a.rank),
                             "one process opens a window",
                             "give its walls one rank, or each a window"};
-                    // A mesh says where a wall's picture goes, so that several may share a viewport.
+                    // Warp meshes place pictures within the viewport, so several such walls may share one.
                     if (!a.warp && !b.warp && overlap(viewport_px(a, window), viewport_px(b, window)))
                         return DisplayFault{
                             "walls",
@@ -353,8 +353,7 @@ Fault sharing_fault(Display const& d)
     return {};
 }
 
-/// How far the walls overlap along `right` of the first, where they lie in one plane side by side; 0 = they do
-/// not.
+/// Width by which walls that lie side by side in one plane overlap along `right` of the first; otherwise 0.
 double overlap_m(WallFrame const& a, WallFrame const& b)
 {
     if (glm::dot(a.normal, b.normal) < 0.9999 || glm::dot(a.right, b.right) < 0.9999) return 0;

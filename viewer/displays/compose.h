@@ -1,8 +1,8 @@
 #pragma once
-// The pictures of two eyes put into one, on bytes: for screenshots, and as what the GPU's form is held to.
+// Composes the pictures of two eyes into one, on bytes: for screenshots, and as the reference for the GPU version.
 //
-// Interlaced modes take turns by rows and columns of the SCREEN, whose filter in front of it does not move with
-// the window: the parity is that of the window's position plus the pixel's.
+// Interlaced modes alternate by rows and columns of the SCREEN, because the optical filter does not move with the
+// window: the parity is that of the window's position plus the pixel's.
 
 #include "viewer/displays/stereo_mode.h"
 
@@ -13,22 +13,23 @@
 
 namespace viewer {
 
-/// Size of the picture of each eye in a window: half of it side by side or one above the other (an odd column or
-/// row at the end stays black; at least one pixel of a window that has any), all of it otherwise.
+/// Size of each eye's picture in a window: half of it for side-by-side and top-bottom (an odd last column or row
+/// stays black; at least one pixel if the window has any), otherwise all of it.
 glm::ivec2 eye_size(StereoMode mode, glm::ivec2 window_px);
-/// Size of what compose_stereo returns: the window's; quad-buffer and two windows, which have two pictures, are
-/// shown side by side, twice as wide.
+/// Size of the picture from compose_stereo: the window's; for quad-buffer and two-windows, which have two
+/// pictures, side by side at twice the width.
 glm::ivec2 composed_size(StereoMode mode, glm::ivec2 window_px);
 
 /// Bytes are R, G, B, display-encoded (sRGB), rows from the top.
 /// @param left, right  pictures of eye_size(); right is not read in mode off
 /// @param on_screen_px position of the window's top left corner on the screen: parity of interlaced modes
-/// Throws InputError on pictures of another size.
+/// Throws InputError if the pictures have the wrong size.
 std::vector<unsigned char> compose_stereo(StereoMode mode, std::span<unsigned char const> left,
                                           std::span<unsigned char const> right, glm::ivec2 window_px,
                                           glm::ivec2 on_screen_px = {0, 0});
 
-/// Of red/cyan glasses, for linear light; row = channel of the result, column = channel of the eye's picture.
+/// Matrices for red/cyan glasses, on linear light; row = channel of the result, column = channel of the eye's
+/// picture.
 /// E. Dubois, "Conversion of a Stereo Pair to Anaglyph with the Least-Squares Projection Method", 2009; the
 /// method: "A projection method to generate anaglyph stereo images", ICASSP 2001. Results beyond 0..1 are clipped.
 struct DuboisMatrices {

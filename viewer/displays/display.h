@@ -1,9 +1,9 @@
 #pragma once
-// What a picture is shown on and who looks at it: walls in a room, the windows that feed them, users with eyes,
-// trackers that follow their heads. Plain data; display_file.h reads and writes it, check.h says what is wrong.
+// Description of a display: walls in a room, the windows that feed them, users with eyes, and trackers for their
+// heads. Plain data; display_file.h reads and writes it, check.h validates it.
 //
-// Frames: room, right-handed, +Y up, metres. Pixels of windows count from the top left corner, x to the right, y
-// down. Positions on a wall (u, v) count from the lower left corner, 0 to 1, as its corners do.
+// Frames: room, right-handed, +Y up, metres. Window pixels count from the top left corner, x to the right, y down.
+// Positions on a wall (u, v) count from the lower left corner, 0 to 1.
 
 #include "viewer/displays/off_axis.h"
 #include "viewer/displays/stereo_mode.h"
@@ -17,7 +17,7 @@
 
 namespace viewer {
 
-/// Rotation in degrees about x, then y, then z of the room; then the translation.
+/// Rotation in degrees about the room's x, then y, then z axis; then translation.
 struct Placement {
     gi::dvec3 translation_m{0}, rotation_deg{0};
 
@@ -35,10 +35,10 @@ struct Viewport {
     bool operator==(Viewport const&) const = default;
 };
 
-/// Where a wall's picture fades out because a neighbour's fades in: widths on the wall, from its edges inward.
+/// Blend bands where a wall's picture fades into its neighbour's: widths on the wall, from its edges inward.
 struct WallBlend {
     double left_m = 0, right_m = 0, top_m = 0, bottom_m = 0;
-    double power = 2;   ///< of the curve in blend.h: 1 = straight
+    double power = 2;   ///< of the curve in blend.h: 1 = linear
     double gamma = 2.2; ///< of the projector: light = value^gamma
 
     bool operator==(WallBlend const&) const = default;
@@ -48,17 +48,17 @@ struct Wall {
     std::string name;
     WallCorners corners;
     int window = 0;
-    int second_window = -1;                        ///< of the right eye, with StereoMode::two_windows
+    int second_window = -1;                        ///< for the right eye, with StereoMode::two_windows
     Viewport viewport;                             ///< in either window
-    int render_width_px = 0, render_height_px = 0; ///< of each eye's picture; 0 = as the viewport has
+    int render_width_px = 0, render_height_px = 0; ///< of each eye's picture; 0 = as the viewport
     StereoMode stereo = StereoMode::off;
-    bool swap_eyes = false; ///< the right eye takes the left eye's place
-    int user = 0;           ///< whose eyes it serves
+    bool swap_eyes = false; ///< exchanges the left and right eye
+    int user = 0;           ///< index of the user it is drawn for
     WallBlend blend;
-    std::string warp_file; ///< as the file states it, if the mesh comes from one
+    std::string warp_file; ///< path as written in the display file, if the mesh has its own file
     std::optional<WallMesh> warp;
     gi::dvec3 gain{1}; ///< factor on red, green and blue light
-    int rank = 0;      ///< the process that draws it, where several share the work
+    int rank = 0;      ///< process that draws it, in a cluster
 
     bool operator==(Wall const&) const = default;
 };
@@ -66,8 +66,8 @@ struct Wall {
 struct DisplayWindow {
     std::string name;
     int width_px = 0, height_px = 0;
-    int x_px = 0, y_px = 0; ///< on the monitor, or on the desktop where none is named
-    int monitor = -1;       ///< as the window system counts them; -1 = none named
+    int x_px = 0, y_px = 0; ///< on the monitor, or on the desktop if no monitor is given
+    int monitor = -1;       ///< index in the window system; -1 = not given
     bool fullscreen = false;
 
     bool operator==(DisplayWindow const&) const = default;
@@ -76,11 +76,11 @@ struct DisplayWindow {
 struct User {
     std::string name;
     double interpupillary_m = 0.063;
-    Placement head;            ///< where nothing tracks it
-    gi::dvec3 eye_offset_m{0}; ///< from the tracked point to the middle between the eyes; in the head's frame
-    int tracker = -1;          ///< that follows the head; -1 = none
-    std::string avatar{};      ///< file of a skinned model that he has, as stated; empty = none
-    std::optional<double> eye_height_m{}; ///< standing, above the floor y = 0; none = where the head rests
+    Placement head;            ///< resting pose, used without tracking
+    gi::dvec3 eye_offset_m{0}; ///< from the tracked point to the midpoint between the eyes; in the head's frame
+    int tracker = -1;          ///< tracker of the head; -1 = none
+    std::string avatar{};      ///< file of the user's skinned model, as written; empty = none
+    std::optional<double> eye_height_m{}; ///< standing, above the floor y = 0; none = that of the resting head
 
     bool operator==(User const&) const = default;
 };
@@ -101,22 +101,22 @@ struct TrackerFilter {
 struct DisplayTracker {
     std::string name;
     DisplayTrackerType type = DisplayTrackerType::fake;
-    std::string address = "127.0.0.1"; ///< of the interface to listen at (osc, dtrack)
+    std::string address = "127.0.0.1"; ///< of the interface to listen on (osc, dtrack)
     int port = 0;
     std::string body; ///< osc: path; dtrack: number; openxr: head, left_hand, right_hand
     std::string file; ///< recorded poses
     Placement room_from_tracker;
     double latency_ms = 0; ///< from motion to packet, measured
     TrackerFilter filter{};
-    std::string left_hand_body{}, right_hand_body{}; ///< of the same sender, as it names them; empty = the usual
+    std::string left_hand_body{}, right_hand_body{}; ///< of the same sender, by its names; empty = default names
     std::string left_foot_body{}, right_foot_body{};
 
     bool operator==(DisplayTracker const&) const = default;
 };
 
-/// Bodies of a tracker besides the one that it is of.
+/// Further bodies of a tracker besides its main one.
 struct LimbBody {
-    char const* key; ///< in files
+    char const* key; ///< key in display files
     std::string DisplayTracker::*body;
 };
 inline constexpr LimbBody kLimbBodies[]{{"left_hand_body", &DisplayTracker::left_hand_body},
@@ -142,7 +142,8 @@ struct PixelRectangle {
 
     bool operator==(PixelRectangle const&) const = default;
 };
-/// The wall's part of its window. Edges of fractions go to the nearest pixel, so that neighbours share them.
+/// The wall's part of its window. Fractional edges are rounded to the nearest pixel, so that neighbours share
+/// them.
 PixelRectangle viewport_px(Wall const& wall, DisplayWindow const& window);
 
 } // namespace viewer

@@ -1,6 +1,6 @@
 #pragma once
-// Displays in YAML: data/display.schema.json has the keys, data/displays the examples. Every length, angle and
-// time has its unit in its key.
+// Displays in YAML: data/display.schema.json lists the keys, data/displays has examples. The key of every length,
+// angle and time includes its unit.
 
 #include "gi/core/report.h"
 #include "viewer/displays/display.h"
@@ -10,12 +10,12 @@
 
 namespace viewer {
 
-/// Throws InputError with file:line:column on what is no sound display; counts doubts in the report.
+/// Throws InputError with file:line:column if the display is invalid; reports doubtful values.
 Display load_display(std::filesystem::path const& file, gi::Report& report);
-/// As above from text; meshes are looked for beside `name`, which messages call it.
+/// As above, from text. `name` is used in messages, and meshes are searched relative to it.
 Display parse_display(std::string const& text, std::string const& name, gi::Report& report);
 
-/// YAML that parses to an equal display. Meshes that came from a file are named, not written.
+/// YAML that parses to an equal display. Meshes from a file are written as the file's name.
 std::string to_yaml(Display const& display);
 void save_display(std::filesystem::path const& file, Display const& display);
 

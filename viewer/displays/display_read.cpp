@@ -10,12 +10,12 @@ namespace {
 
 using gi::Yaml;
 
-constexpr double kAny = 1e9; ///< what is read is judged in check.cpp
+constexpr double kAny = 1e9; ///< ranges are validated in check.cpp
 
 Yaml needed(Yaml const& map, char const* key, char const* example)
 {
     if (!map.has(key))
-        throw map.error(fmt::format("{} is missing", key), "it has no usual value",
+        throw map.error(fmt::format("{} is missing", key), "it has no default",
                         fmt::format("{}: {}", key, example));
     return map.at(key);
 }
@@ -24,7 +24,7 @@ std::vector<double> numbers(Yaml const& list, std::size_t count, double low, dou
 {
     auto const items = list.items();
     if (items.size() != count)
-        throw list.error(fmt::format("{} numbers, not {}", items.size(), count), "each has its meaning",
+        throw list.error(fmt::format("{} numbers, not {}", items.size(), count), "each number has its own meaning",
                          fmt::format("write a list of {}", count));
     std::vector<double> out;
     for (Yaml const& item : items) out.push_back(item.number(low, high));
@@ -40,7 +40,7 @@ int index_of(std::vector<Part> const& parts, Yaml const& name, char const* list)
         if (parts[i].name == wanted) return int(i);
         if (i < 20) known += (i ? ", " : "") + parts[i].name;
     }
-    throw name.error(fmt::format("'{}' is not in {}", wanted.substr(0, 64), list), "there is nothing of that name",
+    throw name.error(fmt::format("'{}' is not in {}", wanted.substr(0, 64), list), "no entry has this name",
                      parts.empty() ? fmt::format("add {}", list) : "there are: " + known);
 }
 
@@ -123,7 +123,7 @@ Wall read_wall(Yaml const& y, Display const& d, std::filesystem::path const& fol
         auto const mode = stereo_mode(y.at("stereo").text());
         if (!mode)
             throw y.at("stereo").error("'" + y.at("stereo").text().substr(0, 64) + "' is no stereo mode",
-                                       "it is not known how to show two eyes",
+                                       "the name is unknown",
                                        "there are: " + stereo_mode_names());
         wall.stereo = *mode;
     }
@@ -179,7 +179,7 @@ TrackerFilter read_filter(Yaml const& y)
     TrackerFilter filter;
     std::string const type = needed(y, "type", "one-euro").text();
     if (type != "none" && type != "one-euro")
-        throw y.at("type").error("'" + type.substr(0, 64) + "' is no filter", "it is not known how to smooth",
+        throw y.at("type").error("'" + type.substr(0, 64) + "' is no filter", "the name is unknown",
                                  "none or one-euro");
     filter.type = type == "none" ? FilterType::none : FilterType::one_euro;
     if (y.has("min_cutoff_hz")) filter.min_cutoff_hz = y.at("min_cutoff_hz").number(-kAny, kAny);
@@ -196,7 +196,7 @@ DisplayTracker read_tracker(Yaml const& y)
     auto const known = tracker_type(type);
     if (!known)
         throw y.at("type").error("'" + type.substr(0, 64) + "' is no type of tracker",
-                                 "it is not known how to listen to it", "osc, dtrack, openxr, file or fake");
+                                 "the name is unknown", "osc, dtrack, openxr, file or fake");
     tracker.type = *known;
     if (y.has("address")) tracker.address = y.at("address").text();
     if (y.has("port")) tracker.port = int(y.at("port").integer(-1000000, 1000000));
@@ -217,7 +217,7 @@ DisplayTracker read_tracker(Yaml const& y)
     return tracker;
 }
 
-/// The error at the place that the fault names, or as near as the file has it.
+/// The error at the fault's position in the file, or as near as possible.
 gi::InputError error_of(DisplayFault const& f, Yaml const& root)
 {
     if (f.list.empty()) return root.error(f.problem, f.why, f.suggestion);

@@ -7,7 +7,7 @@
 namespace viewer {
 namespace {
 
-/// Texts in double quotes, which YAML reads as JSON does. Numbers in their shortest exact form.
+/// Text in double quotes, which YAML reads like JSON. Numbers are written in their shortest exact form.
 std::string quoted(std::string const& text)
 {
     return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -18,7 +18,7 @@ std::string vec(gi::dvec3 v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z)
 class Writer {
 public:
     void line(std::string const& text) { out_ += text + "\n"; }
-    /// The first line of an item of a list, then the others.
+    /// Writes the first line of a list item; the others follow.
     void begin(std::string const& name) { line("  - name: " + quoted(name)); }
     void key(std::string const& key, std::string const& value) { line("    " + key + ": " + value); }
     std::string take() { return std::move(out_); }

@@ -1,5 +1,5 @@
 #pragma once
-// The displays of data/displays, carried by the program: examples.cpp.in is filled by CMake.
+// The displays of data/displays, embedded in the program: CMake fills examples.cpp.in.
 
 #include <span>
 #include <string_view>
@@ -7,7 +7,7 @@
 namespace viewer {
 
 struct DisplayExample {
-    std::string_view name; ///< "cave4.yaml"; those of other programs have their ends: "cave.pvx"
+    std::string_view name; ///< "cave4.yaml"; formats of other programs keep their extensions: "cave.pvx"
     std::string_view text;
 };
 std::span<DisplayExample const> display_examples();

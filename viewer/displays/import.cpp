@@ -37,7 +37,7 @@ DisplayFormat format_of(std::filesystem::path const& file)
                                         {".cfg", DisplayFormat::vrui}})
         if (end == known) return format;
     throw gi::InputError("'" + file.string() + "' is of no known kind of display",
-                         "its name ends with none of them",
+                         "its file extension is unknown",
                          ".yaml (ours), .json (SGCT), .pvx (ParaView), .eqc (Equalizer), .cfg (Vrui)");
 }
 
@@ -82,7 +82,7 @@ Display finished(Display display, std::string const& file, gi::Report& report)
     if (display.walls.empty())
         throw gi::InputError({file, 0, 0}, "no wall could be imported", "there is nothing to draw on",
                              "flat walls with corners are needed; see what was skipped");
-    // Fractions that were written with few digits may miss the edge of their window by less than a pixel.
+    // Fractions written with few digits may miss the window's edge by less than a pixel.
     for (Wall& wall : display.walls)
         if (Viewport& v = wall.viewport; v.unit == LengthUnit::fraction) {
             auto const tidy = [](double& at, double& size) {

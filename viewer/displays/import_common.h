@@ -1,5 +1,5 @@
 #pragma once
-// What the importers share.
+// Helpers shared by the importers.
 
 #include "gi/core/report.h"
 #include "viewer/displays/display.h"
@@ -9,10 +9,10 @@
 
 namespace viewer {
 
-/// Eyes as far apart as the file says, or 0.063 m, counted, where that is nobody's.
+/// The file's distance between the eyes, or 0.063 m (reported) if no person has that distance.
 double imported_eyes(double metres, std::string const& where, gi::Report& report);
 inline constexpr std::size_t kMostImportedParts = 1000;
-/// `wanted`, or with a number behind it, so that no other part has it. Throws InputError where there are too many.
+/// `wanted`, with a number appended if another part has this name. Throws InputError if there are too many parts.
 template <typename Part>
 std::string free_name(std::vector<Part> const& parts, std::string const& wanted)
 {
@@ -27,9 +27,9 @@ std::string free_name(std::vector<Part> const& parts, std::string const& wanted)
     for (int n = 2; is_taken(name); ++n) name = wanted + " " + std::to_string(n);
     return name;
 }
-/// From the lower left corner of the window, fractions of its size, to ours.
+/// Converts a viewport given from the window's lower left corner, in fractions of its size, to ours.
 Viewport from_below(double x, double y, double width, double height);
-/// Says that there is nothing to draw on, or checks the display and counts doubts.
+/// Validates the imported display and reports doubtful values. Throws InputError if it has no walls or is invalid.
 Display finished(Display display, std::string const& file, gi::Report& report);
 
 } // namespace viewer

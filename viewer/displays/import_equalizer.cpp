@@ -1,6 +1,6 @@
 // Equalizer 1.x and the compounds of 0.x. Walls come from segments of canvases, from canvases (a segment shows the
-// part that its viewport says), and from compounds with a channel; `projection` is turned into a wall as Equalizer
-// does it.
+// part given by its viewport), and from compounds with a channel; `projection` is converted to a wall as in
+// Equalizer.
 
 #include "viewer/displays/import.h"
 #include "viewer/displays/import_common.h"
@@ -48,7 +48,7 @@ struct EqualizerContext {
     }
 };
 
-/// The nodes up to the closing brace, or to the end at depth 0.
+/// Parses the nodes up to the closing brace, or to the end at depth 0.
 std::vector<TextNode> read_block(std::vector<TextToken> const& tokens, std::size_t& at, int depth,
                                  std::string const& file)
 {
@@ -63,7 +63,7 @@ std::vector<TextNode> read_block(std::vector<TextToken> const& tokens, std::size
             return nodes;
         }
         if (!key.is_quoted && std::string("{[]()").find(key.text) != std::string::npos)
-            throw fail(key, "'" + key.text + "' where a keyword should be", "it belongs to none");
+            throw fail(key, "'" + key.text + "' where a keyword should be", "it follows no keyword");
         TextNode node{key.text, {}, {}, key.line, key.column};
         ++at;
         if (at < tokens.size() && !tokens[at].is_quoted && tokens[at].text == "{") {
@@ -88,7 +88,7 @@ std::vector<TextNode> read_block(std::vector<TextToken> const& tokens, std::size
     return nodes;
 }
 
-/// x, y, width, height from below. Equalizer takes whole numbers for pixels.
+/// x, y, width, height from below. Equalizer interprets whole numbers as pixels.
 struct Area {
     double x = 0, y = 0, width = 1, height = 1;
     bool in_pixels = false;
@@ -196,7 +196,7 @@ WallCorners from_projection(TextNode const& p, EqualizerContext const& c)
     return {middle - w * x - h * y, middle + w * x - h * y, middle - w * x + h * y};
 }
 
-/// The wall or projection stated by the block itself.
+/// The wall or projection given by the block itself.
 std::optional<WallCorners> stated_wall(TextNode const& node, EqualizerContext& c)
 {
     if (TextNode const* wall = node.find("wall")) {
@@ -228,7 +228,7 @@ void add_wall(TextNode const& node, WallCorners const& corners, StereoMode stere
     std::string const name = node.text("channel");
     auto const channel = c.channels.find(name);
     if (channel == c.channels.end())
-        throw c.error(node, "there is no channel '" + name.substr(0, 64) + "'", "it is not known where to draw it",
+        throw c.error(node, "there is no channel '" + name.substr(0, 64) + "'", "a wall needs one to be drawn in",
                       "name the channel of a window");
     Wall wall;
     wall.name = free_name(c.display.walls, node.text("name", name));

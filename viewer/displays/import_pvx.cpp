@@ -1,5 +1,5 @@
-// ParaView's display configuration (vtkDisplayConfiguration): one Machine element per process. Walls hold
-// LowerLeft, LowerRight and UpperRight; files of before version 5 UpperLeft in its place.
+// ParaView's display configuration (vtkDisplayConfiguration): one Machine element per process. Walls have
+// LowerLeft, LowerRight and UpperRight; files from before version 5 have UpperLeft instead of UpperRight.
 
 #include "viewer/displays/import.h"
 #include "viewer/displays/import_common.h"
@@ -111,7 +111,7 @@ void read_machine(XMLElement const& m, int rank, bool default_fullscreen, PvxCon
         c.report.lose("windows whose size the file does not tell, taken as 1920 x 1080", 1, where);
     } else if (!read_geometry(attribute(m, "Geometry"), window))
         throw c.error(m, "Geometry '" + attribute(m, "Geometry").substr(0, 64) + "' is no place of a window",
-                      "it is not known how large the window is", "Geometry=\"640x360+60+1200\"");
+                      "it gives no size of the window", "Geometry=\"640x360+60+1200\"");
     Wall wall;
     wall.name = free_name(c.display.walls, window.name);
     gi::dvec3 const ll = point(m, "LowerLeft", c), lr = point(m, "LowerRight", c);
@@ -126,7 +126,7 @@ void read_machine(XMLElement const& m, int rank, bool default_fullscreen, PvxCon
     c.display.walls.push_back(wall);
 }
 
-/// The first value of that name below the element.
+/// The first value of this name below the element.
 char const* setting(XMLElement const& e, char const* name)
 {
     XMLElement const* const child = e.FirstChildElement(name);

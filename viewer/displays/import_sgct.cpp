@@ -1,6 +1,6 @@
-// SGCT 3, JSON (its sgct.schema.json). JSON is YAML, so that every value knows its line.
-// PlanarProjection: a plane 10 m from the room's origin unless `distance` says otherwise, turned by yaw to the
-// right, pitch upward and roll to the right; left and down angles are positive.
+// SGCT 3, JSON (its sgct.schema.json). Parsed as YAML, of which JSON is a subset, so that every value has its
+// line. PlanarProjection: a plane 10 m from the room's origin, or at `distance`, rotated by yaw to the right,
+// pitch upward and roll to the right; left and down angles are positive.
 
 #include "gi/core/yaml.h"
 #include "viewer/displays/import.h"
@@ -39,7 +39,7 @@ double number_or(Yaml const& map, char const* key, double otherwise)
 Yaml needed(Yaml const& map, char const* key)
 {
     if (!map.is_map() || !map.has(key))
-        throw map.error(std::string(key) + " is missing", "SGCT cannot do without it", "is this a file of SGCT?");
+        throw map.error(std::string(key) + " is missing", "SGCT requires it", "is this a file of SGCT?");
     return map.at(key);
 }
 
@@ -143,7 +143,7 @@ void read_viewport(Yaml const& v, int window, int rank, Stereo stereo, std::stri
     auto const known = users.find(user);
     if (known == users.end())
         throw v.at("user").error("there is no user '" + user.substr(0, 64) + "'",
-                                 "it is not known whose eyes see it", "name one of users");
+                                 "a viewport is drawn for a user's eyes", "name one of users");
     wall.user = known->second;
     c.display.walls.push_back(wall);
 }
@@ -199,7 +199,7 @@ Yaml parse_json(std::string const& text, std::string const& file)
 {
     try {
         return Yaml::parse(text, file, "SGCT");
-    } catch (gi::InputError const&) { // speaks of YAML, which nobody meant to write
+    } catch (gi::InputError const&) { // its message is about YAML, but the file is meant to be JSON
         try {
             [[maybe_unused]] auto const json = nlohmann::json::parse(text);
         } catch (nlohmann::json::parse_error const& e) {

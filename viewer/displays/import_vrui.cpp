@@ -125,7 +125,7 @@ gi::dvec3 unit(gi::dvec3 v, TextNode const& at, VruiContext const& c)
     return glm::normalize(v);
 }
 
-/// Nothing for screens that are no fixed rectangles.
+/// None for screens that are not fixed rectangles.
 std::optional<WallCorners> read_screen(TextNode const& s, VruiContext& c)
 {
     char const* odd = s.text("deviceMounted") == "true"               ? "carried by a device"
@@ -254,8 +254,8 @@ void read_units(TextNode const& environment, VruiContext& c)
     TextNode const *const metre = environment.find("meterScale"), *const inch = environment.find("inchScale");
     double const scale = metre ? numbers_of(*metre, 1, c.file)[0] : inch ? numbers_of(*inch, 1, c.file)[0] : 1;
     if (!(scale > 1e-6 && scale < 1e6))
-        throw c.error(environment, "a length unit of nothing",
-                      "inchScale and meterScale say how many units there are", "inchScale 1.0");
+        throw c.error(environment, "the length unit is not positive, or out of range",
+                      "inchScale and meterScale give the number of units", "inchScale 1.0");
     c.metres = (metre ? 1 : 0.0254) / scale;
     if (TextNode const* f = environment.find("forwardDirection")) c.forward = unit(point_of(*f, c.file), *f, c);
     if (TextNode const* u = environment.find("upDirection")) c.up = unit(point_of(*u, c.file), *u, c);
@@ -289,7 +289,7 @@ Display parse_vrui(std::string const& text, std::string const& name, std::string
         throw c.error(*vrui,
                       section.empty() ? "no environment has screenNames"
                                       : "there is no environment '" + section + "'",
-                      "it is not known which walls there are", "there are: " + (others.empty() ? "none" : others));
+                      "the environment lists the walls", "there are: " + (others.empty() ? "none" : others));
     if (other_count)
         report.lose("Vrui environments other than the one imported", std::uint64_t(other_count),
                     others.substr(0, 500));

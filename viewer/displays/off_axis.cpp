@@ -13,7 +13,7 @@ bool is_usable(gi::dvec3 v)
     return true;
 }
 
-/// Degrees that the corners are off a right angle.
+/// Deviation of the corners from a right angle, degrees.
 double skew_of(gi::dvec3 across, gi::dvec3 upward)
 {
     return std::abs(glm::degrees(std::atan2(glm::dot(across, upward), glm::length(glm::cross(across, upward)))));
@@ -35,7 +35,7 @@ std::optional<CornerFault> find_fault(WallCorners const& c)
     if (double const skew = skew_of(across, upward); skew > kSkew_deg)
         return CornerFault{fmt::format("the edges meet at {:.4g} degrees", 90 - skew),
                            "a wall is a rectangle; a picture would be sheared",
-                           "measure again; a crooked projection is put right by warp"};
+                           "measure again; warp corrects a skewed projection"};
     return {};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// How the pictures of the two eyes share a window.
+// Ways to show the pictures of two eyes in a window.
 
 #include <array>
 #include <optional>
@@ -34,9 +34,9 @@ inline constexpr std::array kStereoModes = {StereoMode::off,
 
 /// The name in files and on the command line: "side-by-side", "anaglyph-dubois".
 char const* name_of(StereoMode mode);
-/// Nothing where no mode has that name.
+/// None if no mode has this name.
 std::optional<StereoMode> stereo_mode(std::string_view name);
-/// "off, side-by-side, ...": for messages and help.
+/// "off, side-by-side, ...", for messages and help.
 std::string stereo_mode_names();
 
 } // namespace viewer

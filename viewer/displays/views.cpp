@@ -72,7 +72,7 @@ std::vector<ViewCommand> view_orders(std::span<DisplayView const> views, gi::dma
         ViewCommand order{view.name, *view.camera, view.width_px, view.height_px, -1};
         gi::dmat4& m = order.camera.world_from_camera;
         m = world_from_room * m;
-        // Directions do not depend on the scale of the user.
+        // Directions must not depend on the user's scale.
         for (int axis = 0; axis < 3; ++axis) m[axis] = glm::dvec4(glm::normalize(gi::dvec3(m[axis])), 0);
         if (view.partner >= 0) order.partner = order_of[std::size_t(view.partner)];
         order_of[i] = int(orders.size());

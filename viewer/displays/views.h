@@ -1,5 +1,5 @@
 #pragma once
-// Eyes and the cameras that look from them through the walls.
+// Eyes, and their cameras through the walls.
 
 #include "viewer/displays/display.h"
 #include "viewer/protocol/frame_command.h"
@@ -19,28 +19,28 @@ struct Eyes {
 };
 /// The head looks along -Z of its pose, +X to its right.
 Eyes eyes_of(User const& user, RoomPose const& head);
-/// Where the head is while nothing tracks it.
+/// Head pose without tracking.
 RoomPose resting_head(User const& user);
 
-/// One eye before one wall.
+/// View of one eye on one wall.
 struct DisplayView {
     int wall = 0;
     Eye eye = Eye::middle;
     std::string name;                ///< "left wall, right eye"
     int width_px = 0, height_px = 0; ///< to render
     EyePlace place = EyePlace::before;
-    std::optional<gi::Camera> camera; ///< in the room; nothing where the wall stays dark for this eye
-    int partner = -1;                 ///< index of the other eye's view of this wall, if that came earlier
+    std::optional<gi::Camera> camera; ///< in the room; none if the wall stays dark for this eye
+    int partner = -1;                 ///< index of the other eye's view of this wall, if it is earlier
 };
 
-/// Two views for a wall in stereo (the eye in the left eye's place first: the left one, or with swap_eyes the
-/// right one), one from the middle for a wall without. `heads` by user; those that are missing or empty rest.
-/// Walls in their order; those of other ranks are left out (-1 = all ranks).
+/// Two views per stereo wall (first the eye shown in the left eye's place: left, or right with swap_eyes), one
+/// from the midpoint between the eyes per mono wall. `heads` is indexed by user; missing or empty heads are at
+/// rest. Walls are in order; walls of other ranks are skipped (-1 = all ranks).
 std::vector<DisplayView> views_of(Display const& display, std::span<std::optional<RoomPose> const> heads,
                                   int rank = -1);
 
-/// Those that see their wall, in the world. world_from_room is rigid up to a scale. The views' indices are given
-/// by `sources` where it is not null.
+/// View commands, in the world, for the views that see their wall. world_from_room is rigid up to a scale.
+/// If `sources` is not null, it receives the views' indices.
 std::vector<ViewCommand> view_orders(std::span<DisplayView const> views, gi::dmat4 const& world_from_room,
                                      std::vector<int>* sources = nullptr);
 

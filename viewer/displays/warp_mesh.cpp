@@ -49,7 +49,7 @@ std::optional<std::string> find_fault(WallMesh const& m)
                     return fmt::format("cell {} of row {} is flat: three of its nodes lie on a line", i, j);
                 if (turn == 0) turn = area;
                 if (turn * area < 0)
-                    return fmt::format("the mesh folds at cell {} of row {}: what lies there would be drawn twice",
+                    return fmt::format("the mesh folds at cell {} of row {}: this part would be drawn twice",
                                        i, j);
             }
     return {};

@@ -1,10 +1,10 @@
 #pragma once
-// A grid that bends a picture onto a surface that is not flat or not seen straight: what is drawn at `picture` in
-// the wall's picture goes to `place` in its viewport. Both count from the lower left corner, 0 to 1.
+// Grid that warps a picture for a surface that is not flat or not viewed straight: the pixel at `picture` in the
+// wall's picture goes to `place` in its viewport. Both count from the lower left corner, 0 to 1.
 //
-// Nodes are stored row by row from below, each row from the left: node (i, j) is nodes[j * columns + i]. Every
-// cell is two triangles that share the diagonal from its lower left to its upper right node; within them all is
-// linear.
+// Nodes are stored row by row from below, each row from the left: node (i, j) is nodes[j * columns + i]. Each cell
+// is two triangles that share the diagonal from its lower left to its upper right node, with linear interpolation
+// within each.
 
 #include "gi/core/math.h"
 
@@ -35,8 +35,8 @@ struct WallMesh {
 
 inline constexpr int kMostWarpNodes = 257; ///< along one side
 
-/// Which cell is wrong, and how; nothing where the mesh can be drawn. Triangles must all turn the same way
-/// (mirrored is fine, folded is not), have area, and lie within one picture of the viewport; `picture` within the
-/// picture. That no two triangles far apart overlap is not looked at.
+/// Description of the first invalid cell; none if the mesh can be drawn. All triangles must have the same
+/// orientation (mirrored is allowed, folded is not) and area, and lie no farther outside the viewport than its
+/// size; `picture` must be within the picture. Overlaps of distant triangles are not checked.
 std::optional<std::string> find_fault(WallMesh const& mesh);
 } // namespace viewer

@@ -5,10 +5,11 @@
 
 namespace viewer {
 
-/// Reports triangles that collapse or turn not finite while they move: whenever there are more than ever before.
+/// Reports a loss for triangles that lose their area or become non-finite while moving. Counts only those beyond
+/// the largest number seen so far.
 class FlatTriangles {
 public:
-    /// @param first  to the first moment, whose own are counted as the world is built
+    /// @param first  changes up to the first frame; its triangles were counted when the world was built
     explicit FlatTriangles(gi::Changes const& first) : most_(first.flat_triangles) {}
 
     void see(gi::Changes const& now, gi::Report& report)

@@ -7,11 +7,11 @@
 namespace viewer {
 namespace {
 
-constexpr double kBesides = 1.0; // k, in paths
+constexpr double kBesides = 1.0; // k (governor.h), in paths
 constexpr double kMargin = 0.85; // of the time between frames
 constexpr double kScales[] = {1, 0.75, 0.5, 0.375, 0.25};
 constexpr int kMostPaths = 256;
-/// A larger picture has to fit by so much: a change of size costs the light that was reused.
+/// A larger picture must fit with this margin, because a change of size discards the temporally reused light.
 constexpr double kToGrow = 1.15;
 
 } // namespace
@@ -40,7 +40,7 @@ void Governor::measured(FrameBudget const& budget, double pixels, double seconds
     double const done = pixels * budget.scale * budget.scale * (budget.paths + kBesides);
     double const fits = kMargin / rate_hz / seconds;
     if (!(done > 0) || !(fits > 0)) return; // nothing was rendered, or in no time
-    // Paths are whole numbers: what is left over is saved up for one more.
+    // Paths are whole numbers: the remainder accumulates until it allows one more.
     work_ = fits < 1 ? done * std::max(fits, kLeast) : std::min(kGrowth * std::max(work_, done), done * fits);
     last_scale_ = budget.scale;
 }

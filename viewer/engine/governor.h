@@ -1,30 +1,32 @@
 #pragma once
-// Holds the rate of frames: how many paths, and pictures of what size, there is time for.
+// Holds the frame rate by choosing the paths per pixel and the size of the pictures.
 //
-// Work is counted in paths: s^2 N (p + k), N pixels of all views at full size, s the scale of their sides, p paths
-// per pixel, k what a pixel costs besides its paths (G-buffer, reuse, filter, upload). A frame that took too long
-// is followed by one with as much less work; work grows slowly. So what a frame costs besides needs no model.
+// Work is counted in paths: s^2 N (p + k), with N the pixels of all views at full size, s the scale of their
+// sides, p the paths per pixel, and k the other cost of a pixel in paths (G-buffer, reuse, filter, upload). After
+// a frame that took too long, the next one gets proportionally less work; work grows slowly. So a frame's fixed
+// costs need no model.
 
 namespace viewer {
 
 struct FrameBudget {
     int paths = 1;    ///< per pixel
-    double scale = 1; ///< of the sides of the pictures
+    double scale = 1; ///< picture side over full-size side
 
     bool operator==(FrameBudget const&) const = default;
 };
 
 class Governor {
 public:
-    /// @param pixels  of all views at full size   @param still  nothing moves: the full size, whatever the rate,
-    /// as the picture refines
-    /// @param fixed  what the user holds fixed: paths > 0, scale > 0
+    /// Returns the budget of the next frame.
+    /// @param pixels  of all views at full size
+    /// @param still  nothing moves: full size whatever the rate, because the picture refines
+    /// @param fixed  values that the user set: paths > 0, scale > 0; 0 = free
     FrameBudget next(double pixels, bool still, FrameBudget fixed = {0, 0}) const;
-    /// What a frame of that budget took.
+    /// Records the time that a frame with this budget took.
     void measured(FrameBudget const& budget, double pixels, double seconds, double rate_hz);
 
 private:
-    double work_ = 1e5; ///< of the next frame
+    double work_ = 1e5; ///< of the next frame, in paths
     double last_scale_ = 0;
 };
 

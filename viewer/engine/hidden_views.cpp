@@ -26,8 +26,8 @@ void HiddenViews::apply(Change const& change)
     }
     if (views_.size() >= CommandLimits::views && !views_.contains(name))
         throw gi::InputError("'" + change.key + "'",
-                             fmt::format("{} views have masks, which is the most", views_.size()),
-                             "set one of these, or empty it first");
+                             fmt::format("{} views have masks, the maximum", views_.size()),
+                             "replace or empty one of these masks first");
     views_[name] = {std::move(mask), {}, 0, 0, nullptr};
 }
 

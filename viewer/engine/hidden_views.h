@@ -1,5 +1,5 @@
 #pragma once
-// The masks of a session's views, and the pixels that they leave out.
+// The hidden-area masks of a render session's views, and the pixels that they exclude.
 
 #include "viewer/protocol/hidden_mask.h"
 
@@ -8,14 +8,15 @@
 
 namespace viewer {
 
-/// 1 per pixel of a view that is not rendered, rows from the top; null = all are. Another pointer = other pixels.
+/// One value per pixel of a view, rows from the top: 1 = not rendered. Null = all pixels are rendered. A different
+/// pointer means that the pixels changed.
 using HiddenPixels = std::shared_ptr<std::vector<std::uint8_t> const>;
 
 class HiddenViews {
 public:
-    /// Throws InputError as hidden_mask_of, and on masks of more views than an order may hold.
+    /// Throws InputError as hidden_mask_of does, and if more views have masks than a frame command may hold.
     void apply(Change const& change);
-    /// Kept until the mask, the size of the view or its tangents change. Null of orthographic cameras.
+    /// Hidden pixels of a view, cached until its mask, size or tangents change. Null for orthographic cameras.
     HiddenPixels pixels(ViewCommand const& view);
 
 private:

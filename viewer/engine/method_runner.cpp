@@ -7,13 +7,12 @@
 namespace viewer {
 namespace {
 
-/// Still pictures are filtered while they have few paths, and no longer when they have many: so they converge to
-/// what the method converges to.
+/// A still picture is filtered only while it has few paths, so that it converges to the method's own result.
 constexpr int kFilteredFrames = 48;
-/// Likewise light is taken from the other eye only at first.
+/// Likewise, light is reused from the other eye only at first.
 constexpr int kSharedFrames = 16;
 
-/// For methods that do not know where surfaces were: nothing is reused while anything moves.
+/// For methods without motion vectors: no temporal reuse while anything moves.
 void without_motion(gi::Picture& picture)
 {
     if (picture.find("motion") != nullptr) return;
@@ -36,9 +35,9 @@ MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& wor
     gi::RenderSettings s = render_settings(settings, threads);
     double pixels = 0;
     for (ViewCommand const& v : first) pixels += double(v.width) * v.height;
-    s.width = std::max(1, int(std::sqrt(pixels))); // the plan counts pixels
+    s.width = std::max(1, int(std::sqrt(pixels))); // the plan needs only the number of pixels
     s.height = std::max(1, int(std::lround(pixels / s.width)));
-    // One set of axes for all frames: what is seen moves, and fresh axes for every frame would flicker.
+    // Use the same axes for all frames: fresh axes in every frame would flicker.
     if (s.slhb.schedule == gi::Schedule::automatic && method == "slhb") s.slhb.schedule = gi::Schedule::stored;
     s.slhb.interleave = 1;
     renderer_ = gi::find_method(method).frames(world, first.front().camera, s, report);
@@ -71,7 +70,7 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& order, st
             {v.camera, v.width, v.height, settings.share_eyes && still_ <= kSharedFrames ? v.partner : -1});
         if (hidden[k]) views.back().hidden = *hidden[k];
     }
-    // Their blur would stay in the mean of a picture at rest.
+    // Its blur would stay in the mean of a still picture.
     auto const sharing =
         settings.radiance_cache && anything_moved ? gi::VertexSharing::cached : gi::VertexSharing::exact;
     renderer_->update_axes(settings.schedule == "auto" ? settings.updated_axes : 0);

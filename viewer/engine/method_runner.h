@@ -1,5 +1,5 @@
 #pragma once
-// One light-transport method at work on the frames of a session, with the light that it reuses.
+// Runs one light-transport method on the frames of a render session, with its temporal reuse and filter.
 
 #include "gi/filter/temporal.h"
 #include "gi/methods/registry.h"
@@ -10,16 +10,16 @@
 
 namespace viewer {
 
-/// What has happened between two frames, as temporal reuse sees it.
+/// Classifies the changes between two frames for temporal reuse.
 gi::SceneChange scene_change(gi::Changes const& changes, bool camera_moved);
 
 class MethodRunner {
 public:
-    /// The world and the report outlive it. @param first  views whose size the plan counts with
+    /// The world and the report must outlive it. @param first  views whose sizes the plan is made for
     MethodRunner(std::string const& method, gi::MovingWorld const& world, Settings const& settings, int threads,
                  std::vector<ViewCommand> const& first, gi::Report& report);
 
-    /// A picture per view. @param hidden  per view  @param changes  of the world since the last frame
+    /// Returns one picture per view. @param hidden  per view  @param changes  of the world since the last frame
     std::vector<gi::RenderResult> render(FrameCommand const& order, std::span<HiddenPixels const> hidden,
                                          gi::Changes const& changes, Settings const& settings,
                                          gi::StopRequest const& stop);
@@ -27,7 +27,7 @@ public:
     gi::DynamicUpdate dynamic_update() const { return renderer_->dynamic_update(); } ///< of the last frame
 
 private:
-    struct Seen { ///< of a view
+    struct Seen { ///< state kept for a view
         std::string name;
         gi::Camera camera;
         int width = 0, height = 0;
@@ -35,7 +35,8 @@ private:
         int most_frames = 0;
         HiddenPixels hidden;
     };
-    /// Reuse and filter of a view. @param partner  whose light it may have taken; finished before
+    /// Applies temporal reuse and the filter to a view. @param partner  view whose light it may have reused; it
+    /// must be finished already
     void finish(std::size_t view, std::vector<gi::RenderResult>& results, int partner, gi::SceneChange change,
                 Settings const& settings);
 
@@ -44,7 +45,7 @@ private:
     std::unique_ptr<gi::FrameRenderer> renderer_;
     std::vector<Seen> seen_;
     bool first_ = true;
-    int still_ = 0; ///< frames since something moved, changed or was looked at from elsewhere
+    int still_ = 0; ///< frames since the scene, a setting or the camera last changed
 };
 
 } // namespace viewer

@@ -29,7 +29,7 @@ float distance_to(gi::Ray const& ray, gi::Surface const& s)
 
 std::optional<Picked> pick(gi::World const& world, gi::Camera const& camera, double aspect, glm::dvec2 at)
 {
-    constexpr int kSide = 4096; // any: the place is continuous
+    constexpr int kSide = 4096; // any value works: the position in the picture is continuous
     int const width = std::max(1, int(std::lround(kSide * aspect)));
     gi::Ray const ray = gi::camera_rays(camera, width, kSide, world.origin)
                             .through(gi::vec2(float(at.x * width), float(at.y * kSide)));

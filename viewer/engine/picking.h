@@ -4,15 +4,15 @@
 
 namespace viewer {
 
-/// What is seen at a place of a picture.
+/// The surface seen at a point of a picture.
 struct Picked {
-    std::uint32_t triangle = 0, node = 0, material = 0; ///< of the world, the scene, the world
+    std::uint32_t triangle = 0, node = 0, material = 0; ///< indices into the world, the scene, the world
     double distance_m = 0;
     gi::dvec3 position{0}; ///< m, absolute
 };
 
-/// The nearest triangle on the ray of a camera through (x, y) in [0, 1]^2 of its picture, (0, 0) top left. Looks
-/// at every triangle: milliseconds for a million. Triangles without area are never met.
+/// Nearest triangle on the camera ray through (x, y) in [0, 1]^2 of its picture, (0, 0) top left. Tests every
+/// triangle: milliseconds for a million. Triangles without area are never hit.
 std::optional<Picked> pick(gi::World const& world, gi::Camera const& camera, double aspect, glm::dvec2 at);
 
 } // namespace viewer

@@ -11,7 +11,7 @@
 namespace viewer {
 namespace {
 
-/// Settings that the structures of a method are built by.
+/// True for settings whose change requires rebuilding the method's structures.
 bool decides_method(std::string const& key)
 {
     for (char const* const k : {"method", "device", "schedule", "directions", "resolution", "axes",
@@ -64,7 +64,7 @@ void RenderSession::restart()
 void RenderSession::load(Change const& change)
 {
     if (!change.value.is_string())
-        throw gi::InputError("'scene' = " + change.value.dump(), "it takes a name",
+        throw gi::InputError("'scene' = " + change.value.dump(), "a scene's name is a text",
                              "set a file or a built-in scene");
     std::string const name = change.value.get<std::string>();
     auto scene = load_(name, report_);
@@ -72,13 +72,13 @@ void RenderSession::load(Change const& change)
     edits_.clear();
     rebuild(std::move(scene));
     name_ = name;
-    malloc_trim(0); // the scene before is gone: a session may load many
+    malloc_trim(0); // return the previous scene's memory to the system: a session may load many
 }
 
 void RenderSession::rebuild(std::shared_ptr<gi::Scene const> scene)
 {
     auto world = std::make_unique<gi::MovingWorld>(scene, time_s_, report_);
-    restart(); // lanes look at the world
+    restart(); // method runners refer to the old world
     world_ = std::move(world);
     scene_ = std::move(scene);
     pending_ = {};

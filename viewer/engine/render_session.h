@@ -1,8 +1,7 @@
 #pragma once
-// What the viewer renders with: a scene that moves, settings that change, and what is kept from frame to frame.
-// It knows no windows, clocks or devices: the same changes and orders in the same sequence give the same pixels,
-// bit for bit, on any number of threads. The live viewer, the ranks of a cluster and the replay of a recording are
-// three ways to feed it.
+// The render session: a dynamic scene, its settings, and the state kept from frame to frame. It has no access to
+// windows, clocks or devices: the same sequence of changes and frame commands gives bit-identical pixels on any
+// number of threads. The live viewer, the ranks of a cluster and the replay of a recording all drive it.
 
 #include "viewer/engine/hidden_views.h"
 #include "viewer/engine/method_runner.h"
@@ -13,49 +12,49 @@
 
 namespace viewer {
 
-/// Reads what a scene's name says, and lights it where it has no light.
+/// Loads the scene of this name, and adds lights if it has none.
 using LoadScene = std::function<std::shared_ptr<gi::Scene const>(std::string const& name, gi::Report&)>;
-/// Moves bodies in the scene as trackers say.
+/// Moves bodies in the scene to their tracked poses.
 using DriveBodies = std::function<void(gi::Scene const&, FrameCommand const&, gi::Pose&)>;
 
 struct ViewPicture {
     gi::Picture picture;
-    std::optional<gi::Picture> compared; ///< of the second method, where there is one
-    HiddenPixels hidden{};               ///< that were left out
+    std::optional<gi::Picture> compared; ///< of the second method, if any
+    HiddenPixels hidden{};               ///< pixels that were not rendered
 };
 
 struct SessionFrame {
-    std::vector<ViewPicture> views;   ///< as ordered
-    bool moved = false;               ///< something in the scene has, since the frame before
-    gi::DynamicUpdate dynamic_update; ///< of the method, not of the one it is compared with
-    int still_frames = 0;             ///< since anything moved or changed, this one counted
-    int paths = 0;                    ///< per pixel; fewer than ordered where it was stopped
-    double rays = 0;                  ///< and look-ups
+    std::vector<ViewPicture> views;   ///< in the order of the frame command
+    bool moved = false;               ///< something in the scene moved since the previous frame
+    gi::DynamicUpdate dynamic_update; ///< of the main method, not the compared one
+    int still_frames = 0;             ///< frames since anything moved or changed, this one included
+    int paths = 0;                    ///< per pixel; fewer than requested if rendering was stopped
+    double rays = 0;                  ///< exact rays and look-ups
     std::map<std::string, double> stages_s;
-    std::string options; ///< what the method chose
+    std::string options; ///< options that the method chose
 };
 
 class RenderSession {
 public:
-    /// @param report  gets losses and counts; outlives the session  @param threads  0 = all
+    /// @param report  receives losses and counts; must outlive the session  @param threads  0 = all
     RenderSession(LoadScene load, int threads, gi::Report& report);
 
-    /// Keys are those of Settings, of scene_edits.h, of hidden_mask.h, and "scene". Throws InputError and changes
-    /// nothing where the value cannot be.
+    /// Valid keys are those of Settings, scene_edits.h and hidden_mask.h, and "scene". Throws InputError and
+    /// changes nothing if the value is invalid.
     void apply(Change const& change);
-    /// Renders an order; its changes have been applied already. Throws InputError without a scene.
+    /// Renders a frame command, whose changes must have been applied already. Throws InputError without a scene.
     SessionFrame render(FrameCommand const& order, gi::StopRequest const& stop);
 
-    /// Called for every frame from now on.
+    /// Sets a callback for every following frame.
     void drive_bodies(DriveBodies drive) { drive_ = std::move(drive); }
 
     Settings const& settings() const { return settings_; }
     std::string const& scene_name() const { return name_; }
     bool has_scene() const { return world_ != nullptr; }
     gi::World const& world() const { return world_->world(); }
-    /// Where an object is now, m, world. Throws InputError where there is none of that name.
+    /// Current position of an object, m, world. Throws InputError if no object has this name.
     gi::dvec3 position_of(std::string const& object) const;
-    bool moves() const; ///< something in the scene can move by itself
+    bool moves() const; ///< true if something in the scene can move by itself
 
 private:
     void load(Change const& change);
@@ -73,7 +72,7 @@ private:
     std::shared_ptr<gi::Scene const> scene_;
     std::unique_ptr<gi::MovingWorld> world_;
     std::vector<PlacedObject> placed_;
-    std::vector<Change> edits_; ///< of lights, materials, environment: one per key, made again in a new world
+    std::vector<Change> edits_; ///< of lights, materials, environment: one per key, reapplied to a new world
     HiddenViews hidden_;
     DriveBodies drive_;
     gi::Changes pending_; ///< edits since the last frame

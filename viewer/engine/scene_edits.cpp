@@ -22,7 +22,7 @@ double number(Change const& c, nlohmann::json const& v, double low, double high)
 {
     double const x = v.is_number() ? v.get<double>() : std::nan("");
     if (!(x >= low && x <= high))
-        refuse(c, fmt::format("numbers here go from {:g} to {:g}", low, high), "set one of these");
+        refuse(c, fmt::format("it takes numbers from {:g} to {:g}", low, high), "set one in this range");
     return x;
 }
 
@@ -30,7 +30,7 @@ template <std::size_t N>
 std::array<double, N> numbers(Change const& c, double low, double high)
 {
     if (!c.value.is_array() || c.value.size() != N)
-        refuse(c, fmt::format("it takes {} numbers", N), "set a list of them");
+        refuse(c, fmt::format("it takes {} numbers", N), "set a list of numbers");
     std::array<double, N> out{};
     for (std::size_t i = 0; i < N; ++i) out[i] = number(c, c.value[i], low, high);
     return out;
@@ -42,7 +42,7 @@ gi::dvec3 vector(Change const& c, double low, double high)
     return {v[0], v[1], v[2]};
 }
 
-/// "object.left.hand.position" -> object, left.hand, position.
+/// Splits "object.left.hand.position" into object, left.hand, position.
 struct Key {
     std::string kind, name, what;
 };
@@ -50,12 +50,12 @@ struct Key {
 Key parse(Change const& c)
 {
     std::size_t const first = c.key.find('.'), last = c.key.rfind('.');
-    if (first == std::string::npos) refuse(c, "it names nothing of the scene", "see docs/viewer.md");
+    if (first == std::string::npos) refuse(c, "the key names nothing in the scene", "see docs/viewer.md");
     if (first == last) return {c.key.substr(0, first), "", c.key.substr(last + 1)};
     return {c.key.substr(0, first), c.key.substr(first + 1, last - first - 1), c.key.substr(last + 1)};
 }
 
-/// By its name, or its number. @param name_of  of index
+/// Index of an item given by its name or number. @param name_of  returns the name at an index
 template <class NameOf>
 std::size_t find(Change const& c, std::string const& name, std::size_t count, NameOf const& name_of)
 {
@@ -78,7 +78,7 @@ gi::Changes edit_light(gi::MovingWorld& world, Change const& c, Key const& key)
     else if (key.what == "position")
         light.position = gi::vec3(vector(c, -kFarthest_m, kFarthest_m) - world.world().origin);
     else
-        refuse(c, "a light has no such thing", "set intensity or position");
+        refuse(c, "a light has no such property", "set intensity or position");
     return world.set_light(k, light);
 }
 
@@ -97,19 +97,19 @@ gi::Changes edit_material(gi::MovingWorld& world, Change const& c, Key const& ke
     else if (key.what == "metallic")
         m.metallic = float(number(c, c.value, 0, 1));
     else
-        refuse(c, "a material has no such thing", "set base_color, emission, roughness or metallic");
+        refuse(c, "a material has no such property", "set base_color, emission, roughness or metallic");
     return world.set_material(k, m);
 }
 
 gi::Changes edit_environment(gi::MovingWorld& world, Change const& c, Key const& key)
 {
     gi::World const& w = world.world();
-    if (!w.environment) refuse(c, "the scene has no environment map", "load one that has");
+    if (!w.environment) refuse(c, "the scene has no environment map", "load a scene that has one");
     if (key.what == "rotation")
         return world.turn_environment(float(number(c, c.value, -1e6, 1e6)), w.environment_scale);
     if (key.what == "scale")
         return world.turn_environment(w.environment_rotation_rad, gi::vec3(float(number(c, c.value, 0, 1e9))));
-    refuse(c, "an environment map has no such thing", "set rotation or scale");
+    refuse(c, "an environment map has no such property", "set rotation or scale");
 }
 
 } // namespace
@@ -164,7 +164,7 @@ PlacedObject placed_object(gi::Scene const& scene, gi::Pose const& now, std::vec
     } else if (key.what == "scale") {
         object.scale = number(c, c.value, 1e-6, 1e6);
     } else {
-        refuse(c, "an object has no such thing", "set position, rotation or scale");
+        refuse(c, "an object has no such property", "set position, rotation or scale");
     }
     return object;
 }

@@ -1,18 +1,26 @@
 #pragma once
-// What can be changed in a scene while the viewer runs, by key:
-//   object.NODE.position [x, y, z]  m, world      light.N.intensity [r, g, b]     material.NAME.base_color [r, g,
-//   b] object.NODE.rotation [x, y, z, w]             light.N.position [x, y, z]      material.NAME.roughness 0..1
-//   object.NODE.scale s                           environment.rotation radians    material.NAME.metallic 0..1
-//                                                 environment.scale s             material.NAME.emission [r, g, b]
-// NODE and NAME are names or numbers. An object that is moved for the first time has to be told from what stays:
-// then the world is built anew.
+// Edits of a scene while the viewer runs, by key:
+//   object.NODE.position [x, y, z]     m, world
+//   object.NODE.rotation [x, y, z, w]
+//   object.NODE.scale s
+//   light.N.intensity [r, g, b]
+//   light.N.position [x, y, z]
+//   material.NAME.base_color [r, g, b]
+//   material.NAME.roughness 0..1
+//   material.NAME.metallic 0..1
+//   material.NAME.emission [r, g, b]
+//   environment.rotation radians
+//   environment.scale s
+//
+// NODE and NAME are names or numbers. When an object is moved for the first time, the world is rebuilt, because
+// static and dynamic geometry are kept apart.
 
 #include "gi/scene/motion/moving_world.h"
 #include "viewer/protocol/frame_command.h"
 
 namespace viewer {
 
-/// Where an object was put: in place of what its clips and its node say.
+/// Pose of an object that the user placed; it replaces the pose from its node and animation clips.
 struct PlacedObject {
     std::size_t node = 0;
     gi::dvec3 position{0}; ///< m, world
@@ -22,15 +30,15 @@ struct PlacedObject {
 
 bool is_scene_edit(std::string const& key);
 
-/// A key of an object: the same as it was put before, or as its node is now, with the change.
-/// @param now  pose of the scene   Throws InputError where there is no such object, or the value is not right.
+/// Applies an edit of an object: starts from its entry in `placed`, or else from its node's pose in `now`.
+/// @param now  pose of the scene   Throws InputError if there is no such object or the value is invalid.
 PlacedObject placed_object(gi::Scene const& scene, gi::Pose const& now, std::vector<PlacedObject> const& placed,
                            Change const& change);
-/// Nodes and all that hang on them, where they were put.
+/// Writes the placed nodes and their descendants into `pose`.
 void place(gi::Scene const& scene, std::vector<PlacedObject> const& placed, gi::Pose& pose);
 
 bool is_object_edit(std::string const& key);
-/// Of lights, materials, the environment. Throws InputError.
+/// Applies an edit of a light, a material or the environment. Throws InputError.
 gi::Changes edit(gi::MovingWorld& world, Change const& change);
 
 } // namespace viewer

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Throws InputError unless it is finite and within.
+/// The value of `c` as a number; throws InputError unless it is within [low, high].
 double number(Change const& c, double low, double high)
 {
     double const v = c.value.is_number() ? c.value.get<double>() : std::nan("");
@@ -48,7 +48,7 @@ std::string one_of(Change const& c, std::vector<std::string> const& words)
         if (c.value.is_string() && c.value.get<std::string>() == w) return w;
         all += (all.empty() ? "" : ", ") + (w.empty() ? "\"\"" : w);
     }
-    throw gi::InputError(fmt::format("'{}' = {}", c.key, c.value.dump()), "it takes a word that is known here",
+    throw gi::InputError(fmt::format("'{}' = {}", c.key, c.value.dump()), "it is none of the known words",
                          "set one of: " + all);
 }
 
@@ -114,57 +114,60 @@ std::vector<Entry> const& entries()
 {
     static std::vector<Entry> const all{
         word("method", "light transport", &Settings::method, method_names(false)),
-        word("compare", "a second method to look at beside it", &Settings::compare, method_names(true)),
-        word("schedule", "where the axes of slhb come from", &Settings::schedule,
-             {"auto", "stored", "streamed", "temporal"}),
-        word("directions", "set of the stored schedule", &Settings::directions,
-             {"", "icosahedron:80", "icosahedron:320", "icosahedron:1280"}),
-        count("resolution", "texels along a side of a hit buffer, 0 = chosen by the plan", &Settings::resolution,
-              0, 4096),
-        count("axes", "of a pass, streamed and temporal, 0 = chosen by the plan", &Settings::axes, 0, 4096),
+        word("compare", "second method, shown beside the first for comparison; empty = none",
+             &Settings::compare, method_names(true)),
+        word("schedule", "slhb: source of the axes: stored once, streamed per pass, or temporal",
+             &Settings::schedule, {"auto", "stored", "streamed", "temporal"}),
+        word("directions", "slhb (stored), vpl_slhb: set of directions; empty = chosen by the plan",
+             &Settings::directions, {"", "icosahedron:80", "icosahedron:320", "icosahedron:1280"}),
+        count("resolution", "slhb, vpl_slhb: texels along a side of a hit buffer, 0 = chosen by the plan",
+              &Settings::resolution, 0, 4096),
+        count("axes", "slhb, streamed and temporal schedules: axes per pass, 0 = chosen by the plan",
+              &Settings::axes, 0, 4096),
         count("updated_axes",
-              "of the schedule auto, which sets it: stored axes per bounce that are brought to what has moved, 0 "
-              "= all",
+              "slhb: stored axes per bounce updated each frame for dynamic geometry, 0 = all; set by the "
+              "schedule auto",
               &Settings::updated_axes, 0, 64),
-        count("light_samples", "light samples that get a shadow map, 0 = chosen by the plan",
+        count("light_samples", "slhb: light points (light samples with a shadow map), 0 = chosen by the plan",
               &Settings::light_samples, 0, 1024),
-        word("device", "that slhb runs on; by cuda paths end at mirrors, glass and narrow lobes, which is counted",
+        word("device",
+             "slhb: device it runs on; on cuda, paths end at mirrors, glass and narrow lobes (counted)",
              &Settings::device, {"cpu", "cuda"}),
         count("light_paths",
-              "from the lamps in a pass, of the methods vpl_*: surfaces they meet are virtual lights",
+              "methods vpl_*: paths traced from the lights per pass; each surface hit becomes a virtual light",
               &Settings::light_paths, 1, 65536),
         entry({"points",
                SettingType::word,
-               "of an imperfect shadow map (vpl_imperfect), or 30% of its texels",
+               "vpl_imperfect: points per imperfect shadow map, or a share of its texels (30%)",
                {"5%", "30%", "100%", "256", "1024", "4096", "16384"},
                0,
                0},
               &Settings::points, points),
-        real("ao_radius", "of occluders that count, m (vpl_ao, vpl_dao)", &Settings::ao_radius_m, 0, 1e6),
+        real("ao_radius", "vpl_ao, vpl_dao: radius in which occluders count, m", &Settings::ao_radius_m, 0, 1e6),
         count("bounces", "indirect bounces", &Settings::bounces, 0, 1024),
-        count("seed", "of the random numbers", &Settings::seed, 0, 1 << 30),
-        count("reuse", "frames that light is reused over, 1 = none", &Settings::reuse, 1, 256),
-        word("denoise", "filter", &Settings::denoise, gi::filter_names()),
-        flag("share_eyes", "an eye may take light that the other one found", &Settings::share_eyes),
-        flag("radiance_cache", "while anything moves, paths may end in the radiance cache",
+        count("seed", "seed of the random numbers", &Settings::seed, 0, 1 << 30),
+        count("reuse", "frames that temporal reuse averages over, 1 = none", &Settings::reuse, 1, 256),
+        word("denoise", "filter that removes noise", &Settings::denoise, gi::filter_names()),
+        flag("share_eyes", "each eye may reuse light computed for the other eye", &Settings::share_eyes),
+        flag("radiance_cache", "paths may end in the radiance cache while anything moves",
              &Settings::radiance_cache),
-        real("exposure", "stops", &Settings::exposure_ev, -32, 32),
-        word("tone", "curve", &Settings::tone, {"srgb", "filmic"}),
-        real("rate", "frames per second that it aims at, Hz", &Settings::rate_hz, 0.1, 1000),
-        count("paths", "per pixel and frame, 0 = what the rate allows", &Settings::paths, 0, 65536),
-        real("scale", "sides of the pictures over those of the window, 0 = what the rate allows", &Settings::scale,
-             0, 1),
-        flag("play", "clips go on", &Settings::play),
-        real("speed", "of clips", &Settings::speed, -100, 100),
-        real("eye_distance", "between the pupils, m", &Settings::eye_distance_m, 0, 1),
-        word("stereo", "how two eyes share a window", &Settings::stereo, stereo_names()),
-        flag("swap_eyes", "left for right", &Settings::swap_eyes),
-        word("view", "what is shown of two methods", &Settings::view,
+        real("exposure", "exposure, stops", &Settings::exposure_ev, -32, 32),
+        word("tone", "tone curve", &Settings::tone, {"srgb", "filmic"}),
+        real("rate", "target frame rate, Hz", &Settings::rate_hz, 0.1, 1000),
+        count("paths", "paths per pixel and frame, 0 = as the frame rate allows", &Settings::paths, 0, 65536),
+        real("scale", "side of the picture relative to the window's, 0 = as large as the frame rate allows",
+                  &Settings::scale, 0, 1),
+        flag("play", "animation clips run", &Settings::play),
+        real("speed", "playback speed of animation clips, 1 = real time", &Settings::speed, -100, 100),
+        real("eye_distance", "distance between the pupils, m", &Settings::eye_distance_m, 0, 1),
+        word("stereo", "how the two eyes' pictures are shown in a window", &Settings::stereo, stereo_names()),
+        flag("swap_eyes", "exchange the left and right eye", &Settings::swap_eyes),
+        word("view", "how two methods are shown", &Settings::view,
              {"picture", "split", "flicker", "difference"}),
-        real("split", "where the picture is split, of its width", &Settings::split, 0, 1),
-        flag("reproject", "show the last picture as seen from where the head is now", &Settings::reproject),
-        flag("refine", "goes on rendering while nothing moves", &Settings::refine),
-        flag("panel", "the panel is shown", &Settings::panel),
+        real("split", "position of the split, as a share of the picture's width", &Settings::split, 0, 1),
+        flag("reproject", "reproject the last picture to the current head pose", &Settings::reproject),
+        flag("refine", "keep adding paths while nothing moves", &Settings::refine),
+        flag("panel", "show the panel", &Settings::panel),
     };
     return all;
 }
@@ -210,7 +213,7 @@ void set(Settings& settings, Change const& change)
 {
     Entry const* const e = find(change.key);
     if (e == nullptr)
-        throw gi::InputError("there is no setting '" + change.key + "'", "it is not known here",
+        throw gi::InputError("there is no setting '" + change.key + "'", "its key is unknown",
                              "docs/viewer.md has the list");
     e->set(settings, change);
 }
@@ -219,7 +222,7 @@ Change parse_change(std::string const& text)
 {
     std::size_t const at = text.find('=');
     if (at == std::string::npos)
-        throw gi::InputError("--set " + text, "a setting has a key and a value", "write --set exposure=1.5");
+        throw gi::InputError("--set " + text, "a setting needs a key and a value", "write --set exposure=1.5");
     std::string const value = text.substr(at + 1);
     Json const parsed = Json::parse(value, nullptr, false);
     return {text.substr(0, at), parsed.is_discarded() ? Json(value) : parsed};
@@ -229,7 +232,7 @@ nlohmann::json get(Settings const& settings, std::string const& key)
 {
     Entry const* const e = find(key);
     if (e == nullptr)
-        throw gi::InputError("there is no setting '" + key + "'", "it is not known here",
+        throw gi::InputError("there is no setting '" + key + "'", "its key is unknown",
                              "docs/viewer.md has the list");
     return e->get(settings);
 }

@@ -8,15 +8,15 @@
 namespace viewer {
 namespace {
 
-constexpr int kLevels[] = {0, 32, 16, 8};         // axes of a bounce, 0 = all
-constexpr double kMost[] = {0.2, 0.2, 0.35, 1e9}; // of the time between frames, for each level
+constexpr int kLevels[] = {0, 32, 16, 8};         // axes per bounce, 0 = all
+constexpr double kMost[] = {0.2, 0.2, 0.35, 1e9}; // share of the time between frames, per level
 constexpr double kShareToGrow = 0.6, kAtOnce = 0.5;
 constexpr int kFramesToGrow = 8, kFramesKept = 3, kQuiet = 8;
 
-/// The set is parted into so many; each bounce has one in a frame.
+/// Number of parts that the set of axes is divided into; each bounce updates one part per frame.
 int parts_of(int updated, int stored) { return updated == 0 ? 1 : std::max(1, stored / updated); }
 
-/// Different axes of all bounces, which choose theirs by themselves.
+/// Expected number of different axes updated by all bounces, which choose their parts independently.
 double axes_of(int updated, gi::DynamicUpdate const& f)
 {
     return f.stored * (1 - std::pow(1 - 1.0 / parts_of(updated, f.stored), f.bounces));
@@ -63,16 +63,16 @@ int UpdateGovernor::next(bool may_move)
 std::string schedule_sentence(std::string const& schedule, int updated, int stored, double share_of_all)
 {
     if (schedule != "auto") return schedule + ", as it was set";
-    if (stored == 0) return "none: light is not looked up along directions";
+    if (stored == 0) return "none: the method makes no look-ups along axes";
     std::string const share = fmt::format("{:.0f} % of the time between frames", 100 * share_of_all);
     if (!(share_of_all > 0)) return fmt::format("stored: all {} directions; nothing has moved so far", stored);
     int const parts = parts_of(updated, stored);
     if (parts == 1)
-        return fmt::format("stored: all {} directions follow what moves, which takes {} where something does",
-                           stored, share);
+        return fmt::format("stored: all {} directions are updated for dynamic geometry, which takes {}", stored,
+                           share);
     return fmt::format(
-        "stored: {} of {} directions for each bounce follow what moves, others in every frame, as all "
-        "would take {}",
+        "stored: {} of {} directions per bounce are updated per frame, round-robin, because updating all would "
+        "take {}",
         stored / parts, stored, share);
 }
 

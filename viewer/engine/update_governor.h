@@ -1,19 +1,19 @@
 #pragma once
-// How many of the stored directions follow what moves, where the schedule is left to the viewer.
+// Chooses how many stored axes are updated per frame for dynamic geometry, when the schedule is auto.
 //
-// With the schedule stored, what moves is drawn anew in every frame for every direction: the same cost for any
-// number of paths and pixels, and more than all of them where much moves. DynamicUpdate fewer directions, others
-// in every frame (AxisSet::follow_some), costs that much less and a little noise, which temporal reuse averages;
-// nothing is built anew, and nothing that was reused is lost. The rule is measured:
+// With the schedule stored, dynamic geometry is redrawn in every frame for every axis. This cost does not depend
+// on the number of paths and pixels, and exceeds their cost if much moves. Updating only some axes, different ones
+// in every frame (AxisSet::follow_some), reduces it in proportion and adds a little noise, which temporal reuse
+// averages; nothing is rebuilt, and no reused light is lost. The rule comes from measurements:
 // docs/results/2026-11-22-schedules.md.
 //
-// - All, or 32 of each bounce, where they take no more than a fifth of the time between frames; else 16 where they
-//   take no more than 0.35 of it; else 8.
-// - Fewer when the least of the last three frames says so, or at once where half of a frame's time is used up by
-// it.
-// - More, one step at a time, when eight frames in succession say that it would take less than 0.6 of that limit.
-// - Where nothing moves, one step more in every frame, up to all: what has followed costs nothing then, and the
-//   picture converges as with all. When something moves again, as many as before.
+// - All axes, or 32 per bounce, if their update takes at most 0.2 of the time between frames; else 16 if it takes
+//   at most 0.35; else 8.
+// - Go down if the smallest of the last three measurements exceeds the limit, or at once if the update takes more
+//   than half of the time between frames.
+// - Go up one step after eight successive frames in which the next level would take less than 0.6 of its limit.
+// - If nothing moves, go up one step per frame, up to all: updating costs nothing then, and the picture converges
+//   as with all axes. When something moves again, the earlier level is restored.
 
 #include "gi/render/frame_renderer.h"
 
@@ -24,31 +24,32 @@ namespace viewer {
 
 class UpdateGovernor {
 public:
-    /// What a frame tells.
+    /// Measurements of one frame.
     struct Frame {
         gi::DynamicUpdate dynamic_update;
-        bool moved = false;  ///< something in the scene
-        double rate_hz = 20; ///< frames that are aimed at
+        bool moved = false;  ///< something in the scene moved
+        double rate_hz = 20; ///< target frame rate
     };
     void measured(Frame const& frame);
-    /// Of the next frame. @param may_move  something in the scene does, for all that is known before it
+    /// Axes per bounce to update in the next frame, 0 = all. @param may_move  something in the scene may move, as
+    /// far as is known before the frame
     int next(bool may_move);
 
-    /// Of the time between frames, by all directions; 0 = not known yet.
+    /// Share of the time between frames that updating all axes would take; 0 = not known yet.
     double share_of_all() const;
 
 private:
     double share(std::size_t level) const;
 
-    std::deque<double> axis_s_;         ///< of the last frames in which something moved: for one axis
-    double frame_s_ = 0;                ///< between frames
-    gi::DynamicUpdate dynamic_update_;  ///< of the last of them
-    std::size_t level_ = 0, shown_ = 0; ///< where something moves; of the next frame
-    int calm_ = 0, quiet_ = 0; ///< frames in succession: that had time for more; in which nothing moved that might
-    bool may_move_ = true;     ///< in the frame at hand
+    std::deque<double> axis_s_;         ///< update time per axis in the last frames in which something moved
+    double frame_s_ = 0;                ///< time between frames
+    gi::DynamicUpdate dynamic_update_;  ///< of the last frame in which something moved
+    std::size_t level_ = 0, shown_ = 0; ///< level while something moves; level of the next frame
+    int calm_ = 0, quiet_ = 0; ///< successive frames: with time for more; in which nothing moved although it might
+    bool may_move_ = true;     ///< in the current frame
 };
 
-/// The schedule in use and why, in a sentence. @param followed  as the setting of the frame has it
+/// A sentence that names the schedule in use and why. @param updated  the frame's setting `updated_axes`
 std::string schedule_sentence(std::string const& schedule, int updated, int stored, double share_of_all);
 
 } // namespace viewer

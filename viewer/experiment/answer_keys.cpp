@@ -51,7 +51,7 @@ int pad_code(std::string const& name)
     return found == kCodes.end() ? -1 : found->second;
 }
 
-/// Its place in a list; -1 = none.
+/// Index in a list; -1 = not found.
 int number_of(std::string const& name, std::vector<std::string> const& known)
 {
     auto const found = std::find(known.begin(), known.end(), name);
@@ -79,7 +79,7 @@ AnswerKeys::AnswerKeys(study::Script const& script)
         for (std::string_view const answer : facts(block.task).answers)
             if (input_of(std::string(answer)).empty())
                 throw gi::InputError(script.file + ": block " + block.name,
-                                     fmt::format("the script takes all inputs that usually give '{}'", answer),
+                                     fmt::format("the script reassigns all default inputs of '{}'", answer),
                                      fmt::format("write devices: {{{}: [key:...]}}", answer));
 }
 

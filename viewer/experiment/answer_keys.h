@@ -1,6 +1,5 @@
 #pragma once
-// Which input gives which answer: those of the script's `devices`, or where it has none for an answer, the usual
-// ones.
+// Maps inputs to answers: those in the script's `devices`, or default ones for answers without an entry.
 
 #include "study/script/script.h"
 #include "viewer/devices/gl/input_event.h"
@@ -11,7 +10,7 @@
 
 namespace viewer {
 
-/// An answer that was given.
+/// A given answer.
 struct GivenAnswer {
     std::string answer; ///< "first"
     std::string input;  ///< "key:left"
@@ -20,13 +19,13 @@ struct GivenAnswer {
 
 class AnswerKeys {
 public:
-    /// Throws InputError on an input that is not known: key:NAME, pad:NAME, mouse:NAME,
-    /// xr:left/trigger
+    /// Throws InputError on an unknown input. Inputs are key:NAME, pad:NAME, mouse:NAME,
+    /// xr:left/trigger.
     explicit AnswerKeys(study::Script const& script);
 
-    /// Where this event is the press of an input of one of these answers.
+    /// The answer, if the event presses an input of one of these answers.
     std::optional<GivenAnswer> given(InputEvent const& event, std::vector<std::string> const& answers) const;
-    /// "left" for people: the first input of an answer, without its device; empty = none.
+    /// First input of an answer without its device, e.g. "left", for display; empty = none.
     std::string input_of(std::string const& answer) const;
 
 private:
@@ -40,7 +39,7 @@ private:
     std::vector<Binding> bindings_;
 };
 
-/// A digit that was pressed, also on the keypad; -1 = none.
+/// The digit pressed, also on the keypad; -1 = none.
 int digit_of(InputEvent const& event);
 
 } // namespace viewer

@@ -20,17 +20,17 @@
 namespace viewer {
 namespace {
 
-/// Clocks of files round.
+/// Tolerance for rounded times in files.
 constexpr double kRounding_s = 2e-6;
 
-/// Numbered frames of files, each with its moment in the session.
+/// Numbered frames of files, each with its time in the session.
 class Frames {
 public:
     Frames(ArSession const& session, gi::Report& report) : name_(session.frames.source), report_(report)
     {
         if (is_device(name_))
             throw gi::InputError("frames of '" + name_ + "' as a stimulus",
-                                 name_ == "counter" ? "they never end" : "nobody would see them twice",
+                                 name_ == "counter" ? "they never end" : "live frames cannot be repeated",
                                  "record them (lightwell ar record) and name the recording");
         ar::OpenOptions open = session.frames.options;
         open.pace = ar::Pace::fastest;
@@ -103,7 +103,7 @@ cv::Mat read_truth(ArStimulus const& s, ar::Frame const& frame)
     if (truth.empty() || glm::ivec2(truth.cols, truth.rows) != frame.size_px)
         throw ArSettingError("ar.show", "truth",
                              truth.empty() ? "there is no picture '" + file.string() + "'"
-                                           : "'" + file.string() + "' has another size than its frame",
+                                           : "'" + file.string() + "' and its frame differ in size",
                              fmt::format("it is the truth of frame {}", frame.sequence),
                              "let `lightwell ar synthesize` make it, or name the folder by ar.truth");
     cv::cvtColor(truth, truth, cv::COLOR_BGR2RGB);
@@ -120,7 +120,7 @@ std::vector<ar::TimedPose> read_poses(ArStimulus const& s)
     }
 }
 
-/// Makes the picture of one frame after the other.
+/// Makes the pictures frame by frame.
 class Maker {
 public:
     Maker(ArStimulus const& stimulus, gi::StopRequest const& stop, gi::Report& report)
@@ -185,10 +185,10 @@ std::vector<ArPicture> make_ar_pictures(ArStimulus const& s, StimulusView const&
                                         gi::Report& report)
 {
     if (view.size_px.x <= 0 || view.size_px.y <= 0)
-        throw gi::InputError("a place without pixels", "no frame fits into it", "enlarge the window");
+        throw gi::InputError("a place without pixels", "no frame fits in it", "enlarge the window");
     Frames frames(session_of(s), report);
     Maker make(s, stop, report);
-    std::deque<Frames::Timed> before; // so that filters and light have settled
+    std::deque<Frames::Timed> before; // warm-up frames, so that filters and light have settled
     std::vector<ArPicture> pictures;
     double begin_s = 0;
     while (auto f = frames.next()) {
@@ -208,7 +208,7 @@ std::vector<ArPicture> make_ar_pictures(ArStimulus const& s, StimulusView const&
         if (s.frame && s.show == ArShow::composite && !p.world_from_camera)
             throw ArSettingError("ar.frame", std::to_string(*s.frame),
                                  fmt::format("no camera is found in frame {}", *s.frame),
-                                 "nothing virtual could be put into it",
+                                 "no virtual object could be placed in it",
                                  "choose another frame, or give the camera's path by ar.poses");
         p.time_s = f->time_s - begin_s;
         p.rgb = fitted(p.rgb, view.size_px);

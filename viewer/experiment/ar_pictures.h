@@ -1,6 +1,7 @@
 #pragma once
-// The pictures of a stimulus from an AR session. They are made one after the other from the stimulus's first frame
-// (or `warmup_frames` before it) on, whenever that is: what people see does not depend on the machine's speed.
+// Pictures of a stimulus from an AR session. They are made one after the other, starting at the stimulus's first
+// frame (or `warmup_frames` before it), ahead of presentation, so that the stimulus does not depend on the
+// machine's speed.
 
 #include "ar/camera/pose.h"
 #include "gi/core/progress.h"
@@ -11,22 +12,22 @@
 namespace viewer {
 
 struct ArPicture {
-    double time_s = 0; ///< when it is seen first, since the onset
-    cv::Mat rgb;       ///< CV_8UC3, of the place's size: the frame as large as it fits, grey around it
+    double time_s = 0; ///< start of its presentation, since the onset
+    cv::Mat rgb;       ///< CV_8UC3, of the place's size: the frame scaled to fit, grey around it
     std::optional<ar::Pose> world_from_camera;
 };
 
-/// One picture, or those of `view.duration_s`, or as many as there are. @throws gi::InputError
-/// there is no such frame or moment, the camera is not found in the only frame, what the session names cannot be
-/// read
+/// Makes one picture, those for `view.duration_s`, or all there are if fewer. @throws gi::InputError,
+/// gi::InputError if the frame or time does not exist, the camera is not found in a single frame, or a file of the
+/// session cannot be read
 std::vector<ArPicture> make_ar_pictures(ArStimulus const& stimulus, StimulusView const& view,
                                         gi::StopRequest const& stop, gi::Report& report);
 
-/// Everything but the pictures: reads all that the session names, goes to the frame that is seen first.
-/// @throws as make_ar_pictures, and ArSettingError where a setting is to blame
+/// Does everything except making pictures: reads all files of the session and seeks the first frame.
+/// @throws as make_ar_pictures, and ArSettingError if a setting is the cause
 void check_ar_pictures(ArStimulus const& stimulus);
 
-/// The frame as large as it fits into this size, in the middle, the rest grey as the screen.
+/// The frame scaled to fit and centred in this size, the rest grey as the screen.
 cv::Mat fitted(cv::Mat const& rgb, glm::ivec2 size_px);
 
 } // namespace viewer

@@ -48,7 +48,7 @@ std::vector<ArPicture> read_pictures(fs::path const& folder)
     return pictures;
 }
 
-/// The radiance that the screen's sRGB shows as these bytes.
+/// Radiance that sRGB encoding turns into these bytes.
 std::array<float, 256> const& radiance_of_bytes()
 {
     static std::array<float, 256> const table = [] {
@@ -80,7 +80,7 @@ std::shared_ptr<LiveFrame const> frame_of(ArPicture const& p, Settings const& se
     order.width = p.rgb.cols;
     order.height = p.rgb.rows;
     if (p.world_from_camera) {
-        ar::CameraModel any; // only where it is counts
+        ar::CameraModel any; // only its pose matters
         any.size_px = {p.rgb.cols, p.rgb.rows};
         any.fx = any.fy = p.rgb.cols;
         order.camera = gi_camera(any, *p.world_from_camera);
@@ -157,7 +157,7 @@ void ArSource::prepare(StimulusSettings const& stimulus, StimulusView const& vie
     pictures_ = read_pictures(prepared_ / key);
 }
 
-/// What was made, once it is.
+/// Takes the finished pictures.
 void ArSource::take()
 {
     if (!making_.valid() || making_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
@@ -165,7 +165,7 @@ void ArSource::take()
         pictures_ = making_.get();
     } catch (std::exception const& e) {
         made_of_.clear();
-        throw gi::InputError("a stimulus cannot be composited", e.what(), "mend the script, or its AR session");
+        throw gi::InputError("a stimulus cannot be composited", e.what(), "correct the script, or its AR session");
     }
     frame_.reset();
 }
@@ -179,7 +179,7 @@ bool ArSource::is_ready()
 void ArSource::change(StimulusSettings const& stimulus)
 {
     if (!prepared_.empty())
-        throw gi::InputError("an adjustment of prepared stimuli", "pictures are there for planned levels only",
+        throw gi::InputError("an adjustment of prepared stimuli", "only planned levels have pictures",
                              "write stimuli: live in the block");
     stimulus_ = stimulus;
     made_of_ = prepared_key({stimulus, view_}, version_);
@@ -188,7 +188,7 @@ void ArSource::change(StimulusSettings const& stimulus)
 
 void ArSource::walk(NavigationInput const&, double)
 {
-    throw gi::InputError("a walk through an AR session", "its frames are seen from where the camera was",
+    throw gi::InputError("a walk through an AR session", "its frames have the camera's viewpoint",
                          "give the free walk a scene");
 }
 

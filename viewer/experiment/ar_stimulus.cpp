@@ -52,7 +52,7 @@ std::string with(std::string const& text, study::Patch const& overrides)
     return out.c_str();
 }
 
-/// What is wrong with a text that was put together: its lines are nowhere to be seen.
+/// The message without its position, because the merged text exists in no file.
 std::string without_place(std::string text, fs::path const& file)
 {
     if (!text.starts_with(file.string() + ":")) return text;
@@ -60,8 +60,8 @@ std::string without_place(std::string text, fs::path const& file)
     return text.substr(std::min(text.find_first_not_of(":0123456789 "), text.size()));
 }
 
-/// All of the overrides together: one may need another. The one to blame is that without which the others can be,
-/// else the first that cannot be alone.
+/// Checks all overrides together, because one may need another. Blames the override without which the others are
+/// valid, else the first that is invalid alone.
 void check_overrides(std::string const& text, ArStimulus const& s)
 {
     auto const problem_of = [&](study::Patch const& overrides) -> std::optional<std::string> {
@@ -76,7 +76,7 @@ void check_overrides(std::string const& text, ArStimulus const& s)
         std::string const key = std::string(kPrefix) + one.first;
         throw ArSettingError(key, one.second, fmt::format("{}: {}", key, one.second),
                              without_place(problem, s.session),
-                             "write what the session's file could have there (docs/ar.md)");
+                             "write a value that is valid in the session's file (docs/ar.md)");
     };
     std::optional<std::string> const together = problem_of(s.overrides);
     if (!together) return;
@@ -96,7 +96,7 @@ Number number_of(std::string const& key, std::string const& text, char const* wh
     Number n{};
     auto const [end, failure] = std::from_chars(text.data(), text.data() + text.size(), n);
     if (failure != std::errc{} || end != text.data() + text.size() || !(n >= 0) || !(double(n) < 1e9))
-        throw ArSettingError(key, text, key + ": " + text, std::string("it is no ") + what, "write 0 or more");
+        throw ArSettingError(key, text, key + ": " + text, std::string("it is not a ") + what, "write 0 or more");
     return n;
 }
 
@@ -105,7 +105,7 @@ ArShow show_of(std::string const& key, std::string const& text)
     if (text == "composite") return ArShow::composite;
     if (text == "camera") return ArShow::camera;
     if (text == "truth") return ArShow::truth;
-    throw ArSettingError(key, text, key + ": " + text, "there is nothing of that name to see",
+    throw ArSettingError(key, text, key + ": " + text, "there is no such kind of picture",
                          "choose composite, camera or truth");
 }
 
@@ -120,7 +120,7 @@ std::string hash_of_file(fs::path const& file)
     return hash;
 }
 
-/// A file, or the files of a folder; of a pattern of numbers those of its folder.
+/// Hash of a file, or of the files of a folder; for a numbered pattern, of the files of its folder.
 void add_hash(fs::path const& what, std::string& all)
 {
     std::error_code none;
@@ -150,12 +150,12 @@ ArStimulus ar_stimulus(study::Patch const& patch, fs::path const& folder)
         if (key == "ar") name = value;
     for (auto const& [key, value] : patch)
         if (name.empty() && is_ar_setting(key))
-            throw ArSettingError(key, value, key + ": " + value, "there is no `ar: SESSION.yaml` beside it",
-                                 "name the AR session that it is a setting of");
+            throw ArSettingError(key, value, key + ": " + value, "there is no setting `ar: SESSION.yaml`",
+                                 "name the AR session that it belongs to");
     s.session = folder / name;
     if (!fs::is_regular_file(s.session))
         throw ArSettingError("ar", name, "there is no AR session '" + s.session.string() + "'",
-                             "a stimulus is made of it",
+                             "the stimulus needs it",
                              "make one (lightwell ar synthesize), or correct the path");
     s.truth = s.session.parent_path() / "truth";
     for (auto const& [key, value] : patch) {
@@ -175,7 +175,7 @@ ArStimulus ar_stimulus(study::Patch const& patch, fs::path const& folder)
             s.overrides.emplace_back(own, value);
     }
     std::string const text = text_of_file(s.session);
-    parse_ar_session(text, s.session); // what is wrong within the file is said with its own place
+    parse_ar_session(text, s.session); // errors in the file itself are reported with their own position
     check_overrides(text, s);
     s.text = with(text, s.overrides);
     return s;

@@ -1,5 +1,5 @@
 #pragma once
-// A stimulus from an AR session: its settings `ar` and `ar.KEY`, and what of them decides the pictures.
+// A stimulus from an AR session: its settings `ar` and `ar.KEY`, and the data that determine its pictures.
 
 #include "ar/scene/session_file.h"
 #include "gi/core/error.h"
@@ -8,23 +8,23 @@
 namespace viewer {
 
 enum class ArShow {
-    composite, ///< with the virtual things
+    composite, ///< with the virtual objects
     camera,    ///< the camera's frames
-    truth      ///< pictures of the same frames with the things really there
+    truth      ///< reference pictures: the same frames with the real objects
 };
 
 struct ArStimulus {
     std::filesystem::path session;      ///< the file
-    std::optional<std::uint64_t> frame; ///< by its number, the only one that is seen; none = it plays
-    double from_s = 0;                  ///< from this moment of the session on
+    std::optional<std::uint64_t> frame; ///< number of a single frame to show; none = plays as a sequence
+    double from_s = 0;                  ///< start time in the session
     ArShow show = ArShow::composite;
-    std::filesystem::path truth; ///< folder of pictures 000012.png, by numbers of frames
-    std::filesystem::path poses; ///< in place of markers; empty = none
-    study::Patch overrides;      ///< "render.paths": "4", over what the file says
-    std::string text;            ///< the session with them, as YAML
+    std::filesystem::path truth; ///< folder of pictures named by frame number, 000012.png
+    std::filesystem::path poses; ///< file of camera poses, used instead of markers; empty = none
+    study::Patch overrides;      ///< "render.paths": "4", replace values in the file
+    std::string text;            ///< the session with the overrides, as YAML
 };
 
-/// One of the settings `ar` and `ar.KEY` cannot be so.
+/// One of the settings `ar` and `ar.KEY` is invalid.
 class ArSettingError : public gi::InputError {
 public:
     ArSettingError(std::string key_, std::string value_, std::string const& problem, std::string const& why,
@@ -37,12 +37,12 @@ public:
 
 bool is_ar_setting(std::string const& key);
 
-/// Of the settings that begin with `ar`. @param folder  that the session's file is relative to
-/// @throws ArSettingError; gi::InputError with file:line:column for what is wrong within the session's file
+/// Builds a stimulus from the settings that begin with `ar`. @param folder  base folder of the session's path
+/// @throws ArSettingError; gi::InputError with file:line:column for errors within the session's file
 ArStimulus ar_stimulus(study::Patch const& patch, std::filesystem::path const& folder);
 ArSession session_of(ArStimulus const& stimulus);
 
-/// Of the bytes of everything that the session names: its frames, calibration, maps, scenes; of poses and truth.
+/// Hash of all files of the session (frames, calibration, maps, scenes), of poses and of truth pictures.
 std::string content_hash(ArStimulus const& stimulus);
 
 } // namespace viewer

@@ -20,7 +20,7 @@ RemoteClient connect(std::string const& where)
 {
     try {
         return RemoteClient(where);
-    } catch (gi::InputError const&) { // whose advice is for the viewer
+    } catch (gi::InputError const&) { // its suggestion applies to the viewer only
         throw gi::InputError("cannot connect to '" + where + "'", "no session listens there, or not to this user",
                              "start lightwell study run with --remote and name the same, or the digits of its "
                              "--remote-port");
@@ -31,7 +31,7 @@ class Control {
 public:
     explicit Control(std::string const& where) : client_(connect(where)) {}
 
-    /// False where the session has gone.
+    /// Sends a request. Returns false if the session has ended.
     bool ask(std::string const& action, std::string const& text = {})
     {
         nlohmann::json request{{"do", "session"}, {"action", action}};
@@ -48,7 +48,7 @@ public:
     }
     std::string const& problem() const { return problem_; }
 
-    /// All of the window. False where the session has gone.
+    /// Draws the window. Returns false if the session has ended.
     bool draw(ImVec2 size)
     {
         bool there = true;
@@ -106,7 +106,7 @@ void run_control_window(std::string const& where, gi::StopRequest const& stop, g
     Control control(where);
     if (!control.ask("status"))
         throw gi::InputError("'" + where + "'", control.problem(),
-                             "give the --remote of a study run that is under way");
+                             "give the --remote of a running study run");
     WindowSettings settings;
     settings.title = "Lightwell: experimenter";
     settings.size_px = {520, 300};

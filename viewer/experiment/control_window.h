@@ -6,9 +6,9 @@
 
 namespace viewer {
 
-/// The experimenter's window: how far a session is, pause, skip, abort, notes. It asks the session's socket five
-/// times a second, and ends with the session, its window, or the stop. Throws InputError where nobody listens.
-/// @param where  as RemoteClient: a path, or the digits of a port of this machine
+/// The experimenter's window: progress of a session, pause, skip, abort, notes. Polls the session's socket five
+/// times per second. Returns when the session ends, the window is closed, or stop is requested. Throws InputError
+/// if no session listens. @param where  as in RemoteClient: a socket's path, or the digits of a local port
 void run_control_window(std::string const& where, gi::StopRequest const& stop, gi::Report& report);
 
 } // namespace viewer

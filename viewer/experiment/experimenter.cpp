@@ -47,8 +47,8 @@ std::optional<nlohmann::json> Experimenter::handle(RemoteRequest const& r)
     }
     if (r.what != "session")
         throw gi::InputError("'" + r.what + "'",
-                             "an experiment runs here, and answers session, ping and quit only",
-                             "ask one of these");
+                             "a running experiment accepts only session, ping and quit",
+                             "send one of these");
     std::string const action = r.arguments.at("action").get<std::string>();
     std::string const text = r.has("text") ? r.arguments.at("text").get<std::string>() : "";
     if (action == "note") {

@@ -1,5 +1,5 @@
 #pragma once
-// The experimenter's hand on a running session: wishes and notes through the remote protocol ("session"), from
+// The experimenter's control of a running session: actions and notes through the remote protocol ("session"), from
 // `lightwell study control` or any other program, also from another terminal or machine (ssh).
 
 #include "study/run/presenter.h"
@@ -7,18 +7,18 @@
 
 namespace viewer {
 
-/// What a running session is at.
+/// State of a running session.
 struct SessionStatus {
     std::string experiment, participant, doing; ///< doing: "trial 3 of 80, similarity"
     int trials_done = 0, trials_planned = 0;
     double started_s = 0; ///< steady clock
     int bad_trials = 0;
-    std::string last; ///< of the last trial: its answer and reaction time
+    std::string last; ///< answer and reaction time of the last trial
 };
 
 class Experimenter {
 public:
-    /// @param remote  where it listens; may be nowhere   @param report  outlives it
+    /// @param remote  where it listens; may be empty   @param report  must outlive this
     Experimenter(RemoteOptions const& remote, gi::Report& report);
 
     /// Reads requests. Never blocks.
@@ -26,7 +26,7 @@ public:
     SessionStatus status;
 
     bool is_paused() const { return paused_; }
-    /// Skip or abort were asked for and not yet taken.
+    /// True if skip or abort was requested and not yet taken.
     bool wants_end() const
     {
         return wish_ == study::ExperimenterAction::skip || wish_ == study::ExperimenterAction::abort;
@@ -34,18 +34,18 @@ public:
     study::ExperimenterAction action() const { return wish_; }
     study::ExperimenterAction take_wish() { return std::exchange(wish_, study::ExperimenterAction::go_on); }
     std::vector<study::NoteTaken> take_notes() { return std::exchange(notes_, {}); }
-    /// By a key of the participant's window, or what the machine saw.
+    /// Adds a note from a key in the participant's window, or from the program itself.
     void note(double time_s, std::string kind, std::string text);
-    /// Ends the session; who does it first counts. @param why  "aborted by the participant"
+    /// Ends the session; only the first call counts. @param why  e.g. "aborted by the participant"
     void abort(std::string why);
-    /// Throws Aborted, with who wanted it, where an abort was asked for.
+    /// Throws Aborted, with the reason, if an abort was requested.
     void check_aborted() const;
 
 private:
     std::optional<nlohmann::json> handle(RemoteRequest const& request);
 
     study::ExperimenterAction wish_ = study::ExperimenterAction::go_on;
-    std::string why_aborted_; ///< empty = the experimenter wanted it
+    std::string why_aborted_; ///< empty = aborted by the experimenter
     bool paused_ = false;
     std::vector<study::NoteTaken> notes_;
     double now_s_ = 0;

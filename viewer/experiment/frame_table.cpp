@@ -28,7 +28,7 @@ void compress_one(std::filesystem::path const& file)
 {
     if (!std::filesystem::exists(file)) return;
     std::vector<unsigned char> const bytes = gi::read_bytes(file);
-    // Members of a gzip file follow each other: what is there stays as it is.
+    // Gzip members can be concatenated, so existing data stays unchanged.
     std::filesystem::path const packed = file.string() + ".gz";
     gzFile const out = gzopen(packed.c_str(), "ab");
     bool const written = out != nullptr && gzwrite(out, bytes.data(), unsigned(bytes.size())) == int(bytes.size());

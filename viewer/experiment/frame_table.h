@@ -1,6 +1,6 @@
 #pragma once
-// What was swapped when, and where it was seen from: rows are kept in memory while stimuli are shown, and appended
-// to two files between trials.
+// Times of swaps and viewpoints: rows are kept in memory while stimuli are shown, and appended to two files
+// between trials.
 
 #include "viewer/devices/gl/swap_timer.h"
 #include "viewer/protocol/frame_command.h"
@@ -12,13 +12,13 @@
 namespace viewer {
 
 struct FrameRow {
-    int step = 0, attempt = 1; ///< of the plan
-    std::string shown;         ///< letters of the stimuli; "-" = none
+    int step = 0, attempt = 1; ///< in the plan
+    std::string shown;         ///< letters of the visible stimuli; "-" = none
     double swap_s = 0;         ///< steady clock
     double uncertainty_ms = 0;
     char const* method = "";
-    double render_ms = 0; ///< of the newest picture that was shown
-    int dropped = 0;      ///< refreshes before it that had nothing new
+    double render_ms = 0; ///< of the newest picture shown
+    int dropped = 0;      ///< refreshes before it without a new picture
 };
 struct PoseRow {
     double time_s = 0;
@@ -28,16 +28,16 @@ struct PoseRow {
 
 class FrameTable {
 public:
-    /// Appends to FOLDER/STEM_frames.csv and _poses.csv; they are made with their first row.
+    /// Appends to FOLDER/STEM_frames.csv and _poses.csv, which are created with their first row.
     FrameTable(std::filesystem::path folder, std::string stem) : folder_(std::move(folder)), stem_(std::move(stem))
     {
     }
 
     void add(FrameRow row) { frames_.push_back(std::move(row)); }
     void add(PoseRow const& row) { poses_.push_back(row); }
-    /// Throws InputError where the files cannot be written; the rows stay.
+    /// Throws InputError if the files cannot be written; the rows are kept.
     void flush();
-    /// Both files as .csv.gz in place of .csv, what was compressed before kept.
+    /// Replaces both .csv files by .csv.gz, appending to existing .csv.gz files.
     void compress();
 
 private:

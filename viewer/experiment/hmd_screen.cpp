@@ -15,10 +15,10 @@ namespace {
 
 using Clock = InputEvent::Clock;
 constexpr std::chrono::seconds kPatience{20};     ///< without a session
-constexpr std::chrono::milliseconds kUnseen{100}; ///< without a frame that is seen
-constexpr double kTextWidth = 0.8; ///< of the text before the head: tangent of its angle to the middle, twice
+constexpr std::chrono::milliseconds kUnseen{100}; ///< without a visible frame
+constexpr double kTextWidth = 0.8; ///< width of the floating text: twice the tangent of half its angle
 
-/// The headset has its own rate: a monitor must not hold it back.
+/// The headset has its own rate, so the window must not wait for a monitor.
 WindowSettings beside_headset(WindowSettings settings)
 {
     settings.swap_interval = 0;
@@ -59,8 +59,8 @@ std::vector<std::pair<std::string, std::string>> HmdScreen::about() const
             {"opengl", context_.gl().description()}};
 }
 
-/// The next frame that somebody will see; none where nobody sees any for a while (the headset lies on the table).
-/// Input is read meanwhile.
+/// Next frame that will be visible; none if no frame is visible for a while (headset not worn). Reads input
+/// meanwhile.
 std::optional<HmdFrame> HmdScreen::next_frame(HmdSession*& session)
 {
     auto const begun = Clock::now();
@@ -81,12 +81,12 @@ std::optional<HmdFrame> HmdScreen::next_frame(HmdSession*& session)
         auto const waited = Clock::now() - begun;
         if (session != nullptr && waited > kUnseen) return {};
         if (session == nullptr && waited > kPatience)
-            throw gi::InputError("the headset has no session", keeper_.trouble(), "look after its runtime");
+            throw gi::InputError("the headset has no session", keeper_.trouble(), "check its runtime");
         if (session == nullptr) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
 }
 
-/// Buttons are known as they are when a frame begins.
+/// Button states are sampled when a frame begins.
 void HmdScreen::look(HmdFrame const& frame)
 {
     auto const now = Clock::now();
@@ -122,7 +122,7 @@ std::vector<ViewCommand> HmdScreen::own_views(gi::dmat4 const& world_from_camera
 {
     world_from_camera_ = world_from_camera;
     std::vector<ViewCommand> views;
-    if (frame_.views[0].width <= 0) return views; // nobody has looked yet
+    if (frame_.views[0].width <= 0) return views; // no frame yet
     for (std::size_t eye = 0; eye < 2; ++eye) {
         gi::Camera camera = frame_.views[eye].camera;
         camera.world_from_camera = world_from_room() * camera.world_from_camera;
@@ -142,7 +142,7 @@ void HmdScreen::draw_text(ScreenContent const& content)
     panel_->draw();
 }
 
-/// What the window has, before both eyes: as far to the side as what lies straight ahead, far away.
+/// Copies the window's text in front of both eyes, centred straight ahead at infinity.
 void HmdScreen::place_text(HmdFrame const& frame)
 {
     glm::ivec2 const from = size_px();
@@ -169,7 +169,7 @@ ScreenSwap HmdScreen::present(ScreenContent const& content)
     draw_text(content);
     if (content.patch_size_px.x > 0 && !std::exchange(patch_told_, true))
         report_.lose("patches for a photodiode, which a headset has not");
-    if (!next) { // only the window shows it
+    if (!next) { // show it only in the window
         context_.window->swap();
         return {Clock::now(), Clock::now(), 1e3, "openxr_predicted"};
     }

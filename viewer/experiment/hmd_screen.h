@@ -1,6 +1,6 @@
 #pragma once
-// A headset through OpenXR. Onsets are the runtime's predictions of when a frame is seen, and are labelled so.
-// Text floats before the head, and is in a window of the computer too, which has the keyboard.
+// A headset through OpenXR. Onsets are the runtime's predicted display times, and are labelled as predictions.
+// Text floats in front of the head, and is also shown in a window of the computer, which receives the keyboard.
 
 #include "viewer/app/hmd_eyes.h"
 #include "viewer/devices/gl/gamepads.h"
@@ -12,7 +12,7 @@ namespace viewer {
 
 class HmdScreen : public Screen {
 public:
-    /// Throws InputError where there is no runtime, headset or window.
+    /// Throws InputError if there is no runtime, headset or window.
     HmdScreen(ScreenSettings const& settings, HmdOptions const& headset, gi::Report& report);
     ~HmdScreen() override;
 
@@ -42,12 +42,12 @@ private:
     std::vector<InputEvent> input_;
     std::shared_ptr<LiveFrame const> taken_;
     gi::dmat4 world_from_camera_{1}; ///< of the stimulus
-    std::optional<gi::dvec3> start_; ///< where the head was first, in the room
+    std::optional<gi::dvec3> start_; ///< first position of the head, in the room
     InputEvent::Clock::time_point last_look_;
     double longest_look_ms_ = 0;
     gi::Report& report_;
     bool patch_told_ = false;
-    HmdKeeper keeper_; ///< its sessions end before the context
+    HmdKeeper keeper_; ///< declared last, so that its sessions end before the context
 };
 
 } // namespace viewer

@@ -51,10 +51,10 @@ void LiveSource::prepare(StimulusSettings const& stimulus, StimulusView const& v
         warm_frames_ = 0;
     }
     Settings wanted = stimulus.settings;
-    wanted.play = false; // until it is seen
+    wanted.play = false; // until it is shown
     post_settings(wanted);
     navigation_.reset();
-    // Edits cannot be taken back but by loading the scene anew.
+    // Edits can only be undone by reloading the scene.
     if (stimulus.scene != scene_ || edited_) post({"scene", stimulus.scene});
     scene_ = stimulus.scene;
     edited_ = !stimulus.edits.empty();
@@ -76,7 +76,7 @@ void LiveSource::prepare(StimulusSettings const& stimulus, StimulusView const& v
     });
 }
 
-/// Where the camera is, so long after the onset.
+/// Sets the camera for a time after the onset.
 void LiveSource::look(double seconds)
 {
     Viewpoint at;
@@ -87,7 +87,7 @@ void LiveSource::look(double seconds)
         StimulusPlace place = *place_;
         if (navigation_) place.camera.world_from_camera = navigation_->world_from_camera();
         at.views = stimulus_views(place, stimulus_, view_, seconds);
-        if (at.views.empty()) return; // no place, or nobody wears the headset yet
+        if (at.views.empty()) return; // unknown place, or the headset is not worn yet
         at.world_from_room = at.views[0].camera.world_from_camera;
     }
     renderer_->look(std::move(at));
@@ -99,7 +99,7 @@ bool LiveSource::is_ready()
     int warm = 0;
     {
         std::lock_guard const lock(mutex_);
-        if (!error_.empty()) throw gi::InputError("a stimulus cannot be rendered", error_, "mend the script");
+        if (!error_.empty()) throw gi::InputError("a stimulus cannot be rendered", error_, "correct the script");
         if (!place_) return false;
         warm = warm_frames_;
     }
@@ -133,7 +133,7 @@ void LiveSource::walk(NavigationInput const& input, double seconds)
     {
         std::lock_guard const lock(mutex_);
         if (!place_) return;
-        // As in the viewer: through a scene in seconds, whatever its size.
+        // As in the viewer: crossing a scene takes seconds, whatever its size.
         if (!navigation_)
             navigation_.emplace(place_->camera.world_from_camera, std::clamp(0.2 * place_->radius_m, 0.05, 20.0),
                                 gi::dvec3(place_->camera.world_from_camera[3]));
@@ -145,7 +145,7 @@ void LiveSource::walk(NavigationInput const& input, double seconds)
 void LiveSource::rest()
 {
     renderer_->look({});
-    if (posted_.play) post({"play", false}); // clips stand still while they are not seen
+    if (posted_.play) post({"play", false}); // clips pause while they are not shown
     posted_.play = false;
     last_s_ = -1;
 }

@@ -3,10 +3,10 @@
 
 namespace viewer {
 
-/// Renders stimuli while they are seen, in a thread of its own.
+/// Renders stimuli while they are shown, in its own thread.
 class LiveSource : public StimulusSource {
 public:
-    /// @param published  called on the rendering thread   All arguments outlive it.
+    /// @param published  called on the rendering thread   All arguments must outlive it.
     LiveSource(SceneAccess const& scenes, int threads, SessionClock const& clock, std::function<void()> published,
                gi::Report& report);
     ~LiveSource() override;
@@ -28,20 +28,20 @@ private:
     SceneAccess const& scenes_;
     SessionClock const& clock_;
     RenderSession session_;
-    Settings posted_;   ///< that the session has, or will have soon
+    Settings posted_;   ///< settings that the session has, or will have soon
     std::string scene_; ///< likewise
     bool edited_ = false;
     StimulusSettings stimulus_;
     StimulusView view_;
 
-    std::mutex mutex_; ///< of what follows: the rendering thread writes it
+    std::mutex mutex_; ///< guards the members below, which the rendering thread writes
     std::string error_;
-    std::optional<StimulusPlace> place_; ///< none = not known yet
-    double settled_s_ = 0;               ///< session clock: frames that began later have all settings
-    int warm_frames_ = 0;                ///< of those
-    std::atomic<bool> plays_{false};     ///< clips go on once it is seen
+    std::optional<StimulusPlace> place_; ///< none = unknown yet
+    double settled_s_ = 0;               ///< session clock: frames that began later use all settings
+    int warm_frames_ = 0;                ///< number of such frames
+    std::atomic<bool> plays_{false};     ///< clips play once it is shown
     double last_s_ = -1;
-    std::optional<Navigation> navigation_; ///< of a walk
+    std::optional<Navigation> navigation_; ///< during a walk
     std::unique_ptr<LiveRenderer> renderer_;
 };
 

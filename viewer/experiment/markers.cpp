@@ -12,8 +12,8 @@
 
 namespace viewer {
 
-/// The functions of liblsl that are needed (lsl_c.h of version 1.16), found while the program runs: it is not
-/// among the packages of most systems.
+/// The required functions of liblsl (lsl_c.h of version 1.16), loaded at run time because few systems package
+/// it.
 struct Markers::Lsl {
     using Info = void* (*)(char const*, char const*, int, double, int, char const*);
     using Outlet = void* (*)(void*, int, int);
@@ -91,7 +91,7 @@ void Markers::send(double time_s, std::string const& what, nlohmann::ordered_jso
         to.sin_family = AF_INET;
         to.sin_port = htons(std::uint16_t(port_));
         to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        // Nobody need listen: that is no error of a packet, but it may be told with the next one.
+        // A missing listener is not an error, but the system may report it with the next packet.
         ssize_t const sent =
             ::sendto(socket_, text.data(), text.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
         if (sent < 0 && errno != ECONNREFUSED)
@@ -99,7 +99,7 @@ void Markers::send(double time_s, std::string const& what, nlohmann::ordered_jso
     }
     if (lsl_) {
         char const* sample = text.c_str();
-        // LSL's clock is the steady one on Linux.
+        // LSL's clock is the steady clock on Linux.
         if (lsl_->push(lsl_->outlet, &sample, time_s) != 0)
             report_.lose("markers that could not be sent", 1, "liblsl");
     }

@@ -7,7 +7,7 @@
 namespace viewer {
 namespace {
 
-constexpr float kDark = 0.12f; ///< of letters on grey
+constexpr float kDark = 0.12f; ///< grey level of the letters
 
 std::string without_marks(std::string_view text)
 {
@@ -31,7 +31,7 @@ std::string_view trimmed(std::string_view text)
     return text;
 }
 
-/// "3. " or "- "; the number of characters, 0 = none.
+/// Length of a list mark such as "3. " or "- "; 0 = none.
 std::size_t item_mark(std::string_view line)
 {
     if (line.size() > 2 && (line[0] == '-' || line[0] == '*' || line[0] == '+') && line[1] == ' ') return 2;
@@ -92,7 +92,7 @@ std::vector<PageLine> parse_page(std::string_view markdown)
                 line[0] >= '0' && line[0] <= '9' ? std::string(line.substr(0, mark)) : "\xE2\x80\xA2 ";
             lines.push_back({Kind::item, sign + without_marks(trimmed(line.substr(mark)))});
         } else if (!lines.empty() && (lines.back().kind == Kind::text || lines.back().kind == Kind::item)) {
-            lines.back().text += ' ' + without_marks(line); // a line's end is no paragraph's
+            lines.back().text += ' ' + without_marks(line); // a line break does not end a paragraph
         } else {
             lines.push_back({Kind::text, without_marks(line)});
         }
@@ -104,7 +104,7 @@ std::vector<PageLine> parse_page(std::string_view markdown)
 void draw_page(glm::vec2 size_px, std::vector<PageLine> const& lines, std::string const& footer,
                std::function<void()> const& more)
 {
-    // Lines of about 70 letters are read best.
+    // Lines of about 70 characters are the most readable.
     float const width = std::min(0.9f * size_px.x, 36 * ImGui::GetFontSize());
     begin_window({0.5f * (size_px.x - width), 0.06f * size_px.y}, {width, 0.9f * size_px.y}, "page");
     ImGui::PushTextWrapPos(width - ImGui::GetStyle().WindowPadding.x);

@@ -1,5 +1,5 @@
 #pragma once
-// Text for participants, drawn with Dear ImGui: to be called between its NewFrame and Render.
+// Text for participants, drawn with Dear ImGui. Call between NewFrame and Render.
 
 #include <functional>
 #include <glm/vec2.hpp>
@@ -9,8 +9,8 @@
 
 namespace viewer {
 
-/// A line of Markdown as it is drawn. Known are headings, paragraphs, lists, **bold**, *emphasis* and `code`
-/// (whose marks are taken off); everything else is text.
+/// A line of Markdown to draw. Supports headings, paragraphs and lists; the marks of **bold**, *emphasis* and
+/// `code` are removed; everything else is plain text.
 struct PageLine {
     enum class Kind { text, heading, item, gap } kind = Kind::text;
     std::string text;
@@ -18,16 +18,16 @@ struct PageLine {
 };
 std::vector<PageLine> parse_page(std::string_view markdown);
 
-/// All of the window: a page of text, and below it what the participant can do.
-/// @param more  drawn under the text; may be empty
+/// Fills the window with a page of text and a footer that lists the possible inputs.
+/// @param more  draws below the text; may be empty
 void draw_page(glm::vec2 size_px, std::vector<PageLine> const& lines, std::string const& footer,
                std::function<void()> const& more = {});
-/// A line at the bottom of the window, over pictures; nothing where it is empty.
+/// Draws a line at the bottom of the window, over pictures; nothing if it is empty.
 void draw_prompt(glm::vec2 size_px, std::string const& text);
-/// In the middle of the window.
+/// Draws a fixation cross at the window's centre.
 void draw_cross(glm::vec2 size_px);
-/// Boxes for the steps of a scale, the chosen one marked. @param chosen  index; -1 = none
-/// @return one that was clicked, -1 = none
+/// Draws one box per step of a scale and marks the chosen one. @param chosen  index; -1 = none
+/// @return index of a clicked box, -1 = none
 int draw_scale(float width_px, std::vector<std::string> const& steps, std::string const& low_label,
                std::string const& high_label, int chosen);
 

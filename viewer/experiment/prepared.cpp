@@ -15,9 +15,9 @@
 namespace viewer {
 namespace {
 
-constexpr int kPathsWithoutSetting = 64; ///< per pixel, where the script says nothing of quality
+constexpr int kPathsWithoutSetting = 64; ///< per pixel, if the script sets no quality
 
-/// Of a scene's file; all other scenes are known by their names, which their settings' hash has.
+/// Hash of a scene's file; other scenes are identified by their names, which the settings' hash includes.
 std::string scene_hash(std::string const& scene)
 {
     static std::map<std::pair<std::string, std::filesystem::file_time_type>, std::string> known;
@@ -33,7 +33,7 @@ std::string scene_hash(std::string const& scene)
 
 std::string file_name(int frame, int view) { return fmt::format("{:05}_{}.exr", frame, view); }
 
-/// Only what is shown.
+/// Keeps only the displayed layers.
 gi::Picture shown_part(gi::Picture const& picture)
 {
     gi::Picture out;
@@ -121,7 +121,7 @@ void PreparedSource::at(double seconds) { at_s_ = std::max(0.0, seconds); }
 
 void PreparedSource::change(StimulusSettings const&)
 {
-    throw gi::InputError("an adjustment of prepared stimuli", "pictures are there for planned levels only",
+    throw gi::InputError("an adjustment of prepared stimuli", "only planned levels have pictures",
                          "write stimuli: live in the block");
 }
 

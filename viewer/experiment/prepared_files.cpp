@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kExr = "\x76\x2f\x31\x01", kPng = "\x89PNG";
 
-/// A machine that went down leaves files of the right length that are empty inside.
+/// After a crash of the machine, files may have the right length but no content.
 bool begins_as_picture(fs::path const& file)
 {
     std::string begin(4, '\0');
@@ -31,7 +31,7 @@ nlohmann::json lengths_in(fs::path const& folder)
     return files;
 }
 
-/// Not an object where it cannot be read.
+/// Not a JSON object if it cannot be read.
 nlohmann::json about_of(fs::path const& folder)
 {
     fs::path const file = folder / "stimulus.json";
@@ -61,7 +61,7 @@ nlohmann::json read_prepared(fs::path const& folder)
     nlohmann::json about = about_of(folder);
     if (std::string const flaw = flaw_of(about, folder); !flaw.empty())
         throw gi::InputError(fmt::format("the prepared stimulus '{}' is not whole", folder.string()), flaw,
-                             "run lightwell study prepare again, which makes it anew");
+                             "run lightwell study prepare again, which replaces it");
     return about;
 }
 
@@ -78,7 +78,7 @@ void write_prepared(fs::path const& folder, std::function<nlohmann::json(fs::pat
     } catch (...) {
         std::error_code none;
         fs::remove_all(making, none);
-        // Another process may have been faster.
+        // Another process may have finished first.
         if (!prepared_flaw(folder).empty()) throw;
     }
 }

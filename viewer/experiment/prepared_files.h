@@ -1,6 +1,6 @@
 #pragma once
-// The folder of a prepared stimulus: its pictures, and stimulus.json with what they are and how long each file is,
-// so that a damaged one is noticed before anybody sits down.
+// The folder of a prepared stimulus: its pictures, and stimulus.json with their description and the length of each
+// file, so that damage is detected before a session begins.
 
 #include <filesystem>
 #include <functional>
@@ -9,14 +9,14 @@
 
 namespace viewer {
 
-/// Why it cannot be shown, "" = it can. Opens every file, but does not read it.
+/// Reason why the stimulus cannot be shown, "" if it can. Opens every file without reading all of it.
 std::string prepared_flaw(std::filesystem::path const& folder);
 
-/// stimulus.json. Throws InputError where the stimulus is not whole.
+/// Reads stimulus.json. Throws InputError if the stimulus is incomplete.
 nlohmann::json read_prepared(std::filesystem::path const& folder);
 
-/// FOLDER appears whole, in place of one that is not, or not at all.
-/// @param write  puts pictures into the folder that it is given, and says what is worth knowing of them
+/// Writes FOLDER, which appears whole or not at all, and replaces an incomplete one.
+/// @param write  writes pictures into the given folder, and returns their description
 void write_prepared(std::filesystem::path const& folder,
                     std::function<nlohmann::json(std::filesystem::path const& into)> const& write);
 

@@ -10,7 +10,7 @@ namespace viewer {
 
 namespace {
 
-/// Those that a procedure may choose.
+/// Levels that a procedure may choose.
 std::vector<double> levels_of(study::Script const& script, study::Block const& block, study::Trial const& trial)
 {
     std::vector<double> levels;
@@ -18,7 +18,7 @@ std::vector<double> levels_of(study::Script const& script, study::Block const& b
         levels = reachable_levels(block.procedures[std::size_t(trial.procedure)], *block.compare);
     if (levels.empty())
         throw gi::InputError(script.file + ": block " + block.name + ": stimuli: prepared",
-                             "its levels cannot be told before", "write stimuli: live");
+                             "its levels are not known in advance", "write stimuli: live");
     return levels;
 }
 
@@ -47,7 +47,7 @@ std::map<std::string, PreparedStimulus> prepared_list(study::Script const& scrip
             if (block.stimuli != study::Stimuli::prepared) continue;
             if (block.task == study::Task::adjustment)
                 throw gi::InputError(script.file + ": block " + block.name + ": stimuli: prepared",
-                                     "what is adjusted is rendered while it is seen", "write stimuli: live");
+                                     "adjusted stimuli are rendered while they are shown", "write stimuli: live");
             for (study::Stimulus s : step.trial.stimuli) {
                 bool const has_levels = block.compare && !block.compare->vary.empty();
                 if (!s.is_varied || s.level || !has_levels) {

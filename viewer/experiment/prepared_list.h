@@ -5,9 +5,9 @@
 
 namespace viewer {
 
-/// All that the blocks with `stimuli: prepared` show, over all participants, by their keys; of levels that a
-/// procedure chooses all that it may. Throws InputError where these cannot be told before (adjustment).
-/// @param screen_px  of the participant's window   @param font_px  of its letters: places leave room for text
+/// All stimuli of blocks with `stimuli: prepared`, over all participants, by key, including all levels that a
+/// procedure may choose. Throws InputError if the levels are not known in advance (adjustment).
+/// @param screen_px  size of the participant's window   @param font_px  letter height: places leave room for text
 std::map<std::string, PreparedStimulus> prepared_list(study::Script const& script, glm::ivec2 screen_px,
                                                       float font_px, std::string const& version);
 

@@ -30,7 +30,7 @@ void append_utf8(std::string& text, unsigned unicode)
     more(0);
 }
 
-/// The last character with all its bytes.
+/// Removes the last character with all its bytes.
 void remove_last(std::string& text)
 {
     while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xc0) == 0x80) text.pop_back();
@@ -50,7 +50,7 @@ bool TrialPresenter::ask_consent(std::string const& markdown)
         agreed = e.code == GLFW_KEY_Y;
         return agreed || e.code == GLFW_KEY_N;
     };
-    while (!page(draw, answer)) { // nobody else can answer for the participant: it cannot be skipped
+    while (!page(draw, answer)) { // cannot be skipped, because only the participant can answer
     }
     return agreed;
 }
@@ -134,7 +134,7 @@ study::QuestionnaireDone TrialPresenter::ask(study::Questionnaire const& q, int 
                 }
                 return go != 0;
             });
-        if (!answered) break; // skipped: the rest is not answered
+        if (!answered) break; // skipped: the remaining items stay unanswered
         done.answers[i] = chosen < 0 ? std::nullopt : std::optional(values[std::size_t(chosen)]);
         i = go < 0 ? i - 1 : i + 1;
     }

@@ -38,8 +38,8 @@ study::CalibrationDone judge_refresh(std::span<double const> swaps_s, double nom
     double const deviation = std::abs(done.period_mean_ms - period_ms) / period_ms;
     if (deviation > timing.calibrate.max_deviation)
         done.reason =
-            fmt::format("swaps come every {:.3g} ms in place of {:.3g} ms{}{}", done.period_mean_ms, period_ms,
-                        nominal_hz > 0 ? "" : " (timing.expected_hz: the display does not tell its rate)",
+            fmt::format("swaps come every {:.3g} ms instead of {:.3g} ms{}{}", done.period_mean_ms, period_ms,
+                        nominal_hz > 0 ? "" : " (timing.expected_hz: the display does not report its rate)",
                         done.period_mean_ms < 0.5 * period_ms ? ": they do not wait for the display" : "");
     else if (done.period_sd_ms > timing.calibrate.max_sd_ms)
         done.reason = fmt::format("the intervals of swaps have a standard deviation of {:.3g} ms (at most {:.3g})",

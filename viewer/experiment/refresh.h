@@ -1,5 +1,6 @@
 #pragma once
-// Whether a display keeps time: what its swaps say of its refreshes. Times in seconds, lengths in milliseconds.
+// Checks the timing of a display: refreshes estimated from swap times. Times in seconds, durations in
+// milliseconds.
 
 #include "study/journal/entries.h"
 #include "study/script/script.h"
@@ -8,15 +9,15 @@
 
 namespace viewer {
 
-/// A swap later than so many refreshes after the one before has left a refresh out (as PsychoPy counts).
+/// A swap later than this many refreshes after the previous one has skipped a refresh (as in PsychoPy).
 inline constexpr double kLate = 1.2;
 
-/// How many refreshes passed between two swaps without a new picture.
+/// Number of refreshes without a new picture between two swaps.
 int dropped_between(double seconds, double period_s);
 
-/// Of the swaps of an empty screen, one after another. Passes where their intervals have a standard deviation of
-/// at most max_sd_ms and a mean that differs from the nominal period by at most its share max_deviation.
-/// @param nominal_hz  that the display tells; 0 = it does not: then `expected_hz` of the script counts
+/// Evaluates successive swaps of an empty screen. Passes if their intervals have a standard deviation of at most
+/// max_sd_ms and their mean differs from the nominal period by at most the share max_deviation of it.
+/// @param nominal_hz  reported by the display; 0 = unknown, `expected_hz` of the script is used
 study::CalibrationDone judge_refresh(std::span<double const> swaps_s, double nominal_hz,
                                      study::Timing const& timing, std::string const& onset_method);
 

@@ -31,7 +31,7 @@ Response::Response(study::Block const& block, AnswerKeys const& keys, std::strin
 bool Response::complete(GivenAnswer const& by)
 {
     given_ = by;
-    if (response_.empty()) response_ = by.answer; // the value is another matter
+    if (response_.empty()) response_ = by.answer; // the value is stored separately
     return true;
 }
 
@@ -95,7 +95,7 @@ bool Response::click(int step)
     return complete({"confirm", "mouse:left", InputEvent::Clock::now()});
 }
 
-/// Places on the screen, best first, by their numbers.
+/// Rank order by the numbers of the places on the screen, best first.
 bool Response::take_order(InputEvent const& event)
 {
     if (event.kind == InputKind::key && event.action == InputAction::press && event.code == GLFW_KEY_BACKSPACE &&

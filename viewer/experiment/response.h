@@ -1,5 +1,5 @@
 #pragma once
-// What a participant has answered so far in a trial: keys of choices, a place on a scale, an order, a number.
+// A participant's response so far in a trial: a choice, a position on a scale, a rank order, a number.
 
 #include "study/plan/plan.h"
 #include "viewer/experiment/answer_keys.h"
@@ -10,24 +10,24 @@ namespace viewer {
 
 class Response {
 public:
-    /// @param shown  letters of the stimuli, in the order in which they are shown   All arguments outlive it.
+    /// @param shown  letters of the stimuli, in the order of presentation   All arguments must outlive it.
     Response(study::Block const& block, AnswerKeys const& keys, std::string shown);
 
-    /// True when this event completes the answer.
+    /// Processes an event. Returns true if it completes the answer.
     bool take(InputEvent const& event);
-    /// A box of the scale that was clicked; true when that completes the answer.
+    /// Processes a click on a box of the scale. Returns true if it completes the answer.
     bool click(int step);
 
-    std::string const& response() const { return response_; } ///< empty = none, or it is a value
+    std::string const& response() const { return response_; } ///< empty = none, or a numeric value
     std::optional<double> value() const { return value_; }
-    std::optional<GivenAnswer> const& given() const { return given_; } ///< the last input that counted
-    /// Steps that an adjustment was moved by, up positive, since the last call.
+    std::optional<GivenAnswer> const& given() const { return given_; } ///< the last accepted input
+    /// Adjustment steps since the last call, up positive.
     int take_steps() { return std::exchange(steps_, 0); }
 
-    /// What to press, for people: "left: first   right: second".
+    /// Which keys to press, for the participant: "left: first   right: second".
     std::string hint() const;
-    /// By ImGui, at the bottom of the window: the prompt, the scale, what was typed. @return a box that was
-    /// clicked, -1 = none
+    /// Draws the prompt, the scale and the typed text at the bottom of the window, by ImGui. @return index of a
+    /// clicked box, -1 = none
     int draw(glm::vec2 size_px) const;
 
 private:

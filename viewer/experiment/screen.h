@@ -1,5 +1,5 @@
 #pragma once
-// What a participant looks at: a window, the walls of a display, or a headset. Each swap has its time.
+// The participant's screen: a window, the walls of a display, or a headset. The time of each swap is measured.
 
 #include "viewer/devices/gl/input_event.h"
 #include "viewer/displays/stereo_mode.h"
@@ -9,26 +9,26 @@
 
 namespace viewer {
 
-/// A place of the screen with a picture in it. On walls one of them is all there is: each wall shows its views.
+/// A place on the screen with a picture. On walls there is only one: each wall shows its views of it.
 struct ScreenPane {
     glm::ivec2 corner_px{}, size_px{}; ///< from the window's top left corner
     std::shared_ptr<LiveFrame const> frame;
     StereoMode stereo = StereoMode::off;
 };
 
-/// Everything that one swap shows.
+/// Content shown by one swap.
 struct ScreenContent {
-    static constexpr float kGrey = 0.5f; ///< of the background, display-encoded
+    static constexpr float kGrey = 0.5f; ///< background, display-encoded
     std::vector<ScreenPane> panes;
     std::function<void(glm::vec2 size_px)> text;   ///< ImGui's calls; empty = none
     glm::ivec2 patch_corner_px{}, patch_size_px{}; ///< of the square for a photodiode; size 0 = none
     bool patch_is_white = false;
 };
 
-/// When something was seen first.
+/// Onset time of a swap.
 struct ScreenSwap {
-    InputEvent::Clock::time_point time; ///< best guess
-    InputEvent::Clock::time_point seen; ///< what dropped frames are counted by: as SwapTime
+    InputEvent::Clock::time_point time; ///< best estimate
+    InputEvent::Clock::time_point seen; ///< for counting dropped frames, as in SwapTime
     double uncertainty_ms = 0;
     char const* method = "swap_finish"; ///< oml, swap_finish, openxr_predicted
 };
@@ -37,25 +37,26 @@ class Screen {
 public:
     virtual ~Screen() = default;
 
-    virtual glm::ivec2 size_px() const = 0; ///< of the window that has text
+    virtual glm::ivec2 size_px() const = 0; ///< of the window with text
     virtual double refresh_hz() const = 0;  ///< 0 = unknown
-    /// Provenance: display, opengl, ...
+    /// Provenance entries: display, opengl, ...
     virtual std::vector<std::pair<std::string, std::string>> about() const = 0;
 
-    /// Shows it, reads input meanwhile. Throws InputError where the display is lost.
+    /// Shows the content, reading input meanwhile. Throws InputError if the display is lost.
     virtual ScreenSwap present(ScreenContent const& content) = 0;
-    /// Reads input until then.
+    /// Reads input until this time.
     virtual void wait_until(InputEvent::Clock::time_point time) = 0;
-    /// Everything since the last call, in order, with the time of each.
+    /// Events since the last call, in order, with their times.
     virtual std::vector<InputEvent> take_input() = 0;
-    /// Longest time between two looks at the input since the last call, ms: what its times may be late by.
+    /// Longest time between two reads of input since the last call, ms: bounds the delay of event times.
     virtual double take_longest_look_ms() = 0;
 
-    /// One stimulus at a time, whose views are those of walls or eyes, wherever heads are.
+    /// True if the screen defines its own views (walls or headset eyes, from tracked heads). Then it shows one
+    /// stimulus at a time.
     virtual bool has_own_views() const = 0;
-    /// These views, as the heads are expected to be at a time.
-    /// @param world_from_camera  the camera that the first user's head rests at; only its turn about the vertical
-    /// counts @param steady_s  std::chrono::steady_clock
+    /// The screen's own views for the head poses predicted for a time.
+    /// @param world_from_camera  camera at the first user's resting head; of its rotation only the yaw counts
+    /// @param steady_s  std::chrono::steady_clock
     virtual std::vector<ViewCommand> own_views(gi::dmat4 const& world_from_camera, double steady_s) = 0;
 };
 

@@ -10,7 +10,7 @@ namespace viewer {
 struct ScreenSettings {
     WindowSettings window;
     float font_px = 22;
-    std::optional<Display> display; ///< in place of the window; text and patch are in its first one
+    std::optional<Display> display; ///< used instead of the window; text and patch are in its first window
 };
 
 } // namespace viewer

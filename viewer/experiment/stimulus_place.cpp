@@ -9,7 +9,7 @@
 namespace viewer {
 namespace {
 
-constexpr double kOrbit = 0.02; ///< radius of the path over that of the scene
+constexpr double kOrbit = 0.02; ///< radius of the path relative to the scene's radius
 
 } // namespace
 
@@ -31,7 +31,7 @@ std::vector<ViewCommand> stimulus_views(StimulusPlace const& place, StimulusSett
     gi::Camera camera = place.camera;
     if (stimulus.path == StimulusPath::orbit) {
         double const angle = 2 * gi::kPi * std::max(0.0, seconds) / view.duration_s;
-        // Through the camera's own place at the beginning.
+        // The path starts at the camera's own position.
         gi::dvec3 const way = kOrbit * place.radius_m * gi::dvec3(std::sin(angle), 0, 1 - std::cos(angle));
         camera.world_from_camera = camera.world_from_camera * glm::translate(gi::dmat4(1), way);
     }

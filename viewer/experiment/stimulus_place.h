@@ -3,15 +3,15 @@
 
 namespace viewer {
 
-/// From where a stimulus is seen.
+/// Viewpoint of a stimulus.
 struct StimulusPlace {
-    gi::Camera camera;            ///< at its beginning
+    gi::Camera camera;            ///< start pose
     double radius_m = 1;          ///< of the scene
-    double screen_distance_m = 2; ///< where both eyes' pictures coincide: the middle of the scene
+    double screen_distance_m = 2; ///< distance where both eyes' pictures coincide: the scene's centre
 };
 
 StimulusPlace place_of(gi::World const& world, gi::Camera const& camera);
-/// One view or those of two eyes, so long after the beginning; none where the place has no pixels.
+/// One view, or two for stereo, at a time after the start; none if the place has no pixels.
 std::vector<ViewCommand> stimulus_views(StimulusPlace const& place, StimulusSettings const& stimulus,
                                         StimulusView const& view, double seconds);
 

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The words of scripts (`exact`, `imperfect`, `directional_ao`) and the methods that they mean.
+/// The words in scripts (`exact`, `imperfect`, `directional_ao`) and their methods.
 std::string visibility_method(std::string const& word)
 {
     static std::map<std::string, std::string> const kMethods{{"exact", "vpl_exact"},         {"slhb", "vpl_slhb"},
@@ -34,7 +34,7 @@ Json json_value_of(std::string const& text)
     return value.is_discarded() ? Json(text) : value;
 }
 
-/// Levels that a procedure chooses lie between whole numbers: settings that are whole take the nearest.
+/// Levels chosen by a procedure may be fractional; whole-number settings use the nearest integer.
 Json fitting(std::string const& key, Json const& value)
 {
     auto const known = setting_keys();
@@ -49,7 +49,7 @@ StimulusPath path_of(std::string const& name)
     throw gi::InputError("camera: path:" + name, "there is no such path", "write path:orbit");
 }
 
-/// Without paths: the same session in another folder is the same.
+/// Without paths, so that the same session in another folder counts as equal.
 Json text_of(ArStimulus const& s)
 {
     return {{"session", s.text},
@@ -59,21 +59,21 @@ Json text_of(ArStimulus const& s)
             {"poses", s.poses.filename().string()}};
 }
 
-/// The picture is a camera's, rendered as its session says.
+/// The picture is the camera's, rendered as its session specifies.
 void check_beside_ar(study::Patch const& patch, std::string const& camera)
 {
     for (auto const& [key, value] : patch) {
         if (is_ar_setting(key) || (key == "view" && value == "window")) continue;
         throw ArSettingError(key, value, fmt::format("{}: {} of a stimulus with an AR session", key, value),
-                             "the session says from where and how it is rendered, and it is seen in a window",
+                             "the session sets viewpoint and rendering, and it is shown in a window",
                              "leave it out, or write a setting of the session: ar.render.paths");
     }
     if (!camera.empty())
         throw gi::InputError("camera: " + camera + " of a stimulus with an AR session",
-                             "it is seen from where the session's camera was", "leave it out");
+                             "it has the viewpoint of the session's camera", "leave it out");
 }
 
-/// A name without a file may be that of a generated scene.
+/// A name that is not a file may be a generated scene.
 std::string scene_file(std::filesystem::path const& folder, std::string const& scene)
 {
     std::error_code none;
@@ -141,7 +141,7 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
             s.view = text == "openxr" ? StimulusViewer::headset : StimulusViewer::window;
         } else if (key == "device") {
             throw gi::InputError("device: " + text,
-                                 "stimuli are rendered on the CPU, so that all sites have the same",
+                                 "stimuli are rendered on the CPU, so that they are equal at all sites",
                                  "leave it out");
         } else if (is_scene_edit(key)) {
             s.edits.push_back({key, json_value_of(text)});
@@ -153,7 +153,7 @@ StimulusSettings stimulus_settings(study::Patch const& patch, std::string const&
     if (s.scene.empty())
         throw gi::InputError("a stimulus without a scene", "there would be nothing to show",
                              "give a factor or defaults.settings the setting `scene`, or `ar` for an AR session");
-    s.sha256 = gi::sha256(text_of(s)); // with the scene's name as it is written, wherever the script lies
+    s.sha256 = gi::sha256(text_of(s)); // with the scene's name as written, independent of the script's folder
     s.scene = scene_file(folder, s.scene);
     return s;
 }

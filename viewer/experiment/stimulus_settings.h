@@ -1,10 +1,10 @@
 #pragma once
-// From the settings that a script gives a stimulus to those of the renderer.
+// Converts a script's settings of a stimulus to settings of the renderer.
 //
-// Keys are those of viewer/engine/settings.h, with or without "gi." before them, edits of the scene
+// Keys are those of viewer/engine/settings.h, with or without the prefix "gi.", edits of the scene
 // (viewer/engine/scene_edits.h), and: scene (a file or a built-in name), camera (of the scene), view (window,
-// openxr), and gi.visibility, which chooses a method that approximates the visibility of indirect light
-// (gi/methods/vpl). Or those of an AR session (viewer/experiment/ar_stimulus.h), and no others.
+// openxr), and gi.visibility, which selects a method that approximates the visibility of indirect light
+// (gi/methods/vpl). Alternatively, only those of an AR session (viewer/experiment/ar_stimulus.h).
 
 #include "study/plan/plan.h"
 #include "viewer/engine/settings.h"
@@ -12,13 +12,13 @@
 
 namespace viewer {
 
-/// How the camera moves while a stimulus is shown.
+/// Motion of the camera while a stimulus is shown.
 enum class StimulusPath {
     none,
-    orbit ///< once round a small horizontal circle, looking the same way: parallax without a new place
+    orbit ///< once around a small horizontal circle with fixed view direction: gives parallax at one place
 };
 
-/// What it is seen in.
+/// Device that shows the stimulus.
 enum class StimulusViewer {
     window, ///< or the walls of a display
     headset
@@ -27,34 +27,35 @@ enum class StimulusViewer {
 struct StimulusSettings {
     std::string scene, camera; ///< scene: file or name; camera: of the scene, empty = its first
     StimulusPath path = StimulusPath::none;
-    std::optional<StimulusViewer> view; ///< none = as the command line says
-    Settings settings;                  ///< whole: what is not said is as it is by default
-    std::vector<Change> edits;          ///< of the scene
-    std::optional<ArStimulus> ar;       ///< in place of all that
-    std::string sha256; ///< of all this as the script writes it: the same digits, the same pictures
+    std::optional<StimulusViewer> view; ///< none = as on the command line
+    Settings settings;                  ///< complete, with defaults
+    std::vector<Change> edits;          ///< edits of the scene
+    std::optional<ArStimulus> ar;       ///< if set, replaces all of the above
+    std::string sha256; ///< of all of the above as written in the script: equal hashes mean equal pictures
 };
 
-/// Throws InputError on a key or value that the renderer does not know, naming it.
-/// @param camera  of the block: "", a name or "path:orbit"   @param folder  that files are relative to
+/// Throws InputError that names a key or value unknown to the renderer.
+/// @param camera  of the block: "", a name or "path:orbit"   @param folder  base of relative paths
 StimulusSettings stimulus_settings(study::Patch const& patch, std::string const& camera,
                                    std::filesystem::path const& folder = {});
-/// Of a script's block. AR sessions are relative to the script; so are scenes, or else to the current folder.
+/// Settings of a stimulus in a script's block. Paths of AR sessions are relative to the script; those of scenes to
+/// the script or else to the current folder.
 StimulusSettings stimulus_settings(study::Script const& script, study::Block const& block,
                                    study::Stimulus const& stimulus);
 
-/// For messages: the scene, or the file of the AR session.
+/// Name for messages: the scene, or the file of the AR session.
 std::string name_of(StimulusSettings const& stimulus);
 
-/// What a step of the sequence has that belongs to no block.
+/// Block with default values, for steps of the sequence that belong to no block.
 study::Block plain_block(study::Script const& script);
 
 struct PlannedStimulus {
     StimulusSettings settings;
-    std::string where; ///< "faces.yaml: block better, arches", for messages; of several the first
+    std::string where; ///< first occurrence, for messages: "faces.yaml: block better, arches"
 };
 
-/// Every stimulus of a plan once, by its sha256; those whose level is chosen when the trial comes at the ends of
-/// its range. Throws InputError naming the block where one cannot be.
+/// Every stimulus of a plan once, by its sha256; stimuli whose level is chosen during the session are included at
+/// both ends of the range. Throws InputError, naming the block, if a stimulus is invalid.
 std::vector<PlannedStimulus> stimuli_of(study::Script const& script, study::Plan const& plan);
 
 } // namespace viewer

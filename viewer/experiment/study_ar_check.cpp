@@ -22,7 +22,7 @@ bool has_place(std::string const& message)
     return std::regex_match(message, place);
 }
 
-/// The message without a place is that of a setting: it gets the one where the script has it.
+/// A message without a position concerns a setting: adds the setting's position in the script.
 [[noreturn]] void throw_at(LoadedScript const& loaded, std::string const& key, std::string const& value,
                            std::string const& message)
 {
@@ -53,7 +53,7 @@ void ArStimulusCheck::add(study::Plan const& plan)
                 if (is_ar_setting(key))
                     throw_at(
                         loaded_, key, value,
-                        "a free walk through an AR session (its frames are seen from where the camera was) give "
+                        "a free walk through an AR session (its frames have the camera's viewpoint) give "
                         "it a scene");
         }
         if (step.trial.reference) stimuli.push_back(*step.trial.reference);

@@ -1,5 +1,5 @@
 #pragma once
-// What stimuli are made of: the scenes and AR sessions that a script names.
+// Scenes and AR sessions that a script uses for stimuli.
 
 #include "study/plan/plan.h"
 #include "viewer/experiment/stimulus_source.h"
@@ -11,16 +11,16 @@
 
 namespace viewer {
 
-/// Scenes as every command reads them.
+/// Loads scenes as all commands do.
 SceneAccess study_scenes();
 
-/// Stimuli that are made of AR sessions, over several plans, each once.
+/// Collects the stimuli from AR sessions over several plans, each once, and checks them.
 class ArStimulusCheck {
 public:
     explicit ArStimulusCheck(LoadedScript const& loaded) : loaded_(loaded) {}
     void add(study::Plan const& plan);
-    /// Reads all that they name; no picture is made. Throws ScriptError at the setting that is to blame; what is
-    /// wrong within a session is said with its own place.
+    /// Reads all their files without making pictures. Throws ScriptError at the setting that is the cause; errors
+    /// within a session are reported with their own position.
     void check() const;
     std::size_t count() const { return patches_.size(); }
 

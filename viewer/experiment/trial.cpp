@@ -14,11 +14,11 @@ namespace viewer {
 namespace {
 
 constexpr int kGap_px = 16;
-constexpr float kTextLines = 6.5f;  ///< below the pictures
-constexpr double kRound_ms = 6000;  ///< of a path, where stimuli stay until the answer
-constexpr double kAdjustSteps = 40; ///< over the whole range
+constexpr float kTextLines = 6.5f;  ///< lines of text below the pictures
+constexpr double kRound_ms = 6000;  ///< one round of a path, if stimuli stay until the answer
+constexpr double kAdjustSteps = 40; ///< steps over the whole range
 
-/// "ba" with a reference: between the two of a pair, before all others.
+/// Order of presentation, e.g. "ba"; a reference comes between the two of a pair, else before all others.
 std::string presented(study::TrialRequest const& r)
 {
     std::string order = r.step->trial.order;
@@ -89,7 +89,7 @@ ScreenContent TrialPresenter::Trial::content(std::string const& letters)
     return c;
 }
 
-/// Input and wishes while nothing is to be shown. False where the trial is over.
+/// Handles input and the experimenter's actions while nothing is shown. Returns false if the trial is over.
 bool TrialPresenter::Trial::wait(double until_s, bool cross)
 {
     ScreenContent empty = content("");
@@ -116,7 +116,7 @@ bool TrialPresenter::Trial::get_ready(LoadedStimulus const& k)
     return true;
 }
 
-/// One stimulus after the other, so that each has the machine for itself.
+/// Prepares one stimulus after the other, so that each can use the whole machine.
 bool TrialPresenter::Trial::get_all_ready()
 {
     for (LoadedStimulus const& k : known_)
@@ -124,7 +124,7 @@ bool TrialPresenter::Trial::get_all_ready()
     return wait(p_.trial_end_s_ + 1e-3 * block_.timing.iti_ms, block_.is_sequential);
 }
 
-/// Before a stimulus that follows another one. What moves and was seen already begins anew.
+/// Waits before the next stimulus. Prepares it again if it moves and was shown before.
 bool TrialPresenter::Trial::wait_between(std::size_t next)
 {
     double const until_s = p_.now() + 1e-3 * block_.timing.isi_ms;
@@ -140,7 +140,7 @@ bool TrialPresenter::Trial::has_ended()
     return is_answered_ || (block_.timing.timeout_ms && p_.now() > onset_s_ + 1e-3 * *block_.timing.timeout_ms);
 }
 
-/// What is not meant as an answer; true where one of the events was for the program.
+/// Handles events that are not answers. Returns true if one of them was for the program.
 bool TrialPresenter::Trial::heed(std::vector<InputEvent> const& events)
 {
     bool was_any = false;
@@ -160,7 +160,7 @@ void TrialPresenter::Trial::take_answers()
     adjust();
 }
 
-/// Another level of what is varied, seen as soon as it is rendered.
+/// Applies adjustment steps to the level; the change is shown as soon as it is rendered.
 void TrialPresenter::Trial::adjust()
 {
     int const steps = response_.take_steps();
@@ -203,8 +203,8 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
     for (LoadedStimulus& k : known_)
         if (letters.find(k.letter) != std::string::npos) seen.push_back(&k);
     for (LoadedStimulus* const k : seen) k->source->at(0);
-    heed(p_.screen_->take_input());                       // what was pressed before is no answer
-    std::vector<std::shared_ptr<LiveFrame const>> frames; // that were seen
+    heed(p_.screen_->take_input());                       // earlier key presses are not answers
+    std::vector<std::shared_ptr<LiveFrame const>> frames; // frames that were shown
     std::vector<double> render;
     auto const note_frames = [&](ScreenContent const& c) {
         for (ScreenPane const& pane : c.panes)
@@ -301,7 +301,7 @@ study::TrialDone TrialPresenter::Trial::run()
             appear(order_.substr(i, 1), i + 1 == order_.size());
         }
     }
-    // The answer may come while the last stimulus is seen, or after it.
+    // The answer may come during or after the last stimulus.
     while (ready && !has_ended()) {
         ScreenContent c = content("");
         int clicked = -1;
@@ -350,7 +350,7 @@ study::TrialDone TrialPresenter::show(study::TrialRequest const& request)
     study::TrialDone judged = done;
     judge(script_, request.step->trial, judged);
     status.bad_trials += !judged.is_valid;
-    status.trials_done += request.attempt == 1 ? 1 : 0; // each of the plan counts once
+    status.trials_done += request.attempt == 1 ? 1 : 0; // count each planned trial once
     status.last =
         done.reaction_ms ? fmt::format("{} after {:.0f} ms", done.response, *done.reaction_ms) : done.reason;
     trial_end_s_ = now();

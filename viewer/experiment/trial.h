@@ -4,14 +4,14 @@
 
 namespace viewer {
 
-/// Places side by side for so many pictures; below them there is room for text.
+/// Places for `count` pictures side by side, with room for text below.
 std::vector<ScreenPane> panes_for(std::size_t count, glm::ivec2 screen_px, float text_px);
 
-/// How a stimulus is seen in a block that shows so many at a time.
+/// View of a stimulus in a block that shows `together` stimuli at a time.
 StimulusView view_of(study::Block const& block, StimulusSettings const& stimulus, std::size_t together,
                      glm::ivec2 screen_px, float font_px);
 
-/// A trial while it runs: gets ready, shows its stimuli, takes the answer.
+/// A running trial: prepares and shows its stimuli and records the answer.
 class TrialPresenter::Trial {
 public:
     Trial(TrialPresenter& presenter, study::TrialRequest const& request);
@@ -31,7 +31,7 @@ private:
     bool wait_between(std::size_t next);
     bool heed(std::vector<InputEvent> const& events);
     bool wait(double until_s, bool cross);
-    /// @param letters  that appear together   @param takes_answer  while they are seen
+    /// @param letters  stimuli shown together   @param takes_answer  answers count while they are shown
     void appear(std::string const& letters, bool takes_answer);
     void take_answers();
     void adjust();
@@ -51,7 +51,7 @@ private:
     bool is_answered_ = false, is_lost_ = false;
     double onset_s_ = 0, onset_uncertainty_ms_ = 0; ///< of the last stimulus
     double longest_look_ms_ = 0;
-    std::optional<double> level_; ///< of an adjustment
+    std::optional<double> level_; ///< current level of an adjustment
 };
 
 } // namespace viewer

@@ -77,20 +77,20 @@ std::vector<std::pair<std::string, std::string>> TrialPresenter::about() const
 std::function<std::vector<ViewCommand>(gi::Camera const&)> TrialPresenter::on_walls()
 {
     if (!screen_->has_own_views()) return {};
-    // Seen about a refresh later.
+    // Visible about one refresh later.
     return [this](gi::Camera const& camera) {
         return screen_->own_views(camera.world_from_camera, now() + period_s_);
     };
 }
 
-/// Swaps that do not wait for the display are made to come one refresh after the other.
+/// Paces swaps that do not wait for the display at one per refresh.
 ScreenSwap TrialPresenter::present(ScreenContent content)
 {
     between_frames();
     if (paced_) screen_->wait_until(next_swap_);
     ScreenSwap const swap = screen_->present(content);
     auto const period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s_));
-    // What drawing takes belongs to the period; what came late is not made up for.
+    // Drawing time counts towards the period; delays are not made up for.
     next_swap_ = std::max(next_swap_ + period, Clock::now());
     return swap;
 }
@@ -100,7 +100,7 @@ void TrialPresenter::see_in(StimulusViewer viewer)
     if (viewer == viewer_) return;
     bool const headset = viewer == StimulusViewer::headset;
     if (!headset) instruct("Please take the headset off.", -1);
-    screen_.reset(); // one panel at a time
+    screen_.reset(); // only one panel may exist at a time
     screen_ = open_screen(viewer, options_, report_);
     viewer_ = viewer;
     if (double const hz = screen_->refresh_hz(); hz > 0) period_s_ = 1 / hz;
@@ -108,12 +108,12 @@ void TrialPresenter::see_in(StimulusViewer viewer)
     if (should_end()) end_early();
     if (!kept.passed && script_.timing.vsync == study::Vsync::required)
         throw gi::InputError(headset ? "the headset" : "the window", kept.reason,
-                             "write vsync: record where onsets need not be exact");
+                             "write vsync: record if onsets need not be exact");
     experimenter_.note(now(), "display",
                        fmt::format("{}, a refresh every {:.3f} ms (sd {:.3f}), onsets {}{}{}",
                                    headset ? "headset" : "window", kept.period_mean_ms, kept.period_sd_ms,
                                    kept.onset_method, kept.passed ? "" : ", not passed: ", kept.reason));
-    if (headset) instruct("Please put the headset on. Its triggers answer, the other button goes on.", -1);
+    if (headset) instruct("Please put the headset on. Answer with its triggers; the other button continues.", -1);
 }
 
 void TrialPresenter::between_frames()
@@ -144,13 +144,13 @@ study::CalibrationDone TrialPresenter::calibrate(study::Timing const& timing)
     std::vector<double> swaps;
     std::string method;
     ScreenContent empty;
-    constexpr int kFirst = 10; // they build pipelines
+    constexpr int kFirst = 10; // the first frames build GPU pipelines
     for (int i = 0; i < timing.calibrate.frames + kFirst && !should_end(); ++i) {
         ScreenSwap const swap = present(empty);
         method = swap.method;
         if (i >= kFirst) swaps.push_back(seconds(swap.seen));
     }
-    experimenter_.check_aborted(); // too few swaps are not the display's fault
+    experimenter_.check_aborted(); // too few swaps may be due to an abort
     study::CalibrationDone done = judge_refresh(swaps, screen_->refresh_hz(), timing, method);
     using study::OnsetMethod;
     bool const is_less = (timing.onset == OnsetMethod::oml && method != "oml") ||
@@ -159,9 +159,9 @@ study::CalibrationDone TrialPresenter::calibrate(study::Timing const& timing)
     if (is_less) {
         done.passed = false;
         done.reason += std::string(done.reason.empty() ? "" : "; ") +
-                       "onsets of the method that the script asks for cannot be had from this display";
+                       "this display does not support the onset method that the script requires";
     }
-    // Swaps that come much faster than the display's refreshes do not wait for it.
+    // Swaps much faster than the refresh rate do not wait for the display.
     paced_ = done.period_mean_ms < 0.5e3 * period_s_;
     if (!paced_ && done.passed) period_s_ = 1e-3 * done.period_mean_ms;
     return done;
@@ -192,7 +192,7 @@ bool TrialPresenter::page(std::function<void(glm::vec2)> const& text,
                           std::function<bool(InputEvent const&)> const& done, std::function<bool()> const& over)
 {
     bool const was_paced = std::exchange(paced_, false);
-    screen_->take_input(); // what was pressed before is not meant for it
+    screen_->take_input(); // earlier input is not meant for this page
     bool is_done = false;
     while (!is_done && !should_end()) {
         ScreenContent content;
@@ -208,14 +208,14 @@ bool TrialPresenter::page(std::function<void(glm::vec2)> const& text,
     return is_done;
 }
 
-/// What the experimenter wished for ends what is under way: skipped, it is done; aborted, it is not.
+/// Ends the current step on the experimenter's request: a skipped step counts as done, an aborted one does not.
 void TrialPresenter::end_early()
 {
     experimenter_.check_aborted();
     experimenter_.take_wish();
 }
 
-/// What is meant for the program: the window is closed, or escape pressed twice, which end the session.
+/// Handles events for the program: closing the window or pressing escape twice ends the session.
 bool TrialPresenter::heed_window(InputEvent const& e)
 {
     constexpr std::chrono::seconds kTwice{2};
@@ -284,7 +284,7 @@ study::ExperimenterAction TrialPresenter::action()
 {
     try {
         table_.flush();
-    } catch (gi::InputError const& e) { // the journal decides whether a session can go on
+    } catch (gi::InputError const& e) { // only the journal decides whether a session can continue
         report_.lose("times that rows of frames could not be written", 1, e.what());
     }
     between_frames();

@@ -1,5 +1,5 @@
 #pragma once
-// Shows the steps of a session to a participant in a window (study/run/presenter.h says what is asked of it).
+// Presents the steps of a session to a participant; implements study/run/presenter.h.
 
 #include "study/run/presenter.h"
 #include "viewer/devices/xr/session.h"
@@ -14,24 +14,24 @@ namespace viewer {
 
 struct TrialOptions {
     ScreenSettings screen;
-    StimulusViewer view = StimulusViewer::window; ///< where a stimulus says nothing of it, and for text at first
+    StimulusViewer view = StimulusViewer::window; ///< default for stimuli, and for text at first
     HmdOptions headset;
     SceneAccess scenes;
     int threads = 0;              ///< 0 = all
-    std::string participant;      ///< for the experimenter
-    std::filesystem::path folder; ///< of the session, for its frames
+    std::string participant;      ///< shown to the experimenter
+    std::filesystem::path folder; ///< of the session, for the frame table
     std::string stem;             ///< "sub-P001_ses-01"
     RemoteOptions remote;
-    gi::StopRequest const* stop = nullptr; ///< of Ctrl-C; null = none
+    gi::StopRequest const* stop = nullptr; ///< set by Ctrl-C; null = none
     int marker_port = kMarkerPort;
-    std::filesystem::path prepared; ///< pictures made ahead (study prepare)
-    std::string version;            ///< of the program that made them
+    std::filesystem::path prepared; ///< folder of pictures made ahead (study prepare)
+    std::string version;            ///< of the program
     std::vector<std::pair<std::string, std::string>> about;
 };
 
 class TrialPresenter : public study::Presenter {
 public:
-    /// Opens the window. All arguments outlive it. Throws InputError.
+    /// Opens the window. All arguments must outlive it. Throws InputError.
     TrialPresenter(study::Script const& script, TrialOptions const& options, gi::Report& report);
     ~TrialPresenter() override;
 
@@ -52,23 +52,24 @@ public:
 
 private:
     using Clock = InputEvent::Clock;
-    class Trial; ///< one of them, while it runs
+    class Trial; ///< the running trial
 
     ScreenSwap present(ScreenContent content);
-    /// The other display, where it is not the one that is open; the participant is told to put a headset on or
-    /// off.
+    /// Switches to another viewer if it is not the current one; asks the participant to put a headset on or take
+    /// it off.
     void see_in(StimulusViewer viewer);
     void between_frames();
-    /// Views of walls for a source; empty in a window.
+    /// Function that returns the walls' views for a source; empty in a window.
     std::function<std::vector<ViewCommand>(gi::Camera const&)> on_walls();
     bool should_end() const { return experimenter_.wants_end(); }
     StimulusSource& source(std::size_t number, study::Stimuli kind, StimulusSettings const& stimulus);
-    /// Until `done` says so, 30 times a second, or the experimenter ends it (false).
+    /// Shows text, 30 times per second, until `done` or `over` returns true. Returns false if the experimenter
+    /// ends it.
     bool page(std::function<void(glm::vec2)> const& text, std::function<bool(InputEvent const&)> const& done,
               std::function<bool()> const& over = {});
     bool heed_window(InputEvent const& event);
     void end_early();
-    /// Of the first view, as often as record.head_pose_hz says.
+    /// Records the pose of the first view at the rate record.head_pose_hz.
     void keep_pose(double time_s, std::vector<ViewCommand> const& views);
     bool is_confirm(InputEvent const& event) const;
     std::string confirm_hint(std::string const& what) const;
@@ -78,21 +79,21 @@ private:
     study::Script const& script_;
     TrialOptions const& options_;
     gi::Report& report_;
-    SessionClock clock_;    ///< of the sources; its zero is this
-    StimulusViewer viewer_; ///< that the screen is
+    SessionClock clock_;    ///< for the sources; starts with this object
+    StimulusViewer viewer_; ///< type of the current screen
     std::unique_ptr<Screen> screen_;
     AnswerKeys keys_;
     Markers markers_;
     Experimenter experimenter_;
     FrameTable table_;
     std::vector<std::unique_ptr<StimulusSource>> live_, prepared_, ar_,
-        ar_prepared_;            ///< by the letter that they show
-    double period_s_ = 1.0 / 60; ///< of refreshes
-    bool paced_ = false;         ///< swaps do not wait for the display: they are made to come at expected_hz
+        ar_prepared_;            ///< indexed by the stimulus's number in the trial
+    double period_s_ = 1.0 / 60; ///< of the display's refresh
+    bool paced_ = false;         ///< swaps do not wait for the display, so they are paced at expected_hz
     Clock::time_point next_swap_;
-    Clock::time_point escaped_{}; ///< when escape was pressed last
+    Clock::time_point escaped_{}; ///< time of the last press of escape
     double last_pose_s_ = -1e9;
-    double trial_end_s_ = 0; ///< of the trial before
+    double trial_end_s_ = 0; ///< end of the previous trial
 };
 
 } // namespace viewer

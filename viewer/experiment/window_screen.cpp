@@ -45,7 +45,7 @@ WindowScreen::WindowScreen(ScreenSettings const& settings, gi::Report& report)
     }
     first().window.gl().make_current();
     panel_ = std::make_unique<Panel>(first().window, settings.font_px);
-    first().window.gl().release(); // to the thread that draws
+    first().window.gl().release(); // to the drawing thread
 }
 
 WindowScreen::~WindowScreen()
@@ -162,7 +162,7 @@ void WindowScreen::draw_walls(DrawTarget const& whole, ShownWindow& window, Scre
     window.presenter.draw(whole, window.on_screen_px, panes, settings_of(*frame), {});
 }
 
-/// On the drawing thread. Windows are drawn one after the other and then swapped, so that they change together.
+/// Runs on the drawing thread. Draws all windows first and then swaps them, so that they change together.
 ScreenSwap WindowScreen::draw(ScreenContent const& content)
 {
     for (auto const& w : shown_.windows) {

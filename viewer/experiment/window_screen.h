@@ -1,6 +1,6 @@
 #pragma once
-// A window, or the walls of a display. Drawing and swapping are another thread's, so that input is read while it
-// waits for the display; present() returns when the swap is done and has read the input meanwhile.
+// A window, or the walls of a display. A separate thread draws and swaps, so that input is read while it waits for
+// the display; present() reads input and returns when the swap is done.
 
 #include "viewer/app/display_windows.h"
 #include "viewer/app/present_thread.h"
@@ -13,7 +13,7 @@ namespace viewer {
 
 class WindowScreen : public Screen {
 public:
-    /// @param report  outlives it. Throws InputError where no window can be opened.
+    /// @param report  must outlive this. Throws InputError if no window can be opened.
     WindowScreen(ScreenSettings const& settings, gi::Report& report);
     ~WindowScreen() override;
 
@@ -36,10 +36,10 @@ private:
     ShownWindow& first() const { return *shown_.windows.front(); }
 
     std::optional<Display> display_;
-    std::optional<UserTracking> tracking_; ///< of a display
-    DisplayWindows shown_;                 ///< one window where there is no display
+    std::optional<UserTracking> tracking_; ///< for a display
+    DisplayWindows shown_;                 ///< one window without a display
     std::unique_ptr<Panel> panel_;
-    std::deque<Presenter> presenters_; ///< of the panes
+    std::deque<Presenter> presenters_; ///< one per pane
     std::vector<std::shared_ptr<LiveFrame const>> taken_;
     std::vector<InputEvent> input_;
     InputEvent::Clock::time_point last_look_;

@@ -1,6 +1,6 @@
 #pragma once
-// Bytes of messages and records, little-endian on every machine. A reader checks before it reads: what it is given
-// may be damaged, cut or hostile.
+// Bytes of messages and records, little-endian on every machine. The reader validates its input, which may be
+// damaged, truncated or malicious.
 
 #include <cstdint>
 #include <span>
@@ -13,7 +13,8 @@ namespace viewer {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// What a ByteReader throws: why the bytes cannot be read. Whoever knows what they are makes an InputError of it.
+/// Thrown by ByteReader with the reason why the bytes cannot be read. A caller that knows their source turns it
+/// into an InputError.
 struct BadBytes : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -23,13 +24,13 @@ public:
     void put_byte(std::uint8_t v) { bytes_.push_back(v); }
     void put_u32(std::uint32_t v) { put(v, 4); }
     void put_u64(std::uint64_t v) { put(v, 8); }
-    /// Seven bits a byte, the lowest first (LEB128): 1 to 10 bytes.
+    /// LEB128: seven bits per byte, the lowest first; 1 to 10 bytes.
     void put_count(std::uint64_t v);
-    /// All 64 bits, so that a double comes back exactly.
+    /// All 64 bits, so that a double is restored exactly.
     void put_number(double v);
-    /// One bit for each value that differs from its default in any bit, in whole bytes, then those values.
+    /// A bit mask, in whole bytes, of the values that differ from their default in any bit; then those values.
     void put_numbers(std::span<double const> values, std::span<double const> defaults);
-    /// put_count of its length, then its bytes.
+    /// The length (put_count), then the bytes.
     void put_text(std::string_view text);
     void put_raw(std::span<std::uint8_t const> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
 
@@ -41,7 +42,7 @@ private:
     Bytes bytes_;
 };
 
-/// Reads what a ByteWriter wrote. Each call throws BadBytes where too few bytes are left or a limit is passed.
+/// Reads what a ByteWriter wrote. Each call throws BadBytes if too few bytes are left or a limit is exceeded.
 class ByteReader {
 public:
     /// @param bytes must outlive the reader
@@ -51,7 +52,7 @@ public:
     std::uint32_t u32() { return std::uint32_t(get(4)); }
     std::uint64_t u64() { return get(8); }
     std::uint64_t count(std::uint64_t most);
-    /// Finite.
+    /// Throws BadBytes if not finite.
     double number();
     void numbers(std::span<double> values, std::span<double const> defaults);
     std::string text(std::size_t most_bytes);

@@ -10,7 +10,7 @@ namespace {
 
 [[noreturn]] void refuse(std::string const& what, std::string const& why)
 {
-    throw gi::InputError("a frame order holds " + what, why, "make it from a valid session");
+    throw gi::InputError("a frame command has " + what, why, "make it from a valid session");
 }
 
 void check_number(double v, char const* name)
@@ -22,7 +22,7 @@ void check_name(std::string const& name)
 {
     if (name.size() > CommandLimits::name_bytes)
         refuse(fmt::format("a name of {} bytes", name.size()),
-               fmt::format("{} are the most", CommandLimits::name_bytes));
+               fmt::format("the limit is {} bytes", CommandLimits::name_bytes));
 }
 
 void check_matrix(gi::dmat4 const& m, char const* name)
@@ -69,12 +69,12 @@ bool is_finite(nlohmann::json const& value)
 void check_change(Change const& c)
 {
     check_name(c.key);
-    if (c.key.empty()) refuse("a change without a key", "nothing says what is set");
+    if (c.key.empty()) refuse("a change without a key", "the key names what is set");
     if (depth_of(c.value, CommandLimits::value_depth) > CommandLimits::value_depth)
         refuse("a value of '" + c.key + "' nested too deep",
-               fmt::format("{} levels are the most", CommandLimits::value_depth));
+               fmt::format("at most {} levels", CommandLimits::value_depth));
     if (c.value.is_binary() || c.value.is_discarded())
-        refuse("a value of '" + c.key + "' of a type that JSON text has not", "it would not come back");
+        refuse("a value of '" + c.key + "' of a type that JSON text lacks", "it could not be read back");
     if (!is_finite(c.value)) refuse("a value of '" + c.key + "' that is no finite number", "JSON has none");
 }
 
@@ -105,23 +105,23 @@ void check_command(FrameCommand const& o)
     check_matrix(o.world_from_room, "world from room");
     check_tracked(o.tracked);
     if (o.others.size() > CommandLimits::users)
-        refuse(fmt::format("{} users", o.others.size()), fmt::format("{} are the most", CommandLimits::users));
+        refuse(fmt::format("{} users", o.others.size()), fmt::format("the limit is {}", CommandLimits::users));
     for (Tracked const& t : o.others) check_tracked(t);
     if (o.paths < 1 || o.paths > CommandLimits::paths)
-        refuse(fmt::format("{} paths per pixel", o.paths), fmt::format("1 to {} can be", CommandLimits::paths));
+        refuse(fmt::format("{} paths per pixel", o.paths), fmt::format("allowed: 1 to {}", CommandLimits::paths));
     if (o.changes.size() > CommandLimits::changes)
         refuse(fmt::format("{} changes", o.changes.size()),
-               fmt::format("{} are the most", CommandLimits::changes));
+               fmt::format("the limit is {}", CommandLimits::changes));
     for (Change const& c : o.changes) check_change(c);
     if (o.views.size() > CommandLimits::views)
-        refuse(fmt::format("{} views", o.views.size()), fmt::format("{} are the most", CommandLimits::views));
+        refuse(fmt::format("{} views", o.views.size()), fmt::format("the limit is {}", CommandLimits::views));
     for (std::size_t i = 0; i < o.views.size(); ++i) {
         ViewCommand const& v = o.views[i];
         check_name(v.name);
         check_camera(v.camera);
         if (std::min(v.width, v.height) < 1 || std::max(v.width, v.height) > CommandLimits::size_px)
             refuse(fmt::format("a view of {}x{} pixels", v.width, v.height),
-                   fmt::format("1 to {} each can be", CommandLimits::size_px));
+                   fmt::format("1 to {} per side are possible", CommandLimits::size_px));
         if (v.partner < -1 || v.partner >= int(i))
             refuse(fmt::format("view {} with partner {}", i, v.partner), "a partner is an earlier view, or -1");
     }

@@ -60,7 +60,7 @@ gi::Camera get_camera(ByteReader& from)
     gi::Camera c;
     c.name = from.text(CommandLimits::name_bytes);
     std::uint8_t const flags = from.byte();
-    if (flags > 3) throw BadBytes("a camera is of an unknown kind");
+    if (flags > 3) throw BadBytes("a camera has an unknown kind");
     c.orthographic = (flags & 1) != 0;
     if ((flags & 2) != 0) {
         c.off_axis.emplace();
@@ -78,7 +78,7 @@ gi::Camera get_camera(ByteReader& from)
     return c;
 }
 
-// As text: nlohmann's reader of CBOR recurses, so that nested bytes could exhaust the stack.
+// As text, because nlohmann's CBOR reader recurses: deeply nested bytes could exhaust the stack.
 std::string text_of(Change const& c)
 {
     try {
@@ -88,7 +88,7 @@ std::string text_of(Change const& c)
         throw gi::InputError("the value of '" + c.key + "' cannot be written", e.what(), "use UTF-8");
     }
     throw gi::InputError("the value of '" + c.key + "' is too long",
-                         fmt::format("{} bytes are the most", CommandLimits::value_bytes), "set it in parts");
+                         fmt::format("at most {} bytes", CommandLimits::value_bytes), "set it in parts");
 }
 
 Change get_change(ByteReader& from)
@@ -99,8 +99,8 @@ Change get_change(ByteReader& from)
     return c;
 }
 
-// A byte that says which bodies are tracked, and whether another user follows; then their poses. Before there were
-// feet and further users, these bits were not set.
+// A byte with a bit per tracked body and one bit if another user follows; then the poses. Older versions, without
+// feet and further users, never set those bits.
 constexpr std::size_t kBodies = kBodyMembers.size();
 
 void put(ByteWriter& to, Tracked const& t, bool another)
@@ -182,8 +182,8 @@ std::vector<std::uint8_t> to_bytes(FrameCommand const& o)
     }
     if (to.bytes().size() > CommandLimits::bytes)
         throw gi::InputError(
-            "a frame order is too long",
-            fmt::format("it has {} bytes, {} are the most", to.bytes().size(), CommandLimits::bytes),
+            "a frame command is too long",
+            fmt::format("it has {} bytes, the limit is {}", to.bytes().size(), CommandLimits::bytes),
             "spread its changes over several frames");
     return to.take();
 }
@@ -197,7 +197,7 @@ FrameCommand command_from_bytes(std::span<std::uint8_t const> bytes)
         check_command(order);
         return order;
     } catch (BadBytes const& e) {
-        throw gi::InputError(fmt::format("{} bytes are no frame order", bytes.size()), e.what(),
+        throw gi::InputError(fmt::format("{} bytes are no frame command", bytes.size()), e.what(),
                              "use the same version of the program on both sides");
     }
 }

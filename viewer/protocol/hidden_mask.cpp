@@ -17,17 +17,17 @@ double side(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p)
     return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-/// First and last pixel whose middle may lie between two positions.
+/// Range of pixels whose centres may lie between two positions: first, and one past the last.
 std::pair<int, int> middles(double from, double to, int size)
 {
     auto const clamped = [&](double v) { return int(std::clamp(v, 0.0, double(size))); };
     return {clamped(std::ceil(from - 0.5)), clamped(std::floor(to - 0.5) + 1)};
 }
 
-/// For every pixel of a row how far the nearest one that is seen is, pixels.
+/// Distance from each pixel of a row to the nearest visible one in the row, pixels.
 void measure_row(std::uint8_t const* hidden, int width, int* distance)
 {
-    int since = width; // none is farther
+    int since = width; // the maximum
     for (int x = 0; x < width; ++x) distance[x] = since = hidden[x] == 0 ? 0 : std::min(width, since + 1);
     since = width;
     for (int x = width - 1; x >= 0; --x) {
@@ -42,13 +42,13 @@ void measure_row(std::uint8_t const* hidden, int width, int* distance)
                          "set {\"points\": [[x, y], ...], \"triangles\": [i, j, k, ...]}");
 }
 
-/// A list of at most `most` things.
+/// A list of at most `most` entries.
 nlohmann::json const& list(Change const& c, char const* name, std::size_t most)
 {
     auto const found = c.value.is_object() ? c.value.find(name) : c.value.end();
     if (found == c.value.end() || !found->is_array()) refuse(c, fmt::format("it has no list '{}'", name));
     if (found->size() > most)
-        refuse(c, fmt::format("its list '{1}' has {0} entries, and {2} are the most", found->size(), name, most));
+        refuse(c, fmt::format("its list '{1}' has {0} entries, limit {2}", found->size(), name, most));
     return *found;
 }
 
@@ -99,7 +99,7 @@ std::vector<std::uint8_t> pixels_to_leave_out(HiddenMask const& mask, gi::ViewTa
     double const across = std::max(double(kHiddenGuard_px), kHiddenGuard * width / (view.right - view.left)),
                  along = std::max(double(kHiddenGuard_px), kHiddenGuard * height / (view.top - view.bottom));
     int const rows = int(std::min(double(height), along));
-    tbb::parallel_for(0, height, [&](int y) { // an ellipse around each pixel, row by row
+    tbb::parallel_for(0, height, [&](int y) { // test an ellipse around each pixel, row by row
         std::uint8_t* const to = &hidden[row(y)];
         for (int there = std::max(0, y - rows); there <= std::min(height - 1, y + rows); ++there) {
             double const dy = there - y;

@@ -57,7 +57,7 @@ ArCompositePass::ArCompositePass(ar::Compositor const& compositor)
 void ArCompositePass::upload(cv::Mat const& rgb, ar::RenderedPair const& pair)
 {
     if (rgb.type() != CV_8UC3 || rgb.empty())
-        throw gi::InputError("the camera's frame is not RGB of 8 bits", "its bytes cannot be given a meaning",
+        throw gi::InputError("the camera's frame is not RGB of 8 bits", "other formats are not supported",
                              "convert it with rgb_of()");
     ar::check(pair, rgb.size());
     if (glm::ivec2 const size(rgb.cols, rgb.rows); size != size_px_) {

@@ -1,7 +1,7 @@
 #pragma once
-// Virtual objects in a camera's frame on the GPU: ar/composite's equation with its tables (docs/methods.md). Bytes
-// of pixels that nothing changes are the camera's; others differ from the CPU's by one at most, where the two
-// round differently.
+// Composites virtual objects into a camera frame on the GPU: ar/composite's equation with its tables
+// (docs/methods.md). Unchanged pixels keep the camera's bytes; others differ from the CPU result by at most one,
+// due to rounding.
 
 #include "ar/composite/composite.h"
 #include "viewer/devices/gl/draw_target.h"
@@ -11,16 +11,16 @@
 
 namespace viewer {
 
-/// Belongs to the context that was current when it was made.
+/// Belongs to the context that was current at its creation.
 class ArCompositePass {
 public:
     explicit ArCompositePass(ar::Compositor const& compositor);
 
-    /// Takes the place of the frame before. @param rgb CV_8UC3. Throws gi::InputError on types and sizes.
+    /// Replaces the previous frame. @param rgb CV_8UC3. Throws gi::InputError on wrong types and sizes.
     void upload(cv::Mat const& rgb, ar::RenderedPair const& pair);
-    /// Fills the target, which has the frame's size (throws gi::InputError otherwise). No counts: those are the
-    /// CPU's.
-    /// @param frame number of the frame: chooses the noise
+    /// Fills the target, which must have the frame's size (throws gi::InputError otherwise). Returns no counts;
+    /// only the CPU version does.
+    /// @param frame  frame number: seeds the noise
     void draw(DrawTarget const& target, ar::Exposure const& exposure, std::uint64_t frame = 0) const;
 
 private:

@@ -11,7 +11,7 @@
 
 namespace viewer {
 
-GlxHandles current_glx_handles(); // glx_handles.cpp: Xlib's macros stay there
+GlxHandles current_glx_handles(); // in glx_handles.cpp, to keep Xlib's macros there
 
 namespace {
 
@@ -76,8 +76,8 @@ std::vector<NamedDisplay> surfaceless_displays()
     return displays;
 }
 
-/// What went wrong; empty = nothing. Displays are the process's and are never terminated: other contexts,
-/// also those of an OpenXR runtime, may be on the same one.
+/// Creates a context; returns the error, empty on success. Displays belong to the process and are never
+/// terminated, because other contexts, also those of an OpenXR runtime, may use the same one.
 std::string open_context(EGLDisplay display, EglContext& out)
 {
     EGLint major = 0, minor = 0;

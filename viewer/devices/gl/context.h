@@ -1,6 +1,6 @@
 #pragma once
 // A context of OpenGL 4.5 core: without a window (EGL, no display server needed), or that of a GLFW window. It is
-// current to one thread at a time; whoever draws in another thread moves it there by make_current.
+// current to one thread at a time; to draw in another thread, move it there with make_current.
 
 #include "gi/core/report.h"
 
@@ -11,14 +11,14 @@ struct GLFWwindow;
 
 namespace viewer {
 
-/// EGLDisplay, EGLConfig, EGLContext; null where the context is not EGL's. For XrGraphicsBindingEGLMNDX.
+/// EGLDisplay, EGLConfig, EGLContext; null if the context is not EGL's. For XrGraphicsBindingEGLMNDX.
 struct EglHandles {
     void* display = nullptr;
     void* config = nullptr;
     void* context = nullptr;
 };
 
-/// Display*, GLXFBConfig, GLXContext, GLXDrawable and the id of the visual; null where the context is not GLX's.
+/// Display*, GLXFBConfig, GLXContext, GLXDrawable and the id of the visual; null if the context is not GLX's.
 /// For XrGraphicsBindingOpenGLXlibKHR.
 struct GlxHandles {
     void* display = nullptr;
@@ -30,23 +30,23 @@ struct GlxHandles {
 
 class GlContext {
 public:
-    /// Without a window: a GPU that EGL lists, else Mesa's surfaceless platform. It is current when this returns.
-    /// OpenGL's errors are counted in the report, which must outlive the context.
-    /// Throws InputError with EGL's reasons where there is none.
+    /// Creates a context without a window, on a GPU listed by EGL, else on Mesa's surfaceless platform, and makes
+    /// it current. OpenGL errors are counted in the report, which must outlive the context. Throws InputError with
+    /// EGL's reasons if none can be created.
     static GlContext surfaceless(gi::Report& report);
-    /// The context of a window, which stays the owner; made with context_hints(). It is current when this returns.
-    /// Throws InputError on a window without OpenGL 4.5.
+    /// The context of a window created with context_hints(), which remains the owner. Makes it current. Throws
+    /// InputError if the window has no OpenGL 4.5.
     static GlContext of_window(GLFWwindow* window, gi::Report& report);
-    /// Sets GLFW's hints for windows to OpenGL 4.5 core with messages.
+    /// Sets GLFW's window hints to OpenGL 4.5 core with debug messages.
     static void context_hints();
 
     GlContext(GlContext&&) noexcept;
     GlContext& operator=(GlContext&&) noexcept;
     ~GlContext();
 
-    /// To the calling thread. Throws InputError where the context is current to another one.
+    /// Makes the context current to the calling thread. Throws InputError if it is current to another thread.
     void make_current() const;
-    /// From the calling thread, so that another can take it.
+    /// Releases the context from the calling thread, so that another thread can take it.
     void release() const;
 
     EglHandles egl() const;
@@ -54,7 +54,7 @@ public:
     GlxHandles glx() const;
     /// "4.5 (Core Profile) Mesa 22.3.6, llvmpipe (LLVM 15.0.6, 256 bits)"
     std::string const& description() const;
-    /// Errors that OpenGL reported so far, also those whose text is not kept.
+    /// Number of OpenGL errors so far, including those whose text is not kept.
     std::uint64_t errors() const;
 
 private:

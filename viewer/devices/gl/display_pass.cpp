@@ -74,7 +74,7 @@ void DisplayPass::fill(DrawTarget const& target, EyeView const& left, EyeView co
                        DisplaySettings const& settings)
 {
     glm::ivec2 const eye = eye_size(mode, target.size_px);
-    // What is not read is bound all the same, to a picture that is there.
+    // Bind unused samplers too, to an existing picture.
     ShownPicture const l = left.picture.texture != 0 ? left.picture : left.other;
     EyeView const& second = reads_right(mode) ? right : left;
     ShownPicture const shown[4] = {l, second.picture.texture != 0 ? second.picture : l,

@@ -1,6 +1,6 @@
 #pragma once
-// Brings finished pictures to a display in one pass: exposure and tone curve (those of gi/filter/tone_map.h), two
-// pictures compared, two eyes composed (as viewer/displays/compose.h does).
+// Shows finished pictures on a display in one pass: applies exposure and tone curve (as gi/filter/tone_map.h),
+// compares two pictures, and composes two eyes (as viewer/displays/compose.h).
 
 #include "gi/filter/tone_map.h"
 #include "viewer/devices/gl/draw_target.h"
@@ -13,21 +13,21 @@ namespace viewer {
 
 enum class Comparison {
     off,       ///< the picture
-    split,     ///< the picture left of the split, the other one right of it
-    other,     ///< the other one: who shows them in turn makes them flicker
+    split,     ///< the picture left of the split, the other right of it
+    other,     ///< only the other picture; alternating with off gives flicker
     difference ///< |picture - other| of display-encoded values, times the gain
 };
 
-/// What an eye sees.
+/// Pictures for one eye.
 struct EyeView {
     ShownPicture picture;
-    ShownPicture other; ///< to compare with; not read where comparison is off
+    ShownPicture other; ///< to compare with; not read if comparison is off
 };
 
-/// What the textures hold.
+/// Content of the textures.
 enum class PictureValues {
-    radiance, ///< linear: exposure and curve apply
-    encoded   ///< display-encoded already: they do not
+    radiance, ///< linear: exposure and curve are applied
+    encoded   ///< display-encoded: they are not applied
 };
 
 struct DisplaySettings {
@@ -35,19 +35,19 @@ struct DisplaySettings {
     PictureValues values = PictureValues::radiance;
     StereoMode stereo = StereoMode::off;
     Comparison comparison = Comparison::off;
-    float split = 0.5f;        ///< of the eye's width
+    float split = 0.5f;        ///< share of the eye's width
     float difference_gain = 1; ///< > 0
     glm::ivec2 on_screen_px{}; ///< of the target's top left corner on the screen: parity of interlaced modes
 };
 
-/// Belongs to the context that was current when it was made. Each kind of display is a program of its own,
-/// compiled when it is first drawn: software drivers run both sides of every branch.
+/// Belongs to the context that was current at its creation. Each display mode has its own program, compiled at
+/// first use, because software drivers execute both sides of every branch.
 class DisplayPass {
 public:
-    /// Fills the target. Pictures of the size of eye_size() keep their pixels, others are stretched to it
-    /// (bilinear). Mode off and two_windows show `left` alone: for the second window give the right eye's view as
-    /// `left`. Throws InputError where quad_buffer meets a target without buffers of the eyes, and on views
-    /// without their pictures.
+    /// Fills the target. Pictures of size eye_size() keep their pixels, others are stretched to it (bilinear).
+    /// Modes off and two_windows show only `left`: for the second window pass the right eye's view as `left`.
+    /// Throws InputError on quad_buffer with a target without left and right buffers, and on views without
+    /// pictures.
     void draw(DrawTarget const& target, EyeView const& left, EyeView const& right,
               DisplaySettings const& settings);
 
@@ -55,11 +55,11 @@ private:
     void fill(DrawTarget const& target, EyeView const& left, EyeView const& right, StereoMode mode,
               DisplaySettings const& settings);
     GlProgram const& program(std::string const& kind);
-    std::map<std::string, GlProgram> programs_; ///< by their defines
+    std::map<std::string, GlProgram> programs_; ///< keyed by their defines
     GlObject vertices_{GlObject::Kind::vertex_array};
 };
 
-/// The mode itself, or where a window has no quad buffers, side by side: both eyes stay to be seen.
+/// The mode itself, or side by side if a window lacks quad buffers, so that both eyes stay visible.
 StereoMode mode_on(DrawTarget const& target, StereoMode wanted);
 
 } // namespace viewer

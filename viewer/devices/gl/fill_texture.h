@@ -1,5 +1,5 @@
 #pragma once
-// Pictures in OpenCV's form as textures.
+// Uploads OpenCV pictures to textures.
 
 #include "viewer/devices/gl/gl_object.h"
 
@@ -8,7 +8,7 @@
 namespace viewer {
 
 /// Fills a texture of the picture's size. Rows may have gaps between them.
-/// @param format, type  as OpenGL calls those of the picture: GL_RGB and GL_UNSIGNED_BYTE, ...
+/// @param format, type  of the picture in OpenGL terms: GL_RGB and GL_UNSIGNED_BYTE, ...
 void fill_texture(GlObject const& texture, cv::Mat const& picture, unsigned format, unsigned type);
 
 } // namespace viewer

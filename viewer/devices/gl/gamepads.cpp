@@ -49,7 +49,7 @@ void Gamepads::poll(std::vector<InputEvent>& out)
         if (GLFWgamepadstate state; glfwJoystickIsGamepad(device) && glfwGetGamepadState(device, &state))
             now = state;
         if (!now && !last) continue;
-        if (now && last) // so that noise does not creep: an axis that hardly moved keeps its last value
+        if (now && last) // an axis that hardly moved keeps its last value, so that noise does not accumulate
             for (int k = 0; k <= GLFW_GAMEPAD_AXIS_LAST; ++k)
                 if (std::abs(now->axes[k] - last->axes[k]) < kAxisStep) now->axes[k] = last->axes[k];
         gamepad_changes(device, last, now, time, out);

@@ -1,5 +1,5 @@
 #pragma once
-// Gamepads by GLFW's mapping (that of SDL): every model has the axes and buttons of the same names.
+// Gamepads with GLFW's mapping (SDL's): all models use the same names for axes and buttons.
 
 #include "viewer/devices/gl/input_event.h"
 
@@ -10,18 +10,18 @@
 
 namespace viewer {
 
-/// What a gamepad does is polled; events are the differences. An axis that moved less than this is still.
+/// Gamepads are polled; events are the differences. Smaller motions of an axis are ignored.
 inline constexpr float kAxisStep = 1.0f / 256;
 
-/// Appends what changed on gamepad `device` between two states. One that is plugged in starts from rest; what is
-/// held on one that is pulled out is let go.
+/// Appends the changes of gamepad `device` between two states. A newly connected gamepad starts from rest; on
+/// disconnection all held buttons are released.
 void gamepad_changes(int device, std::optional<GLFWgamepadstate> const& before,
                      std::optional<GLFWgamepadstate> const& now, InputEvent::Clock::time_point time,
                      std::vector<InputEvent>& out);
 
 class Gamepads {
 public:
-    /// Asks GLFW, which must run, and appends what changed since the last call.
+    /// Polls GLFW, which must be running, and appends the changes since the last call.
     void poll(std::vector<InputEvent>& out);
 
 private:

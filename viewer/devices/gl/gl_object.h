@@ -1,5 +1,5 @@
 #pragma once
-// Owns one name of OpenGL. Made, used and destroyed where its context is current.
+// Owns one OpenGL object. Its context must be current when it is created, used and destroyed.
 
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -12,7 +12,7 @@ public:
     enum class Kind : std::uint8_t { texture, buffer, framebuffer, vertex_array, program };
 
     GlObject() = default;
-    /// Makes a new one. @param texture_target  GL_TEXTURE_2D, ...; read for textures
+    /// Creates an object. @param texture_target  GL_TEXTURE_2D, ...; used for textures only
     explicit GlObject(Kind kind, unsigned texture_target = 0);
     GlObject(GlObject&& o) noexcept : kind_(o.kind_), id_(std::exchange(o.id_, 0)) {}
     GlObject& operator=(GlObject&& o) noexcept
@@ -30,8 +30,8 @@ private:
     unsigned id_ = 0;
 };
 
-/// A texture without mipmaps, clamped to its borders. @param format  GL_RGBA8, ...  @param filter  GL_NEAREST or
-/// GL_LINEAR
+/// Creates a texture without mipmaps, clamped to its edges. @param format  GL_RGBA8, ...  @param filter
+/// GL_NEAREST or GL_LINEAR
 GlObject texture_2d(unsigned format, glm::ivec2 size_px, unsigned filter);
 
 } // namespace viewer

@@ -1,5 +1,5 @@
 #pragma once
-// A program of shaders. Each stage is made of files of shaders/, one after the other, below "#version 450 core".
+// A shader program. Each stage is the concatenation of files from shaders/, after "#version 450 core".
 
 #include "viewer/devices/gl/gl_object.h"
 
@@ -16,11 +16,11 @@ class GlProgram {
 public:
     using Files = std::initializer_list<char const*>;
     /// @param defines lines put before both stages ("#define MODE_OFF 0\n")
-    /// Throws std::runtime_error with the compiler's log: that is a mistake in this program or its driver.
+    /// Throws std::runtime_error with the compiler's log; this indicates a bug in this program or the driver.
     GlProgram(Files vertex, Files fragment, std::string const& defines = {});
 
     void use() const;
-    /// Uniforms that the compiler found unused are passed over.
+    /// Sets a uniform; uniforms removed by the compiler as unused are ignored.
     void set(char const* name, int value) const;
     void set(char const* name, float value) const;
     void set(char const* name, glm::ivec2 value) const;

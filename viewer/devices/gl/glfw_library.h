@@ -1,13 +1,14 @@
 #pragma once
-// GLFW, started once for the process. It belongs to the main thread: windows are made, polled and closed there.
+// GLFW, initialised once per process. It belongs to the main thread, where windows must be created, polled and
+// closed.
 
 #include <memory>
 
 namespace viewer {
 
-/// Running as long as somebody holds it. Throws InputError where it cannot start (no display server).
+/// GLFW runs while any instance exists. Throws InputError if it cannot start (no display server).
 std::shared_ptr<void const> glfw_library();
-/// What GLFW last complained of in this thread, "no reason given" if nothing; forgets it.
+/// Returns and clears GLFW's last error in this thread, "no reason given" if there is none.
 char const* glfw_error();
 
 } // namespace viewer

@@ -6,7 +6,7 @@ namespace viewer {
 
 GlxHandles current_glx_handles()
 {
-    // Asked of a process without libGL, libepoxy ends the process.
+    // In a process without libGL, this query makes libepoxy end the process.
     GLXContext const context = glXGetCurrentContext();
     if (!context) return {};
     Display* const display = glXGetCurrentDisplay();

@@ -1,5 +1,5 @@
 #pragma once
-// What people do with a window, as plain values: keys, mouse, gamepads, and what happens to the window itself.
+// Input events of a window as plain values: keys, mouse, gamepads, and events of the window itself.
 
 #include <chrono>
 #include <cstdint>
@@ -15,14 +15,14 @@ enum class InputKind : std::uint8_t {
     resize,         ///< x, y: px of the framebuffer
     move,           ///< x, y: of the window's content on the screen, px
     focus,          ///< action: press = gained, release = lost
-    close,          ///< the user wants the window to go; it stays until it is destroyed
+    close,          ///< the user wants to close the window; it stays open until it is destroyed
     gamepad_axis,   ///< device, code: GLFW_GAMEPAD_AXIS_*, x: -1..1 (triggers: -1 = released)
     gamepad_button, ///< device, code: GLFW_GAMEPAD_BUTTON_*, action
     hand_button,    ///< of a headset; device: 0 left, 1 right, code: 0 select, 1 trigger, 2 menu, action
 };
 
 enum class InputAction : std::uint8_t { release, press, repeat };
-/// Whether the panel used the event itself: then it is not meant for the scene.
+/// True if the panel used the event, which is then not meant for the scene.
 enum class InputFor : std::uint8_t { scene, panel };
 
 struct InputEvent {
@@ -37,7 +37,7 @@ struct InputEvent {
     int scan_code = 0;
     int modifiers = 0; ///< GLFW_MOD_*
     double x = 0, y = 0;
-    Clock::time_point time; ///< when it was polled: GLFW does not tell when it happened
+    Clock::time_point time; ///< time of polling, because GLFW gives no event times
 };
 
 } // namespace viewer

@@ -1,6 +1,6 @@
 #pragma once
-// What OpenGL has to say (KHR_debug, core since 4.3): errors and undefined behaviour are counted in a report,
-// hints about speed are not.
+// OpenGL debug messages (KHR_debug, core since 4.3): errors and undefined behaviour are counted in a report,
+// performance hints are not.
 
 #include "gi/core/report.h"
 
@@ -11,13 +11,13 @@ namespace viewer {
 
 class GlMessages {
 public:
-    /// Listens to the current context until that is destroyed; the report must live as long.
+    /// Receives the messages of the current context until it is destroyed; the report must live as long.
     explicit GlMessages(gi::Report& report);
     GlMessages(GlMessages const&) = delete;
     GlMessages& operator=(GlMessages const&) = delete;
 
     std::uint64_t errors() const { return errors_; }
-    /// By the driver, possibly from a thread of its own.
+    /// Called by the driver, possibly from its own thread.
     void hear(unsigned type, char const* message);
 
 private:

@@ -10,7 +10,7 @@ namespace viewer {
 
 namespace {
 
-/// Readable from a chair: an outline font where there is one, else the built-in one, enlarged.
+/// Font that is readable from a distance: an outline font if one is installed, else the built-in one, enlarged.
 void add_font(float px)
 {
     constexpr char const* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
@@ -32,12 +32,12 @@ Panel::Panel(Window& window, float font_px) : window_(window)
     IMGUI_CHECKVERSION();
     context_ = ImGui::CreateContext();
     ImGui::SetCurrentContext(context_);
-    ImGui::GetIO().IniFilename = nullptr; // nothing is written beside the scene
+    ImGui::GetIO().IniFilename = nullptr; // write no settings file
     ImGui::StyleColorsDark();
     if (font_px > 0) add_font(font_px);
     ImGui_ImplGlfw_InitForOpenGL(window.glfw(), true);
     ImGui_ImplOpenGL3_Init("#version 450 core");
-    ImGui_ImplOpenGL3_NewFrame(); // makes its textures and programs
+    ImGui_ImplOpenGL3_NewFrame(); // creates its textures and programs
 }
 
 Panel::~Panel()

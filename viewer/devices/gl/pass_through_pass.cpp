@@ -11,7 +11,7 @@ glm::dmat3 pinhole_from_eye(gi::Camera const& eye, glm::ivec2 eye_px, ar::Camera
                             ar::Pose const& room_from_camera, double plane_m)
 {
     gi::ViewTangents const t = eye.off_axis.value_or(gi::ViewTangents{-1, 1, -1, 1});
-    // Columns: what a pixel to the right, a pixel down and the corner add to the direction.
+    // Columns: contributions of one pixel right, one pixel down, and the corner to the direction.
     glm::dmat3 const direction_of_pixel(glm::dvec3((t.right - t.left) / eye_px.x, 0, 0),
                                         glm::dvec3(0, -(t.top - t.bottom) / eye_px.y, 0),
                                         glm::dvec3(t.left, t.top, -1));

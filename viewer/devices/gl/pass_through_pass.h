@@ -1,7 +1,7 @@
 #pragma once
-// A camera's picture as an eye sees it that is somewhere else and looks elsewhere by now: the picture stands on a
-// plane across the camera's axis, where the camera was when it was taken. Turning of the head is made up for
-// exactly, moving only for what is at that distance.
+// Reprojects a camera's picture to the current pose of an eye: the picture is placed on a plane perpendicular to
+// the camera's axis at the pose of its capture. Head rotation is compensated exactly, translation only for objects
+// at the plane's distance.
 
 #include "ar/camera/camera_model.h"
 #include "ar/camera/pose.h"
@@ -11,13 +11,13 @@
 
 namespace viewer {
 
-/// From the pixels of an eye (from its top left corner) to those of a pinhole camera (middles have whole numbers),
-/// homogeneous; the third is above 0 where the camera looks.
+/// Homography from an eye's pixels (from the top left corner) to those of a pinhole camera (pixel centres are
+/// integers); the third homogeneous coordinate is > 0 in front of the camera.
 /// @param eye  with an off-axis lens   @param room_from_camera  x right, y down, z ahead
 glm::dmat3 pinhole_from_eye(gi::Camera const& eye, glm::ivec2 eye_px, ar::CameraModel const& pinhole,
                             ar::Pose const& room_from_camera, double plane_m);
 
-/// Belongs to the context that was current when it was made.
+/// Belongs to the context that was current at its creation.
 class PassThroughPass {
 public:
     explicit PassThroughPass(ar::CameraModel const& camera);

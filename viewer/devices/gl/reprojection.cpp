@@ -15,7 +15,7 @@ gi::ViewTangents tangents_of(gi::Camera const& camera, glm::ivec2 size)
 {
     if (camera.orthographic)
         throw gi::InputError("the orthographic camera '" + camera.name + "' cannot be reprojected",
-                             "its pixels do not look from one place", "show its pictures as they are");
+                             "its rays do not share one origin", "show its pictures as they are");
     double const y = std::tan(0.5 * camera.yfov_rad), x = y * size.x / size.y;
     return camera.off_axis.value_or(gi::ViewTangents{-x, x, -y, y});
 }

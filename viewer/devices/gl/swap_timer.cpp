@@ -14,7 +14,7 @@ double ms_between(Clock::time_point a, Clock::time_point b)
     return std::chrono::duration<double, std::milli>(b - a).count();
 }
 
-constexpr int kUnknownRefreshHz = 60; // a guess that is slower than most
+constexpr int kUnknownRefreshHz = 60; // assumed; slower than most monitors
 constexpr GLuint64 kFence_ns = 1'000'000'000;
 
 } // namespace
@@ -52,7 +52,7 @@ SwapTime SwapTimer::swap()
     return out;
 }
 
-/// Swaps in any case.
+/// Always swaps.
 bool SwapTimer::try_sync_control(Clock::time_point called, SwapTime& out)
 {
     auto const before = swaps_so_far();
@@ -60,7 +60,7 @@ bool SwapTimer::try_sync_control(Clock::time_point called, SwapTime& out)
     auto const after = before ? wait_for_swaps() : std::nullopt;
     if (!after || after->swaps <= before->swaps) return false;
     Clock::time_point const done = Clock::now();
-    // Mesa's clock is CLOCK_MONOTONIC, that of steady_clock; the extension promises no clock at all.
+    // Mesa uses CLOCK_MONOTONIC, as steady_clock does; the extension does not specify a clock.
     Clock::time_point const told{std::chrono::microseconds(after->time_us)};
     out.method = GlSwapMethod::sync_control;
     if (told >= called && told <= done) {

@@ -1,10 +1,9 @@
 #pragma once
-// When a frame was swapped, as well as this display can tell.
+// Measures when a frame was swapped, as accurately as the display allows.
 //
-// Where GLX_OML_sync_control works - the extension is listed, glXWaitForSbcOML returns true and the count of swaps
-// goes on - the driver tells when. Elsewhere the swap is followed by a fence, and the time lies between the call
-// and the fence; when the pixels were scanned out after it nobody says, so that a refresh of the monitor is added
-// to the uncertainty.
+// If GLX_OML_sync_control works (the extension is listed, glXWaitForSbcOML returns true and the swap count
+// increases), the driver reports the time. Otherwise a fence follows the swap, and the time lies between the call
+// and the fence; the later scan-out time is unknown, so one refresh of the monitor is added to the uncertainty.
 
 #include "viewer/devices/gl/window.h"
 
@@ -19,16 +18,16 @@ enum class GlSwapMethod {
 
 struct SwapTime {
     using Clock = std::chrono::steady_clock;
-    Clock::time_point time; ///< best guess
+    Clock::time_point time; ///< best estimate
     Clock::time_point
-        seen; ///< when it was known to be done: intervals of swaps that wait for the display keep time
+        seen; ///< when it was known to be done; its intervals are regular if swaps wait for the display
     double uncertainty_ms = 0; ///< the swap took place within time +- this
     GlSwapMethod method = GlSwapMethod::fence;
 };
 
 class SwapTimer {
 public:
-    /// The window must outlive it. What went wrong with sync control is counted in the report, once.
+    /// The window must outlive it. A failure of sync control is counted in the report, once.
     SwapTimer(Window& window, gi::Report& report);
     /// Swaps and waits until it is done. The window's context must be current.
     SwapTime swap();

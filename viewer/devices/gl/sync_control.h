@@ -1,5 +1,5 @@
 #pragma once
-// GLX_OML_sync_control of the current drawable, without Xlib's macros in sight.
+// GLX_OML_sync_control of the current drawable; keeps Xlib's macros out of this header.
 
 #include <cstdint>
 #include <optional>
@@ -8,14 +8,14 @@ namespace viewer {
 
 struct SwapCount {
     std::int64_t time_us = 0; ///< UST: of the last vertical blank, on a clock of the driver's choice
-    std::int64_t swaps = 0;   ///< SBC: since the window was made
+    std::int64_t swaps = 0;   ///< SBC: swaps since the window was created
 };
 
-/// Whether a GLX context is current and its display lists the extension: a function pointer is no proof.
+/// True if a GLX context is current and its display lists the extension; a function pointer alone is no proof.
 bool sync_control_listed();
-/// glXGetSyncValuesOML; nothing where it refuses.
+/// glXGetSyncValuesOML; none if it fails.
 std::optional<SwapCount> swaps_so_far();
-/// glXWaitForSbcOML for all swaps that were called; nothing where it refuses.
+/// glXWaitForSbcOML for all swaps so far; none if it fails.
 std::optional<SwapCount> wait_for_swaps();
 
 } // namespace viewer

@@ -22,7 +22,7 @@ void check_mesh(WarpMesh const& mesh)
         if (!std::isfinite(v.position.x + v.position.y + v.picture.x + v.picture.y) ||
             !(v.weight >= 0 && v.weight <= 1))
             throw gi::InputError("a vertex of a warp mesh is not finite or its weight is not in 0 to 1",
-                                 "it has no place in the picture", "mend the mesh");
+                                 "such a vertex cannot be drawn", "correct the mesh");
 }
 
 void check_blend(WallSettings const& s)
@@ -33,7 +33,7 @@ void check_blend(WallSettings const& s)
             throw gi::InputError(fmt::format("edge blends of {} and {} of the picture", one, other),
                                  "each is at least 0 and both together at most 1", "give the overlaps in parts");
     if (!(b.power > 0) || !std::isfinite(b.power))
-        throw gi::InputError(fmt::format("an edge blend with the power {}", b.power), "it fades by no rule",
+        throw gi::InputError(fmt::format("an edge blend with the power {}", b.power), "it defines no fading",
                              "give a positive one; 2 is usual");
     for (int k = 0; k < 3; ++k) {
         if (!(s.gain[k] >= 0) || !std::isfinite(s.gain[k]))
@@ -51,7 +51,7 @@ void check_blend(WallSettings const& s)
     if (!fits || !in_range)
         throw gi::InputError(
             fmt::format("a blend map of {} x {} with {} weights", m.size_px.x, m.size_px.y, m.weights.size()),
-            "it needs one per pixel, each in 0 to 1", "mend the map");
+            "it needs one per pixel, each in 0 to 1", "correct the map");
 }
 
 std::vector<unsigned> grid_triangles(int columns, int rows)
@@ -111,9 +111,9 @@ WallPass::WallPass(WallSettings const& settings)
 void WallPass::draw(DrawTarget const& target, ShownPicture const& encoded) const
 {
     if (encoded.texture == 0)
-        throw gi::InputError("a wall has no picture", "there is nothing to bend", "draw the eye's picture first");
+        throw gi::InputError("a wall has no picture", "there is nothing to warp", "draw the eye's picture first");
     bind(target);
-    // Of the rectangle alone: others share the window.
+    // Clear only this rectangle, because other walls share the window.
     glEnable(GL_SCISSOR_TEST);
     glScissor(target.corner_px.x, target.corner_px.y, target.size_px.x, target.size_px.y);
     glClearColor(0, 0, 0, 1);

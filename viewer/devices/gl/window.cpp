@@ -82,8 +82,8 @@ Window::Window(WindowSettings const& settings, gi::Report& report, Window const*
     GlContext::context_hints();
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
-    glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE); // the other walls stay when one loses the focus
-    // Placed first and shown then, so that it is never seen elsewhere.
+    glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE); // keep the other walls visible when one loses the focus
+    // Place it before showing it, so that it never appears elsewhere.
     bool const shown = settings.visibility == Visibility::shown;
     glfwWindowHint(GLFW_VISIBLE, shown && (monitor || !settings.position_px));
     if (monitor) {

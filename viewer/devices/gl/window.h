@@ -1,6 +1,6 @@
 #pragma once
-// A window with OpenGL 4.5 core. All windows belong to the main thread; only drawing may move to another one
-// (GlContext::release there, make_current here).
+// A window with OpenGL 4.5 core. All windows belong to the main thread; only drawing may move to another thread
+// (GlContext::release on the old thread, make_current on the new one).
 
 #include "viewer/devices/gl/context.h"
 #include "viewer/devices/gl/input_event.h"
@@ -20,7 +20,7 @@ struct MonitorInfo {
     int refresh_hz = 0; ///< 0 = unknown
 };
 
-/// Throws InputError where there is no display server.
+/// Lists the monitors. Throws InputError without a display server.
 std::vector<MonitorInfo> monitors();
 
 enum class QuadBuffer { no, wanted };
@@ -28,9 +28,9 @@ enum class Visibility { shown, hidden };
 
 struct WindowSettings {
     std::string title = "lightwell";
-    glm::ivec2 size_px{1280, 720};         ///< of the content; not read in full screen
-    std::optional<glm::ivec2> position_px; ///< of the content on the desktop; none = where the desktop wants it
-    std::string monitor;                   ///< full screen on the one of this number or name; empty = a window
+    glm::ivec2 size_px{1280, 720};         ///< of the content; not used in full screen
+    std::optional<glm::ivec2> position_px; ///< of the content on the desktop; none = chosen by the desktop
+    std::string monitor;                   ///< number or name of the monitor for full screen; empty = windowed
     int swap_interval = 1;                 ///< refreshes of the monitor per swap; 0 = do not wait
     QuadBuffer quad_buffer = QuadBuffer::no;
     Visibility visibility = Visibility::shown;
@@ -38,9 +38,10 @@ struct WindowSettings {
 
 class Window {
 public:
-    /// Its context is current when this returns. Where the driver has no quad-buffer stereo the window is made
-    /// without it and the report counts that. `shares` gives its textures and buffers to this window too.
-    /// Throws InputError on a monitor that is not there, a size that is not positive, and where no window opens.
+    /// Opens the window and makes its context current. If the driver has no quad-buffer stereo, the window is
+    /// opened without it and this is counted in the report. The textures and buffers of `shares` are shared with
+    /// this window. Throws InputError on an unknown monitor, a size that is not positive, or if no window can be
+    /// opened.
     Window(WindowSettings const& settings, gi::Report& report, Window const* shares = nullptr);
     ~Window();
     Window(Window const&) = delete;
@@ -50,17 +51,17 @@ public:
     GLFWwindow* glfw() const;
     int number() const; ///< counts the windows of the process, from 0
     glm::ivec2 framebuffer_px() const;
-    /// Of the content's top left corner on the desktop: what the parity of interlaced stereo counts from.
+    /// Position of the content's top left corner on the desktop: origin for the parity of interlaced stereo.
     glm::ivec2 position_px() const;
-    /// Of the monitor under the middle of the window; 0 = unknown.
+    /// Refresh rate of the monitor under the window's centre; 0 = unknown.
     int refresh_hz() const;
     bool has_quad_buffer() const;
     bool wants_close() const;
     void set_title(std::string const& title);
 
-    /// Shows what was drawn. The context must be current to the calling thread.
+    /// Swaps the buffers. The context must be current to the calling thread.
     void swap();
-    /// Everything since the last call, in order. Filled by poll_windows().
+    /// Events since the last call, in order. Filled by poll_windows().
     std::vector<InputEvent> take_events();
 
 private:
@@ -68,9 +69,9 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// Lets GLFW hand out what happened to all windows. Never waits.
+/// Lets GLFW deliver the events of all windows. Never waits.
 void poll_windows();
-/// The same, but sleeps until something happens or the time is over.
+/// The same, but sleeps until an event occurs or the time is over.
 void wait_for_windows(double timeout_s);
 
 } // namespace viewer

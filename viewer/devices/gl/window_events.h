@@ -1,5 +1,5 @@
 #pragma once
-// GLFW's callbacks of one window, turned into a queue of InputEvents.
+// Turns the GLFW callbacks of one window into a queue of InputEvents.
 
 #include "viewer/devices/gl/input_event.h"
 
@@ -15,11 +15,11 @@ public:
     WindowEvents(WindowEvents const&) = delete;
     WindowEvents& operator=(WindowEvents const&) = delete;
 
-    /// Takes the window's user pointer and callbacks; must live as long as the window.
+    /// Uses the window's user pointer and callbacks; must live as long as the window.
     void listen(GLFWwindow* window, int number);
     int number() const { return number_; }
     std::vector<InputEvent> take();
-    /// Completed with the number of the window and the time.
+    /// Appends an event, after adding the window's number and the time.
     void add(InputEvent event);
 
 private:

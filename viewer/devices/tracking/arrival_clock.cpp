@@ -20,7 +20,7 @@ double ArrivalClock::note(double received_s)
         period_s_ = jitter_s_ = 0;
         return time_s_ = received_s;
     }
-    // The gains of a straight line through all samples so far, until they are as small as those of the loop.
+    // Use the gains of a line fit through all samples so far, until they are as small as those of the loop.
     double const n = count_++, all = (n + 1) * (n + 2);
     double const expected = time_s_ + period_s_, error = received_s - expected;
     jitter_s_ += std::max(kJitter, 1 / n) * (std::abs(error) - jitter_s_);

@@ -19,14 +19,14 @@ TrackerSettings tracker_settings(DisplayTracker const& t)
     s.file = t.file;
     s.at_end = AtEnd::begin_again;
     auto const name = [](BodySettings& body, std::string const& id) {
-        if (!id.empty()) body.id = id.substr(id[0] == '/' ? 1 : 0); // of OSC, the display has a path
+        if (!id.empty()) body.id = id.substr(id[0] == '/' ? 1 : 0); // for OSC, the display file gives a path
     };
     name(s.head, t.body);
     name(s.left_hand, t.left_hand_body);
     name(s.right_hand, t.right_hand_body);
     name(s.left_foot, t.left_foot_body);
     name(s.right_foot, t.right_foot_body);
-    // A name that the display gives to one part is not another one's by default.
+    // A name that the display file assigns to one body is not used as the default of another.
     std::array const limbs{
         std::pair{&s.left_hand, &t.left_hand_body}, std::pair{&s.right_hand, &t.right_hand_body},
         std::pair{&s.left_foot, &t.left_foot_body}, std::pair{&s.right_foot, &t.right_foot_body}};

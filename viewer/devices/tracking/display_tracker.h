@@ -4,8 +4,8 @@
 
 namespace viewer {
 
-/// A tracker of a display as the hub takes it; its body is the hub's head. Of type openxr there is none here: its
-/// poses come from the headset's session.
+/// Hub settings for a tracker of a display; its body becomes the hub's head. Not for type openxr, whose poses come
+/// from the headset's session.
 TrackerSettings tracker_settings(DisplayTracker const& tracker);
 
 } // namespace viewer

@@ -9,9 +9,9 @@
 namespace viewer {
 namespace {
 
-constexpr std::size_t kMostPacketBodies = 256; ///< of a packet
+constexpr std::size_t kMostPacketBodies = 256; ///< per packet
 
-/// Numbers of one [...], taken off the text; false where there is none or one of them is no number.
+/// Reads the numbers of one [...] and removes it from the text; false if there is none or a value is not a number.
 bool take_block(std::string_view& text, std::vector<double>& numbers)
 {
     text = without_blanks(text);
@@ -35,7 +35,7 @@ Rotation read_rotation(std::vector<double> const& b, gi::dquat& rotation)
     glm::dmat3 m;
     double largest = 0;
     for (int i = 0; i < 9; ++i) {
-        m[i / 3][i % 3] = b[std::size_t(i)]; // column by column, as GLM keeps it
+        m[i / 3][i % 3] = b[std::size_t(i)]; // column by column, as in GLM
         largest = std::max(largest, std::abs(b[std::size_t(i)]));
     }
     if (largest == 0) return Rotation::absent;
@@ -48,7 +48,7 @@ Rotation read_rotation(std::vector<double> const& b, gi::dquat& rotation)
     return Rotation::good;
 }
 
-/// A whole number within 0..largest; -1 = not so.
+/// A whole number within 0..largest; -1 if invalid.
 int whole(double value, int largest)
 {
     return value >= 0 && value <= largest && value == std::floor(value) ? int(value) : -1;
@@ -56,7 +56,7 @@ int whole(double value, int largest)
 
 enum class LineForm { body, flystick, flystick2 };
 
-/// One body of a line; false where it is not what the line says.
+/// Reads one body of a line; false if it is malformed.
 bool take_body(std::string_view& text, LineForm form, TrackerSample& sample)
 {
     std::vector<double> head, place, matrix, controls;
@@ -94,7 +94,8 @@ void read_bodies(std::string_view rest, LineForm form, TrackerPacket& packet)
 {
     std::string_view const first = take_word(rest);
     auto count = read_count(first);
-    if (count && form == LineForm::flystick2) count = read_count(take_word(rest)); // defined, then in the line
+    if (count && form == LineForm::flystick2) count = read_count(take_word(rest)); // number defined, then number
+                                                                                   // in the line
     if (!count || *count > kMostPacketBodies) {
         ++packet.malformed;
         return;
@@ -162,7 +163,7 @@ std::string format_dtrack(std::vector<TrackerSample> const& samples, std::uint64
                                      s.buttons.value_or(0));
         } else {
             ++body_count;
-            if (!s.visible) continue; // DTrack leaves them out
+            if (!s.visible) continue; // DTrack omits invisible bodies
             ++seen_count;
             gi::dvec3 const angles{std::atan2(-m[2][1], m[2][2]), std::asin(std::clamp(m[2][0], -1.0, 1.0)),
                                    std::atan2(-m[1][0], m[0][0])};

@@ -9,10 +9,10 @@
 namespace viewer {
 namespace {
 
-constexpr double kStillStray = 0.3;                   // of the usual, for who stands still
-constexpr double kStill_m_s = 0.05, kSmooth_s = 0.1;  // of the velocity
-constexpr double kLongestLead_m = 0.12;               // before the hips
-constexpr double kHalfStride_m = 0.4, kLeast_s = 0.1; // swings are as quick as strides of this length need
+constexpr double kStillStray = 0.3;                   // factor on the allowed stray of a user who stands still
+constexpr double kStill_m_s = 0.05, kSmooth_s = 0.1;  // speed that counts as standing; smoothing of the velocity
+constexpr double kLongestLead_m = 0.12;               // ahead of the hips
+constexpr double kHalfStride_m = 0.4, kLeast_s = 0.1; // swings are fast enough for strides of this length
 constexpr double kMostLift_m = 0.1, kMostPitch_rad = 0.5;
 
 double smooth(double t) { return t * t * (3 - 2 * t); }
@@ -53,7 +53,7 @@ RoomPose Footsteps::swinging(Print const& from, Print const& to, double phase)
     double const ahead = glm::dot(way, turned(yaw) * gi::dvec3{0, 0, -1});
     gi::dvec3 at = from.at + smooth(phase) * way;
     at.y = std::min(kMostLift_m, 0.03 + 0.2 * glm::length(way)) * std::sin(std::numbers::pi * phase);
-    // Forwards, the heel leaves the floor first and comes back first.
+    // When stepping forward, the heel lifts first and lands first.
     double const pitch =
         -kMostPitch_rad * std::clamp(ahead / kHalfStride_m, 0.0, 1.0) * std::sin(2 * std::numbers::pi * phase);
     return {at, turned(yaw) * gi::exp_rotation({phase < 0.5 ? pitch : 0.5 * pitch, 0, 0})};

@@ -1,29 +1,31 @@
 #pragma once
-// Feet of a user whose feet nobody tracks: they stand on the floor until he has moved away from them, and then
-// step after him, one at a time. Made where orders are made, so that orders have feet like any tracked body.
+// Simulated feet of a user whose feet are not tracked: they stand on the floor until the user has moved away, and
+// then step to follow, one at a time. They are generated together with frame commands, which hold them like
+// tracked bodies.
 //
-// A foot belongs below its hip, and while its user walks half a step's time ahead of that. It stands where it is,
-// in the world, until it is farther from there than kStray_m or kStray_rad; then it swings there in kSwing_s (less
-// at more than 1.3 m/s), on a sine's arc and with a smooth start and end, unless the other one does. Who stands
-// still for kStill_s brings his feet together again. At more than kGlide_m_s, and after a jump, feet are below the
-// hips.
+// A foot's target is below its hip and, while the user walks, ahead of it by half a step's time. The foot stands
+// fixed in the world until it is farther from its target than kStray_m or kStray_rad. Then it swings to the target
+// in kSwing_s (less above 1.3 m/s), along a sine arc with smooth start and end, unless the other foot is swinging.
+// After standing still for kStill_s, the user brings the feet together. Above kGlide_m_s, and after a jump, feet
+// are placed below the hips.
 
 #include "viewer/protocol/frame_command.h"
 
 namespace viewer {
 
-/// Where the feet of somebody who stands are against his head, m. Of an avatar, OwnAvatar::stance.
+/// Positions of a standing user's feet relative to the head, m. For an avatar, see OwnAvatar::stance.
 struct Stance {
-    gi::dvec3 head_joint_in_head{0, -0.08, 0.09};           ///< from the middle between the eyes
-    gi::dvec3 left_foot{-0.1, 0, 0}, right_foot{0.1, 0, 0}; ///< soles from below the head joint; -Z = as he faces
+    gi::dvec3 head_joint_in_head{0, -0.08, 0.09};           ///< from the midpoint between the eyes
+    gi::dvec3 left_foot{-0.1, 0, 0}, right_foot{0.1, 0, 0}; ///< soles, from the point below the head joint; -Z =
+                                                            ///< forward
 
     bool operator==(Stance const&) const = default;
 };
 
-/// Somebody who has an avatar, as far as orders depend on it.
+/// A user with an avatar: the data that frame commands depend on.
 struct AvatarOfUser {
-    std::size_t user = 0;         ///< of the display
-    std::optional<Stance> stance; ///< none of an avatar without legs
+    std::size_t user = 0;         ///< index in the display
+    std::optional<Stance> stance; ///< none for an avatar without legs
 };
 
 class Footsteps {
@@ -33,21 +35,21 @@ public:
 
     explicit Footsteps(Stance const& stance) : stance_(stance) {}
 
-    /// Adds the feet that the body has not: on the floor of the room (y = 0) or, of one that swings, above it.
-    /// Without a head there are none, and it begins anew. Feet that stand stay where they are in the world,
-    /// to rounding where the room moves.
+    /// Adds the missing feet to a body: on the floor of the room (y = 0), or above it while swinging. Without a
+    /// head there are none, and the simulation restarts. Standing feet stay fixed in the world, up to rounding if
+    /// the room moves.
     /// @param body  in the room, finite  @param world_from_room  upright, with any scale  @param seconds  since
     /// the last step
     void step(Tracked& body, gi::dmat4 const& world_from_room, double seconds);
 
 private:
-    /// On the floor: what is at height 0, turned about the vertical.
+    /// A foot's pose on the floor: position at height 0, and yaw.
     struct Print {
         gi::dvec3 at{0}; ///< m
         double yaw_rad = 0;
     };
     struct Foot {
-        Print stands; ///< in the world; of one that swings, where it stood
+        Print stands; ///< in the world; of a swinging foot, where it stood before
         bool swings = false;
         double phase = 0; ///< of the swing, 0 to 1
     };

@@ -14,14 +14,14 @@ gi::dquat rotation_of(gi::dvec3 x, gi::dvec3 y, gi::dvec3 z)
     return glm::normalize(glm::quat_cast(glm::dmat3(x, y, z)));
 }
 
-/// From the head, along the way it faces. @param side  -1 left, 1 right
+/// Hand pose relative to the head's position and yaw. @param side  -1 left, 1 right
 RoomPose hand_at(double side, double risen)
 {
-    // Fingers down and the palm inwards; fingers up and the palm ahead.
+    // Hanging: fingers down, palm inwards. Raised: fingers up, palm forward.
     RoomPose const down{{0.25 * side, -0.8, 0.04}, rotation_of({0, 0, side}, {side, 0, 0}, {0, 1, 0})};
     RoomPose const up{{0.3 * side, 0.08, -0.3}, rotation_of({1, 0, 0}, {0, 0, 1}, {0, -1, 0})};
     RoomPose p = between(down, up, risen * risen * (3 - 2 * risen));
-    p.position.z -= 0.25 * std::sin(gi::kPi * risen); // past the front of the body
+    p.position.z -= 0.25 * std::sin(gi::kPi * risen); // path in front of the body
     return p;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// Hands of a user who has only keys: they hang before the hips, and rise beside the head while a key is held.
+// Hands of a user with a keyboard only: they hang in front of the hips, and rise beside the head while a key is
+// held.
 
 #include "viewer/protocol/frame_command.h"
 
@@ -7,9 +8,9 @@ namespace viewer {
 
 class KeyHands {
 public:
-    /// @param seconds  since the last step; from the hip to the head a hand takes 0.6 s
+    /// @param seconds  since the last step; a hand takes 0.6 s from hip to head
     void step(bool left_rises, bool right_rises, double seconds);
-    /// @param head  in the room; hands keep to the way it faces and do not nod with it
+    /// @param head  in the room; hands follow its yaw but not its pitch
     Tracked with_head(RoomPose const& head) const;
 
 private:

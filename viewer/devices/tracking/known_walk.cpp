@@ -12,7 +12,7 @@ Tracked known_walk(double t)
     double const radius = 1.5, along = 1.2 / radius * t;
     double const step = kTurn * 1.9 * t;
     RoomPose body{{radius * std::cos(along), 1.7 + 0.03 * std::sin(step), -radius * std::sin(along)},
-                  gi::exp_rotation({0, along, 0})}; // walks along -Z where along = 0
+                  gi::exp_rotation({0, along, 0})}; // walks along -Z at along = 0
     body.position += body.rotation * gi::dvec3{0.02 * std::sin(0.5 * step), 0, 0};
     double const yaw = glm::radians(40.0) * std::sin(kTurn * 0.35 * t),
                  pitch = glm::radians(10.0) * std::sin(kTurn * 0.2 * t);

@@ -13,7 +13,7 @@ namespace viewer {
 namespace {
 
 constexpr int kMostNesting = 8;
-constexpr std::size_t kMostMessages = 1024; ///< of a packet
+constexpr std::size_t kMostMessages = 1024; ///< per packet
 
 std::vector<std::string> const& argument_names()
 {
@@ -25,15 +25,15 @@ std::vector<std::string> const& argument_names()
 
 struct Message {
     std::string path, types;
-    std::vector<std::optional<double>> numbers; ///< of each argument that is one
-    std::vector<std::string> texts;             ///< of each argument that is one
+    std::vector<std::optional<double>> numbers; ///< per argument, if it is a number
+    std::vector<std::string> texts;             ///< per argument, if it is a text
 };
 
 struct FreeMessage {
     void operator()(lo_message m) const { lo_message_free(m); }
 };
 
-/// Length of the text that begins there, its padding included; 0 = it does not end within.
+/// Length of the text that begins there, including padding; 0 if it does not end within the bytes.
 std::size_t padded_text(std::span<unsigned char const> bytes)
 {
     auto const end = std::find(bytes.begin(), bytes.end(), 0);
@@ -42,7 +42,7 @@ std::size_t padded_text(std::span<unsigned char const> bytes)
     return length <= bytes.size() ? length : 0;
 }
 
-/// Arguments lie where the packet has them: 8 bytes at multiples of 4.
+/// Reads unaligned arguments: 8-byte values are at multiples of 4.
 template <typename T>
 T value_at(lo_arg const* argument)
 {
@@ -51,13 +51,13 @@ T value_at(lo_arg const* argument)
     return value;
 }
 
-/// liblo decodes the arguments. What it does not look at is looked at before: an empty list of types.
+/// Decodes the arguments with liblo. Checks first what liblo does not: an empty type list.
 std::optional<Message> read_message(std::span<unsigned char const> bytes)
 {
     std::size_t const path = padded_text(bytes);
     if (path == 0 || bytes[0] != '/' || bytes.size() <= path || bytes[path] != ',') return std::nullopt;
     if (padded_text(bytes.subspan(path)) == 0) return std::nullopt;
-    std::vector<unsigned char> copy(bytes.begin(), bytes.end()); // liblo takes what it may write to
+    std::vector<unsigned char> copy(bytes.begin(), bytes.end()); // liblo needs writable memory
     int result = 0;
     std::unique_ptr<void, FreeMessage> const m(lo_message_deserialise(copy.data(), copy.size(), &result));
     if (!m) return std::nullopt;
@@ -103,7 +103,7 @@ std::optional<Message> read_message(std::span<unsigned char const> bytes)
     return message;
 }
 
-/// The name at <body>, empty where the pattern has none; nothing where the path is another.
+/// The name at <body>, empty if the pattern has none; none if the path does not match.
 std::optional<std::string> match(std::string_view pattern, std::string_view path)
 {
     std::string body;
@@ -118,7 +118,7 @@ std::optional<std::string> match(std::string_view pattern, std::string_view path
     return body;
 }
 
-/// Nothing where the arguments are not those of the pattern.
+/// None if the arguments do not match the pattern.
 std::optional<TrackerSample> read_sample(Message const& m, OscPattern const& pattern, std::string body,
                                          std::optional<double> bundle_time_s)
 {
@@ -169,7 +169,7 @@ std::optional<TrackerSample> read_sample(Message const& m, OscPattern const& pat
             sample.quality = std::clamp(n, 0.0, 1.0);
         } else if (word == "buttons") {
             if (!(n >= -2147483648.0 && n <= 4294967295.0) || n != std::floor(n)) return std::nullopt;
-            sample.buttons = std::uint32_t(std::int64_t(n)); // a negative int32 is the same bits
+            sample.buttons = std::uint32_t(std::int64_t(n)); // a negative int32 has the same bits
         } else if (word == "frame") {
             if (!(n >= 0) || n != std::floor(n)) return std::nullopt;
             sample.frame = std::uint64_t(n);
@@ -223,7 +223,7 @@ struct Reader {
             return;
         }
         std::uint32_t const seconds = big_endian(bytes.subspan(8)), fraction = big_endian(bytes.subspan(12));
-        std::optional<double> time_s; // NTP time; 0.1 = "at once", which is no time
+        std::optional<double> time_s; // NTP time; 0.1 means "immediately", which is not a time
         if (seconds != 0) time_s = seconds + fraction / 4294967296.0;
         bytes = bytes.subspan(16);
         while (!bytes.empty()) {
@@ -258,7 +258,7 @@ struct Reader {
         ++(named ? packet.malformed : packet.ignored);
     }
 
-    /// Joins a position and a rotation of one body and time.
+    /// Merges a position and a rotation of the same body and time.
     void add(TrackerSample sample)
     {
         for (TrackerSample& s : packet.samples) {
@@ -317,7 +317,7 @@ void check(OscPattern const& pattern)
             throw gi::InputError(name + " is not understood", "there is no argument '" + w + "'",
                                  "use x y z qx qy qz qw yaw pitch roll time frame buttons visible quality body _");
         if (w != "_" && std::find(seen.begin(), seen.end(), w) != seen.end())
-            throw gi::InputError(name + " is not understood", "'" + w + "' stands there twice", "name it once");
+            throw gi::InputError(name + " is not understood", "'" + w + "' occurs twice", "name it once");
         seen.push_back(w);
         has_body = has_body || w == "body";
         quaternion += w.front() == 'q' && w.size() == 2;
@@ -325,7 +325,7 @@ void check(OscPattern const& pattern)
         angles += w == "yaw" || w == "pitch" || w == "roll";
     }
     if (!has_body)
-        throw gi::InputError(name + " names no body", "whose pose it is would not be known",
+        throw gi::InputError(name + " names no body", "poses need the name of their body",
                              "put <body> into the path or body among the arguments");
     if (position % 3 != 0 || quaternion % 4 != 0 || angles % 3 != 0 || (quaternion > 0 && angles > 0))
         throw gi::InputError(name + " is not understood",

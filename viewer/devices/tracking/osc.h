@@ -1,6 +1,6 @@
 #pragma once
-// Poses in OSC 1.0 packets: single messages and bundles. Which addresses and arguments count is a list of
-// patterns.
+// Poses in OSC 1.0 packets: single messages and bundles. A list of patterns defines the recognised addresses and
+// arguments.
 
 #include "viewer/devices/tracking/tracker_sample.h"
 
@@ -8,14 +8,14 @@
 
 namespace viewer {
 
-/// `path`: segments that must be equal, one of which may be <body>: what stands there names the body.
-/// `arguments`: one word per argument, those in [ ] may be missing:
+/// `path`: segments that must match; one of them may be <body>, whose text names the body.
+/// `arguments`: one word per argument, those in [ ] are optional:
 ///   x y z          position in units of the tracker
 ///   qx qy qz qw    unit quaternion (to 5 %)
 ///   yaw pitch roll degrees, R = Ry(yaw) Rx(pitch) Rz(roll), in the sender's axes with y up
-///   time           s on the sender's clock; without it the time tag of the bundle counts, if it has one
-///   frame          counter of the sender for this body
-///   buttons        bits; visible: 0 = the body is not seen now; quality: 0..1
+///   time           s on the sender's clock; without it, the time tag of the bundle is used, if any
+///   frame          sender's counter for this body
+///   buttons        bits; visible: 0 = the body is not visible now; quality: 0..1
 ///   body           name, text or whole number; _ anything
 struct OscPattern {
     std::string path, arguments;
@@ -27,10 +27,11 @@ struct OscPattern {
 /// /tracking/trackers/<body>/{position,rotation}. Listed in docs/trackers.md.
 std::vector<OscPattern> const& default_osc_patterns();
 
-/// Throws InputError where a pattern makes no sense.
+/// Throws InputError on an invalid pattern.
 void check(OscPattern const& pattern);
 
-/// Any bytes; never throws for what they are. Positions and rotations of one body in one bundle become one sample.
+/// Parses any bytes; never throws because of them. Position and rotation of one body in one bundle become one
+/// sample.
 TrackerPacket parse_osc(std::span<unsigned char const> packet,
                         std::vector<OscPattern> const& patterns = default_osc_patterns());
 

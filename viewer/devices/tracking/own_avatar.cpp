@@ -10,13 +10,13 @@
 namespace viewer {
 namespace {
 
-constexpr double kBeforeFace_m = 0.02; // from the face to the eyes
-constexpr float kOfHead = 0.25f;       // share of a vertex that makes it the head's
-constexpr double kHangingReach = 0.97; // of the arm; elbows are not quite straight
+constexpr double kBeforeFace_m = 0.02; // distance from the face to the eyes
+constexpr float kOfHead = 0.25f;       // skin weight from which a vertex belongs to the head
+constexpr double kHangingReach = 0.97; // share of the arm's length; elbows are slightly bent
 
 gi::dvec3 place(gi::Pose const& pose, std::int32_t node) { return pose.world_from_node[std::size_t(node)][3]; }
 
-/// Nodes of the head and all that hangs on it.
+/// Marks the node and its descendants.
 std::vector<bool> below(gi::Scene const& scene, std::int32_t top)
 {
     std::vector<bool> is(scene.nodes.size(), false);
@@ -27,14 +27,14 @@ std::vector<bool> below(gi::Scene const& scene, std::int32_t top)
     return is;
 }
 
-/// The avatar's joints and what is found by them, with all node numbers moved by so many.
+/// Shifts all node numbers of the avatar's joints.
 void shift(gi::ArmJoints& arm, std::int32_t by)
 {
     for (std::int32_t* j : {&arm.upper, &arm.lower, &arm.hand}) *j += by;
 }
 void shift(gi::LegJoints& leg, std::int32_t by)
 {
-    if (leg.foot < 0) return; // there is none
+    if (leg.foot < 0) return; // no such leg
     for (std::int32_t* j : {&leg.upper, &leg.lower, &leg.foot}) *j += by;
 }
 void shift(gi::Avatar& avatar, std::int32_t by)
@@ -49,7 +49,7 @@ void shift(gi::Avatar& avatar, std::int32_t by)
     shift(avatar.right_leg.joints, by);
 }
 
-/// -1 where it is not there.
+/// -1 if it does not exist.
 std::int32_t find_root(gi::Scene const& scene, std::string const& name)
 {
     for (std::size_t n = scene.nodes.size(); n > 0; --n)
@@ -57,7 +57,7 @@ std::int32_t find_root(gi::Scene const& scene, std::string const& name)
     return -1;
 }
 
-/// Beside the hips, fingers down, back of the hand outwards.
+/// Pose of a hanging hand: beside the hip, fingers down, back of the hand outwards.
 gi::dmat4 hanging(gi::Avatar::Arm const& arm, gi::Pose const& standing, gi::dvec3 left)
 {
     gi::dvec3 const shoulder = place(standing, arm.joints.upper), elbow = place(standing, arm.joints.lower);
@@ -68,7 +68,8 @@ gi::dmat4 hanging(gi::Avatar::Arm const& arm, gi::Pose const& standing, gi::dvec
             glm::dvec4(shoulder + kHangingReach * length * way, 1)};
 }
 
-/// Legs and back stand as at the start of an idle clip: a clip that went on would never let a picture rest.
+/// Poses legs and back as at the start of an idle clip. The clip does not play, because then the picture would
+/// never be still.
 void stand_idle(gi::Scene& avatar)
 {
     avatar.playbacks.clear();
@@ -122,13 +123,14 @@ OwnAvatar::OwnAvatar(gi::Scene avatar, double eye_height_m, std::size_t user)
     scene_.lights.clear();
     scene_.environment.reset();
     stand_idle(scene_);
-    // It is scaled, not its user's motion: so it is seen from where its own eyes would be.
+    // Scale the avatar rather than the user's motion, so that the view is from the avatar's eyes.
     scale_ = 1 / height_scale(scene_, avatar_, eye_height_m, measures_);
     measures_.head_joint_in_head.z = scale_ * reach_before_head_m(scene_, avatar_) + kBeforeFace_m;
     if (avatar_.has_legs()) measure_legs();
 }
 
-/// Side by side below the hips, as far apart as at rest: there, models may be in the middle of a step.
+/// Places the feet side by side below the hips, as far apart as the hips at rest, because models at rest may be in
+/// the middle of a step.
 void OwnAvatar::measure_legs()
 {
     gi::Pose const rest = gi::evaluate_pose(scene_, std::nullopt);
@@ -141,7 +143,7 @@ void OwnAvatar::measure_legs()
     double const aside = 0.5 * std::clamp(in_body(left.foot).x - in_body(right.foot).x, apart, 2 * apart);
     double const ankle = std::min(place(rest, left.foot).y, place(rest, right.foot).y) - avatar_.floor_y;
     measures_.left_ankle_in_foot = measures_.right_ankle_in_foot = {0, scale_ * std::max(0.0, ankle), 0};
-    // A room's bodies look along -Z, avatars' bodies along +Z.
+    // Bodies in the room look along -Z, avatars along +Z.
     stance_ = {measures_.head_joint_in_head, {-hips.x - aside, 0, -hips.z}, {-hips.x + aside, 0, -hips.z}};
 }
 
@@ -157,8 +159,8 @@ gi::AvatarJoints OwnAvatar::joints_in(gi::Scene const& scene) const
 {
     std::int32_t const root = find_root(scene, root_);
     if (root < 0)
-        throw gi::InputError("there is no avatar in '" + scene.name + "'", "it was not joined with one",
-                             "join it");
+        throw gi::InputError("there is no avatar in '" + scene.name + "'", "no avatar was added to it",
+                             "add one");
     gi::AvatarJoints joints = joints_;
     joints.head += root + 1;
     shift(joints.left, root + 1);

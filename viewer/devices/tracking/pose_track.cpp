@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::size_t kMostEntries = 64;
 constexpr double kSameTime = 0.0005; ///< s; closer samples are one measurement
-constexpr double kLongGap = 0.25;    ///< s; velocities across it mean nothing
+constexpr double kLongGap = 0.25;    ///< s; velocities across it are meaningless
 
-/// dt up to the horizon, then slower until it stands still at 1.5 horizons.
+/// dt up to the horizon, then increasing more slowly, constant from 1.5 horizons.
 double faded(double dt, double horizon)
 {
     if (dt <= horizon) return dt;
@@ -90,7 +90,7 @@ void PoseTrack::filter_from(std::size_t first)
 
 RoomPose PoseTrack::shown(Entry const& e, double ahead_s) const
 {
-    // The filter is behind a constant motion by its lag: that, too, is predicted.
+    // At constant velocity the filter lags behind; predict by this lag too.
     RoomPose const base = filter_.enabled ? RoomPose{e.position.value, e.rotation.value} : e.raw;
     double const position_s = trust_ * (ahead_s + (filter_.enabled ? e.position.lag_s : 0));
     double const rotation_s = trust_ * (ahead_s + (filter_.enabled ? e.rotation.lag_s : 0));

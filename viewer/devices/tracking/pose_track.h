@@ -1,9 +1,9 @@
 #pragma once
-// The motion of one body: samples in, in any order; its pose at any time out, filtered and predicted. All times
-// are on one clock, that of the samples.
+// The motion of one body: takes samples in any order, and returns the filtered and predicted pose at any time. All
+// times are on the samples' clock.
 //
-// A late sample takes its place among the others and the filter runs again from there, so that the result depends
-// on which samples came and not on their order.
+// A late sample is inserted at its time and the filter is rerun from there, so that the result does not depend on
+// the order of arrival.
 
 #include "gi/core/one_euro.h"
 #include "viewer/protocol/frame_command.h"
@@ -14,7 +14,8 @@
 namespace viewer {
 
 struct FilterSettings {
-    bool enabled = true; ///< false: samples as they are, velocities still from the filter
+    bool enabled = true;                        ///< false: unfiltered samples; velocities still come from the
+                                                ///< filter
     gi::OneEuroSettings position{1, 5, 1, 0.3, 16}; ///< betas in Hz per m/s
     gi::OneEuroSettings rotation{1, 4, 1, 0.3, 13}; ///< betas in Hz per rad/s
 
@@ -22,35 +23,37 @@ struct FilterSettings {
 };
 
 struct PredictionSettings {
-    double latency_s = 0;    ///< from the motion to the fastest packet: of sensor, sender and network; measured
-    double horizon_s = 0.1;  ///< at constant velocity up to here past the newest sample, fading over as much again
-    double lost_after_s = 1; ///< past the newest sample: then there is no pose
-    double smooth_s = 0.02;  ///< time constant with which what a new sample corrects is taken over; 0 = at once
-    double recover_s = 0.2;  ///< over which the pose moves from where it was held to where it is
+    double latency_s = 0;    ///< from motion to the fastest packet's arrival: sensor, sender and network; measured
+    double horizon_s = 0.1;  ///< constant velocity up to this time past the newest sample, then fading over the
+                             ///< same time
+    double lost_after_s = 1; ///< no pose later than this after the newest sample
+    double smooth_s = 0.02;  ///< time constant for applying a new sample's correction; 0 = at once
+    double recover_s = 0.2;  ///< duration of the transition from a held pose back to the tracked one
 
     bool operator==(PredictionSettings const&) const = default;
 };
 
-/// A gap between samples that is longer counts as a dropout, s: two horizons, at least 0.1.
+/// Gaps between samples longer than this count as dropouts, s: two horizons, at least 0.1.
 double dropout_after_s(PredictionSettings const& prediction);
 
 enum class TrackState {
     never,   ///< no sample yet
     tracked, ///< measured, or predicted from a measurement not older than dropout_after_s()
-    held,    ///< where it was last predicted
-    lost     ///< for too long: no pose
+    held,    ///< kept at the last prediction
+    lost     ///< without samples for too long: no pose
 };
 
 struct TrackedPose {
     TrackState state = TrackState::never;
-    std::optional<RoomPose> pose; ///< of tracked and held
-    double age_s = 0;             ///< of the newest sample at that time; negative: that time is past
+    std::optional<RoomPose> pose; ///< only if tracked or held
+    double age_s = 0;             ///< of the newest sample at the requested time; negative if that time is before
+                                  ///< the sample
 };
 
 struct TrackCounts {
     std::uint64_t samples = 0;
-    std::uint64_t late = 0;     ///< put in their place
-    std::uint64_t too_late = 0; ///< older than all that is kept: of no use
+    std::uint64_t late = 0;     ///< inserted at their time
+    std::uint64_t too_late = 0; ///< older than all kept samples: discarded
     std::uint64_t dropouts = 0; ///< gaps longer than dropout_after_s()
 
     bool operator==(TrackCounts const&) const = default;
@@ -61,12 +64,12 @@ public:
     explicit PoseTrack(FilterSettings const& filter = {}, PredictionSettings const& prediction = {});
 
     /// @param time_s when it was measured
-    /// @param now_s when it came; only for the recovery after a dropout
+    /// @param now_s when it arrived; used only for the recovery after a dropout
     void add(double time_s, RoomPose const& pose, double now_s);
     TrackedPose at(double time_s) const;
-    /// The clock was set: forgets all samples; `held` is recovered from.
+    /// Call when the clock was set: discards all samples and recovers from the `held` pose.
     void restart(std::optional<RoomPose> const& held);
-    /// How far velocities are believed, 0..1: less where the times of samples are uncertain.
+    /// Weight of velocities, 0..1: smaller if the samples' times are uncertain.
     void trust_velocity(double share) { trust_ = share; }
     TrackCounts const& counts() const { return counts_; }
 
@@ -86,9 +89,9 @@ private:
     FilterSettings filter_;
     PredictionSettings prediction_;
     std::vector<Entry> entries_;                    ///< by time, at most kMostEntries
-    gi::dvec3 correction_m_{0}, correction_rad_{0}; ///< still to be taken over at correction_s_
+    gi::dvec3 correction_m_{0}, correction_rad_{0}; ///< remaining correction at correction_s_
     double correction_s_ = 0;
-    std::optional<RoomPose> held_; ///< where a recovery begins
+    std::optional<RoomPose> held_; ///< start of a recovery
     double recovery_start_s_ = 0;
     bool recovery_pending_ = false;
     double trust_ = 1;

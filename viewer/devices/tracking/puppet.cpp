@@ -8,7 +8,7 @@
 namespace viewer {
 namespace {
 
-/// Rigid: the rotation of the matrix without its scale.
+/// Rigid pose of a matrix, without its scale.
 gi::dmat4 in_world(gi::dmat4 const& world_from_room, RoomPose const& pose)
 {
     glm::dmat3 turn(world_from_room);

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers and lines of packets: strict, independent of the locale, no exceptions.
+// Parses numbers and lines of packets: strict, locale-independent, without exceptions.
 
 #include <charconv>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace viewer {
 
-/// Numbers of larger magnitude are refused: no tracker means them, and whole ones no longer are exact.
+/// Numbers of larger magnitude are rejected: trackers do not send them, and integers would no longer be exact.
 inline constexpr double kLargestNumber = 1e15;
 
 inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\0'; }
@@ -21,7 +21,7 @@ inline std::string_view without_blanks(std::string_view text)
     return text;
 }
 
-/// The next word, taken off the text; empty = none is left.
+/// Removes and returns the next word of the text; empty = none left.
 inline std::string_view take_word(std::string_view& text)
 {
     text = without_blanks(text);
@@ -32,7 +32,7 @@ inline std::string_view take_word(std::string_view& text)
     return word;
 }
 
-/// What lies before the next `at`, which is taken off with it; the whole text where there is none.
+/// Removes and returns the text before the next `at`, which is removed too; the whole text if there is none.
 inline std::string_view take_until(std::string_view& text, char at)
 {
     std::size_t const n = text.find(at);
@@ -41,7 +41,7 @@ inline std::string_view take_until(std::string_view& text, char at)
     return part;
 }
 
-/// The whole word as a finite number of at most kLargestNumber.
+/// The whole word as a finite number with magnitude up to kLargestNumber.
 inline std::optional<double> read_number(std::string_view word)
 {
     double value = 0;

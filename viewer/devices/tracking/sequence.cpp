@@ -16,7 +16,7 @@ Arrival Sequence::note(std::uint64_t frame, TrackerCounts& counts)
         }
         seen_[frame % kWindow] = true;
         ++counts.out_of_order;
-        if (frame - first_ <= newest_ - first_ && counts.lost > 0) --counts.lost; // it was taken for lost
+        if (frame - first_ <= newest_ - first_ && counts.lost > 0) --counts.lost; // it had been counted as lost
         return Arrival::late;
     }
     if (started_ && ahead <= kWindow) {

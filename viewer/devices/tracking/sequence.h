@@ -1,5 +1,5 @@
 #pragma once
-// Loss, order and restarts from a sender's counter.
+// Detects loss, reordering and restarts from a sender's counter.
 
 #include "viewer/devices/tracking/tracker_sample.h"
 
@@ -7,13 +7,13 @@
 
 namespace viewer {
 
-/// What a packet is by its number.
+/// Class of a packet by its number.
 enum class Arrival { in_order, late, duplicate, restarted };
 
 class Sequence {
 public:
-    /// Counts in lost, out_of_order, duplicate and restarts. A step of more than kWindow, back or ahead, is a
-    /// sender that began anew, not loss.
+    /// Updates the counts lost, out_of_order, duplicate and restarts. A step of more than kWindow, back or ahead,
+    /// counts as a restart of the sender, not as loss.
     Arrival note(std::uint64_t frame, TrackerCounts& counts);
 
     static constexpr std::uint64_t kWindow = 1024;

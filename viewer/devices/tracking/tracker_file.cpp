@@ -41,7 +41,7 @@ std::vector<std::string_view> split(std::string_view text)
     }
 }
 
-/// How many columns the file has.
+/// Number of columns of the file.
 std::size_t read_header(Line const& line)
 {
     auto const fields = split(line.text);
@@ -66,14 +66,14 @@ TrackerSample read_line(Line const& line, std::size_t columns)
         auto const n = read_number(fields[i]);
         if (!n)
             throw line.error(fields[i], "'" + std::string(fields[i]) + "' is not a number",
-                             std::string(kColumns[i]) + " is one, of at most 1e15", "correct it");
+                             std::string(kColumns[i]) + " must be one, of at most 1e15", "correct it");
         return *n;
     };
     TrackerSample s;
     s.measured_s = number(0);
     s.body = fields[1];
     if (s.body.empty())
-        throw line.error(fields[1], "the body has no name", "poses are told apart by it", "name it");
+        throw line.error(fields[1], "the body has no name", "it identifies the poses", "name it");
     s.pose.position = {number(2), number(3), number(4)};
     s.pose.rotation = {number(8), number(5), number(6), number(7)};
     if (columns > 9) {
@@ -92,7 +92,7 @@ TrackerSample read_line(Line const& line, std::size_t columns)
     }
     double const length = glm::length(s.pose.rotation);
     if (s.visible && !(std::abs(length - 1) < 0.05))
-        throw line.error(fields[5], fmt::format("the quaternion's length is {}", length), "that of rotations is 1",
+        throw line.error(fields[5], fmt::format("the quaternion's length is {}", length), "it must be 1",
                          "write qx,qy,qz,qw with qw last; 0,0,0,1 is no rotation");
     s.pose.rotation = s.visible ? glm::normalize(s.pose.rotation) : gi::dquat{1, 0, 0, 0};
     return s;
@@ -158,7 +158,7 @@ void FileTracker::poll(double now_s, std::vector<TrackerSample>& out)
 {
     if (!start_s_) start_s_ = now_s;
     double const first = *samples_.front().measured_s, last = *samples_.back().measured_s;
-    // The last sample of a round is not also the first of the next: a round lasts one step longer.
+    // When looping, a round lasts one step longer, because its last sample is not the first of the next round.
     double const step = samples_.size() > 1 ? (last - first) / double(samples_.size() - 1) : 1;
     double const round_s = std::max(1e-3, (last - first + step) / speed_);
     while (true) {
@@ -172,7 +172,7 @@ void FileTracker::poll(double now_s, std::vector<TrackerSample>& out)
         double const due = *start_s_ + (*s.measured_s - first) / speed_;
         if (due > now_s) return;
         s.received_s = due;
-        s.measured_s = due; // on the clock it is played on
+        s.measured_s = due; // on the playback clock
         out.push_back(std::move(s));
         ++counts_.samples;
         ++next_;

@@ -1,11 +1,11 @@
 #pragma once
-// Recorded poses as text, and a tracker that plays them.
+// Recorded poses as text, and a tracker that plays them back.
 //
 //   time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,buttons,visible
 //   0.000,head,0,1.7,2,0,0,0,1,0,1
 //
-// The first line names the columns; buttons and visible may be left out there, and with them in every line. Times
-// do not fall. Lines that are empty or begin with # are skipped.
+// The first line names the columns; buttons and visible are optional columns. Times must not decrease. Lines that
+// are empty or begin with # are skipped.
 
 #include "viewer/devices/tracking/tracker.h"
 
@@ -14,7 +14,7 @@
 
 namespace viewer {
 
-/// @param file for messages. Throws InputError with file:line:column.
+/// @param file  name for messages. Throws InputError with file:line:column.
 std::vector<TrackerSample> parse_tracker_file(std::string_view text, std::string const& file);
 std::string format_tracker_file(std::vector<TrackerSample> const& samples);
 /// Throws InputError.
@@ -22,10 +22,10 @@ std::vector<TrackerSample> read_tracker_file(std::filesystem::path const& file);
 
 enum class AtEnd { stop, begin_again };
 
-/// Plays samples at the pace of the clock that poll is given, times speed; the first poll is their beginning.
+/// Plays samples by the clock passed to poll, times speed; playback starts at the first poll.
 class FileTracker : public Tracker {
 public:
-    /// @param samples by measured_s, all present
+    /// @param samples  sorted by measured_s, which all must have
     FileTracker(std::vector<TrackerSample> samples, std::string name, AtEnd at_end = AtEnd::stop,
                 double speed = 1);
 

@@ -15,8 +15,8 @@ namespace viewer {
 namespace {
 
 constexpr std::size_t kMostOtherBodies = 32;
-constexpr int kLookAgain_ms = 2;   ///< where a source cannot be waited on
-constexpr int kLookAtStop_ms = 50; ///< where all can
+constexpr int kLookAgain_ms = 2;   ///< polling interval if a source has no descriptor to wait on
+constexpr int kLookAtStop_ms = 50; ///< otherwise
 
 int port_of(TrackerSettings const& s)
 {
@@ -56,10 +56,10 @@ void check_packets_fit(TrackerSettings const& a, TrackerSettings const& b)
     };
     if (a.type != b.type) fault("one speaks OSC, the other DTrack", "give each a port of its own");
     if (a.osc_patterns != b.osc_patterns || a.frame_rate_hz != b.frame_rate_hz)
-        fault("they read its packets differently", "give both the same patterns and frame rate");
+        fault("they interpret its packets differently", "give both the same patterns and frame rate");
 }
 
-/// One per settings; trackers at one port share theirs.
+/// One source per settings entry; trackers at one port share a source.
 std::vector<std::shared_ptr<Tracker>> make_sources(std::vector<TrackerSettings> const& settings)
 {
     std::vector<std::shared_ptr<Tracker>> sources;
@@ -81,12 +81,12 @@ std::vector<std::shared_ptr<Tracker>> make_sources(std::vector<TrackerSettings> 
 struct BodyTrack {
     BodySettings settings;
     PoseTrack track;
-    OneWayClockOffset clock; ///< where the sender says the time
-    ArrivalClock arrivals;   ///< where it does not
+    OneWayClockOffset clock; ///< for senders with time stamps
+    ArrivalClock arrivals;   ///< for senders without
     bool on_sender_clock = false;
     double latency_s = 0;
-    SampleParts clocked = SampleParts::pose; ///< what came when the arrival clock was asked
-    RoomPose last;                           ///< in the tracker's frame; completes samples that have a part
+    SampleParts clocked = SampleParts::pose; ///< parts received when the arrival clock was last updated
+    RoomPose last;                           ///< in the tracker's frame; completes partial samples
     std::uint32_t buttons = 0;
     std::uint64_t not_visible = 0;
 
@@ -102,7 +102,7 @@ struct BodyTrack {
         return p;
     }
 
-    /// A position and the rotation that belongs to it have one time.
+    /// A position and its matching rotation get the same time.
     double arrival(TrackerSample const& s)
     {
         bool const other_part = s.parts != SampleParts::pose && clocked != SampleParts::pose && s.parts != clocked;
@@ -148,7 +148,7 @@ void check_filter(TrackerSettings const& s, gi::OneEuroSettings const& f, char c
                       is_cutoff(f.velocity_min_cutoff_hz) && f.beta >= 0 && f.beta <= 1e4 &&
                       f.velocity_beta >= 0 && f.velocity_beta <= 1e4;
     if (!good)
-        refuse(s, std::string("the filter of its ") + what + " cannot be",
+        refuse(s, std::string("the filter of its ") + what + " is invalid",
                "cutoffs are above 0 and up to 10000 Hz, beta 0 to 10000", "leave the defaults");
 }
 
@@ -167,17 +167,17 @@ void check(TrackerSettings const& s)
         refuse(s, fmt::format("port {} does not exist", s.port), "ports are 1 to 65535, 0 = any",
                "choose another");
     if (!(s.frame_rate_hz >= 0 && s.frame_rate_hz <= 1e5))
-        refuse(s, "its frame rate cannot be", "0 (not known) to 100000 Hz are possible", "write 60");
+        refuse(s, "its frame rate is invalid", "the range is 0 (unknown) to 100000 Hz", "write 60");
     for (BodySettings const& b : bodies_of(s)) check_rigid(s, b.sensor_from_body, "sensor_from_body");
     check_rigid(s, s.to_room.room_from_tracker, "room_from_tracker");
     if (!(s.to_room.metres_per_unit > 0 && s.to_room.metres_per_unit <= 1e6))
-        refuse(s, "its unit cannot be", "it is above 0 and up to 1e6 m", "write 0.01 for cm");
+        refuse(s, "its unit is invalid", "it must be above 0 and at most 1e6 m", "write 0.01 for cm");
     std::vector<std::string> ids;
     for (BodySettings const& b : bodies_of(s))
         if (!b.id.empty()) ids.push_back(b.id);
     std::sort(ids.begin(), ids.end());
     if (ids.empty())
-        refuse(s, "it has no body", "nothing would move", "name the id of head, left or right hand or foot");
+        refuse(s, "it has no body", "it would have no effect", "name the id of head, left or right hand or foot");
     if (auto const twice = std::adjacent_find(ids.begin(), ids.end()); twice != ids.end())
         refuse(s, "body '" + *twice + "' is asked for twice", "it cannot be two parts of a body at once",
                "give each its own");
@@ -187,7 +187,7 @@ void check(TrackerSettings const& s)
     if (!(p.latency_s >= 0 && p.latency_s <= 1 && p.horizon_s >= 0 && p.horizon_s <= 1 && p.smooth_s >= 0 &&
           p.smooth_s <= 1 && p.recover_s >= 0 && p.recover_s <= 10 && p.lost_after_s >= dropout_after_s(p) &&
           p.lost_after_s <= 1e6))
-        refuse(s, "its prediction cannot be",
+        refuse(s, "its prediction is invalid",
                "latency, horizon and smoothing are 0 to 1 s, recovery 0 to 10 s, lost_after at least 0.1 s and "
                "two horizons",
                "leave the defaults");
@@ -212,10 +212,10 @@ struct TrackerHub::Source {
         }
     }
 
-    /// @return whether it is of a body that is asked for
+    /// @return true if it belongs to an assigned body
     bool take(TrackerSample const& s)
     {
-        if (s.received_s != last_received_s) { // one packet has one time
+        if (s.received_s != last_received_s) { // all samples of a packet have the same time
             if (s.measured_s)
                 latency.note(s.received_s, *s.measured_s);
             else

@@ -1,5 +1,5 @@
 #pragma once
-// What a tracker said of one body at one moment.
+// A tracker's sample of one body at one time.
 
 #include "viewer/protocol/frame_command.h"
 
@@ -10,45 +10,45 @@
 
 namespace viewer {
 
-/// Which parts of a sample its sender gave; a sender may send positions and rotations in messages of their own.
+/// Parts of a pose that a sample contains; senders may send positions and rotations in separate messages.
 enum class SampleParts { pose, position, rotation, buttons };
 
-/// As parsed: in the tracker's own frame, m. TrackerHub brings it into the room.
+/// A parsed sample in the tracker's own frame, m. TrackerHub transforms it into the room.
 struct TrackerSample {
-    std::string body; ///< as the sender names it: "head", "0", "flystick0"
+    std::string body; ///< name used by the sender: "head", "0", "flystick0"
     SampleParts parts = SampleParts::pose;
     RoomPose pose;
     double received_s = 0;                ///< steady clock
     std::optional<double> measured_s;     ///< clock of the sender, any origin
-    bool visible = true;                  ///< false: the sender has the body, but does not see it now; no pose
-    double quality = 1;                   ///< 0..1 where the sender says it
+    bool visible = true;                  ///< false: the sender knows the body but does not see it now; no pose
+    double quality = 1;                   ///< 0..1, if the sender reports it
     std::optional<std::uint32_t> buttons; ///< bit 0 = first button
-    std::optional<std::uint64_t> frame;   ///< counter of the sender for this body
+    std::optional<std::uint64_t> frame;   ///< sender's counter for this body
 };
 
-/// What one packet held.
+/// Content of one packet.
 struct TrackerPacket {
     std::vector<TrackerSample> samples;
-    std::optional<std::uint64_t> frame; ///< counter of the sender for whole packets
-    std::uint32_t malformed = 0;        ///< lines or messages that are not what their name says
-    std::uint32_t ignored = 0;          ///< well formed, but nothing that is asked for
+    std::optional<std::uint64_t> frame; ///< sender's counter for whole packets
+    std::uint32_t malformed = 0;        ///< lines or messages whose content does not match their type
+    std::uint32_t ignored = 0;          ///< well formed, but of no supported type
 };
 
 struct TrackerCounts {
     std::uint64_t packets = 0;
     std::uint64_t samples = 0;
     std::uint64_t malformed = 0;    ///< packets, lines or messages
-    std::uint64_t ignored = 0;      ///< well formed, but not for us
-    std::uint64_t lost = 0;         ///< by gaps of the sender's counter; those that come late are taken off again
-    std::uint64_t out_of_order = 0; ///< came after a later one
-    std::uint64_t duplicate = 0;    ///< came twice
-    std::uint64_t restarts = 0;     ///< the sender's counter began anew
-    std::uint64_t dropped_by_kernel = 0; ///< the receive buffer was full: not polled often enough
+    std::uint64_t ignored = 0;      ///< well formed, but not used
+    std::uint64_t lost = 0;         ///< gaps in the sender's counter; late arrivals are subtracted again
+    std::uint64_t out_of_order = 0; ///< arrived after a later one
+    std::uint64_t duplicate = 0;    ///< arrived twice
+    std::uint64_t restarts = 0;     ///< the sender's counter restarted
+    std::uint64_t dropped_by_kernel = 0; ///< the receive buffer was full, because it was polled too rarely
 
     bool operator==(TrackerCounts const&) const = default;
 };
 
-/// Seconds of the steady clock, the time base of all tracking.
+/// Steady clock, s: the time base of all tracking.
 double steady_seconds();
 
 } // namespace viewer

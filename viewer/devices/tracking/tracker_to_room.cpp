@@ -5,7 +5,7 @@
 namespace viewer {
 namespace {
 
-/// Columns: where the tracker's x, y, z point in the room's axes.
+/// Columns: directions of the tracker's x, y, z in the room's axes.
 glm::dmat3 room_from(TrackerAxes axes)
 {
     switch (axes) {
@@ -27,7 +27,8 @@ RoomPose to_room(TrackerToRoom const& t, RoomPose const& pose, RoomPose const& s
 {
     glm::dmat3 const c = room_from(t.axes);
     RoomPose p{c * pose.position * t.metres_per_unit, pose.rotation};
-    // The rotation about an axis a by an angle is, in the other axes, about C a, the other way round if C mirrors.
+    // A rotation about an axis a becomes, in the new axes, a rotation about C a, in the opposite sense if C
+    // mirrors.
     gi::dvec3 const axis = glm::determinant(c) * (c * gi::dvec3{p.rotation.x, p.rotation.y, p.rotation.z});
     p.rotation = glm::normalize(gi::dquat(p.rotation.w, axis.x, axis.y, axis.z));
     return compose(compose(t.room_from_tracker, p), sensor_from_body);

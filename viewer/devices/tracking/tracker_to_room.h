@@ -1,14 +1,14 @@
 #pragma once
-// From a tracker's frame and units into the room: right-handed, m, +Y up, heads look along -Z.
+// Transforms poses from a tracker's frame and units into the room: right-handed, m, +Y up, heads look along -Z.
 
 #include "viewer/protocol/frame_command.h"
 
 namespace viewer {
 
-/// Axes of a tracker, as right, up, forward of a person who faces its front.
+/// Axes of a tracker, as right, up and forward for a person facing its front.
 enum class TrackerAxes {
-    y_up,             ///< right-handed: +x right, +y up, -z forward (OpenXR); nothing is changed
-    z_up,             ///< right-handed: +x right, +z up, +y forward (usual of ART and OptiTrack rooms)
+    y_up,             ///< right-handed: +x right, +y up, -z forward (OpenXR); no change
+    z_up,             ///< right-handed: +x right, +z up, +y forward (usual for ART and OptiTrack rooms)
     left_handed_y_up, ///< +x right, +y up, +z forward (Unity, VMC)
     left_handed_z_up, ///< +y right, +z up, +x forward (Unreal)
 };
@@ -23,7 +23,7 @@ struct TrackerToRoom {
     bool operator==(TrackerToRoom const&) const = default;
 };
 
-/// @param sensor_from_body where the body (the middle between the eyes, the grip) is, seen from its marker
+/// @param sensor_from_body pose of the body (midpoint between the eyes, grip) relative to its marker
 RoomPose to_room(TrackerToRoom const& transform, RoomPose const& in_tracker,
                  RoomPose const& sensor_from_body = {});
 

@@ -89,13 +89,13 @@ void check_port(int port, int lowest)
 
 double seconds(timespec const& t) { return double(t.tv_sec) + 1e-9 * double(t.tv_nsec); }
 
-/// The steady clock at a moment of the wall clock not long ago.
+/// Converts a recent wall-clock time to the steady clock.
 double steady_at(double wall_s)
 {
     timespec wall{};
     clock_gettime(CLOCK_REALTIME, &wall);
     double const now = steady_seconds(), age = seconds(wall) - wall_s;
-    return age >= 0 && age < 10 ? now - age : now; // else the wall clock was set meanwhile
+    return age >= 0 && age < 10 ? now - age : now; // otherwise the wall clock was set meanwhile
 }
 
 } // namespace
@@ -113,7 +113,7 @@ UdpReceiver::UdpReceiver(std::string const& address, int port) : buffer_(kLarges
     if (!a) a = of_interface(address, port);
     if (!a)
         throw gi::InputError("cannot receive at " + where,
-                             "it is neither an address nor an interface that has one",
+                             "it is neither an address nor an interface with an address",
                              "write 127.0.0.1, or the name of a network interface (ip addr lists them)");
     socket_ = socket(a->family(), SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     int const on = 1;
@@ -176,7 +176,7 @@ UdpSender::UdpSender(std::string const& address, int port)
     std::optional<Address> a = numeric(address, port);
     if (a) socket_ = socket(a->family(), SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (!a || socket_ < 0 || connect(socket_, a->get(), a->size) != 0) {
-        std::string const why = a ? std::strerror(errno) : "it is no numeric address";
+        std::string const why = a ? std::strerror(errno) : "it is not a numeric address";
         if (socket_ >= 0) close(socket_);
         throw gi::InputError(fmt::format("cannot send to {} port {}", address, port), why, "write 127.0.0.1");
     }

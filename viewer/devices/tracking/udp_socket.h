@@ -1,5 +1,5 @@
 #pragma once
-// UDP at one address of this machine.
+// UDP sockets at a local address.
 
 #include <cstdint>
 #include <optional>
@@ -11,22 +11,22 @@ namespace viewer {
 
 struct Datagram {
     std::vector<unsigned char> bytes;
-    double received_s = 0; ///< steady clock, when the kernel had it
-    bool cut = false;      ///< longer than what is accepted
+    double received_s = 0; ///< steady clock, when the kernel received it
+    bool cut = false;      ///< truncated, because it was too long
 };
 
-/// Receives what comes to one address. Invariant: bound.
+/// Receives packets at one address. Invariant: bound.
 class UdpReceiver {
 public:
     /// @param address "127.0.0.1", "::1", or the name of an interface ("eth0": its first IPv4 address, else IPv6).
-    ///   All interfaces only where 0.0.0.0 or :: is written out.
-    /// @param port 0 = any that is free. Throws InputError where it cannot be bound.
+    ///   Binds to all interfaces only for an explicit 0.0.0.0 or ::.
+    /// @param port 0 = any free port. Throws InputError if it cannot be bound.
     UdpReceiver(std::string const& address, int port);
     ~UdpReceiver();
     UdpReceiver(UdpReceiver const&) = delete;
     UdpReceiver& operator=(UdpReceiver const&) = delete;
 
-    /// The next one, without waiting.
+    /// The next packet, without waiting.
     std::optional<Datagram> receive();
     int port() const { return port_; }
     std::string const& address() const { return address_; } ///< numeric
@@ -49,7 +49,7 @@ public:
     UdpSender(UdpSender const&) = delete;
     UdpSender& operator=(UdpSender const&) = delete;
 
-    /// False where the machine did not take it (nobody listens, no route, too long).
+    /// False if the system rejected it (no listener, no route, too long).
     bool send(std::span<unsigned char const> bytes) const;
 
 private:

@@ -7,8 +7,8 @@
 namespace viewer {
 namespace {
 
-constexpr std::size_t kMostBodies = 256; ///< whose counters are kept; names come from outside
-constexpr int kMostPackets = 4096;       ///< of one poll: a flood must not hold the frame
+constexpr std::size_t kMostBodies = 256; ///< limit on kept counters, because senders choose the names
+constexpr int kMostPackets = 4096;       ///< per poll, so that a flood does not block the frame
 
 } // namespace
 

@@ -1,5 +1,5 @@
 #pragma once
-// Trackers that send packets: OSC and ART DTrack.
+// Trackers that send UDP packets: OSC and ART DTrack.
 
 #include "viewer/devices/tracking/osc.h"
 #include "viewer/devices/tracking/sequence.h"
@@ -18,8 +18,8 @@ class UdpTracker : public Tracker {
 public:
     using Parse = std::function<TrackerPacket(std::span<unsigned char const>)>;
 
-    /// @param name of the protocol, for people
-    /// @param frame_rate_hz where the sender counts frames but sends no time: measured_s = frame / rate; 0 =
+    /// @param name  of the protocol, for messages
+    /// @param frame_rate_hz  for senders that count frames but send no time: measured_s = frame / rate; 0 =
     /// unknown
     UdpTracker(std::string name, std::string const& address, int port, Parse parse, double frame_rate_hz = 0);
 
@@ -29,7 +29,7 @@ public:
     std::string description() const override;
     int port() const { return socket_.port(); }
 
-    /// What poll does with one packet.
+    /// Processes one packet; called by poll.
     void take(std::span<unsigned char const> bytes, double received_s, std::vector<TrackerSample>& samples);
 
 private:
@@ -42,7 +42,7 @@ private:
     std::map<std::string, Sequence> bodies_; ///< by "body/parts"; at most kMostBodies
 };
 
-/// Throws InputError where a pattern makes no sense or the address cannot be bound.
+/// Throws InputError if a pattern is invalid or the address cannot be bound.
 std::unique_ptr<UdpTracker> make_osc_tracker(std::string const& address, int port,
                                              std::vector<OscPattern> patterns = default_osc_patterns(),
                                              double frame_rate_hz = 0);

@@ -99,7 +99,7 @@ Actions::Actions(XrInstance instance, XrSession session) : instance_(instance), 
                 check(xrCreateActionSpace(session, &place, space), "xrCreateActionSpace");
             }
     } catch (...) {
-        xrDestroyActionSet(set_); // with its actions; spaces go with the session
+        xrDestroyActionSet(set_); // also destroys its actions; the session destroys the spaces
         throw;
     }
 }

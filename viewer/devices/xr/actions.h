@@ -1,6 +1,5 @@
 #pragma once
-// What the hands do, as actions that a runtime binds to the buttons of its controllers, and that its user may
-// rebind.
+// Hand input as OpenXR actions, which the runtime binds to its controllers' buttons and the user may rebind.
 
 #include "viewer/devices/xr/frame.h"
 #include "viewer/devices/xr/openxr.h"
@@ -16,15 +15,15 @@ public:
     Actions(Actions const&) = delete;
     Actions& operator=(Actions const&) = delete;
 
-    /// Asks which controllers are there; after XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED.
+    /// Queries the current controllers; call after XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED.
     void read_profiles();
-    /// Buttons as of now; released while the session has no focus.
+    /// Current button states; released while the session has no focus.
     void read_buttons();
     struct Hand {
         HmdHand state;
         std::optional<RoomPose> grip;
     };
-    /// Where they are at a time, in the room.
+    /// Poses of the hands at a time, in the room.
     std::array<Hand, 2> hands(XrSpace space, RoomPose const& room_from_space, XrTime time) const;
 
 private:
@@ -43,7 +42,7 @@ private:
     std::array<HmdHand, 2> hands_;
 };
 
-/// The pose of a space in another, in the room; empty where it is not known.
+/// Pose of a space, converted to the room; empty if unknown.
 std::optional<RoomPose> locate(XrSpace what, XrSpace space, RoomPose const& room_from_space, XrTime time);
 
 } // namespace viewer

@@ -1,5 +1,5 @@
 #pragma once
-// The runtime's images for one eye: a ring of GL textures, of which one at a time is ours.
+// The runtime's swapchain for one eye: a ring of GL textures, of which one at a time is acquired.
 
 #include "viewer/devices/xr/eye_pass.h"
 #include "viewer/devices/xr/openxr.h"
@@ -8,8 +8,8 @@
 
 namespace viewer {
 
-/// The best of what a runtime offers for pictures of finished colours: sRGB code, then linear with more bits. 0
-/// where there is none.
+/// Best format offered by the runtime for display colours: sRGB-encoded, else linear with more bits. 0 if there is
+/// none.
 std::int64_t choose_format(std::vector<std::int64_t> const& offered);
 
 class EyeImages {
@@ -20,10 +20,11 @@ public:
     EyeImages(EyeImages const&) = delete;
     EyeImages& operator=(EyeImages const&) = delete;
 
-    /// Takes an image and waits until the runtime has read it out, 0.5 s at most. False: not yet; call again.
+    /// Acquires an image and waits until the runtime has finished reading it, at most 0.5 s. False: not yet; call
+    /// again.
     bool acquire();
     EyePass::Target target() const;
-    /// Gives the image back: it is the one that is shown from now on.
+    /// Releases the image, which is shown from now on.
     void release();
     XrSwapchainSubImage shown() const;
 

@@ -12,7 +12,7 @@ layout(location = 0) uniform bool first_row_is_top;
 out vec2 position;
 void main()
 {
-    vec2 corner = vec2(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1); // one triangle over all
+    vec2 corner = vec2(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1); // one triangle covers the viewport
     position = 0.5 * corner + 0.5;
     if (first_row_is_top) position.y = 1 - position.y;
     gl_Position = vec4(corner, 0, 1);
@@ -41,7 +41,7 @@ GLuint compile(GLenum stage, char const* source)
     return shader;
 }
 
-/// What draw changes, put back.
+/// Saves the GL state that draw changes, and restores it.
 class SavedState {
 public:
     SavedState()

@@ -1,5 +1,6 @@
 #pragma once
-// Draws a finished picture into an image of the runtime: any size, either first row, light or its sRGB code.
+// Draws a finished picture into an image of the runtime: any size, top or bottom row first, linear or
+// sRGB-encoded.
 
 #include "viewer/devices/xr/frame.h"
 
@@ -15,9 +16,9 @@ public:
     struct Target {
         unsigned texture = 0; ///< GL name
         int width = 0, height = 0;
-        bool is_srgb = false; ///< GL_SRGB8_ALPHA8: what is drawn is stored as sRGB code
+        bool is_srgb = false; ///< GL_SRGB8_ALPHA8: drawn values are stored sRGB-encoded
     };
-    /// Bytes of sRGB code arrive as they are in a target of sRGB code of the same size. GL's state is as before.
+    /// sRGB-encoded bytes stay unchanged in an sRGB target of the same size. Restores the GL state.
     void draw(unsigned texture, TextureValues values, FirstRow first_row, Target const& target) const;
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// What a head-mounted display asks for and is given, frame by frame. Frame "room": right-handed, m, +Y up, the
-// floor at 0; heads, eyes and hands look along -Z. Times are seconds of std::chrono::steady_clock.
+// Per-frame data exchanged with a head-mounted display. Frame "room": right-handed, m, +Y up, the floor at 0;
+// heads, eyes and hands look along -Z. Times are seconds of std::chrono::steady_clock.
 
 #include "gi/scene/model/camera.h"
 #include "viewer/protocol/frame_command.h"
@@ -13,8 +13,8 @@ namespace viewer {
 
 enum class HmdEye { left = 0, right = 1 };
 
-/// A pose and a field of view as the runtime gave them, in its own space: what a picture is handed back with, so
-/// that the runtime can bring it to where the head is when it is seen. Bit for bit, whatever was recentred since.
+/// Pose and field of view as given by the runtime, in its own space. They are returned with the picture, so that
+/// the runtime can reproject it to the head pose at display time. Kept bit for bit, also after recentring.
 struct HmdRawView {
     std::array<float, 4> rotation{0, 0, 0, 1}; ///< x, y, z, w; unit
     std::array<float, 3> position{0, 0, 0};    ///< m
@@ -28,18 +28,18 @@ struct HmdView {
     gi::Camera camera;         ///< in the room, off-axis: the tangents of the runtime's four angles
     int width = 0, height = 0; ///< pixels that the runtime recommends
     HmdRawView raw;
-    std::uint64_t space = 0; ///< how often the runtime has moved its space; for the session
+    std::uint64_t space = 0; ///< number of times the runtime had moved its space; used by the session
 
     bool operator==(HmdView const&) const = default;
 };
 
-/// One controller. Its pose is empty while nobody knows it. Without a controller or the focus nothing is pressed.
+/// One controller. Poses are empty while unknown. Without a controller or the focus, nothing is pressed.
 struct HmdHand {
-    std::string profile; ///< that the runtime has bound, "/interaction_profiles/..."; empty = no controller
-    std::optional<RoomPose> aim; ///< a pointing ray starts at its position and goes along its -Z
+    std::string profile; ///< bound by the runtime, "/interaction_profiles/..."; empty = no controller
+    std::optional<RoomPose> aim; ///< pointing ray: starts at the position, along -Z
     glm::dvec2 move{0};          ///< thumb stick or track pad, -1 to 1: right, away from the user
-    bool select = false;  ///< the button for an answer: A, X, track pad; on simple controllers their only one
-    bool trigger = false; ///< pulled as far as the runtime wants; where there is none, select
+    bool select = false;  ///< answer button: A, X, track pad; the only button of simple controllers
+    bool trigger = false; ///< pulled beyond the runtime's threshold; select if there is no trigger
     bool menu = false;
 
     bool operator==(HmdHand const&) const = default;
@@ -47,24 +47,24 @@ struct HmdHand {
 
 struct HmdFrame {
     std::uint64_t frame = 0;    ///< of this session, from 0
-    double display_s = 0;       ///< when it is predicted to be seen; poses are those of this time
-    double pose_s = 0;          ///< when the runtime was asked for the poses
-    double period_s = 0;        ///< of the display; 0 where the runtime does not tell
+    double display_s = 0;       ///< predicted display time, for which the poses are predicted
+    double pose_s = 0;          ///< when the poses were requested
+    double period_s = 0;        ///< of the display; 0 if unknown
     std::int64_t xr_time = 0;   ///< display_s on the clock of the runtime, ns
-    bool should_render = false; ///< false: nobody will see it; end the frame all the same
-    bool has_pose = false;      ///< false: the head is not tracked, and views are those of the last pose known
+    bool should_render = false; ///< false: it will not be visible; end the frame nevertheless
+    bool has_pose = false;      ///< false: the head is not tracked, and views are from the last known pose
     std::array<HmdView, 2> views;
     Tracked tracked; ///< head, and the grips of the controllers
     std::array<HmdHand, 2> hands;
 };
 
-/// Whether numbers in a texture are light or its sRGB code. Textures of the format GL_SRGB8_ALPHA8 are `linear`,
-/// since reading them decodes.
+/// Encoding of texture values: linear or sRGB. Textures of format GL_SRGB8_ALPHA8 are `linear`, because reading
+/// decodes them.
 enum class TextureValues { linear, srgb };
 enum class FirstRow { bottom, top };
 
-/// A finished picture of both eyes, with the views that it was drawn for; these may be older than the frame it is
-/// handed to.
+/// A finished picture of both eyes and the views that it was drawn for, which may be older than the frame that it
+/// is submitted to.
 struct HmdPicture {
     std::array<HmdView, 2> views;
     std::array<unsigned, 2> textures{}; ///< GL names of 2D textures of any size, values 0 to 1, alpha ignored

@@ -1,5 +1,5 @@
 #pragma once
-// Keeps a session with a headset alive over losses: a lost one is destroyed and another built.
+// Keeps a headset session available: a lost session is destroyed and a new one created.
 
 #include "viewer/devices/xr/session.h"
 
@@ -7,16 +7,17 @@ namespace viewer {
 
 class HmdKeeper {
 public:
-    /// Builds the first session; throws InputError as it does. The context outlives this; nullptr = poses only.
+    /// Creates the first session; throws InputError as HmdSession does. The context must outlive this; nullptr =
+    /// poses only.
     HmdKeeper(GlContext const* context, HmdOptions const& options);
 
-    /// Polls the session. After a loss destroys it and tries to build another, at most once a second; nullptr
-    /// while there is none, or once it has ended for good because it was asked to.
+    /// Polls the session. After a loss, destroys it and tries to create another, at most once per second. Returns
+    /// nullptr while there is none, or after it has ended on request.
     HmdSession* poll();
-    /// What is wrong while there is no session: "lost: ...", and why the last attempt failed.
+    /// Reason why there is no session: "lost: ...", or the error of the last attempt.
     std::string const& trouble() const { return trouble_; }
     bool ended() const { return ended_; }
-    /// Sessions lost so far.
+    /// Number of sessions lost so far.
     int losses() const { return losses_; }
 
 private:

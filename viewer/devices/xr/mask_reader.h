@@ -1,5 +1,5 @@
 #pragma once
-// Asks the runtime for the hidden triangles of both eyes.
+// Reads the hidden-area meshes of both eyes from the runtime.
 
 #include "viewer/devices/xr/frame.h"
 #include "viewer/devices/xr/runtime.h"
@@ -10,13 +10,13 @@ namespace viewer {
 class MaskReader {
 public:
     MaskReader(Runtime const& runtime, XrSession session);
-    /// Again, when the session begins and when the runtime says that they changed. Throws CallError.
+    /// Reads them; call when the session begins and when the runtime reports a change. Throws CallError.
     void read();
     HiddenMask const& mask(HmdEye eye) const { return masks_[std::size_t(eye)]; }
 
 private:
     XrSession session_;
-    PFN_xrGetVisibilityMaskKHR ask_ = nullptr; ///< null where the runtime does not have it
+    PFN_xrGetVisibilityMaskKHR ask_ = nullptr; ///< null if the runtime does not support it
     std::array<HiddenMask, 2> masks_;
 };
 

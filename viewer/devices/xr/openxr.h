@@ -1,6 +1,6 @@
 #pragma once
-// OpenXR's headers as this room uses them, and what becomes of a call that fails. Only for the .cpp files of this
-// room: the headers that others include know nothing of OpenXR.
+// OpenXR's headers as this module uses them, and errors of failed calls. Include it only in the .cpp files of this
+// module: its public headers do not depend on OpenXR.
 
 #include <ctime>
 #define XR_USE_GRAPHICS_API_OPENGL
@@ -15,19 +15,19 @@
 
 namespace viewer {
 
-/// A call that did not succeed, by name and result.
+/// A failed call, with its name and result.
 class CallError : public std::runtime_error {
 public:
     CallError(char const* call, XrResult code);
     XrResult const result;
 };
 
-/// "XR_ERROR_INSTANCE_LOST"; the number where this program does not know it.
+/// E.g. "XR_ERROR_INSTANCE_LOST"; the number if unknown.
 std::string name(XrResult result);
-/// Throws CallError on errors; other successes than XR_SUCCESS are returned.
+/// Throws CallError on errors; returns all success codes.
 XrResult check(XrResult result, char const* call);
 
-/// What `enumerate(capacity, &count, items)` lists, asked twice as OpenXR wants it.
+/// Items from `enumerate(capacity, &count, items)`, called twice as in OpenXR's two-call idiom.
 template <class Item, class Enumerate>
 std::vector<Item> list_of(Item const& empty, char const* call, Enumerate const& enumerate)
 {

@@ -1,25 +1,25 @@
 #pragma once
-// Poses of a runtime as poses and cameras in the room, and back.
+// Conversion of a runtime's poses to poses and cameras in the room, and back.
 
 #include "viewer/devices/xr/frame.h"
 
 namespace viewer {
 
-/// First b, then a: room from body = (room from space) after (space from body).
+/// Composition, first b, then a: room from body = (room from space) after (space from body).
 RoomPose after(RoomPose const& a, RoomPose const& b);
 RoomPose inverse(RoomPose const& pose);
-/// Turned to unit length in double precision; the identity where the quaternion is none.
+/// Normalised in double precision; the identity if the quaternion is invalid.
 RoomPose pose_of(std::array<float, 4> const& rotation_xyzw, std::array<float, 3> const& position);
 RoomPose pose_of(HmdRawView const& view);
-/// Tangents of the four angles; false where they span no view (also beyond 89.9 degrees).
+/// Tangents of the four angles; false if they span no valid view (also beyond 89.9 degrees).
 bool spans_view(HmdRawView const& view);
 gi::ViewTangents tangents(HmdRawView const& view);
 /// The camera of an eye, in the room.
 gi::Camera eye_camera(HmdEye eye, RoomPose const& room_from_eye, gi::ViewTangents const& tangents);
-/// Angle about +Y from -Z to where the body faces, rad, counter-clockwise from above. One that looks straight up
-/// or down faces where the top of its head, or its back, tells.
+/// Yaw: angle about +Y from -Z to the body's forward direction, rad, counter-clockwise from above. If it looks
+/// straight up or down, the direction of its top or back is used.
 double heading_rad(gi::dquat const& rotation);
-/// The room from the runtime's space such that the head is at x = z = 0 and faces -Z. Heights are kept.
+/// Room from the runtime's space such that the head is at x = z = 0 and faces -Z. Heights are kept.
 RoomPose centred(RoomPose const& space_from_head, double floor_m);
 
 } // namespace viewer

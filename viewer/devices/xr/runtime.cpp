@@ -15,8 +15,8 @@ constexpr char const* kEglExtension = "XR_MNDX_egl_enable"; // its macro needs E
 
 struct KnownExtension {
     char const* name;
-    char const* without; ///< what does not work
-    bool glx, egl, none; ///< needed for this way of pictures
+    char const* without; ///< consequence if it is missing
+    bool glx, egl, none; ///< required for this graphics path
 };
 
 constexpr KnownExtension kKnown[] = {
@@ -34,7 +34,7 @@ bool needed(KnownExtension const& e, PicturePath path)
            (path == PicturePath::none && e.none);
 }
 
-/// Those that a path has no use for stay off: headless sessions and pictures exclude each other.
+/// Extensions that a path does not need stay disabled: headless sessions and pictures exclude each other.
 bool wanted(KnownExtension const& e, PicturePath path)
 {
     bool const for_no_special_path = !e.glx && !e.egl && !e.none;
@@ -45,13 +45,13 @@ bool wanted(KnownExtension const& e, PicturePath path)
 {
     throw gi::InputError(
         "there is no OpenXR runtime", e.what(),
-        "start the headset's runtime; where it is not the system's, name its JSON file in XR_RUNTIME_JSON");
+        "start the headset's runtime; if it is not the system default, set XR_RUNTIME_JSON to its JSON file");
 }
 
 [[noreturn]] void throw_no_headset(CallError const& e)
 {
     throw gi::InputError("the OpenXR runtime has no headset with two eyes", e.what(),
-                         "connect it, switch it on and see what the runtime says of it");
+                         "connect it, switch it on and check the runtime's messages");
 }
 
 template <std::size_t N>
@@ -78,7 +78,7 @@ char const* name(XrEnvironmentBlendMode mode)
 
 Runtime::Runtime(PicturePath path)
 {
-    // The loader writes its own lines on stderr, in its own grammar; what went wrong is in the exception.
+    // Silence the loader's own messages on stderr; the exception contains the error.
     setenv("XR_LOADER_DEBUG", "none", 0);
     connect(path);
     try {

@@ -1,5 +1,5 @@
 #pragma once
-// The connection to an OpenXR runtime and the headset it has: instance and system, extensions, clock.
+// Connection to an OpenXR runtime and its headset: instance and system, extensions, clock.
 
 #include "viewer/devices/xr/info.h"
 #include "viewer/devices/xr/openxr.h"
@@ -9,12 +9,12 @@
 
 namespace viewer {
 
-/// How pictures go to the runtime; `ask` has no session and takes every extension that lightwell knows.
+/// Graphics path to the runtime; `ask` uses no session and enables every extension known to lightwell.
 enum class PicturePath { glx, egl, none, ask };
 
 class Runtime {
 public:
-    /// Throws InputError where there is no runtime, no headset, or an extension that is needed is missing.
+    /// Throws InputError if there is no runtime, no headset, or a required extension is missing.
     explicit Runtime(PicturePath path);
     ~Runtime();
     Runtime(Runtime const&) = delete;
@@ -25,11 +25,11 @@ public:
     bool uses(char const* extension) const;
     XrEnvironmentBlendMode blend_mode() const { return blend_mode_; }
 
-    /// Seconds of steady_clock from the runtime's clock and back.
+    /// Conversion between the runtime's clock and seconds of steady_clock.
     double steady_s(XrTime time) const;
     XrTime xr_time(double steady_s) const;
 
-    /// A function of an extension in use. Throws CallError where it is not there.
+    /// A function of an enabled extension. Throws CallError if it does not exist.
     template <class Function>
     Function function(char const* name) const
     {

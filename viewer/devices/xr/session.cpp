@@ -54,7 +54,7 @@ HmdRawView raw_of(XrView const& view)
 
 XrFovf fov_of(HmdRawView const& raw) { return {raw.fov_rad[0], raw.fov_rad[1], raw.fov_rad[2], raw.fov_rad[3]}; }
 
-/// Owns the XrSession; destroyed after all that is made of it.
+/// Owns the XrSession; destroyed after all objects that depend on it.
 struct SessionHandle {
     XrSession handle = XR_NULL_HANDLE;
     ~SessionHandle()
@@ -100,7 +100,7 @@ struct HmdSession::Parts {
     std::optional<std::array<HmdView, 2>> views_at(XrTime time);
     void add_bodies(HmdFrame& frame, XrTime time);
     void lose(std::string const& reason);
-    /// Runs what calls the runtime; a call that fails is the loss of the session.
+    /// Runs calls to the runtime; a failed call means the loss of the session.
     template <class Work>
     auto guarded(Work const& work) -> decltype(work());
 
@@ -115,11 +115,11 @@ struct HmdSession::Parts {
     HmdPhase phase = HmdPhase::idle;
     std::string why;
     bool is_running = false;                        ///< between xrBeginSession and xrEndSession
-    std::optional<XrTime> frame_time;               ///< of the frame that was begun
-    XrTime last_time = 0;                           ///< of the frame before
-    std::array<HmdView, 2> last_views;              ///< known last
-    bool has_views = false;                         ///< last_views are views
-    std::optional<std::array<HmdRawView, 2>> shown; ///< what the images hold was drawn for these
+    std::optional<XrTime> frame_time;               ///< of the begun frame
+    XrTime last_time = 0;                           ///< of the previous frame
+    std::array<HmdView, 2> last_views;              ///< last known views
+    bool has_views = false;                         ///< last_views are valid
+    std::optional<std::array<HmdRawView, 2>> shown; ///< views that the images' contents were drawn for
     std::uint64_t shown_space = 0;
     HmdCounts counts;
 };
@@ -144,7 +144,7 @@ HmdSession::Parts::Parts(GlContext const* context, HmdOptions const& options)
         });
     std::int64_t const format = choose_format(formats);
     if (format == 0)
-        throw gi::InputError("the OpenXR runtime takes no format of pictures that lightwell has",
+        throw gi::InputError("the OpenXR runtime supports no picture format of lightwell",
                              "it offers neither sRGB nor linear colours of OpenGL", "use another runtime");
     for (auto& eye : images)
         eye = std::make_unique<EyeImages>(session.handle, format, runtime.info.width, runtime.info.height);
@@ -288,7 +288,7 @@ std::optional<HmdFrame> HmdSession::Parts::begin()
     return frame;
 }
 
-/// Both images first, then both drawn, then both shown: eyes never see two different pictures.
+/// Acquires both images, then draws both, then shows both, so that the eyes never see different pictures.
 bool HmdSession::Parts::draw(HmdPicture const& picture)
 {
     for (auto const& eye : images)
@@ -345,7 +345,7 @@ void HmdSession::start(GlContext const* context, HmdOptions const& options)
         parts_ = std::make_unique<Parts>(context, options);
     } catch (CallError const& e) {
         throw gi::InputError("the OpenXR runtime starts no session", e.what(),
-                             "see what the runtime says of it; restart it");
+                             "check the runtime's messages; restart it");
     }
 }
 
@@ -378,7 +378,7 @@ void HmdSession::request_exit()
 std::optional<HmdFrame> HmdSession::begin_frame()
 {
     if (!parts_->pass || parts_->frame_time)
-        throw std::logic_error("HmdSession::begin_frame: a tracker, or the frame before has not ended");
+        throw std::logic_error("HmdSession::begin_frame: a tracker, or the previous frame has not ended");
     std::optional<HmdFrame> frame;
     if (parts_->is_running) frame = parts_->guarded([&] { return parts_->begin(); });
     if (!frame) std::this_thread::sleep_for(std::chrono::milliseconds(10));

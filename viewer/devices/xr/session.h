@@ -5,16 +5,16 @@
 //     while (!hmd.ended()) {
 //         hmd.poll();
 //         std::optional<HmdFrame> frame = hmd.begin_frame();
-//         if (!frame) continue;                       // nothing is shown now; has waited a little
+//         if (!frame) continue;                       // nothing is shown now; has waited briefly
 //         if (!frame->should_render) hmd.end_frame();
 //         else if (new_picture) hmd.end_frame(*new_picture);
-//         else hmd.repeat_frame();                    // the runtime moves the last picture to the new pose
+//         else hmd.repeat_frame();                    // the runtime reprojects the last picture
 //     }
-//     if (hmd.phase() == HmdPhase::lost) ...           // say hmd.why(), destroy it, build another
+//     if (hmd.phase() == HmdPhase::lost) ...           // report hmd.why(), destroy it, create another
 //
-// After a loss (service gone, headset pulled out) nothing throws: the phase is `lost`, frames are empty, and why()
-// names the call and its result. HmdKeeper (keeper.h) does the building again. One session at a time; all calls
-// come from the thread of the GL context.
+// After a loss (service ended, headset disconnected) nothing throws: the phase is `lost`, frames are empty, and
+// why() names the failed call and its result. HmdKeeper (keeper.h) creates new sessions. Only one session at a
+// time; all calls must come from the thread of the GL context.
 
 #include "viewer/devices/xr/frame.h"
 #include "viewer/devices/xr/info.h"
@@ -28,8 +28,8 @@ namespace viewer {
 class GlContext;
 
 enum class HmdSpace {
-    stage, ///< standing: the floor of the runtime; where it knows none, as seated
-    local, ///< seated: eyes are eye_height_m above the floor when the session starts, however tall the user
+    stage, ///< standing: the runtime's floor; if it has none, as `local`
+    local, ///< seated: eyes start eye_height_m above the floor, for any user
 };
 
 struct HmdOptions {
@@ -37,69 +37,69 @@ struct HmdOptions {
     double eye_height_m = 1.6; ///< 0.2 to 3
 };
 
-/// Those of OpenXR, and two ends.
+/// Session states of OpenXR, and two final ones.
 enum class HmdPhase { idle, ready, synchronized, visible, focused, stopping, lost, ended };
 char const* name(HmdPhase phase);
 
-/// What became of the frames. Everything that was not shown is here.
+/// Counts of frames, including all that were not shown.
 struct HmdCounts {
     std::uint64_t frames = 0;      ///< begun
     std::uint64_t pictures = 0;    ///< new ones shown
     std::uint64_t repeated = 0;    ///< the last picture shown again
-    std::uint64_t empty = 0;       ///< ended without a picture, as asked or as none was there
-    std::uint64_t late_images = 0; ///< new pictures not shown, since the runtime was still reading the images
+    std::uint64_t empty = 0;       ///< ended without a picture, on request or because there was none
+    std::uint64_t late_images = 0; ///< new pictures not shown, because the runtime was still reading the images
     std::uint64_t discarded = 0;   ///< by the runtime (XR_FRAME_DISCARDED)
     std::uint64_t without_pose = 0;
     std::uint64_t moved_spaces = 0; ///< the runtime was recentred
-    std::uint64_t lost_events = 0;  ///< of the runtime's queue
+    std::uint64_t lost_events = 0;  ///< lost from the runtime's queue
 };
 
 class HmdSession {
 public:
-    /// Pictures for two eyes. The context is current, is EGL's or GLX's, and outlives the session.
-    /// Throws InputError where there is no runtime, no headset, a runtime without what is needed, or an option out
-    /// of its range.
+    /// Session with pictures for two eyes. The context must be current, from EGL or GLX, and outlive the session.
+    /// Throws InputError if there is no runtime or headset, the runtime lacks a required feature, or an option is
+    /// out of range.
     HmdSession(GlContext const& context, HmdOptions const& options);
-    /// Poses only: a tracker for head and hands without pictures and without GL (XR_MND_headless).
+    /// Session for poses only: a tracker of head and hands without pictures and GL (XR_MND_headless).
     explicit HmdSession(HmdOptions const& options);
     ~HmdSession();
     HmdSession(HmdSession const&) = delete;
     HmdSession& operator=(HmdSession const&) = delete;
 
-    /// Reads the runtime's events, begins and ends the session as they say. Does not wait.
+    /// Processes the runtime's events, and begins and ends the session accordingly. Does not wait.
     HmdPhase poll();
     HmdPhase phase() const;
-    /// Lost or ended: destroy it.
+    /// True if lost or ended; it should then be destroyed.
     bool ended() const;
-    /// Why it was lost or has ended, for people; empty before.
+    /// Reason of the loss or end, for messages; empty before.
     std::string const& why() const;
-    /// Asks the runtime to end the session; go on with poll and frames until ended().
+    /// Requests the end of the session; continue with poll and frames until ended().
     void request_exit();
 
-    /// Waits for the runtime's next frame and asks where head, eyes and hands will be when it is seen. Empty where
-    /// no frames are wanted, after a pause of 10 ms; a tracker has poses() instead.
+    /// Waits for the runtime's next frame and gets the predicted poses of head, eyes and hands at its display
+    /// time. If the runtime wants no frames, waits 10 ms and returns none. Trackers use poses() instead.
     std::optional<HmdFrame> begin_frame();
-    /// The views again, for the time of a frame that was begun: a later and better prediction, for a last
-    /// reprojection.
+    /// The views of the begun frame, predicted again: later and more accurate, for a final reprojection.
     std::optional<std::array<HmdView, 2>> latest_views(HmdFrame const& frame);
-    /// Ends the frame with a new picture, which is copied: the textures are free again.
+    /// Ends the frame with a new picture, which is copied, so the textures can be reused.
     void end_frame(HmdPicture const& picture);
-    /// Ends the frame with the last picture and the pose it was drawn for; empty where there was none.
+    /// Ends the frame with the last picture and the pose that it was drawn for; without a picture if there was
+    /// none.
     void repeat_frame();
-    /// Ends the frame with nothing.
+    /// Ends the frame without a picture.
     void end_frame();
 
-    /// A tracker's begin_frame: head and hands at a time of steady_clock, with actions. The views are empty,
-    /// should_render is false. Does not wait.
+    /// For trackers, instead of begin_frame: head and hands at a time of steady_clock, with actions. The views are
+    /// empty, should_render is false. Does not wait.
     std::optional<HmdFrame> poses(double steady_s);
 
-    /// From now on the head stands at the room's x = z = 0 and looks along -Z (height and tilt are kept).
-    /// False where the head is not tracked.
+    /// Moves the room so that the head is at x = z = 0 and faces -Z (height and tilt are kept). Returns false if
+    /// the head is not tracked.
     bool recentre();
-    /// Room from the space of the runtime; identity until recentred, but for the eye height.
+    /// Room from the runtime's space; until recentred the identity, except for the eye height.
     RoomPose room_from_space() const;
 
-    /// Pixels of an eye that nobody sees; none where the runtime does not tell. Changes where the runtime says so.
+    /// Hidden area of an eye; empty if the runtime provides none. May change when the runtime reports it.
     HiddenMask const& hidden(HmdEye eye) const;
     HmdInfo const& info() const;
     HmdCounts const& counts() const;

@@ -55,7 +55,7 @@ void Spaces::remember_head(XrTime asked, XrTime time)
     if (auto const pose = locate(head_, base_, {}, time)) heads_.push_back({asked, time, *pose});
 }
 
-/// Old from new. A frame between the change and its event has seen the new space already.
+/// Returns old space from new. Frames between the change and its event already use the new space.
 std::optional<RoomPose> Spaces::found_by_head(XrTime change) const
 {
     auto const before =
@@ -81,7 +81,7 @@ void Spaces::apply_until(XrTime time)
     while (!pending_.empty() && pending_.front().time <= time) {
         auto const& [change, told] = pending_.front();
         moves_.push_back(told ? told : found_by_head(change));
-        heads_.clear(); // they are of the space as it was
+        heads_.clear(); // they refer to the old space
         pending_.erase(pending_.begin());
         room_from_space_ = {{0, floor_m_, 0}, {1, 0, 0, 0}};
     }

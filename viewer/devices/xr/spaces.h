@@ -1,6 +1,6 @@
 #pragma once
-// Where the runtime's poses are in the room: its stage, or its local space raised by the height of the eyes; what
-// was recentred here (a turn and a step of our own) and there (the runtime moves its space under us).
+// Relation of the runtime's space to the room: its stage, or its local space raised by the eye height; plus
+// recentring by this program (a rotation and translation) and by the runtime (which moves its space).
 
 #include "viewer/devices/xr/openxr.h"
 #include "viewer/devices/xr/session.h"
@@ -18,17 +18,18 @@ public:
     std::optional<RoomPose> head(XrTime time) const;
     bool recentre(XrTime time);
 
-    /// Keeps where the head is seen at `time` by who asks at `asked`: runtimes may recentre without saying how
-    /// their space moved, and the head, sought again at the same time, tells.
+    /// Stores the head pose at `time` as requested at `asked`. Runtimes may recentre without reporting how their
+    /// space moved; requesting the head pose for the same time again reveals it.
     void remember_head(XrTime asked, XrTime time);
-    /// Keeps a change of the runtime for when it comes to pass; false where it is of another space.
+    /// Stores a pending change of the runtime until it takes effect; false if it concerns another space.
     bool take(XrEventDataReferenceSpaceChangePending const& change);
-    /// Changes up to this time are made: our own turn and step are undone, for the runtime's user has chosen anew.
+    /// Applies changes up to this time. They reset this program's own recentring, because the user recentred in
+    /// the runtime.
     void apply_until(XrTime time);
-    /// Changes made so far.
+    /// Number of changes applied so far.
     std::uint64_t moves() const { return moves_.size(); }
-    /// A pose of the space as it was after `space` changes, in the space as it is now; the same numbers where
-    /// neither the runtime nor the head tells how it moved.
+    /// Converts a pose in the space after `space` changes to the current space; unchanged if neither the runtime
+    /// nor the head poses reveal the motion.
     XrPosef moved_on(HmdRawView const& view, std::uint64_t space) const;
 
 private:
@@ -44,11 +45,11 @@ private:
     std::optional<RoomPose> found_by_head(XrTime change) const;
 
     XrReferenceSpaceType type_ = XR_REFERENCE_SPACE_TYPE_LOCAL;
-    XrSpace base_ = XR_NULL_HANDLE, head_ = XR_NULL_HANDLE; // they go with the session
+    XrSpace base_ = XR_NULL_HANDLE, head_ = XR_NULL_HANDLE; // destroyed with the session
     std::string description_;
-    double floor_m_ = 0; ///< added to heights: 0 for a stage, which has its origin on the floor
+    double floor_m_ = 0; ///< added to heights: 0 for a stage, whose origin is on the floor
     RoomPose room_from_space_;
-    std::vector<SeenHead> heads_; ///< the last few
+    std::vector<SeenHead> heads_; ///< the most recent ones
     std::vector<Change> pending_;
     std::vector<std::optional<RoomPose>> moves_; ///< old from new, in order
 };

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kNice = 10;
 
-/// Of this thread alone, as Linux has it. Where it is refused, all is as it was.
+/// Lowers the priority of this thread only (Linux keeps priorities per thread). If refused, nothing changes.
 void give_way() { static_cast<void>(setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), kNice)); }
 
 } // namespace

@@ -1,14 +1,13 @@
 #pragma once
-// Threads that compute give way to those that people wait for: input, sockets, and what is shown. With as many
-// threads that compute as cores, a window's thread would else wait for a share of the processor, some 10 ms each
-// time.
+// Gives computing threads a lower priority than the threads for input, sockets and display. Otherwise, with as
+// many computing threads as cores, a window's thread would wait some 10 ms each time for processor time.
 
 #include <memory>
 
 namespace viewer {
 
-/// While it lives, threads of oneTBB that join work in this process have a lower priority; so has the calling
-/// thread, for good.
+/// While this object exists, oneTBB threads that join work in this process get a lower priority. The calling
+/// thread gets it permanently.
 class BackgroundPriority {
 public:
     BackgroundPriority();

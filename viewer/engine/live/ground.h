@@ -1,6 +1,6 @@
 #pragma once
-// What people walk on and against: the triangles of a world that never move, and exact rays among them. It keeps
-// nothing of the world, so that the thread that takes input can ask while others render.
+// Static geometry for walking and collisions, with exact rays against it. It keeps no reference to the world, so
+// that the input thread can trace rays while other threads render.
 
 #include "gi/render/exact_visibility.h"
 
@@ -11,14 +11,14 @@ namespace viewer {
 
 class Ground {
 public:
-    /// Copies what stays, builds a BVH. Holes that textures cut are solid.
+    /// Copies the static triangles and builds a BVH. Cut-outs by textures are treated as solid.
     explicit Ground(gi::World const& world);
 
     struct Touch {
         double distance_m = 0;
-        gi::dvec3 normal{0}; ///< unit, towards where the ray came from
+        gi::dvec3 normal{0}; ///< unit, towards the ray's origin
     };
-    /// The nearest surface on a ray. @param from  m, absolute  @param direction  unit  @param reach_m  > 0
+    /// Nearest surface on a ray. @param from  m, absolute  @param direction  unit  @param reach_m  > 0
     std::optional<Touch> touch(gi::dvec3 from, gi::dvec3 direction, double reach_m) const;
 
 private:

@@ -143,7 +143,7 @@ void LiveRenderer::do_jobs()
     }
 }
 
-/// Or until there is something to do.
+/// Also returns early if there are jobs, or to quit.
 void LiveRenderer::wait_until(double time_s)
 {
     std::unique_lock lock(mutex_);
@@ -189,7 +189,7 @@ bool LiveRenderer::anything_moves(Viewpoint const& now) const
     return scene_may_move(now) || !same_views(now.views, last_views_);
 }
 
-/// A change like one of the user, so that a replay and the other ranks make it too.
+/// Posts the choice as a change, like the user's, so that a replay and the other ranks apply it too.
 void LiveRenderer::choose_followed(bool may_move)
 {
     Settings const& s = session_.settings();
@@ -234,7 +234,7 @@ void LiveRenderer::run_leading()
             looked = looked_.exchange(false);
             if (looked || !jobs_.empty()) resting_ = false;
         }
-        do_jobs(); // after: so a frame has all that was asked before its viewpoint
+        do_jobs(); // after reading the viewpoint, so that a frame includes every job posted before it
         double const begun = clock_.now_s();
         Settings const& s = session_.settings();
         if (has_last_ && s.play && session_.moves()) scene_s_ += s.speed * (begun - last_begun_s_);
@@ -261,7 +261,7 @@ void LiveRenderer::run_leading()
         {
             std::lock_guard const lock(mutex_);
             resting_ = false;
-            // Ranks must trace the same number of paths, and a comparison as many with both methods.
+            // Ranks must trace the same number of paths, and so must both methods of a comparison.
             bool const may_end_early = still && link_ == nullptr && s.method == "slhb" && s.compare.empty();
             refining_ = may_end_early ? std::make_shared<gi::StopRequest>() : nullptr;
         }
@@ -280,7 +280,7 @@ void LiveRenderer::run_following()
     }
 }
 
-/// Of the frame whose order is the last one, on whatever ranks.
+/// Passes the measurements of the last frame, of any rank, to the governors.
 void LiveRenderer::measure(FrameWork const& work, FrameBudget const& budget)
 {
     Settings const& s = session_.settings();

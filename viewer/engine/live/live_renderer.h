@@ -1,9 +1,9 @@
 #pragma once
-// The thread that renders: it takes what was changed and where the users are, makes an order of it, renders that
-// and hands the newest frame out. Nobody waits for it: windows, sockets and trackers are other threads' business.
+// The rendering thread: collects the changes and the users' poses into a frame command, renders it and publishes
+// the newest frame. No other thread waits for it; windows, sockets and trackers have their own threads.
 //
-// While something moves it holds the rate of the settings; while nothing does it refines the picture until that
-// has kConvergedPaths per pixel, and rests. A change of the point of view while it refines ends the frame at hand
+// While something moves, it holds the frame rate of the settings. While nothing moves, it refines the picture up
+// to kConvergedPaths per pixel and then rests. If the viewpoint changes during refinement, the current frame ends
 // after its next path.
 
 #include "viewer/engine/governor.h"
@@ -32,7 +32,7 @@ private:
     Clock::time_point start_ = Clock::now();
 };
 
-/// Where the users are and what they look through, as last known.
+/// Last known poses of the users, and their views.
 struct Viewpoint {
     double pose_s = 0, display_s = 0; ///< session clock
     gi::dmat4 world_from_room{1};
@@ -42,42 +42,43 @@ struct Viewpoint {
 };
 
 struct LiveFrame {
-    FrameCommand order;               ///< with the views that were rendered here
-    std::vector<ViewCommand> ordered; ///< where these are not all of them: all
+    FrameCommand order;               ///< with the views rendered by this process
+    std::vector<ViewCommand> ordered; ///< all views, if other processes render some of them; else empty
     SessionFrame result;
     FrameBudget budget;
     double begun_s = 0, done_s = 0; ///< session clock
-    std::uint32_t still_paths = 0;  ///< per pixel since nothing moves
-    Settings settings;              ///< that it was rendered with
-    std::string schedule;           ///< of slhb: the one in use and why, a sentence; empty of other methods
+    std::uint32_t still_paths = 0;  ///< per pixel since anything last moved
+    Settings settings;              ///< used for this frame
+    std::string schedule;           ///< of slhb: schedule in use and why, a sentence; empty for other methods
 };
 
 inline constexpr std::uint32_t kConvergedPaths = 4096;
 
-/// What a frame was to those who rendered it.
+/// Cost of a frame on the ranks that rendered it.
 struct FrameWork {
     double seconds = 0;
     gi::DynamicUpdate dynamic_update{};
-    bool moved = false; ///< something in the scene
+    bool moved = false; ///< something in the scene moved
 };
 
-/// Others who render the same orders: the ranks of a cluster. All but `swapped` is called on the rendering thread.
+/// Link to other processes that render the same frame commands: the ranks of a cluster. Called on the rendering
+/// thread, except `drawn` and `swapped`.
 class FrameLink {
 public:
     virtual ~FrameLink() = default;
-    /// First and last, on the rendering thread.
+    /// The first and the last call.
     virtual void begin() = 0;
     virtual void end() = 0;
     virtual bool leads() const = 0;
     virtual void send(FrameCommand const& order) = 0;
-    /// Empty at the end.
+    /// Empty when the session ends.
     virtual std::optional<FrameCommand> receive() = 0;
-    /// While there is nothing to render, now and then: throws where a rank was lost that cannot be done without.
+    /// Called now and then while there is nothing to render. Throws if a rank that is needed was lost.
     virtual void check() = 0;
-    /// Returns when all have drawn the frame and may swap. @param own  of this rank
-    /// @return of the leader: of the ranks that took longest, for the whole and for what follows; else `own`
+    /// Returns when all ranks have drawn the frame and may swap. @param own  of this rank
+    /// @return on the leader: of the ranks with the longest frame and the longest dynamic update; else `own`
     virtual FrameWork wait_for_all(FrameCommand const& order, FrameWork const& own) = 0;
-    /// From the thread that shows frames: it is drawn; returns when all may swap.
+    /// Called by the presenting thread when the frame is drawn; returns when all ranks may swap.
     virtual void drawn(std::uint64_t frame) = 0;
     virtual void swapped(std::uint64_t frame, double steady_s) = 0;
 };
@@ -86,33 +87,36 @@ class LiveRenderer {
 public:
     /// Called on the rendering thread.
     struct Hooks {
-        std::function<void(LiveFrame const&)> finished; ///< before anyone sees it
-        std::function<void()> published;                ///< there is a newer frame
-        std::function<void(std::string const&)> failed; ///< a frame could not be rendered; it goes on
-        std::function<std::vector<ViewCommand>(FrameCommand const&)> own_views; ///< of a rank; empty = as ordered
+        std::function<void(LiveFrame const&)> finished; ///< before the frame is published
+        std::function<void()> published;                ///< a newer frame is available
+        std::function<void(std::string const&)> failed; ///< a frame could not be rendered; rendering continues
+        std::function<std::vector<ViewCommand>(FrameCommand const&)> own_views; ///< views of this rank; empty =
+                                                                                ///< all
     };
 
-    /// @param session, clock, link  outlive it; link may be null
+    /// @param session, clock, link  must outlive it; link may be null
     LiveRenderer(RenderSession& session, SessionClock const& clock, FrameLink* link, Hooks hooks);
     ~LiveRenderer();
 
-    /// From any thread. `done` is called on the rendering thread with what was wrong, or empty.
+    /// Queues a change, from any thread. `done` is called on the rendering thread with the error message, empty if
+    /// there was none.
     void post(Change change, std::function<void(std::string const& error)> done = {});
-    /// Called with the session between two frames.
+    /// Runs `question` on the rendering thread between two frames.
     void ask(std::function<void(RenderSession&)> question);
     void look(Viewpoint viewpoint);
-    /// One more frame, also where nothing has changed.
+    /// Renders one more frame even if nothing has changed.
     void again();
-    /// To a moment of the scene's clips, s.
+    /// Sets the time of the scene's animation clips, s.
     void go_to(double scene_s);
 
-    /// Null before the first.
+    /// Newest frame; null before the first.
     std::shared_ptr<LiveFrame const> newest() const;
-    /// No frame is being rendered, and none is due: `newest` stays until something changes. Never of a follower.
+    /// True if no frame is being rendered or due: `newest` stays until something changes. Always false on a
+    /// follower.
     bool rests() const;
-    /// Waits for a frame that began after everything that was posted before; null when stopped.
+    /// Waits for a frame that began after this call, and so includes all earlier posts; null on timeout or stop.
     std::shared_ptr<LiveFrame const> next_frame(double timeout_s);
-    bool stopped() const { return stopped_; } ///< a follower whose leader has ended
+    bool stopped() const { return stopped_; } ///< the thread has ended, e.g. a follower whose leader ended
     void stop();
 
 private:
@@ -138,19 +142,19 @@ private:
     std::condition_variable wake_, published_;
     std::deque<std::function<void()>> jobs_;
     Viewpoint viewpoint_;
-    std::atomic<bool> looked_{false}; ///< since the frame at hand began
+    std::atomic<bool> looked_{false}; ///< the viewpoint changed since the current frame began
     std::shared_ptr<gi::StopRequest> refining_;
     std::shared_ptr<LiveFrame const> newest_;
     bool resting_ = false;
     std::atomic<bool> quit_{false}, stopped_{false};
 
-    // Of the rendering thread
+    // Used only by the rendering thread
     Governor governor_;
     UpdateGovernor follow_governor_;
-    int stored_ = 0; ///< directions, where a frame was measured last
+    int stored_ = 0; ///< stored axes in the last measured frame
     std::vector<Change> changes_;
     FrameCommand last_;
-    std::vector<ViewCommand> last_views_; ///< all that were ordered
+    std::vector<ViewCommand> last_views_; ///< of the last frame, on all ranks
     bool has_last_ = false;
     double scene_s_ = 0, last_begun_s_ = 0;
     std::uint64_t frame_ = 0;

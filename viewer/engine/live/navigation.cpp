@@ -10,7 +10,7 @@ using gi::dmat4, gi::dvec3;
 
 constexpr double kSteepest_rad = 1.5533; // 89 degrees
 constexpr double kLongestStep_s = 0.1;
-constexpr double kRise_m_s = 2; // of the eyes, on stairs
+constexpr double kRise_m_s = 2; // vertical speed of the eyes on stairs
 
 dmat4 turned(double yaw_rad, double pitch_rad)
 {
@@ -36,7 +36,7 @@ void Navigation::go_to(dmat4 const& world_from_camera)
     position_ = dvec3(world_from_camera[3]);
     standing_.reset();
     pitch_rad_ = std::clamp(std::asin(std::clamp(-back.y, -1.0, 1.0)), -kSteepest_rad, kSteepest_rad);
-    // Straight up or down, the camera's own up says where it faces.
+    // Looking straight up or down, take the heading from the camera's own up vector.
     dvec3 const level = std::abs(back.y) < 0.9999 ? back : dvec3(world_from_camera[1]) * (back.y > 0 ? -1.0 : 1.0);
     yaw_rad_ = std::atan2(level.x, level.z);
 }
@@ -83,7 +83,7 @@ void Navigation::step(NavigationInput const& in, double seconds)
         position_ += by;
 }
 
-/// The foot climbs at once, the eyes follow at a steady rate.
+/// The foot climbs at once; the eyes follow at a steady speed.
 void Navigation::walk_by(dvec3 way_m, double seconds)
 {
     bool const moves = way_m != dvec3{0};

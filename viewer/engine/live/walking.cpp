@@ -12,14 +12,14 @@ using gi::dvec3;
 constexpr double kStep_m = 0.1, kAbove_m = 0.02, kHeadroom_m = 0.1, kDeepest_m = 1e5;
 constexpr dvec3 kDown{0, -1, 0}, kUp{0, 1, 0};
 
-/// Heights of the body that meet walls: above what is climbed, and of the eyes.
+/// Heights at which the body collides with walls: above the highest climbable step, and at the eyes.
 std::array<double, 3> heights(WalkStance const& s, WalkLimits const& limits)
 {
     double const knee = std::min(limits.climb_m + kAbove_m, s.eye_m);
     return {knee, 0.5 * (knee + s.eye_m), s.eye_m};
 }
 
-/// Away from walls that are nearer than the body is wide.
+/// Pushes the body away from walls nearer than its radius.
 dvec3 pushed_out(Ground const& ground, dvec3 foot, WalkStance const& body, WalkLimits const& limits)
 {
     constexpr int kAround = 8;
@@ -72,7 +72,7 @@ WalkStance walk(Ground const& ground, WalkStance const& from, dvec3 way_m, WalkL
         auto const floor = ground.touch(next + climb * kUp, kDown, climb + limits.drop_m);
         if (!floor) break;
         next += (climb - floor->distance_m) * kUp;
-        // From where the floor was looked for: a ray that starts on a surface may meet it.
+        // Start at the height of the floor search: a ray that starts on a surface may hit it.
         if (ground.touch(next + 0.01 * kUp, kUp, now.eye_m + 0.5 * kHeadroom_m)) break;
         now.foot = next;
     }

@@ -7,19 +7,19 @@
 
 namespace viewer {
 
-/// How far the clock of another machine is ahead of this one: from messages there and back, of which the fastest
-/// says it best (Cristian 1989). With t1 sent, t2 received, t3 answered, t4 back:
+/// Estimates how far another machine's clock is ahead of this one from round trips, of which the fastest is the
+/// most accurate (Cristian 1989). With t1 sent, t2 received, t3 answered, t4 back:
 ///     ahead = ((t2 - t1) + (t3 - t4)) / 2 +- delay / 2,   delay = (t4 - t1) - (t3 - t2)
-/// The last 256 count, so that clocks may drift.
+/// Only the last 256 round trips count, because clocks drift.
 class RoundTripClockOffset {
 public:
     /// @param back_s  t4
     void add(Echo const& echo, double back_s);
     struct Estimate {
         double ahead_s = 0;
-        double error_s = 0; ///< at most, whatever the way there and back took
+        double error_s = 0; ///< upper bound, for any split of the delay between the two ways
     };
-    /// Nothing before the first message.
+    /// None before the first round trip.
     std::optional<Estimate> estimate() const;
 
 private:

@@ -16,7 +16,7 @@ OnRankLoss parse_on_rank_loss(std::string const& text)
 {
     if (text == "stop") return OnRankLoss::stop;
     if (text == "continue") return OnRankLoss::go_on;
-    throw gi::InputError("--on-rank-loss " + text, "there is no such choice", "take stop or continue");
+    throw gi::InputError("--on-rank-loss " + text, "there is no such choice", "choose stop or continue");
 }
 
 std::uint64_t file_hash(std::string const& file)
@@ -38,7 +38,7 @@ Cluster::~Cluster()
     try {
         leave("see its own message");
     } catch (std::exception const&) {
-        // There is nobody left to tell.
+        // No rank is left to notify.
     }
 }
 
@@ -72,7 +72,7 @@ std::optional<FrameCommand> Cluster::receive()
     if (alone()) return {};
     State& s = *state_;
     s.await([&s] { return !s.orders.empty() || s.is_ended; }, [](int who) { return who == 0; },
-            s.settings.silence_s, "while an order was waited for");
+            s.settings.silence_s, "while waiting for a frame command");
     if (s.orders.empty()) {
         finish();
         return {};
@@ -110,7 +110,7 @@ std::vector<std::string> Cluster::wait(std::uint64_t frame, std::uint64_t check,
         if (arrival->frame != frame)
             s.lose(r, fmt::format("is at frame {}, not {}", arrival->frame, frame));
         else if (arrival->check != mine)
-            s.lose(r, fmt::format("has another scene or other orders than {} at frame {} (check {:016x}, not "
+            s.lose(r, fmt::format("has another scene or other commands than {} at frame {} (check {:016x}, not "
                                   "{:016x})",
                                   name(0), frame, arrival->check, mine));
         else
@@ -141,11 +141,11 @@ void Cluster::give(std::vector<std::uint8_t> bytes)
 {
     State& s = *state_;
     s.await([&s] { return s.wants > 0; }, [](int who) { return who == 0; }, s.settings.silence_s,
-            "while it took what this rank had made");
+            "while it took the data of this rank");
     --s.wants;
     s.send(0, std::move(Writer(MessageKind::data).append(bytes)));
     s.await([&s] { return s.messenger->sent_all(0); }, [](int who) { return who == 0; }, s.settings.silence_s,
-            "while it took what this rank had made");
+            "while it took the data of this rank");
 }
 
 std::optional<std::vector<std::uint8_t>> Cluster::take(int from)
@@ -155,7 +155,7 @@ std::optional<std::vector<std::uint8_t>> Cluster::take(int from)
     if (!s.living(from)) return {};
     s.send(from, Writer(MessageKind::want));
     s.await([&] { return !p.data.empty() || !s.living(from); }, [from](int who) { return who == from; },
-            s.settings.silence_s, "while its part was waited for");
+            s.settings.silence_s, "while waiting for its part");
     if (p.data.empty()) return {};
     auto bytes = std::move(p.data.front());
     p.data.pop_front();
@@ -172,7 +172,8 @@ void Cluster::finish()
         auto const is_missing = [&s](int r) { return s.living(r) && !s.peers[std::size_t(r)].said_goodbye; };
         s.await([&] { return std::none_of(others.begin(), others.end(), is_missing); }, is_missing,
                 s.settings.silence_s, "at the end");
-        // From here on nobody dies: the last message tells whether all may wait for each other in MPI_Finalize.
+        // No rank is lost from here on. The last message says whether all ranks may wait for each other in
+        // MPI_Finalize.
         s.send_to_others(Writer(MessageKind::go).put(std::uint64_t(s.others_living())).put(now_s()));
     } else {
         s.await([&s] { return s.is_ended; }, [](int who) { return who == 0; }, s.settings.silence_s, "at the end");
@@ -195,7 +196,7 @@ void Cluster::leave(std::string const& why)
     State& s = *state_;
     if (alone() || s.over) return;
     s.over = true;
-    if (!s.broken.empty()) return; // they know, or have left
+    if (!s.broken.empty()) return; // the others know already, or have left
     s.send_to_others(Writer(MessageKind::leaves).put(why));
     std::vector<int> rest;
     for (int r : s.other_ranks())

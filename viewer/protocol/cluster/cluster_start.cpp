@@ -1,4 +1,4 @@
-// How the ranks of a cluster find each other: who they are, whether they fit, how far their clocks are apart.
+// Start of a cluster: ranks exchange and compare their identities, and measure their clock offsets.
 
 #include "gi/core/error.h"
 #include "viewer/protocol/cluster/cluster_state.h"
@@ -29,7 +29,7 @@ void Cluster::State::hello(int from, Reader& in)
     Peer& p = peers[std::size_t(from)];
     ClusterIdentity& their = identities[std::size_t(from)];
     if (auto const wire = in.get<std::uint32_t>(); wire != kWire) {
-        their.program = fmt::format("a lightwell whose messages have the form {}, not {}", wire, kWire);
+        their.program = fmt::format("a lightwell with message version {}, not {}", wire, kWire);
     } else {
         p.host = in.text();
         p.process = get_process(in);
@@ -58,17 +58,17 @@ void Cluster::State::compare_identities()
         ClusterIdentity const& their = identities[std::size_t(r)];
         if (their.program != mine.program) {
             problem = fmt::format("{} runs {}, but {} runs {}", name(r), their.program, name(0), mine.program);
-            why = "their pictures would not fit";
-            suggestion = "install one version on all machines";
+            why = "their pictures could differ";
+            suggestion = "install the same version on all machines";
         } else if (their.work != mine.work) {
             problem =
-                fmt::format("{} was asked for '{}', but {} for '{}'", name(r), their.work, name(0), mine.work);
-            why = "all ranks do one work";
-            suggestion = "give all ranks one command line";
+                fmt::format("{} was started for '{}', but {} for '{}'", name(r), their.work, name(0), mine.work);
+            why = "all ranks must do the same work";
+            suggestion = "give all ranks the same command line";
         } else if (their.content != mine.content) {
-            problem = fmt::format("the scene file of {} is another than that of {}", name(r), name(0));
+            problem = fmt::format("the scene file of {} differs from that of {}", name(r), name(0));
             why = fmt::format("their hashes are {:016x} and {:016x}", their.content, mine.content);
-            suggestion = "copy one file to all machines";
+            suggestion = "copy the same file to all machines";
         }
         if (!problem.empty()) break;
     }
@@ -88,7 +88,7 @@ void Cluster::State::measure_clocks()
             int const before = pongs;
             send(r, Writer(MessageKind::ping).put(now_s()));
             await([&] { return pongs > before || !living(r); }, [r](int who) { return who == r; },
-                  settings.silence_s, "while clocks were compared");
+                  settings.silence_s, "while comparing clocks");
         }
 }
 

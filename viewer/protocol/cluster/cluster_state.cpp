@@ -14,8 +14,14 @@
 namespace viewer {
 namespace {
 
-/// Gives way to other processes of this machine at first, and later sleeps: the wait for others is short while
-/// frames follow each other.
+std::string host_name()
+{
+    std::array<char, 256> name{};
+    gethostname(name.data(), name.size() - 1);
+    return name.data();
+}
+
+/// Yields to other processes at first and sleeps later, because waits are short while frames follow each other.
 void pause(double waited_s)
 {
     if (waited_s < 2e-4)
@@ -86,8 +92,8 @@ void Cluster::State::lose(int r, std::string const& how)
     if (lost.lost || !broken.empty() || over) return;
     std::string const text = fmt::format("{} {}", name(r), how);
     lost.lost = true;
-    if (!leads() && is_leaving) return; // the leader knew that all was done
-    if (!leads()) stop(text + "; it led, so nothing can go on");
+    if (!leads() && is_leaving) return; // the leader ended after all work was done
+    if (!leads()) stop(text + "; it was the leader, so no rank can continue");
     bool const stops = settings.on_loss == OnRankLoss::stop;
     messenger->send(r, Writer(MessageKind::stop).put(text + "; this one was left behind").take());
     send_to_others(stops ? Writer(MessageKind::stop).put(text)
@@ -96,7 +102,7 @@ void Cluster::State::lose(int r, std::string const& how)
         news.push_back(text + "; the others go on");
         return;
     }
-    // Who ends at once may take along what was not read yet.
+    // If this process ended at once, messages not yet read by others could be lost.
     broken = text;
     auto const listens = [this](int other) {
         Peer const& p = peers[std::size_t(other)];
@@ -118,7 +124,7 @@ void Cluster::State::watch_processes()
         bool const matters = leads() || r == 0;
         Peer const& p = peers[std::size_t(r)];
         if (!matters || !living(r) || p.said_goodbye || state_of(p.process, here) != ProcessState::ended) continue;
-        // What it said before it ended explains it better, and takes a moment to come out of shared memory.
+        // Its last message explains the end better, and takes a moment to arrive through shared memory.
         for (double const end = now_s() + 0.05; now_s() < end; pause(1)) take_messages();
         if (living(r) && !p.said_goodbye)
             lose(r, fmt::format("has died (its process {} has ended)", p.process.number));
@@ -140,7 +146,7 @@ void Cluster::State::take_messages()
 {
     for (Message const& m : messenger->poll()) {
         Peer& from = peers[std::size_t(m.from)];
-        if (from.lost) continue; // it was left behind
+        if (from.lost) continue; // the others continue without it
         from.heard_s = listened_s;
         handle(m);
     }
@@ -150,7 +156,8 @@ void Cluster::State::pump()
 {
     if (!broken.empty()) throw RankLoss(broken);
     if (over) return;
-    constexpr double kMostGap = 0.1; // longer ones are no listening: a machine that is overloaded accuses nobody
+    constexpr double kMostGap = 0.1; // longer gaps do not count as listening, so that an overloaded machine
+                                     // reports no other rank
     double const now = now_s();
     listened_s += std::min(kMostGap, now - std::exchange(pumped_s, now));
     take_messages();
@@ -169,7 +176,7 @@ void Cluster::State::await(std::function<bool()> const& condition, std::function
         if (condition()) return;
         double const now = now_s();
         for (int r : other_ranks()) {
-            // Who was not listening cannot say that others were silent.
+            // A rank that was not listening cannot judge that others were silent.
             double const silent = listened_s - std::max(from, peers[std::size_t(r)].heard_s);
             if (!living(r) || !waits_for(r) || silent < silence_s) continue;
             bool const stopped = state_of(peers[std::size_t(r)].process, here) == ProcessState::stopped;
@@ -252,7 +259,7 @@ void Cluster::State::handle(Message const& message)
         from.said_goodbye = true;
         return swap_of(message.from, in);
     }
-    throw std::runtime_error(name(message.from) + " sent a message of no known kind");
+    throw std::runtime_error(name(message.from) + " sent a message of unknown kind");
 }
 
 void Cluster::State::tell_swap(Writer& message)

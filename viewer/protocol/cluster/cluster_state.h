@@ -1,5 +1,5 @@
 #pragma once
-// The inside of a Cluster: what each rank knows of the others, and what messages do to that.
+// Internal state of a Cluster: what this rank knows of the others, and how messages update it.
 
 #include "viewer/protocol/cluster/clock_offset.h"
 #include "viewer/protocol/cluster/cluster.h"
@@ -12,7 +12,7 @@
 namespace viewer {
 
 struct Cluster::State {
-    /// Ready to swap.
+    /// A rank's message that it is ready to swap.
     struct Arrival {
         std::uint64_t frame = 0, check = 0;
     };
@@ -24,22 +24,23 @@ struct Cluster::State {
     struct Peer {
         std::string host;
         ProcessId process;
-        bool there = false; ///< has said hello; of the leader always
+        bool there = false; ///< has sent hello; always true for the leader
         bool lost = false;
         bool said_goodbye = false;
-        double heard_s = 0; ///< on the clock listened_s
+        double heard_s = 0; ///< time of its last message, on the clock listened_s
         RoundTripClockOffset clock;
         std::optional<Arrival> arrival;
-        std::string note; ///< that came with it
+        std::string note; ///< sent with the arrival
         std::deque<std::vector<std::uint8_t>> data;
     };
 
     State(ClusterIdentity identity, ClusterSettings settings);
     void start();
 
-    /// Moves messages, takes note of what they say, and of processes that have ended. Throws RankLoss.
+    /// Sends and receives messages, processes them, and detects processes that have ended. Throws RankLoss.
     void pump();
-    /// Until the condition holds. Throws RankLoss where a rank that `waits_for` names is lost, unless all go on.
+    /// Waits until the condition holds. Throws RankLoss if a rank selected by `waits_for` is lost, unless the
+    /// others continue without it.
     void await(std::function<bool()> const& condition, std::function<bool(int)> const& waits_for, double silence_s,
                std::string const& what_for);
 
@@ -52,7 +53,7 @@ struct Cluster::State {
     void tell_swap(Writer& message);
     std::string name(int rank) const;
     bool leads() const { return rank == 0; }
-    /// Of others.
+    /// True for another rank that is not lost.
     bool living(int r) const { return r != rank && !peers[std::size_t(r)].lost; }
     bool others_living() const;
     std::vector<int> other_ranks() const;
@@ -70,23 +71,23 @@ struct Cluster::State {
     ClusterIdentity identity;
     ClusterSettings settings;
     int rank = 0, size = 1;
-    std::optional<Messenger> messenger; ///< none where alone
+    std::optional<Messenger> messenger; ///< none without other ranks
     ProcessId here;
-    std::vector<Peer> peers; ///< of all ranks, this one, too
+    std::vector<Peer> peers; ///< all ranks, including this one
     std::vector<ClusterIdentity> identities;
     std::uint64_t orders_check = 0;
-    std::deque<std::vector<std::uint8_t>> orders; ///< that have come and were not fetched
-    std::optional<std::uint64_t> gone;            ///< the frame of the last `go`
-    Echo last_go;                                 ///< that a follower answers
+    std::deque<std::vector<std::uint8_t>> orders; ///< received but not yet fetched
+    std::optional<std::uint64_t> gone;            ///< frame of the last `go`
+    Echo last_go;                                 ///< to be answered by a follower
     int pongs = 0, wants = 0;
     bool is_started = false, is_ended = false, over = false;
-    bool is_leaving = false; ///< follower: has said goodbye
-    Swap swap;               ///< of this rank, not told yet
+    bool is_leaving = false; ///< follower: has sent goodbye
+    Swap swap;               ///< of this rank, not sent yet
     SwapLog swaps;
     std::vector<std::string> news;
-    std::string broken; ///< why this cluster is no more; empty = it is
+    std::string broken; ///< why the cluster has ended; empty if it has not
     double watched_s = 0, lived_s = 0, pumped_s = 0;
-    double listened_s = 0; ///< in all; a clock that stands while this process does not run, or renders
+    double listened_s = 0; ///< total time spent listening; stands still while this process is stopped or renders
 };
 
 } // namespace viewer

@@ -23,7 +23,7 @@ KeepAlive::KeepAlive(Cluster& cluster, std::function<void()> on_loss)
         while (!t.ends) {
             try {
                 state.pump();
-            } catch (std::exception const& e) { // thrown again by the next call
+            } catch (std::exception const& e) { // the next call throws it again
                 state.broken = e.what();
                 if (on_loss) on_loss();
                 return;

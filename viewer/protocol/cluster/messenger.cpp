@@ -45,22 +45,23 @@ bool Messenger::started_with_others()
 
 Messenger::Messenger() : transfers_(std::make_unique<Transfers>())
 {
-    // Else hwloc asks every X server of this machine for its screens, and a server that ends meanwhile ends us.
+    // Otherwise hwloc queries every X server of this machine for its screens, and a server that ends meanwhile
+    // terminates this process.
     setenv("HWLOC_COMPONENTS", "-gl", 0);
     int provided = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
     if (provided < MPI_THREAD_SERIALIZED)
         throw gi::InputError("this MPI has no MPI_THREAD_SERIALIZED",
-                             "ranks say that they are alive from a second thread while they render",
-                             "use Open MPI as Debian packs it");
-    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN); // a rank that is gone is not the end of the others
+                             "ranks send signs of life from a second thread while they render",
+                             "use Open MPI as packaged by Debian");
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN); // survive the loss of a rank
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
     transfers_->sending.resize(std::size_t(size_));
     transfers_->receiving.resize(std::size_t(size_));
 }
 
-// Buffers that MPI may still read stay, where something was not sent before the end.
+// If MPI was not finalized, leak the buffers, because MPI may still read them.
 Messenger::~Messenger()
 {
     int finalized = 0;
@@ -75,7 +76,7 @@ void Messenger::send(int to, std::vector<std::uint8_t> bytes)
     Sending& s = queue.back();
     if (MPI_Isend(s.bytes.data(), int(s.bytes.size()), MPI_BYTE, to, kTag, MPI_COMM_WORLD, &s.request) !=
         MPI_SUCCESS)
-        queue.pop_back(); // who is gone will be missed
+        queue.pop_back(); // a dead rank is detected elsewhere
 }
 
 std::vector<Message> Messenger::poll()

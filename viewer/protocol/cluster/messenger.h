@@ -1,6 +1,6 @@
 #pragma once
-// Messages between the processes that mpirun started. Only non-blocking point-to-point calls: a collective would
-// wait for a dead rank for ever. The one file that knows MPI is messenger.cpp.
+// Messages between the processes that mpirun started. Uses only non-blocking point-to-point calls, because a
+// collective would wait forever for a dead rank. Only messenger.cpp depends on MPI.
 
 #include <cstdint>
 #include <deque>
@@ -16,14 +16,14 @@ struct Message {
     std::vector<std::uint8_t> bytes;
 };
 
-/// From one thread at a time, which need not be always the same (MPI_THREAD_SERIALIZED); the thread that makes it
-/// is the one that ends it.
+/// May be called from one thread at a time, not always the same (MPI_THREAD_SERIALIZED); the thread that creates
+/// it must also destroy it.
 class Messenger {
 public:
-    /// Whether mpirun started this program with others; if not, nothing here is to be made.
+    /// True if mpirun started this program with other ranks; if not, no Messenger may be created.
     static bool started_with_others();
 
-    /// MPI_Init. Throws InputError where this MPI cannot be called from several threads in turn.
+    /// Calls MPI_Init. Throws InputError if this MPI cannot be called from several threads in turn.
     Messenger();
     Messenger(Messenger const&) = delete;
     Messenger& operator=(Messenger const&) = delete;
@@ -32,16 +32,16 @@ public:
     int rank() const { return rank_; }
     int size() const { return size_; }
 
-    /// Begins to send; those to one rank arrive in order. To a rank that is dead: nothing happens.
+    /// Starts sending a message; messages to one rank arrive in order. Does nothing for a dead rank.
     void send(int to, std::vector<std::uint8_t> bytes);
-    /// What has arrived, in order for each sender.
+    /// Received messages, in order for each sender.
     std::vector<Message> poll();
-    /// Whether all that was sent to a rank has left this process.
+    /// True if all messages to a rank have left this process.
     bool sent_all(int to);
-    /// Waits until what was sent to these ranks has left.
+    /// Waits until all messages to these ranks have left.
     void flush(std::span<int const> ranks, double at_most_s);
-    /// MPI_Finalize, in which all ranks wait for each other: only where all are alive. Else it is left out, and
-    /// the process just ends.
+    /// Calls MPI_Finalize, in which all ranks wait for each other. Call only if all ranks are alive; otherwise
+    /// just end the process.
     void finalize();
 
 private:

@@ -21,7 +21,7 @@ struct Stat {
     std::uint64_t started = 0;
 };
 
-/// Of /proc/PID/stat (proc(5)): fields 3 and 22. The second, a name in brackets, may hold anything.
+/// Fields 3 and 22 of /proc/PID/stat (proc(5)). Field 2, a name in brackets, may contain any characters.
 std::optional<Stat> read_stat(std::int32_t pid)
 {
     std::string const text = text_of("/proc/" + std::to_string(pid) + "/stat");

@@ -1,14 +1,14 @@
 #pragma once
-// What the system says of another process of this machine: quicker, and surer, than waiting for its messages.
+// State of another process of this machine, from the system: faster and more reliable than waiting for messages.
 
 #include <cstdint>
 #include <string>
 
 namespace viewer {
 
-/// Tells a process from all others, on any machine.
+/// Identifies a process uniquely across machines.
 struct ProcessId {
-    std::string machine;       ///< its boot and the name space of its process numbers
+    std::string machine;       ///< boot id and PID namespace
     std::int32_t number = 0;   ///< pid
     std::uint64_t started = 0; ///< clock ticks since boot
 
@@ -18,7 +18,7 @@ struct ProcessId {
 ProcessId this_process();
 
 enum class ProcessState : std::uint8_t {
-    unknown, ///< of another machine
+    unknown, ///< on another machine
     runs,
     stopped, ///< by a signal or a debugger
     ended

@@ -1,5 +1,5 @@
 #pragma once
-// How far apart the ranks of a cluster swap their buffers.
+// Statistics of the swap skew between the ranks of a cluster.
 
 #include <cstdint>
 #include <map>
@@ -8,11 +8,11 @@
 
 namespace viewer {
 
-/// From the first rank that swaps to the last, s.
+/// Time from the first rank's swap to the last rank's, s.
 struct SwapSkew {
-    std::uint64_t frames = 0; ///< that several ranks reported
+    std::uint64_t frames = 0; ///< frames reported by several ranks
     double median_s = 0, p95_s = 0, p99_s = 0, most_s = 0;
-    double clock_error_s = 0; ///< of each, at most: what is not known of the clocks of other machines
+    double clock_error_s = 0; ///< maximum error of each skew from the clock offsets of other machines
 };
 
 /// "swap skew of 200 frames: median 0.021 ms, ... (clocks +- 0.004 ms)"
@@ -20,9 +20,9 @@ std::string to_text(SwapSkew const& skew);
 
 class SwapLog {
 public:
-    /// @param time_s on the clock of the leader  @param clock_error_s  of that
+    /// @param time_s  on the leader's clock  @param clock_error_s  of time_s
     void add(std::uint64_t frame, double time_s, double clock_error_s);
-    /// Of all frames so far; quantiles as gi/core/quantile.h defines them.
+    /// Skew of all frames so far; quantiles as defined in gi/core/quantile.h.
     SwapSkew skew() const;
 
 private:
@@ -30,7 +30,7 @@ private:
         int ranks = 0;
         double first_s = 0, last_s = 0;
     };
-    /// Reports come with a frame of delay: older frames get no more.
+    /// Reports arrive one frame late; frames older than this get no more reports.
     static constexpr std::uint64_t kLate = 2;
 
     std::map<std::uint64_t, Open> open_;

@@ -1,6 +1,6 @@
 #pragma once
-// What the ranks of a cluster tell each other. Little-endian machines of one program: the first message of all
-// says which.
+// Messages between the ranks of a cluster. All ranks are little-endian machines that run the same program version,
+// which their first message states.
 
 #include <cstdint>
 #include <cstring>
@@ -13,25 +13,25 @@
 namespace viewer {
 
 enum class MessageKind : std::uint8_t {
-    hello,   ///< follower: who it is
-    refused, ///< leader: it does not fit, and why
-    started, ///< leader: all are there; their names
-    ping,    ///< leader: Stamp
+    hello,   ///< follower: its identity
+    refused, ///< leader: the follower's identity differs; the reason
+    started, ///< leader: all ranks have started; their names
+    ping,    ///< leader: its time, s
     pong,    ///< follower: Echo
     order,   ///< leader: to_bytes of a FrameCommand
-    arrived, ///< follower: is ready to swap; and a note
-    go,      ///< leader: all are ready to swap
-    alive,   ///< somebody who waits or works
-    want,    ///< leader: give me the next
-    data,    ///< follower: what was wanted
-    lost,    ///< leader: a rank is gone, the others go on
-    stop,    ///< leader: a rank is gone, all stop
-    leaves,  ///< somebody ends early, and why
-    end,     ///< leader: all is done
-    goodbye  ///< follower: yes
+    arrived, ///< follower: ready to swap; with a note
+    go,      ///< leader: all ranks are ready to swap
+    alive,   ///< any rank: sign of life while it waits or works
+    want,    ///< leader: requests the next data
+    data,    ///< follower: the requested data
+    lost,    ///< leader: a rank is lost, the others continue
+    stop,    ///< leader: a rank is lost, all stop
+    leaves,  ///< any rank: it ends early; the reason
+    end,     ///< leader: the session ends
+    goodbye  ///< follower: confirms the end
 };
 
-/// Of a message and its answer, on the steady clocks of leader and follower, s.
+/// Times of a message and its answer, on the steady clocks of leader and follower, s.
 struct Echo {
     double sent_s = 0;     ///< leader
     double received_s = 0; ///< follower
@@ -67,7 +67,7 @@ private:
     std::vector<std::uint8_t> bytes_;
 };
 
-/// Throws std::runtime_error where a message is too short.
+/// Throws std::runtime_error if a message is too short.
 class Reader {
 public:
     explicit Reader(std::span<std::uint8_t const> bytes) : bytes_(bytes) {}

@@ -18,8 +18,18 @@ int make_file(std::filesystem::path const& path)
     if (file >= 0) return file;
     bool const exists = errno == EEXIST;
     throw gi::InputError("cannot make '" + path.string() + "'",
-                         exists ? "it exists, and what was recorded is never overwritten" : std::strerror(errno),
+                         exists ? "it exists, and recorded data is never overwritten" : std::strerror(errno),
                          exists ? "choose another name, or move it away" : "choose a folder that can be written");
+}
+
+/// Syncs the folder so that the new file's name also survives a power failure; failure here does no harm.
+void sync_folder_of(std::filesystem::path const& path)
+{
+    auto const parent = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    int const folder = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder < 0) return;
+    ::fsync(folder);
+    ::close(folder);
 }
 
 } // namespace
@@ -42,7 +52,7 @@ void AppendFile::append(std::string_view chunk)
             wake_writer_.notify_one();
             return;
         }
-        if (failure_.empty()) failure_ = closing_ ? "it is closed already" : "the disk is too slow for what comes";
+        if (failure_.empty()) failure_ = closing_ ? "it is closed already" : "the disk is too slow for the data";
     }
     lose(1);
 }
@@ -93,7 +103,7 @@ void AppendFile::write_chunk(std::string const& chunk)
         ssize_t const n = ::write(file_, chunk.data() + done, chunk.size() - done);
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0) {
-            fail(n == 0 ? "the disk takes nothing" : std::strerror(errno));
+            fail(n == 0 ? "the disk accepts no data" : std::strerror(errno));
             can_write_ = false;
             if (::ftruncate(file_, off_t(written_.load())) != 0) fail(std::strerror(errno)); // part of a chunk
             return lose(1);

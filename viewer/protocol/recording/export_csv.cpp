@@ -15,7 +15,6 @@ struct CsvColumn {
     std::string name, meaning;
 };
 
-/// A position, a rotation and the size of a frame of reference.
 struct Place {
     gi::dvec3 position;
     gi::dquat rotation;
@@ -37,7 +36,6 @@ void add_place(std::vector<CsvColumn>& to, std::string const& prefix, std::strin
         to.push_back({prefix + part, meaning + ": rotation, unit quaternion"});
 }
 
-/// Of the frames of a recording, which differ in these.
 struct Most {
     std::size_t others = 0, views = 0;
 };
@@ -45,14 +43,14 @@ struct Most {
 std::vector<CsvColumn> columns(Most const& most)
 {
     std::vector<CsvColumn> c{{"frame", "number of the frame"},
-                             {"pose_s", "s, when the poses were taken; the clock of the session starts at 0"},
-                             {"display_s", "s, when the frame was expected to be seen"},
+                             {"pose_s", "s, when the poses were measured; the session's clock starts at 0"},
+                             {"display_s", "s, expected display time of the frame"},
                              {"scene_s", "s, time of the scene's animations"},
                              {"paths", "paths per pixel"},
-                             {"pixel_hash", "XXH64 of the pixels, hexadecimal; empty = none was kept"},
+                             {"pixel_hash", "XXH64 of the pixels, hexadecimal; empty = not recorded"},
                              {"swap_s", "s, when the frame was shown; empty = not measured"},
                              {"render_ms", "ms of rendering; empty = not measured"},
-                             {"changes", "what was set since the frame before, JSON: [[key, value], ...]"}};
+                             {"changes", "values set since the previous frame, JSON: [[key, value], ...]"}};
     add_place(c, "room_", "the room in the world");
     c.push_back({"room_scale", "m of the world per m of the room"});
     for (char const* body : kBodyNames)
@@ -66,7 +64,7 @@ std::vector<CsvColumn> columns(Most const& most)
         c.push_back({view + "name", of + ": name"});
         c.push_back({view + "width_px", of + ": pixels"});
         c.push_back({view + "height_px", of + ": pixels"});
-        add_place(c, view, of + ", its camera in the world, which looks along -Z");
+        add_place(c, view, of + ", pose of its camera in the world; the camera looks along -Z");
         c.push_back({view + "projection", of + ": perspective or orthographic"});
         for (char const* edge : {"left", "right", "bottom", "top"})
             c.push_back({view + edge, of + ": edge, tangent of the angle to the axis; orthographic: m"});

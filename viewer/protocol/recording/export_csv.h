@@ -1,14 +1,14 @@
 #pragma once
-// A recording as a table that any program reads: one row per frame, '#' lines at the top that say what each column
-// is and in which unit, numbers in the fewest digits that give the same double back.
+// Exports a recording as a CSV table: one row per frame; '#' lines at the top with the meaning and unit of each
+// column; numbers with the fewest digits that restore the same double.
 
 #include "viewer/protocol/recording/recording.h"
 
 namespace viewer {
 
-/// From the first frame on. Columns of views are as many as the frame with the most has; the others leave theirs
-/// empty. Appears whole or not at all. Throws InputError if `file` cannot be written.
-/// @return how the recording ended; its loss is for the caller to report
+/// Exports all frames. There are columns for the largest number of views in any frame; frames with fewer leave
+/// theirs empty. The file appears whole or not at all. Throws InputError if `file` cannot be written.
+/// @return how the recording ended; the caller reports a loss
 RecordingEnd export_csv(RecordingReader& recording, std::filesystem::path const& file);
 
 } // namespace viewer

@@ -1,5 +1,5 @@
 #pragma once
-// --frame-log: one line of CSV per frame, written behind the frames' back and readable at any time.
+// --frame-log: one line of CSV per frame, written in the background and readable at any time.
 
 #include "viewer/protocol/recording/append_file.h"
 #include "viewer/protocol/recording/frame_summary.h"
@@ -8,8 +8,8 @@ namespace viewer {
 
 class FrameLog {
 public:
-    /// @param about lines for the top of the file, e.g. the program and its command; may be empty
-    /// Throws InputError if the file exists or cannot be made.
+    /// @param about lines for the top of the file, e.g. the program and its command line; may be empty
+    /// Throws InputError if the file exists or cannot be created.
     FrameLog(std::filesystem::path const& file, std::string const& about, gi::Report& report);
 
     /// Does not wait for the disk.

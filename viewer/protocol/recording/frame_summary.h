@@ -1,5 +1,5 @@
 #pragma once
-// Frame times of a whole session in a constant amount of memory.
+// Statistics of the frame times of a whole session, in constant memory.
 
 #include "viewer/protocol/recording/frame_times.h"
 
@@ -7,8 +7,8 @@
 
 namespace viewer {
 
-/// Of the intervals from one swap to the next, in ms. Percentiles (gi/core/quantile.h) are within 0.25 %, the
-/// others exact.
+/// Statistics of the intervals between swaps, in ms. Percentiles (gi/core/quantile.h) are accurate to 0.25 %, the
+/// other values exact.
 struct FrameSummary {
     std::uint64_t frames = 0;
     double mean_ms = 0, p50_ms = 0, p95_ms = 0, p99_ms = 0, max_ms = 0; ///< 0 with fewer than two frames
@@ -22,9 +22,9 @@ public:
     FrameSummary summary() const;
 
 private:
-    // Bin i holds intervals from 1.005^i to 1.005^(i + 1) us; the first and the last also what lies beyond.
+    // Bin i counts intervals from 1.005^i to 1.005^(i + 1) us; the first and last bins also count those beyond.
     static constexpr int kBins = 3700;            // to 100 s
-    double interval_ms(std::uint64_t rank) const; ///< of all in rising order, from 0
+    double interval_ms(std::uint64_t rank) const; ///< interval of this rank in ascending order, from 0
     double quantile_ms(double p) const;
 
     std::vector<std::uint64_t> bins_ = std::vector<std::uint64_t>(kBins);

@@ -14,24 +14,24 @@ struct Column {
 };
 constexpr Column kColumns[] = {
     {"frame", "number of the frame"},
-    {"pose_s", "s, when the poses were taken; the clock of the session starts at 0"},
-    {"display_s", "s, when the frame was expected to be seen"},
-    {"swap_s", "s, when it was shown, as far as swap_method can tell"},
+    {"pose_s", "s, when the poses were measured; the session's clock starts at 0"},
+    {"display_s", "s, expected display time of the frame"},
+    {"swap_s", "s, when the frame was shown, as measured by swap_method"},
     {"swap_method", "none (off-screen), finish (glFinish after the swap), fence, oml (glXWaitForSbcOML), openxr"},
-    {"swap_uncertainty_ms", "ms, half the interval that swap_s is in the middle of"},
-    {"input_ms", "ms of the CPU for input and poses"},
+    {"swap_uncertainty_ms", "ms, half the width of the interval centred on swap_s"},
+    {"input_ms", "ms of CPU time for input and poses"},
     {"wait_ms", "ms waited for the renderer, the display or the cluster"},
     {"render_ms", "ms of rendering"},
     {"upload_ms", "ms of copying pictures to the display's GPU"},
     {"draw_ms", "ms of drawing the window"},
-    {"gpu_ms", "ms of the GPU that renders; empty = none"},
+    {"gpu_ms", "ms of GPU rendering; empty = no GPU renders"},
     {"paths", "paths per pixel"},
     {"width_px", "pixels rendered of the first view"},
     {"height_px", "pixels rendered of the first view"},
-    {"dropped", "frames of the display without a new picture since the frame before"},
+    {"dropped", "refreshes of the display without a new picture since the previous frame"},
     {"late_ms", "ms, swap_s - display_s; < 0 = early"},
-    {"reprojected", "1 = an older picture, shown from the newer pose"},
-    {"tracker_ms", "ms, age of the newest tracker packet when the poses were taken; empty = no tracker"},
+    {"reprojected", "1 = an older picture, reprojected to the newer pose"},
+    {"tracker_ms", "ms, age of the newest tracker packet when the poses were measured; empty = no tracker"},
 };
 
 std::array<double, 10> numbers_of(FrameTimes const& t)

@@ -1,5 +1,5 @@
 #pragma once
-// What Recorder and RecordingReader agree on.
+// File-format constants shared by Recorder and RecordingReader.
 
 #include "viewer/protocol/recording/recording.h"
 

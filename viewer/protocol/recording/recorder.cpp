@@ -29,7 +29,7 @@ Bytes header_bytes(RecordingHeader const& h)
         if (text.size() > kMostHeaderText)
             throw gi::InputError(
                 "a recording's header is too long",
-                fmt::format("a text of {} bytes is in it, {} are the most", text.size(), kMostHeaderText),
+                fmt::format("it has a text of {} bytes, the limit is {}", text.size(), kMostHeaderText),
                 "record without so many settings");
         payload.put_text(text);
     }
@@ -72,7 +72,7 @@ void Recorder::append(RecordedFrame const& f)
 std::uint64_t Recorder::written_frames() const
 {
     std::uint64_t const chunks = file_.written_chunks();
-    return chunks == 0 ? 0 : std::min(chunks - 1, frames_); // the header is before them, the end behind
+    return chunks == 0 ? 0 : std::min(chunks - 1, frames_); // do not count the header and the end record
 }
 
 void Recorder::finish()

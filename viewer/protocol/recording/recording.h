@@ -1,13 +1,14 @@
 #pragma once
-// Recordings of what decided the pixels of every frame (.lwr): enough to render a walk again, bit by bit.
+// Recordings (.lwr) of everything that determines the pixels of every frame: enough to render a session again,
+// bit by bit.
 //
 //   0  8 bytes   "\x89LWR\r\n\x1a\n"
 //   8  u32       version of the format: 1
 //   12 records   u32 length of the payload, u8 type, payload, u32 CRC-32 of length, type and payload
 //
 // All numbers are little-endian. Type 1, first and once: the header, as texts. Type 2: a frame. Type 3, last: the
-// number of frames, where the recording was closed in order. Frames count up. A file is read up to the first
-// record that is not whole: what a killed process leaves is a recording without a last record.
+// number of frames, present only if the recording was closed properly. Frame numbers increase. A file is read up
+// to the first incomplete record: a killed process leaves a recording without the last record.
 
 #include "viewer/protocol/frame_command.h"
 #include "viewer/protocol/recording/append_file.h"
@@ -20,7 +21,7 @@ namespace viewer {
 
 struct RecordingHeader {
     std::string program; ///< version and git hash
-    std::string scene;   ///< as it was named
+    std::string scene;   ///< name as given by the user
     std::string command_line;
     nlohmann::json settings; ///< before the first frame
     std::string created;     ///< UTC, "2026-05-04T12:30:00Z"
@@ -38,19 +39,19 @@ struct RecordedFrame {
 
 class Recorder {
 public:
-    /// An empty header.created becomes now. Throws InputError if the file exists, cannot be made, or the header is
-    /// longer than a recording may hold.
+    /// An empty header.created is set to the current time. Throws InputError if the file exists, cannot be
+    /// created, or the header is too long.
     Recorder(std::filesystem::path const& file, RecordingHeader header, gi::Report& report);
     ~Recorder();
 
-    /// Does not wait for the disk. Throws InputError on an order that check_command refuses or whose number is not
-    /// above the one before.
+    /// Does not wait for the disk. Throws InputError if check_command rejects the frame command, or its frame
+    /// number is not above the previous one.
     void append(RecordedFrame const& frame);
-    /// Why nothing is recorded any more (a full disk); empty = all is well.
+    /// Why recording has stopped (e.g. a full disk); empty if it has not.
     std::string failure() const { return file_.failure(); }
-    /// That are in the file so far.
+    /// Number of frames in the file so far.
     std::uint64_t written_frames() const;
-    /// Marks the end, waits for the disk and closes. May be called again.
+    /// Marks the end, waits for the disk and closes. May be called repeatedly.
     void finish();
 
 private:
@@ -60,20 +61,20 @@ private:
     bool finished_ = false;
 };
 
-/// finished: closed in order. cut: it just ends, as after a kill. damaged: there are bytes that are no record.
+/// finished: closed properly. cut: no end record, as after a kill. damaged: some bytes are not a valid record.
 enum class RecordingState { finished, cut, damaged };
 
 struct RecordingEnd {
     RecordingState state = RecordingState::cut;
-    std::string why; ///< of a damage
+    std::string why; ///< reason if cut or damaged
     std::uint64_t frames = 0;
-    std::optional<std::uint64_t> last_frame; ///< the last that was read
-    std::uint64_t unread_bytes = 0;          ///< after it
+    std::optional<std::uint64_t> last_frame; ///< last frame read
+    std::uint64_t unread_bytes = 0;          ///< after the last frame read
 };
 
 class RecordingReader {
 public:
-    /// Throws InputError if it is no recording, one of another version, or ends within its header.
+    /// Throws InputError if it is not a recording, has another version, or ends within its header.
     explicit RecordingReader(std::filesystem::path const& file);
     /// @param size bytes of `in` from its beginning
     RecordingReader(std::unique_ptr<std::istream> in, std::uint64_t size, std::string name);
@@ -81,11 +82,12 @@ public:
     RecordingHeader const& header() const { return header_; }
     std::string const& name() const { return name_; }
     std::uint64_t bytes() const { return size_; }
-    /// The next frame; none at the end, which end() then describes. A damaged record is an end, never an error.
+    /// The next frame; none at the end, which end() then describes. A damaged record ends the recording; it is not
+    /// an error.
     std::optional<RecordedFrame> next();
-    /// Valid once next() has found none.
+    /// Valid after next() has returned none.
     RecordingEnd const& end() const { return end_; }
-    /// To the first frame again.
+    /// Restarts at the first frame.
     void rewind();
 
 private:
@@ -105,7 +107,7 @@ private:
     bool ended_ = false;
 };
 
-/// What was not read of a recording that does not end in order, as one line; empty = nothing.
+/// One line about the unread part of a recording that was not closed properly; empty if it was.
 std::string describe_loss(RecordingEnd const& end);
 
 } // namespace viewer

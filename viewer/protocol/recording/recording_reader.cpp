@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file ends within a record, or where one should begin.
+/// Thrown if the file ends within a record, or where one should begin.
 struct Cut : BadBytes {
     using BadBytes::BadBytes;
 };
@@ -37,7 +37,7 @@ RecordedFrame frame_of(Bytes const& payload)
     ByteReader from(payload);
     RecordedFrame f;
     std::uint8_t const flags = from.byte();
-    if (flags > 3) throw BadBytes("a frame holds something unknown");
+    if (flags > 3) throw BadBytes("a frame has unknown content");
     if ((flags & 1) != 0) f.pixel_hash = from.u64();
     if ((flags & 2) != 0) f.times = get_frame_times(from);
     f.order = command_from_bytes(from.take(from.left()));
@@ -102,14 +102,14 @@ void RecordingReader::read_header()
                 "use the version of lightwell that recorded it");
         at_ = start.size();
         Record const record = read_record();
-        if (record.type != kHeaderRecord) throw BadBytes("its first record is no header");
+        if (record.type != kHeaderRecord) throw BadBytes("its first record is not a header");
         ByteReader texts(record.payload);
         header_.program = texts.text(kMostHeaderText);
         header_.scene = texts.text(kMostHeaderText);
         header_.command_line = texts.text(kMostHeaderText);
         header_.settings = parse_json(texts.text(kMostHeaderText));
         header_.created = texts.text(kMostHeaderText);
-        if (texts.left() > 0) throw BadBytes("its header is longer than known");
+        if (texts.left() > 0) throw BadBytes("its header is longer than expected");
         first_frame_at_ = at_;
     } catch (BadBytes const& e) {
         throw no_recording(name_, std::string("its header is not whole: ") + e.what(),
@@ -140,15 +140,15 @@ std::optional<RecordedFrame> RecordingReader::next()
     std::uint64_t const before = at_;
     try {
         if (at_ == size_) {
-            end_at(RecordingState::cut, 0, "it was not closed in order");
+            end_at(RecordingState::cut, 0, "it was not closed properly");
             return {};
         }
         Record const record = read_record();
         if (record.type == kEndRecord) {
             if (ByteReader(record.payload).u64() != end_.frames)
-                throw BadBytes("its end states another number of frames");
+                throw BadBytes("its end record has a different number of frames");
             if (at_ != size_) {
-                end_at(RecordingState::damaged, size_ - at_, "something follows its end");
+                end_at(RecordingState::damaged, size_ - at_, "there are bytes after its end");
                 return {};
             }
             end_at(RecordingState::finished, 0, "");
@@ -165,7 +165,7 @@ std::optional<RecordedFrame> RecordingReader::next()
         end_at(RecordingState::cut, size_ - before, e.what());
     } catch (BadBytes const& e) {
         end_at(RecordingState::damaged, size_ - before, e.what());
-    } catch (gi::InputError const& e) { // of the order
+    } catch (gi::InputError const& e) { // from the frame command
         end_at(RecordingState::damaged, size_ - before, e.what());
     }
     return {};

@@ -14,7 +14,7 @@ namespace {
 
 gi::InputError no_answer(std::string const& why)
 {
-    return gi::InputError("no answer to a remote request", why, "see whether the viewer runs");
+    return gi::InputError("no answer to a remote request", why, "check whether the viewer runs");
 }
 
 } // namespace
@@ -23,7 +23,7 @@ void RemoteClient::wait_for(short events, Clock::time_point until)
 {
     for (;;) {
         auto const left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
-        if (left.count() <= 0) throw no_answer("the time is over");
+        if (left.count() <= 0) throw no_answer("the timeout passed");
         pollfd fd{socket_.fd(), events, 0};
         if (::poll(&fd, 1, int(std::min<std::int64_t>(left.count(), 60000))) > 0) return;
     }
@@ -71,7 +71,7 @@ nlohmann::json RemoteClient::ask(nlohmann::json request, std::chrono::millisecon
             if (!request.is_object() || answer.value("id", nlohmann::json()) == request["id"]) return answer;
             if (answer.value("id", nlohmann::json()).is_null() && answer.contains("error")) return answer;
         } catch (BadBytes const& e) {
-            throw no_answer(std::string("what came is no JSON: ") + e.what());
+            throw no_answer(std::string("the answer is not JSON: ") + e.what());
         }
     }
 }

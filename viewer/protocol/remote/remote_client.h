@@ -6,19 +6,19 @@
 
 namespace viewer {
 
-/// Asks a RemoteServer. Blocks, but never beyond the timeout.
+/// Client of a RemoteServer. Calls block, at most until the timeout.
 class RemoteClient {
 public:
-    /// @param where a path, or the digits of a port of this machine. Throws InputError if nobody listens.
+    /// @param where  a socket's path, or the digits of a local port. Throws InputError if no server listens there.
     explicit RemoteClient(std::string const& where) : socket_(connect_to(where)) {}
 
-    /// Sends a request, with an id of its own if it has none, and waits for the answer to it: {"id", "result"} or
-    /// {"id", "error"}. Answers to earlier requests that come meanwhile are skipped. Throws InputError after the
-    /// timeout, if the server closes, or if it answers with what is no JSON.
+    /// Sends a request, adding an id if it has none, and waits for its answer: {"id", "result"} or {"id",
+    /// "error"}. Skips answers to earlier requests. Throws InputError on timeout, if the server closes the
+    /// connection, or if the answer is not JSON.
     nlohmann::json ask(nlohmann::json request, std::chrono::milliseconds timeout = std::chrono::seconds(5));
-    /// Bytes as they are; throws InputError as ask.
+    /// Sends the bytes unchanged. Throws InputError as ask does.
     void send(std::string_view bytes, std::chrono::milliseconds timeout = std::chrono::seconds(5));
-    /// The next line, without its end.
+    /// Returns the next line, without its newline.
     std::string receive(std::chrono::milliseconds timeout = std::chrono::seconds(5));
 
 private:

@@ -55,7 +55,7 @@ void RemoteServer::adopt(Socket connection)
 {
     Client& client = clients_[next_client_++];
     client.socket = std::move(connection);
-    int const yes = 1; // fails on sockets at a path, which need it not
+    int const yes = 1; // fails on Unix sockets, which do not need it
     ::setsockopt(client.socket.fd(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
 }
 
@@ -84,9 +84,9 @@ void RemoteServer::accept_from(Socket const& listener)
 void RemoteServer::poll(std::chrono::milliseconds timeout)
 {
     std::vector<pollfd> fds;
-    std::vector<std::uint64_t> numbers; // of the clients, from the third on
+    std::vector<std::uint64_t> numbers; // client numbers for fds[2] and following
     fds.push_back({at_path_.fd(), POLLIN, 0});
-    fds.push_back({on_port_.fd(), POLLIN, 0}); // -1 is left alone
+    fds.push_back({on_port_.fd(), POLLIN, 0}); // poll ignores -1
     bool is_busy = false;
     for (auto& [number, client] : clients_) {
         bool const may_read = !client.ended && !client.closing && !has_line(client);
@@ -102,7 +102,7 @@ void RemoteServer::poll(std::chrono::milliseconds timeout)
         if ((fd.revents & POLLOUT) != 0) flush(client);
         if ((fd.events & POLLIN) != 0 && fd.revents != 0) receive(client);
         handle_lines(numbers[i], client);
-        // Hung up: nobody is left to read an answer.
+        // Hung up: no reader is left.
         if ((fd.revents & (POLLHUP | POLLERR)) != 0 && (fd.events & POLLIN) == 0 && !has_line(client))
             client.dead = true;
     }
@@ -150,13 +150,13 @@ void RemoteServer::handle_lines(std::uint64_t number, Client& client)
         if (!client.skipping)
             send_error(
                 number, client, nullptr,
-                fmt::format("the line is too long ({} bytes are the most) send less at once", limits_.line_bytes));
+                fmt::format("the line is too long (at most {} bytes) send less at once", limits_.line_bytes));
         client.skipping = true;
         client.in.clear();
         client.searched = 0;
     }
     if (!client.ended || has_line(client)) return;
-    // The last line may do without its end, but not without a part of itself.
+    // The last line may lack its newline, but must be complete otherwise.
     if (!client.skipping && nlohmann::json::accept(client.in))
         handle_line(number, client, client.in);
     else if (!client.in.empty() && !client.skipping)
@@ -171,7 +171,7 @@ void RemoteServer::handle_line(std::uint64_t number, Client& client, std::string
     if (line.size() > limits_.line_bytes)
         return send_error(
             number, client, nullptr,
-            fmt::format("the line is too long ({} bytes are the most) send less at once", limits_.line_bytes));
+            fmt::format("the line is too long (at most {} bytes) send less at once", limits_.line_bytes));
     if (line.ends_with('\r')) line.remove_suffix(1);
     if (line.find_first_not_of(" \t") == std::string_view::npos) return;
     nlohmann::json request;
@@ -180,7 +180,7 @@ void RemoteServer::handle_line(std::uint64_t number, Client& client, std::string
         client.spoke = true;
     } catch (gi::InputError const& e) {
         send_error(number, client, nullptr, e.what());
-        // A web page can make a browser send lines of its own to a port, but never as the first ones.
+        // Security: a web page can make a browser send chosen lines to a port, but never as the first lines.
         if (!client.spoke) client.closing = true;
         return;
     }
@@ -242,7 +242,7 @@ void RemoteServer::send(std::uint64_t number, Client& client, nlohmann::ordered_
     flush(client);
     if (client.out.size() <= limits_.output_bytes) return;
     report_.lose("remote clients dropped", 1,
-                 fmt::format("client {} left {} bytes of answers unread, {} are the most", number,
+                 fmt::format("client {} left {} bytes of answers unread, limit {}", number,
                              client.out.size(), limits_.output_bytes));
     client.dead = true;
 }
@@ -267,7 +267,7 @@ void RemoteServer::forget_dead()
 {
     for (auto at = clients_.begin(); at != clients_.end();) {
         Client& client = at->second;
-        // What was answered since it sent its last.
+        // Answers since its last request.
         bool const is_done = client.ended && client.waiting == 0 && client.in.empty();
         if (!client.dead && !((client.closing || is_done) && client.out.empty())) {
             ++at;

@@ -1,6 +1,7 @@
 #pragma once
-// Remote control of a running program: requests come as lines of JSON from many clients and are handed to one
-// function, between frames and without blocking. Nothing that a client sends, or omits to read, can stop it.
+// Remote control of a running program. Requests arrive as lines of JSON from many clients and are passed to one
+// handler, between frames and without blocking. A client cannot stop the program, whatever it sends or leaves
+// unread.
 
 #include "gi/core/report.h"
 #include "viewer/protocol/remote/request.h"
@@ -14,54 +15,55 @@
 namespace viewer {
 
 struct RemoteLimits {
-    std::size_t line_bytes = std::size_t(1) << 20;   ///< of a request
-    std::size_t output_bytes = std::size_t(4) << 20; ///< a client that leaves more unread is dropped
-    std::size_t clients = 64;                        ///< at once; further ones are told so and closed
-    std::size_t waiting = 64;                        ///< requests of one client to be answered later
-    std::size_t lines_per_poll = 32;                 ///< of one client; the rest wait for the next poll
+    std::size_t line_bytes = std::size_t(1) << 20;   ///< per request
+    std::size_t output_bytes = std::size_t(4) << 20; ///< a client with more unread answers is dropped
+    std::size_t clients = 64;                        ///< at once; further ones get an error and are closed
+    std::size_t waiting = 64;                        ///< pending requests of one client
+    std::size_t lines_per_poll = 32;                 ///< per client; the rest wait for the next poll
 };
 
 struct RemoteOptions {
     std::filesystem::path socket; ///< empty = none
-    std::optional<int> port;      ///< of 127.0.0.1; 0 = one that is free
+    std::optional<int> port;      ///< of 127.0.0.1; 0 = any free port
     RemoteLimits limits;
 };
 
 class RemoteServer {
 public:
-    /// Gives the result of a request, none = RemoteServer::answer will come later. Throws gi::InputError to
-    /// refuse.
+    /// Returns the result of a request; none = RemoteServer::answer follows later. Throws gi::InputError to reject
+    /// the request.
     using Handler = std::function<std::optional<nlohmann::json>(RemoteRequest const&)>;
 
-    /// Throws InputError if it cannot listen. @param report of clients dropped; must outlive this
+    /// Throws InputError if it cannot listen. @param report  receives dropped clients; must outlive this
     RemoteServer(RemoteOptions const& options, Handler handler, gi::Report& report);
     /// Closes all connections and removes the socket's file.
     ~RemoteServer();
     RemoteServer(RemoteServer const&) = delete;
     RemoteServer& operator=(RemoteServer const&) = delete;
 
-    /// Accepts, reads, answers; waits at most `timeout` for the first thing to do. Calls the handler.
+    /// Accepts clients, reads requests, calls the handler and sends answers; waits at most `timeout` for the first
+    /// event.
     void poll(std::chrono::milliseconds timeout = {});
-    /// To a request whose handler gave no result. @return false where its client has gone, or it has its answer
+    /// Answers a request whose handler returned no result. @return false if the client is gone or already answered
     bool answer(std::uint64_t token, nlohmann::json const& result);
     bool refuse(std::uint64_t token, std::string const& error);
-    /// Serves a connected socket too, e.g. one of a pair.
+    /// Adds a connected socket, e.g. one of a pair.
     void adopt(Socket connection);
 
     int port() const { return port_; } ///< 0 = none
     std::size_t clients() const { return clients_.size(); }
-    std::size_t waiting() const { return waiting_.size(); } ///< requests without an answer yet
+    std::size_t waiting() const { return waiting_.size(); } ///< number of pending requests
 
 private:
     struct Client {
         Socket socket;
         std::string in, out;
-        std::size_t searched = 0; ///< bytes of `in` without a line's end
-        std::size_t waiting = 0;  ///< requests to be answered later
+        std::size_t searched = 0; ///< bytes of `in` known to have no newline
+        std::size_t waiting = 0;  ///< pending requests
         bool spoke = false;       ///< its first line was an object
-        bool skipping = false;    ///< the rest of a line that is too long
-        bool ended = false;       ///< it sends no more
-        bool closing = false;     ///< once `out` is sent
+        bool skipping = false;    ///< discarding the rest of a line that is too long
+        bool ended = false;       ///< it has closed its sending side
+        bool closing = false;     ///< close once `out` is sent
         bool dead = false;
     };
     struct Waiting {

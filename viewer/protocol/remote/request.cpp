@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 7> kTypeNames{"text",  "number",   "integ
                                                      "point", "rotation", "any"};
 constexpr std::size_t kMostIdBytes = 256;
 
-/// What was sent, short enough for a message.
+/// A value as JSON, shortened for a message.
 std::string shown(json const& value)
 {
     std::string const text = json_line(value);
@@ -75,7 +75,7 @@ RequestRule const& rule_of(json const& request)
     std::string known;
     for (RequestRule const& r : request_rules()) known += (known.empty() ? "" : ", ") + std::string(r.name);
     if (!request.contains("do"))
-        throw gi::InputError("the request has no \"do\"", "nothing says what to do", "give one of: " + known);
+        throw gi::InputError("the request has no \"do\"", "\"do\" names the request", "give one of: " + known);
     for (RequestRule const& r : request_rules())
         if (request["do"] == r.name) return r;
     throw gi::InputError("\"do\": " + shown(request["do"]) + " is no request", "it is not in the table",
@@ -90,15 +90,15 @@ void check_argument(RequestRule const& r, std::string const& name, json const& v
         if (name != a.name) continue;
         if (!fits(value, a.type))
             throw gi::InputError(fmt::format("\"{}\": {} does not fit \"{}\"", name, shown(value), r.name),
-                                 fmt::format("it is of the type {}", name_of(a.type)), "see docs/remote.md");
+                                 fmt::format("it must be of the type {}", name_of(a.type)), "see docs/remote.md");
         auto const choices = words(a.choices);
         if (!choices.empty() &&
             std::find(choices.begin(), choices.end(), value.get<std::string>()) == choices.end())
             throw gi::InputError(fmt::format("\"{}\": {} does not fit \"{}\"", name, shown(value), r.name),
-                                 "it is none of its choices", std::string("give one of: ") + a.choices);
+                                 "it is not one of the choices", std::string("give one of: ") + a.choices);
         return;
     }
-    throw gi::InputError(fmt::format("\"{}\" has no argument {}", r.name, shown(name)), "it would not be read",
+    throw gi::InputError(fmt::format("\"{}\" has no argument {}", r.name, shown(name)), "its name is unknown",
                          known.empty() ? "leave it out" : "its arguments are: " + known);
 }
 

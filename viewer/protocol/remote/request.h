@@ -1,5 +1,6 @@
 #pragma once
-// Requests of the remote protocol: one JSON object per line. What there is, is one table; docs/remote.md shows it.
+// Requests of the remote protocol: one JSON object per line. All are listed in one table, which docs/remote.md
+// shows.
 
 #include <nlohmann/json.hpp>
 #include <span>
@@ -8,8 +9,8 @@
 
 namespace viewer {
 
-/// Texts are UTF-8. Numbers are finite. integer: -2^31 to 2^31 - 1. point: [x, y, z]. rotation: [x, y, z, w], made
-/// unit by who reads it, never all 0. any: every JSON value.
+/// Texts are UTF-8. Numbers are finite. integer: -2^31 to 2^31 - 1. point: [x, y, z]. rotation: quaternion
+/// [x, y, z, w], not all 0, normalized by the reader. any: any JSON value.
 enum class ArgumentType { text, number, integer, boolean, point, rotation, any };
 std::string_view name_of(ArgumentType type);
 
@@ -20,11 +21,11 @@ struct ArgumentRule {
     ArgumentType type;
     Presence presence;
     char const* meaning;      ///< with its unit
-    char const* choices = ""; ///< "tap press release": of a text, what it may be; empty = anything
+    char const* choices = ""; ///< allowed words of a text, e.g. "tap press release"; empty = any
 };
 
 struct RequestRule {
-    char const* name; ///< of "do"
+    char const* name; ///< value of "do"
     char const* meaning;
     char const* result;
     std::vector<ArgumentRule> arguments;
@@ -32,20 +33,19 @@ struct RequestRule {
 std::span<RequestRule const> request_rules();
 
 struct RemoteRequest {
-    std::uint64_t token = 0;                             ///< to answer later
+    std::uint64_t token = 0;                             ///< identifies the request when it is answered later
     nlohmann::json id;                                   ///< null, an integer or a text of at most 256 bytes
     std::string what;                                    ///< one of request_rules()
-    nlohmann::json arguments = nlohmann::json::object(); ///< of the types of its rule, nothing else
+    nlohmann::json arguments = nlohmann::json::object(); ///< checked against the rule
 
     bool has(char const* name) const { return arguments.contains(name); }
 };
 
-/// The id of any object that has a valid one, null else; for answers to requests that are wrong.
+/// The request's id if it has a valid one, else null; also works for invalid requests.
 nlohmann::json id_of(nlohmann::json const& request);
-/// Throws InputError on anything that is no JSON object of at most 32 levels.
+/// Throws InputError unless the line is a JSON object with at most 32 levels.
 nlohmann::json parse_request(std::string_view line);
-/// Throws InputError on a request that is not in the table, or has arguments that are missing, unknown or of
-/// another type.
+/// Throws InputError if the request is not in the table, or an argument is missing, unknown or of the wrong type.
 RemoteRequest check_request(nlohmann::json const& request);
 
 /// request_rules() as lines for --help: name, arguments (optional ones in brackets), meaning.

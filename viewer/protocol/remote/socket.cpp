@@ -27,7 +27,7 @@ sockaddr_un address_of(std::filesystem::path const& path)
     if (text.empty() || text.size() >= sizeof address.sun_path)
         throw gi::InputError(
             "'" + text + "' cannot be a socket",
-            fmt::format("its path has {} bytes, 1 to {} can be", text.size(), sizeof address.sun_path - 1),
+            fmt::format("its path has {} bytes, 1 to {} are allowed", text.size(), sizeof address.sun_path - 1),
             "choose a shorter one");
     std::memcpy(address.sun_path, text.c_str(), text.size() + 1);
     return address;
@@ -62,13 +62,13 @@ int connect_with(Socket const& s, Address const& address)
     return ::connect(s.fd(), reinterpret_cast<sockaddr const*>(&address), sizeof address) == 0 ? 0 : errno;
 }
 
-/// Removes what a program that is gone left at the path.
+/// Removes a stale socket at the path.
 void remove_stale(std::filesystem::path const& path, sockaddr_un const& address)
 {
     struct stat about {};
     if (::lstat(path.c_str(), &about) != 0) return;
     if (!S_ISSOCK(about.st_mode))
-        throw gi::InputError("'" + path.string() + "' cannot be a socket", "something else lies there",
+        throw gi::InputError("'" + path.string() + "' cannot be a socket", "the path exists and is not a socket",
                              "choose another path");
     Socket const probe = make_socket(AF_UNIX, SOCK_NONBLOCK);
     int const error = connect_with(probe, address);
@@ -94,7 +94,7 @@ Socket listen_at(std::filesystem::path const& path)
     remove_stale(path, address);
     Socket s = make_socket(AF_UNIX, SOCK_NONBLOCK);
     int error = bind_to(s, address);
-    // Nobody can connect before listen(), so that the permissions never stand open.
+    // No client can connect before listen(), so the socket is never open with wider permissions.
     if (error == 0 && (::chmod(path.c_str(), 0600) != 0 || ::listen(s.fd(), kBacklog) != 0)) error = errno;
     if (error != 0)
         throw gi::InputError("cannot listen at '" + path.string() + "'", std::strerror(error),
@@ -129,7 +129,7 @@ Socket connect_to(std::string const& where)
     bool const is_port = wrong == std::errc() && rest == where.data() + where.size();
     if (is_port && (port < 1 || port > 65535))
         throw gi::InputError("cannot connect to port " + where, "ports are 1 to 65535",
-                             "see what the viewer printed");
+                             "use the port that the viewer printed");
     Socket s = make_socket(is_port ? AF_INET : AF_UNIX, 0);
     int const error = is_port ? connect_with(s, loopback(port)) : connect_with(s, address_of(where));
     if (error != 0)

@@ -1,5 +1,5 @@
 #pragma once
-// Sockets of this machine only: a path, or a port of 127.0.0.1.
+// Local sockets only: a Unix socket (path), or a port of 127.0.0.1.
 
 #include <filesystem>
 #include <string>
@@ -27,12 +27,12 @@ private:
     int fd_ = -1;
 };
 
-/// Only its owner may connect (permissions 600). A socket left by a program that is gone is replaced; throws
-/// InputError where one listens, where something else lies, or on a path that is too long.
+/// Listens at a path; only the owner may connect (permissions 600). Replaces a stale socket. Throws InputError if
+/// a program listens there, the path is something else, or is too long.
 Socket listen_at(std::filesystem::path const& path);
-/// Port 0 = one that is free; `port` becomes the one chosen. Throws InputError if it is taken.
+/// Listens on a port; 0 = any free port. `port` is set to the port in use. Throws InputError if it is taken.
 Socket listen_on_loopback(int& port);
-/// `where` is a path, or the digits of a port. Throws InputError if nobody listens.
+/// Connects to a path, or to a port given by its digits. Throws InputError if no program listens there.
 Socket connect_to(std::string const& where);
 
 } // namespace viewer
