@@ -23,8 +23,8 @@ BoardView view_of(Sighting const& sighting, MarkerMap const& map, std::size_t bo
 
 /// Detects a plain chessboard by cv::findChessboardCornersSB (Duda and Frese 2018); nothing unless it is fully
 /// visible.
-/// @param corners_x,corners_y inner corners, each at least 3. The origin is the lower left inner corner as printed,
-/// as far as the board's pattern determines its orientation
+/// @param corners_x,corners_y inner corners, each at least 3. The origin is the lower left inner corner as
+/// printed, as far as the board's pattern determines its orientation
 std::optional<BoardView> find_chessboard(cv::Mat const& gray, int corners_x, int corners_y, double square_m,
                                          std::string name);
 

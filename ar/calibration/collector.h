@@ -1,6 +1,6 @@
 #pragma once
-// Collects views of a board one after another: which of them add information, which are still missing, and how well
-// the lens fits so far.
+// Collects views of a board one after another: which of them add information, which are still missing, and how
+// well the lens fits so far.
 
 #include "ar/calibration/lens.h"
 

@@ -26,10 +26,10 @@ struct ResponseFit {
     int levelled = 0; ///< decreasing entries of the curve that were levelled
 };
 
-/// Fits the curve of Debevec and Malik 1997 as a power law times the exponential of a polynomial, so that ln(light)
-/// of a pixel in two exposures differs by ln of the exposure ratio: least squares over pairs of pixels (as Mitsunaga
-/// and Nayar 1999, in logarithms). cv::createCalibrateDebevec has 256 free values and was 9 to 90 % off at byte
-/// 250 of synthetic brackets, where this fit is 1 % off (docs/results).
+/// Fits the curve of Debevec and Malik 1997 as a power law times the exponential of a polynomial, so that
+/// ln(light) of a pixel in two exposures differs by ln of the exposure ratio: least squares over pairs of pixels
+/// (as Mitsunaga and Nayar 1999, in logarithms). cv::createCalibrateDebevec has 256 free values and was 9 to 90 %
+/// off at byte 250 of synthetic brackets, where this fit is 1 % off (docs/results).
 /// @throws InputError as check(), or too few pixels that are neither dark nor bright in two exposures
 ResponseFit calibrate_response(Bracket const& bracket);
 
@@ -47,10 +47,10 @@ struct MergeOptions {
     double moved_sigmas = 5;      ///< exposures may differ by this many sigmas before they count as inconsistent
 };
 
-/// Radiance from a bracket with a known response: the mean over the exposures, weighted by inverse variance (sensor
-/// noise, and quantisation times the slope of the response; bytes that noise may have clipped do not count).
-/// Vignetting and colour of the photometry are applied. Where exposures disagree, only the one with the smallest
-/// variance counts.
+/// Radiance from a bracket with a known response: the mean over the exposures, weighted by inverse variance
+/// (sensor noise, and quantisation times the slope of the response; bytes that noise may have clipped do not
+/// count). Vignetting and colour of the photometry are applied. Where exposures disagree, only the one with the
+/// smallest variance counts.
 /// @throws InputError as check()
 MergedRadiance merge(Bracket const& bracket, Photometry const& photometry, MergeOptions const& options = {});
 

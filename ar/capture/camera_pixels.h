@@ -1,6 +1,6 @@
 #pragma once
-// Converts the memory that a camera's driver wrote to planes of a Frame. Formats are named by their DRM codes (four
-// letters, drm_fourcc.h), as in libcamera: components from the highest bits of a little-endian word to the
+// Converts the memory that a camera's driver wrote to planes of a Frame. Formats are named by their DRM codes
+// (four letters, drm_fourcc.h), as in libcamera: components from the highest bits of a little-endian word to the
 // lowest, so RGB888 is B, G, R in memory.
 
 #include "ar/camera/frame.h"

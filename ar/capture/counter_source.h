@@ -11,8 +11,8 @@ namespace ar {
 
 /// Draws the number into a picture of at least 208 x 20 pixels, CV_8UC1 or CV_8UC3.
 void draw_counter(cv::Mat& picture, std::uint32_t number);
-/// Reads the number of a CV_8UC1 or CV_8UC3 picture, also scaled or JPEG-compressed; nothing if there is none or it
-/// cannot be read reliably.
+/// Reads the number of a CV_8UC1 or CV_8UC3 picture, also scaled or JPEG-compressed; nothing if there is none or
+/// it cannot be read reliably.
 std::optional<std::uint32_t> read_counter(cv::Mat const& picture);
 
 struct CounterOptions {

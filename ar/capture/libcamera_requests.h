@@ -22,8 +22,8 @@ namespace lc = libcamera;
 /// Text of a libcamera error code (negative errno).
 inline std::string text_of_error(int code) { return std::strerror(code < 0 ? -code : code); }
 
-/// The requests of a running camera: queued at the camera, completed and waiting here, or in use by a frame. Frames
-/// share ownership of the pool, so it outlives the source while any frame exists.
+/// The requests of a running camera: queued at the camera, completed and waiting here, or in use by a frame.
+/// Frames share ownership of the pool, so it outlives the source while any frame exists.
 class RequestPool {
 public:
     struct Buffer {

@@ -27,8 +27,8 @@ struct LibcameraOptions {
 };
 
 /// Starts a camera. Unsupported sizes and rates are replaced by the nearest supported ones; `description` has the
-/// values in use. Planes are the camera's own memory if the format allows (see camera_pixels.h); the camera reuses it
-/// once the last copy of the frame is gone, and so loses frames while all its buffers are held. Planes
+/// values in use. Planes are the camera's own memory if the format allows (see camera_pixels.h); the camera reuses
+/// it once the last copy of the frame is gone, and so loses frames while all its buffers are held. Planes
 /// stay readable after the camera is closed. An unplugged camera ends in the state lost.
 /// @throws InputError no camera, none of that name, camera in use, or no supported format
 std::unique_ptr<FrameSource> open_libcamera(LibcameraOptions const& options = {});

@@ -8,8 +8,8 @@
 //      "format":"nv12","size_px":[640,480],"at":0,"bytes":460800,"sum":"1234abcd"},"crc32":"89abcdef"}
 //     {"controls":{"exposure_time_s":0.01},"crc32":"..."}
 // Times are of the recording machine's steady clock. `at` and `bytes` are the frame's offset and length in
-// frames.bin, `sum` is the CRC-32 of these bytes, `crc32` that of the line up to its last comma. A frame's bytes are
-// written before its line: after a killed process, the session is valid up to its last complete frame.
+// frames.bin, `sum` is the CRC-32 of these bytes, `crc32` that of the line up to its last comma. A frame's bytes
+// are written before its line: after a killed process, the session is valid up to its last complete frame.
 
 #include "ar/capture/frame_source.h"
 

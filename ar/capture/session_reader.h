@@ -43,8 +43,8 @@ private:
 };
 
 /// Plays a session as a source. At its own pace, recorded times are shifted so that the first frame arrives at
-/// the first call, and each frame has its recorded age (plus any delay of delivery). As fast as possible, times are
-/// those recorded. Origin: file.
+/// the first call, and each frame has its recorded age (plus any delay of delivery). As fast as possible, times
+/// are those recorded. Origin: file.
 class SessionSource final : public FrameSource {
 public:
     /// @throws InputError if it is not a session, or has no frame

@@ -22,9 +22,9 @@ struct LiveOptions {
     Controls controls = {};
 };
 
-/// A camera by its V4L2 number (0 = /dev/video0). Frames have the driver's timestamp if there is one. The number of
-/// frames lost before arrival is unknown: OpenCV does not expose the driver's sequence numbers. A device that stops
-/// delivering frames ends in the state lost.
+/// A camera by its V4L2 number (0 = /dev/video0). Frames have the driver's timestamp if there is one. The number
+/// of frames lost before arrival is unknown: OpenCV does not expose the driver's sequence numbers. A device that
+/// stops delivering frames ends in the state lost.
 /// @throws InputError no such camera, or it delivers no frame
 std::unique_ptr<FrameSource> open_device(int number, LiveOptions const& options = {});
 
