@@ -47,7 +47,7 @@ struct ColourFit {
     double mean_delta_e = 0, largest_delta_e = 0; ///< CIE 1976, of chart white Y = 1 under D65
     std::vector<double> delta_e;                  ///< per patch
     double delta_e_before = 0;                    ///< mean without the matrix, brightness fitted alone
-    double brightness = 1; ///< of the chart's lighting: brightness * colour * unit should equal the patches' true values
+    double brightness = 1; ///< of the chart: times colour * unit it should give the patches' true values
 };
 
 /// sRGB (linear, BT.709, white = 1) of the 24 patches of a ColorChecker, row by row from dark skin to black

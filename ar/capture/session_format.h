@@ -2,8 +2,9 @@
 // Recorded sessions: a camera's frames, bit for bit, and their times. A folder with three files:
 //   session.json  camera, calibration file, date; and, once the recording was finished, how many
 //                 frames were written and how many were lost
-//   frames.bin    the bytes of one frame after the other: plane by plane, row by row without gaps (mjpeg: as it
-//   came) index.jsonl   a line for each frame, in the order of their bytes, and for each setting of controls:
+//   frames.bin    the bytes of one frame after the other: plane by plane, row by row without gaps (mjpeg:
+//                 unchanged)
+//   index.jsonl   a line for each frame, in the order of their bytes, and for each setting of controls:
 //     {"frame":{"sequence":7,"captured_s":1.5,"arrived_s":1.52,"origin":"sensor","exposure":[time_s,gain,red,blue],
 //      "format":"nv12","size_px":[640,480],"at":0,"bytes":460800,"sum":"1234abcd"},"crc32":"89abcdef"}
 //     {"controls":{"exposure_time_s":0.01},"crc32":"..."}
