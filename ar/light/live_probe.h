@@ -20,8 +20,8 @@
 namespace ar {
 
 enum class ExposureKnowledge {
-    known,  ///< frames and prior have the same unit of radiance, so differences are changes in the scene
-    unknown ///< exposure is not reported: each frame is scaled by its median ratio to the known texels
+    known,  ///< frames and prior share a unit of radiance: differences are changes of the scene
+    unknown ///< not reported: each frame is scaled by its median ratio to what was seen
 };
 
 struct LiveProbeSettings {

@@ -56,7 +56,7 @@ private:
     DetectorSettings settings_;
     Counts counts_;
     cv::Size size_;
-    cv::Rect2f last_{}, before_{}; ///< bounds of the markers in the last picture and the one before; empty: unknown
+    cv::Rect2f last_{}, before_{}; ///< bounds of the markers in the last two pictures; empty: unknown
     int seen_ = 0;                 ///< markers in the last picture
     int since_whole_ = 0;
 };
