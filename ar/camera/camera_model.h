@@ -38,14 +38,14 @@ cv::Matx33d camera_matrix(CameraModel const& camera);
 /// Distortion coefficients for OpenCV's functions, 1 x coefficient_count.
 cv::Mat distortion_of(CameraModel const& camera);
 
-/// Where a point of the camera's frame is seen, in pixels; nothing if it is not ahead of the camera (for fisheye:
-/// at the camera).
+/// Projects a point of the camera's frame to pixels; nothing if it is not in front of the camera (for fisheye: if
+/// it is at the camera).
 std::optional<glm::dvec2> project(CameraModel const& camera, glm::dvec3 point);
-/// The direction (length 1, camera's frame) that a pixel sees. The inverse of `project` to 1e-9 where the lens has
-/// one; nothing where the iteration finds none (beyond the range of the model).
+/// Unit direction (camera's frame) of a pixel. Inverts `project` to 1e-9 where the lens is invertible; nothing
+/// where the iteration does not converge (outside the range of the model).
 std::optional<glm::dvec3> direction_of(CameraModel const& camera, glm::dvec2 pixel);
 
-/// The same camera for pictures of another size of the same sensor.
+/// The same camera for pictures of another size from the same sensor.
 CameraModel scaled(CameraModel const& camera, glm::ivec2 size_px);
 
 /// Table for cv::remap: the position in pictures of `from` of each pixel of `to` (2 floats, x and y); both cameras

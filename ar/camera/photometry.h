@@ -44,9 +44,9 @@ Photometry srgb_photometry();
 /// Relative light at the centre of a pixel in a picture of that size; 1 everywhere without vignetting.
 double vignetting_at(Photometry const& photometry, cv::Size size, int x, int y);
 
-/// CV_32FC3 of CV_8UC3. Bytes of 255 become what 255 means: the light may have been brighter (see `is_clipped`).
+/// Radiance, CV_32FC3, of a CV_8UC3 picture. For bytes of 255 it is a lower bound (see `is_clipped`).
 cv::Mat radiance_of(cv::Mat const& rgb, Photometry const& photometry, Exposure const& exposure = {});
-/// CV_8UC3 of CV_32FC3: the byte whose unit is nearest. The inverse of `radiance_of` for bytes whose unit is
+/// CV_8UC3 of CV_32FC3: the byte with the nearest unit. Inverts `radiance_of` for bytes whose unit is
 /// different from their neighbours' (for an sRGB camera: all). Non-finite values become 0.
 cv::Mat bytes_of(cv::Mat const& radiance, Photometry const& photometry, Exposure const& exposure = {});
 /// CV_8UC1: 255 where a channel is 0 or 255, else 0.

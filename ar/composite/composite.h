@@ -19,20 +19,19 @@
 
 namespace ar {
 
-/// What with and without do to what the camera sees.
+/// How with and without change the camera's pixels.
 enum class Blend {
-    difference, ///< camera + with - without: exact when the model of the place is right
-    /// camera with / without where nothing covers: errors of albedo cancel, light where there was next to none
-    /// does not come out right. Ratios beyond the limit are differences, and so are partly covered pixels of pairs
-    /// without `direct`.
+    difference, ///< camera + with - without: exact if the model of the place is right
+    /// camera with / without in uncovered pixels: errors of albedo cancel, but light added to very dark places is
+    /// wrong. Differences replace ratios beyond the limit, and in partly covered pixels of pairs without `direct`.
     ratio
 };
 
-/// What is darkened where a byte of the camera is 255 and so only the least value of the unit u is known.
+/// How to darken pixels whose camera byte is 255, so that the unit u is only a lower bound.
 enum class ClippedBytes {
-    as_measured, ///< as if the byte said the truth: shadows of bright places come out too dark
-    ratio,       ///< u with / without: nearer to the truth, and never above it if the model's ratio is right
-    model        ///< max(u, without) with / without: the truth where the model is right, else as for ratio
+    as_measured, ///< takes the byte as exact: shadows in bright places become too dark
+    ratio,       ///< u with / without: closer to the truth, and never above it if the model's ratio is right
+    model        ///< max(u, without) with / without: exact if the model is right, else as for ratio
 };
 
 struct CompositeSettings {
