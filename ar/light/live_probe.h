@@ -21,7 +21,7 @@ namespace ar {
 
 enum class ExposureKnowledge {
     known,  ///< frames and prior share a unit of radiance: differences are changes of the scene
-    unknown ///< not reported: frames are scaled by the median ratio to what was seen
+    unknown ///< not reported: frames are scaled to the known texels
 };
 
 struct LiveProbeSettings {

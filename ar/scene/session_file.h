@@ -48,7 +48,7 @@ struct ArFinish {
 struct ArPoseUse {
     ar::TrackerSettings tracker;
     bool filtered = false; ///< use the tracker's poses (smoothed, or a tripod's mean) instead of each frame's own
-    double predict_s = 0;  ///< extrapolate the motion for frames without a pose up to this long after the last one
+    double predict_s = 0;  ///< extrapolate for frames without a pose up to this long after the last one
 };
 
 struct ArSession {
