@@ -20,7 +20,7 @@
 namespace ar {
 
 enum class ExposureKnowledge {
-    known,  ///< frames and prior share a unit of radiance: differences are changes of the scene
+    known,  ///< frames and prior share a unit of radiance
     unknown ///< not reported: frames are scaled to the known texels
 };
 
