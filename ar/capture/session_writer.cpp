@@ -21,7 +21,7 @@ int make_file(std::filesystem::path const& path)
     return file;
 }
 
-/// 0, or what went wrong.
+/// Returns 0 or the error code.
 int write_all(int file, std::uint8_t const* bytes, std::size_t n)
 {
     for (std::size_t done = 0; done < n;) {
@@ -115,11 +115,11 @@ SessionWriter::~SessionWriter()
 {
     try {
         finish();
-    } catch (InputError const&) { // what was recorded stays readable: it counts as cut off
+    } catch (InputError const&) { // the recording stays readable, as one that was cut off
     }
 }
 
-/// Appears whole or not at all.
+/// Writes the file atomically.
 void SessionWriter::write_header()
 {
     auto const path = folder_ / kSessionFile, fresh = folder_ / (std::string(kSessionFile) + ".new");
@@ -225,7 +225,7 @@ void SessionWriter::write(Waiting& w)
     if (error != 0) {
         ++lost_;
         fail(std::strerror(error));
-        // What is not whole goes; where that fails, too, readers leave it out.
+        // Remove the incomplete part; if that fails, too, readers skip it.
         if (::ftruncate(frames_file_, off_t(frames_bytes_)) != 0 ||
             ::ftruncate(index_file_, off_t(index_bytes_)) != 0)
             fail(std::strerror(errno));

@@ -38,8 +38,8 @@ RenderedPair pair_of(cv::Mat const& layer, RenderedPair const& pair)
     return out;
 }
 
-/// A Gaussian's integrals over pixels, with the variance that is wanted: that of integrals is not sigma^2 (more by
-/// 1/12 where it is wide, 0 where it is narrow), so their Gaussian is looked for.
+/// Integrals of a Gaussian over pixels, with the desired variance: integration changes the variance from sigma^2
+/// (by +1/12 for wide ones, to 0 for narrow ones), so the matching Gaussian is searched.
 cv::Mat spread_kernel(double sigma_px)
 {
     int const reach = int(std::ceil(4 * sigma_px)) + 1;
@@ -98,7 +98,7 @@ RenderedPair motion_blurred(RenderedPair const& pair, cv::Mat const& velocity_px
         if (length > longest_px) v *= float(longest_px / length);
         return v;
     };
-    // The longest path near each tile: what moves reaches half of it beyond its border.
+    // Longest motion near each tile: moving objects extend by half of it beyond their border.
     double longest = 0;
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x) longest = std::max(longest, cv::norm(path_at(x, y)));

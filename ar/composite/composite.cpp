@@ -38,7 +38,7 @@ struct Blending {
         return seen + (w - n);
     }
 
-    /// @param direct  null: not known
+    /// @param direct  null: unknown
     cv::Vec3b pixel(cv::Vec3b const& camera, cv::Vec3f const& with, cv::Vec3f const& without, float a,
                     cv::Vec3f const* direct, float vignetting, cv::Vec3f const* random,
                     CompositeCounts& counts) const
@@ -69,7 +69,7 @@ struct Blending {
                 v = 0;
             }
             if (noisy) {
-                // The camera's share brings its own noise: only what is missing is added.
+                // The camera's share already has noise: add only the missing part.
                 float const there = (1 - a) * (1 - a) * settings.noise.variance(c, u);
                 v += std::sqrt(std::max(0.0f, settings.noise.variance(c, v) - there)) * (*random)[c];
             }

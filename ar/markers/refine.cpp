@@ -30,8 +30,8 @@ struct EdgePoint {
     double weight;
 };
 
-/// Where the edge between `from` and `to` is; light is on the left of the way, as seen in pictures with y down:
-/// outside of a marker whose corners go clockwise. False where fewer than half of the samples have an edge.
+/// Locates the edge between `from` and `to`; the bright side is on the left of that direction, as seen with y
+/// down: outside of a marker whose corners go clockwise. False if fewer than half of the samples have an edge.
 bool add_edge(std::vector<EdgePoint>& points, cv::Mat const& gray, cv::Point2d from, cv::Point2d to,
               double reach_px)
 {
@@ -187,7 +187,7 @@ void refine_by_edges(cv::Mat const& gray, std::array<cv::Point2f, 4>& corners,
             if (p && cv::norm(cv::Point2f(*p) - corners[i]) < 1 + cell) now[i] = *p;
         }
     };
-    // First widely, for contours are up to a pixel off, then as far as a soft edge goes and no other one is.
+    // First with a wide search, since contours are up to a pixel off, then only as far as a soft edge extends.
     for (double const reach_px : {std::clamp(0.8 * cell, 1.5, 4.), std::clamp(0.6 * cell, 1.5, 3.)}) {
         for (std::size_t i = 0; i < 4; ++i) sides[i] = side_between(gray, now[i], now[(i + 1) % 4], reach_px);
         cross();

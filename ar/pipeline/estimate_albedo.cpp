@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kLeastAlbedo = 0.02f; ///< lower limit for rendering: the light is divided by it
 
-/// Builds the parts of the views that stay the same in all iterations: all but `white`.
+/// A view and its camera, which stay the same in all iterations except for `white`.
 struct Prepared {
     ar::AlbedoView view;
     gi::Camera camera;
@@ -170,7 +170,7 @@ AlbedoEstimate estimate_albedos(RealScene real, std::shared_ptr<gi::EnvironmentM
         throw gi::InputError("no albedo to estimate", "the session specifies all of them",
                              "write albedo: estimate at a proxy, or at the real scene");
     if (frames.empty())
-        throw gi::InputError("the camera was found in no frame", "surfaces can only be measured in frames with a pose",
+        throw gi::InputError("the camera was found in no frame", "albedos need frames with a pose",
                              "check with lightwell ar track, or use --poses");
     Estimator estimator(std::move(real), camera, settings, stop, report);
     estimator.light(std::move(light));

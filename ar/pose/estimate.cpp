@@ -15,8 +15,8 @@ namespace {
 
 using SightedPoints = std::vector<SightedPoint>;
 
-constexpr double kCoarseSigmas = 40; ///< within which a first guess counts as agreeing with a point
-constexpr double kLimitSigmas = 5;   ///< beyond which a refined pose does not
+constexpr double kCoarseSigmas = 40; ///< an initial estimate agrees with points within this
+constexpr double kLimitSigmas = 5;   ///< a refined pose disagrees with points beyond this
 constexpr double kMostScale = 5;     ///< how much worse than their sigmas points may be
 constexpr std::size_t kMarkerGuesses = 12;
 constexpr int kRandomGuesses = 40;
@@ -168,7 +168,7 @@ std::optional<Refined> second_pose(CameraModel const& camera, Agreed const& firs
     }
     std::optional<Refined> best;
     for (Pose const& start : starts) {
-        if (angle_between_deg(start.rotation, chosen.rotation) < 0.5) continue; // would find the first again
+        if (angle_between_deg(start.rotation, chosen.rotation) < 0.5) continue; // would converge to the first again
         Refined const r = refine(camera, first.points, start);
         bool const ahead = std::all_of(first.points.begin(), first.points.end(), [&](SightedPoint const& p) {
             return miss_px(camera, r.world_from_camera, p).has_value();
@@ -250,7 +250,7 @@ PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera, 
     PointSet const all = survey(points);
     if (all.different < 4) return failed(PoseFailure::too_few_points, sighting);
     if (all.shape == Shape::line || all.shape == Shape::point) return failed(PoseFailure::on_a_line, sighting);
-    // Digits are lost far from zero: the points' centre is the origin while we calculate.
+    // Precision is lost far from zero: compute relative to the points' centre.
     for (SightedPoint& p : points) p.world_m -= all.centre_m;
     std::optional<Pose> near = last;
     if (near) near->position_m -= all.centre_m;

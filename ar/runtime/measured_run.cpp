@@ -8,7 +8,7 @@
 namespace viewer {
 namespace {
 
-/// Removes the first record.
+/// Returns the records without the first.
 std::vector<ArFrameRecord> settled(std::vector<ArFrameRecord> frames)
 {
     if (!frames.empty()) frames.erase(frames.begin());

@@ -18,7 +18,7 @@ public:
         if (!std::filesystem::exists(file, error))
             throw InputError("no video '" + name_ + "'", error ? error.message() : "there is no such file",
                              "name another file");
-        // As text that begins with a path, so that nothing in the name is read as the address of a stream.
+        // Pass an absolute path, so that the name cannot be parsed as a stream address.
         std::string const path = std::filesystem::absolute(file).string();
         if (!capture_.open(path, cv::CAP_FFMPEG) || !grab())
             throw InputError("'" + name_ + "' has no frame", "it is no video, or nothing of it can be decoded",
