@@ -211,7 +211,7 @@ MergedRadiance merge(Bracket const& b, Photometry const& photometry, MergeOption
             ++out.inconsistent;
             std::size_t best = 0;
             double least = 1e300;
-            for (std::size_t i = 0; i < n; ++i) { // one exposure for all channels, so that colours are of one moment
+            for (std::size_t i = 0; i < n; ++i) { // the same exposure for all channels
                 double relative = 0;
                 for (std::size_t c = 0; c < 3; ++c)
                     relative += said[c][i][1] / std::pow(std::max(said[c][i][0], 1e-9), 2);

@@ -168,7 +168,7 @@ std::optional<Refined> second_pose(CameraModel const& camera, Agreed const& firs
     }
     std::optional<Refined> best;
     for (Pose const& start : starts) {
-        if (angle_between_deg(start.rotation, chosen.rotation) < 0.5) continue; // would converge to the first again
+        if (angle_between_deg(start.rotation, chosen.rotation) < 0.5) continue; // would find the first
         Refined const r = refine(camera, first.points, start);
         bool const ahead = std::all_of(first.points.begin(), first.points.end(), [&](SightedPoint const& p) {
             return miss_px(camera, r.world_from_camera, p).has_value();

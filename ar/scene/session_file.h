@@ -39,7 +39,7 @@ struct ArRender {
 
 /// Processing of a rendered pair before compositing; each step costs time only if enabled.
 struct ArFinish {
-    bool upsample = true;    ///< below a resolution of 1: use guides, and full-resolution borders of virtual objects
+    bool upsample = true;    ///< below a resolution of 1: guided, with full-resolution borders of virtual objects
     bool mattes = false;     ///< refine borders where real objects occlude virtual ones by the camera's picture
     bool match_blur = false; ///< blur added light as much as the camera's pictures
 };
