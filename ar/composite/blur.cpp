@@ -10,7 +10,7 @@
 namespace ar {
 namespace {
 
-/// CV_32FC4: what is added, and the coverage.
+/// CV_32FC4: the added light, and the coverage.
 cv::Mat layer_of(RenderedPair const& pair)
 {
     cv::Mat layer(pair.with.size(), CV_32FC4);

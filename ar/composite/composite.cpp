@@ -10,7 +10,7 @@
 namespace ar {
 namespace {
 
-/// 0 times what is not finite is NaN.
+/// Needed because 0 times infinity is NaN.
 bool is_finite(cv::Vec3f const& v)
 {
     float const zero = 0 * v[0] + 0 * v[1] + 0 * v[2];

@@ -37,7 +37,7 @@ cv::Vec3f at_least(cv::Vec3f v)
 /// Share of each low-resolution pixel that shows the place and is separable from objects; 0 = unknown.
 cv::Mat share_known(RenderedPair const& low)
 {
-    constexpr float kMostCovered = 0.75f; // beyond it, what is left is mostly noise
+    constexpr float kMostCovered = 0.75f; // above this, the uncovered part is mostly noise
     cv::Mat share(low.coverage.size(), CV_32FC1);
     share.forEach<float>([&](float& s, int const* at) {
         float const a = low.coverage.at<float>(at[0], at[1]);

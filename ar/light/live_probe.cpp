@@ -17,7 +17,7 @@ constexpr float kPiF = std::numbers::pi_v<float>;
 constexpr float kWellSeen = 0.5f; ///< share of a texel from which ratios and changes are read
 constexpr double kLeastRatio = 1e-3, kMostRatio = 1e3;
 
-/// The weighted median of ratios, within what is possible; 1 of nothing.
+/// Weighted median of ratios, clamped to a plausible range; 1 without any.
 double middle_ratio(std::vector<std::pair<double, double>> ratios)
 {
     double const middle = gi::weighted_median(std::move(ratios));

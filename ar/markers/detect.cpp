@@ -128,7 +128,7 @@ SearchSettings search_settings(DetectorSettings const& settings, cv::Size pictur
     int const width = std::max(picture.width, picture.height);
     s.smallest_side_px = settings.smallest_side_px > 0 ? settings.smallest_side_px : std::max(8., width / 80.);
     s.enlarge = settings.enlarge;
-    // A window must be wider than what is thresholded is soft, and narrower than white margins matter.
+    // Windows must be wider than the blur of edges, and narrower than the white margins.
     s.smallest_window_px = s.enlarge > 1 || width > 1400 ? 5 : 3;
     s.window_step_px = width > 1400 ? 16 : 10;
     s.largest_window_px = s.smallest_window_px + 2 * s.window_step_px;

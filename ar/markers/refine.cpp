@@ -11,7 +11,7 @@
 namespace ar {
 namespace {
 
-/// Between pixels; at the border what is nearest.
+/// Bilinear interpolation; clamped at the border.
 float byte_at(cv::Mat const& gray, cv::Point2d p)
 {
     double const x = std::clamp(p.x, 0., gray.cols - 1.), y = std::clamp(p.y, 0., gray.rows - 1.);
@@ -80,7 +80,7 @@ Line line_through(std::vector<EdgePoint> const& points)
     return {mean, {-std::sin(angle), std::cos(angle)}};
 }
 
-/// A side of a marker, without its ends: there the other side is seen, too.
+/// A side of a marker without its ends, where the adjacent side interferes.
 std::optional<Line> side_between(cv::Mat const& gray, cv::Point2d from, cv::Point2d to, double reach_px)
 {
     double const end = std::clamp(2.5 / cv::norm(to - from), 0.06, 0.25);
@@ -145,7 +145,7 @@ double growth_of(cv::Mat const& gray, std::array<cv::Point2f, 4> const& corners,
     return std::clamp(gi::median(std::move(growths)), -1., 1.);
 }
 
-/// Where two lines of a chessboard cross. The four arms reach to these places; black is clockwise of the first
+/// Crossing of two lines of a chessboard. The four arms end at these points; black is clockwise of the first
 /// and of the third.
 std::optional<cv::Point2d> saddle(cv::Mat const& gray, cv::Point2d at, std::array<cv::Point2d, 4> const& ends,
                                   double reach_px)
@@ -241,7 +241,7 @@ std::vector<FoundCorner> find_inner_corners(cv::Mat const& gray, CharucoBoard co
         };
         glm::dvec3 const corner_m = inner[std::size_t(index)];
         cv::Point2d const start = predicted(corner_m);
-        // Windows that no marker is in.
+        // Windows that contain no part of a marker.
         int const window = std::clamp(int(p.nearest_px / std::sqrt(2.) - 0.5), 2, 8);
         double const border = window + 1;
         if (!(start.x >= border && start.y >= border && start.x <= gray.cols - 1 - border &&

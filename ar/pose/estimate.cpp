@@ -93,7 +93,7 @@ double scale_of(CameraModel const& camera, SightedPoints const& points, Pose con
     return std::clamp(gi::median(std::move(misses)) / 1.1774, 1.0, kMostScale); // of a Rayleigh distribution
 }
 
-/// Single points, and whole markers of which half of the points disagree.
+/// Rejects single points, and whole markers if half of their points disagree.
 SightedPoints agreeing(CameraModel const& camera, SightedPoints const& points, Pose const& pose, double limit)
 {
     SightedPoints kept;
@@ -263,7 +263,7 @@ PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera, 
     for (std::size_t i = 0; i < std::min(guesses.size(), kRefinedGuesses); ++i) {
         Agreed const a = agree(camera, points, guesses[i]);
         if (a.points.size() >= 4 && (!best || a.cost < best->cost)) best = a;
-        if (best && best->cost < 0.05 * double(points.size())) break; // nothing is left to explain
+        if (best && best->cost < 0.05 * double(points.size())) break; // all points agree
     }
     if (!best || 2 * best->points.size() < points.size()) return failed(PoseFailure::no_agreement, sighting);
     PointSet const kept = survey(best->points);

@@ -49,7 +49,7 @@ cv::Mat decoded_png(std::filesystem::path const& file)
     return map;
 }
 
-/// In metres; 0 and what is not finite: nothing.
+/// Converts to metres; 0 and non-finite values: no surface.
 cv::Mat depths_of(ProxyDepth const& depth)
 {
     std::string ending = depth.file.extension().string();

@@ -101,7 +101,7 @@ TrackedCamera::TrackedCamera(ArTracked const& tracked, gi::Report& report)
     TrackerSettings settings = tracker_settings(tracker);
     if (tracker.type == DisplayTrackerType::openxr || tracker.type == DisplayTrackerType::fake)
         throw gi::InputError("the tracker '" + tracker.name + "' cannot track a camera",
-                             "headsets and keys do not track cameras", "use one of type osc, dtrack or file");
+                             "headsets and keys move no camera", "use one of type osc, dtrack or file");
     if (tracker.type != DisplayTrackerType::file) {
         hub_ = std::make_unique<TrackerHub>(std::vector{settings}, Polling::by_thread);
         return;
