@@ -31,7 +31,7 @@ void check_pictures(std::span<cv::Mat const> rgb, std::string const& what)
         if (p.empty() || p.type() != CV_8UC3 || p.size() != rgb[0].size())
             throw InputError(what + ": a picture is of another kind or size", "pixels are compared one by one",
                              "take RGB pictures of one camera");
-    if (rgb.empty()) throw InputError(what + ": there is no picture", "nothing can be learned", "take some");
+    if (rgb.empty()) throw InputError(what + ": there is no picture", "the fit needs pictures", "take some");
 }
 
 cv::Vec3d lab_of(cv::Vec3d const& linear)
@@ -83,7 +83,7 @@ VignettingFit vignetting_of_flat(std::span<cv::Mat const> rgb, Photometry const&
     double furthest = 0;
     for (Sample const& s : samples) furthest = std::max(furthest, std::sqrt(s.r2));
     if (furthest < 0.8)
-        throw InputError(fmt::format("what is not clipped of the flat field reaches to radius {:.2f}", furthest),
+        throw InputError(fmt::format("the unclipped part of the flat field reaches to radius {:.2f}", furthest),
                          "the curve is fitted up to 1, the corners", "expose it so that the corners are in range");
     // unit = level (1 + a r2 + b r4 + c r6): linear in a, b, c for fixed levels, and vice versa.
     VignettingFit fit;

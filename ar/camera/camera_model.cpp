@@ -163,9 +163,9 @@ void check(CameraModel const& c, std::string const& where)
         throw InputError(where + ": " + problem, why, "calibrate the camera again");
     };
     for (double v : {c.fx, c.fy, c.cx, c.cy})
-        if (!std::isfinite(v)) refuse("a number of the camera's matrix is not finite", "no ray has a pixel");
+        if (!std::isfinite(v)) refuse("a number of the camera's matrix is not finite", "rays cannot be projected");
     for (double v : c.distortion)
-        if (!std::isfinite(v)) refuse("a distortion coefficient is not finite", "no ray has a pixel");
+        if (!std::isfinite(v)) refuse("a distortion coefficient is not finite", "rays cannot be projected");
     if (c.size_px.x < 1 || c.size_px.y < 1 || c.size_px.x > 65536 || c.size_px.y > 65536)
         refuse(fmt::format("pictures of {} x {} pixels", c.size_px.x, c.size_px.y),
                "1 to 65536 each way are possible");

@@ -22,7 +22,7 @@ cv::Mat decoded(Frame const& f, int mode)
     if (picture.cols != f.size_px.x || picture.rows != f.size_px.y)
         throw InputError(fmt::format("frame {} has {} x {} pixels in place of {} x {}", f.sequence, picture.cols,
                                      picture.rows, f.size_px.x, f.size_px.y),
-                         "its rays are those of another calibration", "count it as lost");
+                         "the calibration is for another size", "count it as lost");
     return picture;
 }
 

@@ -37,7 +37,7 @@ void check_frame(Frame const& f)
 {
     auto const refuse = [&](std::string const& why) {
         throw InputError(fmt::format("frame {} cannot be recorded", f.sequence), why,
-                         "hand it over as the source gave it");
+                         "pass it as the source delivered it");
     };
     Exposure const& e = f.exposure;
     for (double const v : {f.captured_s, f.arrived_s, e.time_s, e.gain, e.red_gain, e.blue_gain})
@@ -96,7 +96,7 @@ SessionWriter::SessionWriter(std::filesystem::path const& folder, SessionHeader 
     std::error_code error;
     if (!std::filesystem::create_directory(folder, error))
         throw InputError("cannot make the folder '" + folder.string() + "'",
-                         error ? error.message() : "it exists, and what was recorded is never overwritten",
+                         error ? error.message() : "it exists, and recordings are never overwritten",
                          error ? "choose a folder that can be written" : "choose another name, or move it away");
     header_.finished.reset();
     if (header_.created.empty()) header_.created = parse_session_header(to_json(header_), folder.string()).created;

@@ -10,7 +10,7 @@
 namespace ar {
 namespace {
 
-/// Needed because 0 times infinity is NaN.
+/// True if all components are finite (0 times a non-finite value is NaN).
 bool is_finite(cv::Vec3f const& v)
 {
     float const zero = 0 * v[0] + 0 * v[1] + 0 * v[2];
@@ -103,7 +103,7 @@ Compositor::Compositor(Photometry const& p, CompositeSettings const& settings)
     bool invertible = false;
     camera_colour_ = p.colour.inv(cv::DECOMP_LU, &invertible);
     if (!invertible)
-        throw InputError("the camera's colour matrix has no inverse", "radiance cannot be brought to its bytes",
+        throw InputError("the camera's colour matrix has no inverse", "radiance cannot be converted to bytes",
                          "calibrate colour again, or use the unit matrix");
     if (!(p.radiance_per_unit > 0) || !std::isfinite(p.radiance_per_unit))
         throw InputError(fmt::format("radiance_per_unit = {}", p.radiance_per_unit), "it must be positive",
@@ -127,7 +127,7 @@ CompositeCounts Compositor::operator()(cv::Mat const& rgb, RenderedPair const& p
                                        cv::Mat& out, std::uint64_t frame_number)
 {
     if (rgb.type() != CV_8UC3 || rgb.empty())
-        throw InputError("the camera's frame is not RGB of 8 bits", "its bytes cannot be given a meaning",
+        throw InputError("the camera's frame is not RGB of 8 bits", "other formats are not supported",
                          "convert it with rgb_of()");
     check(pair, rgb.size());
     out.create(rgb.size(), CV_8UC3);

@@ -93,7 +93,7 @@ double scale_of(CameraModel const& camera, SightedPoints const& points, Pose con
     return std::clamp(gi::median(std::move(misses)) / 1.1774, 1.0, kMostScale); // of a Rayleigh distribution
 }
 
-/// Rejects single points, and whole markers if half of their points disagree.
+/// Returns the agreeing points, without markers of which half or more of the points disagree.
 SightedPoints agreeing(CameraModel const& camera, SightedPoints const& points, Pose const& pose, double limit)
 {
     SightedPoints kept;

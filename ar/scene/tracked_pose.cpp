@@ -151,7 +151,7 @@ std::optional<ar::Pose> TrackedCamera::at(double steady_s)
 std::string TrackedCamera::describe() const
 {
     if (!hub_) return {};
-    std::string text = fmt::format("tracker: of {} frames it knew {}\n", asked_, known_);
+    std::string text = fmt::format("tracker: {} frames, {} with a pose\n", asked_, known_);
     for (TrackerReport const& r : hub_->report(ar::steady_now_s()))
         text += fmt::format("  {}: {} packets, {} samples, {} malformed, {} lost\n", r.description,
                             r.counts.packets, r.counts.samples, r.counts.malformed, r.counts.lost);
