@@ -13,7 +13,7 @@ double squared(std::vector<glm::dvec2> const& r)
     return sum;
 }
 
-/// A small turn and step, on the left.
+/// Applies a small rotation and translation from the left.
 Pose moved(Pose const& p, cv::Vec6d const& by)
 {
     Pose const d = pose_of({by[0], by[1], by[2]}, {0, 0, 0});
@@ -114,7 +114,7 @@ std::optional<Pose> camera_from_board(CameraModel const& camera, BoardView const
     std::vector<cv::Point2d> plane;
     for (std::size_t i = 0; i < view.pixels.size(); ++i) {
         auto const d = direction_of(camera, view.pixels[i]);
-        if (!d || d->z < 0.02) continue; // beyond 88 degrees the plane ends
+        if (!d || d->z < 0.02) continue; // more than 88 degrees off the axis
         board.emplace_back(view.board_m[i].x, view.board_m[i].y, 0);
         plane.emplace_back(d->x / d->z, d->y / d->z);
     }

@@ -10,7 +10,7 @@
 
 namespace ar {
 
-inline constexpr std::size_t kFewestPoints = 6; ///< of a view that a lens is fitted to
+inline constexpr std::size_t kFewestPoints = 6; ///< minimum points per view for fitting a lens
 
 struct BoardView {
     std::string name;                ///< of the picture, for messages
@@ -18,19 +18,21 @@ struct BoardView {
     std::vector<glm::dvec2> pixels;
 };
 
-/// What a sighting has of board number `board` (in map.boards).
+/// Returns the sighting's points on board number `board` (index into map.boards).
 BoardView view_of(Sighting const& sighting, MarkerMap const& map, std::size_t board, std::string name);
 
-/// A plain chessboard by cv::findChessboardCornersSB (Duda and Frese 2018); nothing where it is not seen whole.
-/// @param corners_x,corners_y inner corners, each at least 3; origin: the lower left of them as printed, as far as
-/// the board tells its turn
+/// Detects a plain chessboard by cv::findChessboardCornersSB (Duda and Frese 2018); nothing unless it is fully
+/// visible.
+/// @param corners_x,corners_y inner corners, each at least 3. The origin is the lower left inner corner as
+/// printed, as far as the board's pattern determines its orientation
 std::optional<BoardView> find_chessboard(cv::Mat const& gray, int corners_x, int corners_y, double square_m,
                                          std::string name);
 
-/// Where the board is, by least squares of pixels. Nothing for fewer than four points or where they fit no pose.
+/// Pose of the board by least squares of the reprojection error; nothing for fewer than four points or if no pose
+/// fits them.
 std::optional<Pose> camera_from_board(CameraModel const& camera, BoardView const& view);
 
-/// Seen minus projected, pixels; points that the camera does not see are (1e3, 1e3) off.
+/// Observed minus projected position in pixels; (1e3, 1e3) for points outside the camera's view.
 std::vector<glm::dvec2> residuals(CameraModel const& camera, Pose const& camera_from_board, BoardView const& view);
 double rms(std::vector<glm::dvec2> const& residuals);
 

@@ -69,7 +69,7 @@ LensModel lens_of(gi::Yaml const& top, std::size_t coefficients)
         gi::Yaml const y = top.at("lens_model");
         auto const lens = lens_named(y.text());
         if (!lens)
-            throw y.error("'" + y.text().substr(0, 64) + "' is no lens model", "its equation is not known",
+            throw y.error("'" + y.text().substr(0, 64) + "' is no lens model", "it is unknown",
                           "write pinhole, radial_tangential, rational or fisheye");
         return *lens;
     }
@@ -85,7 +85,7 @@ void read_lens(gi::Yaml const& top, CameraModel& c)
     Matrix const m = read_matrix(k, 3, 3);
     auto const& v = m.values;
     if (std::abs(v[1]) > 1e-9 * std::abs(v[0]) || v[3] != 0 || v[6] != 0 || v[7] != 0 || v[8] != 1)
-        throw k.error("camera_matrix is not [fx 0 cx; 0 fy cy; 0 0 1]", "pixels are taken to be at right angles",
+        throw k.error("camera_matrix is not [fx 0 cx; 0 fy cy; 0 0 1]", "pixel axes are assumed to be orthogonal",
                       "calibrate without skew");
     c.fx = v[0];
     c.cx = v[2];
@@ -119,7 +119,7 @@ glm::ivec2 read_size(gi::Yaml const& top, std::optional<glm::ivec2> given)
         return {int(v[0]), int(v[1])};
     }
     if (given) return *given;
-    throw top.error("the file does not say how large pictures are", "a pixel's ray depends on it",
+    throw top.error("the file does not say how large pictures are", "rays depend on the size",
                     "write image_width: 640 and image_height: 480");
 }
 
@@ -133,7 +133,7 @@ Photometry read_photometry(gi::Yaml const& top)
             double const v = curve.values[256 * c + i];
             if (v < 0 || v > 1e6 || (i > 0 && v < curve.values[256 * c + i - 1]))
                 throw y.error(fmt::format("the response of channel {} at byte {} is {}", c, i, v),
-                              "brighter bytes mean no less light, and light is not negative",
+                              "responses are non-negative and do not decrease",
                               "calibrate it again");
             p.unit_of_byte[c][i] = float(v);
         }
@@ -175,7 +175,7 @@ std::string number(double v) { return fmt::format("{}", v); }
 Calibration parse_calibration(std::string const& text, std::string const& file, std::optional<glm::ivec2> size_px)
 {
     gi::Yaml const top = gi::Yaml::parse(text, file);
-    top.keys(); // a map, each key once; files of others have keys of their own
+    top.keys(); // must be a map with unique keys; other programs' files may have further keys
     Calibration out;
     read_lens(top, out.camera);
     out.camera.size_px = read_size(top, size_px);
@@ -253,8 +253,8 @@ void write_calibration(std::filesystem::path const& file, Calibration const& c)
             throw gi::InputError("'" + key + "' is no key of provenance", "keys are letters, digits and _",
                                  "rename it");
     std::string const text = format_calibration(c);
-    parse_calibration(text, file.string()); // nothing is written that would not be read
-    gi::write_text(file, text);
+    parse_calibration(text, file.string()); // refuse to write what could not be read back
+    write_text(file, text);
 }
 
 } // namespace ar

@@ -9,12 +9,12 @@
 namespace ar {
 namespace {
 
-constexpr double kStill_px = 1.5; ///< between frames; more is blur
+constexpr double kStill_px = 1.5; ///< largest motion between frames; more causes blur
 constexpr double kAlike = 0.12;   ///< distance of features
 constexpr double kTilted = 0.2;   ///< 17 degrees, as a feature
 constexpr int kColumns = 8, kRows = 6;
 
-/// Mean way of the points that both have; nothing where they share none.
+/// Mean motion of the points in both views; nothing if they share none.
 std::optional<double> moved_px(BoardView const& a, BoardView const& b)
 {
     double sum = 0;

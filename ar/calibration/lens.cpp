@@ -53,7 +53,7 @@ Fit fit(std::vector<BoardView const*> const& views, glm::ivec2 size_px, LensMode
     Fit out;
     try {
         if (lens == LensModel::fisheye) {
-            // A guess as of a lens whose half diagonal is 60 degrees: the own guess of fisheye::calibrate often
+            // Start from a lens whose half diagonal is 60 degrees: the initial guess of fisheye::calibrate often
             // fails.
             double const f = 0.5 * std::hypot(size_px.x, size_px.y) / 1.05;
             k = (cv::Mat_<double>(3, 3) << f, 0, 0.5 * size_px.x - 0.5, 0, f, 0.5 * size_px.y - 0.5, 0, 0, 1);
@@ -261,7 +261,7 @@ LensCalibration calibrate_lens(std::vector<BoardView> const& views, glm::ivec2 s
         count += double(r.residuals_px.size());
         chosen.push_back(views[used[k]]);
     }
-    for (std::size_t i = 0; i < views.size(); ++i) { // those left out are placed by the others' lens
+    for (std::size_t i = 0; i < views.size(); ++i) { // poses of views left out, under the lens of the others
         ViewResult& r = out.views[i];
         auto const pose = r.used ? std::nullopt : camera_from_board(out.camera, views[i]);
         if (!pose) continue;

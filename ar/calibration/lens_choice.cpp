@@ -41,7 +41,7 @@ LensTrial tried(LensModel lens, std::vector<BoardView> const& views, glm::ivec2 
 
 LensChoice choose_lens(std::vector<BoardView> const& views, glm::ivec2 size_px, LensOptions const& options)
 {
-    // Views that are wrong for the most usual model would decide by their own error.
+    // Leave out outliers of the most common model: their errors would dominate the choice.
     LensCalibration const first = calibrate_lens(views, size_px, LensModel::radial_tangential, options);
     std::vector<BoardView> good;
     for (std::size_t i = 0; i < views.size(); ++i)

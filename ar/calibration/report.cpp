@@ -25,7 +25,7 @@ std::string image_of(cv::Mat const& picture, glm::ivec2 size)
                        size.x, size.y, gi::encode_base64(jpeg));
 }
 
-/// Arrows from where points are seen, 50 times as long as what they are off; views left out are red.
+/// Residual arrows at the observed points, 50 times enlarged; views left out are red.
 std::string residual_drawing(CalibrationReport const& r)
 {
     auto const& c = r.lens.camera;

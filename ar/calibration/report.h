@@ -1,6 +1,6 @@
 #pragma once
-// A calibration as one HTML page that needs no other file: residuals over the picture, coverage, views, parameters
-// with their standard deviations, curves of the response.
+// Writes a calibration as one self-contained HTML page: residuals over the picture, coverage, views, parameters
+// with their standard deviations, response curves.
 
 #include "ar/calibration/calibration_file.h"
 #include "ar/calibration/lens_choice.h"

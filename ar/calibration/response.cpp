@@ -10,9 +10,9 @@
 namespace ar {
 namespace {
 
-constexpr int kDarkest = 16, kBrightest = 247; ///< bytes to learn from: noise clips none of them
+constexpr int kDarkest = 16, kBrightest = 247; ///< range of bytes used for fitting: noise does not clip them
 constexpr int kTerms = 6;
-constexpr double kByteSigma = 0.5; ///< of rounding, and of what the response is off
+constexpr double kByteSigma = 0.5; ///< of quantisation and errors of the response
 
 /// ln(unit) of a byte is a sum of these, and 0 at 255: a power law times a smooth curve.
 std::array<double, kTerms> terms_of(int byte)
@@ -29,7 +29,7 @@ struct ChannelFit {
     int pairs = 0;
 };
 
-/// What two exposures say of one pixel differs by the ratio of their times: linear in the terms.
+/// Two exposures of one pixel differ by the ratio of their times: linear in the terms.
 ChannelFit fit_channel(Bracket const& b, std::vector<double> const& light, int channel)
 {
     constexpr int kMostPixels = 20000;
@@ -48,7 +48,7 @@ ChannelFit fit_channel(Bracket const& b, std::vector<double> const& light, int c
                         cv::Vec<double, kTerms> d;
                         for (int k = 0; k < kTerms; ++k)
                             d[k] = terms[std::size_t(p)][std::size_t(k)] - terms[std::size_t(q)][std::size_t(k)];
-                        // A byte of noise is a larger part of dark ones.
+                        // One byte of noise is relatively larger for dark pixels.
                         use(d, std::log(light[i] / light[j]), 1 / (1. / (p * p) + 1. / (q * q)));
                     }
     };
@@ -145,7 +145,7 @@ MergedRadiance merge(Bracket const& b, Photometry const& photometry, MergeOption
     for (auto const& e : b.exposures) light.push_back(relative_exposure(e, photometry.reference));
     auto const shortest = std::size_t(std::min_element(light.begin(), light.end()) - light.begin());
     auto const longest = std::size_t(std::max_element(light.begin(), light.end()) - light.begin());
-    // Sigma of the unit of a byte: noise of the sensor, and rounding times the slope of the curve there.
+    // Sigma of a byte's unit: sensor noise, and quantisation times the local slope of the curve.
     std::array<std::array<double, 256>, 3> sigma{};
     std::array<std::array<bool, 256>, 3> clipped{}; // noise would clip part of it
     for (std::size_t c = 0; c < 3; ++c)
@@ -187,7 +187,7 @@ MergedRadiance merge(Bracket const& b, Photometry const& photometry, MergeOption
                 double const mean = sum / weight;
                 if (weight > 1e-20)
                     for (std::size_t i = 0; i < n; ++i) {
-                        // What this exposure should have shown, and how far from it noise can be.
+                        // Expected value of this exposure, and its noise.
                         std::uint8_t const v = b.rgb[i].at<cv::Vec3b>(y, x)[int(c)];
                         double const expected = mean * light[i], seen = photometry.unit_of_byte[c][v];
                         double const reach =
@@ -199,7 +199,7 @@ MergedRadiance merge(Bracket const& b, Photometry const& photometry, MergeOption
                         if (!may_be_white && !may_be_black && std::abs(seen - expected) > reach) moved = true;
                     }
                 to[int(c)] = float(mean);
-                if (weight <= 1e-20) { // clipped in all: white in the shortest or black in the longest says most
+                if (weight <= 1e-20) { // clipped in all: use the shortest (white) or the longest (black)
                     std::size_t const from = bright[int(c)] >= 253 ? shortest : longest;
                     to[int(c)] = float(said[c][from][0]);
                 }
@@ -212,7 +212,7 @@ MergedRadiance merge(Bracket const& b, Photometry const& photometry, MergeOption
             ++out.inconsistent;
             std::size_t best = 0;
             double least = 1e300;
-            for (std::size_t i = 0; i < n; ++i) { // one exposure for all channels: colours of two moments are none
+            for (std::size_t i = 0; i < n; ++i) { // the same exposure for all channels
                 double relative = 0;
                 for (std::size_t c = 0; c < 3; ++c)
                     relative += said[c][i][1] / std::pow(std::max(said[c][i][0], 1e-9), 2);
@@ -223,7 +223,7 @@ MergedRadiance merge(Bracket const& b, Photometry const& photometry, MergeOption
             }
             for (std::size_t c = 0; c < 3; ++c) to[int(c)] = float(said[c][best][0]);
         }
-    // Vignetting and colour as radiance_of has them: the picture of a camera with linear units, per unit.
+    // Apply vignetting and colour as in radiance_of.
     bool const vignetted = photometry.vignetting != std::array<double, 3>{};
     out.radiance.create(size, CV_32FC3);
     for (int y = 0; y < size.height; ++y)

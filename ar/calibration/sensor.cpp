@@ -11,7 +11,7 @@
 namespace ar {
 namespace {
 
-/// 0 at the centre, 1 at the corners.
+/// Normalised radius: 0 at the centre, 1 at the corners.
 double radius_squared(cv::Size size, double x, double y)
 {
     double const dx = x + 0.5 - 0.5 * size.width, dy = y + 0.5 - 0.5 * size.height;
@@ -30,8 +30,8 @@ void check_pictures(std::span<cv::Mat const> rgb, std::string const& what)
     for (cv::Mat const& p : rgb)
         if (p.empty() || p.type() != CV_8UC3 || p.size() != rgb[0].size())
             throw gi::InputError(what + ": a picture is of another kind or size", "pixels are compared one by one",
-                                 "take RGB pictures of one camera");
-    if (rgb.empty()) throw gi::InputError(what + ": there is no picture", "nothing can be learned", "take some");
+                             "take RGB pictures of one camera");
+    if (rgb.empty()) throw gi::InputError(what + ": there is no picture", "the fit needs pictures", "take some");
 }
 
 cv::Vec3d lab_of(cv::Vec3d const& linear)
@@ -52,7 +52,7 @@ cv::Vec3d lab_of(cv::Vec3d const& linear)
 VignettingFit vignetting_of_flat(std::span<cv::Mat const> rgb, Photometry const& response)
 {
     check_pictures(rgb, "pictures of a flat field");
-    // Means of blocks: noise is smaller and every part of the picture counts alike.
+    // Use means of blocks: less noise, and equal weight for every part of the picture.
     constexpr int kBlocks = 24;
     struct Sample {
         double r2, unit;
@@ -83,10 +83,9 @@ VignettingFit vignetting_of_flat(std::span<cv::Mat const> rgb, Photometry const&
     double furthest = 0;
     for (Sample const& s : samples) furthest = std::max(furthest, std::sqrt(s.r2));
     if (furthest < 0.8)
-        throw gi::InputError(
-            fmt::format("what is not clipped of the flat field reaches to radius {:.2f}", furthest),
-            "the curve is fitted up to 1, the corners", "expose it so that the corners are in range");
-    // unit = level (1 + a r2 + b r4 + c r6): given the levels linear in a, b, c, and the other way round.
+        throw gi::InputError(fmt::format("the unclipped part of the flat field reaches to radius {:.2f}", furthest),
+                         "the curve is fitted up to 1, the corners", "expose it so that the corners are in range");
+    // unit = level (1 + a r2 + b r4 + c r6): linear in a, b, c for fixed levels, and vice versa.
     VignettingFit fit;
     std::vector<double> level(std::size_t(levels), 0);
     for (int round = 0; round < 30; ++round) {
@@ -99,7 +98,7 @@ VignettingFit vignetting_of_flat(std::span<cv::Mat const> rgb, Photometry const&
             down[std::size_t(s.level)] += falloff(s.r2) * falloff(s.r2);
         }
         for (std::size_t i = 0; i < level.size(); ++i) level[i] = down[i] > 0 ? up[i] / down[i] : 1;
-        // With the scale of all levels as a fourth unknown: alone, the two would creep towards each other.
+        // The scale of all levels is a fourth unknown; without it, the alternation would converge slowly.
         cv::Mat rows(int(samples.size()), 4, CV_64F), right(int(samples.size()), 1, CV_64F);
         for (int i = 0; i < rows.rows; ++i) {
             Sample const& s = samples[std::size_t(i)];
@@ -134,14 +133,14 @@ NoiseFit noise_of_pairs(std::span<cv::Mat const> rgb, Photometry const& response
     for (std::size_t k = 0; k < rgb.size(); k += 2)
         if (cv::norm(rgb[k], rgb[k + 1], cv::NORM_INF) == 0)
             throw gi::InputError(fmt::format("the frames of pair {} do not differ", k / 2 + 1),
-                                 "no sensor is without noise", "take two pictures, not one twice");
+                             "every sensor has noise", "take two pictures, not one twice");
     std::map<int, Bin> bins; // of the pair's mean byte in steps of two
     for (std::size_t k = 0; k < rgb.size(); k += 2)
         for (int y = 0; y < rgb[k].rows; ++y)
             for (int x = 0; x < rgb[k].cols; ++x)
                 for (std::size_t c = 0; c < 3; ++c) {
                     auto const a = rgb[k].at<cv::Vec3b>(y, x)[int(c)], b = rgb[k + 1].at<cv::Vec3b>(y, x)[int(c)];
-                    if (a <= 8 || b <= 8 || a >= 245 || b >= 245) continue; // noise must not be cut off
+                    if (a <= 8 || b <= 8 || a >= 245 || b >= 245) continue; // noise must not be clipped
                     double const u = unit_of(response, c, a), v = unit_of(response, c, b);
                     int const byte = (a + b) / 2;
                     double const slope = 0.25 * (unit_of(response, c, std::uint8_t(byte + 2)) -
@@ -222,11 +221,11 @@ ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f cons
         }
     cv::SVD const svd(seen, cv::SVD::NO_UV);
     if (!(svd.w.at<double>(2) > 5e-3 * svd.w.at<double>(0)))
-        throw gi::InputError("the patches seen do not span colours", "a matrix cannot be told from them",
-                             "check the patches' positions");
+        throw gi::InputError("the patches seen do not span colours", "they do not determine a matrix",
+                         "check the patches' positions");
     cv::Mat transposed;
     cv::solve(seen, known, transposed, cv::DECOMP_SVD);
-    // How bright the chart was lit is not the camera's: by brightness alone, least squares.
+    // The chart's illumination is no property of the camera: fit the brightness alone, by least squares.
     double const brightness = seen.dot(known) / seen.dot(seen);
     ColourFit fit;
     double before = 0;
@@ -243,8 +242,8 @@ ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f cons
     fit.delta_e_before = before;
     if (fit.mean_delta_e > 10)
         throw gi::InputError(fmt::format("the patches are off by delta E {:.0f} on the mean", fit.mean_delta_e),
-                             "no matrix makes the chart's colours of those seen",
-                             "check the patches' positions and order");
+                         "no matrix maps them to the chart's colours",
+                         "check the patches' positions and order");
     fit.brightness = brightness;
     fit.largest_delta_e = *std::max_element(fit.delta_e.begin(), fit.delta_e.end());
     for (int c = 0; c < 3; ++c)

@@ -1,5 +1,5 @@
 #pragma once
-// What was fitted of a sensor, beside what it was fitted to, as one HTML page that needs no other file.
+// Writes the fitted sensor curves beside their data as one self-contained HTML page.
 
 #include "ar/calibration/sensor.h"
 
@@ -12,7 +12,7 @@ struct SensorReport {
     std::optional<VignettingFit> vignetting;
     std::optional<NoiseFit> noise;
     std::optional<ColourFit> colour;
-    std::vector<cv::Vec3f> patches; ///< units of the chart's 24 patches, which `colour` was fitted to
+    std::vector<cv::Vec3f> patches; ///< units of the chart's 24 patches that `colour` was fitted to
 };
 
 std::string to_html(SensorReport const& report);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<char const*, 4> kNames{"pinhole", "radial_tangential", "rational", "fisheye"};
 
-/// What the lens does on the plane z = 1.
+/// Applies the lens distortion on the plane z = 1.
 glm::dvec2 distorted(CameraModel const& c, glm::dvec2 p)
 {
     auto const& d = c.distortion;
@@ -35,7 +35,7 @@ glm::dvec2 on_plane(CameraModel const& c, glm::dvec2 pixel)
     return {(pixel.x - c.cx) / c.fx, (pixel.y - c.cy) / c.fy};
 }
 
-/// Newton's method in two dimensions, differences for derivatives.
+/// Newton's method in two dimensions, with finite differences.
 std::optional<glm::dvec2> undistorted(CameraModel const& c, glm::dvec2 target)
 {
     glm::dvec2 p = target;
@@ -51,13 +51,13 @@ std::optional<glm::dvec2> undistorted(CameraModel const& c, glm::dvec2 target)
         double const det = by_x.x * by_y.y - by_x.y * by_y.x;
         if (!(std::abs(det) > 1e-12)) return std::nullopt;
         glm::dvec2 step = glm::dvec2(by_y.y * miss.x - by_y.x * miss.y, by_x.x * miss.y - by_x.y * miss.x) / det;
-        double const limit = 0.5 * (1 + glm::length(p)); // far steps leave the branch that lenses have
+        double const limit = 0.5 * (1 + glm::length(p)); // large steps would leave the physical branch
         if (glm::length(step) > limit) step *= limit / glm::length(step);
         p -= step;
     }
     glm::dvec2 const miss = distorted(c, p) - target;
     if (!(std::max(std::abs(miss.x), std::abs(miss.y)) < 1e-10)) return std::nullopt;
-    // Beyond the fold the pixel is that of a nearer ray, too: outward must stay outward.
+    // Where the distortion folds back, several rays share a pixel: require a monotonic radius.
     double const r = glm::length(p);
     if (r > 0 && glm::dot(distorted(c, p * (1 + 1e-6)) - distorted(c, p), p) <= 0) return std::nullopt;
     return p;
@@ -163,9 +163,9 @@ void check(CameraModel const& c, std::string const& where)
         throw gi::InputError(where + ": " + problem, why, "calibrate the camera again");
     };
     for (double v : {c.fx, c.fy, c.cx, c.cy})
-        if (!std::isfinite(v)) refuse("a number of the camera's matrix is not finite", "no ray has a pixel");
+        if (!std::isfinite(v)) refuse("a number of the camera's matrix is not finite", "rays cannot be projected");
     for (double v : c.distortion)
-        if (!std::isfinite(v)) refuse("a distortion coefficient is not finite", "no ray has a pixel");
+        if (!std::isfinite(v)) refuse("a distortion coefficient is not finite", "rays cannot be projected");
     if (c.size_px.x < 1 || c.size_px.y < 1 || c.size_px.x > 65536 || c.size_px.y > 65536)
         refuse(fmt::format("pictures of {} x {} pixels", c.size_px.x, c.size_px.y),
                "1 to 65536 each way are possible");

@@ -1,7 +1,7 @@
 #pragma once
-// From rays to pixels: the models of OpenCV's calib3d. A point of the camera's frame (x right, y down, z ahead)
-// goes to the plane z = 1, is moved there by the lens, and lands at (fx x + cx, fy y + cy). Pixel centres have
-// whole coordinates: the picture spans [-0.5, width - 0.5].
+// Projection models of OpenCV's calib3d. A point of the camera's frame (x right, y down, z ahead) is projected to
+// the plane z = 1, distorted there by the lens, and mapped to (fx x + cx, fy y + cy). Pixel centres have
+// integer coordinates: the picture spans [-0.5, width - 0.5].
 //   radial_tangential  k1 k2 p1 p2 k3            Brown 1966
 //   rational           k1 k2 p1 p2 k3 k4 k5 k6   the same over 1 + k4 r^2 + k5 r^4 + k6 r^6
 //   fisheye            k1 k2 k3 k4               Kannala and Brandt 2006, of the angle to the axis
@@ -17,9 +17,9 @@
 namespace ar {
 
 enum class LensModel { pinhole, radial_tangential, rational, fisheye };
-/// 0, 5, 8, 4.
+/// Number of distortion coefficients: 0, 5, 8, 4.
 int coefficient_count(LensModel lens);
-/// As calibration files spell them: "pinhole", "radial_tangential", "rational", "fisheye".
+/// Name in calibration files: "pinhole", "radial_tangential", "rational", "fisheye".
 std::string name_of(LensModel lens);
 std::optional<LensModel> lens_named(std::string const& name);
 
@@ -28,32 +28,32 @@ struct CameraModel {
     glm::ivec2 size_px{0};
     double fx = 0, fy = 0;              ///< pixels
     double cx = 0, cy = 0;              ///< pixels
-    std::array<double, 8> distortion{}; ///< in the order above; what a model does not have is 0
+    std::array<double, 8> distortion{}; ///< in the order above; unused coefficients are 0
 
     friend bool operator==(CameraModel const&, CameraModel const&) = default;
 };
 
-/// 3x3.
+/// The 3x3 matrix of focal lengths and principal point.
 cv::Matx33d camera_matrix(CameraModel const& camera);
-/// 1 x coefficient_count, as OpenCV's functions take it.
+/// Distortion coefficients for OpenCV's functions, 1 x coefficient_count.
 cv::Mat distortion_of(CameraModel const& camera);
 
-/// Where a point of the camera's frame is seen, in pixels; nothing if it is not ahead of the camera (for fisheye:
-/// at the camera).
+/// Projects a point of the camera's frame to pixels; nothing if it is not in front of the camera (for fisheye: if
+/// it is at the camera).
 std::optional<glm::dvec2> project(CameraModel const& camera, glm::dvec3 point);
-/// The direction (length 1, camera's frame) that a pixel sees. The inverse of `project` to 1e-9 where the lens has
-/// one; nothing where the iteration finds none (beyond the range of the model).
+/// Unit direction (camera's frame) of a pixel. Inverts `project` to 1e-9 where the lens is invertible; nothing
+/// where the iteration does not converge (outside the range of the model).
 std::optional<glm::dvec3> direction_of(CameraModel const& camera, glm::dvec2 pixel);
 
-/// The same camera for pictures of another size of the same sensor.
+/// The same camera for pictures of another size from the same sensor.
 CameraModel scaled(CameraModel const& camera, glm::ivec2 size_px);
 
-/// For cv::remap: where each pixel of `to` (2 floats, x and y) is found in pictures of `from`, both at one place
-/// and looking the same way. Where `from` does not see it: (-1e4, -1e4).
+/// Table for cv::remap: the position in pictures of `from` of each pixel of `to` (2 floats, x and y); both cameras
+/// have the same pose. Pixels outside the view of `from`: (-1e4, -1e4).
 cv::Mat remap_table(CameraModel const& to, CameraModel const& from);
 
-/// @throws gi::InputError not finite, no focal length, no size, a centre far outside, a lens that folds back
-/// within the picture; `where` begins the message
+/// @throws gi::InputError values that are not finite, no focal length, no size, a principal point far outside the
+/// picture, a distortion that is not monotonic within the picture; `where` begins the message
 void check(CameraModel const& camera, std::string const& where);
 
 } // namespace ar

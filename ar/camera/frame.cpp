@@ -11,7 +11,7 @@ namespace {
 
 cv::Mat decoded(Frame const& f, int mode)
 {
-    // Anything else would be offered to every decoder there is, and that of DICOM ends the process over bad bytes.
+    // OpenCV would try every decoder on other data, and its DICOM decoder terminates the process on bad bytes.
     cv::Mat const& bytes = f.planes[0];
     bool const is_jpeg = bytes.type() == CV_8UC1 && bytes.isContinuous() && bytes.total() > 3 &&
                          bytes.data[0] == 0xff && bytes.data[1] == 0xd8 && bytes.data[2] == 0xff;
@@ -20,9 +20,9 @@ cv::Mat decoded(Frame const& f, int mode)
         throw gi::InputError(fmt::format("frame {} is no JPEG that can be decoded", f.sequence),
                              "it has no pixels", "count it as lost");
     if (picture.cols != f.size_px.x || picture.rows != f.size_px.y)
-        throw gi::InputError(fmt::format("frame {} has {} x {} pixels in place of {} x {}", f.sequence,
-                                         picture.cols, picture.rows, f.size_px.x, f.size_px.y),
-                             "its rays are those of another calibration", "count it as lost");
+        throw gi::InputError(fmt::format("frame {} has {} x {} pixels in place of {} x {}", f.sequence, picture.cols,
+                                     picture.rows, f.size_px.x, f.size_px.y),
+                         "the calibration is for another size", "count it as lost");
     return picture;
 }
 

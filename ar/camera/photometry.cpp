@@ -10,7 +10,7 @@ double known_ratio(double a, double b) { return a > 0 && b > 0 ? a / b : 1.0; }
 
 bool has_vignetting(Photometry const& p) { return p.vignetting != std::array<double, 3>{}; }
 
-/// The byte whose unit is nearest, by a table of cells of unit and a short walk.
+/// Finds the byte with the nearest unit by a table over cells of units and a short search.
 class Encoder {
 public:
     explicit Encoder(std::array<float, 256> const& unit_of_byte) : unit_(unit_of_byte)

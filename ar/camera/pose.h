@@ -1,7 +1,7 @@
 #pragma once
-// Where things are. Lengths in metres. A camera's frame is OpenCV's: x right, y down, z the way it looks. The
-// world is right-handed with y up. A pose is named by its frames: `world_from_camera` takes points of the camera's
-// frame to the world's.
+// Poses. Lengths in metres. A camera's frame is OpenCV's: x right, y down, z along the viewing direction. The
+// world is right-handed with y up. A pose is named by its frames: `world_from_camera` maps points from the
+// camera's frame to the world's.
 
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -20,7 +20,8 @@ glm::dvec3 operator*(Pose const& a_from_b, glm::dvec3 point_b);
 Pose operator*(Pose const& a_from_b, Pose const& b_from_c);
 Pose inverse(Pose const& a_from_b);
 
-/// Of the rotation vector (axis times angle in radians) and translation of OpenCV's solvePnP: camera_from_object.
+/// Pose camera_from_object from the rotation vector (axis times angle in radians) and translation of OpenCV's
+/// solvePnP.
 Pose pose_of(cv::Vec3d const& rotation_vector, cv::Vec3d const& translation_m);
 cv::Vec3d rotation_vector(Pose const& p);
 

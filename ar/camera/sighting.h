@@ -1,5 +1,5 @@
 #pragma once
-// What detectors find and poses are made of: points of the world and where a picture shows them.
+// Output of marker detectors and input of pose estimation: world points and their pixel positions.
 
 #include <glm/glm.hpp>
 #include <string>
@@ -9,9 +9,9 @@ namespace ar {
 
 struct SightedPoint {
     glm::dvec3 world_m; ///< on the marker, in the world's frame
-    glm::dvec2 pixel;   ///< in the picture as it came (not undistorted); centres of pixels are whole numbers
-    int marker = 0;     ///< points of one marker (or board) have the same number: outliers come marker by marker
-    double sigma_px = 0.1; ///< how far the detector is usually off
+    glm::dvec2 pixel;   ///< in the original (distorted) picture; pixel centres are integers
+    int marker = 0;     ///< same number for all points of a marker (or board): outliers affect whole markers
+    double sigma_px = 0.1; ///< standard deviation of the detector's error
 };
 
 /// Of one picture.

@@ -1,5 +1,5 @@
 #pragma once
-// Memory that a camera writes and others read: of the driver (dma-buf), or a file without a name.
+// Shared memory that a camera writes and the program reads: the driver's (dma-buf), or an anonymous file.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace ar {
 
-/// A file in memory without a name, to be closed by the caller. @return below 0 where that failed (errno)
+/// Creates an anonymous file in memory; the caller closes it. @return negative on failure (see errno)
 int make_memory_file(std::size_t bytes);
 
-/// The planes of a camera's buffers, mapped for reading until the end of this.
+/// Maps the planes of a camera's buffers for reading, for the lifetime of this object.
 class BufferMemory {
 public:
     struct Plane {
@@ -25,8 +25,8 @@ public:
     BufferMemory(BufferMemory const&) = delete;
     BufferMemory& operator=(BufferMemory const&) = delete;
 
-    /// Of one buffer; its planes may share a file.
-    /// @throws std::system_error it cannot be mapped
+    /// Maps the planes of one buffer, which may share a file.
+    /// @throws std::system_error if mapping fails
     std::vector<std::span<std::uint8_t const>> map(std::vector<Plane> const& planes);
 
 private:
@@ -37,7 +37,7 @@ private:
     std::vector<Mapping> mappings_;
 };
 
-/// Tells the driver that the CPU begins or ends reading (dma-buf); nothing for other files.
+/// Notifies the driver that the CPU begins or ends reading (dma-buf); does nothing for other files.
 enum class Reading { begins, ends };
 void tell_driver(int file, Reading what);
 

@@ -58,7 +58,7 @@ cv::Mat plane_at(std::span<std::uint8_t const> memory, int rows, int cols, int t
     return {rows, cols, type, const_cast<std::uint8_t*>(memory.data()), stride}; // frames are read only
 }
 
-/// Planes of one memory, or of several, each at least as long as it has to be. Empty: it is not.
+/// Splits one or several memory spans into planes; empty if one is too short.
 std::vector<std::span<std::uint8_t const>> cut(std::span<std::span<std::uint8_t const> const> memory,
                                                std::vector<std::size_t> const& bytes)
 {
@@ -80,7 +80,7 @@ std::vector<std::span<std::uint8_t const>> cut(std::span<std::span<std::uint8_t 
     return planes;
 }
 
-/// Least bytes of each plane: the last row needs no gap after it.
+/// Minimum bytes of each plane: the last row needs no padding.
 std::vector<std::size_t> least_bytes(std::uint32_t code, glm::ivec2 size, std::size_t stride, bool in_one_piece)
 {
     std::vector<std::size_t> bytes = plane_bytes(code, size, stride, 0);

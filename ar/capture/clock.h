@@ -1,5 +1,5 @@
 #pragma once
-// Times of cameras on the one clock of the program: std::chrono::steady_clock, which is CLOCK_MONOTONIC on Linux.
+// Converts camera times to the program's clock: std::chrono::steady_clock, which is CLOCK_MONOTONIC on Linux.
 
 #include "ar/camera/frame.h"
 
@@ -8,22 +8,22 @@
 
 namespace ar {
 
-/// Seconds of the steady clock.
+/// Current time of the steady clock, seconds.
 double steady_now_s();
-/// Sleeps until then (not at all if it is past).
+/// Sleeps until that time; returns at once if it is past.
 void sleep_until_s(double steady_s);
 
-/// Both clocks that drivers stamp frames with, read at one moment. Boot time goes on while the machine sleeps,
-/// monotonic time does not: they differ by all sleep since the machine was started.
+/// The two clocks that drivers use for timestamps, read at the same moment. Boot time advances while the machine
+/// is suspended, monotonic time does not: they differ by the total time suspended since boot.
 struct DriverClocks {
     double monotonic_s = 0, boottime_s = 0;
 };
 DriverClocks driver_clocks();
 
-/// The steady time of a driver's stamp. Drivers do not say which clock it is of. A stamp of boot time lies in the
-/// future of the monotonic clock if the machine ever slept, and if it never slept both are the same clock: so it
-/// is monotonic if it is not in that clock's future, else boot time. Nothing where it fits neither: 0, ahead of
-/// both, or more than 10 s old (what a buffer never is).
+/// Steady time of a driver's timestamp. Drivers do not report which clock they used. A boot-time stamp lies in the
+/// future of the monotonic clock if the machine was ever suspended; if it never was, both clocks agree. So a stamp
+/// is monotonic unless it is in that clock's future, else boot time. Nothing if it fits neither clock: 0, ahead of
+/// both, or more than 10 s old (buffers never are).
 std::optional<double> steady_time_of(std::int64_t stamp_ns, DriverClocks const& now);
 
 } // namespace ar

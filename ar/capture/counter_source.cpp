@@ -42,7 +42,7 @@ cv::Rect cell(cv::Size size, int i)
     return {from, 0, to - from, size.height / 10};
 }
 
-/// The middle of it, where neighbours do not reach.
+/// The cell's inner part, unaffected by its neighbours.
 cv::Rect core(cv::Rect r)
 {
     int const dx = r.width / 4, dy = r.height / 4;

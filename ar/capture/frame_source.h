@@ -1,6 +1,6 @@
 #pragma once
-// Where frames come from: cameras, videos, pictures, recorded sessions. A source is used by one thread at a time;
-// frames may be handed to others, and may outlive their source.
+// Sources of frames: cameras, videos, pictures, recorded sessions. A source is used by one thread at a time;
+// frames may be passed to other threads, and may outlive their source.
 
 #include "ar/camera/frame.h"
 
@@ -11,77 +11,76 @@
 
 namespace ar {
 
-/// What a live source does with frames that came while nobody asked.
+/// What a live source does with frames that arrived between requests.
 enum class Delivery {
-    every, ///< oldest first; the camera waits (and loses frames) where too many lie here
-    newest ///< the older ones are given up, and counted as dropped
+    every, ///< delivers the oldest first; the camera stalls (and loses frames) while too many are queued
+    newest ///< discards the older ones and counts them as dropped
 };
 
 /// How files are played.
 enum class Pace {
-    own,    ///< a frame comes when it is due; the first one at once
-    fastest ///< a frame comes when it is asked for
+    own,    ///< each frame at its own time; the first at once
+    fastest ///< each frame when it is requested
 };
 
 struct SourceState {
     enum class Kind {
         running,
-        ended, ///< all that there was has been delivered
-        lost   ///< it broke off: unplugged, a stream that stopped, a file that cannot be read on
+        ended, ///< all frames were delivered
+        lost   ///< it failed: unplugged camera, stopped stream, unreadable rest of a file
     };
     Kind kind = Kind::running;
     std::string reason = {}; ///< empty while running
 };
 
 struct SourceDescription {
-    std::string name = {}; ///< as a person knows it: model, file, pipeline
-    std::string id = {};   ///< that opens the same source again; may be the name
+    std::string name = {}; ///< for people: model, file, pipeline
+    std::string id = {};   ///< opens the same source again; may equal the name
     glm::ivec2 size_px{0};
     PixelFormat format = PixelFormat::rgb8;
     double frames_per_s = 0;                ///< nominal; 0 = not known
-    bool is_live = false;                   ///< frames come whether they are asked for or not
-    std::vector<std::string> controls = {}; ///< of `Controls`, what can be set: "exposure_time", "gain",
+    bool is_live = false;                   ///< frames arrive whether they are requested or not
+    std::vector<std::string> controls = {}; ///< settable parts of `Controls`: "exposure_time", "gain",
                                             ///< "white_balance", "automatic", "frame_duration"
 };
 
 struct SourceCounts {
     std::uint64_t delivered = 0;
-    std::uint64_t dropped = 0; ///< gaps of the sequence: lost before they came here, or given up for newer ones
-    std::uint64_t refused = 0; ///< came, but truncated, of a wrong size or not to be decoded
-    std::string last_refusal = {}; ///< names the frame and says why
+    std::uint64_t dropped = 0; ///< gaps in the sequence: lost before arrival, or discarded for newer frames
+    std::uint64_t refused = 0; ///< arrived, but truncated, of a wrong size or undecodable
+    std::string last_refusal = {}; ///< the frame and the reason
 
     friend bool operator==(SourceCounts const&, SourceCounts const&) = default;
 };
 
-/// What is not set stays as it is.
+/// Camera settings; empty values stay unchanged.
 struct Controls {
     std::optional<bool> automatic_exposure = {}; ///< time and gain
-    std::optional<double> exposure_time_s = {};  ///< switches the automatic off
+    std::optional<double> exposure_time_s = {};  ///< switches automatic exposure off
     std::optional<double> gain = {};             ///< 1 = none
     std::optional<bool> automatic_white_balance = {};
-    std::optional<double> red_gain = {};  ///< against green, with blue_gain; switches the automatic off
-    std::optional<double> blue_gain = {}; ///< against green
+    std::optional<double> red_gain = {};  ///< relative to green, with blue_gain; switches automatic balance off
+    std::optional<double> blue_gain = {}; ///< relative to green
     std::optional<double> frame_duration_s = {};
 
     friend bool operator==(Controls const&, Controls const&) = default;
 };
 
-/// @throws gi::InputError what is not finite, not positive, automatic and set at once, or one of the two colours
-/// alone
+/// @throws gi::InputError values that are not finite or not positive, both automatic and set, or only one colour gain
 void check(Controls const& controls);
 
 class FrameSource {
 public:
     virtual ~FrameSource() = default;
 
-    /// The next frame; nothing if none came within `wait` or none will come: `state` tells them apart. What has to
-    /// be refused on the way is counted, and the next one is waited for.
+    /// Returns the next frame; nothing if none arrived within `wait` or none will (`state` distinguishes the two).
+    /// Refused frames are counted and skipped.
     virtual std::optional<Frame> next(std::chrono::milliseconds wait) = 0;
     virtual SourceState state() const = 0;
     virtual SourceDescription description() const = 0;
     virtual SourceCounts counts() const = 0;
-    /// From one of the next frames on; a frame's `exposure` says what it was taken with.
-    /// @return what the device cannot do, a sentence each
+    /// Takes effect a few frames later; each frame's `exposure` has the settings it was taken with.
+    /// @return a sentence for each setting that the device does not support
     /// @throws gi::InputError see check(Controls)
     virtual std::vector<std::string> set(Controls const& controls) = 0;
 };
@@ -89,8 +88,7 @@ public:
 /// One line: "290 frames, 3 dropped, 1 refused (picture 0017.png: ...)".
 std::string describe(SourceCounts const& counts);
 
-/// The names of what is set in `controls`, each as the sentence "NAME cannot be set: WHY"; for sources that have
-/// no such control.
+/// Returns the sentence "NAME cannot be set: WHY" for each value set in `controls`; for sources without controls.
 std::vector<std::string> cannot_set(Controls const& controls, std::string const& why);
 
 } // namespace ar

@@ -12,7 +12,7 @@ namespace ar {
 
 namespace lc = libcamera;
 
-/// Controls as libcamera has them.
+/// Translates Controls to libcamera's, and collects those that cannot be set.
 class ControlTranslation {
 public:
     explicit ControlTranslation(lc::ControlInfoMap const& known) : known_(known), list(lc::controls::controls) {}

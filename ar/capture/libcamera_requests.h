@@ -19,15 +19,15 @@ namespace ar {
 
 namespace lc = libcamera;
 
-/// Of its codes, which are negative errno.
+/// Text of a libcamera error code (negative errno).
 inline std::string text_of_error(int code) { return std::strerror(code < 0 ? -code : code); }
 
-/// The requests of a running camera: with the camera, completed and waiting here, or with a frame. Frames hold it;
-/// it outlives the source as long as there are any.
+/// The requests of a running camera: queued at the camera, completed and waiting here, or in use by a frame.
+/// Frames share ownership of the pool, so it outlives the source while any frame exists.
 class RequestPool {
 public:
     struct Buffer {
-        std::unique_ptr<lc::FrameBuffer> own; ///< null where libcamera's allocator has it
+        std::unique_ptr<lc::FrameBuffer> own; ///< null if libcamera's allocator owns it
         std::vector<std::span<std::uint8_t const>> planes;
         std::vector<int> files;
     };
@@ -61,7 +61,7 @@ public:
         running_ = true;
         for (auto const& request : requests_) queue(*request);
     }
-    void stop() // before the camera is
+    void stop() // call before stopping the camera
     {
         std::lock_guard const lock(mutex_);
         running_ = false;
@@ -74,7 +74,7 @@ public:
         for (Buffer& b : buffers_) b.own.reset();
     }
 
-    /// Of the camera's thread.
+    /// Called by the camera's thread.
     void complete(lc::Request* request)
     {
         std::lock_guard const lock(mutex_);
@@ -88,7 +88,7 @@ public:
         lose_locked(reason);
     }
 
-    /// The oldest that waits, or null.
+    /// The oldest completed request, or null if none arrives within `wait`.
     lc::Request* take(std::chrono::milliseconds wait)
     {
         std::unique_lock lock(mutex_);
@@ -120,7 +120,7 @@ public:
         else
             for (auto const& [id, value] : controls) next_controls_->set(id, value);
     }
-    /// Empty while nothing is wrong.
+    /// Why the camera was lost; empty if it was not.
     std::string loss() const
     {
         std::lock_guard const lock(mutex_);
@@ -143,11 +143,11 @@ private:
         changed_.notify_one();
     }
 
-    lc::Camera* camera_; // used while running_ only
+    lc::Camera* camera_; // used only while running_
     BufferMemory memory_;
     std::vector<Buffer> buffers_;
 
-    mutable std::mutex mutex_; // of what follows
+    mutable std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
     std::vector<std::unique_ptr<lc::Request>> requests_;
     std::deque<lc::Request*> completed_;

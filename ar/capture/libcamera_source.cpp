@@ -18,7 +18,7 @@
 namespace ar {
 namespace {
 
-/// libcamera has one manager in a process.
+/// libcamera allows one manager per process.
 std::shared_ptr<lc::CameraManager> manager()
 {
     static std::mutex mutex;
@@ -26,7 +26,7 @@ std::shared_ptr<lc::CameraManager> manager()
     static int users = 0;
     std::lock_guard const lock(mutex);
     if (users == 0) {
-        // It would write to stderr at will; what goes wrong comes back as codes, too.
+        // Silence its log on stderr; errors are also returned as codes.
         if (std::getenv("LIBCAMERA_LOG_LEVELS") == nullptr && std::getenv("LIBCAMERA_LOG_FILE") == nullptr)
             lc::logSetTarget(lc::LoggingTargetNone);
         running = std::make_unique<lc::CameraManager>();
@@ -69,7 +69,7 @@ std::shared_ptr<lc::Camera> find_camera(lc::CameraManager const& manager, std::s
                          "libcamera finds " + ids, "name one of them by its id");
 }
 
-/// The configuration's one stream, as near to what is wanted as the camera can.
+/// Configures the camera's stream as closely to the options as possible.
 std::unique_ptr<lc::CameraConfiguration> configured(lc::Camera& camera, LibcameraOptions const& options)
 {
     auto const refuse = [&](std::string const& why) {
@@ -193,7 +193,8 @@ private:
         camera_->release();
     }
 
-    /// Where the driver has no memory to give (no dma-heap), files in memory do for pipelines that write by CPU.
+    /// If the driver cannot allocate memory (no dma-heap), anonymous files suffice for pipelines that write by
+    /// CPU.
     void make_buffers()
     {
         lc::StreamConfiguration const& config = config_->at(0);
@@ -231,8 +232,8 @@ private:
 
     glm::ivec2 size_px() const { return {int(config_->at(0).size.width), int(config_->at(0).size.height)}; }
 
-    /// In 64 bits. Pipelines that do not number their frames (0.4.0's virtual one leaves memory as it was) give
-    /// numbers that stand still, go back or leap: from then on they are counted here.
+    /// Extends sequence numbers to 64 bits. Pipelines that do not number their frames (0.4.0's virtual one leaves
+    /// the memory uninitialised) give numbers that repeat, decrease or jump: from then on frames are counted here.
     std::uint64_t number_of(std::uint32_t sequence)
     {
         if (!last_) return *(last_ = sequence);
@@ -251,7 +252,7 @@ private:
             tally_.refuse(sequence, fmt::format("frame {}: {}", sequence, why));
             return std::nullopt;
         };
-        // Compared with what is bad, not with success: 0.4.0's virtual pipeline leaves the status as memory was.
+        // Test for errors instead of success: 0.4.0's virtual pipeline leaves the status uninitialised.
         if (metadata.status == lc::FrameMetadata::FrameError ||
             metadata.status == lc::FrameMetadata::FrameCancelled)
             return refuse("the camera says that it failed");
@@ -310,7 +311,7 @@ private:
     std::shared_ptr<RequestPool> pool_;
     bool is_started_ = false;
     double frames_per_s_ = 0;
-    static constexpr int kMostGap = 1000; // frames: more at once is no camera's doing
+    static constexpr int kMostGap = 1000; // frames: larger gaps are invalid numbers
     bool is_numbered_ = true;
     std::optional<std::uint64_t> last_;
     Tally tally_;

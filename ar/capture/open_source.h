@@ -1,5 +1,5 @@
 #pragma once
-// A source by its name, as people write it on a command line.
+// Opens a source by its command-line name.
 
 #include "ar/capture/frame_source.h"
 
@@ -23,7 +23,7 @@ struct OpenOptions {
 ///   a folder                a recorded session if it has a session.json, else pictures
 ///   a path with %d or %04d  numbered pictures
 ///   a file                  a video
-/// @throws gi::InputError there is no such thing, or it gives no frame
+/// @throws gi::InputError the source does not exist or delivers no frame
 std::unique_ptr<FrameSource> open_source(std::string const& name, OpenOptions const& options = {});
 
 } // namespace ar

@@ -1,5 +1,5 @@
 #pragma once
-// Frames from pictures on disk, one file each: a folder, or names with a number in them.
+// Frames from picture files: a folder, or a pattern of numbered names.
 
 #include "ar/capture/player.h"
 #include "ar/capture/tally.h"
@@ -13,26 +13,26 @@ struct NumberedPicture {
     std::filesystem::path file;
 };
 
-/// Of a folder: its pictures (.png .jpg .jpeg .bmp .tif .tiff .ppm .pgm .webp) in natural order (2 before 10),
-/// numbered from 0. Of a pattern like "shots/frame_%04d.png" (one %d, also with zeros and width): the files that
-/// have such a name, by their numbers.
-/// @throws gi::InputError no such folder, a pattern that is none
+/// For a folder: its pictures (.png .jpg .jpeg .bmp .tif .tiff .ppm .pgm .webp) in natural order (2 before 10),
+/// numbered from 0. For a pattern like "shots/frame_%04d.png" (one %d, optionally with zeros and width): the
+/// matching files, by their numbers.
+/// @throws gi::InputError no such folder, an invalid pattern
 std::vector<NumberedPicture> find_pictures(std::filesystem::path const& folder_or_pattern);
 
-/// "a2" before "a10"; equal numbers by their text.
+/// Natural order: "a2" before "a10"; equal numbers are ordered by their text.
 bool is_before_naturally(std::string const& a, std::string const& b);
 
 struct PictureOptions {
-    double frames_per_s = 30; ///< what the files do not say
+    double frames_per_s = 30; ///< the files contain no rate
     Pace pace = Pace::own;
 };
 
-/// The size of all is the size of the first that can be decoded. Pictures that are truncated, no pictures, gone,
-/// or of another size are refused; numbers that a pattern leaves out are dropped. Frames are bgr8 or (pictures of
-/// one channel) gray8; captured_s is when it is due, origin: file.
+/// The first decodable picture sets the size. Files that are truncated, not pictures, missing or of another size
+/// are refused; numbers missing from a pattern count as dropped. Frames are bgr8 or (single-channel pictures)
+/// gray8; captured_s is the time when the frame is due, origin: file.
 class PictureSource final : public FrameSource {
 public:
-    /// @throws gi::InputError there are no pictures, or none can be decoded
+    /// @throws gi::InputError no pictures, or none that can be decoded
     explicit PictureSource(std::filesystem::path const& folder_or_pattern, PictureOptions const& options = {});
 
     std::optional<Frame> next(std::chrono::milliseconds wait) override;

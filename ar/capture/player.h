@@ -1,5 +1,5 @@
 #pragma once
-// When frames of files are due.
+// Paces the frames of files.
 
 #include "ar/capture/clock.h"
 #include "ar/capture/frame_source.h"
@@ -12,9 +12,8 @@ class Player {
 public:
     explicit Player(Pace pace) : pace_(pace) {}
 
-    /// Waits until a frame is due that was shown at `film_s` of the film (or of the clock of those who recorded
-    /// it).
-    /// @return the steady time of that moment; nothing if it is further away than `until_s`
+    /// Waits until the frame at `film_s` is due (seconds of the film, or of the recording machine's clock).
+    /// @return the steady time at which it is due; nothing if that is later than `until_s`
     std::optional<double> wait_for(double film_s, double until_s)
     {
         if (pace_ == Pace::fastest) return steady_now_s();

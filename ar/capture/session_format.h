@@ -1,15 +1,16 @@
 #pragma once
-// Recorded sessions: what a camera delivered, bit by bit, and when. A folder with three files:
-//   session.json  what was recorded: camera, calibration file, when; and, once it was closed in order, how many
-//                 frames there are and how many did not fit
-//   frames.bin    the bytes of one frame after the other: plane by plane, row by row without gaps (mjpeg: as it
-//   came) index.jsonl   a line for each frame, in the order of their bytes, and for each setting of controls:
+// Recorded sessions: a camera's frames, bit for bit, and their times. A folder with three files:
+//   session.json  camera, calibration file, date; and, once the recording was finished, how many
+//                 frames were written and how many were lost
+//   frames.bin    the bytes of one frame after the other: plane by plane, row by row without gaps (mjpeg:
+//                 unchanged)
+//   index.jsonl   a line for each frame, in the order of their bytes, and for each setting of controls:
 //     {"frame":{"sequence":7,"captured_s":1.5,"arrived_s":1.52,"origin":"sensor","exposure":[time_s,gain,red,blue],
 //      "format":"nv12","size_px":[640,480],"at":0,"bytes":460800,"sum":"1234abcd"},"crc32":"89abcdef"}
 //     {"controls":{"exposure_time_s":0.01},"crc32":"..."}
-// Times are of the steady clock of the machine that recorded. `at` and `bytes` are the frame's place in
-// frames.bin, `sum` is the CRC-32 of these bytes, `crc32` that of the line up to its comma. A frame's bytes are
-// written before its line: a process that is killed leaves a session up to its last whole frame.
+// Times are of the recording machine's steady clock. `at` and `bytes` are the frame's offset and length in
+// frames.bin, `sum` is the CRC-32 of these bytes, `crc32` that of the line up to its last comma. A frame's bytes
+// are written before its line: after a killed process, the session is valid up to its last complete frame.
 
 #include "ar/capture/frame_source.h"
 
@@ -28,7 +29,7 @@ inline constexpr std::uint64_t kMostFrameBytes = std::uint64_t(1) << 30; ///< of
 
 struct SessionHeader {
     SourceDescription camera;
-    std::string calibration = {}; ///< file name, as it was given; empty: none
+    std::string calibration = {}; ///< file name as specified; empty: none
     std::string note = {};
     std::string created = {}; ///< UTC, "2026-05-04T12:30:00Z"; empty becomes now
     struct Finish {
@@ -38,7 +39,7 @@ struct SessionHeader {
 };
 
 std::string to_json(SessionHeader const& header);
-/// @throws gi::InputError with its place: no JSON, no session, one of another version
+/// @throws gi::InputError with its place: not JSON, not a session, another version
 SessionHeader parse_session_header(std::string const& json, std::string const& name);
 
 /// A line of the index: a frame without its planes, or controls.
@@ -46,21 +47,21 @@ struct IndexEntry {
     Frame frame;
     std::uint64_t at = 0, bytes = 0; ///< in frames.bin
     std::uint32_t sum = 0;
-    std::optional<Controls> controls = {}; ///< then there is no frame
+    std::optional<Controls> controls = {}; ///< if set, the entry has no frame
 };
 
-/// Without the line's end.
+/// Formats an entry, without a newline.
 std::string index_line(IndexEntry const& entry);
-/// `text` with its checksum.
+/// Appends the checksum and the closing brace.
 std::string with_checksum(std::string const& text_without_brace);
-/// Nothing, and why, where the line is not as it was written.
+/// Parses a line; if it is damaged, returns nothing and sets `problem`.
 std::optional<IndexEntry> parse_index_line(std::string_view line, std::string& problem);
 
 /// CRC-32 of ISO 3309, as in PNG.
 std::uint32_t checksum(std::span<std::uint8_t const> bytes);
-/// Bytes of a frame's planes without gaps; for mjpeg 0: any number.
+/// Bytes of a frame's planes without gaps; 0 for mjpeg, whose size varies.
 std::uint64_t packed_bytes(PixelFormat format, glm::ivec2 size_px);
-/// Makes the planes of a frame of packed bytes, which it then owns through them (no copy of the bytes).
+/// Sets a frame's planes to packed bytes, which the frame then owns (no copy).
 void set_packed_planes(Frame& frame, std::vector<std::uint8_t> bytes);
 
 } // namespace ar

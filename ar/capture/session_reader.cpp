@@ -52,7 +52,7 @@ SessionReader::SessionReader(SessionHeader header, std::unique_ptr<std::istream>
 std::optional<Frame> SessionReader::next()
 {
     for (std::string text; std::getline(*index_, text);) {
-        if (index_->eof()) { // no end of line: it was being written
+        if (index_->eof()) { // no newline: writing was interrupted
             torn_ = text.size();
             return std::nullopt;
         }

@@ -12,21 +12,21 @@ namespace ar {
 
 class SessionReader {
 public:
-    /// @throws gi::InputError it is no session
+    /// @throws gi::InputError if it is not a session
     explicit SessionReader(std::filesystem::path const& folder);
-    /// @param frames_size bytes of `frames` from its beginning
+    /// @param frames_size length of `frames` in bytes
     SessionReader(SessionHeader header, std::unique_ptr<std::istream> index, std::unique_ptr<std::istream> frames,
                   std::uint64_t frames_size, std::string name);
 
     SessionHeader const& header() const { return header_; }
     std::string const& name() const { return name_; }
-    /// The next frame that is whole, exactly as it was recorded; nothing at the end. What is damaged or not there
-    /// is refused and counted; frames that did not fit while recording are gaps of the sequence: dropped.
+    /// Returns the next intact frame exactly as recorded; nothing at the end. Damaged or missing frames count as
+    /// refused; frames lost while recording are gaps in the sequence and count as dropped.
     std::optional<Frame> next();
     SourceCounts const& counts() const { return tally_.counts(); }
-    /// What was set last before the frame that came last.
+    /// The controls in effect at the last returned frame.
     Controls const& controls() const { return controls_; }
-    /// After the last frame. lost: the recording was cut off, or something of it is not there any more.
+    /// State after the last frame; lost: the recording was cut off, or parts of it are missing.
     SourceState end() const;
 
 private:
@@ -35,19 +35,19 @@ private:
     SessionHeader header_;
     std::unique_ptr<std::istream> index_, frames_;
     std::uint64_t frames_size_ = 0, line_ = 0, frame_lines_ = 0;
-    std::uint64_t torn_ = 0; // bytes of a last line that is not whole
+    std::uint64_t torn_ = 0; // bytes of an incomplete last line
     std::string name_;
     Controls controls_;
     std::uint64_t last_ = 0; // sequence
     Tally tally_;
 };
 
-/// At its own pace frames come as they came then: the recorded times are moved so that the first frame arrives at
-/// the first call, and each has its age of then (plus what it comes late). As fast as possible: recorded times as
-/// they are. Origin: file.
+/// Plays a session as a source. At its own pace, recorded times are shifted so that the first frame arrives at
+/// the first call, and each frame has its recorded age (plus any delay of delivery). As fast as possible, times
+/// are those recorded. Origin: file.
 class SessionSource final : public FrameSource {
 public:
-    /// @throws gi::InputError it is no session, or has no frame
+    /// @throws gi::InputError if it is not a session, or has no frame
     explicit SessionSource(std::filesystem::path const& folder, Pace pace = Pace::own);
 
     std::optional<Frame> next(std::chrono::milliseconds wait) override;

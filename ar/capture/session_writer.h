@@ -1,7 +1,6 @@
 #pragma once
-// Writes recorded sessions (session_format.h). Whoever appends never waits for the disk: a thread of its own
-// writes, and has the disk keep it about once a second. 640 x 480 at 30 frames per second are 14 (nv12) to 28 MB/s
-// (rgb8).
+// Writes recorded sessions (session_format.h). `append` never waits for the disk: a writer thread writes the data
+// and syncs it to disk about once a second. 640 x 480 at 30 frames per second are 14 (nv12) to 28 MB/s (rgb8).
 
 #include "ar/capture/session_format.h"
 
@@ -24,18 +23,18 @@ public:
     SessionWriter(SessionWriter const&) = delete;
     SessionWriter& operator=(SessionWriter const&) = delete;
 
-    /// Copies the bytes of the frame, so that the buffer of the camera is free.
-    /// @return false if it was lost: too much is waiting, or nothing can be written any more (see `failure`)
-    /// @throws gi::InputError planes that are not what format and size say, times that are not finite
+    /// Copies the bytes of the frame, which frees the camera's buffer.
+    /// @return false if the frame was lost: the queue is full, or writing has failed (see `failure`)
+    /// @throws gi::InputError planes that do not match format and size, times that are not finite
     bool append(Frame const& frame);
-    /// What was set at this moment.
+    /// Records the controls that were set at this moment.
     bool append(Controls const& controls);
-    /// Writes what waits, waits for the disk, and says in session.json that it is whole. May be called again.
+    /// Writes the rest of the queue, waits for the disk, and marks session.json as finished. May be called again.
     void finish();
 
     std::uint64_t written() const { return written_; } ///< frames
     std::uint64_t lost() const { return lost_; }       ///< frames (and controls) that were not written
-    /// Why nothing is written any more; empty = all is well.
+    /// Why writing has failed; empty if it has not.
     std::string failure() const;
 
 private:
@@ -55,15 +54,15 @@ private:
     std::size_t most_waiting_;
     int frames_file_ = -1, index_file_ = -1;
 
-    mutable std::mutex mutex_; // of what follows
+    mutable std::mutex mutex_; // guards the members below
     std::condition_variable wake_;
     std::deque<Waiting> waiting_;
     std::size_t waiting_bytes_ = 0;
-    std::vector<std::vector<std::uint8_t>> spare_; // memory that was used before
+    std::vector<std::vector<std::uint8_t>> spare_; // buffers for reuse
     std::string failure_;
     bool closing_ = false;
 
-    std::uint64_t frames_bytes_ = 0, index_bytes_ = 0; // of the writing thread
+    std::uint64_t frames_bytes_ = 0, index_bytes_ = 0; // used by the writer thread
     std::atomic<std::uint64_t> written_{0}, lost_{0};
     std::thread writer_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Counts of a source, from the numbers of its frames: what is missing between two of them was dropped.
+// Counts a source's frames by their sequence numbers; gaps count as dropped.
 
 #include "ar/capture/frame_source.h"
 
@@ -18,7 +18,7 @@ public:
         ++counts_.refused;
         counts_.last_refusal = std::move(reason);
     }
-    /// It came and is given up.
+    /// The frame arrived and is discarded.
     void drop(std::uint64_t sequence)
     {
         see(sequence);

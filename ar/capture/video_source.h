@@ -8,30 +8,30 @@
 
 namespace ar {
 
-/// A video file, decoded by FFmpeg. Frames are bgr8, captured when they are due (origin: file). Decoders hide what
-/// is damaged as well as they can, and leave out what they cannot: what is missing at the end of the frames that
-/// the file says it has is counted as refused (one is let pass: some containers only estimate).
-/// @throws gi::InputError no such file, no video, no frame in it
+/// A video file, decoded by FFmpeg. Frames are bgr8, captured when they are due (origin: file). Decoders conceal
+/// damage where they can and omit frames where they cannot: frames missing at the end, by the file's own frame
+/// count, are counted as refused (one missing frame is tolerated: some containers only estimate the count).
+/// @throws gi::InputError no such file, not a video, no frame in it
 std::unique_ptr<FrameSource> open_video(std::filesystem::path const& file, Pace pace = Pace::own);
 
 struct LiveOptions {
-    glm::ivec2 size_px{0};                  ///< 0: as the device likes
-    double frames_per_s = 0;                ///< 0: as the device likes
+    glm::ivec2 size_px{0};                  ///< 0: the device's default
+    double frames_per_s = 0;                ///< 0: the device's default
     std::optional<PixelFormat> format = {}; ///< yuyv or mjpeg: the camera's own bytes; else bgr8
     Delivery delivery = Delivery::newest;
     Controls controls = {};
 };
 
-/// A camera by its V4L2 number (0 = /dev/video0). Frames carry the driver's time where it gives one. How many were
-/// lost before they came is not known: OpenCV keeps the driver's numbers to itself. A device that gives no more
-/// frames ends in the state lost.
-/// @throws gi::InputError no such camera, no frame from it
+/// A camera by its V4L2 number (0 = /dev/video0). Frames have the driver's timestamp if there is one. The number
+/// of frames lost before arrival is unknown: OpenCV does not expose the driver's sequence numbers. A device that
+/// stops delivering frames ends in the state lost.
+/// @throws gi::InputError no such camera, or it delivers no frame
 std::unique_ptr<FrameSource> open_device(int number, LiveOptions const& options = {});
 
-/// A GStreamer pipeline that ends in an appsink: "videotestsrc ! videoconvert ! appsink". Without times of its
-/// own: frames are bgr8 or gray8 and as old as they are when they come (origin: arrival). A pipeline that stops
-/// has ended if it said how long it would be, and is lost if it did not.
-/// @throws gi::InputError it cannot be built, or gives no frame
+/// A GStreamer pipeline that ends in an appsink: "videotestsrc ! videoconvert ! appsink". Frames are bgr8 or gray8
+/// and stamped with their arrival (origin: arrival). A pipeline that stops has ended if it had a known length, and
+/// is lost otherwise.
+/// @throws gi::InputError the pipeline cannot be built, or delivers no frame
 std::unique_ptr<FrameSource> open_pipeline(std::string const& pipeline, LiveOptions const& options = {});
 
 } // namespace ar

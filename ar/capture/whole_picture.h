@@ -1,5 +1,5 @@
 #pragma once
-// Whether a compressed picture is all there: decoders fill what is missing with grey and say nothing.
+// Checks that a compressed picture is complete: decoders fill missing data with grey without an error.
 
 #include <cstdint>
 #include <span>
@@ -7,12 +7,12 @@
 
 namespace ar {
 
-/// Empty if it is whole, else what is missing. JPEG: begins with SOI, and EOI follows the last scan (cameras may
-/// put zeros after it). PNG: chunks with right checksums up to IEND. Of other formats it knows nothing: empty.
+/// Returns what is missing; empty if the picture is complete. JPEG: begins with SOI, and EOI follows the last scan
+/// (cameras may append zeros). PNG: chunks with valid checksums up to IEND. Other formats are not checked: empty.
 std::string what_is_missing(std::span<std::uint8_t const> picture);
 bool is_jpeg(std::span<std::uint8_t const> picture);
-/// By its first bytes: JPEG, PNG, BMP, TIFF, PNM or WebP. Anything else must not be handed to OpenCV, which offers
-/// it to every decoder there is: that of DICOM ends the process over bad bytes.
+/// True if the first bytes are those of JPEG, PNG, BMP, TIFF, PNM or WebP. Other data must not be passed to
+/// OpenCV, which tries every decoder: its DICOM decoder terminates the process on bad bytes.
 bool is_picture(std::span<std::uint8_t const> bytes);
 
 } // namespace ar

@@ -10,7 +10,7 @@
 namespace ar {
 namespace {
 
-/// CV_32FC4: what is added, and the coverage.
+/// CV_32FC4: the added light, and the coverage.
 cv::Mat layer_of(RenderedPair const& pair)
 {
     cv::Mat layer(pair.with.size(), CV_32FC4);
@@ -38,8 +38,8 @@ RenderedPair pair_of(cv::Mat const& layer, RenderedPair const& pair)
     return out;
 }
 
-/// A Gaussian's integrals over pixels, with the variance that is wanted: that of integrals is not sigma^2 (more by
-/// 1/12 where it is wide, 0 where it is narrow), so their Gaussian is looked for.
+/// Integrals of a Gaussian over pixels, with the desired variance: integration changes the variance from sigma^2
+/// (by +1/12 for wide ones, to 0 for narrow ones), so the matching Gaussian is searched.
 cv::Mat spread_kernel(double sigma_px)
 {
     int const reach = int(std::ceil(4 * sigma_px)) + 1;
@@ -72,8 +72,8 @@ RenderedPair defocused(RenderedPair const& pair, double sigma_px)
 {
     check(pair);
     if (!(sigma_px >= 0) || sigma_px > 20)
-        throw gi::InputError("a blur with a sigma below 0 or above 20 pixels", "no calibrated camera is so",
-                             "estimate the sharpness again");
+        throw gi::InputError("a blur with a sigma below 0 or above 20 pixels", "no calibrated camera has it",
+                         "estimate the sharpness again");
     if (sigma_px == 0) return pair;
     cv::Mat const kernel = spread_kernel(sigma_px);
     cv::Mat layer = layer_of(pair);
@@ -99,7 +99,7 @@ RenderedPair motion_blurred(RenderedPair const& pair, cv::Mat const& velocity_px
         if (length > longest_px) v *= float(longest_px / length);
         return v;
     };
-    // The longest path near each tile: what moves reaches half of it beyond its border.
+    // Longest motion near each tile: moving objects extend by half of it beyond their border.
     double longest = 0;
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x) longest = std::max(longest, cv::norm(path_at(x, y)));

@@ -1,8 +1,8 @@
 #pragma once
-// What the camera's lens and shutter do to sharp borders, done to what is rendered. Of a pair, what is added and
-// the coverage are blurred (out = added + (1 - a) camera, see temporal.h): the camera's picture is blurred
-// already. The point spread acts on light, so all is linear. Where nothing virtual is within reach the result is
-// nothing, exactly.
+// Blurs rendered pictures as the camera's lens and shutter do. Only the added light and the coverage of a pair are
+// blurred (out = added + (1 - a) camera, see temporal.h): the camera's picture is blurred already. The point
+// spread function acts on light, so all computation is linear. The added light is exactly 0 beyond the blur's
+// reach of virtual objects.
 
 #include "ar/camera/camera_model.h"
 #include "ar/camera/pose.h"
@@ -10,26 +10,25 @@
 
 namespace ar {
 
-/// Sigma of the Gaussian that takes a picture from one sharpness to another; 0 where the camera's is sharper.
-/// @param camera_px    as estimate_sharpness finds it
-/// @param rendered_px  of the rendered picture: 0.289 (= 1 / sqrt(12)) for the mean over a pixel
+/// Sigma of the Gaussian that blurs the rendered picture to the camera's sharpness; 0 if the camera is sharper.
+/// @param camera_px    sigma from estimate_sharpness
+/// @param rendered_px  sigma of the rendered picture: 0.289 (= 1 / sqrt(12)) for the mean over a pixel
 double missing_blur_px(double camera_px, double rendered_px = 0.289);
 
-/// Defocus. @param sigma_px  0 gives the pair itself; beyond 0..20 is @throws gi::InputError
+/// Applies defocus blur. @param sigma_px  0 returns the pair unchanged. @throws gi::InputError outside 0..20
 RenderedPair defocused(RenderedPair const& pair, double sigma_px);
 
-/// Motion while the shutter is open: the mean along each pixel's path (rows of Potmesil and Chakravarty 1983),
-/// with what moves past a pixel spread beyond its own border (largest velocity of the neighbourhood, McGuire et
+/// Applies motion blur: the mean along each pixel's motion while the shutter is open (Potmesil and Chakravarty
+/// 1983); moving objects also spread beyond their own border (largest velocity in the neighbourhood, McGuire et
 /// al. 2012).
-/// @param velocity_px  CV_32FC2: path of what the pixel shows while the shutter is open, pixels; not finite counts
-/// as 0
-/// @param longest_px   longer paths are cut to this
+/// @param velocity_px  CV_32FC2: motion of the pixel's content while the shutter is open, pixels; non-finite
+/// values count as 0
+/// @param longest_px   longer motions are shortened to this
 RenderedPair motion_blurred(RenderedPair const& pair, cv::Mat const& velocity_px, double longest_px = 48);
 
-/// CV_32FC2: how far what is shown at each pixel moves in the picture between two poses (from `before` to `after`,
-/// seen at `after`), for things that stand still. @param depth  CV_32FC1, metres along the axis, 0 = infinitely
-/// far
-/// @param pinhole  of the size of depth; @throws gi::InputError another lens or size
+/// Motion of static surfaces in the picture between two camera poses (from `before` to `after`), at their pixels
+/// in `after`: CV_32FC2. @param depth  CV_32FC1, metres along the axis, 0 = infinitely far
+/// @param pinhole  must have the size of depth; @throws gi::InputError another lens or size
 cv::Mat image_velocity(CameraModel const& pinhole, cv::Mat const& depth, Pose const& world_from_camera_before,
                        Pose const& world_from_camera_after);
 

@@ -10,7 +10,7 @@
 namespace ar {
 namespace {
 
-/// 0 times what is not finite is NaN.
+/// True if all components are finite (0 times a non-finite value is NaN).
 bool is_finite(cv::Vec3f const& v)
 {
     float const zero = 0 * v[0] + 0 * v[1] + 0 * v[2];
@@ -38,7 +38,7 @@ struct Blending {
         return seen + (w - n);
     }
 
-    /// @param direct  null: not known
+    /// @param direct  null: unknown
     cv::Vec3b pixel(cv::Vec3b const& camera, cv::Vec3f const& with, cv::Vec3f const& without, float a,
                     cv::Vec3f const* direct, float vignetting, cv::Vec3f const* random,
                     CompositeCounts& counts) const
@@ -69,7 +69,7 @@ struct Blending {
                 v = 0;
             }
             if (noisy) {
-                // The camera's share brings its own noise: only what is missing is added.
+                // The camera's share already has noise: add only the missing part.
                 float const there = (1 - a) * (1 - a) * settings.noise.variance(c, u);
                 v += std::sqrt(std::max(0.0f, settings.noise.variance(c, v) - there)) * (*random)[c];
             }
@@ -103,9 +103,8 @@ Compositor::Compositor(Photometry const& p, CompositeSettings const& settings)
     bool invertible = false;
     camera_colour_ = p.colour.inv(cv::DECOMP_LU, &invertible);
     if (!invertible)
-        throw gi::InputError("the camera's colour matrix has no inverse",
-                             "radiance cannot be brought to its bytes",
-                             "calibrate colour again, or use the unit matrix");
+        throw gi::InputError("the camera's colour matrix has no inverse", "radiance cannot be converted to bytes",
+                         "calibrate colour again, or use the unit matrix");
     if (!(p.radiance_per_unit > 0) || !std::isfinite(p.radiance_per_unit))
         throw gi::InputError(fmt::format("radiance_per_unit = {}", p.radiance_per_unit), "it must be positive",
                              "give the radiance that has the unit 1");
@@ -128,8 +127,8 @@ CompositeCounts Compositor::operator()(cv::Mat const& rgb, RenderedPair const& p
                                        cv::Mat& out, std::uint64_t frame_number)
 {
     if (rgb.type() != CV_8UC3 || rgb.empty())
-        throw gi::InputError("the camera's frame is not RGB of 8 bits", "its bytes cannot be given a meaning",
-                             "convert it with rgb_of()");
+        throw gi::InputError("the camera's frame is not RGB of 8 bits", "other formats are not supported",
+                         "convert it with rgb_of()");
     check(pair, rgb.size());
     out.create(rgb.size(), CV_8UC3);
     if (photometry_.vignetting != std::array<double, 3>{} && vignetting_.size() != rgb.size()) {

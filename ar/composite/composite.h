@@ -1,12 +1,13 @@
 #pragma once
-// Virtual objects in a camera's picture by differential rendering (Debevec 1998, section 5), in linear light:
+// Composites virtual objects into a camera's picture by differential rendering (Debevec 1998, section 5), in
+// linear light:
 //   out = a with + (1 - a)(camera + with - without) = with + (1 - a)(camera - without)
-// a: part of the pixel that virtual objects cover. Where with = a object + (1 - a) place, as antialiased pictures
-// are, this is a object + (1 - a)(camera + change of the place): exact at borders, too.
+// a: share of the pixel that virtual objects cover. In antialiased pictures, with = a object + (1 - a) place, so
+// this equals a object + (1 - a)(camera + change of the place), which is exact at borders, too.
 //
 // All is computed in units of the camera's bytes (ar/camera/photometry.h): with and without go through exposure,
-// colour matrix and vignetting, then through the response to the nearest byte. Bytes of pixels that nothing covers
-// and where with equals without are copied. docs/methods.md has the equations of the options.
+// colour matrix and vignetting, then through the response to the nearest byte. Uncovered pixels where with equals
+// without keep the camera's bytes. docs/methods.md has the equations of the options.
 
 #include "ar/camera/photometry.h"
 #include "ar/composite/rendered_pair.h"
@@ -18,38 +19,37 @@
 
 namespace ar {
 
-/// What with and without do to what the camera sees.
+/// How with and without change the camera's pixels.
 enum class Blend {
-    difference, ///< camera + with - without: exact when the model of the place is right
-    /// camera with / without where nothing covers: errors of albedo cancel, light where there was next to none
-    /// does not come out right. Ratios beyond the limit are differences, and so are partly covered pixels of pairs
-    /// without `direct`.
+    difference, ///< camera + with - without: exact if the model of the place is right
+    /// camera with / without in uncovered pixels: errors of albedo cancel, but light added to very dark places is
+    /// wrong. Differences replace ratios beyond the limit, and in partly covered pixels of pairs without `direct`.
     ratio
 };
 
-/// What is darkened where a byte of the camera is 255 and so only the least value of the unit u is known.
+/// How to darken pixels whose camera byte is 255, so that the unit u is only a lower bound.
 enum class ClippedBytes {
-    as_measured, ///< as if the byte said the truth: shadows of bright places come out too dark
-    ratio,       ///< u with / without: nearer to the truth, and never above it if the model's ratio is right
-    model        ///< max(u, without) with / without: the truth where the model is right, else as for ratio
+    as_measured, ///< takes the byte as exact: shadows in bright places become too dark
+    ratio,       ///< u with / without: closer to the truth, and never above it if the model's ratio is right
+    model        ///< max(u, without) with / without: exact if the model is right, else as for ratio
 };
 
 struct CompositeSettings {
     Blend blend = Blend::difference;
     ClippedBytes clipped = ClippedBytes::model;
     float largest_ratio = 8; ///< >= 1
-    SensorNoise noise;       ///< of what is added; zero = none
+    SensorNoise noise;       ///< noise for the added light; zero = none
 };
 
-/// Pixels, but where it says values: those are of channels.
+/// Numbers of pixels; "values" are counted per channel.
 struct CompositeCounts {
     std::size_t pixels = 0;
-    std::size_t copied = 0;         ///< the camera's bytes, since nothing was changed
+    std::size_t copied = 0;         ///< unchanged pixels, which keep the camera's bytes
     std::size_t covered = 0;        ///< coverage > 0
-    std::size_t clipped = 0;        ///< changed, with a byte of 255: how bright the place is, is not known
-    std::size_t negative = 0;       ///< values below 0, made 0
+    std::size_t clipped = 0;        ///< changed, with a camera byte of 255: true brightness unknown
+    std::size_t negative = 0;       ///< values below 0, clamped to 0
     std::size_t ratio_limited = 0;  ///< values whose ratio was beyond the limit
-    std::size_t not_finite = 0;     ///< NaN or infinite in what was rendered: the camera's bytes
+    std::size_t not_finite = 0;     ///< NaN or infinity in the rendered pair; the camera's bytes are kept
     std::size_t coverage_range = 0; ///< coverage below 0 or above 1, clamped
 
     CompositeCounts& operator+=(CompositeCounts const& other);
@@ -62,17 +62,17 @@ public:
 
     /// @param rgb      CV_8UC3 RGB, the camera's frame; not resampled
     /// @param pair     of the frame's size and lens (see Warp, upsampled)
-    /// @param out      CV_8UC3; its memory is used again where it fits; may be `rgb` itself
-    /// @param frame    number of the frame: chooses the noise
-    /// @throws gi::InputError types or sizes
+    /// @param out      CV_8UC3; its memory is reused if it fits; may be `rgb` itself
+    /// @param frame    frame number, which selects the noise
+    /// @throws gi::InputError wrong types or sizes
     CompositeCounts operator()(cv::Mat const& rgb, RenderedPair const& pair, Exposure const& exposure,
                                cv::Mat& out, std::uint64_t frame = 0);
 
-    /// For the same work elsewhere (viewer/devices/gl).
+    /// For the same computation on the GPU (viewer/devices/gl).
     Photometry const& photometry() const { return photometry_; }
     CompositeSettings const& settings() const { return settings_; }
     ResponseTable const& response(int channel) const { return response_[std::size_t(channel)]; }
-    /// Unit of camera RGB of radiance: gains colour^-1 / radiance_per_unit, without vignetting.
+    /// Matrix from radiance to units of camera RGB: gains colour^-1 / radiance_per_unit, without vignetting.
     cv::Matx33f unit_of_radiance(Exposure const& exposure) const;
     NoiseField const& noise() const { return noise_; }
 

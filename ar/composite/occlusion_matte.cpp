@@ -29,7 +29,7 @@ struct LinearModel {
     double offset = 0, fit = 0;
 };
 
-/// Texture on either side must not let the other shine through: what is near 0 and 1 is made so.
+/// Snaps values near 0 and 1, so that texture on one side does not make the other shine through.
 double stretched(double v)
 {
     constexpr double kGain = 1.3;

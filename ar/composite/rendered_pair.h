@@ -1,24 +1,23 @@
 #pragma once
-// What the renderer hands over: the same view twice, with and without the virtual objects, both made with the same
-// random numbers, so that what the objects do not change is equal bit for bit and its noise cancels.
+// The renderer's output: the same view with and without the virtual objects, rendered with the same random
+// numbers, so that pixels that the objects do not change are equal bit for bit and their noise cancels.
 
 #include <opencv2/core.hpp>
 
 namespace ar {
 
-/// All of one size, rows from the top.
+/// All pictures have the same size, rows from the top.
 struct RenderedPair {
     cv::Mat with;    ///< CV_32FC3 RGB, radiance: proxies of the real place and virtual objects
     cv::Mat without; ///< CV_32FC3 RGB, radiance: proxies alone
-    /// CV_32FC1, 0..1: part of the pixel that shows virtual objects themselves, nearer than proxies
+    /// CV_32FC1, 0..1: share of the pixel where virtual objects are directly visible, in front of proxies
     cv::Mat coverage;
-    /// CV_32FC3 RGB, radiance of virtual objects themselves times coverage; may be empty. Where coverage is
-    /// between 0 and 1 it tells the object's light from the place's, which ratios and clipped bytes need.
+    /// CV_32FC3 RGB, radiance of directly visible virtual objects times coverage; may be empty. Where coverage is
+    /// between 0 and 1 it separates the object's light from the place's, as ratios and clipped bytes need.
     cv::Mat direct = {};
 };
 
-/// @throws gi::InputError where types or sizes are not those above, or (size not empty) not that of the camera's
-/// frame
+/// @throws gi::InputError if types or sizes are not those above, or `size` is not empty and differs
 void check(RenderedPair const& pair, cv::Size size = {});
 
 } // namespace ar

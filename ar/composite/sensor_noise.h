@@ -1,8 +1,9 @@
 #pragma once
-// Noise of a camera's sensor for what is rendered into its pictures. In units of the bytes, channel by channel:
+// Simulates sensor noise for rendered light that is added to a camera's pictures. In units of the bytes, per
+// channel:
 //   variance(u) = constant + per_unit u
-// (read noise and photon noise; Healey and Kondepudy 1994), with grain: what demosaicking and compression make of
-// neighbours that were independent.
+// (read noise and photon noise; Healey and Kondepudy 1994), with grain: the correlation of neighbouring pixels
+// that demosaicking and compression cause.
 
 #include <array>
 #include <cstdint>
@@ -13,7 +14,7 @@ namespace ar {
 struct SensorNoise {
     std::array<float, 3> constant{}; ///< unit^2, >= 0
     std::array<float, 3> per_unit{}; ///< unit^2 per unit, >= 0
-    float grain_sigma_px = 0;        ///< of the Gaussian that neighbours share; 0 = white
+    float grain_sigma_px = 0;        ///< of the Gaussian that correlates neighbours; 0 = white noise
     std::uint64_t seed = 1;
 
     bool any() const;
@@ -24,7 +25,7 @@ struct SensorNoise {
     }
 };
 
-/// A square of noise of mean 0 and variance 1 that joins at its borders; each frame begins at another place of it.
+/// A tileable square of noise with mean 0 and variance 1; each frame uses a different offset into it.
 class NoiseField {
 public:
     static constexpr int kSize = 256; ///< pixels a side
@@ -33,7 +34,7 @@ public:
 
     /// CV_32FC3, kSize x kSize.
     cv::Mat const& tile() const { return tile_; }
-    /// Where pixel (0, 0) of the frame lies in the square.
+    /// Position of the frame's pixel (0, 0) in the square.
     cv::Point offset(std::uint64_t frame) const;
 
 private:

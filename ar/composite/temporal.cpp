@@ -14,11 +14,11 @@ namespace {
 
 bool all_finite(cv::Vec3f const& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
-/// What objects add, and where that is anything.
+/// The added light, and its extent.
 struct Added {
     cv::Mat radiance; ///< CV_32FC3
-    cv::Mat any;      ///< CV_8UC1, 255 within the radius of something
-    cv::Rect where;   ///< around those
+    cv::Mat any;      ///< CV_8UC1, 255 within the radius of added light
+    cv::Rect where;   ///< bounds of these pixels
 };
 
 Added added_by(RenderedPair const& pair, int radius)
@@ -63,7 +63,7 @@ Neighbourhood around(Added const& added, int radius)
     return n;
 }
 
-/// Where the surface that a pixel shows now was in the frame before.
+/// Reprojects a pixel's surface to the previous frame.
 class PlaceBefore {
 public:
     PlaceBefore(CameraModel const& camera, Pose const& before_from_now)
@@ -111,9 +111,8 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
     cv::Size const size(camera_.size_px.x, camera_.size_px.y);
     check(pair, size);
     if (depth.type() != CV_32FC1 || depth.size() != size)
-        throw gi::InputError("depth for the temporal filter has another size or type",
-                             "surfaces cannot be followed",
-                             "give metres along the axis as floats, of the size of the pair");
+        throw gi::InputError("depth for the temporal filter has another size or type", "surfaces cannot be tracked",
+                         "give metres along the axis as floats, of the size of the pair");
     Added const added = added_by(pair, settings_.radius_px);
     cv::Rect const where = added.where;
     counts_ = {};
@@ -179,7 +178,7 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
                         }
                         v[c] = held + settings_.weight * (now[c] - held);
                     }
-                    if (v == now) continue; // what is unchanged keeps all its bits
+                    if (v == now) continue; // unchanged values keep all their bits
                     filtered.at<cv::Vec3f>(y, x) = v;
                     out.with.at<cv::Vec3f>(y, x) =
                         a < 1 ? cv::Vec3f(v + (1 - a) * pair.without.at<cv::Vec3f>(y, x)) : v;

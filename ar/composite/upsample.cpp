@@ -35,10 +35,10 @@ cv::Vec3f at_least(cv::Vec3f v)
     return v;
 }
 
-/// Of each low pixel: what of it shows the place, where that is known apart from objects; 0 = nothing is known.
+/// Share of each low-resolution pixel that shows the place and is separable from objects; 0 = unknown.
 cv::Mat share_known(RenderedPair const& low)
 {
-    constexpr float kMostCovered = 0.75f; // beyond it, what is left is mostly noise
+    constexpr float kMostCovered = 0.75f; // above this, the uncovered part is mostly noise
     cv::Mat share(low.coverage.size(), CV_32FC1);
     share.forEach<float>([&](float& s, int const* at) {
         float const a = low.coverage.at<float>(at[0], at[1]);
@@ -47,7 +47,7 @@ cv::Mat share_known(RenderedPair const& low)
     return share;
 }
 
-/// How well the surface of a low pixel stands for that of a full one.
+/// Similarity of the surfaces in a low-resolution and a full-resolution pixel.
 float likeness(SurfaceGuides const& guides, cv::Point full, SurfaceGuides const& low_guides, cv::Point low,
                UpsampleSettings const& settings)
 {
@@ -78,8 +78,8 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
     check(guides, size, low_guides);
     check(low_guides, low_size, guides);
 
-    // Light that the change brings to the surfaces. Of pixels that objects cover in part, the rest tells, too:
-    // shadows are darkest where things stand.
+    // Change of incident light on the surfaces. The uncovered part of partly covered pixels is used, too:
+    // shadows are darkest where objects touch the ground.
     cv::Mat change = low.with - low.without;
     cv::Mat const known = share_known(low);
     if (!low.direct.empty())
@@ -141,7 +141,7 @@ RenderedPair upsampled(RenderedPair const& low, SurfaceGuides const& low_guides,
                 float const fx = float(lx - x0), fy = float(ly - y0);
                 for (int k = 0; k < 4; ++k)
                     add(x0 + k % 2, y0 + k / 2, (k % 2 ? fx : 1 - fx) * (k / 2 ? fy : 1 - fy));
-                // A surface that no direct neighbour shows may be one further.
+                // If no direct neighbour shows the surface, try the next ones.
                 if (guided_weight < kEnough)
                     for (int k = 0; k < 16; ++k) {
                         int const i = x0 - 1 + k % 4, j = y0 - 1 + k / 4;

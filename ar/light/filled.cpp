@@ -12,7 +12,7 @@ struct Level {
     cv::Mat known; ///< CV_8UC1: 255
 };
 
-/// Half as wide and high: the mean of what is known in each 2 x 2, by solid angle.
+/// Halves width and height: the mean of the known texels in each 2 x 2 block, by solid angle.
 Level coarser(Level const& fine)
 {
     cv::Size const size(fine.value.cols / 2, fine.value.rows / 2);

@@ -14,7 +14,7 @@ namespace {
 constexpr int kPlaces = 360;
 constexpr int kFewestPlaces = 60;
 
-/// Compressed luminance: edges count by ratio, so that a lamp in the ball is no stronger than its rim.
+/// Log-like luminance: edges count by ratio, so that a lamp in the ball is no stronger than its rim.
 cv::Mat brightness(cv::Mat const& rgb)
 {
     cv::Mat f, grey;
@@ -39,7 +39,7 @@ std::optional<float> at(cv::Mat const& grey, glm::dvec2 p)
 
 struct Rim {
     std::vector<glm::dvec3> rays;
-    double rad_per_px = 0; ///< across the rim, on the mean
+    double rad_per_px = 0; ///< across the rim, on average
 };
 
 /// The steepest step across the rim in each place. Its top is that of the parabola through three differences.

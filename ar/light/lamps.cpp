@@ -11,8 +11,8 @@ namespace {
 
 using Texels = std::vector<cv::Point>;
 
-/// Connected by edges and corners, also across the seam at u = 0, with a rim of one texel, which holds what
-/// blur took of the lamp. Rims do not overlap.
+/// Regions connected by edges and corners, also across the seam at u = 0, with a rim of one texel for the lamp's
+/// blurred edge. Rims do not overlap.
 std::vector<Texels> bright_regions(cv::Mat const& map, double limit)
 {
     cv::Mat bright(map.size(), CV_8UC1);

@@ -89,7 +89,7 @@ void check_map(cv::Mat const& map, std::string const& where)
     auto const refuse = [&](std::string const& problem, std::string const& why) {
         throw gi::InputError(where + ": " + problem, why, "give a lat-long map of linear RGB radiance");
     };
-    if (map.empty()) refuse("the map is empty", "no light comes from nowhere");
+    if (map.empty()) refuse("the map is empty", "it has no texels");
     if (map.type() != CV_32FC3) refuse("the map is not of three floats per texel", "radiance is");
     if (map.cols != 2 * map.rows)
         refuse(fmt::format("the map has {} x {} texels", map.cols, map.rows),

@@ -15,33 +15,33 @@ namespace ar {
 /// (u, v), both 0..1, of a direction of length 1.
 glm::dvec2 uv_of(glm::dvec3 direction);
 glm::dvec3 direction_of_uv(glm::dvec2 uv);
-/// Of a texel's centre.
+/// Direction of a texel's centre.
 glm::dvec3 texel_direction(cv::Size map, int column, int row);
-/// Exact: 2 pi / width (cos of upper edge - cos of lower edge).
+/// Exact solid angle of a texel: 2 pi / width (cos of upper edge - cos of lower edge).
 double texel_sr(cv::Size map, int row);
 
-/// Bilinear between the centres of texels; u wraps, v ends at the poles.
+/// Bilinear interpolation between texel centres; u wraps, v is clamped at the poles.
 cv::Vec3f sample(cv::Mat const& map, glm::dvec3 direction);
 
-/// Of radiance over solid angle: W / m^2 of a sphere's whole surround; divided by 4 pi it is the mean radiance.
+/// Integral of radiance over the whole sphere, W / m^2; divided by 4 pi it is the mean radiance.
 cv::Vec3d integral(cv::Mat const& map);
 
-/// As seen in another frame and size: the mean over each texel's solid angle, by a grid of samples as dense as
-/// the source.
+/// Resamples to another frame of reference and size: the mean over each texel's solid angle, by a grid of samples
+/// as dense as the source.
 /// @param to_from takes directions of `map` to directions of the result
 cv::Mat resampled(cv::Mat const& map, cv::Size size, glm::dquat const& to_from = {1, 0, 0, 0});
 
 /// @throws gi::InputError empty, not CV_32FC3, not 2 : 1, not finite, negative; `where` begins the message
 void check_map(cv::Mat const& map, std::string const& where);
 
-/// What was measured of an environment: weight 0 = nothing there, else how well.
+/// Measured part of an environment. The weight is the quality of the measurement; 0 = not measured.
 struct PartialMap {
     cv::Mat radiance; ///< CV_32FC3, 0 where the weight is 0
     cv::Mat weight;   ///< CV_32FC1
 };
 /// Share of the sphere's solid angle with weight > 0.
 double covered_share(PartialMap const& map);
-/// The mean of those that saw a direction, by their weights. All of one size.
+/// Weighted mean of the maps that saw each direction. All maps must have the same size.
 PartialMap merged(std::span<PartialMap const> maps);
 
 struct FilledMap {
@@ -49,8 +49,8 @@ struct FilledMap {
     int filled_texels = 0;
     double filled_share = 0; ///< of the sphere
 };
-/// Where nothing was measured: the solution of Laplace's equation on the sphere between what was, from coarse to
-/// fine.
+/// Fills unmeasured texels by solving Laplace's equation on the sphere with the measured ones as boundary, from
+/// coarse to fine.
 /// @throws gi::InputError if nothing was measured at all
 FilledMap filled(PartialMap const& map);
 

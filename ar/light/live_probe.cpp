@@ -17,7 +17,7 @@ constexpr float kPiF = std::numbers::pi_v<float>;
 constexpr float kWellSeen = 0.5f; ///< share of a texel from which ratios and changes are read
 constexpr double kLeastRatio = 1e-3, kMostRatio = 1e3;
 
-/// The weighted median of ratios, within what is possible; 1 of nothing.
+/// Weighted median of ratios, clamped to a plausible range; 1 without any.
 double middle_ratio(std::vector<std::pair<double, double>> ratios)
 {
     double const middle = gi::weighted_median(std::move(ratios));
@@ -102,8 +102,8 @@ double LiveProbe::confidence_of(Texel const& t) const
     return t.confidence > 0 ? t.confidence * std::exp(-(now_s_ - t.seen_s) / settings_.forget_s) : 0;
 }
 
-/// By which this frame is to be scaled: to what is known of the same directions, else to the scaled prior, else as
-/// the frame before.
+/// Scale for this frame: matches known light of the same directions, else the scaled prior, else the previous
+/// frame's scale.
 double LiveProbe::frame_gain() const
 {
     std::vector<std::pair<double, double>> known, prior;

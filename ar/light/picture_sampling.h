@@ -1,5 +1,5 @@
 #pragma once
-// From a picture to the directions it shows: what mirror balls and lenses share.
+// Resamples a picture to directions; shared by mirror balls and lenses.
 
 #include "ar/camera/camera_model.h"
 #include "ar/light/lat_long.h"
@@ -9,14 +9,14 @@
 
 namespace ar {
 
-/// Where in the picture a direction of the world is seen, and how well (0 = not).
+/// Pixel at which a world direction is seen; weight 0 = not visible.
 struct PictureSample {
     glm::dvec2 pixel{0};
     double weight = 0;
 };
 
-/// Each texel: the mean of the picture, bilinear, at a grid of directions in it, by solid angle, where weight > 0;
-/// its weight is the mean of theirs. What falls outside the picture is not seen.
+/// Each texel is the mean of the bilinearly sampled picture over a grid of directions in the texel with weight >
+/// 0, by solid angle; its weight is their mean weight. Directions outside the picture are not seen.
 PartialMap gather(cv::Mat const& radiance, cv::Size size, double pixels_per_texel,
                   std::function<PictureSample(glm::dvec3)> const& look);
 

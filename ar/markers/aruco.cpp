@@ -11,7 +11,7 @@
 namespace ar {
 namespace {
 
-/// The number of a name is OpenCV's: both go in one order.
+/// Names in OpenCV's order, so that the index is OpenCV's number.
 cv::Ptr<cv::aruco::Dictionary> dictionary_named(std::string const& name)
 {
     auto const& names = dictionary_names();
@@ -32,7 +32,7 @@ void refine(cv::Mat const& gray, std::array<cv::Point2f, 4>& corners, int cells)
         if (cv::norm(refined[i] - corners[i]) <= 2.0 * window) corners[i] = refined[i];
 }
 
-/// Where the library of AprilTags is not asked.
+/// Detection by OpenCV, for all cases that do not use the AprilTag library.
 FoundMarkers find_squares(cv::Mat const& searched, std::string const& dictionary, double longest_px,
                           SearchSettings const& s)
 {

@@ -1,5 +1,5 @@
 #pragma once
-// OpenCV's aruco module behind values. The only file that knows its classes is aruco.cpp: up to 4.6 they are in
+// Wraps OpenCV's aruco module in plain values. Only aruco.cpp uses its classes: up to 4.6 they are in
 // opencv_contrib, from 4.7 on in objdetect under other names.
 
 #include "ar/markers/marker_map.h"
@@ -8,9 +8,9 @@
 
 namespace ar {
 
-/// How corners are found within their pixels.
+/// Method of subpixel corner refinement.
 enum class Refinement {
-    none,     ///< of the contour
+    none,     ///< corners of the contour
     edges,    ///< lines through the sides (refine.h)
     subpixel, ///< gradients around a corner (Foerstner)
     contour,  ///< lines through the contour
@@ -19,13 +19,13 @@ enum class Refinement {
 
 struct SearchSettings {
     Refinement refinement = Refinement::edges;
-    double smallest_side_px = 12; ///< of markers
-    int enlarge = 1; ///< the picture by this before the search: 2 for markers with few pixels per cell
+    double smallest_side_px = 12; ///< minimum side of markers
+    int enlarge = 1; ///< factor by which the picture is enlarged first; 2 for markers with few pixels per cell
     /// Windows of the adaptive threshold, pixels of the enlarged picture, odd.
     int smallest_window_px = 3, largest_window_px = 23, window_step_px = 10;
 };
 
-/// A marker in a picture; pixels with whole numbers at their centres.
+/// A marker in a picture; pixel centres have integer coordinates.
 struct FoundMarker {
     int id = 0;
     /// Upper left, upper right, lower right, lower left as printed (AprilTags: as in the pictures of their
@@ -34,11 +34,11 @@ struct FoundMarker {
 };
 
 struct FoundMarkers {
-    std::vector<FoundMarker> markers; ///< one identifier may be there more than once
+    std::vector<FoundMarker> markers; ///< an identifier may occur more than once
     int rejected = 0;                 ///< squares without a known code
 };
 
-/// @param gray CV_8UC1; @param dictionary a name that exists
+/// @param gray CV_8UC1; @param dictionary an existing name
 FoundMarkers find_markers(cv::Mat const& gray, std::string const& dictionary, SearchSettings const& settings);
 
 struct FoundCorner {

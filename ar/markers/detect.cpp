@@ -11,7 +11,7 @@
 namespace ar {
 namespace {
 
-/// How far corners are usually off, measured on drawn pictures with noise and blur (docs/results).
+/// Typical error of corners, measured on synthetic pictures with noise and blur (docs/results).
 constexpr double kMarkerSigma_px = 0.15, kBoardSigma_px = 0.08, kUnrefinedSigma_px = 0.6;
 
 void check_picture(cv::Mat const& gray)
@@ -66,7 +66,7 @@ std::map<int, std::vector<Match>> match(cv::Mat const& gray, cv::Rect part, Mark
     return by_thing;
 }
 
-/// The board's inner corners; false where they are too few to say anything.
+/// Adds the board's inner corners; false if there are too few.
 bool add_inner_corners(Sighting& s, cv::Mat const& gray, CharucoBoard const& board, int thing,
                        std::vector<Match> const& matches)
 {
@@ -104,7 +104,7 @@ Found find(cv::Mat const& gray, cv::Rect part, MarkerMap const& map, DetectorSet
     return out;
 }
 
-/// Where the markers are expected: where they were, where they go, and a margin.
+/// Region where the markers are expected: their last position, their motion, and a margin.
 cv::Rect expected(cv::Rect2f last, cv::Rect2f before, float margin, cv::Size picture)
 {
     if (last.empty()) return {};
@@ -128,7 +128,7 @@ SearchSettings search_settings(DetectorSettings const& settings, cv::Size pictur
     int const width = std::max(picture.width, picture.height);
     s.smallest_side_px = settings.smallest_side_px > 0 ? settings.smallest_side_px : std::max(8., width / 80.);
     s.enlarge = settings.enlarge;
-    // A window must be wider than what is thresholded is soft, and narrower than white margins matter.
+    // Windows must be wider than the blur of edges, and narrower than the white margins.
     s.smallest_window_px = s.enlarge > 1 || width > 1400 ? 5 : 3;
     s.window_step_px = width > 1400 ? 16 : 10;
     s.largest_window_px = s.smallest_window_px + 2 * s.window_step_px;

@@ -1,7 +1,7 @@
 #pragma once
-// What is in the world to be recognised: single markers, ChArUco boards and grids of markers, and where they are.
-// The world is in metres, right-handed, y up. A thing's own frame has x to the right and y upward as it is
-// printed, and z out of the paper towards who looks at it. Its origin is
+// The markers of the world: single markers, ChArUco boards and grids of markers, with their poses.
+// The world is in metres, right-handed, y up. A "thing" is one of these; its own frame has x to the right and y
+// upward as printed, and z out of the paper towards the viewer. Its origin is
 //   of a marker           the middle of its black square,
 //   of a board or a grid  its lower left corner: of the squares (board), of the markers' black squares (grid).
 // Lying flat on a table, printed top away from the viewer, is rotation_deg: [-90, 0, 0].
@@ -25,13 +25,13 @@ struct Marker {
     friend bool operator==(Marker const&, Marker const&) = default;
 };
 
-/// A chessboard whose white squares hold markers, numbered row by row from the top left.
+/// A chessboard with markers in its white squares, numbered row by row from the top left.
 struct CharucoBoard {
     int squares_x = 0, squares_y = 0;
     double square_m = 0, marker_m = 0;
     std::string dictionary;
     int first_id = 0;
-    /// The upper left square is black. Before OpenCV 4.6 it was white where squares_y is even: then true.
+    /// False: the upper left square is black. True: it is white if squares_y is even, as before OpenCV 4.6.
     bool legacy_pattern = false;
     Pose world_from_board;
 
@@ -57,7 +57,7 @@ struct MarkerMap {
     friend bool operator==(MarkerMap const&, MarkerMap const&) = default;
 };
 
-/// Things are numbered, as SightedPoint::marker has it: first markers, then boards, then grids.
+/// Number of things. They are numbered as in SightedPoint::marker: first markers, then boards, then grids.
 int count_of(MarkerMap const& map);
 /// "marker 7 of DICT_4X4_50", "board 1 (7 x 5 squares)", "grid 1 (2 x 3 markers)".
 std::string describe(MarkerMap const& map, int thing);
@@ -65,16 +65,16 @@ Pose world_from_thing(MarkerMap const& map, int thing);
 
 /// All names of dictionaries.
 std::vector<std::string> const& dictionary_names();
-/// The identifiers that a dictionary has: 0 to this - 1. 0: there is no such dictionary.
+/// Number of identifiers in a dictionary, which run from 0; 0: no such dictionary.
 int dictionary_size(std::string const& name);
 
-/// A marker as it is found, alone or as part of a board or grid.
+/// A single marker, or one marker of a board or grid.
 struct PlacedMarker {
     int thing = 0; ///< number within the map
     std::string dictionary;
     int id = 0;
-    /// Of the black square, in the frame of the thing (of a lone marker: its own): upper left, upper right, lower
-    /// right, lower left as printed.
+    /// Corners of the black square in the frame of the thing (marker, board or grid): upper left, upper right,
+    /// lower right, lower left as printed.
     std::array<glm::dvec3, 4> corners_m;
 };
 std::vector<PlacedMarker> placed_markers(MarkerMap const& map);
@@ -82,12 +82,11 @@ std::vector<PlacedMarker> placed_markers(MarkerMap const& map);
 int marker_count(CharucoBoard const& board);
 /// The inner corners of a board in its frame, row by row from the top left: (squares_x - 1) x (squares_y - 1).
 std::vector<glm::dvec3> inner_corners(CharucoBoard const& board);
-/// Whether the square in this column and row, from the upper left, is black.
+/// True if the square in this column and row, from the upper left, is black.
 bool is_black(CharucoBoard const& board, int column, int row);
 
-/// @throws gi::InputError unknown dictionary, an identifier that it has not, one identifier twice, lengths that
-/// are not positive and finite or markers larger than their squares, rotations that are none; `where` begins the
-/// message
+/// @throws gi::InputError unknown dictionary, an identifier not in it, a repeated identifier, lengths that are
+/// not positive and finite, markers larger than their squares, invalid rotations; `where` begins the message
 void check(MarkerMap const& map, std::string const& where);
 
 } // namespace ar

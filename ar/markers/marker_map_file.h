@@ -9,8 +9,8 @@
 //   grids:
 //     - {markers_x: 2, markers_y: 3, marker_m: 0.05, gap_m: 0.01, dictionary: DICT_APRILTAG_36h11}
 //
-// position_m: where the thing's origin is in the world. rotation_deg: it is turned about the world's x, then y,
-// then z axis; rotation_xyzw is the same as a quaternion, and only one of the two is given. What is left out:
+// position_m: the origin of the marker, board or grid in the world. rotation_deg: rotations about the world's x,
+// then y, then z axis; rotation_xyzw is the rotation as a quaternion; only one of the two may be set. Defaults:
 // first_id 0, legacy_pattern false, position 0, no rotation.
 
 #include "ar/markers/marker_map.h"
@@ -19,13 +19,13 @@
 
 namespace ar {
 
-/// @param file for messages. @throws gi::InputError with file:line:column
+/// @param file name of the file for messages. @throws gi::InputError with file:line:column
 MarkerMap parse_marker_map(std::string const& text, std::string const& file);
 std::string format_marker_map(MarkerMap const& map);
 
 /// @throws gi::InputError
 MarkerMap read_marker_map(std::filesystem::path const& file);
-/// Whole, or not at all. @throws gi::InputError
+/// Writes atomically. @throws gi::InputError
 void write_marker_map(std::filesystem::path const& file, MarkerMap const& map);
 
 } // namespace ar

@@ -11,7 +11,7 @@
 namespace ar {
 namespace {
 
-/// Between pixels; at the border what is nearest.
+/// Bilinear interpolation; clamped at the border.
 float byte_at(cv::Mat const& gray, cv::Point2d p)
 {
     double const x = std::clamp(p.x, 0., gray.cols - 1.), y = std::clamp(p.y, 0., gray.rows - 1.);
@@ -30,8 +30,8 @@ struct EdgePoint {
     double weight;
 };
 
-/// Where the edge between `from` and `to` is; light is on the left of the way, as seen in pictures with y down:
-/// outside of a marker whose corners go clockwise. False where fewer than half of the samples have an edge.
+/// Locates the edge between `from` and `to`; the bright side is on the left of that direction, as seen with y
+/// down: outside of a marker whose corners go clockwise. False if fewer than half of the samples have an edge.
 bool add_edge(std::vector<EdgePoint>& points, cv::Mat const& gray, cv::Point2d from, cv::Point2d to,
               double reach_px)
 {
@@ -80,7 +80,7 @@ Line line_through(std::vector<EdgePoint> const& points)
     return {mean, {-std::sin(angle), std::cos(angle)}};
 }
 
-/// A side of a marker, without its ends: there the other side is seen, too.
+/// A side of a marker without its ends, where the adjacent side interferes.
 std::optional<Line> side_between(cv::Mat const& gray, cv::Point2d from, cv::Point2d to, double reach_px)
 {
     double const end = std::clamp(2.5 / cv::norm(to - from), 0.06, 0.25);
@@ -145,7 +145,7 @@ double growth_of(cv::Mat const& gray, std::array<cv::Point2f, 4> const& corners,
     return std::clamp(gi::median(std::move(growths)), -1., 1.);
 }
 
-/// Where two lines of a chessboard cross. The four arms reach to these places; black is clockwise of the first
+/// Crossing of two lines of a chessboard. The four arms end at these points; black is clockwise of the first
 /// and of the third.
 std::optional<cv::Point2d> saddle(cv::Mat const& gray, cv::Point2d at, std::array<cv::Point2d, 4> const& ends,
                                   double reach_px)
@@ -187,7 +187,7 @@ void refine_by_edges(cv::Mat const& gray, std::array<cv::Point2f, 4>& corners,
             if (p && cv::norm(cv::Point2f(*p) - corners[i]) < 1 + cell) now[i] = *p;
         }
     };
-    // First widely, for contours are up to a pixel off, then as far as a soft edge goes and no other one is.
+    // First with a wide search, since contours are up to a pixel off, then only as far as a soft edge extends.
     for (double const reach_px : {std::clamp(0.8 * cell, 1.5, 4.), std::clamp(0.6 * cell, 1.5, 3.)}) {
         for (std::size_t i = 0; i < 4; ++i) sides[i] = side_between(gray, now[i], now[(i + 1) % 4], reach_px);
         cross();
@@ -241,7 +241,7 @@ std::vector<FoundCorner> find_inner_corners(cv::Mat const& gray, CharucoBoard co
         };
         glm::dvec3 const corner_m = inner[std::size_t(index)];
         cv::Point2d const start = predicted(corner_m);
-        // Windows that no marker is in.
+        // Windows that contain no part of a marker.
         int const window = std::clamp(int(p.nearest_px / std::sqrt(2.) - 0.5), 2, 8);
         double const border = window + 1;
         if (!(start.x >= border && start.y >= border && start.x <= gray.cols - 1 - border &&

@@ -1,5 +1,5 @@
 #pragma once
-// Between what ar and gi call the same things: cameras, pictures, maps of light.
+// Converts between the types of ar and gi: cameras, pictures, environment maps.
 
 #include "ar/camera/camera_model.h"
 #include "ar/camera/pose.h"
@@ -11,14 +11,15 @@
 
 namespace viewer {
 
-/// A pinhole (its distortion is not read) that sees what a camera at this place does. gi's cameras look along -z
+/// Converts a pinhole camera (distortion is ignored) with its pose. gi's cameras look along -z
 /// with y up; ar's along z with y down. Pictures must have the camera's size.
 gi::Camera gi_camera(ar::CameraModel const& pinhole, ar::Pose const& world_from_camera);
 
 /// A copy of a layer: CV_32FC3 or CV_32FC1. @throws std::invalid_argument no such layer
 cv::Mat matrix_of(gi::Picture const& picture, std::string const& layer);
 
-/// Of CV_32FC3, RGB, lat-long as both rooms have it. Values below 0 and not finite ones become 0.
+/// Converts CV_32FC3, RGB, lat-long (the same convention in both modules). Negative and non-finite values become
+/// 0.
 gi::EnvironmentMap environment_of(cv::Mat const& lat_long);
 
 } // namespace viewer

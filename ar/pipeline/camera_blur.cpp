@@ -6,9 +6,9 @@
 namespace viewer {
 namespace {
 
-constexpr double kNewest = 0.1;     ///< weight of a frame's blur among those before
+constexpr double kNewest = 0.1;     ///< weight of the newest frame's blur
 constexpr double kShortest_px = 14; ///< sides of markers: shorter ones have too little black beside them
-constexpr double kStill_px = 0.5;   ///< of motion: frames that move more tell nothing of the lens
+constexpr double kStill_px = 0.5;   ///< of motion: frames that move more cannot show lens blur
 constexpr int kFewestEdges = 4;
 
 } // namespace
@@ -50,7 +50,8 @@ void CameraBlur::follow(cv::Mat const& radiance, ar::Pose const& world_from_came
     counts_.no_exposure += !(exposure_s > 0);
     double moved_px = 0;
     if (before_ && time_s > before_->time_s) {
-        // Constant motion since the frame before; of the picture, by what turning does and a metre away.
+        // Assumes constant motion since the previous frame; image motion from rotation, and translation at one
+        // metre.
         double const share = exposure_s / (time_s - before_->time_s);
         ar::Pose const& b = before_->world_from_camera;
         double const turned = glm::radians(ar::angle_between_deg(b.rotation, world_from_camera.rotation));

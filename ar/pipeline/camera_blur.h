@@ -1,6 +1,6 @@
 #pragma once
-// How blurred the camera's pictures are, so that what is added can be as blurred: the lens by the borders of the
-// printed markers, motion by how far the camera moved while the shutter was open.
+// Measures the blur of the camera's pictures, so that added light can be blurred equally: lens blur at the borders
+// of printed markers, motion blur from the camera's motion while the shutter was open.
 
 #include "ar/camera/camera_model.h"
 #include "ar/composite/edge_spread.h"
@@ -12,25 +12,24 @@
 namespace viewer {
 
 struct CameraBlurCounts {
-    std::size_t measured = 0;    ///< frames whose edges told something
-    std::size_t unmeasured = 0;  ///< frames without an edge that counts: the blur of those before
+    std::size_t measured = 0;    ///< frames with usable edges
+    std::size_t unmeasured = 0;  ///< frames without a usable edge, which keep the previous blur
     std::size_t moved = 0;       ///< frames with motion of a pixel or more while the shutter was open
-    std::size_t no_exposure = 0; ///< frames of which the source does not tell how long the shutter was open
+    std::size_t no_exposure = 0; ///< frames for which the source reports no exposure time
 };
 
 class CameraBlur {
 public:
     CameraBlur(ar::MarkerMap const& markers, ar::CameraModel const& camera);
 
-    /// @param radiance  CV_32FC3  @param exposure_s  0 = not known
+    /// Measures a frame. @param radiance  CV_32FC3  @param exposure_s  0 = unknown
     void follow(cv::Mat const& radiance, ar::Pose const& world_from_camera, double time_s, double exposure_s);
-    /// Without a pose: there is no motion known to the next frame.
+    /// Call for frames without a pose: the motion to the next frame is unknown.
     void forget() { before_.reset(); }
 
-    /// Standard deviation of the lens's blur, in pixels of the camera, smoothed over frames; nothing: never
-    /// measured.
+    /// Standard deviation of the lens blur in camera pixels, smoothed over frames; nothing if never measured.
     std::optional<double> sigma_px() const { return sigma_px_; }
-    /// The camera when this frame's shutter opened; nothing: it is not known, or moved by less than a pixel.
+    /// Camera pose when this frame's shutter opened; nothing if unknown or if it moved by less than a pixel.
     std::optional<ar::Pose> shutter_opened() const { return opened_; }
     CameraBlurCounts const& counts() const { return counts_; }
 

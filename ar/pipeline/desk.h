@@ -1,5 +1,5 @@
 #pragma once
-// A room with a table on which a printed board lies: the place of synthetic sessions, where everything is known.
+// The scene of synthetic sessions, in which everything is known: a room with a printed board on a table.
 // World: metres, y up; the top of the table is y = 0; the camera is on the side of +z.
 
 #include "gi/scene/model/scene.h"
@@ -15,15 +15,15 @@ struct PaperOnTable {
     glm::dvec2 near_left_m{0}; ///< x and z of its lower left corner
 };
 
-/// What of the room is modelled beside the virtual things: the compositor never knows more of it than `near`.
+/// Part of the room that is modelled; the compositor only ever gets `near`.
 enum class DeskPart {
     whole, ///< walls, window, lamp, table, things on it, paper
-    near,  ///< what stands on the table and the table: where shadows and light of virtual things fall
+    near,  ///< the table and the objects on it, which receive shadows and light of virtual objects
 };
 
 gi::Scene generate_desk(DeskPart part, PaperOnTable const& paper);
 
-/// A figure of 0.36 m that walks in its place, and a red ball: feet and ball at y = 0.
+/// A figure 0.36 m tall that walks in place, and a red ball; both stand on y = 0.
 gi::Scene generate_statue();
 
 } // namespace viewer

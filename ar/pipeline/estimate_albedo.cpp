@@ -11,9 +11,9 @@
 namespace viewer {
 namespace {
 
-constexpr float kLeastAlbedo = 0.02f; ///< that is rendered: light is divided by it again
+constexpr float kLeastAlbedo = 0.02f; ///< lower limit for rendering: the light is divided by it
 
-/// What does not change from turn to turn: all but `white`.
+/// A view and its camera, which stay the same in all iterations except for `white`.
 struct Prepared {
     ar::AlbedoView view;
     gi::Camera camera;
@@ -35,7 +35,7 @@ public:
         for (std::size_t k = 0; k < real_.patches.size(); ++k) {
             std::size_t const m = real_.patches[k].material;
             patch_of_material_[m] = int(k);
-            // Highlights are not albedo: they are left out of the frames as far as they stand out.
+            // Highlights are not part of the albedo: those that stand out are left out of the frames.
             real_.scene.materials[m].specular = 0;
         }
     }
@@ -95,9 +95,9 @@ public:
         map_ = std::move(map);
         bool const emits = std::any_of(real_.scene.materials.begin(), real_.scene.materials.end(), gi::emits);
         if (!map_ && !emits && real_.scene.lights.empty())
-            throw gi::InputError("there is no light that is known",
-                                 "albedo is what is seen over the light that falls",
-                                 "give light: {map: FILE} in the session");
+            throw gi::InputError("the light is unknown",
+                                 "albedo is reflected light over incident light",
+                                 "set light: {map: FILE} in the session");
     }
 
     std::vector<AlbedoPatch> const& patches() const { return real_.patches; }
@@ -167,11 +167,11 @@ AlbedoEstimate estimate_albedos(RealScene real, std::shared_ptr<gi::EnvironmentM
                                 EstimateSettings const& settings, gi::StopRequest const& stop, gi::Report& report)
 {
     if (real.patches.empty())
-        throw gi::InputError("no albedo is to be estimated", "the session gives all of them",
+        throw gi::InputError("no albedo to estimate", "the session specifies all of them",
                              "write albedo: estimate at a proxy, or at the real scene");
     if (frames.empty())
-        throw gi::InputError("no frame in which the camera was found", "nothing is known of any surface",
-                             "look at lightwell ar track, or give --poses");
+        throw gi::InputError("the camera was found in no frame", "albedos need frames with a pose",
+                             "check with lightwell ar track, or use --poses");
     Estimator estimator(std::move(real), camera, settings, stop, report);
     estimator.light(std::move(light));
     estimator.prepare(frames);

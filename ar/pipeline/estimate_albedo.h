@@ -1,6 +1,6 @@
 #pragma once
-// Albedos of real surfaces from what the camera has seen of them: ar/composite/albedo.h with the reference
-// renderer as the one that knows how much light falls where.
+// Estimates albedos of real surfaces from camera frames: ar/composite/albedo.h, with the incident light from the
+// reference renderer.
 
 #include "ar/composite/albedo.h"
 #include "ar/pipeline/pipeline.h"
@@ -9,7 +9,7 @@
 
 namespace viewer {
 
-/// A frame without virtual things.
+/// A frame without virtual objects.
 struct AlbedoFrame {
     cv::Mat rgb; ///< CV_8UC3, of the calibration's size
     ar::Exposure exposure;
@@ -18,23 +18,23 @@ struct AlbedoFrame {
 };
 
 struct EstimateSettings {
-    double resolution = 0.5;  ///< pixels compared per pixel of the camera, each way
-    std::uint32_t paths = 16; ///< of the reference renderer, per pixel compared, before its noise is filtered
+    double resolution = 0.5;  ///< compared pixels per camera pixel, in each direction
+    std::uint32_t paths = 16; ///< of the reference renderer, per compared pixel, before denoising
     int bounces = 6;
-    int most_turns = 8; ///< of rendering and fitting
+    int most_turns = 8; ///< maximum number of alternations of rendering and fitting
     float tolerance = 2e-3f;
     ar::AlbedoSettings fit;
 };
 
 struct AlbedoEstimate {
-    std::vector<AlbedoEntry> entries; ///< a patch each; `texture` is left empty
-    std::vector<cv::Mat> textures;    ///< the same: CV_32FC3, linear, upper row first; empty = none
+    std::vector<AlbedoEntry> entries; ///< one per patch; `texture` is left empty
+    std::vector<cv::Mat> textures;    ///< one per patch: CV_32FC3, linear, upper row first; empty = none
     ar::AlbedoSolution solution;
-    std::size_t filled = 0, texels = 0, outside = 0; ///< of all textures, see ar::AlbedoTexture
+    std::size_t filled = 0, texels = 0, outside = 0; ///< over all textures, see ar::AlbedoTexture
 };
 
-/// @param real   as of `model_of`, with its lamps
-/// @param light  from far away, in the world; null = none
+/// @param real   as from `model_of`, with its lights
+/// @param light  environment map in the world's frame; null = none
 /// @throws gi::InputError nothing to estimate, no light, no frame
 AlbedoEstimate estimate_albedos(RealScene real, std::shared_ptr<gi::EnvironmentMap const> light,
                                 ArCamera const& camera, std::span<AlbedoFrame const> frames,

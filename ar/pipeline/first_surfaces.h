@@ -1,6 +1,5 @@
 #pragma once
-// What a camera sees first at every pixel, without any light: rasterised, so it costs little beside a pass of
-// paths.
+// First surfaces of a camera's view, without lighting: rasterised, so the cost is small compared with a pass.
 
 #include "gi/methods/slhb/lights/primary_map.h"
 #include "gi/scene/model/camera.h"
@@ -10,26 +9,26 @@
 
 namespace viewer {
 
-/// Which surfaces there are for a picture.
+/// Surfaces to include in a picture.
 enum class Surfaces {
     all,
-    still, ///< those that cannot move: what is real
-    moving ///< those that can: what is virtual
+    still, ///< surfaces that cannot move: real ones
+    moving ///< surfaces that can move: virtual ones
 };
 
-/// Of one point of every pixel.
+/// First surfaces at one point of every pixel.
 struct FirstSurfaces {
-    cv::Mat triangle; ///< CV_32SC1, of the world; -1 = none
+    cv::Mat triangle; ///< CV_32SC1, triangle index in the world; -1 = none
     cv::Mat depth_m;  ///< CV_32FC1, along the axis; 0 = none
     cv::Mat normal;   ///< CV_32FC3, length 1, towards the camera; 0 = none
     cv::Mat albedo;   ///< CV_32FC3
-    cv::Mat place;    ///< CV_32FC2, the first texture coordinates, as the material's base colour reads them
+    cv::Mat place;    ///< CV_32FC2, first texture coordinates, as used by the material's base colour
 };
 
-/// What is nearest at a raster of points, with nothing looked up yet.
+/// Nearest triangles at a raster of points, before surface attributes are fetched.
 struct SurfaceRaster {
-    cv::Rect region;     ///< of the raster that the camera sees: what was looked at
-    gi::CameraRays rays; ///< of the whole raster, a point (x, y) at x + 0.5, y + 0.5
+    cv::Rect region;     ///< rasterised part of the camera's raster
+    gi::CameraRays rays; ///< of the whole raster; point (x, y) is at x + 0.5, y + 0.5
     gi::NearestMap map;  ///< of the region
 
     gi::NearestTexel const& texel(int x, int y) const
@@ -46,20 +45,20 @@ struct FirstSurface {
 
 class SurfaceView {
 public:
-    /// Reads the world's triangles as they are now. @param world  outlives this
+    /// Reads the world's current triangles. @param world  must outlive this object
     SurfaceView(gi::World const& world, Surfaces surfaces);
-    /// Reads triangles that can move again.
+    /// Reads the movable triangles again.
     void moved();
 
     /// @param camera  perspective
-    /// @param pass  which point of the pixels, as in gi's passes: another one, another point
-    /// @param region  of the picture; without it, all. Elsewhere there is nothing
-    /// @param wanted  of what is seen first: others are left out of the result, but hide what is behind them
+    /// @param pass  selects the sample point within the pixels, as in gi's passes
+    /// @param region  part of the picture to compute; default: all. The rest of the result is empty
+    /// @param wanted  surfaces to return; others are left out of the result, but still occlude
     FirstSurfaces seen(gi::Camera const& camera, int width, int height, std::uint32_t pass, cv::Rect region = {},
                        Surfaces wanted = Surfaces::all) const;
-    /// @param into  its memory is used again
+    /// @param into  result; its memory is reused
     void rasterise(gi::Camera const& camera, int width, int height, cv::Rect region, SurfaceRaster& into) const;
-    /// Of the triangle of a texel, at a position of the raster: the nearest point of it.
+    /// The point of the texel's triangle that is nearest to a position of the raster.
     FirstSurface surface_at(SurfaceRaster const& raster, gi::NearestTexel const& texel, gi::vec2 position) const;
     bool is_still(gi::NearestTexel const& texel) const { return texel.primitive < world_.static_triangles; }
 

@@ -10,10 +10,10 @@
 namespace viewer {
 namespace {
 
-/// Scale of what is not there. Not 0, so that lamps still point somewhere; triangles have no area left in floats.
+/// Scale of hidden objects. Not 0, so that lights keep a direction; triangles have zero area in floats.
 constexpr double kGone = 1e-12;
 
-/// All towards one point, so that nothing is left of skins whose joints are apart.
+/// Moves all nodes to one point, so that skins with distant joints vanish, too.
 void vanish(std::span<gi::dmat4> world_from_node)
 {
     gi::dvec3 const at = world_from_node[0][3];
@@ -39,7 +39,7 @@ LocalScene join_scenes(gi::Scene real, gi::Scene virtual_things, gi::dmat4 const
         if (!motion.node[n].empty() || !motion.morph[n].empty())
             throw gi::InputError(fmt::format("'{}' of the real scene moves ({}{})", real.nodes[n].name,
                                              motion.node[n], motion.morph[n]),
-                                 "what moves is taken for virtual", "leave it out, or make it one of the virtual");
+                                 "moving objects count as virtual", "leave it out, or move it to virtual");
     leave_out_views(real);
     leave_out_views(virtual_things);
     LocalScene local;

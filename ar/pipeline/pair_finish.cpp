@@ -9,14 +9,14 @@
 namespace viewer {
 namespace {
 
-/// The pinhole of the frame's size: it sees exactly what the rendered one does.
+/// The pinhole at the frame's size, with exactly the view of the rendered one.
 ar::CameraModel full_pinhole(ar::CameraModel const& rendered, ArSession const& s)
 {
     if (!s.finish.upsample || s.render.resolution >= 1) return rendered;
     return ar::scaled(rendered, glm::ivec2(glm::round(glm::dvec2(rendered.size_px) / s.render.resolution)));
 }
 
-/// Of a rendered pixel's mean, and of the bilinear lookup through the lens: 1/12 and on the mean 1/6 square
+/// Blur of a rendered pixel's mean and of the bilinear lookup through the lens: 1/12 and on average 1/6 square
 /// pixels.
 constexpr double kRenderedSigma_px = 0.5;
 
@@ -64,8 +64,7 @@ ar::RenderedPair PairFinish::smoothed(PairPictures const& p, ar::Pose const& wor
 ar::RenderedPair PairFinish::upsampled(ar::RenderedPair const& low, SharpSurfaces const& sharp,
                                        gi::Camera const& camera)
 {
-    // Guides are needed within reach of pixels that take part: where something has changed, and where virtual
-    // things are seen.
+    // Guides are needed near changed pixels and near visible virtual objects.
     cv::Size const low_size = low.with.size();
     cv::resize(sharp.seen.coverage, wanted_coverage_, low_size, 0, 0, cv::INTER_AREA);
     wanted_.create(low_size, CV_8UC1);

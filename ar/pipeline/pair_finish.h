@@ -1,6 +1,6 @@
 #pragma once
-// From what was rendered to what the camera would have seen of it: at the camera's size, in its lens, as sharp as
-// its pictures, and behind what stands before. Steps that a session does not ask for cost nothing.
+// Converts rendered pairs to what the camera would have seen: at the camera's size, with its lens distortion and
+// sharpness, and occluded by real objects in front. Steps that the session does not enable cost nothing.
 
 #include "ar/composite/occlusion_matte.h"
 #include "ar/composite/temporal.h"
@@ -12,9 +12,9 @@
 
 namespace viewer {
 
-/// The frame that a pair is for.
+/// The camera frame that a pair belongs to.
 struct FinishFrame {
-    cv::Mat radiance; ///< CV_32FC3, the camera's; only read for mattes and blur
+    cv::Mat radiance; ///< CV_32FC3, of the camera; used only for mattes and blur
     ar::Pose world_from_camera;
     double time_s = 0, exposure_s = 0;
 };
@@ -31,13 +31,13 @@ class PairFinish {
 public:
     PairFinish(ArSession const& session, ar::CameraModel const& camera, ar::MarkerMap const& markers);
 
-    /// What is to be rendered.
+    /// The camera to render with.
     ar::CameraModel const& pinhole() const { return pinhole_; }
     bool needs_radiance() const { return session_.finish.mattes || blur_; }
     bool needs_world() const { return session_.finish.upsample || session_.finish.mattes; }
-    /// @param world  with everything virtual in its place, the same in every call; read only if it is needed
+    /// @param world  with all virtual objects in place, the same object in every call; read only if needed
     ar::RenderedPair operator()(PairPictures const& rendered, FinishFrame const& frame, gi::World const& world);
-    /// The camera is lost: there is no history.
+    /// Discards the history; call when the camera's pose is lost.
     void forget();
     FinishCounts const& counts() const { return counts_; }
 
@@ -48,12 +48,12 @@ private:
 
     ArSession session_;
     ar::CameraModel camera_, pinhole_; ///< rendered
-    ar::Warp warp_;                    ///< from the size that pairs have in the end
+    ar::Warp warp_;                    ///< from the final size of pairs
     std::optional<ar::TemporalFilter> filter_;
     std::optional<CameraBlur> blur_;
     std::optional<VirtualSurfaces> virtual_;
     std::optional<RealSurfaces> real_;
-    cv::Mat wanted_, wanted_coverage_; ///< memory of the last frame
+    cv::Mat wanted_, wanted_coverage_; ///< reused buffers
     FinishCounts counts_;
 };
 

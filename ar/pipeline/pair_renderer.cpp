@@ -34,7 +34,7 @@ gi::Changes PairRenderer::turn(gi::PairSide side, gi::SceneTime time_s)
 
 gi::World const& PairRenderer::world_with(gi::SceneTime time_s)
 {
-    gi::Changes const changes = turn(gi::PairSide::with, time_s); // with those that the renderer has not been told
+    gi::Changes const changes = turn(gi::PairSide::with, time_s); // including pending ones
     pending_.add(changes);
     return world_.world();
 }
@@ -43,7 +43,7 @@ PairPictures PairRenderer::render(gi::Camera const& camera, int width, int heigh
                                   gi::SceneTime time_s, gi::DenoiseSettings filter, gi::StopRequest const& stop)
 {
     if (!frames_) {
-        // Begins with everything there, so that the bounds of the hit buffers have room for it.
+        // Start with all virtual objects in place, so that the bounds of the hit buffers include them.
         turn(gi::PairSide::with, time_s);
         settings_.width = width;
         settings_.height = height;

@@ -1,5 +1,5 @@
 #pragma once
-// Renders a local scene with and without its virtual things, for compositing.
+// Renders a local scene with and without its virtual objects, for compositing.
 
 #include "ar/pipeline/local_scene.h"
 #include "gi/core/report.h"
@@ -10,28 +10,28 @@
 
 namespace viewer {
 
-/// Pictures of a pinhole camera. With and without: radiance, CV_32FC3, RGB, by the same random numbers.
+/// Pictures of a pinhole camera. `with` and `without`: radiance, CV_32FC3, RGB, from the same random numbers.
 struct PairPictures {
     cv::Mat with, without;
-    cv::Mat direct;                ///< CV_32FC3: what of `with` comes of virtual things seen first
-    cv::Mat coverage;              ///< CV_32FC1: share of the pixel where a virtual thing is seen first
+    cv::Mat direct;                ///< CV_32FC3: part of `with` from virtual first surfaces
+    cv::Mat coverage;              ///< CV_32FC1: share of the pixel whose first surface is virtual
     cv::Mat depth_m, real_depth_m; ///< CV_32FC1, along the axis: first surface with and without; 0 = none
-    std::uint32_t paths = 0;       ///< per pixel of each
+    std::uint32_t paths = 0;       ///< per pixel of each picture
 };
 
 class PairRenderer {
 public:
-    /// @param settings  method slhb; the size of pictures and the paths are given with each of them
+    /// @param settings  method slhb; size and number of paths are set per call of `render`
     PairRenderer(LocalScene local, gi::RenderSettings const& settings, gi::Report& report);
 
-    /// The light of the place, from all sides; null: none.
+    /// Sets the place's environment map; null: none.
     void set_environment(std::shared_ptr<gi::EnvironmentMap const> map);
-    /// @param filter  of both pictures: what is equal in both stays so but near what is not. The a-trous filter
-    ///                goes by variance, and does nothing with one path
+    /// @param filter  for both pictures: equal pixels stay equal except near unequal ones. The a-trous filter
+    ///                needs variances, and does nothing with one path
     PairPictures render(gi::Camera const& camera, int width, int height, std::uint32_t paths, gi::SceneTime time_s,
                         gi::DenoiseSettings filter, gi::StopRequest const& stop);
     gi::World const& world() const { return world_.world(); }
-    /// The same, with everything virtual in its place. It is moved again by the next picture.
+    /// The world with all virtual objects in place; valid until the next picture.
     gi::World const& world_with(gi::SceneTime time_s);
 
 private:
@@ -41,7 +41,7 @@ private:
     gi::RenderSettings settings_;
     gi::Report& report_;
     gi::MovingWorld world_;
-    std::vector<gi::Light> virtual_lights_; ///< as they are when they are there
+    std::vector<gi::Light> virtual_lights_; ///< the virtual lights, for the side with them
     gi::Changes pending_;                   ///< since the last picture
     std::unique_ptr<gi::FrameRenderer> frames_;
 };

@@ -12,7 +12,7 @@
 namespace viewer {
 namespace {
 
-/// Milliseconds since the last call; no time is between two of them.
+/// Milliseconds since the last call, without gaps between calls.
 class Lap {
 public:
     explicit Lap(double begun_s) : last_s_(begun_s) {}

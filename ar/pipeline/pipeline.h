@@ -1,6 +1,6 @@
 #pragma once
-// From a camera's frame to the same frame with virtual things in it: detect, find the camera, render with and
-// without, composite.
+// Adds virtual objects to a camera's frame: detect markers, estimate the camera pose, render with and without
+// virtual objects, composite.
 
 #include "ar/camera/frame.h"
 #include "ar/composite/composite.h"
@@ -12,59 +12,59 @@
 
 namespace viewer {
 
-/// One after the other, without gaps: their sum is the time from being handed over to `ArResult::done_s`.
+/// Consecutive stages without gaps: their sum is the time from delivery to `ArResult::done_s`.
 struct ArTimes {
     double decode_ms = 0, detect_ms = 0, pose_ms = 0;
-    double wait_ms = 0; ///< for its turn to be rendered
+    double wait_ms = 0; ///< waiting to be rendered
     double light_ms = 0, render_ms = 0, composite_ms = 0;
 };
 
-/// What the camera is, as a calibration file says.
+/// The camera's properties from its calibration file.
 struct ArCamera {
     ar::CameraModel model;
     ar::Photometry photometry;
     ar::SensorNoise noise;
 };
 
-/// @throws gi::InputError frames of another size than the calibration's
+/// @throws gi::InputError if the frames' size differs from the calibration's
 void check_size(glm::ivec2 frames_px, ArCamera const& camera);
 
 struct ArResult {
-    cv::Mat rgb;    ///< CV_8UC3; without a pose: the camera's frame as it came
+    cv::Mat rgb;    ///< CV_8UC3; without a pose: the camera's frame unchanged
     cv::Mat camera; ///< the camera's frame
     ar::Sighting sighting;
     ar::PoseEstimate pose;
     ar::CompositeCounts counts;
     std::optional<ar::RenderedPair> pair; ///< in the camera's lens
-    cv::Mat light;                        ///< CV_8UC3 RGB, the map that it was lit by, small; empty = no map
+    cv::Mat light;                        ///< CV_8UC3 RGB, thumbnail of the environment map used; empty = no map
     ArTimes times;
-    double done_s = 0; ///< steady clock, when the last of these had ended
+    double done_s = 0; ///< steady clock, end of the last stage
 };
 
-/// Who puts what was rendered into the frame.
+/// Where compositing is done.
 enum class CompositeBy {
     pipeline,
     window ///< viewer/devices/gl/ar_composite_pass.h; `rgb` stays the camera's and there are no counts
 };
 
-/// In two steps, `find` and `add`, which may be made by two threads at once: they share nothing that changes. Each
-/// takes the frames in order.
+/// Processes frames in two steps, `find` and `add`, which may run in two threads at once, as they share no mutable
+/// state. Each must get the frames in order.
 class ArPipeline {
 public:
-    /// Loads the scenes and the light. @throws gi::InputError
-    /// @param prefix  of its counts in the report, where there are several
+    /// Loads the scenes and the light. @throws gi::InputError, gi::InputError
+    /// @param prefix  for its counts in the report, if there are several pipelines
     ArPipeline(ArSession const& session, ArCamera const& camera, ar::MarkerMap const& markers, gi::Report& report,
                std::string prefix = {});
 
-    /// Where the camera is.
-    /// @param time_s   since the first frame: of the virtual things' clips, the camera's motion and the light
-    /// @param known    where the camera is, in place of what the frame says
-    /// @param begun_s  steady clock, from when on its time counts; nothing = now
+    /// Finds the camera's pose.
+    /// @param time_s   since the first frame: time for animation clips, the camera's motion and the light
+    /// @param known    camera pose to use instead of estimating it from the frame
+    /// @param begun_s  steady clock, start of the time measurement; nothing = now
     /// @throws gi::InputError the frame cannot be decoded or has another size than the calibration
     ArResult find(ar::Frame const& frame, double time_s, std::optional<ar::Pose> const& known = {},
                   std::optional<double> begun_s = {});
-    /// The virtual things, where a camera was found.
-    /// @param r  of `find` for the same frame
+    /// Adds the virtual objects if a camera pose was found.
+    /// @param r  result of `find` for the same frame
     void add(ArResult& r, ar::Frame const& frame, double time_s, gi::StopRequest const& stop,
              CompositeBy composite = CompositeBy::pipeline);
     ar::Compositor const& compositor() const { return compositor_; }

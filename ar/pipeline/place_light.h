@@ -1,6 +1,5 @@
 #pragma once
-// The light of the place: the map that was captured there, or an estimate that the camera's own frames keep up to
-// date.
+// The light of the place: the captured environment map, or an estimate that is updated from the camera's frames.
 
 #include "ar/camera/frame.h"
 #include "ar/light/live_probe.h"
@@ -16,13 +15,13 @@ public:
     /// @throws gi::InputError the map cannot be read
     explicit PlaceLight(ArSession const& session);
 
-    /// As it was captured; null: there is no map.
+    /// The captured map; null: none.
     std::shared_ptr<gi::EnvironmentMap const> begin() const;
-    /// What a frame tells of it. @return a new map where it is time for one, or a lamp was switched: else null
+    /// Updates the estimate with a frame. @return a new map if one is due or a lamp was switched; else null
     std::shared_ptr<gi::EnvironmentMap const> follow(cv::Mat const& rgb, ar::Photometry const& photometry,
                                                      ar::Exposure const& exposure, ar::CameraModel const& camera,
                                                      glm::dquat const& world_from_camera, double time_s);
-    /// As it is now: lat-long radiance, CV_32FC3; empty = none.
+    /// The current map: lat-long radiance, CV_32FC3; empty = none.
     cv::Mat map() const { return probe_ ? probe_->map() : captured_; }
 
 private:
@@ -31,7 +30,7 @@ private:
     int every_, frames_ = 0;
 };
 
-/// For people to look at: CV_8UC3 RGB, 128 x 64, exposed for its middle tones. Empty of an empty map.
+/// Picture of the map for display: CV_8UC3 RGB, 128 x 64, exposed for its middle tones; empty for an empty map.
 cv::Mat picture_of_light(cv::Mat const& map);
 
 } // namespace viewer

@@ -1,12 +1,11 @@
 #pragma once
-// What compositing costs a program that writes the equation down with OpenCV, a whole picture per step. A peer to
-// measure against.
+// Baseline for benchmarks: the compositing equation written directly with OpenCV, one whole picture per step.
 
 #include "ar/composite/rendered_pair.h"
 
 namespace viewer {
 
-/// with + (1 - a)(camera - without), of a camera whose bytes are sRGB: to light by table, back by powers.
+/// with + (1 - a)(camera - without), for a camera with sRGB bytes: decoded by table, encoded by powers.
 /// @param rgb CV_8UC3
 cv::Mat plain_composite(cv::Mat const& rgb, ar::RenderedPair const& pair);
 

@@ -7,7 +7,7 @@ bool use_pose(ArPoseUse const& use, ar::PoseTracker const& track, double time_s,
     bool const found = pose.found();
     if (!(found ? use.filtered : use.predict_s > 0)) return false;
     ar::TrackedPose const tracked = track.at(time_s);
-    // An estimate that was refused as a jump is replaced, too: the newest one that was believed is older.
+    // An estimate refused as a jump is replaced, too: the newest accepted one is older.
     double const oldest_s = found ? use.tracker.predict_s : use.predict_s;
     bool const stands = use.tracker.motion == ar::CameraMotion::tripod && found;
     if (!tracked.world_from_camera || (!stands && tracked.age_s > oldest_s)) return false;

@@ -85,7 +85,7 @@ render: {{paths: 4, resolution: 1}}
                                          o.rate_hz);
 }
 
-/// Frames begun with other options must not be mixed with these.
+/// Refuses a folder whose frames were made with other options.
 void check_folder(SynthesizeOptions const& o)
 {
     fs::path const session = o.folder / "session.yaml";
@@ -93,7 +93,7 @@ void check_folder(SynthesizeOptions const& o)
     std::vector<unsigned char> const bytes = gi::read_bytes(session, std::size_t(1) << 20);
     if (std::string(bytes.begin(), bytes.end()) != session_text(o))
         throw gi::InputError("'" + o.folder.string() + "' holds another session",
-                             "its frames and those made now would not belong together", "name another folder");
+                             "old and new frames would be mixed", "choose another folder");
 }
 
 void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, ar::MarkerMap const& markers,
@@ -117,7 +117,7 @@ void write_setup(SynthesizeOptions const& o, SyntheticCamera const& camera, ar::
     fine.paths = std::max(4 * fine.paths, 8u);
     cv::Mat const probe =
         synthetic_probe(generate_desk(DeskPart::whole, paper), {0, 0.15, 0}, 128, fine, stop, report);
-    if (stop.requested()) return; // a probe of few paths must not stay
+    if (stop.requested()) return; // do not keep an unfinished probe
     write_probe(o.folder / "probe.exr", probe, report);
     gi::write_text(o.folder / "session.yaml", session_text(o));
 }

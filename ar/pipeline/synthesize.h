@@ -1,6 +1,6 @@
 #pragma once
-// A synthetic session as files: what a camera would have seen, what is true, and the session that composites it.
-//   frames/000000.png ...  the camera's frames      truth/000000.png ...  with the virtual things really there
+// Writes a synthetic session: the camera's frames, the ground truth, and the session file that composites them.
+//   frames/000000.png ...  the camera's frames      truth/000000.png ...  with the virtual objects really there
 //   camera.yaml  markers.yaml  poses.csv (true)     probe.exr   near.glb   statue.glb   session.yaml
 
 #include "ar/pipeline/synthetic.h"
@@ -15,12 +15,12 @@ struct SynthesizeOptions {
     int frames = 300;
     double rate_hz = 30;
     SyntheticQuality quality;
-    bool truth = true; ///< also the pictures with the virtual things
+    bool truth = true; ///< also write the pictures with the virtual objects
 };
 
-/// Frames that are there already are kept, so that it can be interrupted and go on.
-/// @return frames that are there now. @throws gi::InputError the folder cannot be written, or holds a session of
-/// other options
+/// Existing frames are kept, so an interrupted run can be continued.
+/// @return number of frames now in the folder. @throws gi::InputError the folder cannot be written, or contains a
+/// session with other options
 int synthesize(SynthesizeOptions const& options, gi::StopRequest const& stop, gi::Report& report);
 
 } // namespace viewer

@@ -1,6 +1,6 @@
 #pragma once
-// Sessions in which everything is known: a camera with a lens, noise and a path through a room that the reference
-// renderer renders, with and without the virtual things. What `lightwell ar synthesize` writes.
+// Sessions in which everything is known, for `lightwell ar synthesize`: a camera with a lens, noise and a
+// trajectory through a room that the reference renderer renders, with and without the virtual objects.
 
 #include "ar/camera/camera_model.h"
 #include "ar/camera/photometry.h"
@@ -19,10 +19,11 @@ struct SyntheticCamera {
     double photon_noise = 2e-5; ///< variance per unit
 };
 
-/// 640 x 480 wide: 60 degrees across, barrel distortion; sRGB bytes.
+/// 60 degrees wide at 640 x 480, barrel distortion; sRGB bytes.
 SyntheticCamera synthetic_camera(glm::ivec2 size_px);
 
-/// Around the middle of the table at about 1 m, above it, handheld: smooth, with a little sway. @param t  0 to 1
+/// Camera pose around the middle of the table at a distance of about 1 m, above it: smooth, with a little handheld
+/// sway. @param t  0 to 1
 ar::Pose synthetic_pose(double t);
 
 struct SyntheticQuality {
@@ -33,15 +34,15 @@ struct SyntheticQuality {
 };
 
 /// Radiance, CV_32FC3, of the camera's size, through its lens.
-/// @param seed  the same for two scenes: what they share has the same noise
+/// @param seed  with the same seed, the common parts of two scenes have the same noise
 cv::Mat synthetic_radiance(gi::Scene const& scene, std::optional<double> time_s, ar::CameraModel const& camera,
                            ar::Pose const& world_from_camera, SyntheticQuality const& quality, std::uint64_t seed,
                            gi::StopRequest const& stop, gi::Report& report);
 
-/// What the sensor makes of it: CV_8UC3 RGB. The same frame has the same noise.
+/// Simulates the sensor: CV_8UC3 RGB. The noise depends only on the frame number.
 cv::Mat synthetic_frame(cv::Mat const& radiance, SyntheticCamera const& camera, std::uint64_t frame);
 
-/// What a perfect probe at this place sees: lat-long radiance, CV_32FC3, 2 height x height.
+/// Exact light probe at this place: lat-long radiance, CV_32FC3, 2 height x height.
 cv::Mat synthetic_probe(gi::Scene const& scene, gi::dvec3 place_m, int height, SyntheticQuality const& quality,
                         gi::StopRequest const& stop, gi::Report& report);
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kSide = 2, kPoints = kSide * kSide; ///< of each pixel of the frame
 constexpr float kLeastDivisor = 0.01f;
-constexpr int kReach_px = 4; ///< rendered pixels around that are looked at
+constexpr int kReach_px = 4; ///< radius of the search, rendered pixels
 
 cv::Vec3f vector(gi::vec3 v) { return {v.x, v.y, v.z}; }
 
@@ -67,7 +67,7 @@ void VirtualSurfaces::look(SurfaceView const& surfaces, gi::Camera const& camera
             }
             if (p.points == 0) continue;
             p.is_split = nearest > 1.02f * farthest;
-            // One point tells all of a pixel within a surface.
+            // One point suffices for a pixel inside a surface.
             bool const is_whole = p.points == kPoints && !p.is_split;
             if (is_whole) seen[0].second = float(kSide) * gi::vec2(float(x) + 0.5f, float(y) + 0.5f);
             int const looks = is_whole ? 1 : p.points;
@@ -119,7 +119,7 @@ void VirtualSurfaces::know(PairPictures const& low, cv::Size size, cv::Rect low_
         }
 }
 
-/// Of a surface at a place of the rendered picture; nothing where nobody near shows anything.
+/// Light for a surface at a position of the rendered picture; nothing if no pixel nearby shows virtual objects.
 std::optional<cv::Vec3f> VirtualSurfaces::light_at(cv::Vec2f place, cv::Vec3f const& normal, float depth_m) const
 {
     cv::Vec3f alike, any;
@@ -197,7 +197,7 @@ SharpSurfaces VirtualSurfaces::at_size(PairPictures const& low, gi::Camera const
     out_.unlit = 0;
     clear(out_.seen);
     if (with_unoccluded) clear(out_.unoccluded);
-    // A matte compares what is hidden within its windows.
+    // Mattes need the hidden parts within their windows.
     cv::Rect const low_region = around(low.coverage > 0, with_unoccluded ? 16 : 2);
     if (low_region.empty()) return out_;
     cv::Rect const region = scaled(low_region, low_size, size);

@@ -1,8 +1,7 @@
 #pragma once
-// What virtual things show themselves, at the frame's size, from a pair that was rendered at a lower one: which
-// pixels they cover is rasterised anew, and the light that falls on them is that of the rendered pixels around
-// which show a like surface (joint bilateral upsampling, Kopf et al. 2007). Mirrors and highlights on them stay as
-// coarse as they were rendered.
+// Full-resolution pictures of the virtual objects from a pair rendered at a lower resolution: coverage is
+// rasterised anew, and incident light comes from surrounding rendered pixels of similar surfaces (joint bilateral
+// upsampling, Kopf et al. 2007). Mirrors and highlights on them keep the rendered resolution.
 
 #include "ar/composite/upsample.h"
 #include "ar/pipeline/first_surfaces.h"
@@ -14,26 +13,26 @@
 
 namespace viewer {
 
-/// Each of the frame's size.
+/// Pictures of the frame's size.
 struct SharpSurfaces {
-    ar::DirectlySeen seen;       ///< less what proxies hide
-    ar::DirectlySeen unoccluded; ///< as if proxies hid nothing; empty unless asked for
-    std::size_t unlit = 0; ///< points of pixels without any rendered pixel near by that shows the things: black
+    ar::DirectlySeen seen;       ///< with occlusion by proxies
+    ar::DirectlySeen unoccluded; ///< without occlusion by proxies; empty unless requested
+    std::size_t unlit = 0; ///< points without a nearby rendered pixel of virtual objects, which become black
 };
 
-/// Virtual things in one pixel of the frame: means over the points of it where they are seen first.
+/// Virtual objects in one pixel of the frame: means over its points whose first surface is virtual.
 struct VirtualPixel {
     cv::Vec3f normal, albedo;
     float depth_m = 0;
-    int points = 0;        ///< of it, where they are seen
-    bool is_split = false; ///< between surfaces that are not near each other
+    int points = 0;        ///< number of these points
+    bool is_split = false; ///< true if the points lie on surfaces that are not near each other
 };
 
-/// What a rendered pixel knows of virtual things.
+/// Light on virtual objects in a rendered pixel.
 struct PixelLight {
     cv::Vec3f light, normal; ///< light: radiance over albedo
     float depth_m = 0;
-    float coverage = 0; ///< 0: it knows nothing
+    float coverage = 0; ///< 0: no virtual object in this pixel
 };
 
 template <class T>
@@ -53,13 +52,13 @@ struct PixelGrid {
 
 class VirtualSurfaces {
 public:
-    /// @param world  outlives this; with everything that is virtual in its place when it is asked
+    /// @param world  must outlive this object, and have all virtual objects in place during calls
     explicit VirtualSurfaces(gi::World const& world) : world_(world), all_(world, Surfaces::all) {}
 
-    /// The world has moved.
+    /// Call after the world has moved.
     void moved();
-    /// @param low   direct and coverage are read  @param size  of the result; sees what `camera` does
-    /// @return pictures whose memory the next call uses again
+    /// @param low   only direct and coverage are used  @param size  of the result, with the view of `camera`
+    /// @return pictures whose memory the next call reuses
     SharpSurfaces at_size(PairPictures const& low, gi::Camera const& camera, cv::Size size, bool with_unoccluded);
 
 private:
@@ -71,22 +70,23 @@ private:
 
     gi::World const& world_;
     SurfaceView all_;
-    std::unique_ptr<SurfaceView> virtual_; ///< made when it is asked for
-    // Memory of the last call.
+    std::unique_ptr<SurfaceView> virtual_; ///< created on demand
+    // Reused buffers.
     SurfaceRaster raster_;
     PixelGrid<VirtualPixel> pixels_; ///< of the region
     PixelGrid<PixelLight> known_;    ///< of the rendered size
     SharpSurfaces out_;
 };
 
-/// Guides of real surfaces for a picture and the rendered one, whose pixels are means over those of the picture.
+/// Guides of real surfaces at full size, and at the rendered size as means over full-size pixels.
 class RealSurfaces {
 public:
     explicit RealSurfaces(gi::World const& world) : real_(world, Surfaces::still) {}
 
-    /// @param wanted  CV_8UC1, of the rendered size: where it is not 0; elsewhere guides are anything
+    /// @param wanted  CV_8UC1, of the rendered size: guides are computed where it is nonzero and undefined
+    /// elsewhere
     void look(gi::Camera const& camera, cv::Size size, cv::Mat const& wanted);
-    /// Their memory is used again by the next look.
+    /// Valid until the next `look`, which reuses their memory.
     ar::SurfaceGuides const& guides() const { return guides_; }
     ar::SurfaceGuides const& low_guides() const { return low_; }
 
@@ -96,9 +96,9 @@ private:
     ar::SurfaceGuides guides_, low_;
 };
 
-/// The rectangle of what is not 0, wider by some pixels; empty where all is.
+/// Bounding rectangle of nonzero pixels, enlarged by `by_px`; empty if all are 0.
 cv::Rect around(cv::Mat const& mask, int by_px);
-/// What of a picture of another size a rectangle covers.
+/// Scales a rectangle from one picture size to another.
 cv::Rect scaled(cv::Rect rectangle, cv::Size from, cv::Size to);
 
 } // namespace viewer

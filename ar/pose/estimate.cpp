@@ -15,8 +15,8 @@ namespace {
 
 using SightedPoints = std::vector<SightedPoint>;
 
-constexpr double kCoarseSigmas = 40; ///< within which a first guess counts as agreeing with a point
-constexpr double kLimitSigmas = 5;   ///< beyond which a refined pose does not
+constexpr double kCoarseSigmas = 40; ///< an initial estimate agrees with points within this
+constexpr double kLimitSigmas = 5;   ///< a refined pose disagrees with points beyond this
 constexpr double kMostScale = 5;     ///< how much worse than their sigmas points may be
 constexpr std::size_t kMarkerGuesses = 12;
 constexpr int kRandomGuesses = 40;
@@ -93,7 +93,7 @@ double scale_of(CameraModel const& camera, SightedPoints const& points, Pose con
     return std::clamp(gi::median(std::move(misses)) / 1.1774, 1.0, kMostScale); // of a Rayleigh distribution
 }
 
-/// Single points, and whole markers of which half of the points disagree.
+/// Returns the agreeing points, without markers of which half or more of the points disagree.
 SightedPoints agreeing(CameraModel const& camera, SightedPoints const& points, Pose const& pose, double limit)
 {
     SightedPoints kept;
@@ -168,7 +168,7 @@ std::optional<Refined> second_pose(CameraModel const& camera, Agreed const& firs
     }
     std::optional<Refined> best;
     for (Pose const& start : starts) {
-        if (angle_between_deg(start.rotation, chosen.rotation) < 0.5) continue; // would find the first again
+        if (angle_between_deg(start.rotation, chosen.rotation) < 0.5) continue; // would find the first
         Refined const r = refine(camera, first.points, start);
         bool const ahead = std::all_of(first.points.begin(), first.points.end(), [&](SightedPoint const& p) {
             return miss_px(camera, r.world_from_camera, p).has_value();
@@ -250,7 +250,7 @@ PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera, 
     PointSet const all = survey(points);
     if (all.different < 4) return failed(PoseFailure::too_few_points, sighting);
     if (all.shape == Shape::line || all.shape == Shape::point) return failed(PoseFailure::on_a_line, sighting);
-    // Digits are lost far from zero: the points' centre is the origin while we calculate.
+    // Precision is lost far from zero: compute relative to the points' centre.
     for (SightedPoint& p : points) p.world_m -= all.centre_m;
     std::optional<Pose> near = last;
     if (near) near->position_m -= all.centre_m;
@@ -263,7 +263,7 @@ PoseEstimate estimate_pose(Sighting const& sighting, CameraModel const& camera, 
     for (std::size_t i = 0; i < std::min(guesses.size(), kRefinedGuesses); ++i) {
         Agreed const a = agree(camera, points, guesses[i]);
         if (a.points.size() >= 4 && (!best || a.cost < best->cost)) best = a;
-        if (best && best->cost < 0.05 * double(points.size())) break; // nothing is left to explain
+        if (best && best->cost < 0.05 * double(points.size())) break; // all points agree
     }
     if (!best || 2 * best->points.size() < points.size()) return failed(PoseFailure::no_agreement, sighting);
     PointSet const kept = survey(best->points);

@@ -1,8 +1,9 @@
 #pragma once
-// Poses from a file: of a tracked camera, of another program, of the viewer's recordings.
+// Reads poses from a file: of a tracked camera, another program, or the viewer's recordings.
 //   CSV  first line time_s,x_m,y_m,z_m,qx,qy,qz,qw; the same columns in every line
-//   TUM  time x y z qx qy qz qw, by blanks, no header (the format of the TUM RGB-D benchmark, Sturm et al. 2012)
-// Which it is, the first line that is neither empty nor begins with # says: CSV has commas. Times rise.
+//   TUM  time x y z qx qy qz qw, separated by blanks, no header (TUM RGB-D benchmark, Sturm et al. 2012)
+// The format is detected from the first line that is neither empty nor begins with #: CSV has commas. Times must
+// increase.
 
 #include "ar/camera/pose.h"
 
@@ -19,24 +20,24 @@ struct TimedPose {
     Pose world_from_camera;
 };
 
-/// Which way a camera's axes lie in a file.
+/// Convention of the camera's axes in a file.
 enum class CameraAxes {
     vision,  ///< x right, y down, z ahead: as in this program
     graphics ///< x right, y up, z back: OpenGL, glTF, headsets
 };
 
-/// @param file for messages
-/// @throws gi::InputError with file:line:column: columns missing, not a number, not finite, not a quaternion of
-/// length 1 (within 5 %), times that do not rise, no poses
+/// @param file name of the file for messages
+/// @throws gi::InputError with file:line:column: missing columns, not a number, not finite, not a quaternion of length
+/// 1 (within 5 %), times that do not increase, no poses
 std::vector<TimedPose> parse_poses(std::string_view text, std::string const& file,
                                    CameraAxes axes = CameraAxes::vision);
 /// @throws gi::InputError, also for files above 1 GiB or that cannot be read
 std::vector<TimedPose> read_poses(std::filesystem::path const& file, CameraAxes axes = CameraAxes::vision);
-/// CSV, every number in all its digits.
+/// Formats as CSV with full precision.
 std::string format_poses(std::vector<TimedPose> const& poses);
 
-/// Between the two poses next to the time: straight, and the shorter turn at constant speed. Nothing before the
-/// first, after the last, or in a gap longer than `longest_gap_s`.
+/// Interpolates between the two nearest poses: position linearly, rotation by slerp along the shorter arc. Nothing
+/// before the first, after the last, or in a gap longer than `longest_gap_s`.
 std::optional<Pose> pose_at(std::vector<TimedPose> const& poses, double time_s, double longest_gap_s = 0.5);
 
 } // namespace ar

@@ -65,7 +65,7 @@ StillPose mean_of(StillSettings const& s, std::deque<PoseEstimate> const& kept)
         moved2 += m * by * by;
         turned2 += d * glm::dot(turn, turn);
     }
-    if (mean.averaged == 0) { // scattered beyond what the estimates say of themselves
+    if (mean.averaged == 0) { // estimates scatter more than their standard deviations
         mean.world_from_camera = about;
         return mean;
     }

@@ -1,5 +1,5 @@
 #pragma once
-// A camera on a tripod: all its estimates are of one pose, until it is moved.
+// A camera on a tripod: all estimates belong to one pose until the camera is moved.
 
 #include "ar/pose/estimate.h"
 
@@ -9,16 +9,16 @@
 namespace ar {
 
 struct StillSettings {
-    std::size_t keep = 600; ///< estimates, the newest
-    /// An estimate disagrees if it is beyond this many of its own standard deviations and beyond both floors.
+    std::size_t keep = 600; ///< number of newest estimates to keep
+    /// An estimate disagrees if it is off by more than this many of its own standard deviations and the floors.
     double limit_sigmas = 5;
     double least_m = 0.002, least_deg = 0.1;
-    int moved_after = 5; ///< estimates in a row that disagree with the mean: the camera was moved
+    int moved_after = 5; ///< after this many consecutive disagreeing estimates the camera counts as moved
 };
 
 struct StillPose {
     Pose world_from_camera;
-    std::size_t averaged = 0;       ///< estimates in it
+    std::size_t averaged = 0;       ///< number of estimates in the mean
     std::size_t left_out = 0;       ///< kept, but in disagreement
     glm::dvec3 position_sigma_m{0}; ///< standard error of the mean, from the spread of the estimates
     double rotation_sigma_deg = 0;
@@ -30,8 +30,8 @@ class StillCamera {
 public:
     explicit StillCamera(StillSettings const& settings = {}) : settings_(settings) {}
 
-    /// What was not found is not taken. True if the camera was found to have been moved: only the estimates since
-    /// are kept.
+    /// Adds an estimate, ignoring failed ones. Returns true if this shows that the camera was moved; then only the
+    /// estimates since the move are kept.
     bool add(PoseEstimate const& estimate);
     std::optional<StillPose> const& pose() const { return mean_; }
     std::uint64_t moves() const { return moves_; }
@@ -40,7 +40,7 @@ private:
     StillSettings settings_;
     std::deque<PoseEstimate> kept_;
     std::optional<StillPose> mean_;
-    int astray_ = 0; ///< the newest so many disagree
+    int astray_ = 0; ///< number of newest estimates that disagree
     std::uint64_t moves_ = 0;
 };
 

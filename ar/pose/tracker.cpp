@@ -107,7 +107,7 @@ TrackedPose PoseTracker::at(double time_s) const
     if (!newest_s_ || !std::isfinite(time_s)) return t;
     t.age_s = time_s - *newest_s_;
     if (settings_.motion == CameraMotion::tripod) {
-        // It stands where it stood: what is covered for a while is not lost, only less certain.
+        // The tripod stands still: if markers are covered for a while, the pose is only less certain, not lost.
         t.state = t.age_s <= settings_.fresh_s ? TrackState::tracked : TrackState::predicted;
         t.world_from_camera = still_.pose()->world_from_camera;
         t.confidence = confidence_;

@@ -45,7 +45,7 @@ void fill(GlObject const& texture, cv::Mat const& rgb)
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 }
 
-/// As large as fits, in the middle.
+/// Largest centred rectangle with the picture's aspect ratio.
 cv::Rect place_of(glm::ivec2 picture_px, glm::ivec2 window_px)
 {
     double const scale = std::min(double(window_px.x) / picture_px.x, double(window_px.y) / picture_px.y);

@@ -1,7 +1,6 @@
 #pragma once
-// The window of an AR session: the composite, or it and the camera's frame side by side, and a panel with what was
-// measured. The bytes that are shown are those of the result; or those that the GPU makes of its parts, which
-// differ from them by one at most.
+// The window of an AR session: the composite, alone or beside the camera's frame, and a panel with measurements.
+// Shows the bytes of the result, or those of the GPU's composite, which differ by one at most.
 
 #include "ar/runtime/runner.h"
 #include "viewer/devices/gl/ar_composite_pass.h"
@@ -14,9 +13,9 @@ namespace viewer {
 struct ArWindowSettings {
     glm::ivec2 size_px{};     ///< of frames
     std::string monitor = {}; ///< as WindowSettings
-    int swap_interval = 0;    ///< a camera's frames are not waited for by the monitor
+    int swap_interval = 0;    ///< 0: do not wait for the monitor's refresh
     Visibility visibility = Visibility::shown;
-    /// Composites are made here, of results without (CompositeBy::window); null = they come with the results.
+    /// Compositor for compositing in the window (CompositeBy::window); null = the results contain composites.
     ar::Compositor const* compositor = nullptr;
     bool has_panel = true;
     bool keeps_shown = false; ///< see `shown`
@@ -26,22 +25,22 @@ class ArWindow {
 public:
     ArWindow(ArWindowSettings const& settings, gi::Report& report);
 
-    /// Draws and swaps; afterwards `record.present_ms` and, for frames with times, `record.swapped_ms` are known:
-    /// since capture, when the swap came back and the GPU was done. Keys: S before and after side by side, H
+    /// Draws and swaps; sets `record.present_ms` and, for frames with times, `record.swapped_ms`: the time from
+    /// capture until the swap returned and the GPU had finished. Keys: S before and after side by side, H
     /// panel, Escape ends.
     void show(ArFrameRecord& record, ArResult const& result);
-    /// What the window had where the frame is when it was swapped, as it was read back: CV_8UC3 RGB.
+    /// The frame's area of the window at the swap, read back: CV_8UC3 RGB.
     cv::Mat const& shown() const { return shown_; }
     bool wants_close() const { return wants_close_; }
-    /// Between frames: keys and the window's own buttons.
+    /// Call between frames: handles keys and the window's buttons.
     void idle() { take_input(); }
 
 private:
     void take_input();
     void fill_panel(ArFrameRecord const& record);
-    /// Its texture.
+    /// Returns the texture of the composite.
     unsigned composite(ArFrameRecord const& record, ArResult const& result);
-    /// @param share  of its width, from the left
+    /// @param share  part of the picture's width to draw, from the left
     void draw(unsigned texture, cv::Size picture, double share);
     void keep_shown(cv::Size picture);
 

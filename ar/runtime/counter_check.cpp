@@ -56,7 +56,7 @@ CounterSession make_counter_session(std::filesystem::path const& folder, glm::iv
     s.markers = folder / "markers.yaml";
     s.virtual_things.scene = folder / "ball.glb";
     ar::write_calibration(s.camera, calibration);
-    ar::Marker marker; // none is seen: poses are told
+    ar::Marker marker; // never detected: poses are supplied
     marker.dictionary = "DICT_4X4_50";
     marker.side_m = 0.1;
     ar::write_marker_map(s.markers, {{marker}, {}, {}});

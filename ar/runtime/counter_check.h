@@ -1,8 +1,8 @@
 #pragma once
-// Whether what is shown is what it is said to be: a run of frames that show their own number, in which a ball is
-// put where a camera that moves would see it. Number and ball are read from the picture that was shown, nothing
-// else; both have to be those of the record, and the ball has to be where the camera of *that number's* frame sees
-// it: else virtual things would swim.
+// End-to-end check of the displayed pictures: the frames show their own number, and a virtual ball is rendered
+// where a moving camera would see it. Number and ball are read only from the displayed picture; both must match
+// the record, and the ball must be where the camera of *that number's* frame sees it: otherwise virtual objects
+// would swim.
 
 #include "ar/camera/camera_model.h"
 #include "ar/runtime/runner.h"
@@ -11,27 +11,28 @@ namespace viewer {
 
 struct CounterSession {
     ArSession session;
-    ar::Pose camera_at(double since_frame_0_s) const; ///< of any length
+    ar::Pose camera_at(double since_frame_0_s) const; ///< for any time
     ar::CameraModel camera;
     double rate_hz = 30;
 };
 
-/// The ball goes to and fro by 2 % of the picture's width per frame. Writes its files into a folder that is there.
+/// The ball moves back and forth by 2 % of the picture's width per frame. Writes its files into an existing
+/// folder.
 /// @param size_px  at least 208 x 160
 CounterSession make_counter_session(std::filesystem::path const& folder, glm::ivec2 size_px, double rate_hz,
                                     gi::Report& report);
 
-/// The middle of what is white below the number; nothing = there is nothing white.
+/// Centre of the white pixels below the number; nothing if there are none.
 std::optional<glm::dvec2> ball_in(cv::Mat const& rgb);
-/// Where a camera at that place sees the ball.
+/// Pixel position of the ball for a camera pose.
 glm::dvec2 ball_from(ar::CameraModel const& camera, ar::Pose const& world_from_camera);
 
 struct CounterVerdict {
     int frames = 0;
-    int unread = 0;    ///< shown without a number that can be read
-    int other = 0;     ///< that show another number than the record has
-    int misplaced = 0; ///< whose ball is elsewhere, by more than a quarter of its way per frame
-    int mistimed = 0;  ///< whose times do not add up, or are not those of the clocks around
+    int unread = 0;    ///< frames shown without a readable number
+    int other = 0;     ///< frames that show another number than the record
+    int misplaced = 0; ///< frames whose ball is off by more than a quarter of its motion per frame
+    int mistimed = 0;  ///< frames whose times do not add up, or contradict the surrounding clock readings
     double most_off_px = 0;
 
     bool good() const { return frames > 0 && unread + other + misplaced + mistimed == 0; }
@@ -41,8 +42,8 @@ class CounterCheck {
 public:
     explicit CounterCheck(CounterSession const& session) : session_(session) {}
     /// @param shown           CV_8UC3 RGB of any size
-    /// @param before_s,after_s steady clock around the showing; the record's swap (without a window: its
-    /// composite) has to be between them (before both)
+    /// @param before_s,after_s steady clock before and after showing; the record's swap must be between them
+    /// (without a window: its composite must be before both)
     void add(ArFrameRecord const& record, cv::Mat const& shown, bool in_window, double before_s, double after_s);
     CounterVerdict const& verdict() const { return verdict_; }
 

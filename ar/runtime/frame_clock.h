@@ -1,5 +1,5 @@
 #pragma once
-// When a frame was taken, in seconds since the first one of its source.
+// Time at which a frame was taken, in seconds since the source's first frame.
 
 #include "ar/capture/frame_source.h"
 
@@ -9,18 +9,18 @@
 
 namespace viewer {
 
-/// Read as fast as possible, a clock says nothing of the time that passes in pictures: they go by their numbers.
-/// Recordings keep the times that they were made at.
+/// Pictures read as fast as possible are timed by their numbers, since the clock does not reflect the time that
+/// passes in them. Recordings keep their recorded times.
 class FrameClock {
 public:
-    /// @param source  as ar::open_source takes it  @param is_timed  frames come at their own pace
+    /// @param source  name for ar::open_source  @param is_timed  frames come at their own pace
     FrameClock(std::string const& source, ar::SourceDescription const& about, bool is_timed);
 
-    /// The first frame that is asked for has the time 0.
+    /// The first frame passed has the time 0.
     double operator()(ar::Frame const& frame);
 
 private:
-    double numbered_hz_ = 0; ///< 0 = by when they were captured
+    double numbered_hz_ = 0; ///< 0 = use capture times
     std::optional<std::pair<std::uint64_t, double>> first_;
 };
 

@@ -13,7 +13,7 @@ FrameTruth::FrameTruth(std::filesystem::path pictures, std::filesystem::path con
     : pictures_(std::move(pictures))
 {
     if (!pictures_.empty() && !std::filesystem::is_directory(pictures_))
-        throw gi::InputError("there is no folder '" + pictures_.string() + "'", "its pictures are the truth",
+        throw gi::InputError("there is no folder '" + pictures_.string() + "'", "it should hold the truth",
                              "name the folder truth that `ar synthesize` made");
     if (!poses.empty()) poses_ = ar::read_poses(poses);
 }

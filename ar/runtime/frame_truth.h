@@ -1,22 +1,22 @@
 #pragma once
-// What is off, frame by frame, against a folder of pictures with the things really there and the camera's true
-// path.
+// Errors per frame against the ground truth: a folder of pictures with the objects really there, and the camera's
+// true poses.
 
 #include "ar/pose/pose_file.h"
 #include "ar/runtime/runner.h"
 
 namespace viewer {
 
-/// A value per frame of which the truth is known.
+/// One value per frame with known truth.
 struct FrameErrors {
     std::vector<double> position_mm, rotation_deg;
     std::vector<double> flip_affected, flip_elsewhere;     ///< of composites, see TruthErrors
-    std::vector<double> camera_affected, camera_elsewhere; ///< of adding nothing
+    std::vector<double> camera_affected, camera_elsewhere; ///< of the unchanged camera frame
     std::vector<double> affected_percent;                  ///< of the picture
-    int missing = 0;                                       ///< frames of which there is no picture of that size
+    int missing = 0;                                       ///< frames without a truth picture of that size
 };
 
-/// Lines of text; empty where nothing is known.
+/// Lines of text; empty without any values.
 std::string describe(FrameErrors const& errors);
 
 class FrameTruth {

@@ -1,6 +1,6 @@
 #pragma once
-// A few of many, evenly apart, without knowing how many there will be: every n-th is kept, and n doubles when
-// there are twice as many as are wanted.
+// Selects evenly spaced frames from a stream of unknown length: every n-th is kept, and n doubles when twice as
+// many as wanted have been kept.
 
 #include <algorithm>
 #include <cstdint>
@@ -14,7 +14,7 @@ class SpacedFrames {
 public:
     explicit SpacedFrames(std::size_t wanted) : wanted_(wanted) {}
 
-    /// Whether `add` would keep the next one; where it would not, it is counted with `skip`.
+    /// True if `add` would keep the next frame; if not, call `skip` instead.
     bool wants_next() const { return seen_ % step_ == 0; }
     void skip() { ++seen_; }
     void add(T value)
@@ -26,7 +26,7 @@ public:
         kept_.resize(wanted_);
         step_ *= 2;
     }
-    /// At most as many as are wanted, from first to last.
+    /// Returns at most the wanted number, from first to last.
     std::vector<T> take()
     {
         std::vector<T> out;

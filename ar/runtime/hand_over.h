@@ -1,5 +1,5 @@
 #pragma once
-// One thread gives, another takes; one thing waits at most.
+// Passes items from one thread to another; holds one item at most.
 
 #include <chrono>
 #include <condition_variable>
@@ -12,7 +12,7 @@ namespace viewer {
 template <typename T>
 class HandOver {
 public:
-    /// Waits until there is room. @return false: it was abandoned, and `thing` with it
+    /// Waits until there is room. @return false if abandoned; `thing` is discarded
     bool put(T thing)
     {
         std::unique_lock lock(mutex_);
@@ -22,11 +22,11 @@ public:
         changed_.notify_all();
         return true;
     }
-    /// Takes the place of what waits. `merge(older, thing)` tells the newer one of it, under the lock.
+    /// Replaces the waiting item, if any, after calling `merge(older, thing)` under the lock.
     template <typename Merge>
     bool replace(T thing, Merge const& merge)
     {
-        std::optional<T> older; // goes after the lock
+        std::optional<T> older; // destroyed after the lock is released
         {
             std::lock_guard const lock(mutex_);
             if (is_abandoned_) return false;
@@ -37,7 +37,7 @@ public:
         changed_.notify_all();
         return true;
     }
-    /// Nothing: none came within that time, or none will.
+    /// Takes the next item; nothing if none came within that time, or none will.
     template <typename Duration>
     std::optional<T> take(Duration wait)
     {
@@ -45,21 +45,21 @@ public:
         changed_.wait_for(lock, wait, [&] { return waiting_ || is_closed_ || is_abandoned_; });
         return taken(lock);
     }
-    /// Nothing: none will come.
+    /// Waits for the next item; nothing if none will come.
     std::optional<T> take()
     {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [&] { return waiting_ || is_closed_ || is_abandoned_; });
         return taken(lock);
     }
-    /// No more will be given; what waits can be taken.
+    /// No more items will be put; a waiting one can still be taken.
     void close()
     {
         std::lock_guard const lock(mutex_);
         is_closed_ = true;
         changed_.notify_all();
     }
-    /// Nobody waits any more, on either side.
+    /// Ends all waiting on both sides.
     void abandon()
     {
         std::lock_guard const lock(mutex_);

@@ -14,7 +14,7 @@
 namespace viewer {
 namespace {
 
-constexpr std::chrono::seconds kPatience{3}; ///< for the end of the runtime's session
+constexpr std::chrono::seconds kPatience{3}; ///< waiting time for the end of the runtime's session
 
 /// Surfaceless where there is no display server, else of a hidden window.
 struct Context {
@@ -78,7 +78,7 @@ private:
         summary_.losses = keeper_.losses();
     }
 
-    /// The last composite was seen, or nobody looks.
+    /// True if the last composite was seen, or the headset is not in use.
     bool is_over() const
     {
         return pass_through_.has_ended() && (pass_through_.newest() == frame_ || unseen_ > 100);
@@ -124,7 +124,7 @@ private:
         room_from_head_ = path_.at(newest->captured_s);
     }
 
-    /// Where the camera of an eye was when the frame was taken.
+    /// Pose of an eye's camera when the frame was taken.
     ar::Pose room_from_camera(std::size_t eye, ar::Pose const& room_from_head) const
     {
         ar::Pose const left = room_from_head * hmd_.head_from_camera;
@@ -142,7 +142,7 @@ private:
             glm::ivec2 const size{view.width, view.height};
             if (!targets_[eye] || sizes_[eye] != size) targets_[eye].emplace(TextureTarget::Format::bytes, size);
             sizes_[eye] = size;
-            // Without a head that is tracked it goes with the eyes.
+            // Without head tracking the plane moves with the eyes.
             ar::Pose const head = frame.has_pose && room_from_head_ ? *room_from_head_ : middle_of(picture.views);
             passes_[std::min(eye, passes_.size() - 1)].draw(targets_[eye]->target(), view.camera,
                                                             room_from_camera(eye, head), hmd_.plane_m);
@@ -184,16 +184,16 @@ private:
     ArHmd hmd_;
     ArHmdOptions const& options_;
     Context context_;
-    HmdKeeper keeper_; ///< before the scenes are loaded: without a headset there is nothing to do
+    HmdKeeper keeper_; ///< created before the scenes are loaded: nothing runs without a headset
     PassThrough pass_through_;
     std::deque<PassThroughPass> passes_;
     std::array<std::optional<TextureTarget>, 2> targets_;
     std::array<glm::ivec2, 2> sizes_{};
     HeadPath path_;
-    std::shared_ptr<PassThroughFrame const> frame_; ///< that is seen
+    std::shared_ptr<PassThroughFrame const> frame_; ///< currently shown
     std::optional<ar::Pose> room_from_head_;        ///< when it was taken
     std::vector<double> first_seen_ms_, age_ms_;
-    int unseen_ = 0; ///< rounds without a frame that somebody sees
+    int unseen_ = 0; ///< number of rounds without a visible frame
     ArHmdSummary& summary_;
 };
 
@@ -201,7 +201,7 @@ private:
 
 void HeadPath::add(double steady_s, ar::Pose const& room_from_head)
 {
-    if (!poses_.empty() && steady_s <= poses_.back().time_s) poses_.pop_back(); // predicted anew
+    if (!poses_.empty() && steady_s <= poses_.back().time_s) poses_.pop_back(); // a newer prediction
     if (!poses_.empty() && steady_s <= poses_.back().time_s) return;
     poses_.push_back({steady_s, room_from_head});
     while (poses_.front().time_s < steady_s - kKept_s) poses_.pop_front();

@@ -1,7 +1,6 @@
 #pragma once
-// An AR session seen in a headset: video pass-through. Each composite stands in the room where the headset's
-// camera was when its frame was taken, and each eye sees it from where it is predicted to be when the display
-// shows it.
+// Runs an AR session in a headset with video pass-through. Each composite is placed in the room where the
+// headset's camera was when its frame was taken, and each eye sees it from its predicted pose at display time.
 
 #include "ar/runtime/pass_through.h"
 #include "viewer/devices/xr/session.h"
@@ -10,12 +9,12 @@
 
 namespace viewer {
 
-/// Where the head was: what the runtime predicted for the moments of its frames.
+/// The head's poses, as predicted by the runtime for its frames.
 class HeadPath {
 public:
-    /// @param steady_s  rising
+    /// @param steady_s  increasing
     void add(double steady_s, ar::Pose const& room_from_head);
-    /// Between the two next to that moment, else the first or last known; nothing before the first was added.
+    /// Interpolated pose; outside the known range, the first or last one; nothing before the first was added.
     std::optional<ar::Pose> at(double steady_s) const;
 
 private:
@@ -32,18 +31,19 @@ struct ArHmdOptions {
 
 struct ArHmdSummary {
     PassThroughCounts frames;
-    std::uint64_t shown = 0; ///< pictures of both eyes handed to the runtime
-    std::uint64_t fresh = 0; ///< of these, with a composite that was not seen before
-    std::uint64_t blind = 0; ///< without a pose of the head: the picture goes with the head
-    Spread first_seen_ms;    ///< of composites: from capture to when they are predicted to be seen first
-    Spread age_ms;           ///< of all pictures shown: of the composite in them
+    std::uint64_t shown = 0; ///< stereo pictures submitted to the runtime
+    std::uint64_t fresh = 0; ///< of these, with a new composite
+    std::uint64_t blind = 0; ///< without a head pose: the picture is fixed to the head
+    Spread first_seen_ms;    ///< time from capture to the predicted first display, per composite
+    Spread age_ms;           ///< age of the composite, over all pictures shown
     std::vector<std::string> phases;
     std::string headset;
     int losses = 0;
 };
 
-/// Until the frames end, or `stop`. @throws gi::InputError there is no runtime, no headset; the session cannot be
-/// @param summary  holds what there was when it throws, too
+/// Runs until the frames end, or `stop`. @throws gi::InputError no runtime, no headset, or the session cannot be
+/// run
+/// @param summary  is filled even if an exception is thrown
 void run_ar_in_hmd(ArSession const& session, ArHmdOptions const& options, gi::StopRequest const& stop,
                    gi::Report& report, ArHmdSummary& summary);
 

@@ -1,18 +1,18 @@
 #pragma once
-// A camera that is not there: it sees frames that were read before, forwards and backwards again and again.
+// A simulated camera that plays a fixed set of frames forwards and backwards in a loop.
 
 #include "ar/capture/frame_source.h"
 #include "ar/capture/tally.h"
 
 namespace viewer {
 
-/// Frame n is captured n / rate after the first call, exactly; what was not asked for in time is dropped.
+/// Frame n is captured exactly n / rate after the first call; frames not requested in time are dropped.
 class LoopSource final : public ar::FrameSource {
 public:
-    /// @param frames  at least one, of one size. @throws std::invalid_argument
+    /// @param frames  at least one, all of the same size. @throws std::invalid_argument
     LoopSource(std::vector<ar::Frame> frames, double rate_hz);
 
-    /// Which of the frames read before is number `sequence`.
+    /// Index of the stored frame that has the number `sequence`.
     std::size_t index_of(std::uint64_t sequence) const;
     std::optional<ar::Frame> next(std::chrono::milliseconds wait) override;
     ar::SourceState state() const override { return {}; }
@@ -28,7 +28,7 @@ private:
     std::uint64_t next_ = 0;
 };
 
-/// At most so many; fewer where the source ends, or nothing comes for five seconds.
+/// Reads at most `most` frames; fewer if the source ends, or no frame arrives for five seconds.
 std::vector<ar::Frame> read_frames(ar::FrameSource& source, int most);
 
 } // namespace viewer

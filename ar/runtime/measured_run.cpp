@@ -8,7 +8,7 @@
 namespace viewer {
 namespace {
 
-/// Without the first.
+/// Returns the records without the first.
 std::vector<ArFrameRecord> settled(std::vector<ArFrameRecord> frames)
 {
     if (!frames.empty()) frames.erase(frames.begin());
@@ -41,7 +41,7 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
     o.frames = settings.frames;
     if (session.tracked) o.poses = recorded_poses(*session.tracked, report);
     o.opened = [&](ar::SourceDescription const&, ArPipeline const& p) { m.compositor = p.compositor(); };
-    std::vector<ArResult> results; // judged afterwards: that takes longer than a frame
+    std::vector<ArResult> results; // evaluated afterwards, since that takes longer than a frame
     std::vector<double> shown_s;
     ArSummary fast;
     run_ar(
@@ -77,7 +77,7 @@ MeasuredRun measure_run(ArSession const& session, MeasureSettings const& setting
     if (!camera->description().is_live) {
         double const own_hz = camera->description().frames_per_s;
         std::vector<ar::Frame> frames = read_frames(*camera, settings.frames);
-        report_losses({}, camera->state(), report); // what was refused is counted already
+        report_losses({}, camera->state(), report); // refused frames are already counted
         if (frames.empty()) return m;
         std::vector<double> times_s = times_of(frames, {session.frames.source, camera->description(), false});
         auto loop = std::make_unique<LoopSource>(std::move(frames),

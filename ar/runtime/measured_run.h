@@ -1,6 +1,6 @@
 #pragma once
-// One session at one quality, measured: how fast, how late, how far from the truth. At own pace frames of files
-// are read before, and come again and again as a camera would give them.
+// Measures one session at one quality: speed, latency and error against the truth. At own pace, frames of files
+// are loaded beforehand and played in a loop as a camera would deliver them.
 
 #include "ar/runtime/ar_window.h"
 #include "ar/runtime/frame_truth.h"
@@ -8,25 +8,25 @@
 namespace viewer {
 
 struct MeasuredRun {
-    /// As fast as possible and at the camera's own pace; without the first frame of each, which builds what lasts.
+    /// As fast as possible and at the camera's own pace; without the first frame of each, which includes set-up.
     std::vector<ArFrameRecord> fast, own;
     double frames_per_s = 0;     ///< as fast as possible, between the first frame's end and the last's
     std::uint64_t overtaken = 0; ///< at own pace
-    std::uint64_t refused = 0;   ///< by the source or by the pipeline, as fast as possible
-    FrameErrors errors;          ///< of what came out as fast as possible
-    /// The last composite's parts (without a pair if there is no composite), and what puts them together.
+    std::uint64_t refused = 0;   ///< by the source or by the pipeline, in the fast run
+    FrameErrors errors;          ///< of the fast run's composites
+    /// The last composite's parts (without a pair if there is no composite), and its compositor.
     ArResult last;
     std::optional<ar::Compositor> compositor;
 };
 
 struct MeasureSettings {
-    int frames = 20;                         ///< at most of files, and as many at own pace
-    std::filesystem::path truth, true_poses; ///< folder, file; empty = not known
+    int frames = 20;                         ///< maximum from files, and the number at own pace
+    std::filesystem::path truth, true_poses; ///< folder, file; empty = unknown
     bool in_window = false;                  ///< at own pace
 };
 
-/// @throws gi::InputError the source was lost; the session's tracker is live
-/// @param stop  then what is measured so far comes back
+/// @throws gi::InputError if the source was lost, or the session's tracker is live
+/// @param stop  on request, returns the measurements so far
 MeasuredRun measure_run(ArSession const& session, MeasureSettings const& settings, gi::StopRequest& stop,
                         gi::Report& report);
 

@@ -13,7 +13,7 @@
 namespace viewer {
 namespace {
 
-constexpr std::chrono::milliseconds kWait{20}; ///< then it looks whether it is to end
+constexpr std::chrono::milliseconds kWait{20}; ///< interval for checking stop requests
 constexpr double kUsualRate_hz = 30;
 
 ArSession right_session(ArSession s)
@@ -25,9 +25,9 @@ ArSession right_session(ArSession s)
 
 } // namespace
 
-/// One camera with what adds virtual things to its frames.
+/// One camera with the pipeline that adds virtual objects to its frames.
 struct PassThrough::Side {
-    /// @param prefix  of what the pipeline counts in the report
+    /// @param prefix  for the pipeline's counts in the report
     Side(ArSession const& session_, ar::Pace pace, gi::Report& report, std::string const& prefix)
         : session(session_),
           camera(load_ar_camera(session.camera)),
@@ -57,7 +57,7 @@ PassThrough::PassThrough(ArSession const& session, PassThroughOptions const& opt
     : session_(session), options_(options), report_(report)
 {
     sides_.push_back(std::make_unique<Side>(session, options.pace, report, ""));
-    // Of files the left one has the pace, the right one follows.
+    // For files the left source sets the pace, and the right one follows.
     if (session.hmd && session.hmd->right)
         sides_.push_back(
             std::make_unique<Side>(right_session(session), ar::Pace::fastest, report, "right camera: "));
@@ -124,7 +124,7 @@ void PassThrough::run()
         if (options_.pace == ar::Pace::fastest && !left.about.is_live) frame->captured_s = ar::steady_now_s();
         bool is_alone = false;
         if (right != nullptr) {
-            // Frames that came before the left one's time have nobody any more.
+            // Right frames from before the left one's time have no partner any more.
             while (!stop_.requested()) {
                 if (!right->waiting) right->waiting = right->source->next(kWait);
                 if (!right->waiting) {
@@ -149,7 +149,7 @@ void PassThrough::run()
         }
         try {
             auto const made = composited(*frame, right != nullptr ? &*right->waiting : nullptr, at_s - *first_s);
-            if (stop_.requested()) return; // the picture may be half of one
+            if (stop_.requested()) return; // the picture may be incomplete
             std::lock_guard const lock(mutex_);
             if (right != nullptr) counts_.right = right->source->counts();
             ++counts_.frames;

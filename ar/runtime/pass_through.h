@@ -1,7 +1,7 @@
 #pragma once
-// Composites for a headset, made in a thread of its own: of one camera for both eyes, or of one for each. With
-// two, the left one is found by its frame and the right one stands where it is mounted; both are composited for
-// the same moment of the same world.
+// Computes composites for a headset in a separate thread, from one camera for both eyes, or one for each. With
+// two, the left camera's pose is estimated from its frame, and the right one's follows from its mounting; both are
+// composited for the same moment of the same world.
 
 #include "ar/capture/frame_source.h"
 #include "ar/runtime/runner.h"
@@ -15,43 +15,44 @@ namespace viewer {
 
 struct PassThroughOptions {
     int frames = 0; ///< at most; 0 = all
-    /// Own: a frame that waits is given up for a newer one. Fastest (files): every frame, as if it were taken when
-    /// it is read.
+    /// Own: a waiting frame is discarded for a newer one. Fastest (files): every frame, with the time of reading
+    /// as its capture time.
     ar::Pace pace = ar::Pace::own;
     std::vector<ar::TimedPose> poses;                                 ///< of the left camera, as ArRunOptions
-    std::function<std::optional<ar::Pose>(ar::Frame const&)> tracked; ///< likewise; by the thread
+    std::function<std::optional<ar::Pose>(ar::Frame const&)> tracked; ///< likewise; called by the thread
 };
 
-/// Of one moment.
+/// The composites of one moment.
 struct PassThroughFrame {
     std::uint64_t sequence = 0;
     double captured_s = 0, done_s = 0; ///< steady clock
-    bool is_found = false;             ///< the camera; else the frames are as they came
+    bool is_found = false;             ///< camera pose found; if not, the frames are unchanged
     std::vector<cv::Mat> rgb;          ///< CV_8UC3, left and right, or one for both
 };
 
 struct PassThroughCounts {
     std::uint64_t frames = 0, found = 0;
-    std::uint64_t overtaken = 0; ///< given up, since a newer one was there
-    std::uint64_t refused = 0;   ///< could not be used
-    std::uint64_t alone = 0;     ///< of the left camera, without one of the right at the same time
+    std::uint64_t overtaken = 0; ///< discarded for a newer one
+    std::uint64_t refused = 0;   ///< unusable
+    std::uint64_t alone = 0;     ///< left frames without a right frame at the same time
     ar::SourceCounts left, right;
     ar::SourceState end;
 };
 
 class PassThrough {
 public:
-    /// Opens cameras, loads scenes, begins. All arguments outlive it. @throws gi::InputError
+    /// Opens cameras, loads scenes and starts. All arguments must outlive it. @throws gi::InputError,
+    /// gi::InputError
     PassThrough(ArSession const& session, PassThroughOptions const& options, gi::Report& report);
     ~PassThrough();
 
     std::vector<ar::CameraModel> const& cameras() const { return models_; } ///< left and right, or one
     std::shared_ptr<PassThroughFrame const> newest() const;
     bool has_ended() const { return ended_; }
-    /// Until the frame at hand is done.
+    /// Stops after the current frame.
     void end();
     PassThroughCounts counts() const;
-    void rethrow() const; ///< after the end: what its thread threw
+    void rethrow() const; ///< call after the end: rethrows its thread's exception
 
 private:
     struct Side;
@@ -65,11 +66,11 @@ private:
     std::vector<std::unique_ptr<Side>> sides_;
     gi::StopRequest stop_;
     std::atomic<bool> ended_{false};
-    mutable std::mutex mutex_; ///< of what follows
+    mutable std::mutex mutex_; ///< guards the members below
     std::shared_ptr<PassThroughFrame const> newest_;
     PassThroughCounts counts_;
     std::exception_ptr problem_;
-    std::thread thread_; ///< last: begins when all is there
+    std::thread thread_; ///< last member, so that it starts after all others are initialised
 };
 
 } // namespace viewer

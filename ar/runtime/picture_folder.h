@@ -1,5 +1,5 @@
 #pragma once
-// Pictures as numbered files of a folder.
+// Writes pictures as numbered files to a folder.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,9 +9,9 @@ namespace viewer {
 
 class PictureFolder {
 public:
-    /// @throws gi::InputError it cannot be made
+    /// @throws gi::InputError if the folder cannot be created
     explicit PictureFolder(std::filesystem::path folder);
-    /// CV_8UC3 RGB, as 000012.png; takes the place of one of that number. @throws gi::InputError
+    /// Writes CV_8UC3 RGB, for example as 000012.png; replaces an existing file. @throws gi::InputError
     void add(std::uint64_t sequence, cv::Mat const& rgb) const;
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// Keeps pictures while a run goes on: whoever makes them does not wait for files.
+// Stores pictures in a separate thread, so that a run does not wait for files.
 
 #include <condition_variable>
 #include <deque>
@@ -14,7 +14,7 @@ namespace viewer {
 struct NumberedPicture {
     std::uint64_t sequence = 0;
     double time_s = 0; ///< since the first
-    cv::Mat rgb;       ///< CV_8UC3, not written to any more
+    cv::Mat rgb;       ///< CV_8UC3, must not be modified any more
 };
 
 class PictureThread {
@@ -22,20 +22,20 @@ public:
     static constexpr std::size_t kMostWaiting = 8;
     enum class WhenFull {
         wait,
-        lose ///< the newest, and count it
+        lose ///< discard the newest, and count it
     };
 
     /// @param keep  called on a thread of its own, in order
     PictureThread(std::function<void(NumberedPicture const&)> keep, WhenFull when_full);
-    ~PictureThread(); ///< what waits is given up
+    ~PictureThread(); ///< discards waiting pictures
     PictureThread(PictureThread const&) = delete;
     PictureThread& operator=(PictureThread const&) = delete;
 
-    /// Throws what `keep` threw; then nothing more is kept.
+    /// Rethrows an exception of `keep`; after it nothing more is stored.
     void add(NumberedPicture picture);
-    /// Waits until all is kept; throws as `add`.
+    /// Waits until all pictures are stored; throws as `add`.
     void finish();
-    std::uint64_t lost() const { return lost_; } ///< of the thread that adds
+    std::uint64_t lost() const { return lost_; } ///< call from the adding thread
 
 private:
     void keep_all();
@@ -44,7 +44,7 @@ private:
     std::function<void(NumberedPicture const&)> keep_;
     WhenFull when_full_;
     std::uint64_t lost_ = 0;
-    std::mutex mutex_; // of what follows
+    std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
     std::deque<NumberedPicture> waiting_;
     bool is_closed_ = false;

@@ -1,4 +1,4 @@
-// What a session came to, in words.
+// Describes a session's results as text.
 
 #include "ar/runtime/runner.h"
 #include "gi/core/quantile.h"

@@ -7,7 +7,7 @@
 namespace viewer {
 namespace {
 
-/// Cameras have few buffers: what is on its way keeps none of them.
+/// Copies device memory, since cameras have few buffers and frames in progress must not hold them.
 void give_back(FrameInFlight& w)
 {
     if (!w.frame.owner) return;
@@ -50,7 +50,7 @@ void RunThreads::rethrow() const
     if (problem_) std::rethrow_exception(problem_);
 }
 
-/// What `work` handed over before it threw is still taken.
+/// Frames that `work` handed over before it threw are still processed.
 void RunThreads::guarded(std::function<void()> const& work, HandOver<FrameInFlight>& filled)
 {
     try {
@@ -77,10 +77,10 @@ void RunThreads::hand_over(FrameInFlight w, HandOver<FrameInFlight>& to)
 
 void RunThreads::find_all()
 {
-    constexpr std::chrono::milliseconds kWait{20}; // then it looks whether it is to end
+    constexpr std::chrono::milliseconds kWait{20}; // interval for checking stop requests
     int found = 0;
     while (!ending_.requested()) {
-        // At their own pace the caller counts what is shown.
+        // At own pace the caller counts the frames shown.
         if (!is_timed_ && options_.frames > 0 && found == options_.frames) break;
         double const asked_s = ar::steady_now_s();
         std::optional<ar::Frame> frame = source_.next(kWait);
@@ -114,7 +114,7 @@ ArResult RunThreads::found_in(FrameInFlight const& w)
     if (options_.poses.empty() && !options_.tracked) return pipeline_.find(w.frame, w.time_s, {}, begun_s);
     if (auto const known = options_.tracked ? options_.tracked(w.frame) : recorded_pose(options_.poses, w.time_s))
         return pipeline_.find(w.frame, w.time_s, known, begun_s);
-    ArResult r; // nobody knows
+    ArResult r; // pose unknown
     double const from_s = begun_s ? *begun_s : ar::steady_now_s();
     r.rgb = r.camera = ar::rgb_of(w.frame);
     r.done_s = ar::steady_now_s();
@@ -133,7 +133,7 @@ void RunThreads::add_all()
                 refuse(e);
                 continue;
             }
-            if (ending_.requested()) break; // the picture may be half of one
+            if (ending_.requested()) break; // the picture may be incomplete
             hand_over(std::move(*w), done_);
         }
     } catch (...) {

@@ -1,6 +1,6 @@
 #pragma once
-// The two threads of a run that work ahead of the caller's: one takes frames and finds the camera, one adds what
-// is virtual.
+// The two threads of a run that work ahead of the caller's: one takes frames and estimates the camera pose, one
+// adds the virtual objects.
 
 #include "ar/runtime/frame_clock.h"
 #include "ar/runtime/hand_over.h"
@@ -12,19 +12,19 @@
 
 namespace viewer {
 
-/// A frame on its way through the threads.
+/// A frame that is being processed.
 struct FrameInFlight {
-    ar::Frame frame;   ///< once the camera is found, without the bytes that belong to a device
+    ar::Frame frame;   ///< after the pose estimation, without bytes in device memory
     double time_s = 0; ///< since the first
     double read_ms = 0;
-    std::uint64_t overtaken = 0; ///< frames that it took the place of
+    std::uint64_t overtaken = 0; ///< number of frames that it replaced
     ArResult result;
 };
 
 class RunThreads {
 public:
-    /// All that is referred to outlives it; the source and the pipeline are its own meanwhile.
-    /// @param is_timed     frames come at their own pace: newer ones overtake
+    /// All referenced arguments must outlive it; only its threads may use the source and the pipeline.
+    /// @param is_timed     frames come at their own pace, and newer ones replace waiting ones
     RunThreads(ar::FrameSource& source, ArPipeline& pipeline, ArRunOptions const& options, bool is_timed,
                FrameClock const& clock, gi::Report& report);
     ~RunThreads() { end(); }
@@ -33,11 +33,11 @@ public:
 
     std::optional<FrameInFlight> next(std::chrono::milliseconds wait) { return done_.take(wait); }
     bool has_ended() const { return done_.has_ended(); }
-    /// What is on its way is given up.
+    /// Stops and discards frames in progress.
     void end();
-    /// The source's state and all counts.
+    /// Fills in the source's state and all counts.
     void tell(ArSummary& summary) const;
-    /// After the end: what a thread threw.
+    /// Call after the end: rethrows a thread's exception.
     void rethrow() const;
 
 private:
@@ -57,7 +57,7 @@ private:
     gi::StopRequest ending_;
     HandOver<FrameInFlight> found_, done_;
 
-    mutable std::mutex mutex_; // of what follows
+    mutable std::mutex mutex_; // guards the members below
     ar::SourceCounts counts_;
     ar::SourceState state_;
     std::uint64_t refused_ = 0, overtaken_ = 0;

@@ -1,10 +1,10 @@
 #pragma once
-// A session from its first frame to its last: frames in, composites out, everything timed and counted.
+// Runs a session from its first frame to its last, with all stages timed and counted.
 //
-// Three threads, each a frame ahead of the next: one takes frames and finds the camera, one adds the virtual
-// things, and the caller's shows. Between two of them one frame waits at most. At their own pace a newer frame
-// takes the place of the one that waits, which counts as overtaken; as fast as possible, whoever is ahead waits,
-// and what comes out is what one thread would have made, in every bit.
+// Three threads, each a frame ahead of the next: one takes frames and estimates the camera pose, one adds the
+// virtual objects, and the caller's shows the result. At most one frame waits between two threads. At the source's
+// own pace a newer frame replaces the waiting one, which counts as overtaken; as fast as possible, the faster
+// thread waits, and the composites are bit for bit those of a single thread.
 
 #include "ar/capture/frame_source.h"
 #include "ar/pipeline/pipeline.h"
@@ -18,32 +18,33 @@ namespace viewer {
 struct ArRunOptions {
     int frames = 0; ///< at most; 0 = all
     ar::Pace pace = ar::Pace::own;
-    std::vector<ar::TimedPose> poses; ///< where the camera was, in place of what frames say; empty = from markers
-    /// A tracker, asked for each frame in place of all that; called by the thread that finds the camera.
+    std::vector<ar::TimedPose> poses; ///< camera poses to use instead of markers; empty = from markers
+    /// Callback to a tracker that replaces both; called for each frame by the pose-estimating thread.
     std::function<std::optional<ar::Pose>(ar::Frame const&)> tracked;
     bool find_poses_only = false; ///< nothing is rendered
     CompositeBy composite = CompositeBy::pipeline;
-    /// Before the first frame, by the caller's thread.
+    /// Called before the first frame, by the caller's thread.
     std::function<void(ar::SourceDescription const&, ArPipeline const&)> opened;
-    /// Every frame as it came, those that are overtaken or refused later too. By the thread that takes them.
+    /// Called with every original frame, including those later overtaken or refused, by the thread that takes
+    /// them.
     std::function<void(ar::Frame const&)> taken;
-    std::function<void()> idle; ///< by the caller's thread, every 10 ms while there is nothing to show
+    std::function<void()> idle; ///< called by the caller's thread every 10 ms while there is nothing to show
 };
 
-/// What one frame took, and what came of it. Of a frame that came at its own pace, age, times and show_wait follow
-/// each other without gaps: age + times = latency; latency + show_wait + present = swapped.
+/// Times and results of one frame. For frames at their own pace the times are consecutive without gaps:
+/// age + times = latency; latency + show_wait + present = swapped.
 struct ArFrameRecord {
     std::uint64_t sequence = 0;
     double captured_s = 0; ///< since the first frame
-    /// On this machine's steady clock, where frames come at their own pace.
+    /// On this machine's steady clock, if frames come at their own pace.
     std::optional<double> captured_steady_s;
-    std::uint64_t overtaken = 0; ///< frames given up for newer ones, since the record before
-    double read_ms = 0;          ///< of files read as fast as possible: until there was a frame
-    double age_ms = 0;           ///< when it was handed over, since its capture
-    double latency_ms = 0;       ///< when its composite was ready, since its capture
-    double show_wait_ms = 0;     ///< then until it was shown
-    double present_ms = 0;       ///< drawing and swap, where there is a window
-    double swapped_ms = 0;       ///< when the swap was done, since its capture
+    std::uint64_t overtaken = 0; ///< frames discarded for newer ones since the previous record
+    double read_ms = 0;          ///< reading time, for files read as fast as possible
+    double age_ms = 0;           ///< from capture to delivery
+    double latency_ms = 0;       ///< from capture to the finished composite
+    double show_wait_ms = 0;     ///< from the finished composite until it was shown
+    double present_ms = 0;       ///< drawing and swap, with a window
+    double swapped_ms = 0;       ///< from capture to the end of the swap
     ar::Exposure exposure;
     ArTimes times;
     int markers = 0, points_used = 0, points_rejected = 0;
@@ -57,21 +58,21 @@ struct ArSummary {
     ar::SourceCounts source;
     ar::SourceState end;
     std::uint64_t refused = 0;    ///< frames of another size, or that could not be decoded
-    std::uint64_t overtaken = 0;  ///< given up, since a newer one was there
-    std::uint64_t unfinished = 0; ///< that were on their way when it was ended
+    std::uint64_t overtaken = 0;  ///< discarded for a newer one
+    std::uint64_t unfinished = 0; ///< in progress when the run was stopped
     double seconds = 0;
 };
 
 ArCamera load_ar_camera(std::filesystem::path const& calibration);
 
-/// The source's delivered frames are those of the summary, refused, overtaken and unfinished ones. What is thrown
-/// by any thread comes out here, after the results that were ready.
-/// @param shown  called with every frame's result, if it is not empty; may ask for the end by `stop`
-/// @param summary  kept up to date, so that it holds what there is when `shown` throws
+/// The source's delivered frames are the sum of the summary's frames, refused, overtaken and unfinished ones.
+/// Exceptions of any thread are rethrown here, after the results that were ready.
+/// @param shown  if set, called with every frame's result; may end the run by `stop`
+/// @param summary  kept up to date, so that it is valid if `shown` throws
 void run_ar(ArSession const& session, ArRunOptions const& options,
             std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
             gi::Report& report, ArSummary& summary);
-/// The same, of a source that is open, in place of the session's.
+/// The same with an open source instead of the session's.
 void run_ar(ArSession const& session, ar::FrameSource& source, ArRunOptions const& options,
             std::function<void(ArFrameRecord&, ArResult const&)> const& shown, gi::StopRequest const& stop,
             gi::Report& report, ArSummary& summary);
@@ -79,10 +80,10 @@ void run_ar(ArSession const& session, ar::FrameSource& source, ArRunOptions cons
 struct Spread {
     double median = 0, p95 = 0, most = 0;
 };
-/// Quantiles as gi/core/quantile.h defines them; zeros of nothing.
+/// Quantiles as defined in gi/core/quantile.h; zeros for no values.
 Spread spread_of(std::vector<double> values);
 
-/// Median, 95 % and most of each stage, frames per second, latency, poses: lines of text.
+/// Lines of text: median, 95 % quantile and maximum of each stage, frames per second, latency, poses.
 std::string describe(ArSummary const& summary);
 
 } // namespace viewer

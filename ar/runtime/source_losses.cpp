@@ -10,7 +10,7 @@ void report_losses(ar::SourceCounts const& counts, ar::SourceState const& state,
         report.lose("frames that could not be read", std::size_t(counts.refused), counts.last_refusal);
     if (state.kind == ar::SourceState::Kind::lost)
         throw gi::InputError("the source was lost: " + state.reason, describe(counts),
-                             "look at the file, or at the camera's cable");
+                             "check the file, or the camera's cable");
 }
 
 } // namespace viewer

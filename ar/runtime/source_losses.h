@@ -1,12 +1,12 @@
 #pragma once
-// What a source could not give is not lost in silence.
+// Reports frames that a source could not deliver.
 
 #include "ar/capture/frame_source.h"
 #include "gi/core/report.h"
 
 namespace viewer {
 
-/// Counts what was refused. @throws gi::InputError the source broke off
+/// Counts refused frames. @throws gi::InputError if the source was lost
 void report_losses(ar::SourceCounts const& counts, ar::SourceState const& state, gi::Report& report);
 
 } // namespace viewer

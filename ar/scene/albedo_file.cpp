@@ -37,7 +37,7 @@ std::vector<AlbedoEntry> parse_albedos(std::string const& text, std::filesystem:
     for (gi::Yaml const& y : root.at("albedos").items()) {
         y.only_keys({"name", "albedo", "spread", "samples", "texture"});
         for (char const* key : {"name", "albedo"})
-            if (!y.has(key)) throw y.error(fmt::format("no '{}'", key), "nothing can be done with it", "add it");
+            if (!y.has(key)) throw y.error(fmt::format("no '{}'", key), "every entry needs it", "add it");
         AlbedoEntry e;
         e.name = y.at("name").text();
         e.albedo = y.at("albedo").vector(0, 1);
@@ -45,7 +45,7 @@ std::vector<AlbedoEntry> parse_albedos(std::string const& text, std::filesystem:
         if (y.has("samples")) e.samples = std::uint64_t(y.at("samples").integer(0, INT64_MAX));
         if (y.has("texture")) e.texture = file.parent_path() / y.at("texture").text();
         if (std::any_of(entries.begin(), entries.end(), [&](AlbedoEntry const& f) { return f.name == e.name; }))
-            throw y.error("'" + e.name + "' is there twice", "only one of them can count", "remove one");
+            throw y.error("'" + e.name + "' is there twice", "names must be unique", "remove one");
         entries.push_back(std::move(e));
     }
     return entries;

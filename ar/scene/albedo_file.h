@@ -1,5 +1,5 @@
 #pragma once
-// Albedos that were estimated, as a file:
+// File of estimated albedos:
 //   schema: ar-albedo/1
 //   albedos:
 //     - {name: table, albedo: [0.41, 0.3, 0.19], spread: [0.05, 0.04, 0.03], samples: 20000}
@@ -14,17 +14,17 @@
 namespace viewer {
 
 struct AlbedoEntry {
-    std::string name;              ///< of the proxy, or "scene:" and the material's
+    std::string name;              ///< the proxy's name, or "scene:" and the material's name
     gi::dvec3 albedo{0};           ///< linear, 0 to 1
     gi::dvec3 spread{0};           ///< robust standard deviation of single pixels
     std::uint64_t samples = 0;     ///< pixels; 0 = never seen
     std::filesystem::path texture; ///< sRGB, over texture coordinates 0 to 1; empty = none
 };
 
-/// The picture beside the file. Paths within are relative to it. @throws gi::InputError with file:line:column
+/// Paths in the file are relative to it. @throws gi::InputError with file:line:column
 std::vector<AlbedoEntry> read_albedos(std::filesystem::path const& file);
 std::vector<AlbedoEntry> parse_albedos(std::string const& text, std::filesystem::path const& file);
-/// Textures are named relative to the file's folder, where they must lie.
+/// Textures are written relative to the file's folder and must be in it.
 std::string format_albedos(std::vector<AlbedoEntry> const& entries);
 
 } // namespace viewer

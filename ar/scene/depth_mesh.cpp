@@ -25,14 +25,14 @@ cv::Mat decoded_exr(std::filesystem::path const& file)
             return map;
         }
     throw gi::InputError("'" + file.string() + "' has no layer 'depth', 'Z' or 'Y' of one channel",
-                         "it is not known which of its channels are depths",
-                         "write a file whose only channel without a layer is Z or Y, or call it depth.V");
+                         "the depth channel cannot be identified",
+                         "write a file whose only channel without a layer is Z or Y, or name it depth.V");
 }
 
 cv::Mat decoded_png(std::filesystem::path const& file)
 {
     auto const bad = [&](std::string const& problem) {
-        return gi::InputError("'" + file.string() + "' " + problem, "depths are read from one channel of 16 bits",
+        return gi::InputError("'" + file.string() + "' " + problem, "depth maps have one channel of 16 bits",
                               "save it as PNG of 16 bits, or as EXR in metres");
     };
     std::vector<unsigned char> const bytes = gi::read_bytes(file, std::size_t(1) << 30);
@@ -48,7 +48,7 @@ cv::Mat decoded_png(std::filesystem::path const& file)
     return map;
 }
 
-/// In metres; 0 and what is not finite: nothing.
+/// Converts to metres; 0 and non-finite values: no surface.
 cv::Mat depths_of(ProxyDepth const& depth)
 {
     std::string ending = depth.file.extension().string();
@@ -68,7 +68,7 @@ ar::CameraModel camera_of(ProxyDepth const& depth, cv::Size size)
         throw gi::InputError(fmt::format("'{}' has {} x {} pixels", depth.file.string(), map_px.x, map_px.y),
                              fmt::format("the calibration '{}' is of {} x {}, another shape",
                                          depth.camera.string(), camera.size_px.x, camera.size_px.y),
-                             "give the calibration of the picture that the depths belong to");
+                             "use the calibration of the picture that the depth map belongs to");
     return ar::scaled(camera, map_px);
 }
 
@@ -124,8 +124,8 @@ gi::Mesh mesh_of(ProxyDepth const& depth, gi::Report& report)
     report.lose("triangles of depth maps left out at jumps", cut, name);
     if (mesh.triangles.empty())
         throw gi::InputError("'" + name + "' gives no triangle",
-                             "no two pixels beside each other have near depths",
-                             "look at metres_per_unit, jump and step_px");
+                             "no neighbouring pixels have similar depths",
+                             "check metres_per_unit, jump and step_px");
     mesh.normals = gi::vertex_normals(mesh.positions, mesh.triangles);
     return mesh;
 }

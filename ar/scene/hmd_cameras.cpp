@@ -27,7 +27,7 @@ ArHmd read_hmd(gi::Yaml const& y, std::filesystem::path const& folder)
     for (char const* needed : {"source", "camera", "left_from_right"})
         if (!r.has(needed))
             throw r.error(std::string("no '") + needed + "'", "the right eye has a camera of its own",
-                          "add it, or leave out `right`: both eyes see what one camera sees");
+                          "add it, or remove `right` to use one camera for both eyes");
     ArRightCamera right;
     std::string const name = r.at("source").text();
     right.source = is_device(name) ? name : (folder / name).string();

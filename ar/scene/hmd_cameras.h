@@ -10,16 +10,16 @@
 namespace viewer {
 
 struct ArRightCamera {
-    std::string source; ///< as ar::open_source takes it
+    std::string source; ///< name for ar::open_source
     std::filesystem::path calibration;
-    ar::Pose left_from_right; ///< where it is, in the frame of the other one
+    ar::Pose left_from_right; ///< its pose in the left camera's frame
 };
 
 struct ArHmd {
-    /// The head's axes are x right, y up, z back; the camera's x right, y down, z ahead. As it looks by default.
+    /// The head's axes are x right, y up, z back; the camera's x right, y down, z ahead. Default: same direction.
     ar::Pose head_from_camera{glm::dquat(0, 1, 0, 0), glm::dvec3(0)};
-    double plane_m = 1; ///< ahead of the camera: what is there is where it seems to be for eyes beside the camera
-    std::optional<ArRightCamera> right; ///< of the right eye; none: both see what the one camera sees
+    double plane_m = 1; ///< distance of the picture plane; objects at this distance appear at their true position
+    std::optional<ArRightCamera> right; ///< camera of the right eye; none: one camera for both eyes
 };
 
 /// @throws gi::InputError with file:line:column

@@ -1,6 +1,6 @@
 #pragma once
-// Proxies: what of the place is modelled in the session file itself, in metres in the world of the markers. They
-// catch shadows and light of virtual things, hide them, and show in them.
+// Proxies: real objects modelled in the session file itself, in metres in the world of the markers. They receive
+// shadows and light of virtual objects, occlude them, and are visible in their reflections.
 
 #include "ar/camera/pose.h"
 #include "gi/core/math.h"
@@ -24,9 +24,9 @@ gi::dmat4 placement(ArPlaced const& placed);
 enum class AlbedoFrom {
     number,          ///< `albedo`
     texture,         ///< `texture`
-    materials,       ///< of the mesh's own file
-    estimate,        ///< one colour, found in the camera's frames
-    estimate_texture ///< a picture of `texels`, found in the camera's frames
+    materials,       ///< from the mesh's own file
+    estimate,        ///< one colour, estimated from the camera's frames
+    estimate_texture ///< a texture of `texels`, estimated from the camera's frames
 };
 
 /// Linear values, 0 to 1.
@@ -34,15 +34,15 @@ struct ProxySurface {
     AlbedoFrom from = AlbedoFrom::number;
     gi::dvec3 albedo{0.5};
     std::filesystem::path texture;                    ///< sRGB picture, over texture coordinates 0 to 1
-    int texels = 256;                                 ///< on the longer side, of estimate_texture
-    double roughness = 1, metallic = 0, specular = 0; ///< as glTF's; metallic 1 and roughness 0 is a mirror
+    int texels = 256;                                 ///< longer side, for estimate_texture
+    double roughness = 1, metallic = 0, specular = 0; ///< as in glTF; metallic 1 and roughness 0 is a mirror
 };
 
 /// A parallelogram that faces edge_u x edge_v. Texture coordinates as printed: the corner is the lower left.
 struct ProxyPlane {
     gi::dvec3 corner_m{0}, edge_u_m{0}, edge_v_m{0};
 };
-/// About its middle. Its texture has three faces in each of two rows: +x -x +y, -y +z -z.
+/// Box around its centre. Its texture has three faces in each of two rows: +x -x +y, -y +z -z.
 struct ProxyBox {
     gi::dvec3 size_m{0};
     ar::Pose world_from_box;
@@ -50,18 +50,18 @@ struct ProxyBox {
 struct ProxyMesh {
     ArPlaced placed;
 };
-/// A map of depths along the axis, and the camera of the picture that it belongs to.
+/// A depth map (along the camera's axis), and the camera of the corresponding picture.
 struct ProxyDepth {
     std::filesystem::path file;   ///< EXR, or PNG of 16 bits
     std::filesystem::path camera; ///< calibration; of the map's size, or of the same shape
     ar::Pose world_from_camera;   ///< camera's axes as everywhere in ar: x right, y down, z ahead
     double metres_per_unit = 0;   ///< 0 = 1 for EXR, 0.001 for PNG
-    double jump = 0.05;           ///< of the depth: a triangle across more is left out
+    double jump = 0.05;           ///< relative to depth: triangles across larger differences are left out
     int step_px = 4;              ///< between vertices
 };
 
 struct ArProxy {
-    std::string name; ///< no two are equal
+    std::string name; ///< unique
     ProxySurface surface;
     std::variant<ProxyPlane, ProxyBox, ProxyMesh, ProxyDepth> shape;
 };

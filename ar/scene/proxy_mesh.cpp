@@ -37,7 +37,7 @@ gi::Mesh mesh_of(ProxyBox const& b)
     gi::Mesh mesh;
     for (int axis = 0, face = 0; axis < 3; ++axis)
         for (double const side : {1.0, -1.0}) {
-            // Right and up as somebody before the face sees them, the box upright.
+            // Right and up as seen from in front of the face, with the box upright.
             gi::dvec3 out{0}, up{0, 1, 0};
             out[axis] = side;
             if (axis == 1) up = {0, 0, -side};

@@ -1,5 +1,5 @@
 #pragma once
-// Proxies as scenes.
+// Converts proxies to scenes.
 
 #include "ar/scene/proxies.h"
 #include "gi/core/report.h"
@@ -7,12 +7,12 @@
 
 namespace viewer {
 
-/// In world coordinates, with one material called by the proxy's name; of a mesh that keeps its materials: with
-/// those of its file. What is to be estimated is grey. Texture coordinates are those of `ProxySurface::texture`.
-/// @throws gi::InputError files that cannot be read
+/// Scene in world coordinates, with one material named like the proxy, or with the mesh file's own materials.
+/// Albedos to be estimated are grey. Texture coordinates are those of `ProxySurface::texture`.
+/// @throws gi::InputError, gi::InputError files that cannot be read
 gi::Scene scene_of(ArProxy const& proxy, gi::Report& report);
 
-/// A map of depths as triangles, without a material. Pixels without a depth and triangles across jumps are left
+/// Triangulates a depth map, without a material. Pixels without a depth and triangles across depth jumps are left
 /// out and counted. Texture coordinates are those of the map: (0, 0) is its upper left corner.
 gi::Mesh mesh_of(ProxyDepth const& depth, gi::Report& report);
 

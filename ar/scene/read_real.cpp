@@ -27,8 +27,8 @@ public:
         else
             for (char const* key : {"at", "turn_deg", "scale", "albedo"})
                 if (real_.has(key))
-                    throw real_.at(key).error("there is no 'scene'", "nothing is there that it could say more of",
-                                              "give a file of a scene, or leave it out");
+                    throw real_.at(key).error("there is no 'scene'", "the key applies to a scene file",
+                                              "add a scene file, or remove the key");
         if (real_.has("albedo")) {
             if (!real_.at("albedo").is_text() || real_.at("albedo").text() != "estimate")
                 throw real_.at("albedo").error("not the word estimate",
@@ -41,8 +41,8 @@ public:
         read_all("meshes", [&](Yaml const& y) { return mesh(y); });
         read_all("depth", [&](Yaml const& y) { return depth(y); });
         if (!real_.has("scene") && out_.proxies.empty())
-            throw real_.error("nothing real", "there is nothing that could catch a shadow",
-                              "give a scene, planes, boxes, meshes or depth; or leave 'real' out");
+            throw real_.error("nothing real", "no surface can receive shadows",
+                              "add a scene, planes, boxes, meshes or depth; or remove 'real'");
         return std::move(out_);
     }
 
@@ -67,7 +67,7 @@ private:
             if (std::any_of(out_.proxies.begin(), out_.proxies.end(),
                             [&](ArProxy const& q) { return q.name == p.name; }))
                 throw items[i].error("there is another '" + p.name + "'",
-                                     "estimates would not know which is meant", "give each a name of its own");
+                                     "estimates refer to proxies by name", "use unique names");
             out_.proxies.push_back(std::move(p));
         }
     }
@@ -77,7 +77,7 @@ private:
         ProxySurface s;
         s.from = unsaid;
         if (y.has("albedo") && y.has("texture"))
-            throw y.at("texture").error("albedo is there too", "only one of them can count",
+            throw y.at("texture").error("albedo is there too", "only one of the two is allowed",
                                         "remove one of the two");
         if (y.has("albedo")) {
             Yaml const a = y.at("albedo");
@@ -94,8 +94,8 @@ private:
         }
         if (y.has("texels")) {
             if (s.from != AlbedoFrom::estimate_texture)
-                throw y.at("texels").error("the texture is not one that is estimated",
-                                           "files have the texels that they have", "leave it out");
+                throw y.at("texels").error("the texture is not estimated",
+                                           "texture files have their own size", "remove the key");
             s.texels = int(y.at("texels").integer(1, 4096));
         }
         if (y.has("roughness")) s.roughness = y.at("roughness").number(0, 1);
@@ -105,7 +105,7 @@ private:
         if (is_estimated && s.metallic > 0)
             throw y.at("metallic")
                 .error("a metal's colour cannot be estimated",
-                       "what a metal shows is a mirror image, and no albedo", "give its albedo in numbers");
+                       "a metal shows reflections, not its albedo", "set its albedo in numbers");
         return s;
     }
 
@@ -117,21 +117,21 @@ private:
         if (y.has("corner_m")) {
             for (char const* other : {"centre_m", "size_m", "rotation_deg", "rotation_xyzw"})
                 if (y.has(other))
-                    throw y.at(other).error("corner_m is there too", "it says where the plane lies already",
-                                            "give corner_m and two edges, or centre_m, size_m and a rotation");
+                    throw y.at(other).error("corner_m is there too", "it already defines the plane's position",
+                                            "use corner_m and two edges, or centre_m, size_m and a rotation");
             need(y, {"edge_u_m", "edge_v_m"});
             p.corner_m = y.at("corner_m").vector(-kFar_m, kFar_m);
             p.edge_u_m = y.at("edge_u_m").vector(-kFar_m, kFar_m);
             p.edge_v_m = y.at("edge_v_m").vector(-kFar_m, kFar_m);
             if (!(glm::length(glm::cross(p.edge_u_m, p.edge_v_m)) > 1e-12))
                 throw y.error("the edges lie in one line", "there is no area between them",
-                              "give two edges that begin at the corner");
+                              "use two edges that start at the corner, in different directions");
         } else {
             need(y, {"centre_m", "size_m"});
             for (char const* other : {"edge_u_m", "edge_v_m"})
                 if (y.has(other))
-                    throw y.at(other).error("there is no corner_m", "edges begin at the corner",
-                                            "give corner_m, or size_m in place of the edges");
+                    throw y.at(other).error("there is no corner_m", "edges start at the corner",
+                                            "add corner_m, or use size_m instead of the edges");
             auto const size = y.at("size_m").items();
             if (size.size() != 2)
                 throw y.at("size_m").error("not two numbers", "it is a width and a height", "write [0.6, 0.4]");
@@ -184,7 +184,7 @@ private:
     {
         for (char const* key : keys)
             if (!y.has(key))
-                throw y.error(fmt::format("no '{}'", key), "its place and size are not known without it",
+                throw y.error(fmt::format("no '{}'", key), "it defines position and size",
                               "add it");
     }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The part `real:` of a session file: what of the place is modelled.
+// Reads the key `real:` of a session file: the modelled part of the real place.
 
 #include "ar/scene/session_file.h"
 #include "gi/core/yaml.h"

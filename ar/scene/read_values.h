@@ -1,5 +1,5 @@
 #pragma once
-// Values that several parts of a session file have.
+// Reads values that occur in several parts of a session file.
 
 #include "ar/scene/proxies.h"
 #include "gi/core/yaml.h"
@@ -8,7 +8,7 @@
 
 namespace viewer {
 
-/// One of these words.
+/// Returns the value of the matching word.
 template <class T>
 T choice(gi::Yaml const& at, std::vector<std::pair<char const*, T>> const& words)
 {
@@ -21,11 +21,11 @@ T choice(gi::Yaml const& at, std::vector<std::pair<char const*, T>> const& words
     throw at.error("'" + text + "' is not known here", "nothing could be done with it", "choose one of " + known);
 }
 
-/// A name that ar::open_source takes as it is, not a path.
+/// True if the name is a device for ar::open_source, not a path.
 bool is_device(std::string const& source);
-/// Of the key `file_key`, relative to the folder, with `at`, `turn_deg` and `scale`; other keys are not looked at.
+/// Reads the key `file_key`, relative to the folder, with `at`, `turn_deg` and `scale`; ignores other keys.
 ArPlaced read_placed(gi::Yaml const& map, std::string const& file_key, std::filesystem::path const& folder);
-/// Of `position_m`, and `rotation_deg` (about x, then y, then z) or `rotation_xyzw`; as marker maps have them.
+/// Reads `position_m`, and `rotation_deg` (about x, then y, then z) or `rotation_xyzw`, as in marker maps.
 ar::Pose read_pose(gi::Yaml const& map);
 
 } // namespace viewer

@@ -11,7 +11,7 @@
 namespace viewer {
 namespace {
 
-/// Matt and grey, until it is known better.
+/// Matt grey placeholder material.
 void make_unknown(gi::Material& m)
 {
     m.base_color = gi::vec3(0.5f);

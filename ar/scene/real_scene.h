@@ -1,5 +1,5 @@
 #pragma once
-// The place as it is modelled: the session's scene file and its proxies, in the world of the markers.
+// Builds the model of the real place: the session's scene file and its proxies, in the world of the markers.
 
 #include "ar/scene/albedo_file.h"
 #include "ar/scene/session_file.h"
@@ -8,12 +8,12 @@
 
 namespace viewer {
 
-/// A material whose albedo is estimated: numbers of AlbedoView::surface.
+/// A material whose albedo is estimated; its index is the patch number in AlbedoView::surface.
 struct AlbedoPatch {
-    std::string name;                 ///< of AlbedoEntry
-    std::size_t material = 0;         ///< of the scene
-    int texels = 0;                   ///< on the longer side of a texture; 0 = one colour
-    double width_m = 1, height_m = 1; ///< of what the texture covers, for its shape
+    std::string name;                 ///< name in AlbedoEntry
+    std::size_t material = 0;         ///< index in the scene
+    int texels = 0;                   ///< longer side of the texture; 0 = one colour
+    double width_m = 1, height_m = 1; ///< area that the texture covers, for its aspect ratio
 };
 
 struct RealScene {
@@ -21,13 +21,13 @@ struct RealScene {
     std::vector<AlbedoPatch> patches;
 };
 
-/// Everything, with grey where albedos are to be estimated.
+/// Returns the whole model, with grey for albedos to be estimated.
 RealScene model_of(ArReal const& real, gi::Report& report);
-/// Gives patches what was found. Those never seen (no samples) are counted. @throws gi::InputError a patch of
-/// which nothing is said
+/// Sets the patches' albedos from the entries; patches never seen (no samples) are counted. @throws gi::InputError
+/// a patch without an entry
 void take_albedos(RealScene& real, std::vector<AlbedoEntry> const& entries, std::filesystem::path const& file,
                   gi::Report& report);
-/// Both. @throws gi::InputError albedos are to be estimated, and there is no file of estimates
+/// Both steps. @throws gi::InputError if albedos are to be estimated and the file of estimates is missing
 gi::Scene real_scene(ArReal const& real, gi::Report& report);
 
 } // namespace viewer

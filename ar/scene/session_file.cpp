@@ -50,7 +50,7 @@ private:
     {
         f.only_keys({"source", "rate_hz", "size", "format"});
         if (!f.has("source"))
-            throw f.error("no 'source'", "there is nothing to see",
+            throw f.error("no 'source'", "a session needs frames",
                           "name a camera, a video or a folder of pictures");
         std::string const name = f.at("source").text();
         session_.frames.source = is_device(name) ? name : (folder_ / name).string();
@@ -78,7 +78,7 @@ private:
         if (l.has("map"))
             session_.light = path(l.at("map"));
         else if (session_.live_light == 0)
-            throw l.error("no 'map'", "there is no light to take", "give a lat-long EXR or HDR file, or live: 10");
+            throw l.error("no 'map'", "the light needs a source", "set a lat-long EXR or HDR file, or live: 10");
         if (l.has("turn_deg")) session_.light_turn_deg = l.at("turn_deg").number(-360, 360);
         if (l.has("scale")) session_.light_scale = l.at("scale").number(0, 1e9);
     }
@@ -86,7 +86,7 @@ private:
     ArPlaced virtual_things(Yaml const& v) const
     {
         v.only_keys({"scene", "at", "turn_deg", "scale"});
-        if (!v.has("scene")) throw v.error("no 'scene'", "there is nothing to place", "give a file of a scene");
+        if (!v.has("scene")) throw v.error("no 'scene'", "there is nothing to place", "name a scene file");
         return read_placed(v, "scene", folder_);
     }
 
@@ -165,7 +165,7 @@ private:
         for (char const* key : {"tripod", "smoothing", "predict_s"})
             if (p.has(key))
                 throw p.at(key).error(fmt::format("'{}' beside a tracker", key),
-                                      "trackers have their filter and prediction in the display's file",
+                                      "filter and prediction of trackers are set in the display file",
                                       "remove one of the two");
         session_.tracked = read_tracked(p, folder_);
     }

@@ -28,7 +28,7 @@ DisplayTracker const& find_tracker(Display const& display, ArTracked const& t)
             if (user.tracker >= 0) return display.trackers[std::size_t(user.tracker)];
     throw gi::InputError(t.tracker.empty() ? "'" + t.display.string() + "' has no user with a tracker"
                                            : "'" + t.display.string() + "' has no tracker '" + t.tracker + "'",
-                         "nobody would know where the camera is",
+                         "the camera pose comes from it",
                          known.empty() ? "add one" : "write pose.tracker: one of " + known);
 }
 
@@ -47,7 +47,7 @@ std::vector<ar::TimedPose> samples_of(fs::path const& file, TrackerSettings cons
     }
     if (poses.empty())
         throw gi::InputError("'" + file.string() + "' has no body '" + body + "'",
-                             "nobody would know where the camera is", "correct `body` of the tracker");
+                             "the camera pose comes from it", "correct `body` of the tracker");
     return poses;
 }
 
@@ -95,13 +95,13 @@ TrackedCamera::TrackedCamera(ArTracked const& tracked, gi::Report& report)
 {
     if (tracked.display.empty())
         throw gi::InputError("a session with `pose` and without a display", "it has no trackers",
-                             "write pose.display: FILE, or give --display FILE");
+                             "set pose.display: FILE, or use --display FILE");
     Display const display = load_display(tracked.display, report);
     DisplayTracker const& tracker = find_tracker(display, tracked);
     TrackerSettings settings = tracker_settings(tracker);
     if (tracker.type == DisplayTrackerType::openxr || tracker.type == DisplayTrackerType::fake)
-        throw gi::InputError("the tracker '" + tracker.name + "' says where a camera is",
-                             "headsets and keys move no camera here", "use one of type osc, dtrack or file");
+        throw gi::InputError("the tracker '" + tracker.name + "' cannot track a camera",
+                             "headsets and keys move no camera", "use one of type osc, dtrack or file");
     if (tracker.type != DisplayTrackerType::file) {
         hub_ = std::make_unique<TrackerHub>(std::vector{settings}, Polling::by_thread);
         return;
@@ -121,8 +121,8 @@ std::vector<ar::TimedPose> recorded_poses(ArTracked const& tracked, gi::Report& 
 {
     TrackedCamera const camera(tracked, report);
     if (camera.is_live())
-        throw gi::InputError("a session whose tracker is listened to", "it would not say the same twice",
-                             "take a tracker of type file, or give the poses as a file");
+        throw gi::InputError("a session with a live tracker", "its poses cannot be repeated",
+                             "use a tracker of type file, or a file of poses");
     return camera.recorded();
 }
 
@@ -151,7 +151,7 @@ std::optional<ar::Pose> TrackedCamera::at(double steady_s)
 std::string TrackedCamera::describe() const
 {
     if (!hub_) return {};
-    std::string text = fmt::format("tracker: of {} frames it knew {}\n", asked_, known_);
+    std::string text = fmt::format("tracker: {} frames, {} with a pose\n", asked_, known_);
     for (TrackerReport const& r : hub_->report(ar::steady_now_s()))
         text += fmt::format("  {}: {} packets, {} samples, {} malformed, {} lost\n", r.description,
                             r.counts.packets, r.counts.samples, r.counts.malformed, r.counts.lost);

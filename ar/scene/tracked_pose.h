@@ -1,9 +1,9 @@
 #pragma once
-// Where a camera is by a tracker of a room, in place of markers: keys `pose` of a session.
+// Camera pose from a room's tracker instead of markers: key `pose` of a session.
 //
 //   world from camera = (world from room) (room from sensor) (sensor from camera)
 //
-// The tracker tells of the sensor, a body that is fixed to the camera. A sensor's axes are those of heads: x
+// The tracker reports the pose of the sensor, a body fixed to the camera. A sensor's axes are those of heads: x
 // right, y up, z back; the camera's are x right, y down, z ahead.
 
 #include "ar/camera/frame.h"
@@ -16,43 +16,44 @@
 namespace viewer {
 
 struct ArTracked {
-    std::filesystem::path display; ///< its trackers; empty = the command line says it
-    std::string tracker;           ///< by name; empty = that of the display's first user with one
-    ar::Pose camera_from_sensor{glm::dquat(0, 1, 0, 0), glm::dvec3(0)}; ///< as heads look
+    std::filesystem::path display; ///< display file with the trackers; empty = set on the command line
+    std::string tracker;           ///< name; empty = the tracker of the display's first user with one
+    ar::Pose camera_from_sensor{glm::dquat(0, 1, 0, 0), glm::dvec3(0)}; ///< default: same viewing direction
     ar::Pose world_from_room;                                           ///< the world of the markers
-    double offset_s = 0; ///< of recorded poses: their time at the first frame, since their first
+    double offset_s = 0; ///< for recorded poses: time of the first frame, since the first pose
 };
 
 /// @throws gi::InputError with file:line:column
 ArTracked read_tracked(gi::Yaml const& pose, std::filesystem::path const& folder);
 
-/// What its tracker has recorded, by seconds since the first frame.
-/// @throws gi::InputError the tracker is live; as TrackedCamera
+/// The tracker's recorded poses, by seconds since the first frame.
+/// @throws gi::InputError if the tracker is live, and as TrackedCamera
 std::vector<ar::TimedPose> recorded_poses(ArTracked const& tracked, gi::Report& report);
-/// @param poses   not empty. @param time_s  since the first frame; clocks of files round
+/// @param poses   not empty. @param time_s  since the first frame; may be rounded, as file clocks are
 /// @return nothing before the first and after the last
 std::optional<ar::Pose> recorded_pose(std::vector<ar::TimedPose> const& poses, double time_s);
-/// Its display and the meshes and the recording that this names. @throws gi::InputError as TrackedCamera
+/// The display file, and the meshes and recording it references. @throws gi::InputError as TrackedCamera
 std::vector<std::filesystem::path> files_read_by(ArTracked const& tracked);
 
 class TrackerHub;
 
 class TrackedCamera {
 public:
-    /// Reads the display, begins to listen. @throws gi::InputError no such tracker, or one of a type that has no
+    /// Reads the display and starts to listen. @throws gi::InputError no such tracker, or a tracker type without a
     /// camera
     TrackedCamera(ArTracked const& tracked, gi::Report& report);
-    /// By a hub that somebody else has made; its head is the sensor.
+    /// Uses an existing hub, whose head is the sensor.
     TrackedCamera(ArTracked const& tracked, std::unique_ptr<TrackerHub> hub);
     ~TrackedCamera();
 
-    /// Of a recorded file, by seconds since the first frame: nothing depends on clocks.
+    /// Poses of a recorded file, by seconds since the first frame, independent of clocks.
     std::vector<ar::TimedPose> const& recorded() const { return recorded_; }
     bool is_live() const { return hub_ != nullptr; }
-    /// Between the samples next to that moment, or predicted from the last ones; nothing where the tracker has
-    /// lost it, or is late by more than it predicts. @param steady_s  of the exposure, std::chrono::steady_clock
+    /// Pose interpolated between the nearest samples, or predicted from the last ones; nothing if the tracker has
+    /// lost it, or the time is beyond the prediction limit. @param steady_s  of the exposure,
+    /// std::chrono::steady_clock
     std::optional<ar::Pose> at(double steady_s);
-    /// Packets, losses, latency: lines of text; empty for recorded ones.
+    /// Lines of text with packets, losses and latency; empty for recorded poses.
     std::string describe() const;
 
 private:

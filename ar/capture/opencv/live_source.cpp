@@ -1,4 +1,4 @@
-// Devices and pipelines, which do not wait: a thread takes their frames as they come.
+// Devices and pipelines do not wait, so a thread reads their frames as they arrive.
 
 #include "ar/capture/clock.h"
 #include "ar/capture/opencv/opencv_sources.h"
@@ -97,7 +97,7 @@ public:
             bool good = false;
             try {
                 good = capture_.set(property, value);
-            } catch (cv::Exception const&) { // as if it had said no
+            } catch (cv::Exception const&) { // same as unsupported
             }
             if (!good) problems.push_back(fmt::format("{} cannot be set: the driver refuses it", name));
         };
@@ -116,7 +116,8 @@ public:
     }
 
 private:
-    /// The capture is for one thread at a time: the reader lets whoever sets something go before its next frame.
+    /// The capture allows one thread at a time: the reader yields to threads that set controls before its next
+    /// frame.
     class Turn {
     public:
         explicit Turn(LiveSource& source) : source_(source)
@@ -189,7 +190,7 @@ private:
         return true;
     }
 
-    /// The planes of what OpenCV gave; why not, where it is not what it should be.
+    /// Sets the planes from OpenCV's picture; returns the reason if it is not as expected.
     std::string make_frame(cv::Mat const& picture, Frame& f) const
     {
         bool const is_jpeg_wanted = options_.format == PixelFormat::mjpeg;
@@ -217,7 +218,7 @@ private:
         return {};
     }
 
-    /// Many in a row are an end.
+    /// Counts a failure; many in a row end the source.
     bool refuse(std::string const& why)
     {
         std::lock_guard const lock(mutex_);
@@ -238,7 +239,7 @@ private:
     PixelFormat format_ = PixelFormat::bgr8;
     double frames_per_s_ = 0, frame_count_ = 0;
 
-    mutable std::mutex mutex_; // of what follows
+    mutable std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
     std::deque<Frame> waiting_;
     SourceState end_;

@@ -17,8 +17,8 @@ public:
         std::error_code error;
         if (!std::filesystem::exists(file, error))
             throw gi::InputError("no video '" + name_ + "'", error ? error.message() : "there is no such file",
-                                 "name another file");
-        // As text that begins with a path, so that nothing in the name is read as the address of a stream.
+                             "name another file");
+        // Pass an absolute path, so that the name cannot be parsed as a stream address.
         std::string const path = std::filesystem::absolute(file).string();
         if (!capture_.open(path, cv::CAP_FFMPEG) || !grab())
             throw gi::InputError("'" + name_ + "' has no frame", "it is no video, or nothing of it can be decoded",
