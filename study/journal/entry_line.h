@@ -30,8 +30,8 @@ private:
 /// True if a line ends like a complete one, with a checksum.
 bool has_checksum(std::string_view line);
 /// @param number  expected number of the line
-/// @throws BadLine if entry_line cannot have written it: no JSON, wrong checksum or number, fields that are missing,
-/// unknown, or of another type
+/// @throws BadLine if entry_line cannot have written it: no JSON, wrong checksum or number, fields that are
+/// missing, unknown, or of another type
 JournalEntry entry_of_line(std::string_view line, int number);
 
 } // namespace study

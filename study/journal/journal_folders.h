@@ -7,8 +7,8 @@
 
 namespace study {
 
-/// DIR/sub-ID/ses-01/beh. @throws ScriptError if the id has characters other than letters and digits, or the session
-/// is not 1 to 99
+/// DIR/sub-ID/ses-01/beh. @throws ScriptError if the id has characters other than letters and digits, or the
+/// session is not 1 to 99
 std::filesystem::path session_folder(std::filesystem::path const& dir, std::string const& participant_id,
                                      int session);
 

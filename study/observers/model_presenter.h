@@ -4,9 +4,9 @@
 
 namespace study {
 
-/// Presenter without display: simulates a display with a steady rate, a clock that advances by the duration of each
-/// step, and an observer. Answers depend only on observer, step and attempt, so an interrupted and resumed session
-/// has the same answers as an uninterrupted one.
+/// Presenter without display: simulates a display with a steady rate, a clock that advances by the duration of
+/// each step, and an observer. Answers depend only on observer, step and attempt, so an interrupted and resumed
+/// session has the same answers as an uninterrupted one.
 class ModelPresenter : public Presenter {
 public:
     explicit ModelPresenter(Observer observer) : observer_(std::move(observer)) {}

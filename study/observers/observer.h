@@ -10,8 +10,8 @@
 namespace study {
 
 /// How well an observer sees the level of a setting: P(correct) = guess + (1 - guess - lapse) F, where F is the
-/// Weibull function 1 - exp(-(level / threshold)^slope) on logarithmic scales, and Phi((level - threshold) / slope)
-/// on the linear one; signs are reversed if higher levels are harder. guess is that of the task.
+/// Weibull function 1 - exp(-(level / threshold)^slope) on logarithmic scales, and Phi((level - threshold) /
+/// slope) on the linear one; signs are reversed if higher levels are harder. guess is that of the task.
 struct VariedModel {
     std::string setting;
     Scale scale = Scale::linear;
@@ -55,9 +55,9 @@ struct Observer {
     VariedModel const& varied(std::string const& setting) const;
 };
 
-/// Default model. For factors that are paired, compared or ranked (if there are none, those that ratings cross), the
-/// reference's level, or else the first one, has quality 0 and each further one 0.5 less. Thresholds lie in the
-/// middle of their range.
+/// Default model. For factors that are paired, compared or ranked (if there are none, those that ratings cross),
+/// the reference's level, or else the first one, has quality 0 and each further one 0.5 less. Thresholds lie in
+/// the middle of their range.
 ObserverModel usual_observers(Script const& script);
 /// Default model with the changes of a YAML text. @param name name of the text in messages @throws ScriptError
 ObserverModel read_observers(std::string const& text, std::string const& name, Script const& script);

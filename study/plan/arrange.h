@@ -39,11 +39,11 @@ struct BrokenRule {
 std::optional<BrokenRule> find_broken(std::span<ArrangeItem const> items, std::span<ArrangeRule const> rules,
                                       std::span<int const> order);
 
-/// Returns indices of items, place by place. @param groups of the places; there are as many places of each group as
-/// items. First, whole orders are drawn until one satisfies the rules; all valid orders are then equally likely. If
-/// valid orders are too rare, a depth-first search with look-ahead places one trial after the other, chosen at
-/// random in proportion to the number of remaining trials of its kind. Throws NoOrder if the search proves that no
-/// order exists, or gives up.
+/// Returns indices of items, place by place. @param groups of the places; there are as many places of each group
+/// as items. First, whole orders are drawn until one satisfies the rules; all valid orders are then equally
+/// likely. If valid orders are too rare, a depth-first search with look-ahead places one trial after the other,
+/// chosen at random in proportion to the number of remaining trials of its kind. Throws NoOrder if the search
+/// proves that no order exists, or gives up.
 std::vector<int> arrange(std::span<ArrangeItem const> items, std::span<ArrangeRule const> rules,
                          std::span<int const> groups, Random& random);
 

@@ -21,8 +21,8 @@ public:
     Journal(Journal const&) = delete;
     Journal& operator=(Journal const&) = delete;
 
-    /// @throws ScriptError if the entry cannot be stored (a full disk, ...): earlier entries are unchanged, and this
-    /// object writes nothing any more
+    /// @throws ScriptError if the entry cannot be stored (a full disk, ...): earlier entries are unchanged, and
+    /// this object writes nothing any more
     void append(JournalEntry const& entry);
     double synced_ms() const { return synced_ms_; } ///< total time spent waiting for the disk
 

@@ -26,7 +26,8 @@ struct TrialRequest {
 /// The experimenter's command, which may come at any time.
 enum class ExperimenterAction { go_on, pause, skip, abort };
 
-/// Thrown from any call when the session is aborted during it. The reason, recorded in session.json, states by whom.
+/// Thrown from any call when the session is aborted during it. The reason, recorded in session.json, states by
+/// whom.
 struct Aborted : std::runtime_error {
     explicit Aborted(std::string const& reason = "aborted by the experimenter") : std::runtime_error(reason) {}
 };
@@ -47,10 +48,10 @@ public:
     virtual StepDone rest(std::string const& prompt, double least_s, int step) = 0;
     virtual StepDone walk(TrialRequest const& where, std::string const& prompt, double seconds) = 0;
     virtual QuestionnaireDone ask(Questionnaire const& questionnaire, int step) = 0;
-    /// Runs a trial: iti, warm-up, stimuli, answer, feedback. Session fills in step, attempt, level, is_correct and
-    /// bookkeeping_ms, and itself detects too many dropped frames and missing answers. A trial that the experimenter
-    /// ends while it is shown is invalid, with the reason "skipped" (done; action() then returns go_on) or "aborted"
-    /// (as if Aborted were thrown). A StepDone may have these reasons too.
+    /// Runs a trial: iti, warm-up, stimuli, answer, feedback. Session fills in step, attempt, level, is_correct
+    /// and bookkeeping_ms, and itself detects too many dropped frames and missing answers. A trial that the
+    /// experimenter ends while it is shown is invalid, with the reason "skipped" (done; action() then returns
+    /// go_on) or "aborted" (as if Aborted were thrown). A StepDone may have these reasons too.
     virtual TrialDone show(TrialRequest const& trial) = 0;
     /// The experimenter's command since the last call; called between steps.
     virtual ExperimenterAction action() = 0;

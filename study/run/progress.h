@@ -22,8 +22,8 @@ inline constexpr int kMostAttempts = 3;
 
 /// The rules:
 /// - Steps come in the order of the plan. Invalid practice trials are never repeated.
-/// - Other invalid trials (if the script sets repeat_at_end) are repeated at the end of their pass of the block, in
-///   the order in which they failed, until they are valid or were tried kMostAttempts times; trials that the
+/// - Other invalid trials (if the script sets repeat_at_end) are repeated at the end of their pass of the block,
+///   in the order in which they failed, until they are valid or were tried kMostAttempts times; trials that the
 ///   experimenter skipped are not repeated.
 /// - Procedures receive only valid trials. When a run has finished, its remaining trials are dropped; if no main
 ///   trial of the pass remains, its catch trials and breaks are dropped too.
@@ -37,10 +37,10 @@ public:
 
     /// The next step; none = every step is done.
     std::optional<NextStep> next() const;
-    /// @throws std::invalid_argument where the entry cannot follow from this plan and the entries before
+    /// @throws std::invalid_argument if the entry is inconsistent with this plan and the earlier entries
     void apply(JournalEntry const& entry);
 
-    bool was_asked() const { return was_asked_; } ///< about the participant
+    bool was_asked() const { return was_asked_; } ///< the questions about the participant
     int trials_planned() const { return trials_planned_; }
     int trials_done() const { return trials_done_; } ///< of the plan, valid or not, each counted once
 

@@ -12,9 +12,9 @@ struct SessionFiles {
     Journal journal;
     JournalText found; ///< earlier content of the journal
     bool is_new = false;
-    std::filesystem::path first_made; ///< of a new session: the outermost folder that was missing; empty = none
+    std::filesystem::path first_made; ///< of a new session: the outermost folder created; empty = none
 
-    /// Takes a new journal away again, and the folders made for it: nothing has happened yet.
+    /// Removes a new journal and the folders created for it, while nothing has happened yet.
     void discard();
 };
 

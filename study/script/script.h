@@ -167,7 +167,8 @@ struct Catch {
 };
 
 enum class RuleKind { max_run, min_gap, never_after, not_first };
-/// What a constraint on the trial order applies to: a factor, the pair of levels, the correct answer, the procedure.
+/// What a constraint on the trial order applies to: a factor, the pair of levels, the correct answer, the
+/// procedure.
 enum class Subject { factor, pair, answer, procedure };
 struct Constraint {
     RuleKind kind = RuleKind::max_run;

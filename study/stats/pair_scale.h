@@ -48,8 +48,8 @@ struct PairScale {
     std::string note; ///< measures taken to get finite numbers; empty = none
 };
 
-/// Fits the scores; a single item has score 0. @throws std::invalid_argument as check_pairs; items not connected by
-/// a chain of comparisons; infinite estimates with Regularisation::never; only ties with TieModel::threshold
+/// Fits the scores; a single item has score 0. @throws std::invalid_argument as check_pairs; items not connected
+/// by a chain of comparisons; infinite estimates with Regularisation::never; only ties with TieModel::threshold
 PairScale fit_pairs(std::span<PairCount const> pairs, int items, PairSettings const& settings = {});
 
 /// JOD per unit of F: 1 / z(0.75) = 1.4826 for Thurstone's model, 1 / log 3 for Bradley's and Terry's

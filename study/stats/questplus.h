@@ -36,8 +36,8 @@ struct QuestSettings {
 class QuestPlus {
 public:
     /// @throws std::invalid_argument an empty vector, NaN, slopes <= 0, stimuli or thresholds <= 0 for
-    /// QuestFunction::weibull, rates outside [0, 1) or whose sums reach 1, priors of other lengths, negative or all
-    /// zero
+    /// QuestFunction::weibull, rates outside [0, 1) or whose sums reach 1, priors of other lengths, negative or
+    /// all zero
     explicit QuestPlus(QuestSettings settings);
 
     /// Index into settings().stimuli of the next stimulus.
