@@ -68,7 +68,7 @@ struct Take {
         known.insert(name);
         auto const found = in.find(name);
         if (found == in.end()) throw BadLine(fmt::format("it has no '{}'", name), false);
-        if (!read(*found, value)) throw BadLine(fmt::format("its '{}' is of another kind", name), false);
+        if (!read(*found, value)) throw BadLine(fmt::format("its '{}' has another type", name), false);
     }
 
     static bool read(Json const& j, double& v)
@@ -188,7 +188,7 @@ JournalEntry entry_of_line(std::string_view line, int number)
     if (!has_checksum(line)) throw BadLine("it has no checksum at its end", false);
     std::string_view const summed = line.substr(0, line.size() - kSumLength);
     if (line.substr(line.size() - kSumLength + kSum.size()) != fmt::format("{:08x}\"}}", crc32(summed)))
-        throw BadLine("its checksum is another: it was changed since it was written", false);
+        throw BadLine("its checksum does not match: it was changed after it was written", false);
     Json const j = Json::parse(line, nullptr, false);
     if (!j.is_object()) throw BadLine("it is no JSON object", false);
     std::set<std::string> frame;
@@ -205,7 +205,7 @@ JournalEntry entry_of_line(std::string_view line, int number)
     }
     if (n != number)
         throw BadLine(
-            fmt::format("its number is {}, it should be {}: lines are missing or twice there", n, number), false);
+            fmt::format("its number is {}, it should be {}: lines are missing or duplicated", n, number), false);
     return entry_of(kind, j);
 }
 

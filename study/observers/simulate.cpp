@@ -23,8 +23,8 @@ void keep_truth(fs::path const& dir, std::string const& truth)
         write_durably(file, truth);
     } else if (read_whole(file) != truth) {
         throw ScriptError(file.string(), {}, "other observers answered in this folder",
-                          "one folder has one truth with which a report can be compared",
-                          "use the observers and the seed of then, or another folder");
+                          "a folder has one set of true parameters for reports",
+                          "use the same observers and seed, or another folder");
     }
 }
 

@@ -210,9 +210,9 @@ std::vector<int> arrange(std::span<ArrangeItem const> items, std::span<ArrangeRu
         Search::Result const result = search.run(random);
         if (result == Search::Result::found) return search.order();
         if (result == Search::Result::none)
-            throw NoOrder(fmt::format("no order of these {} trials keeps the rules", items.size()));
+            throw NoOrder(fmt::format("no order of these {} trials satisfies the rules", items.size()));
     }
-    throw NoOrder(fmt::format("no order of these {} trials that keeps the rules was found in {} searches",
+    throw NoOrder(fmt::format("no order of these {} trials that satisfies the rules was found in {} searches",
                               items.size(), kSearches));
 }
 

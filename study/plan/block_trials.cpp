@@ -209,7 +209,7 @@ std::vector<std::vector<int>> cells_of(Script const& s, Block const& b, std::vec
         if (next.size() > std::size_t(kMostTrialsOfBlock))
             throw ScriptError(s.file, b.place,
                               fmt::format("block '{}' has more than {} conditions", b.name, kMostTrialsOfBlock),
-                              "nobody can do them", "cross less");
+                              "that is too many for a session", "cross less");
         cells = std::move(next);
     };
     for (int const f : b.cross) {

@@ -114,7 +114,7 @@ std::string procedure_text(Procedure const& p)
     std::string text = fmt::format("    {}: {}, {}{} trials", p.name, name_of(p.method),
                                    is_adaptive(p) ? "at most " : "", planned_trials(p));
     if (p.stop.reversals > 0) text += fmt::format(" or {} reversals", p.stop.reversals);
-    if (p.method == Method::staircase) text += fmt::format(", settles at {:.2f} % right", 100 * settles_at(p));
+    if (p.method == Method::staircase) text += fmt::format(", converges to {:.2f} % correct", 100 * settles_at(p));
     if (p.method == Method::questplus)
         text += fmt::format(", {} x {} x {} x {} points of prior, {} levels", p.threshold.size(), p.slope.size(),
                             p.guess.size(), p.lapse.size(), p.stimuli.size());

@@ -44,7 +44,7 @@ void lock(int fd, std::filesystem::path const& file)
     int const error = errno;
     ::close(fd);
     if (error == EWOULDBLOCK)
-        throw cannot(file, "this session is under way", "another process has its journal", "end that one first");
+        throw cannot(file, "this session is running", "another process has its journal", "end that one first");
     throw cannot(file, "the journal cannot be locked", std::strerror(error),
                  "keep the records on a disk that can lock files");
 }
@@ -75,8 +75,8 @@ Journal Journal::create(std::filesystem::path const& file)
 {
     int const fd = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd < 0)
-        throw cannot(file, "the journal cannot be made", std::strerror(errno),
-                     "choose a folder that can be written");
+        throw cannot(file, "the journal cannot be created", std::strerror(errno),
+                     "choose a writable folder");
     lock(fd, file);
     sync_folder(file.parent_path());
     return {file, fd};
@@ -91,14 +91,14 @@ Journal Journal::open(std::filesystem::path const& file, JournalText& found)
     struct stat is {};
     if (::fstat(fd, &is) != 0 || !S_ISREG(is.st_mode)) {
         ::close(fd);
-        throw cannot(file, "the journal cannot be opened", "it is no file", "restore it");
+        throw cannot(file, "the journal cannot be opened", "it is not a regular file", "restore it");
     }
     lock(fd, file);
     Journal journal{file, fd};
     found = read_journal(file);
     bool const is_longer = found.torn_bytes > 0 || found.room_bytes > 0;
     if (is_longer && (::ftruncate(fd, off_t(found.good_bytes)) != 0 || ::fsync(fd) != 0))
-        throw cannot(file, "the torn end of the journal cannot be cut off", std::strerror(errno),
+        throw cannot(file, "the incomplete last line of the journal cannot be cut off", std::strerror(errno),
                      "make it writable");
     journal.size_ = journal.room_ = found.good_bytes;
     journal.lines_ = int(found.record.entries.size());
@@ -116,7 +116,7 @@ void Journal::make_room(std::size_t bytes)
 
 void Journal::append(JournalEntry const& entry)
 {
-    if (has_failed_) throw std::logic_error("a journal is written to after it has failed");
+    if (has_failed_) throw std::logic_error("write to a journal after it has failed");
     std::string const line = entry_line(entry, lines_ + 1) + "\n";
     if (size_ + line.size() > room_) make_room(kRoom);
     if (int const error = write_all(fd_, line, size_)) fail(error);
@@ -136,7 +136,7 @@ void Journal::fail(int error)
     room_ = size_;
     throw cannot(
         file_, "the session stops: its journal cannot be written", std::strerror(error),
-        "everything up to the last trial is kept: free some space, or repair the disk, and resume the session");
+        "all trials up to the last are recorded: free some space, or repair the disk, and resume the session");
 }
 
 } // namespace study

@@ -142,11 +142,11 @@ private:
         if (!calibration.passed && s_.timing.vsync == Vsync::required)
             throw ScriptError(s_.file, {}, "the display does not pass the test that the script requires",
                               calibration.reason,
-                              "repair it, or write timing: {vsync: record}, which runs and labels every onset");
+                              "fix it, or write timing: {vsync: record} to run anyway");
         bool const is_first = record_.entries.empty();
         if (is_first && !s_.participants.consent.empty() &&
             !call([&] { return p_.ask_consent(text_of(s_.participants.consent)); })) {
-            outcome_.reason = "the participant did not agree; nothing is kept";
+            outcome_.reason = "the participant did not consent; nothing is recorded";
             return false;
         }
         keep_plan();
@@ -158,12 +158,12 @@ private:
         clock_offset_s_ = unix_s() - started_.clock_s;
         keep(started_);
         if (outcome_.torn_bytes > 0)
-            note("warning", fmt::format("{} bytes of a line that was not whole were cut off the journal's end",
+            note("warning", fmt::format("{} bytes of an incomplete line were cut off the journal's end",
                                         outcome_.torn_bytes));
         if (started_.gap_s < 0)
             note("clock_changed",
-                 fmt::format("the wall clock says that this part begins {:.3f} s before the end of "
-                             "the part before",
+                 fmt::format("by the wall clock this part begins {:.3f} s before the end of "
+                             "the previous part",
                              -started_.gap_s));
         keep(calibration);
         write_summary();
@@ -201,7 +201,7 @@ private:
         if (std::abs(offset_s - clock_offset_s_) > kClockJump_s)
             note(
                 "clock_changed",
-                fmt::format("the wall clock went {:+.3f} s; times are those of the monotonic clock, which did not",
+                fmt::format("the wall clock jumped by {:+.3f} s; times are of the monotonic clock, which did not",
                             offset_s - clock_offset_s_));
         clock_offset_s_ = offset_s;
         switch (call([&] { return p_.action(); })) {

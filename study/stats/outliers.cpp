@@ -28,7 +28,7 @@ void check(std::vector<std::vector<Matrix>> const& wins)
             if (scene.size() != wins.front().size() || observer.rows != scene.front().rows ||
                 observer.columns != observer.rows)
                 refuse("scenes with different observers or items", "likelihoods are summed over scenes",
-                       "give every observer a square table in every scene, of zeros where one saw nothing");
+                       "give every observer a square table in every scene, with zeros if nothing was seen");
 }
 
 /// Scores of fit_pairs's unit.

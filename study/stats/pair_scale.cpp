@@ -107,7 +107,7 @@ void check_connected(Matrix const& wins)
         if (part[i] != 0)
             refuse("item " + std::to_string(i) + " is not connected with item 0 by any chain of comparisons",
                    "the distance between such items is unknown",
-                   "scale the connected items by themselves, or compare across");
+                   "scale the connected items separately, or add comparisons between them");
 }
 
 } // namespace

@@ -74,7 +74,7 @@ std::vector<Point> checked_points(std::span<LevelCount const> counts, Psychometr
     for (LevelCount const& c : counts) {
         if (!(c.correct >= 0 && c.correct <= c.trials && std::isfinite(c.trials)))
             refuse(std::to_string(c.correct) + " of " + std::to_string(c.trials) + " trials",
-                   "counts are numbers, and nobody is right more often than asked", "check the table");
+                   "counts are numbers, with no more correct responses than trials", "check the table");
         if (!std::isfinite(c.level) || (shape.axis == Axis::log10 && !(c.level > 0)))
             refuse("level " + std::to_string(c.level), "it has no place on the axis",
                    shape.axis == Axis::log10 ? "use levels above 0, or a linear axis" : "use numbers");
