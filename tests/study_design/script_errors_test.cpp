@@ -213,7 +213,7 @@ TEST(ScriptErrors, OfInputsThatGiveTwoAnswersToAQuestionnaire)
     EXPECT_EQ(message_of(with("down")), "");
     EXPECT_EQ(message_of(with("up")),
               "t.yaml:6:23: 'key:up' is both up and down in questionnaire 'ssq' (the answer "
-              "would not be known) choose another input");
+              "would be ambiguous) choose another input");
 }
 
 TEST(ScriptErrors, OfASecondDocumentNameItsLine)
