@@ -47,7 +47,7 @@ void add_staircase(ThresholdRun& run, Block const& b, Procedure const& p)
     run.estimates.push_back(std::move(e));
 }
 
-/// Guess rate: by guessing, or the false alarm rate in the run (log-linear); none if the run
+/// Lowest proportion correct: the guess rate, or the false alarm rate in the run (log-linear); none if the run
 /// has no trials to estimate it.
 std::optional<double> lowest_share(Task task, std::vector<TrialRow> const& trials)
 {

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where nothing is there, that is no failure.
+/// A missing folder is not an error.
 void check_read(fs::path const& path, std::error_code const& failed)
 {
     if (!failed || failed == std::errc::no_such_file_or_directory || failed == std::errc::not_a_directory) return;

@@ -28,7 +28,7 @@ void read_all_numbers(Yaml const& y, std::vector<Number> const& numbers)
     read_numbers(y, numbers);
 }
 
-/// {factor: {level: number}}; levels that are not named have 0.
+/// Reads {factor: {level: number}}; levels that are not named have 0.
 void read_by_level(Yaml const& y, Script const& s, double low, double high, std::vector<std::vector<double>>& out)
 {
     for (auto const& [name, levels] : y.entries()) {

@@ -34,7 +34,7 @@ std::vector<int> tokens_of(Script const& s, Block const& b, Trial const& t, Cons
     return tokens;
 }
 
-/// Puts trials in places; those of a group (a repeat, catch trials, ...) in the places of it.
+/// Orders trials; those of a group (a repeat, catch trials, ...) stay in the group's places.
 std::vector<Trial> in_order(Script const& s, Block const& b, std::vector<Trial> const& trials,
                             std::vector<int> const& group_of_trial, std::vector<int> const& group_of_place,
                             Random& random)
@@ -60,7 +60,7 @@ std::vector<Trial> in_order(Script const& s, Block const& b, std::vector<Trial> 
     return out;
 }
 
-/// Groups that `shuffle` keeps apart.
+/// Groups within which `shuffle` orders trials.
 std::vector<int> groups_of(Block const& b, std::vector<Trial> const& trials)
 {
     std::vector<int> groups;
@@ -71,7 +71,7 @@ std::vector<int> groups_of(Block const& b, std::vector<Trial> const& trials)
     return groups;
 }
 
-/// As listed, repeat after repeat.
+/// The listed order, repeat after repeat.
 std::vector<Trial> listed(Script const& s, Block const& b, std::vector<int> const& levels, int participant,
                           Random& random)
 {
@@ -131,7 +131,7 @@ std::vector<Trial> ordered_trials(Script const& s, Block const& b, std::vector<i
             trials.push_back(t);
             groups.push_back(kCatchGroup);
         }
-        for (int i = 0; i < count; ++i) // after one of the trials of each stretch; never first
+        for (int i = 0; i < count; ++i) // after one of the trials of each stretch, never first
             places.insert(places.begin() + i * (every + 1) + 1 + int(random.below(std::uint32_t(every))),
                           kCatchGroup);
     }

@@ -84,12 +84,12 @@ private:
         check_known(known, item.place, "the free walk");
     }
 
-    /// Every factor must have a level in everything that is shown.
+    /// Every factor must have a level in every stimulus.
     void check_known(std::vector<bool> known, Place where, std::string const& what)
     {
         for (LevelChoice const& c : s_.reference) known[std::size_t(c.factor)] = true;
         for (std::size_t f = 0; f < known.size(); ++f)
-            if (!known[f] && !without_level_) // said if nothing else is wrong: a factor may be used nowhere
+            if (!known[f] && !without_level_) // thrown only without other errors: the factor may be unused
                 without_level_ = error(where, fmt::format("factor '{}' has no level in {}", name(int(f)), what),
                                        "the stimuli are not fully defined",
                                        fmt::format("cross it, or fix it: only: {{{0}: LEVEL}} in a block, "
@@ -182,7 +182,7 @@ private:
                      "nothing in the sequence asks it", "add it to the sequence, or remove it");
     }
 
-    /// No input gives two of these answers. @param where they are asked for
+    /// Checks that no input gives two of these answers. @param where  place where they are asked for
     void check_inputs(std::set<std::string> const& answers, std::string const& where) const
     {
         std::map<std::string, std::string> answer_by_input;

@@ -11,7 +11,7 @@
 namespace study {
 namespace {
 
-/// QUEST+ with a function that lies above a half everywhere, where its middle is a half.
+/// Finds QUEST+ procedures whose function exceeds a half everywhere, although the threshold is at a half.
 bool never_reaches_half(Block const& b, Procedure const& p)
 {
     bool const goes_to_false_alarms = b.task == Task::yes_no || b.task == Task::same_different;

@@ -37,7 +37,7 @@ public:
     }
 
 private:
-    /// The order of what this counterbalance is of; the same whenever it comes.
+    /// The order of this counterbalance; the same at each use.
     std::vector<int> order_of(std::size_t i) const
     {
         Random random = random_for(s_, plan_.participant, kBalancePurpose + i);

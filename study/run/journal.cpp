@@ -16,7 +16,7 @@
 namespace study {
 namespace {
 
-constexpr std::size_t kRoom = std::size_t(256) << 10; ///< some 250 trials
+constexpr std::size_t kRoom = std::size_t(256) << 10; ///< about 250 trials
 
 /// @return errno, or 0
 int write_all(int fd, std::string_view text, std::size_t at)
@@ -68,7 +68,7 @@ Journal::~Journal()
 {
     if (fd_ < 0) return;
     if (room_ > size_ && ::ftruncate(fd_, off_t(size_)) == 0) ::fdatasync(fd_);
-    ::close(fd_); // and the lock is gone
+    ::close(fd_); // also releases the lock
 }
 
 Journal Journal::create(std::filesystem::path const& file)
@@ -131,7 +131,7 @@ void Journal::append(JournalEntry const& entry)
 void Journal::fail(int error)
 {
     has_failed_ = true;
-    // Where even this fails, the next one to open the file does it.
+    // If even this fails, the next process that opens the file does it.
     if (::ftruncate(fd_, off_t(size_)) == 0) ::fdatasync(fd_);
     room_ = size_;
     throw cannot(

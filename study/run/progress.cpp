@@ -8,7 +8,7 @@
 namespace study {
 namespace {
 
-constexpr double kClockNoise_s = 60; ///< by so much clocks are set back without meaning
+constexpr double kClockNoise_s = 60; ///< smaller backward jumps of clocks are ignored
 
 bool is_same_level(std::optional<double> a, std::optional<double> b)
 {

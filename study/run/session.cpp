@@ -22,12 +22,12 @@ double machine_unix_s()
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// A presenter's call failed: nothing can be shown any more.
+/// A call of the presenter failed: nothing can be shown any more.
 struct DisplayLost {
     std::string why;
 };
 
-/// All texts, before anything is shown: nothing is read from a disk later.
+/// Reads all texts before anything is shown; nothing is read from the disk later.
 std::map<std::string, std::string> read_texts(Script const& s, Plan const& plan,
                                               std::filesystem::path const& folder)
 {
@@ -68,7 +68,7 @@ public:
                 files_.discard();
                 return outcome_;
             }
-        } catch (Aborted const& aborted) { // before anything was kept of this part
+        } catch (Aborted const& aborted) { // before anything of this part was recorded
             if (files_.is_new && record_.entries.empty()) files_.discard();
             outcome_.reason = aborted.what();
             return outcome_;
@@ -107,7 +107,7 @@ private:
         return e;
     }
 
-    /// What the journal says of the parts before.
+    /// Restores the state from the journal's earlier parts.
     void take_up()
     {
         if (files_.found.record.entries.empty()) return;
@@ -135,7 +135,7 @@ private:
         record_ = std::move(files_.found.record);
     }
 
-    /// @return false where the participant does not agree
+    /// @return false if the participant does not consent
     bool begin()
     {
         CalibrationDone const calibration = call([&] { return p_.calibrate(s_.timing); });
@@ -193,7 +193,7 @@ private:
         end(reason);
     }
 
-    /// Notes, wishes and clocks. @return whether the next step is to be skipped
+    /// Handles notes, experimenter commands and clocks. @return true if the next step is to be skipped
     bool between_steps()
     {
         for (NoteTaken const& taken : call([&] { return p_.notes(); })) keep(taken);
@@ -322,7 +322,7 @@ private:
     }
     void note(std::string const& kind, std::string const& text) { keep(NoteTaken{p_.now(), kind, text}); }
 
-    /// take_up has seen that it is the plan of then.
+    /// Writes plan.tsv if it is missing; take_up has checked that the plan is the same.
     void keep_plan() const
     {
         auto const file = files_.folder / "plan.tsv";
@@ -331,7 +331,7 @@ private:
     }
     void write_summary() const { write_durably(files_.folder / "session.json", session_summary(record_)); }
 
-    /// What follows from the journal's end, also where the process was killed before it came to that.
+    /// Updates the files that depend on the whole journal, also if the process was killed before it did so.
     void finish() const
     {
         std::string const summary = session_summary(record_);
@@ -350,7 +350,7 @@ private:
         finish();
     }
 
-    /// The participant's time does not count as bookkeeping.
+    /// Pauses the watch: the participant's time does not count as bookkeeping.
     template <class Call>
     auto call(Call const& presenter_call) -> decltype(presenter_call())
     {
@@ -369,7 +369,7 @@ private:
     Presenter& p_;
     SessionSettings const& settings_;
     Plan plan_;
-    std::map<std::string, std::string> texts_; ///< by the names of their files
+    std::map<std::string, std::string> texts_; ///< by file name
     Progress progress_;
     SessionFiles files_;
     SessionStarted started_;

@@ -18,7 +18,7 @@ bool is_there(fs::path const& path)
     return fs::exists(fs::symlink_status(path, ignored));
 }
 
-/// The outermost missing folder on the way.
+/// The outermost missing folder of a path.
 fs::path first_missing(fs::path folder)
 {
     fs::path missing;
@@ -27,7 +27,7 @@ fs::path first_missing(fs::path folder)
     return missing;
 }
 
-/// The first entry of a journal; nothing where none is whole.
+/// The first entry of a journal; empty if there is no complete one.
 std::optional<SessionStarted> start_of(fs::path const& journal)
 {
     std::ifstream in(journal, std::ios::binary);
@@ -41,7 +41,7 @@ std::optional<SessionStarted> start_of(fs::path const& journal)
     return start == nullptr ? std::nullopt : std::optional(*start);
 }
 
-/// Sessions of two scripts in one folder could not be analysed (read_dataset).
+/// Refuses sessions of two scripts in one folder, which read_dataset could not analyse.
 void check_same_script(SessionSettings const& settings)
 {
     std::string const hash = sha256(settings.script_text);

@@ -7,7 +7,7 @@
 namespace study {
 namespace {
 
-/// Keys that other tasks have are told apart from those that none has.
+/// Distinguishes keys that other tasks use from unknown keys.
 void check_block_keys(Yaml const& y, Task task)
 {
     check_keys(y, "block");
@@ -157,7 +157,7 @@ void read_practice(Yaml const& y, Block& b)
     b.practice.level = read_vary_level(y.at("level"), *b.compare);
 }
 
-/// cross, nest, only
+/// Reads cross, nest, only.
 void read_conditions(Yaml const& y, Script const& s, Block& b)
 {
     auto const is_crossed = [&](int f) { return std::find(b.cross.begin(), b.cross.end(), f) != b.cross.end(); };

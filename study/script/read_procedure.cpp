@@ -18,7 +18,7 @@ std::optional<double> parse_number(std::string_view s)
     return v;
 }
 
-/// "a..b/n"
+/// Reads "a..b/n".
 std::vector<double> parse_range(Yaml const& y, Scale scale)
 {
     std::string const s = y.text();
@@ -46,7 +46,7 @@ std::vector<double> parse_range(Yaml const& y, Scale scale)
     return grid;
 }
 
-/// The first of max_trials and trials.
+/// Reads max_trials or trials.
 Stop read_stop(Yaml const& y, bool may_reverse)
 {
     check_keys(y, "stop");

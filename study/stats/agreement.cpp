@@ -10,7 +10,7 @@
 namespace study {
 namespace {
 
-/// The number of observers of a complete table.
+/// Number of observers of a complete table.
 int complete_observers(Matrix const& wins)
 {
     std::size_t const n = wins.rows;

@@ -16,7 +16,7 @@ struct Point {
     double u, correct, trials;
 };
 
-/// What is fitted: threshold and log scale always, guess and lapse where their Rate says so.
+/// Fitted parameters: threshold and log scale always, guess and lapse if their Rate requires it.
 struct Model {
     Sigmoid kind;
     Rate guess, lapse;
@@ -105,7 +105,7 @@ Model make_model(std::span<LevelCount const> counts, PsychometricSettings const&
     return m;
 }
 
-/// The best fit from the most likely places of a grid.
+/// The best fit from the most likely points of a grid.
 MaximumLikelihood best_fit(Model const& m)
 {
     LikelihoodAt const at = [&](std::span<double const> x, Likelihood& l) { m.evaluate(x, l); };
@@ -141,7 +141,7 @@ std::string note_of(Model const& m, MaximumLikelihood const& fit)
     say(none, "no correct response at all: there is no threshold among these levels");
     say(all, "nothing but correct responses: there is no threshold among these levels");
     say(fit.at_bound[0], "the threshold lies far outside of the levels shown");
-    // Below a hundredth of the range the curve is a step between two levels, wherever it is.
+    // Below a hundredth of the range the curve is a step between two levels.
     say(fit.estimate[1] < std::log(0.01) || std::isnan(fit.covariance(0, 0)),
         "responses change within one step of level: threshold and scale are known only to lie between");
     say(fit.estimate[1] > std::log(20.0), "responses hardly change with level: the scale is not known");

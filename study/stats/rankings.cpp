@@ -26,7 +26,7 @@ void check(std::span<ChoiceAmong const> choices, int items)
     }
 }
 
-/// wins(i, j) = how often i was chosen where j could have been.
+/// wins(i, j) = how often i was chosen and j was not.
 Matrix wins_over(std::span<ChoiceAmong const> choices, int items)
 {
     auto const n = std::size_t(items);

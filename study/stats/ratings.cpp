@@ -24,7 +24,7 @@ std::vector<double> given(Matrix const& ratings, std::size_t item)
     return values;
 }
 
-/// Calls use(item, observer, rating) for all there are.
+/// Calls use(item, observer, rating) for all ratings.
 template <class Use>
 void for_each(Matrix const& ratings, Use const& use)
 {

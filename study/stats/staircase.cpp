@@ -82,7 +82,7 @@ double staircase_target(StaircaseSettings const& settings)
     return bisect(
         [&](double p) {
             double const q = 1 - p, pd = std::pow(p, d - 1), qu = std::pow(q, u - 1);
-            // Runs of a coin (Feller 1968, XIII.8.6): all heads first.
+            // Runs of coin tosses (Feller 1968, XIII.8.6): probability that a run of heads comes first.
             return pd * (1 - qu * q) / (pd + qu - pd * qu) - wanted;
         },
         0, 1);
