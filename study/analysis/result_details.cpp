@@ -224,7 +224,7 @@ ResultTable changes(Analysis const& a)
                                      {"to", "Time"},
                                      {"n", "Participants who answered both"},
                                      {"change", "Mean change"}},
-                                    {{"p", "Probability of such a change by chance"}});
+                                    {{"p", "p-value of the change"}});
     for (QuestionnaireChange const& q : a.changes) {
         std::vector<std::string> row{cell(q.questionnaire), cell(q.score), cell(q.from), cell(q.to),
                                      cell(q.change.n)};

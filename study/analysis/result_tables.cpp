@@ -67,7 +67,7 @@ ResultTable observers(Analysis const& a)
                        {"catch_right", "Catch trials answered correctly"},
                        {"catches", "Catch trials"},
                        {"chose_first", "Proportion of answers first (or left)"},
-                       {"p_bias", "Probability of such a share or a more extreme one without bias"},
+                       {"p_bias", "Probability of this or a more extreme proportion without bias"},
                        {"T", "Circular triads"},
                        {"T_most", "Largest possible number"},
                        {"zeta", "Consistency"},
@@ -122,8 +122,8 @@ ResultTable cheapest(Analysis const& a)
 {
     ResultTable t{
         "cheapest",
-        "The cheapest that cannot be told from the reference",
-        "\"Cannot be told\" means no significant difference by the p-value corrected for all pairs. That is no "
+        "The cheapest item without significant difference from the reference",
+        "Significance is by the p-value corrected for all pairs. No significant difference is no "
         "proof of equality: the interval shows how large the difference may be. If the reference was not "
         "judged, the best judged item replaces it.",
         false,
@@ -138,7 +138,7 @@ ResultTable cheapest(Analysis const& a)
                        {"unit", "Unit of the difference"},
                        {"difference", "Score of the item minus that of the other"}};
     add_interval(t.table.columns, "", a.settings.confidence);
-    t.table.columns.push_back({"p_holm", "Probability of such a difference by chance, corrected (Holm)"});
+    t.table.columns.push_back({"p_holm", "p-value of the difference, corrected (Holm)"});
     for (BlockResult const& b : a.blocks)
         for (ScaleResult const& s : b.scales)
             if (s.cheapest) {
@@ -172,7 +172,7 @@ ResultTable differences(Analysis const& a)
                        {"a", "Item"},      {"b", "Other item"},
                        {"unit", "Unit"},   {"difference", "a minus b"}};
     add_interval(t.table.columns, "", a.settings.confidence);
-    t.table.columns.push_back({"p", "Probability of such a difference by chance"});
+    t.table.columns.push_back({"p", "p-value of the difference"});
     t.table.columns.push_back({"p_holm", "Corrected (Holm)"});
     for (BlockResult const& b : a.blocks)
         for (ScaleResult const& s : b.scales)

@@ -139,7 +139,7 @@ struct Take {
     {
         Fields<T>::visit(value, Take{j, known});
         for (auto const& [key, unused] : j.items())
-            if (!known.contains(key)) throw BadLine("'" + key + "' is no key that this version knows", true);
+            if (!known.contains(key)) throw BadLine("'" + key + "' is a key unknown to this version", true);
     }
 };
 
@@ -147,7 +147,7 @@ template <std::size_t I = 0>
 JournalEntry entry_of(std::string const& kind, Json const& j)
 {
     if constexpr (I == std::variant_size_v<JournalEntry>) {
-        throw BadLine("'" + kind + "' is no kind of entry that this version knows", true);
+        throw BadLine("'" + kind + "' is a kind of entry unknown to this version", true);
     } else {
         using Entry = std::variant_alternative_t<I, JournalEntry>;
         if (kind != Fields<Entry>::kKind) return entry_of<I + 1>(kind, j);
@@ -190,7 +190,7 @@ JournalEntry entry_of_line(std::string_view line, int number)
     if (line.substr(line.size() - kSumLength + kSum.size()) != fmt::format("{:08x}\"}}", crc32(summed)))
         throw BadLine("its checksum does not match: it was changed after it was written", false);
     Json const j = Json::parse(line, nullptr, false);
-    if (!j.is_object()) throw BadLine("it is no JSON object", false);
+    if (!j.is_object()) throw BadLine("it is not a JSON object", false);
     std::set<std::string> frame;
     int n = 0;
     std::string kind;

@@ -90,7 +90,7 @@ private:
     {
         return std::uint32_t(members_[std::size_t(kind)].size() - used_[std::size_t(kind)]);
     }
-    /// Kinds allowed at the place.
+    /// Remaining kinds of the next place's group.
     std::vector<int> candidates() const
     {
         std::vector<int> kinds;

@@ -11,7 +11,8 @@
 namespace study {
 namespace {
 
-/// Finds QUEST+ procedures whose function exceeds a half everywhere, although the threshold is at a half.
+/// True for QUEST+ if the function never falls to a half, where the threshold is, because all guess rates are >=
+/// 0.5.
 bool never_reaches_half(Block const& b, Procedure const& p)
 {
     bool const goes_to_false_alarms = b.task == Task::yes_no || b.task == Task::same_different;

@@ -65,8 +65,8 @@ std::string cheapest_text(ScaleResult const& s)
             c.is_reference ? "it, the reference"
                            : "it, the best judged item (the reference was not judged)");
     std::string text =
-        fmt::format("The cheapest that cannot be told from {} <b>{}</b> ({} ms) is <b>{}</b> ({} ms): difference "
-                    "{} {}, p = {:.3f} "
+        fmt::format("The cheapest without significant difference from {} <b>{}</b> ({} ms) is <b>{}</b> ({} ms): "
+                    "difference {} {}, p = {:.3f} "
                     "corrected for all pairs.",
                     stand_in, escaped(against.name), short_number(against.render_ms.value), escaped(item.name),
                     short_number(item.render_ms.value), interval_text(c.difference), escaped(s.unit), c.p_holm);

@@ -108,9 +108,9 @@ std::string scales_html(Script const& s, Block const& b, BlockResult const& r, A
                 "observers (dots).</p>\n" +
                 figures(spreads);
     if (!costs.empty()) {
-        html += "<h3>Perceived quality against rendering time</h3>\n<p class=\"note\">Square: what is compared "
+        html += "<h3>Perceived quality against rendering time</h3>\n<p class=\"note\">Square: the item compared "
                 "with. Ring: "
-                "the cheapest that cannot be told from it.</p>\n" +
+                "the cheapest item that does not differ significantly from it.</p>\n" +
                 figures(costs) + cheapest_table(a, r.name);
     }
     if (!wins.empty())

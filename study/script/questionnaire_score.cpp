@@ -12,7 +12,7 @@ ItemScore score_item(QuestionnaireItem const& item, double answer)
     double const steps = (answer - item.low) / item.step;
     bool const is_within = answer >= item.low && answer <= item.high; // false for NaN
     if (!is_within || std::abs(steps - std::round(steps)) > 1e-9)
-        throw std::invalid_argument(fmt::format("{} = {:g} (it is {:g} to {:g} by {:g}) give one of these",
+        throw std::invalid_argument(fmt::format("{} = {:g} (it is {:g} to {:g} in steps of {:g}) choose one",
                                                 item.id, answer, item.low, item.high, item.step));
     return {answer, item.is_reversed ? item.low + item.high - answer : answer};
 }

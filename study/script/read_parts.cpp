@@ -174,7 +174,7 @@ Constraint read_constraint(Yaml const& y, Script const& s)
     if (int(is_repeat || is_run) + is_gap + is_after + is_first != 1 ||
         has_subject != ((is_run && !is_repeat) || is_gap))
         throw y.error(
-            "this is no constraint", "each is one rule",
+            "this is no constraint", "a constraint has one rule",
             "write {no_repeat: F}, {no_repeat: F, max_run: 2}, {max_run: 2, of: F}, {min_gap: 2, of: F}, "
             "{never_after: {F: [a, b]}} or {not_first: {F: a}}");
     if (has_subject) subject(y.at("of"));

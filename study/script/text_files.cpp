@@ -13,7 +13,7 @@ void check_text_file(Script const& s, std::filesystem::path const& folder, std::
 {
     std::error_code failure;
     if (is_text_file(text) && !std::filesystem::is_regular_file(folder / text, failure))
-        throw ScriptError(s.file, where, "there is no file '" + text + "'", "it is searched beside the script",
+        throw ScriptError(s.file, where, "there is no file '" + text + "'", "it must be beside the script",
                           "create it, or write the text itself here");
 }
 

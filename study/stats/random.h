@@ -45,7 +45,7 @@ public:
     std::uint32_t below(std::uint32_t n)
     {
         if (n == 0)
-            throw std::invalid_argument("random number below 0 (there is none) ask for one below 1 or more");
+            throw std::invalid_argument("random number below 0 (there is none) use 1 or more");
         std::uint32_t const uneven = (0u - n) % n; // 2^32 mod n: reject this many of the lowest, to avoid bias
         for (;;)
             if (std::uint32_t const r = next(); r >= uneven) return r % n;

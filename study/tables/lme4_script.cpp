@@ -134,7 +134,7 @@ trials <- read.csv({}, stringsAsFactors = FALSE, na.strings = "NA", check.names 
 trials <- trials[trials$analysis %in% c("counted", "counted though invalid"), ]
 trials$correct <- trials$correct == "true"
 
-# Terms of one level cannot be estimated and are left out, and said.
+# Terms with only one level cannot be estimated: they are left out and printed.
 fit <- function(formula, data, family = NULL) {{
   fixed <- attr(terms(lme4::nobars(formula)), "term.labels")
   constant <- Filter(function(t) length(unique(data[[gsub("`", "", t)]])) < 2, fixed)

@@ -98,7 +98,7 @@ TEST(ScriptErrors, NameTheirPlaceAndWhatToDo)
               "t.yaml:28:3: ", "factor 'scene' has no level in block 'rate'"},
              {"    cross: [scene]\n", "    cross: [scene, light]\n",
               "t.yaml:22:3: ", "fixed where it runs (line 20)"},
-             {"    cross: [scene]\n", "    cross: [scene, quality]\n", "t.yaml:22:3: ", "levels are already chosen"},
+             {"    cross: [scene]\n", "    cross: [scene, quality]\n", "t.yaml:22:3: ", "levels are already"},
              {"    cross: [scene]\n", "    cross: [scene, scene]\n", "t.yaml:25:20: ", "crossed twice"},
              {"    cross: [scene]\n", "    only: {scene: [arches, atrium]}\n",
               "t.yaml:22:3: ", "add scene to cross"},

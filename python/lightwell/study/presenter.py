@@ -30,7 +30,7 @@ class Presenter:
         """Shows a rest; returns when the participant continues, after `least_s` at the earliest.
 
         Args:
-            step: index in the plan; -1 = a pause that the experimenter requested.
+            step: index in the plan; -1 = an unplanned pause.
         """
         self.instruct(prompt, step)
 
