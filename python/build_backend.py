@@ -1,8 +1,8 @@
-"""Makes the wheel of the package (PEP 517): CMake builds lightwell/_core in the project's build tree.
+"""Builds the wheel of the package (PEP 517): CMake builds lightwell/_core in the project's build tree.
 
-Where that tree is there already only the module is compiled. Environment:
-    LIGHTWELL_BUILD   the build tree; build/release of this checkout otherwise, configured where it is missing
-    LIGHTWELL_JOBS    compilers at a time
+If the build tree exists, only the module is compiled. Environment variables:
+    LIGHTWELL_BUILD   build tree; default: build/release of this checkout, configured if missing
+    LIGHTWELL_JOBS    number of parallel compile jobs
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def _cached(build: Path, name: str) -> str:
 
 
 def _is_for_this_python(build: Path) -> bool:
-    """Whether the tree builds the module for interpreters of the installing one's minor version."""
+    """True if the build tree builds the module for the minor version of the installing interpreter."""
     python = _cached(build, "Python_EXECUTABLE")
     if not os.path.exists(python):
         return False
@@ -104,6 +104,6 @@ def build_wheel(wheel_directory: str, config_settings=None, metadata_directory=N
 
 def build_sdist(sdist_directory: str, config_settings=None) -> str:
     raise SystemExit(
-        "lightwell: there is no source archive of the module alone (it is built with the program) "
+        "lightwell: there is no source distribution of the module alone (it is built with the program) "
         "run pip install ./python in a checkout"
     )

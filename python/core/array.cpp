@@ -10,7 +10,7 @@ namespace bindings {
 void bind_array(py::module_& m)
 {
     py::class_<Array>(m, "Array", py::buffer_protocol(),
-                      "Memory of the program; numpy.asarray() reads it in place.")
+                      "Memory of the renderer; numpy.asarray() reads it in place.")
         .def_buffer([](Array& a) {
             std::vector<py::ssize_t> strides(a.shape.size(), a.item_bytes);
             for (std::size_t k = a.shape.size(); k > 1; --k) strides[k - 2] = strides[k - 1] * a.shape[k - 1];
@@ -37,8 +37,8 @@ FloatInput read_floats(py::buffer const& buffer, int dimensions, std::string con
     }
     if (!is_dense || info.size == 0)
         throw gi::InputError(name + " is no picture",
-                             "it has to have " + std::to_string(dimensions) +
-                                 " dimensions, none of them empty, of float32 in rows",
+                             "it must have " + std::to_string(dimensions) +
+                                 " dimensions, none of them empty, and contiguous float32 items",
                              "give numpy.ascontiguousarray(x, numpy.float32) of height x width x channels");
     auto const* const first = static_cast<float const*>(info.ptr);
     return {{first, first + info.size}, info.shape};

@@ -1,6 +1,6 @@
 #pragma once
-// Arrays that C++ owns and numpy reads where they lie, by the buffer protocol (PEP 3118): the module is built
-// without numpy's headers and works with any version of it.
+// Arrays owned by C++ that numpy reads in place through the buffer protocol (PEP 3118). The module therefore needs
+// no numpy headers and works with any version of numpy.
 
 #include <cstdint>
 #include <memory>
@@ -12,11 +12,11 @@ namespace bindings {
 
 namespace py = pybind11;
 
-/// Row-major, dense. What Python holds of it keeps the owner alive.
+/// Row-major, dense array. References from Python keep the owner alive.
 struct Array {
     std::shared_ptr<void const> owner;
     void const* data = nullptr;
-    std::string format; ///< of one item, as the module struct has it
+    std::string format; ///< of one item, a format string of Python's module struct
     py::ssize_t item_bytes = 0;
     std::vector<py::ssize_t> shape;
     bool is_writable = false;
@@ -24,10 +24,10 @@ struct Array {
 
 void bind_array(py::module_& m);
 
-/// numpy.ndarray of it, without a copy.
+/// Returns a numpy.ndarray of the array's memory, without a copy.
 py::object to_numpy(Array array);
 
-/// An array of its own, without a copy.
+/// Moves the values into an array that Python owns, without a copy.
 template <class T>
 py::object own(std::vector<T>&& values, std::vector<py::ssize_t> shape)
 {
@@ -35,7 +35,7 @@ py::object own(std::vector<T>&& values, std::vector<py::ssize_t> shape)
     return to_numpy({owner, owner->data(), py::format_descriptor<T>::format(), sizeof(T), std::move(shape), true});
 }
 
-/// Of items that somebody else owns; read-only.
+/// Returns a read-only array of items owned by `owner`.
 template <class Item>
 py::object borrow(std::shared_ptr<void const> owner, Item const* data, std::vector<py::ssize_t> shape)
 {
@@ -43,8 +43,8 @@ py::object borrow(std::shared_ptr<void const> owner, Item const* data, std::vect
         {std::move(owner), data, py::format_descriptor<Item>::format(), sizeof(Item), std::move(shape), false});
 }
 
-/// Floats that Python gives, copied. Throws InputError where the buffer is not float32 and dense in rows, has not
-/// so many dimensions, or is empty.
+/// Copy of floats passed from Python. Throws InputError unless the buffer is non-empty, row-major, dense float32
+/// with the given number of dimensions.
 struct FloatInput {
     std::vector<float> values;
     std::vector<py::ssize_t> shape;

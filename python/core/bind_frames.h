@@ -3,7 +3,7 @@
 
 namespace bindings {
 
-/// Frames, the renderer of frames that follow each other.
+/// Binds Frames, which renders sequences of frames.
 void bind_frames(pybind11::module_& m);
 
 } // namespace bindings

@@ -55,7 +55,7 @@ py::object flip_map(py::buffer const& image, py::buffer const& reference, bool h
     FloatInput const a = read_floats(image, 3, "image"), b = read_floats(reference, 3, "reference");
     if (a.shape != b.shape || a.shape[2] != 3)
         throw gi::InputError("image and reference are not two arrays of height x width x 3 of one size",
-                             "FLIP compares pixel with pixel", "bring them to one size");
+                             "FLIP compares pixel with pixel", "resize one of them");
     std::vector<float> errors;
     {
         py::gil_scoped_release const unlocked;
@@ -79,7 +79,7 @@ void write_exr(std::string const& file, py::dict const& layers, bool half)
 {
     gi::Picture const picture = to_picture(layers);
     if (picture.find("color") == nullptr)
-        throw gi::InputError("there is no layer 'color'", "it is the picture of an EXR", "name one of them color");
+        throw gi::InputError("there is no layer 'color'", "an EXR file needs it", "name one of the layers color");
     py::gil_scoped_release const unlocked;
     gi::Report report;
     gi::write_exr(file, picture, half ? gi::PixelType::half : gi::PixelType::single, report);
@@ -92,7 +92,7 @@ void write_png(std::string const& file, py::buffer const& bytes)
                       info.itemsize == 1 && info.strides[2] == 1 && info.strides[1] == info.shape[2] &&
                       info.strides[0] == info.shape[1] * info.shape[2];
     if (!fits)
-        throw gi::InputError("these are no bytes of a PNG", "they are height x width x 3 or 4 of uint8 in rows",
+        throw gi::InputError("this is no picture for a PNG", "it must be height x width x 3 or 4 contiguous uint8",
                              "give what tone_map returned");
     gi::write_png(file, int(info.shape[1]), int(info.shape[0]),
                   {static_cast<unsigned char const*>(info.ptr), std::size_t(info.size)});

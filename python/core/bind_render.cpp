@@ -16,7 +16,7 @@ namespace {
 
 constexpr char const* kEnds[] = {"paths", "budget", "error_target", "interrupted"};
 
-/// What is known of a render while it runs, from one thread to another.
+/// Passes the latest status of a running render from one thread to another.
 class Watched {
 public:
     void put(gi::RenderStatus const& status)

@@ -45,8 +45,8 @@ void set_matrix(gi::Camera& camera, std::array<std::array<double, 4>, 4> const& 
         }
     bool const is_affine = m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
     if (!is_affine || !(std::abs(glm::determinant(m)) > 1e-12))
-        throw gi::InputError("world_from_camera is no place of a camera",
-                             "it flattens space, or its last row is not 0, 0, 0, 1",
+        throw gi::InputError("world_from_camera is not a valid camera matrix",
+                             "it is singular, or its last row is not 0, 0, 0, 1",
                              "give columns right, up, backward and position");
     camera.world_from_camera = m;
 }
@@ -90,7 +90,7 @@ void bind_camera(py::module_& m)
 {
     using gi::Camera;
     py::class_<Camera>(m, "Camera",
-                       "From where a picture is seen: look_at(position, target, fov_deg), or an assigned "
+                       "A camera: look_at(position, target, fov_deg), or an assigned "
                        "world_from_camera (4 x 4, m). Looks along -Z of its frame, +Y up, +X right.")
         .def(py::init<>())
         .def_static("look_at", &looking_camera, py::arg("position"), py::arg("target"), py::arg("fov_deg") = 45.0,

@@ -7,14 +7,15 @@ namespace bindings {
 
 namespace py = pybind11;
 
-/// A scene at one moment, as Python holds it.
+/// A scene at one moment, as bound to Python.
 struct LoadedWorld {
     std::string name;
     std::shared_ptr<gi::World const> world;
     std::map<std::string, gi::Report::Loss> losses; ///< of loading
 };
 
-/// A camera of the world by its name, its first, or one that frames it all. Throws InputError.
+/// Returns the named camera; if the name is empty, the world's first camera, or one that frames the whole scene if
+/// it has none. Throws InputError.
 gi::Camera camera_of(gi::World const& world, std::string const& name);
 
 /// Camera, World, load.

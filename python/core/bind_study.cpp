@@ -70,7 +70,7 @@ py::dict run(LoadedScript const& loaded, int participant, py::object const& step
         if (presenter.raised()) std::rethrow_exception(presenter.raised());
         throw;
     }
-    // The session has ended in order, and its journal says why; the caller gets what was raised.
+    // The session has ended properly and its journal records why; the caller gets the presenter's exception.
     if (presenter.raised()) std::rethrow_exception(presenter.raised());
     return outcome_dict(id, outcome);
 }
@@ -110,7 +110,7 @@ py::tuple read_journal(std::string const& file)
     return py::make_tuple(entries, journal.torn_bytes);
 }
 
-/// Name -> (text with tabs, column -> what it is).
+/// Table name -> (tab-separated text, column -> description).
 py::dict export_tables(std::string const& dir, std::string const& script)
 {
     std::vector<study::NamedTable> tables;

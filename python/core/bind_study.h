@@ -3,7 +3,7 @@
 
 namespace bindings {
 
-/// Script, with plans and sessions of it; read_journal, study_example.
+/// Binds Script with its plans and sessions; read_journal, study_example.
 void bind_study(pybind11::module_& m);
 
 } // namespace bindings

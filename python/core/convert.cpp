@@ -31,8 +31,8 @@ gi::Picture to_picture(py::dict const& layers)
             throw gi::InputError("the layer " + name + " has " + std::to_string(channels) + " channels",
                                  "pictures have 1, 3 or 4", "leave the others out");
         if (!picture.layers.empty() && (picture.width != width || picture.height != height))
-            throw gi::InputError("the layer " + name + " has another size than those before it",
-                                 "layers of a picture are of one size", "give them as two pictures");
+            throw gi::InputError("the layer " + name + " has another size than the layers before it",
+                                 "layers of a picture have one size", "give them as two pictures");
         picture.width = width;
         picture.height = height;
         picture.layers.push_back({name, channels, std::move(in.values)});
@@ -62,7 +62,7 @@ nlohmann::json to_json(py::handle value)
     if (py::hasattr(value, "item") && py::hasattr(value, "tolist"))
         return to_json(value.attr("tolist")()); // numpy
     throw gi::InputError("a value of type " + std::string(py::str(py::type::of(value).attr("__name__"))),
-                         "settings are words, numbers, yes or no, and lists of numbers", "give one of these");
+                         "settings are strings, numbers, booleans and lists of numbers", "give one of these");
 }
 
 py::object from_json(nlohmann::json const& value)

@@ -1,5 +1,5 @@
 #pragma once
-// Small things between Python and the program.
+// Conversions between Python and C++ types.
 
 #include "gi/core/report.h"
 #include "gi/image_io/picture.h"
@@ -19,13 +19,13 @@ inline Point to_point(gi::dvec3 v) { return {v.x, v.y, v.z}; }
 
 /// Layer name -> array, height x width x channels, or height x width where there is one channel. Takes the layers.
 py::dict to_layers(gi::Picture&& picture);
-/// The inverse, copied. Throws InputError on layers that are no float32 arrays of one size.
+/// The inverse, copied. Throws InputError unless all layers are float32 arrays of the same size.
 gi::Picture to_picture(py::dict const& layers);
 
-/// What was skipped, clamped or missing -> how often.
+/// Counts of everything skipped, clamped or missing, by name.
 py::dict losses_of(gi::Report const& report);
 
-/// None, bool, int, float, str, and lists and tuples of them. Throws InputError on anything else.
+/// Converts None, bool, int, float, str, and lists and tuples of these. Throws InputError on other types.
 nlohmann::json to_json(py::handle value);
 py::object from_json(nlohmann::json const& value);
 

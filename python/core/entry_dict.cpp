@@ -70,8 +70,8 @@ template <class Entry>
 Entry from_dict(py::handle given)
 {
     if (!py::isinstance<py::dict>(given))
-        throw gi::InputError(fmt::format("a presenter gave back {}", std::string(py::repr(given))),
-                             "a dict or a dataclass of lightwell.study belongs there",
+        throw gi::InputError(fmt::format("a presenter returned {}", std::string(py::repr(given))),
+                             "it must be a dict or a dataclass of lightwell.study",
                              "see the documentation of Presenter");
     auto const dict = py::reinterpret_borrow<py::dict>(given);
     Entry entry;
@@ -83,14 +83,14 @@ Entry from_dict(py::handle given)
             from_python(dict[name], field);
         } catch (py::cast_error const&) {
             throw gi::InputError(
-                fmt::format("a presenter gave back {} = {}", name, std::string(py::repr(dict[name]))),
-                "the field is of another type", "see the documentation of Presenter");
+                fmt::format("a presenter returned {} = {}", name, std::string(py::repr(dict[name]))),
+                "the field has another type", "see the documentation of Presenter");
         }
     });
     for (auto const& [key, value] : dict)
         if (auto const name = std::string(py::str(key)); !known.contains(name))
-            throw gi::InputError(fmt::format("a presenter gave back the field '{}'", name),
-                                 "nothing of that name is kept", "leave it out");
+            throw gi::InputError(fmt::format("a presenter returned the field '{}'", name),
+                                 "the result has no such field", "leave it out");
     return entry;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Entries of journals as dicts of Python, with the names that they have in a journal.
+// Journal entries as Python dicts, with the field names of the journal.
 
 #include "study/journal/entry_fields.h"
 
@@ -9,11 +9,11 @@ namespace bindings {
 
 namespace py = pybind11;
 
-/// "kind" and the fields of its kind; times as in the journal.
+/// Returns "kind" and the fields of this kind of entry; times as in the journal.
 py::dict to_dict(study::JournalEntry const& entry);
 
-/// What a presenter gave back. Fields that are not there keep their defaults. Throws InputError where it is no
-/// mapping, or has other fields or other types.
+/// Converts a dict returned by a presenter. Missing fields keep their defaults. Throws InputError if it is not a
+/// dict, has unknown fields, or a field has the wrong type.
 template <class Entry>
 Entry from_dict(py::handle given);
 

@@ -3,10 +3,10 @@
 
 namespace bindings {
 
-/// From now on InputError and ScriptError of the program arrive in Python as those of lightwell.errors.
+/// Registers the translation of C++ InputError and ScriptError to the exceptions of lightwell.errors.
 void translate_errors();
 
-/// Throws InputError where a value is not between low and high, or not finite.
+/// Throws InputError unless low <= value <= high.
 void check_range(char const* name, double value, double low, double high);
 
 } // namespace bindings

@@ -56,7 +56,7 @@ void Frames::take(viewer::StimulusSettings const& stimulus)
         if (nlohmann::json const wanted = viewer::get(stimulus.settings, k.key);
             wanted != viewer::get(session_.settings(), k.key))
             change({k.key, wanted});
-    // Edits cannot be taken back but by loading the scene anew.
+    // Only reloading the scene undoes edits.
     if (stimulus.scene != session_.scene_name() || is_edited_) change({"scene", stimulus.scene});
     for (viewer::Change const& c : stimulus.edits) change(c);
 }
@@ -76,7 +76,7 @@ MadeFrame Frames::render(std::vector<viewer::ViewCommand> views, FrameWork work,
                          gi::StopRequest const& stop)
 {
     if (views.empty())
-        throw gi::InputError("a frame without a view", "there is nothing to render", "give at least one");
+        throw gi::InputError("the frame has no view", "there is nothing to render", "give at least one");
     std::lock_guard const lock(mutex_);
     viewer::FrameCommand order;
     order.frame = frame_;

@@ -1,6 +1,6 @@
 #pragma once
-// Frames that follow each other, each made when it is asked for: a viewer::Session with its views, and the
-// settings of a stimulus of an experiment.
+// Sequences of frames rendered on demand: a viewer::RenderSession with its views, and the settings of an
+// experiment's stimulus.
 
 #include "viewer/engine/governor.h"
 #include "viewer/engine/render_session.h"
@@ -10,7 +10,7 @@
 
 namespace bindings {
 
-/// How many paths a frame has: so many, or what the governor expects to fit into a time.
+/// Paths per pixel of a frame: a fixed number, or as many as the governor expects to fit into the budget.
 struct FrameWork {
     std::optional<int> paths;
     double budget_s = 0.05;
@@ -19,7 +19,7 @@ struct FrameWork {
 struct MadeFrame {
     viewer::SessionFrame frame;
     double seconds = 0;
-    double exposure_ev = 0; ///< that it was rendered with, as `tone`
+    double exposure_ev = 0; ///< setting of the frame, as `tone`
     std::string tone;
 };
 
@@ -32,12 +32,14 @@ public:
     void set(viewer::Change const& change);
     nlohmann::json get(std::string const& key) const;
     gi::Report const& report() const { return report_; }
-    /// Of the scene; empty = its first, or one that frames it. Throws InputError.
+    /// Camera of the scene; empty = its first, or one that frames the scene. Throws InputError.
     gi::Camera camera(std::string const& name) const;
 
-    /// Sets scene, settings and edits of a stimulus, taking back edits of the one before. Throws InputError.
+    /// Applies scene, settings and edits of a stimulus and undoes edits of the previous one. Throws InputError.
     void take(viewer::StimulusSettings const& stimulus);
-    /// From where the stimulus is seen, so long after its onset: its camera, moved along its path.
+    /// Camera of a stimulus, moved along its path.
+    /// @param seconds  since the stimulus's onset
+    /// @param duration_s  of one round of the path
     gi::Camera camera_at(viewer::StimulusSettings const& stimulus, int width, int height, double seconds,
                          double duration_s) const;
 

@@ -5,10 +5,10 @@
 
 namespace bindings {
 
-/// Does long work on a thread of its own, without the interpreter's lock, while this one looks after signals: on
-/// Ctrl-C the work is asked to stop, and KeyboardInterrupt goes on when it has. To be called with the lock.
-/// @param tick  called with the lock now and then meanwhile; what it raises stops the work too; may be empty
-/// Throws what the work throws.
+/// Runs long work on a separate thread without the GIL while the calling thread checks for signals. On Ctrl-C it
+/// requests the work to stop, and throws KeyboardInterrupt when the work has ended. Call it with the GIL held.
+/// @param tick  called regularly with the GIL held; an exception that it raises also stops the work; may be empty
+/// Rethrows exceptions of the work.
 void run_interruptible(std::function<void(gi::StopRequest const&)> const& work,
                        std::function<void()> const& tick = {});
 

@@ -1,4 +1,4 @@
-// lightwell._core: what the package in python/lightwell, which has the documentation, is made of.
+// lightwell._core: the compiled part of the package in python/lightwell, which has the documentation.
 
 #include "python/core/array.h"
 #include "python/core/bind_frames.h"

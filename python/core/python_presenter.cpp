@@ -7,7 +7,7 @@
 
 namespace bindings {
 
-/// With the interpreter's lock. What is raised is kept for run(), and ends the session as a display that is lost.
+/// Calls with the GIL held. An exception is kept for run() and ends the session like a lost display.
 template <class Result>
 Result PythonPresenter::call(std::function<Result()> const& ask) const
 {
@@ -119,7 +119,7 @@ study::ExperimenterAction PythonPresenter::action()
         auto const word = py::cast<std::string>(steps_.attr("wish")());
         auto const found = kWishes.find(word);
         if (found == kWishes.end())
-            throw gi::InputError("a presenter wishes for '" + word + "'", "there is no such wish",
+            throw gi::InputError("wish() of the presenter returned '" + word + "'", "there is no such action",
                                  "choose go_on, pause, skip or abort");
         return found->second;
     });

@@ -1,6 +1,6 @@
 #pragma once
-// Hands the steps of a session to an object of Python (lightwell/study/_steps.py), which has a method for each of
-// study::Presenter, and takes dicts from it.
+// Forwards the steps of a session to a Python object (lightwell/study/_steps.py), which has one method for each
+// method of study::Presenter and returns dicts.
 
 #include "study/run/presenter.h"
 
@@ -29,7 +29,7 @@ public:
     study::ExperimenterAction action() override;
     std::vector<study::NoteTaken> notes() override;
 
-    /// What a method raised, which ended the session; null = nothing.
+    /// Exception of a Python method, which ended the session; null = none.
     std::exception_ptr raised() const { return raised_; }
 
 private:
@@ -40,7 +40,7 @@ private:
     mutable std::exception_ptr raised_;
 };
 
-/// A trial, or a place where somebody walks, as Python sees it.
+/// A trial, or the place of a walk, as a Python dict.
 py::dict to_dict(study::TrialRequest const& request);
 
 } // namespace bindings

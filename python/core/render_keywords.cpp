@@ -22,7 +22,7 @@ std::int64_t whole(py::dict const& k, char const* name, double low, double high)
     try {
         value = py::cast<std::int64_t>(k[name]);
     } catch (py::cast_error const&) {
-        throw gi::InputError(fmt::format("{} = {}", name, std::string(py::repr(k[name]))), "it is a whole number",
+        throw gi::InputError(fmt::format("{} = {}", name, std::string(py::repr(k[name]))), "it must be an integer",
                              "give one");
     }
     check_range(name, double(value), low, high);
@@ -41,12 +41,12 @@ std::string one_of(py::dict const& k, char const* name, std::vector<std::string>
 {
     auto const word = py::cast<std::string>(k[name]);
     if (std::ranges::find(words, word) == words.end())
-        throw gi::InputError(fmt::format("{} = '{}'", name, word), "it is not known here",
+        throw gi::InputError(fmt::format("{} = '{}'", name, word), "the value is unknown",
                              fmt::format("choose from: {}", fmt::join(words, ", ")));
     return word;
 }
 
-/// "--light-paths=64"; flags have no value. Empty = the flag is off.
+/// Returns a command-line argument such as "--light-paths=64", for flags without a value; empty = the flag is off.
 std::string argument(CLI::App const& all, std::string const& keyword, py::handle value)
 {
     std::string name = "--" + keyword;
@@ -57,17 +57,17 @@ std::string argument(CLI::App const& all, std::string const& keyword, py::handle
         for (CLI::Option const* const o : all.get_options())
             if (o->get_lnames().size() == 1 && o->get_lnames()[0] != "help") known.push_back(o->get_lnames()[0]);
         for (std::string& n : known) std::ranges::replace(n, '-', '_');
-        throw gi::InputError("methods have no option '" + keyword + "'", "it is not known here",
+        throw gi::InputError("methods have no option '" + keyword + "'", "the keyword is unknown",
                              fmt::format("choose from: {}", fmt::join(known, ", ")));
     }
     if (option->get_items_expected_max() > 0) return name + "=" + std::string(py::str(value));
     if (!py::isinstance<py::bool_>(value))
-        throw gi::InputError(keyword + " = " + std::string(py::repr(value)), "it is on or off",
+        throw gi::InputError(keyword + " = " + std::string(py::repr(value)), "it is a flag",
                              "give True or False");
     return py::cast<bool>(value) ? name : "";
 }
 
-/// As the command line takes and refuses them.
+/// Sets the method's options with the command line's parser and checks.
 void set_options(viewer::RenderOptions& o, py::dict const& given)
 {
     CLI::App all;
@@ -80,7 +80,7 @@ void set_options(viewer::RenderOptions& o, py::dict const& given)
     try {
         all.parse(arguments);
     } catch (CLI::ParseError const& e) {
-        throw gi::InputError(e.what(), "the option takes other values", "see lightwell render --help");
+        throw gi::InputError(e.what(), "the option has other values", "see lightwell render --help");
     }
     std::vector<viewer::NamedMethod> const methods{
         {o.method, viewer::parse_schedule(o.schedule), "--schedule " + o.schedule}};
@@ -100,7 +100,7 @@ gi::RenderSettings settings_of(py::dict const& k, py::dict const& options, std::
     o.seed = std::uint64_t(whole(k, "seed", 0, 9e18));
     o.threads = int(whole(k, "threads", 0, 4096));
     o.filter = one_of(k, "filter", {"box", "tent"});
-    o.png = "in memory"; // so that no file is chosen for it, nor one for its unfinished state
+    o.png = "in memory"; // so that no output or checkpoint file is chosen
     set_options(o, options);
     gi::RenderSettings s = viewer::make_settings(o);
     s.budget_s = positive(k, "budget_s");

@@ -8,13 +8,14 @@ namespace bindings {
 
 namespace py = pybind11;
 
-/// What World.render was told, judged by the rules of `lightwell render`. Throws InputError.
-/// @param k  width, height, paths, budget_s, until_relmse, bounces, seed, threads, filter: all of them; paths,
-/// budget_s and until_relmse may be None
+/// Converts the arguments of World.render, checked by the rules of `lightwell render`. Throws InputError.
+/// @param k  width, height, paths, budget_s, until_relmse, bounces, seed, threads, filter; all are required, but
+/// paths, budget_s and until_relmse may be None
 /// @param options  of the method, by the names of the command line's options, with _ for -: axes, light_paths, ...
 gi::RenderSettings settings_of(py::dict const& k, py::dict const& options, std::string const& method);
 
-/// By its name (gi/filter/filter_names.h). Throws InputError where it is unknown or not installed.
+/// Returns the settings of a filter named as in gi/filter/filter_names.h. Throws InputError if it is unknown or
+/// not installed.
 gi::DenoiseSettings denoise_of(std::string const& name, gi::RenderSettings const& settings);
 
 } // namespace bindings

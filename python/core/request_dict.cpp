@@ -27,7 +27,7 @@ py::dict stimulus_dict(Script const& s, Block const* block, Stimulus const& stim
     return d;
 }
 
-/// Names of answers, the values of a scale, or nothing where any number or order is one.
+/// Names of the allowed answers; empty if any number or order is allowed.
 py::list answers_of(Block const& block)
 {
     py::list answers;

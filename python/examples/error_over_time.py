@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Error of each method against time
 #
-# A notebook as a script: editors that know `# %%` run it cell by cell, `python error_over_time.py` runs it whole.
-# Needs numpy; the plot needs matplotlib (`pip install matplotlib`), and is left out where it is not there.
+# A notebook as a script: editors that support `# %%` run it cell by cell, `python error_over_time.py` in one go.
+# Needs numpy; the plot needs matplotlib (`pip install matplotlib`) and is skipped without it.
 
 # %%
 import argparse
@@ -14,7 +14,7 @@ parser.add_argument("--scene", default="cornell")
 parser.add_argument("--methods", default="reference,slhb")
 parser.add_argument("--size", default="160x120")
 parser.add_argument("--budgets", default="0.1,0.3,1,3", help="seconds")
-parser.add_argument("--reference-s", type=float, default=30.0, help="seconds for the picture that judges")
+parser.add_argument("--reference-s", type=float, default=30.0, help="seconds for the reference picture")
 parser.add_argument("--out", default="error_over_time")
 arguments, _ = parser.parse_known_args()  # a notebook has arguments of its own
 
@@ -30,9 +30,9 @@ low, high = world.bounds
 print(f"{world.name}: {len(world.triangles)} triangles, {high - low} m, cameras {[c.name for c in world.cameras]}")
 
 # %% [markdown]
-# ## The picture that judges
+# ## The reference
 #
-# It has a seed of its own: methods of one seed may share random numbers, and so their noise.
+# It uses a different seed: methods with the same seed may share random numbers, and therefore noise.
 
 # %%
 reference = world.render("reference", size=(width, height), budget_s=arguments.reference_s, bounces=8, seed=1)
@@ -54,7 +54,7 @@ for method in arguments.methods.split(","):
 # %% [markdown]
 # ## The plot
 #
-# Unbiased methods go down with slope -1; one that has a bias levels out at it.
+# The error of unbiased methods falls with slope -1; that of a biased method levels out at its bias.
 
 # %%
 try:

@@ -1,11 +1,11 @@
-"""An experiment shown by PsychoPy: two renderings side by side, made while they are seen, answered by arrow keys.
+"""An experiment shown by PsychoPy: two renderings side by side, rendered live, answered by arrow keys.
 
-    pip install psychopy        # GPL-3; not part of Lightwell, and needed by main() alone
+    pip install psychopy        # GPL-3; not part of Lightwell, needed only by main()
     python psychopy_pairs.py --participant 1
     python psychopy_pairs.py --participant 1 --resume
 
-PsychoPy opens the window, draws, and reads keys; Lightwell renders the stimuli and runs the session: its order,
-the journal that survives a crash, and the records. Frames whose rendering takes longer than a refresh are counted.
+PsychoPy opens the window, draws, and reads keys; Lightwell renders the stimuli and runs the session: trial order,
+crash-safe journal, and records. Frames that take longer than a display refresh to render are counted as dropped.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ class PsychoPyPresenter(study.Presenter):
 
     Args:
         win: psychopy.visual.Window with units "pix".
-        visual, event, core: the modules of PsychoPy; handed in, so that others with the same names can stand in.
-        size: of each picture, (width, height), pixels.
-        hz: refreshes of the display.
+        visual, event, core: the modules of PsychoPy; passed as arguments so that tests can replace them.
+        size: size of each picture, (width, height), pixels.
+        hz: refresh rate of the display.
     """
 
     keys = {"left": "first", "right": "second"}
@@ -93,7 +93,7 @@ class PsychoPyPresenter(study.Presenter):
     def _show_stimuli(
         self, timing: study.Timing
     ) -> tuple[float, list[float], list[float], tuple[str, float] | None]:
-        """Both pictures, refined from refresh to refresh, for stimulus_ms or until the answer."""
+        """Shows both pictures, refined with every refresh, for stimulus_ms or until the answer."""
         flips_s: list[float] = []
         render_s: list[float] = []
         answer = None
@@ -142,7 +142,7 @@ class PsychoPyPresenter(study.Presenter):
             for letter in trial.order
         ]
         if answer is None:
-            return study.TrialDone(shown=shown)  # none came: the session calls it a timeout
+            return study.TrialDone(shown=shown)  # no answer: the session records a timeout
         key, time_s = answer
         return study.TrialDone(
             response=self.keys[key],
@@ -157,10 +157,10 @@ class PsychoPyPresenter(study.Presenter):
         return timing.timeout_ms is not None and self.now() - onset_s > timing.timeout_ms / 1000
 
     def _answer(self) -> tuple[str, float] | None:
-        """The first answer among the keys pressed since the last call, with its time."""
+        """Returns the first answer among the keys pressed since the last call, with its time."""
         for key in self.event.getKeys(keyList=[*self.keys, "escape"]):
             if key == "escape":
-                raise KeyboardInterrupt  # ends the session in order; --resume goes on
+                raise KeyboardInterrupt  # ends the session properly; --resume continues it
             return key, self.now()
         return None
 
@@ -191,7 +191,7 @@ def main() -> None:
         )
         print(f"{outcome.participant_id}: {outcome.trials} trials in {outcome.folder}")
     except KeyboardInterrupt:
-        print("ended; --resume goes on")
+        print("ended; continue with --resume")
     finally:
         win.close()
 

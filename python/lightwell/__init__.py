@@ -1,4 +1,4 @@
-"""Lightwell from Python: globally lit pictures as numpy arrays, live frames for stimuli, and experiments.
+"""Lightwell for Python: globally lit pictures as numpy arrays, live frames for stimuli, and experiments.
 
 >>> import lightwell
 >>> world = lightwell.load("cornell")
@@ -6,8 +6,8 @@
 >>> picture.color.shape, picture.color.dtype
 ((64, 64, 3), dtype('float32'))
 
-Frames are right-handed, +Y up, in metres; pictures are linear Rec. 709 radiance, W/(m2 sr), rows from the top.
-What is wrong raises `InputError`, whose message says what, why, and what to do instead.
+Coordinate frames are right-handed, +Y up, in metres; pictures are linear Rec. 709 radiance, W/(m2 sr), top row
+first. Invalid input raises `InputError`, whose message names the problem, why it is one, and a remedy.
 """
 
 from . import study

@@ -1,4 +1,4 @@
-"""What the compiled part has; the package around it has the documentation."""
+"""Types of the compiled module; the package around it has the documentation."""
 
 from typing import Any, Callable, Mapping, Sequence
 
@@ -9,13 +9,13 @@ version: str
 git_hash: str
 
 class Camera:
-    """From where a picture is seen. Cameras look along -Z of their frame, +Y up, +X right."""
+    """A camera. It looks along -Z of its coordinate frame, +Y up, +X right."""
 
     name: str
     fov_deg: float
-    """Vertical field of view, degrees; of no meaning where it is orthographic."""
+    """Vertical field of view, degrees; unused by orthographic cameras."""
     world_from_camera: NDArray[np.float64]
-    """4 x 4, m; assign a whole matrix: what is got is a copy."""
+    """4 x 4, m. Reading returns a copy: assign a whole matrix to change it."""
 
     def __init__(self) -> None:
         """At the origin, looking along -Z."""
@@ -29,22 +29,22 @@ class Camera:
         aperture_radius_m: float = 0.0,
         focus_distance_m: float | None = None,
     ) -> Camera:
-        """At a position, looking at a target, +Y up.
+        """Returns a camera at a position, looking at a target, +Y up.
 
         Args:
-            position, target: x, y, z, m, in the world.
+            position, target: x, y, z in world coordinates, m.
             fov_deg: vertical field of view, 0.001 to 179 degrees.
-            aperture_radius_m: of a thin lens: what is not in focus is blurred; 0 = a pinhole.
-            focus_distance_m: along the view, to the plane in focus; None = to the target.
+            aperture_radius_m: radius of the thin lens, for depth of field; 0 = a pinhole.
+            focus_distance_m: distance of the plane in focus along the view; None = that of the target.
 
         Raises:
-            InputError: the two are one point, or a value is not in its range.
+            InputError: position and target coincide, or a value is out of range.
         """
 
     def copy(self) -> Camera: ...
     @property
     def position(self) -> tuple[float, float, float]:
-        """m, in the world."""
+        """World position, m."""
 
     @property
     def orthographic(self) -> bool: ...

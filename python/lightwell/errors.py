@@ -1,17 +1,17 @@
-"""What the program says where an input or a call is wrong."""
+"""Exceptions for invalid inputs and calls."""
 
 from __future__ import annotations
 
 
 class InputError(ValueError):
-    """The input or the call is wrong; nothing was done.
+    """An input or a call is invalid; nothing was done.
 
     ``str(error)`` is the program's message, ``problem (why it is one) suggestion``.
 
     Attributes:
-        problem: what is wrong, naming the offending thing.
-        why: why that is a problem; "" where the message has no such part.
-        suggestion: what to do instead; likewise.
+        problem: what is wrong, naming the offending file, key or value.
+        why: why that is a problem; "" if the message has no such part.
+        suggestion: what to do instead; "" if the message has no such part.
     """
 
     problem: str
@@ -26,10 +26,10 @@ class InputError(ValueError):
 
 
 class ScriptError(InputError):
-    """An experiment's script, journal or session is wrong.
+    """An experiment's script, journal or session is invalid.
 
     Attributes:
-        file, line, column: where; line and column count from 1, 0 = unknown.
+        file, line, column: place of the error; line and column count from 1, 0 = unknown.
     """
 
     file: str
@@ -51,7 +51,7 @@ class ScriptError(InputError):
 
 
 def _parts(message: str) -> tuple[str, str, str]:
-    """The parts of "problem (why) suggestion": why is the first balanced parenthesis behind a space."""
+    """Splits "problem (why) suggestion"; why is the first balanced parenthesis after a space."""
     begin = message.find(" (")
     depth = 0
     for at in range(begin + 1, len(message)) if begin >= 0 else ():

@@ -1,4 +1,4 @@
-"""Frames that follow each other, for loops that show them: stimuli, animations, head-tracked views."""
+"""Sequences of frames for display loops: stimuli, animations, head-tracked views."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class View:
-    """One picture of each frame: an eye, a wall.
+    """A camera and a picture size, such as an eye or a wall. A frame has one picture per view.
 
     Attributes:
-        camera: one of the scene's by name, or a `Camera`; None = the scene's first.
+        camera: name of a camera of the scene, or a `Camera`; None = the scene's first.
         size: (width, height), pixels.
-        partner: name of an earlier view that sees nearly the same, as the other eye does: light found for it is
-            reused; "" = none.
+        partner: name of an earlier view that sees nearly the same, such as the other eye; this view reuses its
+            light. "" = none.
     """
 
     camera: CameraLike = None
@@ -37,15 +37,16 @@ class View:
 
 @dataclass
 class Frame:
-    """What `FrameRenderer.next` made.
+    """A frame rendered by `FrameRenderer.next`.
 
     Attributes:
-        views: name -> layer -> array, as `Rendered.layers`; not copies.
-        paths: per pixel.
-        still_frames: since anything moved or changed, this one counted: so many were averaged, up to `reuse`.
-        seconds: that it took.
-        stages_s: of these, by stage.
-        options: what the method chose for itself.
+        views: view name -> layer name -> array, as in `Rendered.layers`; not copies.
+        paths: paths per pixel.
+        still_frames: number of frames since anything moved or changed, including this one; up to `reuse` of them
+            are averaged.
+        seconds: time that rendering took.
+        stages_s: seconds of each stage.
+        options: options that the method chose itself.
     """
 
     views: dict[str, dict[str, Floats]]
@@ -57,29 +58,29 @@ class Frame:
     _tone: dict[str, Any] = field(default_factory=dict, repr=False)
 
     def layer(self, name: str = "color", view: str = "") -> Floats:
-        """height x width x channels of one view; "" = the first."""
+        """Returns a layer of one view, height x width x channels; view "" = the first."""
         return self.views[view or next(iter(self.views))][name]
 
     @property
     def color(self) -> Floats:
-        """height x width x 3 of the first view: linear Rec. 709 radiance, W/(m2 sr)."""
+        """The first view, height x width x 3: linear Rec. 709 radiance, W/(m2 sr)."""
         return self.layer()
 
     def uint8(self, view: str = "") -> NDArray[np.uint8]:
-        """height x width x 3 for a display, with the settings `exposure` and `tone` that it was rendered with."""
+        """Returns height x width x 3 bytes for a display; uses the frame's settings `exposure` and `tone`."""
         return tone_map(self.layer("color", view), **self._tone)
 
     def signed(self, view: str = "") -> Floats:
-        """As PsychoPy's ``ImageStim`` takes arrays: height x width x 3 from -1 to 1, the *bottom* row first."""
+        """Returns an array for PsychoPy's ``ImageStim``: height x width x 3 in -1 to 1, *bottom* row first."""
         return np.ascontiguousarray(self.uint8(view)[::-1].astype(np.float32) / 127.5 - 1.0)
 
 
 class FrameRenderer:
-    """Renders a frame whenever it is asked for one, reusing the light of those before.
+    """Renders one frame per call of `next`, reusing the light of earlier frames.
 
     The same settings, cameras, paths and times in the same order give the same pixels, on any number of threads.
-    Calls from several threads wait for each other. For experiments give ``paths``; with ``budget_s`` the number
-    of paths follows the machine's speed.
+    Calls from several threads wait for each other. For experiments give ``paths``: with ``budget_s`` the number
+    of paths depends on the machine's speed.
 
     >>> frames = FrameRenderer("cornell", size=(64, 64), bounces=2)
     >>> frames.set("exposure", 1.0)
@@ -98,18 +99,18 @@ class FrameRenderer:
     ) -> None:
         """
         Args:
-            scene: a file or a built-in name as of `load`; "" = none yet (``set("scene", ...)``, or `show`).
+            scene: a file or a built-in name, as for `load`; "" = none yet: use ``set("scene", ...)`` or `show`.
             size: (width, height) of the view, pixels.
-            camera: from where.
-            threads: 0 = all.
-            **settings: as of `set`: ``method="slhb"``, ``bounces=3``, ``reuse=16``, ...
+            camera: name of a camera of the scene, or a `Camera`; None = the scene's first.
+            threads: number of threads; 0 = all.
+            **settings: keys of `set`: ``method="slhb"``, ``bounces=3``, ``reuse=16``, ...
 
         Raises:
-            InputError: the scene or a setting is wrong.
+            InputError: the scene or a setting is invalid.
         """
         self._core = _core.Frames(threads)
         self.views: dict[str, View] = {"": View(camera, _size(size))}
-        """The pictures of each frame by name, in order; may be replaced between frames."""
+        """The views of each frame by name, in order; may be replaced between frames."""
         for key, value in settings.items():
             self.set(key, value)
         if scene:
@@ -122,29 +123,29 @@ class FrameRenderer:
         return str(self._core.get("scene"))
 
     def set(self, key: str, value: Any) -> None:
-        """Sets what the viewer can set: a key of `keys()`, "scene", or an edit of the scene:
+        """Sets a setting of the viewer: a key of `keys()`, "scene", or an edit of the scene:
 
         ``object.NODE.position`` (m), ``object.NODE.rotation`` (x, y, z, w), ``object.NODE.scale``,
         ``light.N.intensity``, ``light.N.position``, ``material.NAME.base_color``, ``.roughness``, ``.metallic``,
         ``.emission``, ``environment.rotation`` (radians), ``environment.scale``.
 
         Raises:
-            InputError: there is no such key, or the value cannot be; nothing has changed then.
+            InputError: the key is unknown or the value is invalid; nothing has changed then.
         """
         self._core.set(key, value)
 
     def get(self, key: str) -> Any:
-        """The value of a key of `keys()`, or of "scene"."""
+        """Returns the value of a key of `keys()`, or of "scene"."""
         return self._core.get(key)
 
     @staticmethod
     def keys() -> list[dict[str, Any]]:
-        """Every setting: key, type, what it is (with its unit), words that it may be, low and high of numbers."""
+        """Returns a dict per setting: key, type, what (meaning, unit), words (allowed values), low, high."""
         return _core.setting_keys()
 
     @property
     def camera(self) -> Camera:
-        """Of the first view."""
+        """The camera of the first view."""
         return self._eye(next(iter(self.views.values())).camera)
 
     @camera.setter
@@ -152,18 +153,19 @@ class FrameRenderer:
         self.look_from(camera)
 
     def look_from(self, camera: CameraLike) -> None:
-        """Sets the camera of the first view: a `Camera`, one of the scene's by name, or None (its first)."""
+        """Sets the camera of the first view: a `Camera`, a name of the scene, or None (the scene's first)."""
         name, view = next(iter(self.views.items()))
         self.views[name] = View(camera, view.size, view.partner)
 
     @property
     def losses(self) -> dict[str, int]:
-        """What was skipped, clamped or missing so far -> how often."""
+        """Counts of everything skipped, clamped or missing so far, by name."""
         return self._core.losses
 
     def show(self, stimulus: Stimulus) -> None:
-        """Takes scene, settings and camera of a stimulus of an experiment (`study.Trial.stimuli`), all others as
-        they are by default; the next frame is the first of it.
+        """Applies scene, settings and camera of a stimulus of an experiment (`study.Trial.stimuli`).
+
+        All other settings return to their defaults. The next frame is the first of the stimulus.
 
         Raises:
             InputError: the renderer does not know a key or a value.
@@ -174,11 +176,11 @@ class FrameRenderer:
         self.look_from(wanted.camera)
 
     def along_path(self, seconds: float, duration_s: float) -> None:
-        """Puts the camera where the path of the stimulus (``camera: path:orbit``) has it, so long after its onset.
+        """Moves the camera along the path of the stimulus (``camera: path:orbit``).
 
         Args:
-            seconds: since the onset.
-            duration_s: that one round takes.
+            seconds: time since the onset of the stimulus.
+            duration_s: time of one round.
         """
         if self._path is not None and self._path.moves:
             width, height = next(iter(self.views.values())).size
@@ -188,12 +190,12 @@ class FrameRenderer:
         """Renders the next frame. Other threads of Python run meanwhile; Ctrl-C raises KeyboardInterrupt.
 
         Args:
-            paths: per pixel; None = what is expected to fit into `budget_s`.
-            budget_s: s that the frame should take; it is aimed at, not kept.
+            paths: paths per pixel; None = as many as are expected to fit into `budget_s`.
+            budget_s: target time of the frame, s; frames may take longer.
             time_s: time of the scene's animations, s.
 
         Raises:
-            InputError: there is no scene, no such camera, or a size cannot be.
+            InputError: there is no scene or no such camera, or a size is invalid.
         """
         names = list(self.views)
         orders = []
@@ -220,5 +222,5 @@ class FrameRenderer:
         if view.partner == "":
             return -1
         if view.partner not in names:
-            raise InputError(f"there is no view {view.partner!r} (a view is its partner's) choose one of: {names}")
+            raise InputError(f"there is no view {view.partner!r} (a view's partner) choose one of: {names}")
         return names.index(view.partner)

@@ -1,4 +1,4 @@
-"""Pictures: comparison, display, files. All arrays are rows from the top, pixels from the left, channels last."""
+"""Pictures: comparison, display, files. Arrays have the top row first, the left pixel first, and channels last."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ PictureLike = Union[Floats, Layers, "Rendered"]
 
 
 def layers_of(picture: PictureLike) -> dict[str, Floats]:
-    """Layers by name, as the program reads them: float32 without gaps. What is so already is not copied.
+    """Returns layers by name as contiguous float32 arrays. Arrays that are so already are not copied.
 
-    A bare array is the layer "color".
+    A bare array becomes the layer "color".
     """
     layers = getattr(picture, "layers", picture)
     if not isinstance(layers, Mapping):
@@ -33,17 +33,17 @@ def layers_of(picture: PictureLike) -> dict[str, Floats]:
 def compare(
     image: PictureLike, reference: PictureLike, metrics: Sequence[str] = (), *, layer: str = "color"
 ) -> dict[str, float]:
-    """How far a picture is from a reference, as ``lightwell compare`` measures it.
+    """Measures the difference between a picture and a reference, as ``lightwell compare`` does.
 
     Args:
-        image, reference: height x width x 3 of linear radiance, or layers by name, or what `World.render`
-        returned. If their sizes differ by a whole factor the larger one is averaged down. The metric "ztest"
-        needs the layer "variance" of both.
-        metrics: names from `metrics()`, such as "relmse", "flip"; () = those that the program measures by default.
-        layer: which one is compared.
+        image, reference: height x width x 3 of linear radiance, or layers by name, or a result of
+            `World.render`. If their sizes differ by a whole factor, the larger one is averaged down. The metric
+            "ztest" needs the layer "variance" of both.
+        metrics: names from `metrics()`, such as "relmse", "flip"; () = the program's default metrics.
+        layer: the layer to compare.
 
     Returns:
-        Value by name; some metrics have several values ("bias.r").
+        Values by metric name; some metrics have several values ("bias.r").
 
     Raises:
         InputError: there is no such metric or layer, or the sizes do not fit.
@@ -53,20 +53,20 @@ def compare(
 
 
 def metrics() -> dict[str, str]:
-    """All metrics of `compare` with what they mean."""
+    """Returns the metrics of `compare`: name -> description."""
     return _core.metrics()
 
 
 def flip_map(image: Floats, reference: Floats, *, hdr: bool = True, pixels_per_degree: float = 67.02064) -> Floats:
-    """FLIP of each pixel: the difference that an observer sees where two pictures alternate.
+    """Returns FLIP per pixel: the difference that an observer sees when two pictures alternate.
 
     Args:
-        image, reference: height x width x 3, linear Rec. 709; with ``hdr=False`` values in 0..1 are what is shown.
-        hdr: the largest error over exposures (Andersson et al. 2021), else Andersson et al. 2020.
-        pixels_per_degree: of visual angle; the default is that of the papers.
+        image, reference: height x width x 3, linear Rec. 709; with ``hdr=False`` the display shows values in 0..1.
+        hdr: True = the largest error over exposures (Andersson et al. 2021), False = Andersson et al. 2020.
+        pixels_per_degree: pixels per degree of visual angle; the default is that of the papers.
 
     Returns:
-        height x width, 0 (none) to 1.
+        height x width, 0 (no difference) to 1.
     """
     return _core.flip_map(
         np.ascontiguousarray(image, np.float32),
@@ -77,12 +77,12 @@ def flip_map(image: Floats, reference: Floats, *, hdr: bool = True, pixels_per_d
 
 
 def tone_map(color: PictureLike, *, exposure_ev: float = 0.0, curve: str = "srgb") -> NDArray[np.uint8]:
-    """From linear radiance to a display: bytes as ``lightwell render --png`` writes them.
+    """Converts linear radiance to display bytes, as ``lightwell render --png`` writes them.
 
     Args:
-        color: height x width x 3 float32, linear Rec. 709 radiance, W/(m2 sr); or what `World.render` returned.
-        exposure_ev: stops; radiance is multiplied by 2 to this power.
-        curve: "srgb" clips at 1, "filmic" rolls bright light off.
+        color: height x width x 3 float32, linear Rec. 709 radiance, W/(m2 sr); or a result of `World.render`.
+        exposure_ev: exposure in stops; radiance is multiplied by 2 to this power.
+        curve: "srgb" clips at 1, "filmic" compresses highlights.
 
     Returns:
         height x width x 3, sRGB-encoded.
@@ -94,15 +94,19 @@ def tone_map(color: PictureLike, *, exposure_ev: float = 0.0, curve: str = "srgb
 
 
 def read_picture(file: str | os.PathLike[str]) -> dict[str, Floats]:
-    """Layers of an OpenEXR, HDR, PNG or JPEG file by name, linear; those of 8 and 16 bits are sRGB-decoded."""
+    """Reads the layers of an OpenEXR, HDR, PNG or JPEG file by name, linear; 8 and 16 bits are sRGB-decoded."""
     return _core.read_picture(os.fspath(file))
 
 
 def write_exr(file: str | os.PathLike[str], picture: PictureLike, *, half: bool = False) -> None:
-    """Writes all layers; the file appears whole or not at all."""
+    """Writes all layers to an OpenEXR file, atomically: on failure no partial file is left.
+
+    Args:
+        half: write 16-bit floats.
+    """
     _core.write_exr(os.fspath(file), layers_of(picture), half)
 
 
 def write_png(file: str | os.PathLike[str], pixels: NDArray[np.uint8]) -> None:
-    """Writes height x width x 3 (or 4, with alpha) sRGB-encoded bytes; the file appears whole or not at all."""
+    """Writes height x width x 3 (or 4, with alpha) sRGB-encoded bytes, atomically: no partial file is left."""
     _core.write_png(os.fspath(file), np.ascontiguousarray(pixels, np.uint8))

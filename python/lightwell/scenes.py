@@ -1,4 +1,4 @@
-"""Scenes, cameras, and pictures of them by every light-transport method of the program."""
+"""Scenes, and pictures of them rendered by any light-transport method of the program."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ Point = Sequence[float]
 
 @dataclass(frozen=True)
 class Light:
-    """A punctual light; surfaces that emit are `World.emitting_triangles`, the sky is `World.has_environment`.
+    """A punctual light. For emissive surfaces see `World.emitting_triangles`, for the sky `World.has_environment`.
 
     Attributes:
         type: "point", "spot" or "directional".
-        position: m, in the world; of no meaning where it is directional.
-        direction: unit, the way the light travels; of no meaning where it is a point.
-        intensity: red, green, blue: W/sr, or of a directional light W/m2 across the beam.
-        cos_inner, cos_outer: of a spot: full inside the inner cone, nothing outside the outer one.
-        range_m: where it ends; 0 = nowhere.
+        position: in world coordinates, m; unused by directional lights.
+        direction: unit vector in which the light travels; unused by point lights.
+        intensity: red, green, blue: W/sr; for directional lights W/m2 perpendicular to the beam.
+        cos_inner, cos_outer: cosines of a spot's cones: full intensity inside the inner, none outside the outer.
+        range_m: distance at which the light ends; 0 = unlimited.
     """
 
     type: str
@@ -42,21 +42,21 @@ class Light:
 
 @dataclass
 class Rendered:
-    """A picture and how it came about.
+    """A rendered picture with statistics of its rendering.
 
     Attributes:
-        layers: name -> array, float32, height x width x 3, or height x width of "depth" and "alpha":
+        layers: name -> array, float32, height x width x 3; "depth" and "alpha" are height x width.
             "color" (linear Rec. 709 radiance, W/(m2 sr)) = "L0" (emitted) + "L1" (direct) + "L2" (indirect light),
-            "albedo", "normal", "depth" (m), "position" (m), "variance" (of the mean, per channel); "alpha" where
+            "albedo", "normal", "depth" (m), "position" (m), "variance" (of the mean, per channel); "alpha" only if
             the background is transparent. The memory is the renderer's own, not a copy, and may be written to.
-        seconds: for building structures and tracing paths.
-        paths: per pixel.
-        relmse: its own estimate of the relative error, from the variance; 0 = not known.
-        end: why it ended: "paths", "budget", "error_target".
-        options: what the method chose for itself, as options of the command line.
-        losses: what was skipped, clamped or missing -> how often.
-        stages_s: seconds by stage.
-        note: what is to be said about it; "" = nothing.
+        seconds: time for building structures and tracing paths.
+        paths: paths per pixel.
+        relmse: relative mean squared error, estimated from the variance; 0 = unknown.
+        end: why rendering ended: "paths", "budget", "error_target".
+        options: options that the method chose itself, as on the command line.
+        losses: counts of everything skipped, clamped or missing, by name.
+        stages_s: seconds of each stage.
+        note: a remark about the picture; "" = none.
     """
 
     layers: dict[str, Floats]
@@ -76,18 +76,18 @@ class Rendered:
 
     @property
     def variance(self) -> Floats:
-        """height x width x 3: of the mean that "color" is."""
+        """Variance of the mean stored in "color", height x width x 3."""
         return self.layers["variance"]
 
     def uint8(self, exposure_ev: float = 0.0, curve: str = "srgb") -> NDArray[np.uint8]:
-        """height x width x 3 for a display, see `tone_map`."""
+        """Returns height x width x 3 bytes for a display, see `tone_map`."""
         return tone_map(self.color, exposure_ev=exposure_ev, curve=curve)
 
 
 class World:
-    """A scene at one moment. Made by `load`; it never changes.
+    """A scene at one moment, loaded by `load`; immutable.
 
-    Rendering it from several threads of Python at once is allowed.
+    Several Python threads may render it at once.
     """
 
     def __init__(self, core: _core.World) -> None:
@@ -103,56 +103,56 @@ class World:
 
     @property
     def positions(self) -> Floats:
-        """vertices x 3, m, relative to `origin`; read-only, not a copy."""
+        """Vertex positions, vertices x 3, m, relative to `origin`; read-only, not a copy."""
         return self._core.positions
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
-        """triangles x 3 indices into `positions`; read-only, not a copy."""
+        """Indices into `positions`, triangles x 3; read-only, not a copy."""
         return self._core.triangles
 
     @property
     def origin(self) -> tuple[float, float, float]:
-        """m, in the world: where `positions` has its zero. (0, 0, 0) but for scenes far from it."""
+        """World position of the zero of `positions`, m; (0, 0, 0) unless the scene is far from the origin."""
         return tuple(self._core.origin)  # type: ignore[return-value]
 
     @property
     def bounds(self) -> NDArray[np.float64]:
-        """2 x 3: the lowest and the highest corner, m, in the world; zeros where there is nothing."""
+        """Lowest and highest corner in world coordinates, 2 x 3, m; zeros if the scene is empty."""
         return np.asarray(self._core.bounds)
 
     @property
     def cameras(self) -> list[Camera]:
-        """Those that the scene has."""
+        """Cameras of the scene."""
         return self._core.cameras
 
     def camera(self, name: str = "") -> Camera:
-        """The named camera; "" = the scene's first, or where it has none, one that sees all of it.
+        """Returns the named camera; "" = the scene's first, or, if it has none, one that frames the whole scene.
 
         Raises:
-            InputError: there is none of that name; the message lists the others.
+            InputError: no camera has this name; the message lists the names.
         """
         return self._core.camera(name)
 
     @property
     def lights(self) -> list[Light]:
-        """Punctual ones."""
+        """Punctual lights of the scene."""
         vectors = ("position", "direction", "intensity")
         return [Light(**{**light, **{k: tuple(light[k]) for k in vectors}}) for light in self._core.lights]
 
     @property
     def emitting_triangles(self) -> int:
-        """How many triangles are lamps."""
+        """Number of emissive triangles."""
         return self._core.emitting_triangles
 
     @property
     def has_environment(self) -> bool:
-        """Whether there is a sky."""
+        """True if the scene has a sky (environment map)."""
         return self._core.has_environment
 
     @property
     def losses(self) -> dict[str, int]:
-        """What was skipped, clamped or missing when it was loaded -> how often."""
+        """Counts of everything skipped, clamped or missing while loading, by name."""
         return self._core.losses
 
     def render(
@@ -172,30 +172,31 @@ class World:
         progress: Callable[[float, int, float], object] | None = None,
         **options: Any,
     ) -> Rendered:
-        """Renders a picture, the same bits as ``lightwell render`` with the same options.
+        """Renders a picture, bit-identical to ``lightwell render`` with the same options.
 
-        Other threads of Python run meanwhile. Ctrl-C stops it at its next pass and raises KeyboardInterrupt.
+        Other Python threads run meanwhile. Ctrl-C stops rendering after the current pass and raises
+        KeyboardInterrupt.
 
         Args:
-            method: one of `methods()`.
-            camera: one of the scene's by name, or a `Camera`; None = `World.camera()`.
+            method: a name from `methods()`.
+            camera: name of a camera of the scene, or a `Camera`; None = `World.camera()`.
             size: (width, height), pixels.
-            paths: per pixel, at most; None = 64, or no limit where there is a budget or an error target.
-            budget_s: seconds for structures and paths.
-            until_relmse: ends when the estimated relative error is below.
-            bounces: indirect ones; 0 = emitted and direct light only.
-            seed: another seed, another noise.
-            filter: of pixels: "box" or "tent".
-            denoise: "none", "atrous", "discontinuity", "wide", "oidn" or "oidn-high" (Open Image Denoise, where it
-                is installed); "variance" stays that of the unfiltered picture.
-            threads: 0 = all. The picture does not depend on it.
-            progress: called a few times a second with the share that is done (0..1), paths per pixel, and the
-                estimated relative error. What it raises ends the render.
-            **options: of the method, by the names of the command line's options (``lightwell render --help``)
-                with _ for -: ``axes=8``, ``schedule="stored"``, ``packed=True``, ``light_paths=64``, ...
+            paths: maximum of paths per pixel; None = 64, or no limit if a budget or an error target is given.
+            budget_s: seconds for building structures and tracing paths.
+            until_relmse: stop when the estimated relative mean squared error falls below this value.
+            bounces: maximum number of bounces; 0 = emitted and direct light only.
+            seed: random seed; another seed gives another noise.
+            filter: pixel filter, "box" or "tent".
+            denoise: "none", "atrous", "discontinuity", "wide", "oidn" or "oidn-high" (Open Image Denoise, if
+                installed); the layer "variance" remains that of the unfiltered picture.
+            threads: number of threads, 0 = all. The picture does not depend on it.
+            progress: called a few times a second with the completed fraction (0..1), paths per pixel, and the
+                estimated relative mean squared error. An exception that it raises ends the render.
+            **options: options of the method, named as on the command line (``lightwell render --help``) with
+                _ for -: ``axes=8``, ``schedule="stored"``, ``packed=True``, ``light_paths=64``, ...
 
         Raises:
-            InputError: the method, the camera or a value is wrong.
+            InputError: the method, the camera or a value is invalid.
             KeyboardInterrupt: on Ctrl-C.
         """
         width, height = _size(size)
@@ -220,7 +221,7 @@ def _size(size: tuple[int, int]) -> tuple[int, int]:
     try:
         width, height = size
     except (TypeError, ValueError):
-        raise InputError(f"size = {size!r} (it is two numbers) give (width, height)") from None
+        raise InputError(f"size = {size!r} (a size is two numbers) give (width, height)") from None
     return width, height
 
 
@@ -233,20 +234,20 @@ def load(
     environment_scale: float = 1.0,
     background: str = "",
 ) -> World:
-    """Reads a scene. One without any light gets a white sky; such decisions are said on stderr.
+    """Loads a scene. A scene without any light gets a white sky; a note on stderr reports such decisions.
 
     Args:
-        scene: a glTF, YAML, OBJ, PLY, FBX, ... file, a folder of OBJ or PLY frames, or the name of a scene that
-        the program makes: "atrium", "cornell", "mirror", "avatar".
-        time_s: moment of its animation, s; None = at rest.
-        environment: an HDR or EXR file, a map of the sky in place of the scene's.
-        environment_rotate_deg: about +Y, counter-clockwise from above.
-        environment_scale: factor on its radiance.
-        background: what cameras see past all surfaces: "map", "transparent" or "R,G,B" (radiance); "" = as the
-        scene says.
+        scene: a glTF, YAML, OBJ, PLY, FBX, ... file, a folder of OBJ or PLY frames, or the name of a built-in
+            scene: "atrium", "cornell", "mirror", "avatar".
+        time_s: time in the scene's animation, s; None = at rest.
+        environment: an HDR or EXR file, an environment map that replaces the scene's.
+        environment_rotate_deg: rotation of the environment map about +Y, counter-clockwise seen from above.
+        environment_scale: factor on the radiance of the environment map.
+        background: what cameras see where there is no surface: "map", "transparent" or "R,G,B" (radiance);
+            "" = as the scene specifies.
 
     Raises:
-        InputError: it is no scene, or a value is wrong.
+        InputError: the scene cannot be read, or a value is invalid.
     """
     core = _core.load(
         os.fspath(scene), time_s, os.fspath(environment), environment_rotate_deg, environment_scale, background
@@ -255,5 +256,5 @@ def load(
 
 
 def methods() -> dict[str, str]:
-    """All light-transport methods with what they do."""
+    """Returns the light-transport methods: name -> description."""
     return _core.methods()

@@ -1,7 +1,6 @@
 #pragma once
-// What the records of an experiment say, as numbers with their uncertainty. Intervals are of 95 % unless the
-// settings say otherwise. Where there are too few data for a number it is missing, and a text says why: NaN and
-// `refused`.
+// Results of an experiment with their uncertainty. Intervals are 95 % confidence intervals unless the settings
+// differ. If there are too few data for a number it is NaN, and `refused` states why.
 
 #include "study/stats/agreement.h"
 #include "study/stats/binomial.h"
@@ -16,7 +15,7 @@ namespace study {
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct AnalysisSettings {
-    std::vector<std::string> exclude; ///< participants that are left out, by id
+    std::vector<std::string> exclude; ///< ids of excluded participants
     int replicates = 1000;            ///< of bootstraps over observers
     double confidence = 0.95;
     std::uint64_t seed = 1;
@@ -29,7 +28,7 @@ struct Uncertain {
     int n = 0; ///< observers
 };
 
-/// What was left out of the analysis of a participant, or is in it though it may not be fit.
+/// Data of a participant excluded from the analysis, or included although questionable.
 struct Exclusion {
     std::string participant, what, why;
     int trials = 0;
@@ -40,9 +39,9 @@ struct ObserverSummary {
     bool is_excluded = false, is_complete = true, is_simulated = false;
     int sessions = 0, counted = 0, practice = 0, invalid = 0, superseded = 0, unanswered = 0;
     int catches = 0, catches_right = 0;
-    int choices = 0, chose_first = 0; ///< of main trials whose answers are first or second
+    int choices = 0, chose_first = 0; ///< main trials whose answers are first or second
     double bias_p = kUnknown;         ///< exact test of "first as often as second"
-    int triads = 0, most_triads = 0;  ///< circular ones, over all cells whose pairs are complete
+    int triads = 0, most_triads = 0;  ///< circular triads over all cells with all pairs, and their maximum
     double zeta = kUnknown, triads_p = kUnknown;
     std::map<std::string, double> outlier_score; ///< by block of pairs
     double reaction_median_ms = kUnknown;
@@ -51,18 +50,18 @@ struct ObserverSummary {
 struct ScaledItem {
     std::string name;
     Uncertain score;
-    Uncertain render_ms; ///< mean time to render a frame of it, over observers; n = observers
+    Uncertain render_ms; ///< mean rendering time per frame, over observers; n = observers
 };
 struct ItemDifference {
     int a = 0, b = 0; ///< items; value = score of a - score of b
     Uncertain value;
-    double p = kUnknown, p_holm = kUnknown; ///< of "no difference"; Holm 1979 over all pairs of the group
+    double p = kUnknown, p_holm = kUnknown; ///< for "no difference"; Holm 1979 over all pairs of the group
 };
-/// The cheapest item that does not differ significantly from the best there is to compare with.
+/// The cheapest item that does not differ significantly from the reference or the best item.
 struct Cheapest {
     int item = -1, against = -1;
-    bool is_reference = false; ///< `against` is the reference; else the best of those judged
-    Uncertain difference;      ///< of the item from it
+    bool is_reference = false; ///< `against` is the reference; else the best judged item
+    Uncertain difference;      ///< between the item and `against`
     double p_holm = kUnknown;
 };
 struct NamedValue {
@@ -70,14 +69,14 @@ struct NamedValue {
     double value = kUnknown;
 };
 
-/// Scores of items on one scale, of the trials that share a level ("scene=arches") or of all.
+/// Scores of items on one scale, from the trials that share a level ("scene=arches") or from all.
 struct ScaleResult {
     std::string group, unit; ///< unit: JOD, rating, ln(magnitude), level, utility
     int observers = 0, observations = 0;
     std::vector<ScaledItem> items;
     std::vector<ItemDifference> differences; ///< a < b
-    std::vector<std::vector<double>> wins;   ///< of pairs: how often the row was chosen over the column
-    std::vector<std::vector<int>> spread;    ///< of ratings: how often each value was given, by item
+    std::vector<std::vector<double>> wins;   ///< for pairs: how often the row was chosen over the column
+    std::vector<std::vector<int>> spread;    ///< for ratings: how often each value was given, by item
     std::vector<NamedValue> facts;           ///< goodness of fit, agreement, order effect
     std::optional<Cheapest> cheapest;
     std::vector<std::string> notes;
@@ -86,13 +85,13 @@ struct ScaleResult {
 
 struct AgreementResult {
     std::string cell;
-    int observers = 0, left_out = 0; ///< left out: who did not judge every pair
+    int observers = 0, left_out = 0; ///< left out: observers who did not judge every pair
     std::optional<KendallU> kendall;
     std::optional<EqualityTest> equality;
     std::string refused;
 };
 
-/// Estimates of one threshold by one method, at one share of correct answers.
+/// Estimate of one threshold by one method, at one proportion correct.
 struct ThresholdEstimate {
     std::string method; ///< mean of reversals, maximum likelihood, QUEST+ posterior
     double proportion = kUnknown;
@@ -107,7 +106,7 @@ struct ThresholdRun {
     std::vector<int> reversals; ///< trials, from 0
     std::vector<ThresholdEstimate> estimates;
 };
-/// Of one procedure and method over observers: geometric on logarithmic scales.
+/// Mean threshold of one procedure and method over observers: geometric on logarithmic scales.
 struct ThresholdSummary {
     std::string procedure, cell, method;
     double proportion = kUnknown;
@@ -117,19 +116,19 @@ struct CurveResult {
     std::string cell;
     int observers = 0;
     std::vector<LevelCount> counts;
-    PsychometricFit fit; ///< of all trials together
+    PsychometricFit fit; ///< of all trials pooled
     Uncertain threshold; ///< the level at `proportion`
     double proportion = kUnknown;
     std::string refused;
 };
 
-/// Right answers of one condition in tasks that have them.
+/// Correct answers of one condition, for tasks that have them.
 struct DetectionResult {
     std::string condition;
     int observers = 0;
     double correct = 0, trials = 0;
-    Interval interval;        ///< Wilson, of all trials together
-    double dprime = kUnknown; ///< of all trials together, log-linear correction
+    Interval interval;        ///< Wilson, all trials pooled
+    double dprime = kUnknown; ///< all trials pooled, log-linear correction
     Uncertain observer_dprime;
     std::string model;
 };
@@ -175,7 +174,7 @@ struct TimingResult {
     std::vector<ReactionResult> reactions;
 };
 
-/// How one trial followed another, summed over participants.
+/// Transitions between neighbouring trials, summed over participants.
 struct TransitionResult {
     std::string block, subject;
     std::vector<std::string> names;
@@ -194,11 +193,10 @@ struct Analysis {
     std::vector<QuestionnaireChange> changes;
     TimingResult timing;
     std::vector<TransitionResult> transitions;
-    std::vector<std::string> cautions; ///< what a reader has to know before believing any of it
+    std::vector<std::string> cautions; ///< warnings about the validity of the results
 };
 
-/// @throws ScriptError as trial_rows and answered_questionnaires, and for a participant to exclude who is not
-/// there
+/// @throws ScriptError as trial_rows and answered_questionnaires, and if a participant to exclude does not exist
 Analysis analyze(Script const& script, std::vector<RecordedSession> const& sessions,
                  AnalysisSettings const& settings = {});
 

@@ -56,13 +56,13 @@ void add_cautions(Script const& script, Analysis& a)
         c.push_back(fmt::format("{} of {} sessions were answered by model observers, not by people", a.simulated,
                                 a.sessions));
     if (a.complete < a.sessions)
-        c.push_back(fmt::format("{} of {} sessions are not complete: what there is of them is analysed",
+        c.push_back(fmt::format("{} of {} sessions are not complete: their existing trials are analysed",
                                 a.sessions - a.complete, a.sessions));
     int const used = int(std::count_if(a.observers.begin(), a.observers.end(),
                                        [](ObserverSummary const& o) { return !o.is_excluded; }));
     if (used == 0) c.push_back("nobody is left to analyse");
     if (used == 1)
-        c.push_back("one observer: intervals say something about this person only, where there are any");
+        c.push_back("one observer: intervals, if any, apply to this person only");
     if (used > 1 && used < 8)
         c.push_back(fmt::format("{} observers: intervals over observers are rough with fewer than about 8", used));
     if (used < script.participants.count)

@@ -37,7 +37,7 @@ void add_runs(Script const& script, Block const& b, std::vector<ObserverTrials> 
     }
 }
 
-/// Mean over observers of the estimates of each kind; runs of one observer are averaged first.
+/// Means over observers of the estimates of each kind; runs of one observer are averaged first.
 void add_summaries(Compare const& c, AnalysisSettings const& settings, BlockResult& result)
 {
     std::map<std::tuple<std::string, std::string, std::string, double>, std::map<std::string, std::vector<double>>>
@@ -45,7 +45,7 @@ void add_summaries(Compare const& c, AnalysisSettings const& settings, BlockResu
     for (ThresholdRun const& run : result.runs)
         for (ThresholdEstimate const& e : run.estimates) {
             auto& mine = all[{run.cell, run.procedure, e.method, e.proportion}][run.participant];
-            // A fit that ran away from all levels shown is no estimate.
+            // A fit far from all levels shown is not an estimate.
             bool const is_near =
                 e.level.value >= std::min(c.low, c.high) && e.level.value <= std::max(c.low, c.high);
             if (is_near) mine.push_back(to_scale(c.scale, e.level.value));
@@ -73,7 +73,7 @@ std::vector<LevelCount> counts_of(std::vector<TrialRow> const& rows)
     return count_levels(levels, correct);
 }
 
-/// One function through the trials of everybody in a cell, of all procedures.
+/// One function through the trials of all observers and procedures in a cell.
 CurveResult curve_of(Block const& b, std::string const& cell, std::vector<std::vector<TrialRow>> const& people,
                      AnalysisSettings const& settings)
 {
@@ -95,7 +95,7 @@ CurveResult curve_of(Block const& b, std::string const& cell, std::vector<std::v
             all.insert(all.end(), counts[std::size_t(o)].begin(), counts[std::size_t(o)].end());
         auto const fit = fit_psychometric(all, s);
         double const at = level_at(fit.shape, fit.parameters, r.proportion);
-        if (!std::isfinite(at)) throw std::invalid_argument("the function never has this share");
+        if (!std::isfinite(at)) throw std::invalid_argument("the function never reaches this proportion");
         return std::vector<double>{to_scale(b.compare->scale, at)};
     };
     try {
@@ -123,7 +123,7 @@ struct Tally {
     double correct = 0, trials = 0, hits = 0, signals = 0, false_alarms = 0, noises = 0;
 };
 
-/// The rates that a task's d' wants. Hits: "yes" to something, "different" to different ones, "first" of ABX where
+/// Rates for a task's d'. Hits: "yes" with a signal, "different" for different stimuli, "first" in ABX if
 /// X is the first.
 void count(Tally& t, Task task, TrialRow const& row)
 {
@@ -181,7 +181,7 @@ char const* model_of(Task task)
     }
 }
 
-/// The level that is compared, or that was shown of what is varied; and the cell.
+/// The compared level, or the shown level of the varied setting; and the cell.
 std::string condition_of(Script const& script, Block const& b, std::vector<Group> const& groups,
                          TrialRow const& row)
 {

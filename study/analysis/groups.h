@@ -1,5 +1,5 @@
 #pragma once
-// Which trials belong together.
+// Grouping of trials for analysis.
 
 #include "study/analysis/analysis.h"
 
@@ -23,37 +23,38 @@ struct Group {
         return factor < 0 || shared_level(*row.block, row.step->trial, factor) == level;
     }
 };
-/// All; then each level of each factor that varies between the counted trials of the block, but for the factors
-/// given.
+/// The group of all trials, then one for each level of each factor that varies between the counted trials of the
+/// block, except the given factors.
 std::vector<Group> groups_of(Script const& script, std::vector<ObserverTrials> const& observers, int block,
                              std::vector<int> const& items_of);
 
-/// Levels of the factors that vary between trials of a block, as text: "scene=arches display=hmd"; "all" where
-/// none does. @param ignored factors
+/// Levels of the factors that vary between trials of a block, as text: "scene=arches display=hmd"; "all" if none
+/// varies. @param ignored factors
 std::string cell_name(Script const& script, std::vector<Group> const& groups, TrialRow const& row);
 
-/// The counted trials of a block, observer by observer, empty lists included.
+/// The counted trials of a block by observer, including empty lists.
 std::vector<ObserverTrials> counted(std::vector<ObserverTrials> const& observers, int block,
                                     Group const& group = {});
 
-/// The factors whose levels are the items of a rating: those of the reference that the block crosses, or else the
-/// last one that it crosses.
+/// The factors whose levels are the items of a rating: those of the reference that the block crosses, otherwise
+/// the last one that it crosses.
 std::vector<int> rated_factors(Script const& script, Block const& block);
 
-/// Mean time to render a frame of the stimuli with that label, observer by observer, frames weighted alike.
-/// @param item of a stimulus: its index; -1 = none of them
+/// Mean rendering time per frame of each item's stimuli, by observer; all frames have equal weight.
+/// @param item  index of a stimulus's item; -1 = none
 std::vector<Uncertain> render_times(std::vector<ObserverTrials> const& observers, int items, double confidence,
                                     std::function<int(TrialRow const&, Stimulus const&)> const& item);
 
-/// Mean and Student's interval over observers; values that are NaN are nobody's. One observer has no interval.
+/// Mean and Student's interval over observers; NaN are ignored. One observer has no interval.
 Uncertain mean_of(std::vector<double> const& values, double confidence);
-/// Student's two-sided test of "the mean is 0"; NaN of fewer than two. No spread: 0, or 1 where the mean is 0.
+/// p-value of Student's two-sided test of "the mean is 0"; NaN for fewer than two values. Without spread: 0, or 1
+/// if the mean is 0.
 double mean_p(std::vector<double> const& values);
-/// p values by Holm's step-down procedure (1979, Scand. J. Stat. 6:65). NaN stay out of it.
+/// p-values adjusted by Holm's step-down procedure (1979, Scand. J. Stat. 6:65). NaN are ignored.
 std::vector<double> holm(std::vector<double> const& p);
-/// Fills in p_holm of all differences, and finds the cheapest item that does not differ from the reference, or
-/// from the best one.
-/// @param reference item; -1 = it was not judged
+/// Fills in p_holm of all differences, and finds the cheapest item that does not differ significantly from the
+/// reference, or from the best one.
+/// @param reference item; -1 = not judged
 void judge_differences(ScaleResult& scale, int reference, double level);
 
 void add_fact(ScaleResult& scale, std::string_view name, double value);

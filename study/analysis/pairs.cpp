@@ -11,7 +11,7 @@
 namespace study {
 namespace {
 
-/// The levels that a block pairs, as items.
+/// The levels paired by a block, as items.
 std::vector<int> paired_levels(Block const& block)
 {
     std::vector<int> levels;
@@ -23,7 +23,7 @@ std::vector<int> paired_levels(Block const& block)
 
 struct Judgement {
     int first = -1, second = -1; ///< items
-    double first_wins = 0;       ///< 1, 0, or 1/2 of ties
+    double first_wins = 0;       ///< 1, 0, or 1/2 for ties
     bool is_tie = false;
 };
 
@@ -75,7 +75,7 @@ void add_fit(ScaleResult& r, std::string const& name, PairScale const& fit)
     if (!fit.note.empty()) add_note(r, name + ": " + fit.note);
 }
 
-/// The preference for what is first, by the likelihood ratio against a fit without it.
+/// The preference for the first stimulus, tested by the likelihood ratio against a fit without it.
 void add_order_effect(ScaleResult& r, std::vector<PairCount> const& pairs, int items, PairScale const& without)
 {
     PairSettings s;
@@ -92,7 +92,7 @@ void add_order_effect(ScaleResult& r, std::vector<PairCount> const& pairs, int i
     add_fact(r, "largest change of a score by it JOD", moved);
 }
 
-/// Scores of the bootstrap's replicates as errors of differences: observers, not trials, were drawn.
+/// Errors of differences from the scores of the bootstrap's replicates (observers, not trials, were resampled).
 void add_differences(ScaleResult& r, PairScale const& fit, std::optional<Bootstrap> const& boot, double confidence)
 {
     double const jod = jod_per_unit(fit.model);
@@ -109,7 +109,7 @@ void add_differences(ScaleResult& r, PairScale const& fit, std::optional<Bootstr
                     squares += v * v;
                 }
                 double const n = double(boot->replicates.size()), m = sum / n;
-                // Widened as the percentiles of stats are: a bootstrap of n observers is too narrow by (n-1)/n.
+                // Widened like the percentiles in stats: a bootstrap of n observers is too narrow by (n-1)/n.
                 error = std::sqrt(std::max(0.0, squares / n - m * m) * r.observers / std::max(1, r.observers - 1));
             }
             double const df = boot ? double(r.observers - 1) : 1e6;
@@ -193,7 +193,7 @@ ScaleResult scale_of_group(Script const& script, std::vector<ObserverTrials> con
     return r;
 }
 
-/// The first judgement of each pair by each observer in one cell: [i][j] = 1 where i was chosen. Nothing where a
+/// The first judgement of each pair by each observer in one cell: [i][j] = 1 if i was chosen. Empty if a
 /// pair is missing or tied.
 std::optional<Matrix> complete_choices(Items const& items, std::vector<TrialRow> const& rows)
 {
@@ -248,7 +248,7 @@ void add_consistency(Items const& items, Cells const& cells, BlockResult& result
             s.most_triads += t.maximum;
         }
         try {
-            if (a.observers == 0) throw std::invalid_argument("nobody judged every pair");
+            if (a.observers == 0) throw std::invalid_argument("no observer judged every pair");
             a.equality = equality_test(sum);
             a.kendall = kendall_u(sum);
         } catch (std::invalid_argument const& e) {

@@ -27,19 +27,19 @@ ResultTable agreement(Analysis const& a)
     ResultTable t{
         "agreement",
         "Agreement of observers",
-        "Kendall's u: 1 where all agree; p of choices by coin. D: test of all items being equally good. The "
+        "Kendall's u: 1 if all agree; p under random choices. D: test of all items being equally good. The "
         "first judgement of each pair counts.",
         false,
         {}};
     t.table.columns = {{"block", "Block"},
                        {"cell", "Condition"},
-                       {"observers", "Who judged every pair"},
-                       {"left_out", "Who did not"},
+                       {"observers", "Observers who judged every pair"},
+                       {"left_out", "Observers who did not"},
                        {"u", "Kendall's coefficient of agreement"},
-                       {"u_least", "Least it can be"},
+                       {"u_least", "Smallest possible value"},
                        {"chi_square", "Its chi-square, corrected"},
                        {"df", "Degrees of freedom"},
-                       {"p_u", "Probability of that u or more by coin"},
+                       {"p_u", "Probability of that u or more under random choices"},
                        {"D", "Equality test"},
                        {"D_df", "Degrees of freedom"},
                        {"p_D", "Probability of that D or more"}};
@@ -67,16 +67,16 @@ ResultTable thresholds(Analysis const& a)
     ResultTable t{
         "thresholds",
         "Thresholds",
-        "Means over observers on the scale of the levels, Student's interval. Methods stand for different "
-        "shares of right answers: compare those of one share. Estimates outside of the range shown are left "
+        "Means over observers on the scale of the levels, Student's interval. Methods estimate different "
+        "proportions correct: compare only equal ones. Estimates outside the range shown are left "
         "out.",
         false,
         {}};
     t.table.columns = with_interval({{"block", "Block"},
                                      {"cell", "Condition"},
                                      {"procedure", "Procedure"},
-                                     {"method", "How it was estimated"},
-                                     {"share", "Share of right answers at the threshold"},
+                                     {"method", "Method of estimation"},
+                                     {"share", "Proportion correct at the threshold"},
                                      {"level", "Threshold"}},
                                     {{"observers", "Observers with an estimate"}});
     for (BlockResult const& b : a.blocks)
@@ -92,7 +92,7 @@ ResultTable thresholds(Analysis const& a)
 
 ResultTable runs(Analysis const& a)
 {
-    ResultTable t{"runs", "Thresholds of single runs", "Intervals of one run, by its own trials.", true, {}};
+    ResultTable t{"runs", "Thresholds of single runs", "Intervals of single runs, from their trials.", true, {}};
     t.table.columns = with_interval({{"block", "Block"},
                                      {"participant", "Participant"},
                                      {"cell", "Condition"},
@@ -100,10 +100,10 @@ ResultTable runs(Analysis const& a)
                                      {"run", "Run, from 1"},
                                      {"trials", "Trials"},
                                      {"reversals", "Reversals of a staircase"},
-                                     {"method", "How it was estimated"},
-                                     {"share", "Share of right answers at the threshold"},
+                                     {"method", "Method of estimation"},
+                                     {"share", "Proportion correct at the threshold"},
                                      {"level", "Threshold"}},
-                                    {{"remark", "What to think of it"}});
+                                    {{"remark", "Remark on its reliability"}});
     for (BlockResult const& b : a.blocks)
         for (ThresholdRun const& r : b.runs)
             for (ThresholdEstimate const& e : r.estimates) {
@@ -127,9 +127,9 @@ ResultTable curves(Analysis const& a)
 {
     ResultTable t{
         "curves",
-        "Psychometric functions of all observers together",
+        "Psychometric functions of all observers pooled",
         "Maximum likelihood with a lapse rate of at most 6 %; interval of the threshold by a bootstrap over "
-        "observers. Scale: in decades where levels are logarithmic.",
+        "observers. Scale: in decades if levels are logarithmic.",
         false,
         {}};
     t.table.columns =
@@ -137,13 +137,13 @@ ResultTable curves(Analysis const& a)
                        {"cell", "Condition"},
                        {"observers", "Observers"},
                        {"trials", "Trials"},
-                       {"share", "Share of right answers at the threshold"},
+                       {"share", "Proportion correct at the threshold"},
                        {"threshold", "Level"}},
                       {{"scale", "Spread of the function"},
                        {"lapse", "Lapse rate"},
                        {"deviance", "Deviance"},
                        {"df", "Degrees of freedom"},
-                       {"p_fit", "Probability of that deviance or more; rough with few trials a level"}});
+                       {"p_fit", "Probability of that deviance or more; inaccurate with few trials per level"}});
     for (BlockResult const& b : a.blocks)
         for (CurveResult const& c : b.curves) {
             double trials = 0;
@@ -163,20 +163,20 @@ ResultTable curves(Analysis const& a)
 ResultTable detection(Analysis const& a)
 {
     ResultTable t{"detection",
-                  "Right answers and d'",
-                  "Shares with Wilson's interval of all trials; d' with the log-linear correction: of all trials "
-                  "together, and the mean over observers with Student's interval.",
+                  "Correct answers and d'",
+                  "Proportions with Wilson's interval of all trials; d' with log-linear correction: of all trials "
+                  "pooled, and the mean over observers with Student's interval.",
                   false,
                   {}};
     t.table.columns = {{"block", "Block"},
                        {"condition", "Condition"},
                        {"observers", "Observers"},
-                       {"right", "Right answers"},
+                       {"right", "Correct answers"},
                        {"trials", "Trials"},
-                       {"share", "Share of right answers"},
+                       {"share", "Proportion correct"},
                        {"share_low", "Lower end"},
                        {"share_high", "Upper end"},
-                       {"dprime_all", "d' of all trials together"},
+                       {"dprime_all", "d' of all trials pooled"},
                        {"dprime", "d', mean over observers"},
                        {"low", "Lower end"},
                        {"high", "Upper end"},
@@ -198,7 +198,7 @@ ResultTable questionnaires(Analysis const& a)
     ResultTable t{"questionnaires", "Questionnaires", "Mean over answers, Student's interval.", false, {}};
     t.table.columns = with_interval({{"questionnaire", "Questionnaire"},
                                      {"score", "Score"},
-                                     {"when", "How often it had come, or the condition in which it came"},
+                                     {"when", "Number of the occasion, or the condition in which it was answered"},
                                      {"n", "Answers"},
                                      {"mean", "Mean"}},
                                     {{"sd", "Standard deviation"}});
@@ -224,7 +224,7 @@ ResultTable changes(Analysis const& a)
                                      {"to", "Time"},
                                      {"n", "Participants who answered both"},
                                      {"change", "Mean change"}},
-                                    {{"p", "Probability of such a change by chance"}});
+                                    {{"p", "p-value of the change"}});
     for (QuestionnaireChange const& q : a.changes) {
         std::vector<std::string> row{cell(q.questionnaire), cell(q.score), cell(q.from), cell(q.to),
                                      cell(q.change.n)};
@@ -237,7 +237,7 @@ ResultTable changes(Analysis const& a)
 
 ResultTable timing(Analysis const& a)
 {
-    ResultTable t{"timing", "Timing", "Of all trials that were carried through, also invalid ones.", false, {}};
+    ResultTable t{"timing", "Timing", "All trials that ran to their end, including invalid ones.", false, {}};
     t.table.columns = {{"number", "Which"}, {"value", "Value"}};
     TimingResult const& r = a.timing;
     auto const row = [&](std::string const& name, double value) { t.table.rows.push_back({name, cell(value)}); };
@@ -275,7 +275,7 @@ ResultTable calibrations(Analysis const& a)
     t.table.columns = {{"participant", "Participant"},
                        {"part", "Part of the session"},
                        {"frames", "Frames timed"},
-                       {"nominal_hz", "Refresh rate that the display names", "Hz"},
+                       {"nominal_hz", "Refresh rate reported by the display", "Hz"},
                        {"period_ms", "Mean period", "ms"},
                        {"sd_ms", "Standard deviation of the period", "ms"},
                        {"passed", "Whether it passed"},
@@ -306,11 +306,11 @@ ResultTable reactions(Analysis const& a)
 
 ResultTable transitions(Analysis const& a)
 {
-    ResultTable t{"transitions", "Order: how often a trial differs from the one before", "", false, {}};
+    ResultTable t{"transitions", "Order: how often a trial differs from the previous one", "", false, {}};
     t.table.columns = {{"block", "Block"},
-                       {"of", "Of what"},
-                       {"switched", "Share of neighbours that differ"},
-                       {"by_chance", "What it would be on average over all orders of the same trials"}};
+                       {"of", "Factor, answer or procedure"},
+                       {"switched", "Proportion of neighbours that differ"},
+                       {"by_chance", "Its mean over all orders of the same trials"}};
     for (TransitionResult const& r : a.transitions)
         t.table.rows.push_back({cell(r.block), cell(r.subject), cell(r.switched), cell(r.by_chance)});
     return t;

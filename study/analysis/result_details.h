@@ -3,7 +3,7 @@
 
 namespace study {
 
-/// Agreement, thresholds, detection, questionnaires, timing; empty ones too.
+/// Tables of agreement, thresholds, detection, questionnaires and timing, including empty ones.
 std::vector<ResultTable> detail_tables(Analysis const& analysis);
 
 } // namespace study

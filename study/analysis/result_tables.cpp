@@ -20,7 +20,7 @@ void add_interval(std::vector<Column>& columns, std::string const& prefix, doubl
     columns.push_back({prefix + "high", "Upper end"});
 }
 
-/// What is 0 but for rounding is 0. @param scale of the numbers beside it
+/// Sets values that are 0 within rounding to 0. @param scale of the neighbouring numbers
 void add(std::vector<std::string>& row, Uncertain const& u, double scale = 0)
 {
     for (double const v : {u.value, u.interval.low, u.interval.high}) scale = std::fmax(scale, std::abs(v));
@@ -37,7 +37,7 @@ double largest_score(ScaleResult const& s)
 
 ResultTable exclusions(Analysis const& a)
 {
-    ResultTable t{"exclusions", "Left out, or to be looked at", "", false, {}};
+    ResultTable t{"exclusions", "Excluded, or to be inspected", "", false, {}};
     t.table.columns = {{"participant", "Participant"},
                        {"what", "left out, kept, or look at"},
                        {"why", "Reason"},
@@ -52,24 +52,24 @@ ResultTable observers(Analysis const& a)
     ResultTable t{
         "observers",
         "Observers",
-        "T: circular triads (a over b over c over a) of most that could be; zeta: 1 is consistent. Outlier: "
+        "T: circular triads (a over b over c over a) and their maximum; zeta: 1 is consistent. Outlier: "
         "interquartile ranges below the lower quartile of agreement with all others (pwcmp); near 1.5 and "
-        "above is worth a look. Bias: exact test of first as often as second.",
+        "above should be inspected. Bias: exact test of first as often as second.",
         false,
         {}};
     t.table.columns = {{"participant", "Participant"},
-                       {"used", "Whether in the analysis"},
-                       {"complete", "Whether all sessions are"},
+                       {"used", "Whether the participant is analysed"},
+                       {"complete", "Whether all sessions are complete"},
                        {"trials", "Trials that count"},
-                       {"invalid", "Invalid trials, not repeated with success"},
+                       {"invalid", "Invalid trials without a valid repetition"},
                        {"repeated", "Trials that were repeated later"},
                        {"unanswered", "Trials without an answer"},
-                       {"catch_right", "Catch trials right"},
+                       {"catch_right", "Catch trials answered correctly"},
                        {"catches", "Catch trials"},
-                       {"chose_first", "Share of answers first (or left)"},
-                       {"p_bias", "Probability of such a share or a more extreme one without bias"},
+                       {"chose_first", "Proportion of answers first (or left)"},
+                       {"p_bias", "Probability of this or a more extreme proportion without bias"},
                        {"T", "Circular triads"},
-                       {"T_most", "Most there can be"},
+                       {"T_most", "Largest possible number"},
                        {"zeta", "Consistency"},
                        {"outlier", "Largest outlier score over blocks"},
                        {"rt_median_ms", "Median reaction time", "ms"}};
@@ -99,12 +99,12 @@ ResultTable scores(Analysis const& a)
         {}};
     t.table.columns = {{"block", "Block"},
                        {"group", "Trials that share this level"},
-                       {"item", "What is scored"},
+                       {"item", "Scored item"},
                        {"unit", "Unit of the score"},
                        {"score", "Score"}};
     add_interval(t.table.columns, "", a.settings.confidence);
     t.table.columns.push_back({"observers", "Observers"});
-    t.table.columns.push_back({"render_ms", "Mean time to render a frame", "ms"});
+    t.table.columns.push_back({"render_ms", "Mean rendering time per frame", "ms"});
     add_interval(t.table.columns, "render_", a.settings.confidence);
     for (BlockResult const& b : a.blocks)
         for (ScaleResult const& s : b.scales)
@@ -122,23 +122,23 @@ ResultTable cheapest(Analysis const& a)
 {
     ResultTable t{
         "cheapest",
-        "The cheapest that cannot be told from the reference",
-        "Not to be told means: no significant difference, by the p value corrected for all pairs. That is no "
-        "proof that there is none: the interval says how large it may still be. Where the reference was not "
-        "judged, the best of those judged stands in for it.",
+        "The cheapest item without significant difference from the reference",
+        "Significance is by the p-value corrected for all pairs. No significant difference is no "
+        "proof of equality: the interval shows how large the difference may be. If the reference was not "
+        "judged, the best judged item replaces it.",
         false,
         {}};
     t.table.columns = {{"block", "Block"},
                        {"group", "Trials that share this level"},
                        {"item", "Cheapest"},
-                       {"render_ms", "Mean time to render a frame of it", "ms"},
-                       {"against", "What it is compared with"},
-                       {"judged", "Whether that is the reference, or the best of those judged"},
-                       {"against_ms", "Mean time to render a frame of that", "ms"},
+                       {"render_ms", "Mean rendering time per frame of the item", "ms"},
+                       {"against", "Item that it is compared with"},
+                       {"judged", "Whether that is the reference or the best judged item"},
+                       {"against_ms", "Mean rendering time per frame of that item", "ms"},
                        {"unit", "Unit of the difference"},
-                       {"difference", "Item minus that"}};
+                       {"difference", "Score of the item minus that of the other"}};
     add_interval(t.table.columns, "", a.settings.confidence);
-    t.table.columns.push_back({"p_holm", "Probability of such a difference by chance, corrected (Holm)"});
+    t.table.columns.push_back({"p_holm", "p-value of the difference, corrected (Holm)"});
     for (BlockResult const& b : a.blocks)
         for (ScaleResult const& s : b.scales)
             if (s.cheapest) {
@@ -172,7 +172,7 @@ ResultTable differences(Analysis const& a)
                        {"a", "Item"},      {"b", "Other item"},
                        {"unit", "Unit"},   {"difference", "a minus b"}};
     add_interval(t.table.columns, "", a.settings.confidence);
-    t.table.columns.push_back({"p", "Probability of such a difference by chance"});
+    t.table.columns.push_back({"p", "p-value of the difference"});
     t.table.columns.push_back({"p_holm", "Corrected (Holm)"});
     for (BlockResult const& b : a.blocks)
         for (ScaleResult const& s : b.scales)
@@ -191,7 +191,7 @@ ResultTable fits(Analysis const& a)
 {
     ResultTable t{"fits",
                   "Goodness of fit, order effect, tests over all items",
-                  "A small p of a deviance says that one scale does not explain the choices.",
+                  "A small p of a deviance means that one scale does not explain the choices.",
                   true,
                   {}};
     t.table.columns = {
@@ -205,7 +205,7 @@ ResultTable fits(Analysis const& a)
 
 ResultTable refusals(Analysis const& a)
 {
-    ResultTable t{"remarks", "What could not be computed, or only with help", "", false, {}};
+    ResultTable t{"remarks", "Results that could not be computed, or only with regularisation", "", false, {}};
     t.table.columns = {{"block", "Block"}, {"group", "Trials that share this level"}, {"remark", "Remark"}};
     auto const say = [&](std::string const& block, std::string const& group, std::string const& text) {
         if (!text.empty()) t.table.rows.push_back({cell(block), cell(group), cell(text)});

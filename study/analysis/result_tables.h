@@ -1,5 +1,5 @@
 #pragma once
-// An analysis as tables: for the terminal, for CSV and JSON, for the report.
+// An analysis as tables, for the terminal, CSV, JSON and the report.
 
 #include "study/analysis/analysis.h"
 #include "study/tables/table.h"
@@ -13,15 +13,15 @@ struct ResultTable {
     Table table;
 };
 
-/// Those that have rows. What each number is stands in the columns' descriptions.
+/// The tables that have rows. The columns' descriptions explain each number.
 std::vector<ResultTable> result_tables(Analysis const& analysis);
 
-/// A cell for people: four digits, "<0.001" of small probabilities (columns named p or p_...), "–" for n/a.
+/// Readable form of a cell: four digits, "<0.001" for small probabilities (columns named p or p_...), "–" for n/a.
 std::string shown_cell(Column const& column, std::string const& cell);
-/// Aligned columns with their names above, a title and a note; long ones are only named.
+/// Tables with aligned columns, column names, a title and a note; long tables are only named.
 std::string to_text(Analysis const& analysis);
-/// Everything, numbers as numbers, null where there is none; the tracks of staircases and the matrices of wins
-/// too.
+/// The whole analysis as JSON, with numbers as numbers and null = missing; includes the tracks of staircases and
+/// the matrices of wins.
 std::string to_json(Analysis const& analysis);
 
 } // namespace study

@@ -12,14 +12,14 @@
 namespace study {
 namespace {
 
-/// Where the middle of the rise from guessing to 1 is.
+/// Proportion in the middle between guessing and 1.
 double middle(Task task) { return (1 + guess_rate(task)) / 2; }
 
-/// The staircase gone through again; nothing where the record has other levels than it would have shown.
+/// Replays the staircase; empty if the recorded levels differ from those that it would have shown.
 std::optional<Staircase> replayed(Procedure const& p, Compare const& c, ThresholdRun const& run)
 {
     StaircaseSettings settings = staircase_settings(p, c);
-    settings.stop = {0, 0, 1 << 20}; // the record says when it ended
+    settings.stop = {0, 0, 1 << 20}; // the record determines its end
     Staircase staircase(settings);
     for (std::size_t i = 0; i < run.levels.size(); ++i) {
         double const level = harder_sign(c) * to_scale(c.scale, run.levels[i]);
@@ -34,7 +34,7 @@ void add_staircase(ThresholdRun& run, Block const& b, Procedure const& p)
     ThresholdEstimate e{"mean of reversals", settles_at(p), {}, {}};
     auto const staircase = replayed(p, *b.compare, run);
     if (!staircase) {
-        e.note = "the levels of the record are not those that this staircase would have shown";
+        e.note = "the recorded levels differ from those that this staircase would have shown";
     } else {
         for (Reversal const& r : staircase->reversals()) run.reversals.push_back(r.trial);
         // The first two still come from the start.
@@ -47,8 +47,8 @@ void add_staircase(ThresholdRun& run, Block const& b, Procedure const& p)
     run.estimates.push_back(std::move(e));
 }
 
-/// Of what is never told: by guessing, or the share of false alarms in the run (log-linear); none where the run
-/// has nothing that says it.
+/// Lowest proportion correct: the guess rate, or the false alarm rate in the run (log-linear); none if the run
+/// has no trials to estimate it.
 std::optional<double> lowest_share(Task task, std::vector<TrialRow> const& trials)
 {
     if (guess_rate(task) > 0) return guess_rate(task);
@@ -70,16 +70,16 @@ void add_maximum_likelihood(ThresholdRun& run, Block const& b, std::optional<dou
         PsychometricSettings s;
         s.shape = shape_of(*b.compare);
         s.guess.value = guess.value_or(0);
-        s.lapse.value = 0.02; // one run says nothing of lapses
+        s.lapse.value = 0.02; // one run cannot determine lapses
         auto const fit = fit_psychometric(count_levels(run.levels, run.correct), s);
         auto const on_u = [&](double level) { return transformed(fit.shape, level); };
         double const level = level_at(fit.shape, fit.parameters, proportion);
         e.note = fit.note;
-        if (e.note.empty() && !guess) e.note = "no trials without a signal: false alarms are taken for none";
+        if (e.note.empty() && !guess) e.note = "no trials without a signal: a false alarm rate of 0 is assumed";
         double const error = fit.standard_error.threshold;
         if (std::isfinite(level)) {
             e.level = {level, {kUnknown, kUnknown}, 1};
-            // The error of the threshold, carried over to a level a fixed share of the scale from it.
+            // The error of the threshold, applied to a level at a fixed distance from it on the scale.
             if (error > 0 && std::isfinite(error)) {
                 double const half = normal_quantile((1 + settings.confidence) / 2) * error, u = on_u(level);
                 auto const back = [&](double v) {
@@ -90,7 +90,7 @@ void add_maximum_likelihood(ThresholdRun& run, Block const& b, std::optional<dou
                                     std::max(back(u - half), back(u + half))};
             }
         } else if (fit.note.empty())
-            e.note = "the fitted function never has this share";
+            e.note = "the fitted function never reaches this proportion";
     } catch (std::invalid_argument const& error) {
         e.note = error.what();
     }
@@ -113,7 +113,7 @@ void add_questplus(ThresholdRun& run, Block const& b, Procedure const& p, double
             });
             quest.respond(std::size_t(nearest - s.stimuli.begin()), run.correct[i] != 0);
         }
-        // Of the scale's own unit: a posterior is even on it, not on levels.
+        // In the scale's unit: the posterior's grid is even on the scale, not on levels.
         auto const posterior = quest.threshold_posterior();
         QuestParameters mean = quest.mean();
         double m = 0, squares = 0;
@@ -125,10 +125,10 @@ void add_questplus(ThresholdRun& run, Block const& b, Procedure const& p, double
         double const half =
             normal_quantile((1 + settings.confidence) / 2) * std::sqrt(std::max(0.0, squares - m * m));
         mean.threshold = on_axis(from_scale(c.scale, m));
-        // The level where the function of the posterior's mean has that share.
+        // The level where the function of the posterior's mean has that proportion.
         double const width = to_scale(c.scale, c.high) - to_scale(c.scale, c.low);
         double const low = to_scale(c.scale, c.low) - width, high = to_scale(c.scale, c.high) + width;
-        auto const above = [&](double at) { // of the share that is wanted
+        auto const above = [&](double at) { // the wanted proportion
             return proportion_at(s.function, s.direction, mean, on_axis(from_scale(c.scale, at))) - proportion;
         };
         double const at_low = above(low), at_high = above(high);
@@ -138,7 +138,7 @@ void add_questplus(ThresholdRun& run, Block const& b, Procedure const& p, double
             double const a = from_scale(c.scale, at - half), z = from_scale(c.scale, at + half);
             e.level = {from_scale(c.scale, at), {std::min(a, z), std::max(a, z)}, 1};
         } else
-            e.note = "the function of the posterior's mean never has this share";
+            e.note = "the function of the posterior's mean never reaches this proportion";
     } catch (std::invalid_argument const& error) {
         e.note = error.what();
     }
@@ -161,7 +161,7 @@ PsychometricShape shape_of(Compare const& c, Psychometric function)
 double guess_rate(Task task)
 {
     if (task == Task::oddity) return 1.0 / 3;
-    // Shares of yes and of different go down to those of false alarms, which are fitted.
+    // Proportions of yes and different go down to the false alarm rate, which is fitted.
     return task == Task::yes_no || task == Task::same_different ? 0 : 0.5;
 }
 
@@ -178,7 +178,7 @@ ThresholdRun threshold_run(Block const& b, Procedure const& p, std::vector<Trial
             run.correct.push_back(*row.done->is_correct ? 1 : 0);
         }
     auto const guess = lowest_share(b.task, trials);
-    // Every method at the middle of the rise; where a staircase settles, both at its own share too.
+    // Every method at the middle of the rise; staircases also at the proportion to which they converge.
     if (p.method == Method::staircase) {
         add_staircase(run, b, p);
         if (settles_at(p) > guess_rate(b.task)) add_maximum_likelihood(run, b, guess, settles_at(p), settings);

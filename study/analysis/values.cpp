@@ -14,7 +14,7 @@
 namespace study {
 namespace {
 
-/// Levels of the rated factors, as one item each.
+/// Combinations of levels of the rated factors, one item each.
 class RatedItems {
 public:
     RatedItems(Script const& script, Block const& block) : script_(script), factors_(rated_factors(script, block))
@@ -23,7 +23,7 @@ public:
 
     std::vector<int> const& factors() const { return factors_; }
     std::vector<std::string> const& names() const { return names_; }
-    /// New items are added as they come, so that items that were never rated are not there.
+    /// Items are added when first rated, so that items without ratings are absent.
     int of(Stimulus const& s)
     {
         std::vector<int> key;
@@ -145,7 +145,7 @@ ScaleResult values_of_group(Script const& script, Block const& b, std::vector<Ob
         r.observations += int(o.rows.size());
     }
     if (r.observations == 0) {
-        r.refused = "nobody judged anything";
+        r.refused = "there are no judgements";
         return r;
     }
     int const count = int(items.names().size());
@@ -163,8 +163,8 @@ ScaleResult values_of_group(Script const& script, Block const& b, std::vector<Ob
         add_model(r, table);
         add_spread(r, b, trials, items);
     }
-    if (r.observers < 2) add_note(r, "one observer: no interval, and nothing about anybody else");
-    // Of adjusted levels none is better than another.
+    if (r.observers < 2) add_note(r, "one observer: no interval, and no conclusion about others");
+    // No adjusted level is better than another.
     if (b.task != Task::adjustment) judge_differences(r, items.reference(), 1 - settings.confidence);
     return r;
 }
@@ -227,7 +227,7 @@ ScaleResult ranking_of_group(Script const& script, Block const& b, std::vector<O
         r.items.push_back(
             {script.factors[std::size_t(b.rank)].levels[std::size_t(b.rank_levels[i])].name, {}, render[i]});
     try {
-        if (ranked.rankings.empty()) throw std::invalid_argument("nobody ranked anything");
+        if (ranked.rankings.empty()) throw std::invalid_argument("there are no rankings");
         std::vector<int> all(ranked.rankings.size());
         for (std::size_t o = 0; o < all.size(); ++o) all[o] = int(o);
         std::string note;
@@ -263,7 +263,7 @@ ScaleResult ranking_of_group(Script const& script, Block const& b, std::vector<O
             for (std::size_t o = 0; o < ranks.columns; ++o) sum += double(n) + 1 - ranks(i, o);
             add_fact(r, "mean rank " + r.items[i].name, sum / double(ranks.columns));
         }
-        add_note(r, "differences and their tests are of the ranks of each observer, 1 = one place better");
+        add_note(r, "differences and their tests use the ranks of each observer, 1 = one place better");
     } catch (std::invalid_argument const& e) {
         r.refused = e.what();
         return r;

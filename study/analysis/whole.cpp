@@ -12,14 +12,14 @@
 namespace study {
 namespace {
 
-/// Why trials are out, by reason.
+/// Numbers of excluded trials, by reason.
 void exclude_trials(ObserverTrials const& o, Analysis& a)
 {
     std::map<std::pair<std::string, std::string>, int> counts;
     for (TrialRow const& row : o.rows) {
         std::string const reason = row.done->reason.empty() ? "" : ": " + row.done->reason;
         if (row.is_kept_though_invalid)
-            ++counts[{"kept", "flagged" + reason + ", kept since the script says on_bad_trial: keep"}];
+            ++counts[{"kept", "flagged" + reason + ", kept because the script sets on_bad_trial: keep"}];
         else if (row.status == TrialStatus::invalid || row.status == TrialStatus::superseded)
             ++counts[{"left out", std::string(name_of(row.status)) + reason}];
         else if (row.status == TrialStatus::unanswered)
@@ -76,13 +76,13 @@ void finish_summary(ObserverTrials const& observer, AnalysisSettings const& sett
     s.reaction_median_ms = gi::quantile(reactions, 0.5);
     if (s.choices > 0) s.bias_p = binomial_test(s.chose_first, s.choices);
     if (s.is_excluded) {
-        a.exclusions.push_back({s.participant, "left out", "the caller asked for it", int(observer.rows.size())});
+        a.exclusions.push_back({s.participant, "left out", "excluded on request", int(observer.rows.size())});
         return;
     }
     exclude_trials(observer, a);
     if (!s.is_complete)
         a.exclusions.push_back({s.participant, "kept", "the session is not complete", int(observer.rows.size())});
-    // Half of the catch trials right is what guessing gives; nobody is left out for it without being asked.
+    // Guessing gives half of the catch trials; nobody is excluded for this without a request.
     if (s.catches > 0 && wilson(s.catches_right, s.catches).high < 0.9)
         a.exclusions.push_back({s.participant, "look at",
                                 fmt::format("{} of {} catch trials right", s.catches_right, s.catches),

@@ -1,11 +1,11 @@
 #pragma once
-// What is not of one block.
+// Parts of the analysis that do not belong to a single block.
 
 #include "study/analysis/groups.h"
 
 namespace study {
 
-/// Adds a session's counts to its participant's summary, which is added where it is not there yet.
+/// Adds a session's counts to its participant's summary; creates the summary if missing.
 void summarise(RecordedSession const& session, SessionStarted const& start, std::vector<TrialRow> const& rows,
                Analysis& analysis);
 /// Side bias, reaction times, and the exclusions of a participant.

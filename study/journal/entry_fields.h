@@ -1,5 +1,5 @@
 #pragma once
-// The fields of every kind of entry by their names in a journal, once for writing and reading.
+// The fields of each kind of entry with their names in a journal, used for both writing and reading.
 
 #include "study/journal/entries.h"
 

@@ -68,7 +68,7 @@ struct Take {
         known.insert(name);
         auto const found = in.find(name);
         if (found == in.end()) throw BadLine(fmt::format("it has no '{}'", name), false);
-        if (!read(*found, value)) throw BadLine(fmt::format("its '{}' is of another kind", name), false);
+        if (!read(*found, value)) throw BadLine(fmt::format("its '{}' has another type", name), false);
     }
 
     static bool read(Json const& j, double& v)
@@ -139,7 +139,7 @@ struct Take {
     {
         Fields<T>::visit(value, Take{j, known});
         for (auto const& [key, unused] : j.items())
-            if (!known.contains(key)) throw BadLine("'" + key + "' is no key that this version knows", true);
+            if (!known.contains(key)) throw BadLine("'" + key + "' is a key unknown to this version", true);
     }
 };
 
@@ -147,7 +147,7 @@ template <std::size_t I = 0>
 JournalEntry entry_of(std::string const& kind, Json const& j)
 {
     if constexpr (I == std::variant_size_v<JournalEntry>) {
-        throw BadLine("'" + kind + "' is no kind of entry that this version knows", true);
+        throw BadLine("'" + kind + "' is a kind of entry unknown to this version", true);
     } else {
         using Entry = std::variant_alternative_t<I, JournalEntry>;
         if (kind != Fields<Entry>::kKind) return entry_of<I + 1>(kind, j);
@@ -188,9 +188,9 @@ JournalEntry entry_of_line(std::string_view line, int number)
     if (!has_checksum(line)) throw BadLine("it has no checksum at its end", false);
     std::string_view const summed = line.substr(0, line.size() - kSumLength);
     if (line.substr(line.size() - kSumLength + kSum.size()) != fmt::format("{:08x}\"}}", gi::crc32(summed)))
-        throw BadLine("its checksum is another: it was changed since it was written", false);
+        throw BadLine("its checksum does not match: it was changed after it was written", false);
     Json const j = Json::parse(line, nullptr, false);
-    if (!j.is_object()) throw BadLine("it is no JSON object", false);
+    if (!j.is_object()) throw BadLine("it is not a JSON object", false);
     std::set<std::string> frame;
     int n = 0;
     std::string kind;
@@ -205,7 +205,7 @@ JournalEntry entry_of_line(std::string_view line, int number)
     }
     if (n != number)
         throw BadLine(
-            fmt::format("its number is {}, it should be {}: lines are missing or twice there", n, number), false);
+            fmt::format("its number is {}, it should be {}: lines are missing or duplicated", n, number), false);
     return entry_of(kind, j);
 }
 

@@ -9,8 +9,8 @@
 namespace study {
 namespace {
 
-/// Of a last line: its end is missing, or after a loss of power parts of it were still the zeros or the empty
-/// lines that were there before.
+/// True for an incomplete last line: its end is missing, or after a power failure parts of it still have the zeros
+/// or empty lines of the preallocated space.
 bool is_torn(std::string_view line) { return !has_checksum(line) || line.find('\0') != std::string_view::npos; }
 
 } // namespace
@@ -18,7 +18,7 @@ bool is_torn(std::string_view line) { return !has_checksum(line) || line.find('\
 JournalText parse_journal(std::string_view text, std::string const& name)
 {
     JournalText out;
-    // npos + 1 = 0: nothing but empty lines.
+    // npos + 1 = 0: only empty lines.
     std::size_t const said = text.find_last_not_of('\n') + 1;
     while (out.good_bytes < said) {
         std::size_t const at = out.good_bytes, end = text.find('\n', at);

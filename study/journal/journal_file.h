@@ -6,22 +6,22 @@
 
 namespace study {
 
-/// A journal as it was found. While a session runs its file is longer than what it says: empty lines are room for
-/// what comes. A process that was killed, a full disk or a loss of power can leave one line that is not whole, the
-/// last: it is of something that had not been finished, and is left out and counted.
+/// Content of a journal file. While a session runs, the file ends with empty lines, space preallocated for further
+/// entries. A killed process, a full disk or a power failure can leave an incomplete last line: it belongs to an
+/// unfinished step, is ignored, and its bytes are counted.
 struct JournalText {
     SessionRecord record;
-    std::size_t good_bytes = 0; ///< of whole lines
-    std::size_t torn_bytes = 0; ///< after them, of one that is not whole
-    std::size_t room_bytes = 0; ///< after that, empty lines
+    std::size_t good_bytes = 0; ///< of complete lines
+    std::size_t torn_bytes = 0; ///< after them, of an incomplete line
+    std::size_t room_bytes = 0; ///< after that, of empty lines
 };
 
-/// @param name of the text in messages
-/// @throws ScriptError with the line where a journal has anything wrong but a torn end: lines that are missing or
-/// were changed, entries of a newer version
+/// @param name name of the text in messages
+/// @throws ScriptError with the line for any error except an incomplete last line: lines that are missing or were
+/// changed, entries of a newer version
 JournalText parse_journal(std::string_view text, std::string const& name);
 
-/// @throws ScriptError also where the file cannot be read
+/// @throws ScriptError as parse_journal, and if the file cannot be read
 JournalText read_journal(std::filesystem::path const& file);
 
 } // namespace study

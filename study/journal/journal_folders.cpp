@@ -11,12 +11,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where nothing is there, that is no failure.
+/// A missing folder is not an error.
 void check_read(fs::path const& path, std::error_code const& failed)
 {
     if (!failed || failed == std::errc::no_such_file_or_directory || failed == std::errc::not_a_directory) return;
     throw ScriptError(path.string(), {}, "this cannot be read", failed.message(),
-                      "make it readable: what is in it would be missing");
+                      "make it readable, or its sessions would be missing");
 }
 
 bool is_there(fs::path const& file)
@@ -35,7 +35,7 @@ fs::path session_folder(fs::path const& dir, std::string const& id, int session)
         return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
     });
     if (!is_plain)
-        throw ScriptError("", {}, "'" + id + "' is no participant's id", "it becomes a name of files (BIDS)",
+        throw ScriptError("", {}, "'" + id + "' is no participant's id", "it is used in file names (BIDS)",
                           "use letters and digits only");
     if (session < 1 || session > 99)
         throw ScriptError("", {}, fmt::format("session {}", session), "there are 1 to 99", "choose one of them");
@@ -59,13 +59,13 @@ JournalsFound find_journals(fs::path const& dir)
     for (fs::path const& subject : names_in(dir, "sub-")) {
         auto const sessions = names_in(subject, "ses");
         if (sessions.empty())
-            found.remarks.push_back(subject.string() + ": there is no session in it, nothing of it is used");
+            found.remarks.push_back(subject.string() + ": it has no session and is ignored");
         for (fs::path const& session : sessions)
             if (fs::path const file = session / "beh" / "journal.jsonl"; is_there(file))
                 found.files.push_back(file);
             else
                 found.remarks.push_back(session.string() +
-                                        ": beh/journal.jsonl is not there, nothing of this session is used");
+                                        ": beh/journal.jsonl is missing, this session is ignored");
     }
     return found;
 }

@@ -8,7 +8,7 @@
 namespace study {
 namespace {
 
-constexpr double kNoiseOfJod = 1.4826022185056018 / 1.4142135623730951; ///< 1 / Phi^-1(0.75), of each of two
+constexpr double kNoiseOfJod = 1.4826022185056018 / 1.4142135623730951; ///< 1 / Phi^-1(0.75), per percept
 
 class Answering {
 public:
@@ -40,7 +40,7 @@ public:
     }
 
 private:
-    /// Any answer but one.
+    /// A random answer other than the given one.
     std::string blindly(std::string const& but)
     {
         std::vector<std::string> answers;
@@ -81,7 +81,7 @@ private:
         std::vector<double> const p = percepts();
         auto const nearer = [&](double x, double a, double b) { return std::abs(x - a) < std::abs(x - b); };
         switch (block_.task) {
-        case Task::two_interval: // the worse one has it
+        case Task::two_interval: // the worse one has the signal
             return p[0] + o_.model.side_bias < p[1] ? "first" : "second";
         case Task::abx:
             return nearer(p[2], p[0], p[1]) ? "first" : "second";

@@ -9,11 +9,11 @@ struct ModelAnswer {
     std::optional<double> value;
 };
 
-/// What an observer answers to a trial: of what is varied by the psychometric function, otherwise by comparing
-/// noisy percepts of the stimuli.
+/// Answer of a model observer to a trial: from the psychometric function if a setting is varied, otherwise by
+/// comparing noisy percepts of the stimuli.
 ModelAnswer answer(Observer const& observer, TrialRequest const& trial, Random& random);
 
-/// Items of a questionnaire.
+/// Answers to the items of a questionnaire.
 std::vector<std::optional<double>> answer_items(Observer const& observer, Questionnaire const& questionnaire,
                                                 Random& random);
 

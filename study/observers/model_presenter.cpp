@@ -11,7 +11,7 @@
 namespace study {
 namespace {
 
-/// Purposes of random numbers; attempts are few.
+/// Number of the random stream of a step and attempt; attempts are fewer than 1000.
 std::uint64_t purpose(int step, int attempt) { return std::uint64_t(step) * 1000 + std::uint64_t(attempt); }
 constexpr std::uint64_t kItems = std::uint64_t(1) << 40;
 

@@ -4,9 +4,9 @@
 
 namespace study {
 
-/// Shows nothing to nobody: a display with a steady rate, a clock that goes on by as much as things take, and an
-/// observer. What is answered in a step depends on the observer, the step and the attempt alone, so a session that
-/// was cut off and goes on has the answers of one that was not.
+/// Presenter without display: simulates a display with a steady rate, a clock that advances by the duration of
+/// each step, and an observer. Answers depend only on observer, step and attempt, so an interrupted and resumed
+/// session has the same answers as an uninterrupted one.
 class ModelPresenter : public Presenter {
 public:
     explicit ModelPresenter(Observer observer) : observer_(std::move(observer)) {}

@@ -9,7 +9,7 @@
 namespace study {
 namespace {
 
-constexpr std::uint64_t kSimulation = 0x51b7e44a90c3d21fULL; ///< apart from the random numbers of plans
+constexpr std::uint64_t kSimulation = 0x51b7e44a90c3d21fULL; ///< separate random streams from those of plans
 constexpr double kStep_jod = 0.5;
 
 std::set<int> judged_factors(Script const& s)

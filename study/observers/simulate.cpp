@@ -24,8 +24,8 @@ void keep_truth(fs::path const& dir, std::string const& truth)
         gi::write_durably(file, truth);
     } else if (gi::read_text(file) != truth) {
         throw ScriptError(file.string(), {}, "other observers answered in this folder",
-                          "one folder has one truth with which a report can be compared",
-                          "use the observers and the seed of then, or another folder");
+                          "a folder has one set of true parameters for reports",
+                          "use the same observers and seed, or another folder");
     }
 }
 
@@ -42,7 +42,7 @@ SessionOutcome simulate_session(Script const& script, int participant, Observer 
     if (settings.start == SessionStart::go_on && fs::exists(journal, ignored))
         if (auto const last = last_unix_time(read_journal(journal).record)) start_s = *last + gap_s;
     settings.is_simulated = true;
-    double calibrated_s = -1; // the clock when it is asked for the first time: the gap ends then
+    double calibrated_s = -1; // clock at the first call, where the gap ends
     settings.unix_s = [&] {
         if (calibrated_s < 0) calibrated_s = presenter.now();
         return start_s + presenter.now() - calibrated_s;

@@ -7,16 +7,16 @@
 namespace study {
 namespace {
 
-constexpr int kDraws = 200;             ///< whole orders that are drawn first
-constexpr int kSearches = 10;           ///< new beginnings of the search
-constexpr long kStepsPerSearch = 10000; ///< beyond those that a straight way needs
+constexpr int kDraws = 200;             ///< number of whole orders drawn first
+constexpr int kSearches = 10;           ///< restarts of the search
+constexpr long kStepsPerSearch = 10000; ///< in addition to those of a search without backtracking
 
 bool has(std::vector<int> const& tokens, int token)
 {
     return std::find(tokens.begin(), tokens.end(), token) != tokens.end();
 }
 
-/// Whether `rule` allows the item at `place` after those before.
+/// True if `rule` allows the item at `place` after the previous ones.
 bool allows(ArrangeRule const& rule, std::size_t r, std::span<ArrangeItem const> items, std::span<int const> order,
             std::size_t place)
 {
@@ -39,7 +39,7 @@ bool allows(ArrangeRule const& rule, std::size_t r, std::span<ArrangeItem const>
     return true;
 }
 
-/// Depth-first search over kinds of items: those with the same tokens and group are one kind.
+/// Depth-first search over kinds of items: items with the same tokens and group are of one kind.
 class Search {
 public:
     Search(std::span<ArrangeItem const> items, std::span<ArrangeRule const> rules, std::span<int const> groups)
@@ -90,7 +90,7 @@ private:
     {
         return std::uint32_t(members_[std::size_t(kind)].size() - used_[std::size_t(kind)]);
     }
-    /// Kinds that fit the place.
+    /// Remaining kinds of the next place's group.
     std::vector<int> candidates() const
     {
         std::vector<int> kinds;
@@ -99,7 +99,7 @@ private:
                 kinds.push_back(k);
         return kinds;
     }
-    /// Takes one out, with its members left as weight.
+    /// Removes and returns a random kind, weighted by its remaining members.
     std::size_t draw_kind(std::vector<int>& kinds, Random& random) const
     {
         std::uint32_t total = 0;
@@ -134,7 +134,7 @@ private:
         return true;
     }
 
-    /// Whether what is left of each token can still be kept apart: a bound that is never too strict.
+    /// True if the remaining trials of each token can still be separated; a necessary condition.
     bool has_room() const
     {
         std::size_t const open = items_.size() - order_.size();
@@ -144,7 +144,7 @@ private:
             for (auto const& [token, left] : left_[r]) {
                 std::size_t const n = std::size_t(left);
                 if (n == 0) continue;
-                std::size_t since = 0; // places since the token was there, at most count
+                std::size_t since = 0; // places since the last occurrence of the token, at most count
                 while (since < count && since < order_.size() && !has(token_at(r, since), token)) ++since;
                 if (rules_[r].kind == RuleKind::max_run) {
                     std::size_t run = 0;
@@ -173,7 +173,7 @@ private:
     long steps_ = 0;
 };
 
-/// Every group's items in the places of the group, shuffled.
+/// Shuffles each group's items over the places of the group.
 std::vector<int> draw(std::span<ArrangeItem const> items, std::span<int const> groups, Random& random)
 {
     std::map<int, std::vector<int>> by_group;
@@ -210,9 +210,9 @@ std::vector<int> arrange(std::span<ArrangeItem const> items, std::span<ArrangeRu
         Search::Result const result = search.run(random);
         if (result == Search::Result::found) return search.order();
         if (result == Search::Result::none)
-            throw NoOrder(fmt::format("no order of these {} trials keeps the rules", items.size()));
+            throw NoOrder(fmt::format("no order of these {} trials satisfies the rules", items.size()));
     }
-    throw NoOrder(fmt::format("no order of these {} trials that keeps the rules was found in {} searches",
+    throw NoOrder(fmt::format("no order of these {} trials that satisfies the rules was found in {} searches",
                               items.size(), kSearches));
 }
 

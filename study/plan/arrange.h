@@ -1,5 +1,5 @@
 #pragma once
-// Orders of trials that keep rules, by chance: exactly, or not at all.
+// Random orders of trials that satisfy all rules, or an error if none is found.
 
 #include "study/script/script.h"
 #include "study/stats/random.h"
@@ -12,11 +12,11 @@
 
 namespace study {
 
-/// What rules see of a trial.
+/// Properties of a trial that rules use.
 struct ArrangeItem {
     std::vector<std::vector<int>>
-        tokens;    ///< by rule: what it has of the rule's subject; none = the rule ignores it
-    int group = 0; ///< places are of a group each, and take items of theirs only
+        tokens;    ///< by rule: the trial's values of the rule's subject; empty = the rule ignores the trial
+    int group = 0; ///< each place of the order belongs to a group and takes only items of this group
 };
 
 /// max_run: the same token in at most `count` trials in a row. min_gap: at least `count` trials between two with
@@ -26,24 +26,24 @@ struct ArrangeRule {
     int count = 1, from = -1, to = -1;
 };
 
-/// There is no order, or none was found in the steps allowed; what() says which and why.
+/// No order exists, or none was found within the step limit; what() states which and why.
 class NoOrder : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// The first place at which a rule is broken; none = all are kept.
+/// The first place at which a rule is broken.
 struct BrokenRule {
     std::size_t rule = 0, place = 0;
 };
 std::optional<BrokenRule> find_broken(std::span<ArrangeItem const> items, std::span<ArrangeRule const> rules,
                                       std::span<int const> order);
 
-/// Indices of items, place by place. @param groups of the places, as many as there are items, with as many places
-/// of each group as items. First whole orders are drawn until one keeps the rules: every order that does is
-/// equally likely. Where they are too rare for that, a depth-first search with look-ahead places one trial after
-/// the other, chosen by chance in proportion to how many of its kind remain. Throws NoOrder where the search has
-/// shown that there is none or has given up.
+/// Returns indices of items, place by place. @param groups of the places; there are as many places of each group
+/// as items. First, whole orders are drawn until one satisfies the rules; all valid orders are then equally
+/// likely. If valid orders are too rare, a depth-first search with look-ahead places one trial after the other,
+/// chosen at random in proportion to the number of remaining trials of its kind. Throws NoOrder if the search
+/// proves that no order exists, or gives up.
 std::vector<int> arrange(std::span<ArrangeItem const> items, std::span<ArrangeRule const> rules,
                          std::span<int const> groups, Random& random);
 

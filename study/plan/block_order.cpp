@@ -34,7 +34,7 @@ std::vector<int> tokens_of(Script const& s, Block const& b, Trial const& t, Cons
     return tokens;
 }
 
-/// Puts trials in places; those of a group (a repeat, catch trials, ...) in the places of it.
+/// Orders trials; those of a group (a repeat, catch trials, ...) stay in the group's places.
 std::vector<Trial> in_order(Script const& s, Block const& b, std::vector<Trial> const& trials,
                             std::vector<int> const& group_of_trial, std::vector<int> const& group_of_place,
                             Random& random)
@@ -51,8 +51,8 @@ std::vector<Trial> in_order(Script const& s, Block const& b, std::vector<Trial> 
         order = arrange(items, rules, group_of_place, random);
     } catch (NoOrder const& e) {
         throw ScriptError(s.file, b.constraints.empty() ? b.place : b.constraints[0].place,
-                          fmt::format("the constraints of block '{}' cannot be kept", b.name), e.what(),
-                          "loosen them, or change how often each condition comes");
+                          fmt::format("the constraints of block '{}' cannot be satisfied", b.name), e.what(),
+                          "relax them, or change how often each condition occurs");
     }
     if (find_broken(items, rules, order)) throw std::logic_error("an arranged order breaks a rule");
     std::vector<Trial> out;
@@ -60,7 +60,7 @@ std::vector<Trial> in_order(Script const& s, Block const& b, std::vector<Trial> 
     return out;
 }
 
-/// Groups that `shuffle` keeps apart.
+/// Groups within which `shuffle` orders trials.
 std::vector<int> groups_of(Block const& b, std::vector<Trial> const& trials)
 {
     std::vector<int> groups;
@@ -71,7 +71,7 @@ std::vector<int> groups_of(Block const& b, std::vector<Trial> const& trials)
     return groups;
 }
 
-/// As listed, repeat after repeat.
+/// The listed order, repeat after repeat.
 std::vector<Trial> listed(Script const& s, Block const& b, std::vector<int> const& levels, int participant,
                           Random& random)
 {
@@ -89,7 +89,7 @@ std::vector<Trial> practice_of(Script const& s, Block const& b, std::vector<int>
         throw ScriptError(
             s.file, b.place,
             fmt::format("block '{}' practises {} of its {} trials", b.name, b.practice.trials, trials.size()),
-            "practice is the beginning of another order of them", "practise fewer");
+            "practice uses the first trials of a separate order", "practise fewer");
     std::vector<int> const groups = groups_of(b, trials);
     trials = in_order(s, b, trials, groups, groups, random);
     trials.resize(std::size_t(b.practice.trials));
@@ -126,12 +126,12 @@ std::vector<Trial> ordered_trials(Script const& s, Block const& b, std::vector<i
             throw ScriptError(
                 s.file, b.catches.place,
                 fmt::format("a catch trial every {} of the {} trials of block '{}'", every, trials.size(), b.name),
-                "there would be none", "write a smaller number");
+                "there would be no catch trial", "write a smaller number");
         for (Trial const& t : catch_trials(s, b, levels, count, random)) {
             trials.push_back(t);
             groups.push_back(kCatchGroup);
         }
-        for (int i = 0; i < count; ++i) // after one of the trials of each stretch; never first
+        for (int i = 0; i < count; ++i) // after one of the trials of each stretch, never first
             places.insert(places.begin() + i * (every + 1) + 1 + int(random.below(std::uint32_t(every))),
                           kCatchGroup);
     }

@@ -21,10 +21,10 @@ Stimulus with_level(Stimulus s, int factor, int level)
     return s;
 }
 
-/// Trials that share a condition; their presentation orders are balanced within it.
+/// Trials of one condition, within which presentation orders are balanced.
 using Conditions = std::vector<std::vector<std::size_t>>;
 
-/// Each order equally often, to one trial, in every condition and in all of them together; which, by chance.
+/// Each order equally often (within one trial) in every condition and over all of them; the remainder is random.
 void assign_orders(std::vector<Trial>& trials, Conditions conditions, std::vector<PresentedOrder> orders,
                    Random& random)
 {
@@ -43,8 +43,8 @@ void assign_orders(std::vector<Trial>& trials, Conditions conditions, std::vecto
     }
 }
 
-/// Whether the first level of each pair comes first. Of all pairs of t levels: the regular tournament, in which
-/// each level comes first as often as second (to one). Of a list: the one that came first less often.
+/// Whether the first level of each pair comes first. For all pairs of t levels: the regular tournament, in which
+/// each level comes first as often as second (within one). For a list: the level that came first less often.
 std::vector<bool> first_comes_first(Pairs const& p)
 {
     std::vector<int> levels;
@@ -74,8 +74,8 @@ void add_pairs(Script const& s, Block const& b, std::vector<std::vector<int>> co
 {
     Pairs const& p = *b.pairs;
     std::vector<bool> const balanced = first_comes_first(p);
-    // Thue and Morse: 0 1 1 0 1 0 0 1 ..., one of each in every two participants, and not tied to orders that
-    // alternate.
+    // Thue-Morse sequence: 0 1 1 0 1 0 0 1 ..., one of each in every two participants, not confounded with orders
+    // that alternate.
     std::size_t const side = std::size_t(std::popcount(unsigned(participant - 1))) % 2;
     for (int repeat = 0; repeat < b.repeats; ++repeat)
         for (std::size_t c = 0; c < cells.size(); ++c)
@@ -98,7 +98,7 @@ void add_pairs(Script const& s, Block const& b, std::vector<std::vector<int>> co
             }
 }
 
-/// Trials of the levels that procedures ask for.
+/// Trials whose levels are chosen by procedures.
 void add_varied(Block const& b, std::vector<std::vector<int>> const& cells, Random& random,
                 std::vector<Trial>& trials)
 {
@@ -134,7 +134,7 @@ void add_varied(Block const& b, std::vector<std::vector<int>> const& cells, Rand
     assign_orders(trials, adaptive, presented_orders(b.task, true), random);
 }
 
-/// Pairs or levels of a factor in tasks that have a right answer.
+/// Pairs or levels of a factor in tasks that have a correct answer.
 void add_judged(Block const& b, std::vector<std::vector<int>> const& cells, Random& random,
                 std::vector<Trial>& trials)
 {
@@ -164,7 +164,7 @@ void add_judged(Block const& b, std::vector<std::vector<int>> const& cells, Rand
     assign_orders(trials, conditions, presented_orders(b.task, false), random);
 }
 
-/// Conditions shown one at a time, or ranked all at once.
+/// Trials of conditions shown one at a time, or ranked together.
 void add_single(Block const& b, std::vector<std::vector<int>> const& cells, Random& random,
                 std::vector<Trial>& trials)
 {
@@ -209,7 +209,7 @@ std::vector<std::vector<int>> cells_of(Script const& s, Block const& b, std::vec
         if (next.size() > std::size_t(kMostTrialsOfBlock))
             throw ScriptError(s.file, b.place,
                               fmt::format("block '{}' has more than {} conditions", b.name, kMostTrialsOfBlock),
-                              "nobody can do them", "cross less");
+                              "that is too many for a session", "cross less");
         cells = std::move(next);
     };
     for (int const f : b.cross) {

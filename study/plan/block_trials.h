@@ -1,5 +1,5 @@
 #pragma once
-// The trials of one block, before and after they are put in order.
+// The trials of one block, before and after ordering.
 
 #include "study/plan/plan.h"
 #include "study/stats/random.h"
@@ -7,7 +7,7 @@
 namespace study {
 
 /// All main trials, unordered: repeats within conditions within cells.
-/// @param levels by factor, fixed where the block runs; -1 = not
+/// @param levels by factor, those fixed for this pass of the block; -1 = not fixed
 std::vector<Trial> main_trials(Script const& script, Block const& block, std::vector<int> const& levels,
                                int participant, Random& random);
 /// Levels of all factors for every cell of cross and nest.
@@ -15,11 +15,11 @@ std::vector<std::vector<int>> cells_of(Script const& script, Block const& block,
 std::vector<Trial> catch_trials(Script const& script, Block const& block, std::vector<int> const& levels,
                                 int count, Random& random);
 /// Practice, then main trials with catch trials among them, in their final order. Throws ScriptError.
-/// @param purpose tells the random numbers of this pass of this block from all others
+/// @param purpose  number of the random stream, unique to this pass of this block
 std::vector<Trial> ordered_trials(Script const& script, Block const& block, std::vector<int> const& levels,
                                   int participant, std::uint64_t purpose);
 
-/// The random numbers of a purpose for one participant.
+/// Random generator for one purpose and one participant.
 Random random_for(Script const& script, int participant, std::uint64_t purpose);
 
 } // namespace study

@@ -84,14 +84,14 @@ private:
         check_known(known, item.place, "the free walk");
     }
 
-    /// Every factor must have a level in everything that is shown.
+    /// Every factor must have a level in every stimulus.
     void check_known(std::vector<bool> known, Place where, std::string const& what)
     {
         for (LevelChoice const& c : s_.reference) known[std::size_t(c.factor)] = true;
         for (std::size_t f = 0; f < known.size(); ++f)
-            if (!known[f] && !without_level_) // said if nothing else is wrong: a factor may be used nowhere
+            if (!known[f] && !without_level_) // thrown only without other errors: the factor may be unused
                 without_level_ = error(where, fmt::format("factor '{}' has no level in {}", name(int(f)), what),
-                                       "it is not known what to show",
+                                       "the stimuli are not fully defined",
                                        fmt::format("cross it, or fix it: only: {{{0}: LEVEL}} in a block, "
                                                    "condition: {{{0}: LEVEL}} of a walk, per: {0}, "
                                                    "reference: {{{0}: LEVEL}}",
@@ -113,8 +113,8 @@ private:
                      "'per' or 'between' chose its level", "remove one of them");
             if (known[f])
                 fail(b.place,
-                     fmt::format("block '{}' {} '{}', which has its levels already", b.name, how, name(factor)),
-                     "it is there twice", "remove one");
+                     fmt::format("block '{}' {} '{}', whose levels are already chosen", b.name, how, name(factor)),
+                     "a factor can be used only once", "remove one");
             known[f] = factor_used_[f] = true;
         };
         for (int const f : b.cross) takes(f, "crosses");
@@ -132,7 +132,7 @@ private:
                 fail(b.place,
                      fmt::format("block '{}' has several levels of '{}' that it does not cross", b.name,
                                  name(int(f))),
-                     "it is not known which to show", fmt::format("add {} to cross", name(int(f))));
+                     "the level to show is undefined", fmt::format("add {} to cross", name(int(f))));
         }
         check_known(known, b.place, "block '" + b.name + "'");
         for (Constraint const& c : b.constraints) check_constraint(b, c);
@@ -150,11 +150,11 @@ private:
         if (c.subject == Subject::answer) varies = !presented_orders(b.task, false).empty();
         if (c.subject == Subject::procedure) varies = b.procedures.size() > 1;
         if (!varies)
-            fail(c.place, fmt::format("what this rule is about is the same in all trials of block '{}'", b.name),
-                 "nothing can be kept apart", "cross the factor or remove the rule");
+            fail(c.place, fmt::format("the subject of this rule is the same in all trials of block '{}'", b.name),
+                 "no order can satisfy it", "cross the factor or remove the rule");
         if (is_paired && c.kind != RuleKind::max_run && c.kind != RuleKind::min_gap)
             fail(c.place, fmt::format("'{}' has two levels in a trial of block '{}'", name(c.factor), b.name),
-                 "only no_repeat, max_run and min_gap are clear then", "use one of these");
+                 "only no_repeat, max_run and min_gap are defined then", "use one of these");
     }
 
     void check_used() const
@@ -162,16 +162,16 @@ private:
         for (std::size_t f = 0; f < s_.factors.size(); ++f)
             if (!factor_used_[f])
                 fail(s_.factors[f].place, fmt::format("factor '{}' is not used", s_.factors[f].name),
-                     "no block of the sequence has it", "cross it in a block, or remove it");
+                     "no block of the sequence uses it", "cross it in a block, or remove it");
         for (std::size_t b = 0; b < s_.blocks.size(); ++b)
             if (!block_used_[b])
                 fail(s_.blocks[b].place, fmt::format("block '{}' is not used", s_.blocks[b].name),
-                     "nothing in the sequence leads to it", "add it to the sequence, or remove it");
+                     "the sequence does not contain it", "add it to the sequence, or remove it");
         for (std::size_t i = 0; i < s_.counterbalances.size(); ++i)
             if (!balance_used_[i])
                 fail(s_.counterbalances[i].place,
                      fmt::format("the order '{}' is not used", s_.counterbalances[i].name),
-                     "nothing in the sequence has it",
+                     "nothing in the sequence uses it",
                      s_.counterbalances[i].factor >= 0
                          ? fmt::format("add {{per: {}, do: [...]}}", s_.counterbalances[i].name)
                          : fmt::format("add '{}' to the sequence", s_.counterbalances[i].name));
@@ -182,7 +182,7 @@ private:
                      "nothing in the sequence asks it", "add it to the sequence, or remove it");
     }
 
-    /// No input gives two of these answers. @param where they are asked for
+    /// Checks that no input gives two of these answers. @param where  place where they are asked for
     void check_inputs(std::set<std::string> const& answers, std::string const& where) const
     {
         std::map<std::string, std::string> answer_by_input;
@@ -192,7 +192,7 @@ private:
                 if (auto const [other, is_new] = answer_by_input.emplace(input, d.answer); !is_new)
                     fail(d.place,
                          fmt::format("'{}' is both {} and {} in {}", input, other->second, d.answer, where),
-                         "the answer would not be known", "choose another input");
+                         "the answer would be ambiguous", "choose another input");
         }
     }
 

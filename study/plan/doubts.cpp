@@ -11,7 +11,8 @@
 namespace study {
 namespace {
 
-/// QUEST+ with a function that lies above a half everywhere, where its middle is a half.
+/// True for QUEST+ if the function never falls to a half, where the threshold is, because all guess rates are >=
+/// 0.5.
 bool never_reaches_half(Block const& b, Procedure const& p)
 {
     bool const goes_to_false_alarms = b.task == Task::yes_no || b.task == Task::same_different;
@@ -34,9 +35,9 @@ std::vector<std::string> find_doubts(Script const& s)
         for (Procedure const& p : b.procedures)
             if (never_reaches_half(b, p))
                 doubts.push_back(fmt::format("block '{}': guess of procedure '{}' is 0.5 or more; in {} it is the "
-                                             "share of false alarms, and "
+                                             "false alarm rate, and "
                                              "the threshold, where half of the answers are {}, is never reached; "
-                                             "guess: [0, 0.1, 0.2] would do",
+                                             "use for example guess: [0, 0.1, 0.2]",
                                              b.name, p.name, facts(b.task).name,
                                              b.task == Task::yes_no ? "yes" : "different"));
     for (Block const& b : s.blocks) {
@@ -44,7 +45,7 @@ std::vector<std::string> find_doubts(Script const& s)
         if (orders == 0 || !b.procedures.empty() || std::size_t(b.repeats) % orders == 0) continue;
         doubts.push_back(
             fmt::format("block '{}': the {} orders of presentation are balanced over all trials, but not "
-                        "within each condition; repeats: {} would do that",
+                        "within each condition; repeats: {} balances them",
                         b.name, orders, (std::size_t(b.repeats) / orders + 1) * orders));
     }
     return doubts;
@@ -68,7 +69,7 @@ std::vector<std::string> find_doubts(Script const& s, Plan const& plan)
         where = step.block;
     }
     if (longest > kLongStretch_us)
-        doubts.push_back(fmt::format("{} of trials without a break, up to block '{}'; break_every gives them",
+        doubts.push_back(fmt::format("{} of trials without a break, up to block '{}'; add breaks with break_every",
                                      clock_text(longest), s.blocks[std::size_t(where)].name));
     return doubts;
 }

@@ -6,11 +6,11 @@
 
 namespace study {
 
-/// What may be meant but seldom is: orders that do not come equally often with so many participants, presentation
-/// orders that cannot be balanced within a condition, long sessions, long stretches without a break. One line
-/// each.
+/// Warnings about valid but unusual designs, one line each: orders that do not occur equally often with the
+/// planned number of participants, presentation orders that cannot be balanced within a condition, long sessions,
+/// long stretches without a break.
 std::vector<std::string> find_doubts(Script const& script);
-/// The same of one participant's plan.
+/// The same for one participant's plan.
 std::vector<std::string> find_doubts(Script const& script, Plan const& plan);
 
 } // namespace study

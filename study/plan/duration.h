@@ -1,20 +1,20 @@
 #pragma once
-// How long things are expected to take, in microseconds: whole numbers, so that sums are the same everywhere.
+// Expected durations in microseconds; integers, so that sums are equal on all machines.
 
 #include "study/plan/plan.h"
 
 namespace study {
 
-/// Reading at 200 words a minute, at least 10 s; of a file, whose text is not known here, 60 s.
+/// Reading at 200 words per minute, at least 10 s; 60 s for a file, whose text is unknown here.
 std::int64_t reading_us(std::string const& text);
-/// 6 s an item.
+/// 6 s per item.
 std::int64_t questionnaire_us(Questionnaire const& questionnaire);
-/// From the end of the trial before: iti, warm-up, stimuli, answer, feedback.
+/// Duration from the end of the previous trial: iti, warm-up, stimuli, answer, feedback.
 std::int64_t trial_us(Script const& script, Block const& block, Trial const& trial);
-/// What of it passes before the first stimulus.
+/// Part of trial_us before the first stimulus.
 std::int64_t until_onset_us(Script const& script, Block const& block);
 
-/// Longer sessions tire: `study plan` warns.
+/// `study plan` warns about longer sessions, because they are tiring.
 inline constexpr std::int64_t kLongSession_us = 3600LL * 1000000;
 
 } // namespace study

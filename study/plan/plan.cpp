@@ -37,7 +37,7 @@ public:
     }
 
 private:
-    /// The order of what this counterbalance is of; the same whenever it comes.
+    /// The order of this counterbalance; the same at each use.
     std::vector<int> order_of(std::size_t i) const
     {
         Random random = random_for(s_, plan_.participant, kBalancePurpose + i);
@@ -124,7 +124,7 @@ private:
         if (trial_count_ > std::size_t(kMostTrials))
             throw ScriptError(s_.file, b.place,
                               fmt::format("more than {} trials up to block '{}'", kMostTrials, b.name),
-                              "no session has so many", "repeat less");
+                              "that is too many for a session", "repeat less");
         int since_break = 0;
         for (std::size_t i = 0; i < trials.size(); ++i) {
             PlanStep step = common;

@@ -1,8 +1,8 @@
 #pragma once
-// What will happen to one participant, step by step, before it happens.
+// The plan of one participant's session, step by step, made before it starts.
 //
-// Orders are decided by integers and study::Random alone: seed and participant's number give the same plan with
-// every compiler. Each block has random numbers of its own, so a change of one leaves the others as they were.
+// Orders depend only on integers and study::Random: seed and participant number give the same plan with every
+// compiler. Each block has its own random stream, so changing one block does not affect the others.
 
 #include "study/script/condition.h"
 #include "study/script/script.h"
@@ -16,13 +16,13 @@ std::string_view name_of(Phase phase); ///< practice, main, catch
 
 struct Trial {
     Phase phase = Phase::main;
-    int repeat = 1;                    ///< from 1; of adaptive procedures: which run
+    int repeat = 1;                    ///< from 1; for adaptive procedures the number of the run
     std::vector<Stimulus> stimuli;     ///< a, b, c, ...
-    std::string order;                 ///< what is shown, in this order, as letters: "ba"
-    std::optional<Stimulus> reference; ///< shown too
-    std::string answer;                ///< the right one; empty = there is none
+    std::string order;                 ///< letters of the stimuli in order of presentation: "ba"
+    std::optional<Stimulus> reference; ///< also shown
+    std::string answer;                ///< the correct one; empty = there is none
     int procedure = -1;                ///< of the block
-    std::optional<double> level;       ///< of what is varied; none = nothing, or chosen when the trial comes
+    std::optional<double> level;       ///< of the varied setting; none = nothing varied, or chosen at the trial
     bool is_noise = false;             ///< there is nothing to find
 };
 
@@ -31,14 +31,14 @@ std::string_view name_of(PlanStepKind kind);
 
 struct PlanStep {
     PlanStepKind kind = PlanStepKind::trial;
-    int block = -1;   ///< instructions and rests within a block have it too
-    int pass = 0;     ///< how often the block came before
+    int block = -1;   ///< also set for instructions and rests within a block
+    int pass = 0;     ///< number of earlier passes of the block
     std::string text; ///< instructions: a file or Markdown; prompts
     int questionnaire = -1;
-    std::vector<int> levels;                    ///< by factor, what is fixed where the step is; -1 = nothing
+    std::vector<int> levels;                    ///< by factor, the level fixed at this step; -1 = none
     int number = 0;                             ///< of a trial in its pass, from 1, over all phases
-    Trial trial;                                ///< of a trial
-    double seconds = 0;                         ///< of a free walk; least of a rest
+    Trial trial;                                ///< only for trials
+    double seconds = 0;                         ///< of a free walk; minimum of a rest
     std::int64_t start_us = 0, duration_us = 0; ///< expected
     std::int64_t onset_us = 0;                  ///< expected, of a trial's first stimulus
 };
@@ -53,15 +53,15 @@ struct Plan {
 inline constexpr int kMostTrialsOfBlock = 5000, kMostTrials = 50000;
 
 /// @param participant from 1
-/// Throws ScriptError with the place in the script where the design cannot be: no order keeps a block's
-/// constraints, more practice or catch trials than the block has room for, too many trials.
+/// Throws ScriptError with the place in the script if the design is impossible: no order satisfies a block's
+/// constraints, more practice or catch trials than fit into the block, too many trials.
 Plan make_plan(Script const& script, int participant);
 
-/// The table plan.tsv: a line of column names, then one per step; UTF-8, tabs between, n/a where there is nothing.
+/// The table plan.tsv: a line of column names, then one per step; UTF-8, tab-separated, n/a = missing.
 std::string plan_table(Script const& script, Plan const& plan);
 
-/// "similarity: visibility=ism_5" and such, for tables: the level of the factor that a block compares, or of what
-/// it varies; rating and the like: their crossed levels.
+/// Label of a stimulus in tables, such as "similarity: visibility=ism_5": the level of the factor that a block
+/// compares, or of the setting that it varies; for ratings and similar tasks their crossed levels.
 std::string stimulus_label(Script const& script, Block const& block, Stimulus const& stimulus);
 
 } // namespace study

@@ -8,7 +8,7 @@ namespace {
 
 std::string or_none(std::string const& text) { return text.empty() ? "n/a" : text; }
 
-/// One line of at most 60 bytes, whole characters, without tabs.
+/// Shortens to one line of at most 60 bytes, without split characters or tabs.
 std::string shortened(std::string const& text)
 {
     std::string out;
@@ -22,7 +22,7 @@ std::string shortened(std::string const& text)
 std::string seconds(std::int64_t us) { return fmt::format("{}.{:06}", us / 1000000, us % 1000000); }
 std::string milliseconds(double ms) { return fmt::format("{:.9g}", ms); }
 
-/// "640/arches": levels of factors in the cell of the trial, n/a where not fixed.
+/// "640/arches": levels of factors in the cell of the trial, n/a if not fixed.
 void add_levels(std::vector<std::string>& row, Script const& s, PlanStep const& step)
 {
     Block const* const b = step.block >= 0 ? &s.blocks[std::size_t(step.block)] : nullptr;

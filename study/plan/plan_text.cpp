@@ -28,7 +28,7 @@ std::string first_line(std::string const& text)
     return line.substr(0, end) + "...";
 }
 
-/// What is crossed, where the label of the stimuli does not say it.
+/// Crossed levels that the stimuli's label does not contain.
 std::string cell_text(Script const& s, Block const& b, Trial const& t)
 {
     std::string text;
@@ -57,8 +57,8 @@ std::string trial_text(Script const& s, PlanStep const& step)
     return text;
 }
 
-/// "scene: arches 10, atrium 10": of main and catch trials of a pass. Of pairs: how often shown, and how often
-/// first.
+/// "scene: arches 10, atrium 10": counts of main and catch trials of a pass. For pairs: how often shown, and how
+/// often first.
 std::string condition_counts(Script const& s, Plan const& plan, int block, int pass)
 {
     Block const& b = s.blocks[std::size_t(block)];
@@ -114,14 +114,14 @@ std::string procedure_text(Procedure const& p)
     std::string text = fmt::format("    {}: {}, {}{} trials", p.name, name_of(p.method),
                                    is_adaptive(p) ? "at most " : "", planned_trials(p));
     if (p.stop.reversals > 0) text += fmt::format(" or {} reversals", p.stop.reversals);
-    if (p.method == Method::staircase) text += fmt::format(", settles at {:.2f} % right", 100 * settles_at(p));
+    if (p.method == Method::staircase) text += fmt::format(", converges to {:.2f} % correct", 100 * settles_at(p));
     if (p.method == Method::questplus)
         text += fmt::format(", {} x {} x {} x {} points of prior, {} levels", p.threshold.size(), p.slope.size(),
                             p.guess.size(), p.lapse.size(), p.stimuli.size());
     return text + "\n";
 }
 
-/// Blocks with their passes in a plan, in its order.
+/// Blocks and passes in the order of the plan.
 std::vector<std::pair<int, int>> passes_of(Plan const& plan)
 {
     std::vector<std::pair<int, int>> passes;

@@ -1,5 +1,5 @@
 #pragma once
-// Scripts and plans for people to read.
+// Readable summaries of scripts and plans.
 
 #include "study/plan/plan.h"
 
@@ -13,12 +13,12 @@ struct TrialCounts {
 };
 TrialCounts count_trials(Plan const& plan, int block, int pass);
 
-/// What a script holds: participants, factors, orders, blocks with their trials and procedures.
+/// Summary of a script: participants, factors, orders, blocks with their trials and procedures.
 /// @param plan of any participant
 std::string script_text(Script const& script, Plan const& plan);
-/// Every step with its expected time; trials in one line each.
+/// Every step with its expected time; one line per trial.
 std::string order_text(Script const& script, Plan const& plan);
-/// Trials by block and phase, how often each level and answer comes, and how one trial follows another.
+/// Trials by block and phase, counts of each level and answer, and transitions between trials.
 std::string statistics_text(Script const& script, Plan const& plan);
 
 } // namespace study

@@ -16,7 +16,7 @@ Square latin_square(int n)
 
 Square williams_square(int n)
 {
-    std::vector<int> zigzag; // 0, 1, n-1, 2, n-2, ...: its neighbours differ by 1, -2, 3, ... each once mod n
+    std::vector<int> zigzag; // 0, 1, n-1, 2, n-2, ...: neighbours differ by 1, -2, 3, ..., each once mod n
     for (int i = 0; i < n; ++i) zigzag.push_back(i % 2 == 1 ? (i + 1) / 2 : (n - i / 2) % n);
     Square rows;
     for (int r = 0; r < n; ++r) {

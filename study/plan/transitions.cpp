@@ -43,7 +43,7 @@ void add_pass(Script const& s, int block, int pass, std::vector<Trial const*> co
     Block const& b = s.blocks[std::size_t(block)];
     auto const add = [&](std::string const& subject, std::vector<std::string> names, Read const& read) {
         Transitions t = count(trials, {block, pass, subject, std::move(names), {}, 0, 0}, read);
-        if (t.by_chance > 0) out.push_back(std::move(t)); // else it is the same in all trials
+        if (t.by_chance > 0) out.push_back(std::move(t)); // otherwise it is the same in all trials
     };
     for (std::size_t f = 0; f < s.factors.size(); ++f) {
         if ((b.pairs && b.pairs->factor == int(f)) || b.rank == int(f)) continue;

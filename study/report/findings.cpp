@@ -18,7 +18,7 @@ std::string interval_text(Uncertain const& u)
     return text;
 }
 
-/// Best first, those that cannot be told from the next one joined by "~".
+/// Items, best first; "~" joins an item to the next one if they do not differ significantly.
 std::string ranking_text(ScaleResult const& s)
 {
     std::vector<int> order;
@@ -40,7 +40,7 @@ std::string ranking_text(ScaleResult const& s)
     return text;
 }
 
-/// What adjusted levels were set to.
+/// Text with the adjusted levels.
 std::string levels_text(ScaleResult const& s, bool is_log)
 {
     std::string text;
@@ -57,22 +57,22 @@ std::string cheapest_text(ScaleResult const& s)
     Cheapest const& c = *s.cheapest;
     ScaledItem const &item = s.items[std::size_t(c.item)], &against = s.items[std::size_t(c.against)];
     std::string const stand_in =
-        c.is_reference ? "the reference" : "the best of those judged (the reference itself was not among them),";
+        c.is_reference ? "the reference" : "the best judged item (the reference itself was not judged),";
     if (c.item == c.against)
         return fmt::format(
             "Nothing cheaper than <b>{}</b> ({} ms) is as good as {}: every cheaper one is significantly "
             "worse.",
             gi::escaped(item.name), short_number(item.render_ms.value),
             c.is_reference ? "it, the reference"
-                           : "it, the best of those judged (the reference was not among them)");
-    std::string text = fmt::format(
-        "The cheapest that cannot be told from {} <b>{}</b> ({} ms) is <b>{}</b> ({} ms): difference "
-        "{} {}, p = {:.3f} "
-        "corrected for all pairs.",
-        stand_in, gi::escaped(against.name), short_number(against.render_ms.value), gi::escaped(item.name),
-        short_number(item.render_ms.value), interval_text(c.difference), gi::escaped(s.unit), c.p_holm);
+                           : "it, the best judged item (the reference was not judged)");
+    std::string text =
+        fmt::format("The cheapest without significant difference from {} <b>{}</b> ({} ms) is <b>{}</b> ({} ms): "
+                    "difference {} {}, p = {:.3f} "
+                    "corrected for all pairs.",
+                    stand_in, gi::escaped(against.name), short_number(against.render_ms.value), gi::escaped(item.name),
+                    short_number(item.render_ms.value), interval_text(c.difference), gi::escaped(s.unit), c.p_holm);
     if (std::isfinite(c.difference.interval.low) && c.difference.interval.low < 0)
-        text += fmt::format(" Not to be told apart is not the same as equal: it may still be {} {} worse.",
+        text += fmt::format(" No significant difference does not mean equal: it may be up to {} {} worse.",
                             short_number(-c.difference.interval.low), gi::escaped(s.unit));
     return text;
 }
@@ -91,7 +91,7 @@ std::string findings(Analysis const& a)
         }
         for (CurveResult const& c : b.curves)
             if (c.refused.empty())
-                html += fmt::format("<li><b>{}</b>, {}: {:.0f} % right at {}.{}</li>\n", gi::escaped(b.name),
+                html += fmt::format("<li><b>{}</b>, {}: {:.0f} % correct at {}.{}</li>\n", gi::escaped(b.name),
                                     gi::escaped(c.cell), 100 * c.proportion, interval_text(c.threshold),
                                     c.fit.note.empty() ? "" : " Doubtful: " + gi::escaped(c.fit.note) + ".");
     }

@@ -3,7 +3,7 @@
 
 namespace study {
 
-/// What came out, in a sentence per block: a section of HTML, empty where nothing did.
+/// The main results, one sentence per block: a section of HTML, empty without results.
 std::string findings(Analysis const& analysis);
 
 } // namespace study

@@ -21,7 +21,7 @@ Block const* block_of(Script const& s, std::string const& name)
     return nullptr;
 }
 
-/// True scores of the items, with mean 0 as the estimates have; empty where they are not known.
+/// True scores of the items, with mean 0 like the estimates; empty if unknown.
 std::vector<double> true_scores(Script const& s, Block const& b, ScaleResult const& scale,
                                 ReportFacts const& facts)
 {
@@ -52,7 +52,7 @@ std::string figures(std::string const& html)
     return html.empty() ? "" : "<div class=\"figures\">\n" + html + "</div>\n";
 }
 
-/// From the lowest to the highest of all groups.
+/// Range from the lowest to the highest score of all groups.
 Interval shared_range(Script const& s, Block const& b, BlockResult const& r, ReportFacts const& facts)
 {
     Interval range{1e300, -1e300};
@@ -100,18 +100,18 @@ std::string scales_html(Script const& s, Block const& b, BlockResult const& r, A
     if (r.task == "pair" || r.task == "pair_with_reference")
         html += "1 JOD: 75 % choose the better one (Thurstone, case V; mean 0). Intervals by a bootstrap over "
                 "observers. ";
-    html += "Grey bars at the right join what does not differ significantly.";
-    if (has_truth) html += " Diamonds: the truth of the simulated observers.";
+    html += "Grey bars at the right join items that do not differ significantly.";
+    if (has_truth) html += " Diamonds: true values of the simulated observers.";
     html += "</p>\n" + figures(scales);
     if (!spreads.empty())
-        html += "<h3>Distribution of answers</h3>\n<p class=\"note\">Shares of the answers (bars), mean and "
+        html += "<h3>Distribution of answers</h3>\n<p class=\"note\">Proportions of the answers (bars), mean and "
                 "interval over "
                 "observers (dots).</p>\n" +
                 figures(spreads);
     if (!costs.empty()) {
-        html += "<h3>Perceived quality against time to render</h3>\n<p class=\"note\">Square: what is compared "
+        html += "<h3>Perceived quality against rendering time</h3>\n<p class=\"note\">Square: the item compared "
                 "with. Ring: "
-                "the cheapest that cannot be told from it.</p>\n" +
+                "the cheapest item that does not differ significantly from it.</p>\n" +
                 figures(costs) + cheapest_table(a, r.name);
     }
     if (!wins.empty())
@@ -126,15 +126,15 @@ std::string thresholds_html(Block const& b, BlockResult const& r, ReportFacts co
 {
     std::string html, curves;
     if (!r.detections.empty())
-        html += "<h3>Right answers</h3>\n" + figures(detections_figure(r.detections, guess_rate(b.task), r.name));
+        html += "<h3>Detection</h3>\n" + figures(detections_figure(r.detections, guess_rate(b.task), r.name));
     std::string const setting = b.compare ? b.compare->vary : "level";
     for (CurveResult const& c : r.curves)
         curves += curve_figure(c, r, setting, true_threshold(b, facts, c.proportion));
     if (!curves.empty())
         html += "<h3>Psychometric functions</h3>\n<p class=\"note\">Trials of all observers and procedures "
-                "together, with "
-                "Wilson's intervals; larger dots are more trials. Shaded: interval of the threshold." +
-                std::string(facts.truth ? " Diamond: the truth of the simulated observers." : "") + "</p>\n" +
+                "pooled, with "
+                "Wilson's intervals; larger dots mean more trials. Shaded: interval of the threshold." +
+                std::string(facts.truth ? " Diamond: true value of the simulated observers." : "") + "</p>\n" +
                 figures(curves);
     if (!r.thresholds.empty()) {
         std::map<std::string, std::vector<ThresholdSummary>> cells;
@@ -175,16 +175,16 @@ std::string block_html(Script const& s, BlockResult const& r, Analysis const& a,
     return html + "</section>\n";
 }
 
-/// By reason; who it was where they are few.
+/// Exclusions by reason; lists the participants if they are few.
 std::string exclusions_html(Analysis const& a)
 {
     std::map<std::pair<std::string, std::string>, std::vector<Exclusion const*>> reasons;
     for (Exclusion const& e : a.exclusions) reasons[{e.what, e.why}].push_back(&e);
-    ResultTable t{"exclusions", "Left out, or to be looked at", "", false, {}};
+    ResultTable t{"exclusions", "Excluded, or to be inspected", "", false, {}};
     t.table.columns = {{"what", "left out, kept, or look at"},
                        {"why", "Reason"},
                        {"trials", "Trials concerned"},
-                       {"participants", "Of so many"},
+                       {"participants", "Number of participants concerned"},
                        {"who", "Participants"}};
     for (auto const& [key, list] : reasons) {
         int trials = 0;
@@ -203,7 +203,7 @@ std::string exclusions_html(Analysis const& a)
 std::string timing_html(Analysis const& a, ReportFacts const& facts)
 {
     std::string html = histogram(facts.frame_interval_ms, "ms", "Intervals between frames");
-    html += histogram(a.timing.frame_ms, "ms", "Time to render a frame, means of stimuli");
+    html += histogram(a.timing.frame_ms, "ms", "Rendering time per frame, means of stimuli");
     html += histogram(a.timing.uncertainty_ms, "ms", "Uncertainty of onsets");
     for (ReactionResult const& r : a.timing.reactions) html += histogram(r.ms, "ms", "Reaction times, " + r.block);
     return figures(html);
@@ -266,12 +266,12 @@ std::string report_page(Script const& script, std::span<RecordedSession const> s
                 if (t.name == name && !t.is_long) html += html_of(t);
     };
     html += "<section>\n<h2>Observers</h2>\n";
-    if (a.exclusions.empty()) html += "<p>Nothing was left out but practice.</p>\n";
+    if (a.exclusions.empty()) html += "<p>Nothing except practice was excluded.</p>\n";
     html += exclusions_html(a);
     add({"observers", "agreement"});
     html += "</section>\n<section>\n<h2>Timing</h2>\n" + timing_html(a, facts);
     add({"timing", "reactions", "calibrations"});
-    html += "</section>\n<section>\n<h2>Order</h2>\n<p class=\"note\">How one trial followed another, summed over "
+    html += "</section>\n<section>\n<h2>Order</h2>\n<p class=\"note\">How trials followed each other, summed over "
             "participants: from the row to the column.</p>\n";
     std::string orders;
     for (TransitionResult const& t : a.transitions) orders += transitions_table(t);

@@ -1,5 +1,5 @@
 #pragma once
-// One page (HTML) that shows an analysis: drawings inline, no scripts, nothing beside it; it prints.
+// A self-contained HTML page that shows an analysis: inline figures, no scripts, no other files; printable.
 
 #include "study/analysis/analysis.h"
 
@@ -7,7 +7,7 @@
 
 namespace study {
 
-/// What a simulation says of its observers (study/observers writes it).
+/// True parameters of simulated observers (written by study/observers).
 struct SimulatedTruth {
     std::map<std::string, std::map<std::string, double>> quality_jod; ///< by factor and level
     struct Varied {
@@ -17,19 +17,19 @@ struct SimulatedTruth {
     std::map<std::string, Varied> varied; ///< by setting
     double lapse = 0;
 };
-/// @throws ScriptError where it is no such text
+/// @throws ScriptError if the text has another form
 SimulatedTruth read_truth(std::string const& json, std::string const& name);
-/// Where the share of right answers is `proportion`; NaN where it never is, or the setting is not known.
+/// Level at which the proportion correct is `proportion`; NaN if there is none, or the setting is unknown.
 double true_level(SimulatedTruth const& truth, std::string const& setting, bool harder_up, double guess,
                   double proportion);
 
 struct ReportFacts {
     std::string program; ///< "lightwell 0.1.0 (git 1a2b3c4)"
     std::optional<SimulatedTruth> truth;
-    std::vector<double> frame_interval_ms{}; ///< between neighbouring frames of a stimulus; empty = not kept
+    std::vector<double> frame_interval_ms{}; ///< between neighbouring frames of a stimulus; empty = not recorded
 };
 
-/// @param sessions those that were analysed, for their provenance
+/// @param sessions the analysed sessions, for their provenance
 std::string report_page(Script const& script, std::span<RecordedSession const> sessions, Analysis const& analysis,
                         ReportFacts const& facts);
 

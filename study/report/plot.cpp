@@ -44,7 +44,7 @@ std::vector<double> Axis1D::ticks(int about) const
         if (out.size() >= 2) return out;
         out.clear();
     }
-    // Nothing to count in: steps would vanish in the rounding of the numbers.
+    // No ticks: steps would vanish in rounding.
     if (!(high - low > 1e-9 * std::max(std::abs(low), std::abs(high)))) return {low};
     double const raw = (high - low) / std::max(1, about), power = std::pow(10.0, std::floor(std::log10(raw)));
     double step = 10 * power;

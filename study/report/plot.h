@@ -1,5 +1,5 @@
 #pragma once
-// Drawings as inline SVG. Colours, fonts and line widths come from the page's style sheet, by classes.
+// Plots as inline SVG. Colours, fonts and line widths come from classes of the page's style sheet.
 
 #include <string>
 #include <string_view>
@@ -7,27 +7,29 @@
 
 namespace study {
 
-/// Three digits, whole numbers up to seven: "0.05", "1250".
+/// Escaped for HTML text and quoted attributes.
+std::string gi::escaped(std::string_view text);
+/// Number with three digits, integers with up to seven: "0.05", "1250".
 std::string short_number(double value);
-/// About how wide a text is in the drawings' font of 12 px.
+/// Approximate width of a text in the plots' font of 12 px.
 double text_width(std::string_view text);
 
 struct Axis1D {
     double low = 0, high = 1;
     bool is_log = false;
 
-    /// 0 at low, 1 at high; values beyond are moved to just outside.
+    /// Position of a value, 0 at low, 1 at high; values beyond are placed just outside.
     double position(double value) const;
     std::vector<double> ticks(int about) const;
 };
-/// Holds all finite values (logarithmic: all above 0), with a margin at both ends. [0, 1] of none.
+/// Axis over all finite values (logarithmic: all above 0), with a margin at both ends; [0, 1] if there are none.
 Axis1D axis_over(std::vector<double> const& values, bool is_log = false, double margin = 0.06);
 
-/// A rectangle with axes; values are drawn within, texts in pixels around it.
+/// A rectangle with axes; data are drawn inside it, text at pixel positions around it.
 class Plot {
 public:
     Plot(double width, double height, Axis1D x, Axis1D y);
-    /// Pixels between the rectangle and the borders; call before drawing.
+    /// Sets the pixels between the rectangle and the borders; call before drawing.
     void margins(double left, double top, double right, double bottom);
 
     double x(double value) const;
@@ -48,9 +50,9 @@ public:
     void text(double tx, double ty, std::string_view words, char const* anchor = "start", char const* style = "");
     void polyline(std::vector<std::pair<double, double>> const& points, char const* style);
 
-    /// @param title for those who cannot see it
+    /// @param title  accessible title
     std::string svg(std::string const& title) const;
-    /// The drawing with words below it. @param caption HTML
+    /// The plot with a caption below it. @param caption HTML
     std::string figure(std::string const& title, std::string const& caption) const;
 
 private:

@@ -27,7 +27,7 @@ std::vector<int> by_score(ScaleResult const& s)
     return order;
 }
 
-/// Longest runs [first, last] of the sorted items of which no two differ significantly.
+/// Longest runs [first, last] of sorted items in which no two differ significantly.
 std::vector<std::pair<std::size_t, std::size_t>> equal_runs(ScaleResult const& s, std::vector<int> const& order)
 {
     std::vector<std::pair<std::size_t, std::size_t>> runs;
@@ -56,7 +56,7 @@ double overlap(Rectangle const& a, Rectangle const& b)
     return w > 0 && h > 0 ? w * h : 0;
 }
 
-/// Beside a point, where a text covers least of what is there.
+/// Position beside a point where a text overlaps least.
 Rectangle free_spot(Plot const& p, double x, double y, double width, std::vector<Rectangle> const& taken)
 {
     constexpr double kHeight = 15;
@@ -95,7 +95,7 @@ std::string scale_figure(ScaleResult const& s, std::vector<double> const& truth,
     double const row = 24, left = std::max(60.0, widest(s) + 16);
     Plot p(std::max(370.0, left + 250), row * double(order.size()) + 62, axis_over({shared.low, shared.high}),
            {0, 1, false});
-    // Room for four bars, so that axes are alike.
+    // Space for four bars, so that axes are equal.
     p.margins(left, 8, 12 + 10 * double(std::max<std::size_t>(4, runs.size())), 46);
     p.x_axis(s.unit);
     for (std::size_t k = 0; k < order.size(); ++k) {
@@ -129,7 +129,7 @@ std::string cost_figure(ScaleResult const& s, std::string const& title)
     auto const [low, high] = std::minmax_element(costs.begin(), costs.end());
     Plot p(550, 350, axis_over(costs, *low > 0 && *high > 5 * *low, 0.12), axis_over(scores, false, 0.1));
     p.margins(56, 12, 20, 46);
-    p.x_axis("time to render a frame, ms");
+    p.x_axis("rendering time per frame, ms");
     p.y_axis(s.unit);
     std::vector<Rectangle> taken;
     for (ScaledItem const& item : s.items) {
@@ -156,7 +156,7 @@ std::string cost_figure(ScaleResult const& s, std::string const& title)
         taken.push_back(spot);
         p.text(spot.x1, spot.y2 - 3, words);
     }
-    return p.figure(title + ": score against time to render a frame", "<b>" + gi::escaped(title) + "</b>");
+    return p.figure(title + ": score against rendering time per frame", "<b>" + gi::escaped(title) + "</b>");
 }
 
 std::string wins_table(ScaleResult const& s, double level)

@@ -20,7 +20,7 @@ std::string curve_figure(CurveResult const& c, BlockResult const& block, std::st
     Plot p(460, 320, axis, {0, 1.04, false});
     p.margins(54, 12, 16, 46);
     p.x_axis(setting);
-    p.y_axis("share of right answers");
+    p.y_axis("proportion correct");
     if (std::isfinite(c.threshold.interval.low))
         p.box(p.x(c.threshold.interval.low), p.top(),
               p.x(c.threshold.interval.high) - p.x(c.threshold.interval.low), p.bottom() - p.top(), "band");
@@ -47,7 +47,7 @@ std::string curve_figure(CurveResult const& c, BlockResult const& block, std::st
                                                 short_number(c.threshold.interval.high))
                                   : "";
     return p.figure("psychometric function, " + c.cell,
-                    fmt::format("<b>{}</b> {:.0f} % right at {}{}; {} observers{}", gi::escaped(c.cell),
+                    fmt::format("<b>{}</b> {:.0f} % correct at {}{}; {} observers{}", gi::escaped(c.cell),
                                 100 * c.proportion, short_number(c.threshold.value), range, c.observers,
                                 c.fit.note.empty() ? "" : ". Doubtful: " + gi::escaped(c.fit.note)));
 }
@@ -89,7 +89,7 @@ std::string tracks_figure(std::vector<ThresholdRun> const& runs, BlockResult con
     std::string const more =
         runs.size() > kMost ? fmt::format(" The first {} of {} runs.", kMost, runs.size()) : "";
     return "<figure class=\"wide\"><figcaption><b>" + gi::escaped(title) +
-           "</b> Filled: right, open: wrong; dashed: the run's estimate." + more +
+           "</b> Filled: correct, open: wrong; dashed: the run's estimate." + more +
            "</figcaption><div class=\"small\">" + html + "</div></figure>\n";
 }
 
@@ -130,7 +130,7 @@ std::string detections_figure(std::vector<DetectionResult> const& detections, do
     double const row = 24, left = widest + 12;
     Plot p(left + 300, row * double(detections.size()) + 62, {0, 1.02, false}, {0, 1, false});
     p.margins(left, 8, 20, 46);
-    p.x_axis("share of right answers");
+    p.x_axis("proportion correct");
     if (guess > 0) p.line(p.x(guess), p.top(), p.x(guess), p.bottom(), "mark");
     for (std::size_t k = 0; k < detections.size(); ++k) {
         DetectionResult const& d = detections[k];
@@ -151,7 +151,7 @@ std::string histogram(std::vector<double> const& values, std::string const& labe
     if (known.size() < 2) return {};
     std::sort(known.begin(), known.end());
     if (known.front() == known.back()) return {};
-    // Up to the 99th percentile; what lies beyond is counted in the caption.
+    // Up to the 99th percentile; the caption counts the values beyond.
     double const low = known.front(), end = known[std::size_t(0.99 * double(known.size() - 1))];
     double const high = end - low > 1e-4 * std::abs(low) ? end : low + std::max(1e-3, std::abs(low) * 0.1);
     constexpr int kBins = 30;
@@ -170,7 +170,7 @@ std::string histogram(std::vector<double> const& values, std::string const& labe
         p.box(p.x(from) + 0.5, top, p.x(to) - p.x(from) - 1, p.bottom() - top, "bar");
     }
     return p.figure(title, fmt::format("<b>{}</b> {} values{}", gi::escaped(title), known.size(),
-                                       beyond ? fmt::format(", {} beyond the drawing", beyond) : ""));
+                                       beyond ? fmt::format(", {} beyond the plot", beyond) : ""));
 }
 
 std::string transitions_table(TransitionResult const& t)

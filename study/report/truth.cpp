@@ -17,7 +17,7 @@ SimulatedTruth read_truth(std::string const& json, std::string const& name)
                                  v.at("function").get<std::string>() == "weibull"};
         t.lapse = j.at("lapse").get<double>();
     } catch (nlohmann::json::exception const& e) {
-        throw ScriptError(name, {}, "it is no truth of simulated observers", e.what(), "move it away");
+        throw ScriptError(name, {}, "it has no true parameters of simulated observers", e.what(), "move it away");
     }
     return t;
 }

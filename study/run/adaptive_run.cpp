@@ -11,7 +11,7 @@
 namespace study {
 namespace {
 
-/// As it is shown: settings have nine digits, and sums of steps come back to the same levels.
+/// The level as shown: settings have nine digits, so that sums of steps return to the same levels.
 double as_shown(double level)
 {
     std::string const text = level_text(level);

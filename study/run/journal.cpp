@@ -16,7 +16,7 @@
 namespace study {
 namespace {
 
-constexpr std::size_t kRoom = std::size_t(256) << 10; ///< some 250 trials
+constexpr std::size_t kRoom = std::size_t(256) << 10; ///< about 250 trials
 
 /// @return errno, or 0
 int write_all(int fd, std::string_view text, std::size_t at)
@@ -44,7 +44,7 @@ void lock(int fd, std::filesystem::path const& file)
     int const error = errno;
     ::close(fd);
     if (error == EWOULDBLOCK)
-        throw cannot(file, "this session is under way", "another process has its journal", "end that one first");
+        throw cannot(file, "this session is running", "another process has its journal", "end that one first");
     throw cannot(file, "the journal cannot be locked", std::strerror(error),
                  "keep the records on a disk that can lock files");
 }
@@ -68,15 +68,15 @@ Journal::~Journal()
 {
     if (fd_ < 0) return;
     if (room_ > size_ && ::ftruncate(fd_, off_t(size_)) == 0) ::fdatasync(fd_);
-    ::close(fd_); // and the lock is gone
+    ::close(fd_); // also releases the lock
 }
 
 Journal Journal::create(std::filesystem::path const& file)
 {
     int const fd = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd < 0)
-        throw cannot(file, "the journal cannot be made", std::strerror(errno),
-                     "choose a folder that can be written");
+        throw cannot(file, "the journal cannot be created", std::strerror(errno),
+                     "choose a writable folder");
     lock(fd, file);
     gi::sync_folder(file.parent_path());
     return {file, fd};
@@ -91,14 +91,14 @@ Journal Journal::open(std::filesystem::path const& file, JournalText& found)
     struct stat is {};
     if (::fstat(fd, &is) != 0 || !S_ISREG(is.st_mode)) {
         ::close(fd);
-        throw cannot(file, "the journal cannot be opened", "it is no file", "restore it");
+        throw cannot(file, "the journal cannot be opened", "it is not a regular file", "restore it");
     }
     lock(fd, file);
     Journal journal{file, fd};
     found = read_journal(file);
     bool const is_longer = found.torn_bytes > 0 || found.room_bytes > 0;
     if (is_longer && (::ftruncate(fd, off_t(found.good_bytes)) != 0 || ::fsync(fd) != 0))
-        throw cannot(file, "the torn end of the journal cannot be cut off", std::strerror(errno),
+        throw cannot(file, "the incomplete last line of the journal cannot be cut off", std::strerror(errno),
                      "make it writable");
     journal.size_ = journal.room_ = found.good_bytes;
     journal.lines_ = int(found.record.entries.size());
@@ -116,7 +116,7 @@ void Journal::make_room(std::size_t bytes)
 
 void Journal::append(JournalEntry const& entry)
 {
-    if (has_failed_) throw std::logic_error("a journal is written to after it has failed");
+    if (has_failed_) throw std::logic_error("write to a journal after it has failed");
     std::string const line = entry_line(entry, lines_ + 1) + "\n";
     if (size_ + line.size() > room_) make_room(kRoom);
     if (int const error = write_all(fd_, line, size_)) fail(error);
@@ -131,12 +131,12 @@ void Journal::append(JournalEntry const& entry)
 void Journal::fail(int error)
 {
     has_failed_ = true;
-    // Where even this fails, the next one to open the file does it.
+    // If even this fails, the next process that opens the file does it.
     if (::ftruncate(fd_, off_t(size_)) == 0) ::fdatasync(fd_);
     room_ = size_;
     throw cannot(
         file_, "the session stops: its journal cannot be written", std::strerror(error),
-        "everything up to the last trial is kept: free some space, or repair the disk, and resume the session");
+        "all trials up to the last are recorded: free some space, or repair the disk, and resume the session");
 }
 
 } // namespace study

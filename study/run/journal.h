@@ -1,8 +1,8 @@
 #pragma once
-// The file that a session grows by, line after line. A line is on the disk (fdatasync) when append returns. Lines
-// are written into room that was made for them, empty lines at the end of the file: a file whose length does not
-// change need not wait for the file system's own journal, nor for what others write. Without room (a full disk) it
-// grows line by line.
+// The journal file of a session, to which a line is appended per entry. The line is on the disk (fdatasync) when
+// append returns. Lines are written into space preallocated as empty lines at the end of the file: if the file's
+// length does not change, the write need not wait for the file system's journal or for writes of others. Without
+// preallocated space (a full disk) the file grows line by line.
 
 #include "study/journal/journal_file.h"
 
@@ -10,10 +10,10 @@ namespace study {
 
 class Journal {
 public:
-    /// A new file, locked for this process. @throws ScriptError where there is one or none can be made
+    /// Creates a file and locks it for this process. @throws ScriptError if it exists or cannot be created
     static Journal create(std::filesystem::path const& file);
-    /// One that is there: locked, read, its torn end cut off.
-    /// @param found what it says @throws ScriptError where another process has it, or it cannot be read or written
+    /// Opens an existing file: locks it, reads it, and cuts off an incomplete last line.
+    /// @param found its content @throws ScriptError if another process uses it, or it cannot be read or written
     static Journal open(std::filesystem::path const& file, JournalText& found);
 
     ~Journal();
@@ -21,10 +21,10 @@ public:
     Journal(Journal const&) = delete;
     Journal& operator=(Journal const&) = delete;
 
-    /// @throws ScriptError where it cannot be kept (a full disk, ...): what was there before is as it was, and
-    /// nothing is written by this object any more
+    /// @throws ScriptError if the entry cannot be stored (a full disk, ...): earlier entries are unchanged, and
+    /// this object writes nothing any more
     void append(JournalEntry const& entry);
-    double synced_ms() const { return synced_ms_; } ///< spent waiting for the disk, all together
+    double synced_ms() const { return synced_ms_; } ///< total time spent waiting for the disk
 
 private:
     Journal(std::filesystem::path file, int descriptor);
@@ -33,8 +33,8 @@ private:
 
     std::filesystem::path file_;
     int fd_ = -1;
-    std::size_t size_ = 0; ///< of whole lines
-    std::size_t room_ = 0; ///< with the empty ones
+    std::size_t size_ = 0; ///< bytes of complete lines
+    std::size_t room_ = 0; ///< bytes including the empty lines
     int lines_ = 0;
     bool has_failed_ = false;
     double synced_ms_ = 0;

@@ -1,9 +1,9 @@
 #pragma once
-// What shows trials to somebody and takes the answers: a window, a wall, a headset, or a model observer.
-// Everything that is kept, chosen or repeated is decided by Session; a presenter has no memory from one call to
-// the next. Calls return when the participant is done, so that a presenter pumps its own events meanwhile; nothing
-// is written to a disk while a call is under way. An exception out of a call ends the session, and what was under
-// way counts as not done: Aborted, or any other (the display was lost, ...).
+// Shows trials and collects the answers: a window, a wall, a headset, or a model observer.
+// Session decides what is recorded, chosen and repeated; a presenter keeps no state between calls. Calls return
+// when the participant is done, so a presenter processes its own events meanwhile; nothing is written to the disk
+// during a call. An exception from a call (Aborted, or any other: the display was lost, ...) ends the session, and
+// the step under way counts as not done.
 
 #include "study/journal/entries.h"
 #include "study/plan/plan.h"
@@ -11,22 +11,23 @@
 #include <stdexcept>
 namespace study {
 
-/// A trial of the plan with everything decided.
+/// A fully specified trial of the plan.
 struct TrialRequest {
     Script const* script = nullptr;
     Block const* block = nullptr;
     PlanStep const* step = nullptr;
     int step_index = 0, attempt = 1;
-    std::vector<Stimulus> stimuli;           ///< of step->trial, the levels that procedures choose filled in
-    std::optional<Stimulus> reference;       ///< shown too
-    std::optional<double> level;             ///< of what is varied
-    int trials_done = 0, trials_planned = 0; ///< of the session, for who watches
+    std::vector<Stimulus> stimuli;           ///< of step->trial, with the levels that procedures chose
+    std::optional<Stimulus> reference;       ///< also shown
+    std::optional<double> level;             ///< of the varied setting
+    int trials_done = 0, trials_planned = 0; ///< of the session, for progress displays
 };
 
-/// The experimenter's wish, which may come at any time.
+/// The experimenter's command, which may come at any time.
 enum class ExperimenterAction { go_on, pause, skip, abort };
 
-/// Thrown out of any call: somebody aborts while it is under way. The reason says who; it stands in session.json.
+/// Thrown from any call when the session is aborted during it. The reason, recorded in session.json, states by
+/// whom.
 struct Aborted : std::runtime_error {
     explicit Aborted(std::string const& reason = "aborted by the experimenter") : std::runtime_error(reason) {}
 };
@@ -35,24 +36,24 @@ class Presenter {
 public:
     virtual ~Presenter() = default;
 
-    /// Seconds of the monotonic clock in which all its times are.
+    /// Seconds of a monotonic clock; all times of the presenter refer to it.
     virtual double now() const = 0;
-    /// What is worth keeping about device, driver, display.
+    /// Provenance to record: device, driver, display.
     virtual std::vector<std::pair<std::string, std::string>> about() const = 0;
     virtual CalibrationDone calibrate(Timing const& timing) = 0;
-    /// @return false where the participant does not agree
+    /// @return false if the participant does not consent
     virtual bool ask_consent(std::string const& markdown) = 0;
     virtual ParticipantAsked ask_participant(std::vector<std::string> const& questions) = 0;
     virtual StepDone instruct(std::string const& markdown, int step) = 0;
     virtual StepDone rest(std::string const& prompt, double least_s, int step) = 0;
     virtual StepDone walk(TrialRequest const& where, std::string const& prompt, double seconds) = 0;
     virtual QuestionnaireDone ask(Questionnaire const& questionnaire, int step) = 0;
-    /// Iti, warm-up, stimuli, answer, feedback. Session fills in step, attempt, level, is_correct and
-    /// bookkeeping_ms, and finds too many dropped frames and missing answers itself. A trial that the experimenter
-    /// ends while it is shown is not valid, with the reason "skipped" (done; wish() then says go_on) or "aborted"
-    /// (as if Aborted were thrown). A StepDone may have these reasons too.
+    /// Runs a trial: iti, warm-up, stimuli, answer, feedback. Session fills in step, attempt, level, is_correct
+    /// and bookkeeping_ms, and itself detects too many dropped frames and missing answers. A trial that the
+    /// experimenter ends while it is shown is invalid, with the reason "skipped" (done; action() then returns
+    /// go_on) or "aborted" (as if Aborted were thrown). A StepDone may have these reasons too.
     virtual TrialDone show(TrialRequest const& trial) = 0;
-    /// Since the last call; asked between steps.
+    /// The experimenter's command since the last call; called between steps.
     virtual ExperimenterAction action() = 0;
     virtual std::vector<NoteTaken> notes() = 0; ///< since the last call
 };

@@ -8,7 +8,7 @@
 namespace study {
 namespace {
 
-constexpr double kClockNoise_s = 60; ///< by so much clocks are set back without meaning
+constexpr double kClockNoise_s = 60; ///< smaller backward jumps of clocks are ignored
 
 bool is_same_level(std::optional<double> a, std::optional<double> b)
 {
@@ -102,7 +102,7 @@ void Progress::expect(int step, bool is_fine, char const* what) const
     auto const due = next();
     if (!due) throw std::invalid_argument(fmt::format("{} of step {} after everything was done", what, step + 1));
     if (due->step != step || !is_fine)
-        throw std::invalid_argument(fmt::format("{} of step {} where step {} of the plan, attempt {}, is due",
+        throw std::invalid_argument(fmt::format("{} of step {} although step {} of the plan, attempt {}, is due",
                                                 what, step + 1, due->step + 1, due->attempt));
 }
 
@@ -127,7 +127,7 @@ void Progress::apply_trial(TrialDone const& t)
     expect(t.step, is_trial && t.attempt == due->attempt, "a trial");
     bool const is_refresh = !refresh_.empty();
     if (t.reason != "skipped" && !is_same_level(t.level, due->level))
-        throw std::invalid_argument(fmt::format("a trial of step {} at level {} where {} is due", t.step + 1,
+        throw std::invalid_argument(fmt::format("a trial of step {} at level {} although {} is due", t.step + 1,
                                                 t.level ? level_text(*t.level) : "none",
                                                 due->level ? level_text(*due->level) : "none"));
     pass(t.step);

@@ -1,6 +1,6 @@
 #pragma once
-// What is due next in a session: the plan, and what its journal says of it so far. A session that runs and one
-// that goes on later ask the same object; its state follows from plan and entries alone.
+// The next step of a session, computed from the plan and the journal so far. Running and resumed sessions use the
+// same class; its state depends only on plan and entries.
 
 #include "study/journal/entries.h"
 #include "study/plan/plan.h"
@@ -13,38 +13,36 @@ namespace study {
 
 struct NextStep {
     int step = 0, attempt = 1;
-    bool is_questionnaire_of_trial = false; ///< the trial of the step is done, its items are not
-    std::optional<double> level;            ///< of what is varied
+    bool is_questionnaire_of_trial = false; ///< the trial of the step is done, its questionnaire is not
+    std::optional<double> level;            ///< of the varied setting
 };
 
-/// A trial that is not valid is done again so often at most, the first time included.
+/// Maximum number of attempts at a trial that is not valid, including the first.
 inline constexpr int kMostAttempts = 3;
 
 /// The rules:
-/// - Steps come in the order of the plan. Practice is never repeated for being bad.
-/// - Other trials that are not valid (where the script says repeat_at_end) come again at the end of their pass of
-/// the
-///   block, in the order in which they failed, until they are valid or were tried kMostAttempts times; not those
-///   that the experimenter skipped.
-/// - Procedures hear of valid trials only. When a run has finished its remaining trials fall away, and with them,
-/// where
-///   no main trial of the pass is left, its catch trials and breaks.
-/// - After a gap longer than resume.max_gap_min, or one that the wall clock cannot tell (it went back), what
-///   resume.repeat says of the block that is under way comes again: its instructions, or the last ones before it,
-///   and its practice.
+/// - Steps come in the order of the plan. Invalid practice trials are never repeated.
+/// - Other invalid trials (if the script sets repeat_at_end) are repeated at the end of their pass of the block,
+///   in the order in which they failed, until they are valid or were tried kMostAttempts times; trials that the
+///   experimenter skipped are not repeated.
+/// - Procedures receive only valid trials. When a run has finished, its remaining trials are dropped; if no main
+///   trial of the pass remains, its catch trials and breaks are dropped too.
+/// - After a gap longer than resume.max_gap_min, or of unknown length (the wall clock went back), the parts listed
+///   in resume.repeat are repeated for the current block: its instructions, or the last ones before it, and its
+///   practice.
 class Progress {
 public:
-    /// Both must live as long as this. @throws ScriptError where a procedure cannot be run
+    /// Both must outlive this object. @throws ScriptError if a procedure cannot be run
     Progress(Script const& script, Plan const& plan);
 
-    /// None: every step is done.
+    /// The next step; none = every step is done.
     std::optional<NextStep> next() const;
-    /// @throws std::invalid_argument where the entry cannot follow from this plan and the entries before
+    /// @throws std::invalid_argument if the entry is inconsistent with this plan and the earlier entries
     void apply(JournalEntry const& entry);
 
-    bool was_asked() const { return was_asked_; } ///< about the participant
+    bool was_asked() const { return was_asked_; } ///< the questions about the participant
     int trials_planned() const { return trials_planned_; }
-    int trials_done() const { return trials_done_; } ///< of the plan, valid or not, each once
+    int trials_done() const { return trials_done_; } ///< of the plan, valid or not, each counted once
 
 private:
     using RunKey = std::tuple<int, int, int, int, std::vector<int>>; ///< block, pass, procedure, repeat, cell
@@ -65,10 +63,10 @@ private:
     std::map<RunKey, AdaptiveRun> runs_;
     std::vector<AdaptiveRun*> run_of_step_; ///< null = none
     std::vector<int> attempts_;
-    std::vector<bool> is_done_; ///< of the plan's order, not of repeats
-    std::deque<int> again_;     ///< bad trials, in the order in which they come again
-    std::deque<int> refresh_;   ///< after a gap
-    int questionnaire_of_ = -1; ///< a trial's step
+    std::vector<bool> is_done_; ///< by step of the plan, without repeats
+    std::deque<int> again_;     ///< invalid trials, in the order in which they will be repeated
+    std::deque<int> refresh_;   ///< steps repeated after a gap
+    int questionnaire_of_ = -1; ///< step of the trial whose questionnaire is due
     int trials_planned_ = 0, trials_done_ = 0;
     bool was_asked_ = false;
 };

@@ -23,12 +23,12 @@ double machine_unix_s()
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// A presenter's call failed: nothing can be shown any more.
+/// A call of the presenter failed: nothing can be shown any more.
 struct DisplayLost {
     std::string why;
 };
 
-/// All texts, before anything is shown: nothing is read from a disk later.
+/// Reads all texts before anything is shown; nothing is read from the disk later.
 std::map<std::string, std::string> read_texts(Script const& s, Plan const& plan,
                                               std::filesystem::path const& folder)
 {
@@ -69,7 +69,7 @@ public:
                 files_.discard();
                 return outcome_;
             }
-        } catch (Aborted const& aborted) { // before anything was kept of this part
+        } catch (Aborted const& aborted) { // before anything of this part was recorded
             if (files_.is_new && record_.entries.empty()) files_.discard();
             outcome_.reason = aborted.what();
             return outcome_;
@@ -108,7 +108,7 @@ private:
         return e;
     }
 
-    /// What the journal says of the parts before.
+    /// Restores the state from the journal's earlier parts.
     void take_up()
     {
         if (files_.found.record.entries.empty()) return;
@@ -136,18 +136,18 @@ private:
         record_ = std::move(files_.found.record);
     }
 
-    /// @return false where the participant does not agree
+    /// @return false if the participant does not consent
     bool begin()
     {
         CalibrationDone const calibration = call([&] { return p_.calibrate(s_.timing); });
         if (!calibration.passed && s_.timing.vsync == Vsync::required)
             throw ScriptError(s_.file, {}, "the display does not pass the test that the script requires",
                               calibration.reason,
-                              "repair it, or write timing: {vsync: record}, which runs and labels every onset");
+                              "fix it, or write timing: {vsync: record} to run anyway");
         bool const is_first = record_.entries.empty();
         if (is_first && !s_.participants.consent.empty() &&
             !call([&] { return p_.ask_consent(text_of(s_.participants.consent)); })) {
-            outcome_.reason = "the participant did not agree; nothing is kept";
+            outcome_.reason = "the participant did not consent; nothing is recorded";
             return false;
         }
         keep_plan();
@@ -159,12 +159,12 @@ private:
         clock_offset_s_ = unix_s() - started_.clock_s;
         keep(started_);
         if (outcome_.torn_bytes > 0)
-            note("warning", fmt::format("{} bytes of a line that was not whole were cut off the journal's end",
+            note("warning", fmt::format("{} bytes of an incomplete line were cut off the journal's end",
                                         outcome_.torn_bytes));
         if (started_.gap_s < 0)
             note("clock_changed",
-                 fmt::format("the wall clock says that this part begins {:.3f} s before the end of "
-                             "the part before",
+                 fmt::format("by the wall clock this part begins {:.3f} s before the end of "
+                             "the previous part",
                              -started_.gap_s));
         keep(calibration);
         write_summary();
@@ -194,7 +194,7 @@ private:
         end(reason);
     }
 
-    /// Notes, wishes and clocks. @return whether the next step is to be skipped
+    /// Handles notes, experimenter commands and clocks. @return true if the next step is to be skipped
     bool between_steps()
     {
         for (NoteTaken const& taken : call([&] { return p_.notes(); })) keep(taken);
@@ -202,7 +202,7 @@ private:
         if (std::abs(offset_s - clock_offset_s_) > kClockJump_s)
             note(
                 "clock_changed",
-                fmt::format("the wall clock went {:+.3f} s; times are those of the monotonic clock, which did not",
+                fmt::format("the wall clock jumped by {:+.3f} s; times are of the monotonic clock, which did not",
                             offset_s - clock_offset_s_));
         clock_offset_s_ = offset_s;
         switch (call([&] { return p_.action(); })) {
@@ -323,7 +323,7 @@ private:
     }
     void note(std::string const& kind, std::string const& text) { keep(NoteTaken{p_.now(), kind, text}); }
 
-    /// take_up has seen that it is the plan of then.
+    /// Writes plan.tsv if it is missing; take_up has checked that the plan is the same.
     void keep_plan() const
     {
         auto const file = files_.folder / "plan.tsv";
@@ -332,7 +332,7 @@ private:
     }
     void write_summary() const { gi::write_durably(files_.folder / "session.json", session_summary(record_)); }
 
-    /// What follows from the journal's end, also where the process was killed before it came to that.
+    /// Updates the files that depend on the whole journal, also if the process was killed before it did so.
     void finish() const
     {
         std::string const summary = session_summary(record_);
@@ -352,7 +352,7 @@ private:
         finish();
     }
 
-    /// The participant's time does not count as bookkeeping.
+    /// Pauses the watch: the participant's time does not count as bookkeeping.
     template <class Call>
     auto call(Call const& presenter_call) -> decltype(presenter_call())
     {
@@ -371,7 +371,7 @@ private:
     Presenter& p_;
     SessionSettings const& settings_;
     Plan plan_;
-    std::map<std::string, std::string> texts_; ///< by the names of their files
+    std::map<std::string, std::string> texts_; ///< by file name
     Progress progress_;
     SessionFiles files_;
     SessionStarted started_;

@@ -18,7 +18,7 @@ bool is_there(fs::path const& path)
     return fs::exists(fs::symlink_status(path, ignored));
 }
 
-/// The outermost missing folder on the way.
+/// The outermost missing folder of a path.
 fs::path first_missing(fs::path folder)
 {
     fs::path missing;
@@ -27,13 +27,13 @@ fs::path first_missing(fs::path folder)
     return missing;
 }
 
-/// The first entry of a journal; nothing where none is whole.
+/// The first entry of a journal; empty if there is no complete one.
 std::optional<SessionStarted> start_of(fs::path const& journal)
 {
     std::ifstream in(journal, std::ios::binary);
     if (!in)
         throw ScriptError(journal.string(), {}, "this journal cannot be read",
-                          "it is not known whether it is of this script", "make it readable");
+                          "it may belong to another script", "make it readable");
     std::string line;
     if (!std::getline(in, line)) return {};
     auto const entries = parse_journal(line + "\n", journal.string()).record.entries;
@@ -41,7 +41,7 @@ std::optional<SessionStarted> start_of(fs::path const& journal)
     return start == nullptr ? std::nullopt : std::optional(*start);
 }
 
-/// Sessions of two scripts in one folder could not be analysed (read_dataset).
+/// Refuses sessions of two scripts in one folder, which read_dataset could not analyse.
 void check_same_script(SessionSettings const& settings)
 {
     std::string const hash = gi::sha256(settings.script_text);
@@ -49,10 +49,10 @@ void check_same_script(SessionSettings const& settings)
         if (auto const start = start_of(journal); start && start->script_sha256 != hash)
             throw ScriptError(
                 journal.string(), {}, "the folder has sessions of another script",
-                fmt::format("this one is of '{}' with the sha256 {:.12}..., now it is {:.12}...; sessions of two "
+                fmt::format("this is of '{}' with the sha256 {:.12}..., now it is {:.12}...; sessions of two "
                             "scripts cannot be analysed together",
                             start->experiment, start->script_sha256, hash),
-                "record into another folder, or use the script as it was then (it lies in code/ of the folder)");
+                "record into another folder, or use the original script (it is in code/ of the folder)");
 }
 
 } // namespace
@@ -67,8 +67,8 @@ void check_is_new(std::string const& id, SessionSettings const& settings)
     while (free < 99 && is_there(session_folder(settings.dir, id, free))) ++free;
     throw ScriptError(folder.string(), {},
                       fmt::format("participant {} has a session {} already", id, settings.session),
-                      "what was recorded is never overwritten",
-                      fmt::format("go on with it by --resume, or begin another one by --session {}", free));
+                      "records are never overwritten",
+                      fmt::format("resume it with --resume, or start another one with --session {}", free));
 }
 
 SessionFiles open_session(std::string const& id, SessionSettings const& settings)
@@ -107,16 +107,16 @@ void check_record(SessionRecord const& record, SessionStarted const& now, fs::pa
         then->participant != now.participant || then->session != now.session)
         refuse(fmt::format("this is the journal of participant {} in session {} of '{}'", then->participant_id,
                            then->session, then->experiment),
-               fmt::format("asked for is participant {} in session {} of '{}'", now.participant_id, now.session,
+               fmt::format("requested is participant {} in session {} of '{}'", now.participant_id, now.session,
                            now.experiment),
                "check the folder");
     if (then->script_sha256 != now.script_sha256 || then->seed != now.seed)
         refuse("the script is not the one with which the session began",
                fmt::format("its sha256 was {:.12}..., it is {:.12}...", then->script_sha256, now.script_sha256),
-               "go on with the script as it was, or begin another session by --session");
+               "use the original script, or start another session with --session");
     if (then->plan_sha256 != now.plan_sha256)
         refuse("the plan is not the one with which the session began",
-               "this version plans the same script otherwise", "go on with version " + then->version);
+               "this version makes another plan of the same script", "use version " + then->version);
     if (then->is_simulated != now.is_simulated)
         refuse(then->is_simulated ? "this session was simulated" : "this session is a person's",
                "the two are not mixed", "choose another folder");

@@ -6,22 +6,22 @@
 
 namespace study {
 
-/// The files of a session that begins or goes on.
+/// The files of a session that starts or resumes.
 struct SessionFiles {
     std::filesystem::path folder;
     Journal journal;
-    JournalText found; ///< what the journal had before
+    JournalText found; ///< earlier content of the journal
     bool is_new = false;
-    std::filesystem::path first_made; ///< of a new session: the outermost folder that was missing; empty = none
+    std::filesystem::path first_made; ///< of a new session: the outermost folder created; empty = none
 
-    /// Takes a new journal away again, and the folders made for it: nothing has happened yet.
+    /// Removes a new journal and the folders created for it, while nothing has happened yet.
     void discard();
 };
 
 /// @throws ScriptError as run_session does
 SessionFiles open_session(std::string const& participant_id, SessionSettings const& settings);
 
-/// @throws ScriptError where the record is of another experiment, participant, seed, script or plan
+/// @throws ScriptError if the record belongs to another experiment, participant, seed, script or plan
 void check_record(SessionRecord const& record, SessionStarted const& now, std::filesystem::path const& file);
 
 } // namespace study

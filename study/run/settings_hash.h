@@ -4,8 +4,7 @@
 
 namespace study {
 
-/// Of the settings of a stimulus as the script gives them: SHA-256 of lines "key=value" in the order of
-/// settings_of.
+/// SHA-256 of a stimulus's settings as written in the script: lines "key=value" in the order of settings_of.
 inline std::string settings_hash(Patch const& settings)
 {
     std::string text;

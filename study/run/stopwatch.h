@@ -3,7 +3,7 @@
 
 namespace study {
 
-/// Real time since restart(), less that in which it was paused.
+/// Elapsed time since restart(), without pauses.
 class Stopwatch {
 public:
     Stopwatch() { restart(); }
@@ -17,7 +17,7 @@ public:
         return std::chrono::duration<double, std::milli>(Clock::now() - start_ - paused_).count();
     }
 
-    /// While it lives the watch stands.
+    /// Stops the watch during its lifetime.
     class Pause {
     public:
         explicit Pause(Stopwatch& watch) : watch_(watch), start_(Clock::now()) {}

@@ -4,11 +4,11 @@
 
 namespace study {
 
-/// The step that is due, with everything decided.
+/// Fully specified request for the next step.
 TrialRequest request_of(Script const& script, Plan const& plan, Progress const& progress, NextStep const& due);
 
-/// Whether the answer is right, and whether the trial is valid: not with more dropped frames than the script
-/// allows in one stimulus, nor without an answer. What the presenter found wrong stays.
+/// Determines whether the answer is correct and the trial valid. A trial is invalid with more dropped frames in
+/// one stimulus than the script allows, or without an answer. Reasons set by the presenter are kept.
 void judge(Script const& script, Trial const& trial, TrialDone& done);
 
 } // namespace study

@@ -26,7 +26,7 @@ void set_setting(Patch& patch, std::string const& key, std::string const& value)
 
 Patch settings_of(Script const& script, Block const& block, Stimulus const& stimulus)
 {
-    Patch patch = block.settings; // which has those of defaults
+    Patch patch = block.settings; // includes those of defaults
     for (std::size_t f = 0; f < script.factors.size(); ++f)
         for (auto const& [key, value] : script.factors[f].levels[std::size_t(stimulus.levels[f])].settings)
             set_setting(patch, key, value);

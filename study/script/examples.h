@@ -1,5 +1,5 @@
 #pragma once
-// The experiments of data/study, carried by the program: examples.cpp.in is filled by CMake.
+// The experiments of data/study, embedded in the program: CMake fills in examples.cpp.in.
 
 #include <span>
 #include <string_view>

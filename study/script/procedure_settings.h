@@ -1,6 +1,6 @@
 #pragma once
-// A script's procedures as the statistics know them: for sessions that run them, and for analyses that go through
-// them again.
+// Converts a script's procedures to settings of study/stats: for sessions that run them and analyses that replay
+// them.
 
 #include "study/script/script.h"
 #include "study/stats/questplus.h"
@@ -8,11 +8,11 @@
 
 namespace study {
 
-/// Staircases step on an axis whose lower end is harder: the scale of `compare` times this, -1 where a higher
-/// level is harder.
+/// Sign that makes lower values harder, as staircases need: the scale of `compare` is multiplied by it; -1 if a
+/// higher level is harder.
 double harder_sign(Compare const& compare);
 StaircaseSettings staircase_settings(Procedure const& procedure, Compare const& compare);
-/// Stimuli and thresholds in levels where the function is Weibull's, else on the scale.
+/// Stimuli and thresholds are in levels for the Weibull function, otherwise on the scale.
 QuestSettings quest_settings(Procedure const& procedure, Compare const& compare);
 
 } // namespace study

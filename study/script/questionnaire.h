@@ -1,12 +1,13 @@
 #pragma once
-// Questionnaires as data: items with their scales, and what is summed to which score. Known ones and those of
-// scripts are the same kind of thing.
+// Questionnaires as data: items with their scales, and the subscales that combine them. Built-in questionnaires
+// and those of scripts have the same form.
 //
-// ssq          Kennedy, Lane, Berbaum, Lilienthal 1993, Int. J. Aviation Psychology 3(3):203-220
-// sus_presence Slater, Usoh, Steed 1994, Presence 3(2):130-144; as six items Usoh et al. 2000, Presence
-// 9(5):497-503 sus_usability Brooke 1996, in Usability Evaluation in Industry, 189-194 (the same three letters,
-// another thing) ipq          Schubert, Friedmann, Regenbrecht 2001, Presence 10(3):266-281; SP2, INV3 and REAL1
-// are reversed nasa_tlx     Hart, Staveland 1988, Advances in Psychology 52:139-183; raw (unweighted) as score
+// ssq: Kennedy, Lane, Berbaum, Lilienthal 1993, Int. J. Aviation Psychology 3(3):203-220.
+// sus_presence: Slater, Usoh, Steed 1994, Presence 3(2):130-144; as six items Usoh et al. 2000, Presence
+// 9(5):497-503.
+// sus_usability: Brooke 1996, in Usability Evaluation in Industry, 189-194 (not related to sus_presence).
+// ipq: Schubert, Friedmann, Regenbrecht 2001, Presence 10(3):266-281; SP2, INV3 and REAL1 are reversed.
+// nasa_tlx: Hart, Staveland 1988, Advances in Psychology 52:139-183; the score is raw (unweighted).
 
 #include "study/script/script_error.h"
 
@@ -28,13 +29,13 @@ struct QuestionnaireItem {
 enum class Combine {
     sum,
     mean,
-    count, ///< how many scored answers are at least `at_least`
+    count, ///< number of scored answers that are at least `at_least`
 };
 
 /// score = weight * (combine of the scored answers) + offset
 struct Subscale {
     std::string name;
-    std::vector<int> items; ///< indices; one that is there twice counts twice
+    std::vector<int> items; ///< indices; an item listed twice counts twice
     Combine combine = Combine::sum;
     double weight = 1, offset = 0, at_least = 0;
 };
@@ -43,7 +44,7 @@ struct Questionnaire {
     std::string name, title, instructions;
     std::vector<QuestionnaireItem> items;
     std::vector<Subscale> subscales;
-    Place place; ///< in the script; {0, 0} of known ones
+    Place place; ///< in the script; {0, 0} for built-in ones
 };
 
 /// ssq, sus_presence, sus_usability, ipq, nasa_tlx.
@@ -54,14 +55,14 @@ struct ItemScore {
 };
 struct SubscaleScore {
     std::string subscale;
-    std::optional<double> value; ///< none where an item that it needs was not answered
+    std::optional<double> value; ///< none if one of its items was not answered
 };
 struct QuestionnaireScores {
-    std::vector<std::optional<ItemScore>> items; ///< as the questionnaire has them
+    std::vector<std::optional<ItemScore>> items; ///< in the questionnaire's order
     std::vector<SubscaleScore> subscales;
 };
 /// @param answers one per item, within its range; none = not answered
-/// Throws std::invalid_argument where there are too few, too many, or one is out of its range or not a step of it.
+/// Throws std::invalid_argument if the number of answers is wrong, or one is out of range or not on a step.
 QuestionnaireScores score(Questionnaire const& questionnaire, std::span<std::optional<double> const> answers);
 
 } // namespace study

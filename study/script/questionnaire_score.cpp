@@ -12,7 +12,7 @@ ItemScore score_item(QuestionnaireItem const& item, double answer)
     double const steps = (answer - item.low) / item.step;
     bool const is_within = answer >= item.low && answer <= item.high; // false for NaN
     if (!is_within || std::abs(steps - std::round(steps)) > 1e-9)
-        throw std::invalid_argument(fmt::format("{} = {:g} (it goes from {:g} to {:g} by {:g}) give one of these",
+        throw std::invalid_argument(fmt::format("{} = {:g} (it is {:g} to {:g} in steps of {:g}) choose one",
                                                 item.id, answer, item.low, item.high, item.step));
     return {answer, item.is_reversed ? item.low + item.high - answer : answer};
 }
@@ -40,7 +40,7 @@ QuestionnaireScores score(Questionnaire const& q, std::span<std::optional<double
     if (answers.size() != q.items.size())
         throw std::invalid_argument(
             fmt::format("{} answers to the {} items of {} (each belongs to one) give one per "
-                        "item, none where it was not answered",
+                        "item, none if it was not answered",
                         answers.size(), q.items.size(), q.name));
     QuestionnaireScores scores;
     for (std::size_t i = 0; i < answers.size(); ++i) {

@@ -7,7 +7,7 @@
 namespace study {
 namespace {
 
-/// Keys that other tasks have are told apart from those that none has.
+/// Distinguishes keys that other tasks use from unknown keys.
 void check_block_keys(gi::Yaml const& y, Task task)
 {
     check_keys(y, "block");
@@ -31,7 +31,7 @@ Pairs read_pairs(gi::Yaml const& y, Script const& s)
             for (std::size_t j = i + 1; j < levels.size(); ++j) p.pairs.emplace_back(levels[i], levels[j]);
         return p;
     }
-    if (y.has("omit")) throw y.at("omit").error("both list and omit", "the list says which there are", "keep one");
+    if (y.has("omit")) throw y.at("omit").error("both list and omit", "the list selects pairs", "keep one");
     for (gi::Yaml const& item : y.at("list").items()) {
         auto const two = item.items();
         if (two.size() != 2)
@@ -49,7 +49,7 @@ Compare read_compare(gi::Yaml const& y, Script const& s)
     check_keys(y, "compare");
     Compare c;
     if (y.has("vary") == y.has("factor"))
-        throw y.error("compare needs either vary or factor", "it says which stimuli there are",
+        throw y.error("compare needs either vary or factor", "it defines the stimuli",
                       "write vary: SETTING or factor: FACTOR");
     gi::Yaml const against = y.has("against") ? y.at("against") : y;
     if (y.has("against") && !against.is_text())
@@ -57,7 +57,7 @@ Compare read_compare(gi::Yaml const& y, Script const& s)
     else if (y.has("against") && against.text() != "reference")
         throw against.unknown("thing to compare with", {"reference"});
     else if (s.reference.empty())
-        throw against.error("compared with the reference, which is not there", "the other stimulus is unknown",
+        throw against.error("compared with the reference, which is missing", "the other stimulus is unknown",
                             "add reference: {FACTOR: LEVEL} to the script");
     else
         c.against = s.reference;
@@ -71,16 +71,16 @@ Compare read_compare(gi::Yaml const& y, Script const& s)
         auto const other = std::find_if(c.against.begin(), c.against.end(),
                                         [&](LevelChoice const& l) { return l.factor == c.factor; });
         if (other == c.against.end())
-            throw y.error(fmt::format("what factor '{}' is compared with has no level of it",
+            throw y.error(fmt::format("the stimulus that factor '{}' is compared with has no level of it",
                                       s.factors[std::size_t(c.factor)].name),
                           "the two would be the same", "add it to reference or against");
         c.levels = read_levels_of(y, s, c.factor, 1);
         std::erase(c.levels, other->level);
         if (c.levels.empty())
-            throw y.error("no level but the reference", "there is nothing to compare", "omit fewer");
+            throw y.error("no level except the reference", "there is nothing to compare", "omit fewer");
         return c;
     }
-    if (y.has("omit")) throw y.at("omit").error("'omit' without a factor", "it leaves out levels", "remove it");
+    if (y.has("omit")) throw y.at("omit").error("'omit' without a factor", "it omits levels", "remove it");
     c.vary = y.at("vary").name();
     if (y.has("scale")) {
         std::vector<std::string> const known{"linear", "log2", "log10", "db"};
@@ -119,10 +119,10 @@ Catch read_catch(gi::Yaml const& y, Block const& b, Script const& s)
     bool const is_preference = b.pairs && presented_orders(b.task, false).empty();
     bool const has_noise = b.task == Task::yes_no || b.task == Task::same_different;
     if (y.has("level") != varies || y.has("better") != is_preference || y.has("worse") != is_preference)
-        throw y.error("these catch trials have no right answer",
-                      varies          ? "the level of what is varied says it"
-                      : is_preference ? "'better' and 'worse' say it"
-                                      : "levels of a factor have none that all must find",
+        throw y.error("these catch trials have no correct answer",
+                      varies          ? "the level of the varied setting defines it"
+                      : is_preference ? "'better' and 'worse' define it"
+                                      : "no level of a factor is obvious to everybody",
                       varies          ? "write level: easiest"
                       : is_preference ? "write better: LEVEL, worse: LEVEL"
                                       : "remove them");
@@ -153,11 +153,11 @@ void read_practice(gi::Yaml const& y, Block& b)
     }
     if (!y.has("level")) return;
     if (!b.compare || b.compare->factor >= 0)
-        throw y.at("level").error("a level where nothing is varied", "it would be ignored", "remove it");
+        throw y.at("level").error("a level although nothing is varied", "it would be ignored", "remove it");
     b.practice.level = read_vary_level(y.at("level"), *b.compare);
 }
 
-/// cross, nest, only
+/// Reads cross, nest, only.
 void read_conditions(gi::Yaml const& y, Script const& s, Block& b)
 {
     auto const is_crossed = [&](int f) { return std::find(b.cross.begin(), b.cross.end(), f) != b.cross.end(); };
@@ -174,7 +174,7 @@ void read_conditions(gi::Yaml const& y, Script const& s, Block& b)
         for (gi::Yaml const& name : y.at("cross").one_or_more()) {
             int const f = read_factor(name, s);
             if (is_crossed(f))
-                throw name.error("'" + name.text() + "' is crossed twice", "once is all", "remove one");
+                throw name.error("'" + name.text() + "' is crossed twice", "once is enough", "remove one");
             b.cross.push_back(f);
         }
     if (!y.has("nest")) return;
@@ -209,7 +209,7 @@ void read_stimuli(gi::Yaml const& y, Script const& s, Block& b)
         std::string const what = f.takes_pairs && f.takes_compare ? "either pairs or compare"
                                  : f.takes_pairs                  ? "pairs"
                                                                   : "compare";
-        throw y.error(fmt::format("block '{}' needs {}", b.name, what), "it says what is shown",
+        throw y.error(fmt::format("block '{}' needs {}", b.name, what), "it defines the stimuli",
                       f.takes_pairs ? "write pairs: {factor: FACTOR}" : "write compare: {factor: FACTOR}");
     }
     if (y.has("pairs")) b.pairs = read_pairs(y.at("pairs"), s);
@@ -221,7 +221,7 @@ void read_stimuli(gi::Yaml const& y, Script const& s, Block& b)
         b.rank_levels = read_levels_of(rank, s, b.rank, 2);
         if (b.rank_levels.size() > 9)
             throw rank.error(fmt::format("{} to rank", b.rank_levels.size()),
-                             "the order is given by digits, of which there are 9", "omit some");
+                             "the order is typed as digits 1 to 9", "omit some");
     }
     auto const has_reference = [&](int factor) {
         return std::any_of(s.reference.begin(), s.reference.end(),
@@ -230,12 +230,12 @@ void read_stimuli(gi::Yaml const& y, Script const& s, Block& b)
     if (b.task == Task::pair_with_reference && !has_reference(b.pairs->factor))
         throw y.at("pairs").error(
             fmt::format("factor '{}' has no reference", s.factors[std::size_t(b.pairs->factor)].name),
-            "it is shown beside the pair", "add it to reference");
+            "the task shows it with the pair", "add it to reference");
     if (b.task == Task::rating) b.scale = read_scale(y.needed("scale", "{min: 1, max: 7}"));
     if (y.has("modulus")) b.magnitude.modulus = y.at("modulus").number(1e-6, 1e9);
     if (y.has("standard")) b.magnitude.standard = read_choice(y.at("standard"), s);
     if (y.has("modulus") != y.has("standard"))
-        throw y.error("'modulus' and 'standard' belong together", "it is the number of the standard",
+        throw y.error("'modulus' and 'standard' belong together", "the modulus is the number of the standard",
                       "give both or none");
     if (b.task == Task::questionnaire)
         b.questionnaire = read_questionnaire_name(y.needed("questionnaire", "ssq"), s);
@@ -243,11 +243,11 @@ void read_stimuli(gi::Yaml const& y, Script const& s, Block& b)
 
     bool const varies = b.compare && b.compare->factor < 0;
     if (y.has("procedure") && y.has("interleave"))
-        throw y.at("procedure").error("both procedure and interleave", "interleave has all of them", "keep one");
+        throw y.at("procedure").error("both procedure and interleave", "interleave has them all", "keep one");
     if (varies != (y.has("procedure") || y.has("interleave")))
-        throw y.error(varies ? fmt::format("'{}' is varied by no procedure", b.compare->vary)
-                             : "a procedure with nothing that it varies",
-                      "a procedure chooses levels of what compare varies",
+        throw y.error(varies ? fmt::format("no procedure varies '{}'", b.compare->vary)
+                             : "a procedure without a setting to vary",
+                      "a procedure chooses levels of the setting in compare",
                       varies ? "add procedure: {method: constant, levels: [...]}"
                              : "write compare: {vary: SETTING}");
     if (y.has("procedure")) b.procedures.push_back(read_procedure(y.at("procedure"), *b.compare, b.task));
@@ -257,7 +257,7 @@ void read_stimuli(gi::Yaml const& y, Script const& s, Block& b)
             for (std::size_t i = 0; i + 1 < b.procedures.size(); ++i)
                 if (b.procedures[i].name == b.procedures.back().name)
                     throw item.error("two procedures named '" + b.procedures[i].name + "'",
-                                     "records could not tell them apart", "give each a name");
+                                     "records could not distinguish them", "give each a name");
         }
     if (varies && b.procedures.empty())
         throw y.at("interleave").error("nothing to interleave", "the block would be empty", "name procedures");
@@ -296,7 +296,7 @@ Block read_block(gi::Yaml const& name, gi::Yaml const& y, Script const& s)
                                b.task == Task::ranking || b.magnitude.modulus > 0;
     if (b.is_sequential && shows_several && !b.timing.stimulus_ms)
         throw y.error(fmt::format("block '{}' shows stimuli one after another, each until the answer", b.name),
-                      "there is one answer, to all of them", "add stimulus_ms: 2000");
+                      "there is only one answer, after all of them", "add stimulus_ms: 2000");
     if (y.has("break_every")) b.break_every = y.at("break_every").integer(1, 100000);
     if (y.has("break_s")) b.break_s = y.at("break_s").number(0, 3600);
     if (y.has("camera")) b.camera = y.at("camera").text();

@@ -13,7 +13,7 @@ void check_setting_key(gi::Yaml const& key)
     std::string const s = key.name();
     if (!std::isalpha(static_cast<unsigned char>(s.front())) || s.back() == '.' ||
         s.find("..") != std::string::npos)
-        throw key.error("'" + s + "' is no setting", "settings are words with dots between", "as gi.points");
+        throw key.error("'" + s + "' is no setting", "settings are words separated by dots", "such as gi.points");
 }
 
 std::vector<std::string> names_of(std::vector<FactorLevel> const& levels)
@@ -46,7 +46,7 @@ std::vector<Factor> read_factors(gi::Yaml const& y)
         Factor factor{key.name(), {}, key.place()};
         for (char const* reserved : {"pair", "answer", "procedure", "do"})
             if (factor.name == reserved)
-                throw key.error("a factor named '" + factor.name + "'", "the word means something else in scripts",
+                throw key.error("a factor named '" + factor.name + "'", "the word has another meaning in scripts",
                                 "choose another name");
         if (value.is_list()) {
             check_setting_key(key);
@@ -60,10 +60,10 @@ std::vector<Factor> read_factors(gi::Yaml const& y)
         std::sort(names.begin(), names.end());
         if (auto const twice = std::adjacent_find(names.begin(), names.end()); twice != names.end())
             throw value.error(fmt::format("level '{}' twice in {}", *twice, factor.name),
-                              "they could not be told apart", "remove one");
+                              "they could not be distinguished", "remove one");
         if (names.empty() || names.size() > 1000)
             throw value.error(fmt::format("factor '{}' has {} levels", factor.name, names.size()),
-                              "1 to 1000 make sense", names.empty() ? "add some" : "split it");
+                              "1 to 1000 are allowed", names.empty() ? "add some" : "split it");
         factors.push_back(std::move(factor));
     }
     return factors;
@@ -161,7 +161,7 @@ Constraint read_constraint(gi::Yaml const& y, Script const& s)
         constexpr int kOthers = 3;
         std::vector<std::string> known{"pair", "answer", "procedure"};
         for (Factor const& f : s.factors) known.push_back(f.name);
-        int const i = name.one_of(known, "thing that rules are about");
+        int const i = name.one_of(known, "subject of a rule");
         c.subject = i == 0   ? Subject::pair
                     : i == 1 ? Subject::answer
                     : i == 2 ? Subject::procedure
@@ -174,7 +174,7 @@ Constraint read_constraint(gi::Yaml const& y, Script const& s)
     if (int(is_repeat || is_run) + is_gap + is_after + is_first != 1 ||
         has_subject != ((is_run && !is_repeat) || is_gap))
         throw y.error(
-            "this is no constraint", "each is one rule",
+            "this is no constraint", "a constraint has one rule",
             "write {no_repeat: F}, {no_repeat: F, max_run: 2}, {max_run: 2, of: F}, {min_gap: 2, of: F}, "
             "{never_after: {F: [a, b]}} or {not_first: {F: a}}");
     if (has_subject) subject(y.at("of"));
@@ -188,7 +188,7 @@ Constraint read_constraint(gi::Yaml const& y, Script const& s)
     gi::Yaml const map = y.at(is_after ? "never_after" : "not_first");
     auto const entries = map.entries();
     if (entries.size() != 1)
-        throw map.error("not one factor", "a rule is of one factor", "write one constraint for each");
+        throw map.error("not one factor", "a rule has one factor", "write one constraint for each");
     c.factor = read_factor(entries[0].first, s);
     auto const levels = entries[0].second.one_or_more();
     if (levels.size() != (is_after ? 2u : 1u))

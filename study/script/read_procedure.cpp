@@ -18,7 +18,7 @@ std::optional<double> parse_number(std::string_view s)
     return v;
 }
 
-/// "a..b/n"
+/// Reads "a..b/n".
 std::vector<double> parse_range(gi::Yaml const& y, Scale scale)
 {
     std::string const s = y.text();
@@ -27,7 +27,7 @@ std::vector<double> parse_range(gi::Yaml const& y, Scale scale)
         return y.error(fmt::format("'{}' is no grid", s.substr(0, 64)), why, "write 3, [1, 2, 4] or 64..16384/33");
     };
     if (dots == std::string::npos || slash == std::string::npos || slash < dots)
-        throw bad("it is no number, no list, and not from..to/count");
+        throw bad("it is neither a number, a list nor from..to/count");
     auto const low = parse_number(std::string_view(s).substr(0, dots)),
                high = parse_number(std::string_view(s).substr(dots + 2, slash - dots - 2)),
                count = parse_number(std::string_view(s).substr(slash + 1));
@@ -46,23 +46,23 @@ std::vector<double> parse_range(gi::Yaml const& y, Scale scale)
     return grid;
 }
 
-/// The first of max_trials and trials.
+/// Reads max_trials or trials.
 Stop read_stop(gi::Yaml const& y, bool may_reverse)
 {
     check_keys(y, "stop");
     Stop stop;
     if (y.has("trials") && y.has("max_trials"))
-        throw y.error("both trials and max_trials", "they say the same", "keep one");
+        throw y.error("both trials and max_trials", "they have the same meaning", "keep one");
     for (char const* key : {"trials", "max_trials"})
         if (y.has(key)) stop.trials = y.at(key).integer(1, 10000);
     if (y.has("reversals")) {
         if (!may_reverse)
             throw y.at("reversals")
-                .error("questplus has no reversals", "it chooses each level anew", "write stop: {trials: 32}");
+                .error("questplus has no reversals", "it has no steps", "write stop: {trials: 32}");
         stop.reversals = y.at("reversals").integer(1, 1000);
     }
     if (stop.trials == 0)
-        throw y.error("this procedure may never end", "reversals need not come", "add max_trials");
+        throw y.error("this procedure may never end", "reversals may not occur", "add max_trials");
     return stop;
 }
 
@@ -96,12 +96,12 @@ void read_questplus(gi::Yaml const& y, Compare const& c, Procedure& p)
     p.lapse = read_grid(y.needed("lapse", "[0, 0.02, 0.04]"), Scale::linear, 0, 0.5);
     p.stimuli = y.has("levels") ? read_grid(y.at("levels"), c.scale, c.low, c.high) : p.threshold;
     if (p.stimuli.size() < 2)
-        throw y.error("questplus has one level to ask for", "it could not choose",
+        throw y.error("questplus has only one level to present", "it could not choose",
                       "give 'levels' as 64..16384/33");
     double const size = double(p.threshold.size() * p.slope.size()) * double(p.guess.size() * p.lapse.size());
     if (size * double(p.stimuli.size()) > 2e7)
         throw y.error(fmt::format("{:g} points of the prior times {} levels", size, p.stimuli.size()),
-                      "a trial would wait for them", "make the grids coarser");
+                      "computing them would delay trials", "make the grids coarser");
     if (y.has("psychometric")) {
         std::vector<std::string> const known{"weibull", "normal", "logistic"};
         p.psychometric = Psychometric(y.at("psychometric").one_of(known, "psychometric function"));
@@ -121,14 +121,14 @@ std::vector<double> read_grid(gi::Yaml const& y, Scale scale, double low, double
     else
         grid = parse_range(y, scale);
     if (grid.empty() || grid.size() > 1000)
-        throw y.error(y.path() + " has no points, or more than 1000", "1 to 1000 make sense", "change it");
+        throw y.error(y.path() + " has no points, or more than 1000", "1 to 1000 are allowed", "change it");
     for (std::size_t i = 0; i < grid.size(); ++i) {
         if (grid[i] < low || grid[i] > high)
             throw y.error(fmt::format("{} has {:g}", y.path(), grid[i]),
                           fmt::format("it must lie between {:g} and {:g}", low, high), "change it");
         if (i > 0 && grid[i] <= grid[i - 1])
             throw y.error(fmt::format("{} has {:g} after {:g}", y.path(), grid[i], grid[i - 1]), "grids rise",
-                          "sort it and leave out what is there twice");
+                          "sort it and remove duplicates");
     }
     return grid;
 }

@@ -35,7 +35,7 @@ QuestionnaireItem read_item(gi::Yaml const& y, RatingScale const* usual)
         item.labels.empty() || item.labels.size() == 2 || double(item.labels.size()) == std::round(steps) + 1;
     if (!fits && y.has("labels"))
         throw y.at("labels").error(fmt::format("{} labels", item.labels.size()),
-                                   "the two ends have labels, or every step", "change their number");
+                                   "labels are for the two ends, or for every step", "change their number");
     if (y.has("reverse")) item.is_reversed = y.at("reverse").boolean();
     return item;
 }
@@ -54,7 +54,7 @@ Subscale read_subscale(gi::Yaml const& name, gi::Yaml const& y, Questionnaire co
     if (y.has("weight")) s.weight = y.at("weight").number(-1e6, 1e6);
     if (y.has("offset")) s.offset = y.at("offset").number(-1e6, 1e6);
     if ((s.combine == Combine::count) != y.has("at_least"))
-        throw y.error("'at_least' and 'score: count' belong together", "it says what is counted",
+        throw y.error("'at_least' and 'score: count' belong together", "at_least defines what is counted",
                       "give both or none");
     if (y.has("at_least")) s.at_least = y.at("at_least").number(-1e6, 1e6);
     return s;
@@ -72,8 +72,8 @@ std::vector<Questionnaire> read_questionnaires(gi::Yaml const& y)
         q.place = key.place();
         for (Questionnaire const& known : known_questionnaires())
             if (known.name == q.name)
-                throw key.error("questionnaire '" + q.name + "' is known already", "two would have one name",
-                                "call yours otherwise");
+                throw key.error("questionnaire '" + q.name + "' is known already", "the name is taken",
+                                "choose another name");
         if (value.has("title")) q.title = value.at("title").text();
         if (value.has("instructions")) q.instructions = value.at("instructions").text();
         std::optional<RatingScale> usual;
@@ -82,12 +82,12 @@ std::vector<Questionnaire> read_questionnaires(gi::Yaml const& y)
         for (gi::Yaml const& item : value.needed("items", "[{id: q1, text: \"...\"}]").items()) {
             q.items.push_back(read_item(item, usual ? &*usual : nullptr));
             if (!ids.insert(q.items.back().id).second)
-                throw item.error("item '" + q.items.back().id + "' twice", "tables could not tell them apart",
+                throw item.error("item '" + q.items.back().id + "' twice", "tables could not distinguish them",
                                  "rename one");
         }
         if (q.items.empty() || q.items.size() > 1000)
             throw value.error(fmt::format("questionnaire '{}' has {} items", q.name, q.items.size()),
-                              "1 to 1000 make sense", "change it");
+                              "1 to 1000 are allowed", "change it");
         if (value.has("scales"))
             for (auto const& [name, scale] : value.at("scales").entries())
                 q.subscales.push_back(read_subscale(name, scale, q));

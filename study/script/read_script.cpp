@@ -22,8 +22,8 @@ void check_id_pattern(gi::Yaml const& y)
     bool const is_plain =
         std::all_of(rest.begin(), rest.end(), [](unsigned char c) { return c < 128 && std::isalnum(c); });
     if (!is_known || !is_plain || s.size() > 40)
-        throw y.error(fmt::format("'{}' names no participants", s.substr(0, 64)),
-                      "it must have their number once and otherwise letters and digits only", "write \"P{n:03}\"");
+        throw y.error(fmt::format("'{}' is no pattern for participants' ids", s.substr(0, 64)),
+                      "it must have the number once and otherwise only letters and digits", "write \"P{n:03}\"");
 }
 
 Participants read_participants(gi::Yaml const& y)
@@ -110,7 +110,7 @@ std::vector<Device> read_devices(gi::Yaml const& y)
         for (gi::Yaml const& input : value.one_or_more()) {
             if (!is_input(input.text()))
                 throw input.error(fmt::format("'{}' is no input", input.text().substr(0, 64)),
-                                  "a device and what is pressed on it are needed",
+                                  "an input is a device and a button or key",
                                   "write key:left, pad:x, mouse:left or xr:left/trigger");
             d.inputs.push_back(input.text());
         }
@@ -142,17 +142,17 @@ std::vector<Counterbalance> read_counterbalance(gi::Yaml const& y, Script const&
                             "write NAME: {method: williams, of: [block, block]}, or name a factor");
         if (c.factor < 0) {
             if (std::find(blocks.begin(), blocks.end(), c.name) != blocks.end())
-                throw key.error("a group named as the block '" + c.name + "'", "the sequence could mean either",
+                throw key.error("a group named as the block '" + c.name + "'", "it would be ambiguous",
                                 "rename one");
             for (gi::Yaml const& name : value.at("of").items()) {
                 int const b = name.one_of(blocks, "block");
                 if (std::find(c.blocks.begin(), c.blocks.end(), b) != c.blocks.end())
-                    throw name.error("'" + name.text() + "' twice", "it has one place in the order", "remove one");
+                    throw name.error("'" + name.text() + "' twice", "it has one place", "remove one");
                 c.blocks.push_back(b);
             }
             if (c.blocks.size() < 2) throw value.error("fewer than two blocks", "there is no order", "name more");
             if (c.method == Balance::between)
-                throw method.error("blocks between participants", "only levels of factors are assigned so",
+                throw method.error("blocks between participants", "only factors can do this",
                                    "use latin or williams");
         }
         all.push_back(std::move(c));
@@ -194,7 +194,7 @@ Script read_script(gi::Yaml const& y, std::string const& file)
 {
     check_keys(y, "study");
     gi::Yaml const schema = y.needed("schema", "study/1");
-    if (schema.text() != "study/1") throw schema.unknown("schema that is known here", {"study/1"});
+    if (schema.text() != "study/1") throw schema.unknown("known schema", {"study/1"});
     Script s;
     s.file = file;
     s.id = y.needed("id", "visibility2026").name();
@@ -233,8 +233,8 @@ Script parse_script(std::string const& text, std::string const& name)
     } catch (gi::InputError const& e) {
         throw ScriptError(e);
     } catch (YAML::Exception const& e) {
-        throw ScriptError(name, {e.mark.line + 1, e.mark.column + 1}, "this YAML is not understood", e.msg,
-                          "write it plainly");
+        throw ScriptError(name, {e.mark.line + 1, e.mark.column + 1}, "this YAML cannot be read", e.msg,
+                          "simplify it");
     }
 }
 

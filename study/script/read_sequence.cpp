@@ -53,7 +53,7 @@ SequenceItem read_item(gi::Yaml const& y, Script const& s, int depth)
     bool const is_per = y.has("per") && y.has("do");
     if (y.entries().size() != (is_per ? 2u : 1u) || y.has("per") != y.has("do"))
         throw y.error(
-            "this is no step of a sequence", "each does one thing",
+            "this is no step of a sequence", "a step has one key",
             "write BLOCK, {instructions: intro.md}, {questionnaire: ssq}, {break: 60}, {free_walk: {...}} or "
             "{per: FACTOR, do: [...]}");
     if (y.has("instructions")) {
@@ -79,7 +79,7 @@ SequenceItem read_item(gi::Yaml const& y, Script const& s, int depth)
 
 std::vector<SequenceItem> read_sequence(gi::Yaml const& y, Script const& s, int depth)
 {
-    if (depth > 8) throw y.error("'per' within 'per' more than 8 deep", "nobody could follow it", "nest less");
+    if (depth > 8) throw y.error("'per' within 'per' more than 8 deep", "that is too complex", "nest less");
     std::vector<SequenceItem> items;
     for (gi::Yaml const& item : y.items()) items.push_back(read_item(item, s, depth));
     if (items.empty()) throw y.error("an empty sequence", "there is nothing to do", "name blocks");

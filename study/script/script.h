@@ -1,7 +1,7 @@
 #pragma once
-// An experiment as its script says it (schema study/1, docs/study.md). Names are resolved: factors, levels, blocks
-// and questionnaires are indices into the lists of the Script; -1 = none. Times are in milliseconds unless their
-// names say otherwise.
+// An experiment as its script describes it (schema study/1, docs/study.md). Names are resolved: factors, levels,
+// blocks and questionnaires are indices into the lists of the Script; -1 = none. Times are in milliseconds unless
+// their names end in another unit.
 
 #include "study/script/procedure.h"
 #include "study/script/questionnaire.h"
@@ -15,7 +15,7 @@
 
 namespace study {
 
-/// Settings of the renderer: keys and values as they are written.
+/// Renderer settings: keys and values as written in the script.
 using Patch = std::vector<std::pair<std::string, std::string>>;
 
 struct FactorLevel {
@@ -54,12 +54,12 @@ struct SyncPatch {
 struct Calibrate {
     int frames = 600;
     double max_sd_ms = 1,
-           max_deviation = 0.1; ///< deviation: of the mean period from the nominal one, as its share
+           max_deviation = 0.1; ///< relative deviation of the mean period from the nominal one
 };
 struct Timing {
     Vsync vsync = Vsync::required;
     OnsetMethod onset = OnsetMethod::automatic;
-    int max_dropped_frames = 0; ///< in a stimulus interval
+    int max_dropped_frames = 0; ///< per stimulus interval
     BadTrial on_bad_trial = BadTrial::repeat_at_end;
     std::optional<SyncPatch> sync_patch;
     Calibrate calibrate;
@@ -67,14 +67,14 @@ struct Timing {
     double expected_hz = 60;   ///< for planning only
 };
 
-/// How a trial runs, from the end of the one before to its own.
+/// Timing of a trial, from the end of the previous one to its own end.
 struct TrialTiming {
     int warmup_frames = 0;                      ///< rendered before a trial's first stimulus is shown
     double isi_ms = 500;                        ///< between the stimuli of a trial
     double iti_ms = 500;                        ///< between trials
-    std::optional<double> stimulus_ms;          ///< each; none = until the answer
-    std::optional<double> timeout_ms;           ///< for the answer, from the last onset; none = waits
-    std::optional<double> expected_response_ms; ///< for planning; none = what is usual for the task
+    std::optional<double> stimulus_ms;          ///< of each stimulus; none = until the answer
+    std::optional<double> timeout_ms;           ///< for the answer, from the last onset; none = no timeout
+    std::optional<double> expected_response_ms; ///< for planning; none = the task's default
     double feedback_ms = 500;
 };
 enum class Stimuli { live, prepared };
@@ -93,7 +93,8 @@ struct Device {
 };
 
 enum class Balance { fixed, alternate, latin, williams, random, between };
-/// The order of a factor's levels, or of a group of blocks; or who sees which level.
+/// How the order of a factor's levels or of a group of blocks is counterbalanced, or the level that a participant
+/// gets (between).
 struct Counterbalance {
     std::string name;
     int factor = -1;
@@ -107,17 +108,17 @@ struct SequenceItem {
     SequenceKind kind = SequenceKind::block;
     int index = -1;                  ///< questionnaire, factor of per, block, counterbalance
     std::string text;                ///< instructions: file or Markdown; prompt of free_walk and rest
-    double seconds = 0;              ///< of free_walk; least of rest
+    double seconds = 0;              ///< duration of free_walk; minimum of rest
     Choice choice;                   ///< of free_walk
     std::vector<SequenceItem> items; ///< of per
     Place place;
 };
 
 enum class PairOrder {
-    balanced, ///< once a repeat; who comes first is balanced within and between participants
-    both,     ///< twice a repeat, in both orders
-    random,   ///< once, by chance
-    fixed,    ///< once, as listed
+    balanced, ///< once per repeat; which item comes first is balanced within and between participants
+    both,     ///< twice per repeat, in both orders
+    random,   ///< once per repeat, in random order
+    fixed,    ///< once per repeat, in the listed order
 };
 struct Pairs {
     int factor = -1;
@@ -125,16 +126,16 @@ struct Pairs {
     PairOrder order = PairOrder::balanced;
 };
 
-/// What is compared with what in tasks that have a right answer, and what is set in adjustment.
+/// What is compared in tasks that have a correct answer, and what is adjusted in adjustment.
 struct Compare {
     std::string vary; ///< the setting whose level is varied; empty: the levels of a factor are compared
     int factor = -1;
     std::vector<int> levels; ///< of the factor
-    Choice against;          ///< what of the other stimulus differs from the condition
-    Patch with;              ///< of the stimulus that is varied, under the level
+    Choice against;          ///< levels of the other stimulus that differ from the condition
+    Patch with;              ///< settings of the varied stimulus, overridden by the level
     Scale scale = Scale::linear;
     double low = 0, high = 0;
-    bool harder_up = true; ///< a higher level is harder to tell from the other
+    bool harder_up = true; ///< a higher level is harder to distinguish from the other stimulus
 };
 
 struct RatingScale {
@@ -142,7 +143,7 @@ struct RatingScale {
     std::vector<std::pair<double, std::string>> labels;
 };
 struct Magnitude {
-    double modulus = 0; ///< the number of the standard; 0 = free
+    double modulus = 0; ///< number assigned to the standard; 0 = free modulus
     Choice standard;
 };
 
@@ -154,25 +155,26 @@ enum class Shuffle { all, within_repeats, none };
 struct Practice {
     int trials = 0;
     bool has_feedback = true;
-    std::optional<double> level; ///< of what is varied; none = the easiest
+    std::optional<double> level; ///< of the varied setting; none = the easiest
 };
 enum class CatchLevel { number, absent };
 struct Catch {
-    int every = 0; ///< one for so many trials; 0 = none
+    int every = 0; ///< one catch trial per `every` trials; 0 = none
     CatchLevel kind = CatchLevel::number;
-    double level = 0;            ///< of what is varied; absent: there is nothing to find
-    int better = -1, worse = -1; ///< levels of the factor that is paired
+    double level = 0;            ///< of the varied setting; unused by `absent`, where there is nothing to find
+    int better = -1, worse = -1; ///< levels of the paired factor
     Place place;
 };
 
 enum class RuleKind { max_run, min_gap, never_after, not_first };
-/// Of what trials must not be the same: a factor, the pair of levels, the right answer or the procedure.
+/// What a constraint on the trial order applies to: a factor, the pair of levels, the correct answer, the
+/// procedure.
 enum class Subject { factor, pair, answer, procedure };
 struct Constraint {
     RuleKind kind = RuleKind::max_run;
     Subject subject = Subject::factor;
     int factor = -1;
-    int count = 1;          ///< max_run: so many in a row at most; min_gap: so many others in between at least
+    int count = 1;          ///< max_run: most equal trials in a row; min_gap: fewest other trials in between
     int from = -1, to = -1; ///< never_after: level `to` directly after `from`; not_first: level `to`
     Place place;
 };
@@ -194,14 +196,14 @@ struct Block {
 
     std::vector<int> cross;
     std::vector<Nest> nest;
-    std::vector<std::vector<int>> only; ///< by factor, levels that may be; empty = all
+    std::vector<std::vector<int>> only; ///< by factor, allowed levels; empty = all
     int repeats = 1;
     Shuffle shuffle = Shuffle::all;
     std::vector<Constraint> constraints;
 
     Practice practice;
     bool has_feedback = false;
-    bool may_tie = false; ///< of pairs: "neither" is an answer
+    bool may_tie = false; ///< of pairs: "neither" is an allowed answer
     bool is_sequential = false;
     Catch catches;
     int break_every = 0; ///< trials; 0 = no breaks
@@ -215,17 +217,17 @@ struct Block {
 struct Record {
     std::string dir = "data";
     bool poses_by_frame = true;
-    double head_pose_hz = 0; ///< where not by frame; 0 = none
+    double head_pose_hz = 0; ///< used if poses are not recorded per frame; 0 = none
     std::vector<std::string> markers;
     bool compress_frames = false;
 };
 struct Resume {
-    double max_gap_min = 60; ///< longer: what `repeat` says comes again
+    double max_gap_min = 60; ///< after a longer gap, the steps listed in `repeat` are shown again
     bool instructions = true, practice = true;
 };
 
 struct Script {
-    std::string file; ///< as named in messages
+    std::string file; ///< name in messages
     std::string id, title;
     std::uint64_t seed = 0;
     Participants participants;
@@ -234,7 +236,7 @@ struct Script {
     Choice reference;
     Defaults defaults;
     std::vector<Device> devices;
-    std::vector<Questionnaire> questionnaires; ///< known ones first, then those of the script
+    std::vector<Questionnaire> questionnaires; ///< built-in ones first, then those of the script
     std::vector<Counterbalance> counterbalances;
     std::vector<Block> blocks;
     std::vector<SequenceItem> sequence;
@@ -242,7 +244,7 @@ struct Script {
     Resume resume;
 };
 
-/// Texts stand in the script, or in a Markdown file beside it.
+/// True if the text is the name of a Markdown file beside the script, not the text itself.
 bool is_text_file(std::string const& text);
 
 } // namespace study

@@ -13,8 +13,8 @@ void check_text_file(Script const& s, std::filesystem::path const& folder, std::
 {
     std::error_code failure;
     if (is_text_file(text) && !std::filesystem::is_regular_file(folder / text, failure))
-        throw ScriptError(s.file, where, "there is no file '" + text + "'", "it is looked for beside the script",
-                          "write it, or put the text itself here");
+        throw ScriptError(s.file, where, "there is no file '" + text + "'", "it must be beside the script",
+                          "create it, or write the text itself here");
 }
 
 void check_texts(Script const& s, std::filesystem::path const& folder, std::vector<SequenceItem> const& items)

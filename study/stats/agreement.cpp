@@ -10,7 +10,7 @@
 namespace study {
 namespace {
 
-/// The number of observers of a complete table.
+/// Number of observers of a complete table.
 int complete_observers(Matrix const& wins)
 {
     std::size_t const n = wins.rows;
@@ -37,7 +37,7 @@ KendallU kendall_u(Matrix const& wins)
     r.observers = complete_observers(wins);
     r.items = int(wins.rows);
     double const m = r.observers, pairs = choose2(r.items);
-    if (m < 2) refuse("agreement of one observer", "there is nobody to agree with", "ask two or more");
+    if (m < 2) refuse("agreement of one observer", "agreement needs two or more", "ask two or more");
     double s = 0;
     for (std::size_t i = 0; i < wins.rows; ++i)
         for (std::size_t j = 0; j < wins.rows; ++j)

@@ -14,7 +14,7 @@ struct KendallU {
     /// 4/(m-2) (S - C(n, 2) C(m, 2) (m-3)/(m-2) / 2), and with S - 1 for S; NaN for m = 2.
     double chi_square = 0, chi_square_corrected = 0;
     double degrees_of_freedom = 0; ///< C(n, 2) m (m-1) / (m-2)^2
-    double p = 1, p_corrected = 1; ///< of choices by coin
+    double p = 1, p_corrected = 1; ///< under random choices
 };
 /// @param wins  wins(i, j) + wins(j, i) = m for all pairs. @throws std::invalid_argument otherwise; m < 2; n < 2
 KendallU kendall_u(Matrix const& wins);
@@ -45,12 +45,12 @@ struct Friedman {
     double kendall_w = 0;
     std::vector<double> mean_rank; ///< per condition, from 1
 };
-/// Where every observer ties everything chi-square and W are 0 and p is 1.
+/// If every observer ties everything, chi-square and W are 0 and p is 1.
 /// @param values  observers x conditions; larger = larger rank. @throws std::invalid_argument no complete
 /// observer, fewer than two conditions
 Friedman friedman(Matrix const& values);
 
-/// Ranks from 1 up, equal values share their mean rank.
+/// Ranks from 1 up; equal values share their mean rank.
 std::vector<double> midranks(std::span<double const> values);
 
 } // namespace study

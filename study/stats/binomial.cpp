@@ -49,7 +49,7 @@ double binomial_test(int k, int n, double p)
     check(k, n);
     if (!(p >= 0 && p <= 1))
         refuse("probability " + std::to_string(p), "it lies in [0, 1]", "give the one to test");
-    double const limit = log_binomial(k, n, p) + 1e-7; // so that rounding does not leave out its mirror
+    double const limit = log_binomial(k, n, p) + 1e-7; // so that rounding does not omit the mirrored outcome
     double sum = 0;
     for (int i = 0; i <= n; ++i)
         if (double const l = log_binomial(i, n, p); l <= limit) sum += std::exp(l);

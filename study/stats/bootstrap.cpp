@@ -27,7 +27,7 @@ Bootstrap bootstrap(int observers, ObserverStatistic const& statistic, Bootstrap
 {
     if (observers < 2)
         refuse("a bootstrap of " + std::to_string(observers) + " observers",
-               "how much they differ cannot be told from fewer than two", "report the standard error of the fit");
+               "their variation cannot be estimated from fewer than two", "report the standard error of the fit");
     if (settings.replicates < 2 || !(settings.confidence > 0 && settings.confidence < 1))
         refuse("a bootstrap with " + std::to_string(settings.replicates) + " replicates and confidence " +
                    std::to_string(settings.confidence),
@@ -48,7 +48,7 @@ Bootstrap bootstrap(int observers, ObserverStatistic const& statistic, Bootstrap
     }
     if (2 * result.failed > settings.replicates)
         refuse("most replicates of the bootstrap failed, the last with: " + reason,
-               "too few observers carry the comparisons that hold the result together",
+               "too few observers made the comparisons that connect the items",
                "collect more observers, or report the standard error of the fit");
 
     double const low = tail(observers, settings);

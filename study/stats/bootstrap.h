@@ -1,6 +1,6 @@
 #pragma once
-// Resampling of observers (Efron 1979, Ann. Stat. 7:1): trials of one person are not independent of each other, so
-// people are drawn with replacement and not trials.
+// Bootstrap over observers (Efron 1979, Ann. Stat. 7:1): trials of one person are not independent, so observers
+// are resampled with replacement, not trials.
 
 #include "study/stats/binomial.h"
 #include "study/stats/pair_scale.h"
@@ -27,23 +27,23 @@ struct BootstrapSettings {
 struct Bootstrap {
     std::vector<Interval> interval;              ///< per number
     std::vector<double> standard_error;          ///< per number: standard deviation of the replicates
-    std::vector<std::vector<double>> replicates; ///< those that had a result
-    int failed = 0;                              ///< replicates without one: the statistic refused their observers
+    std::vector<std::vector<double>> replicates; ///< those with a result
+    int failed = 0;                              ///< replicates whose observers the statistic refused
 };
 
-/// Some numbers of the observers given, who may come more than once; may refuse by std::invalid_argument.
+/// Computes numbers from the given observers, which may repeat; may throw std::invalid_argument to refuse them.
 using ObserverStatistic = std::function<std::vector<double>(std::span<int const> observers)>;
 
 /// The same seed gives the same result. @throws std::invalid_argument fewer than 2 observers, fewer than 2
-/// replicates, a confidence outside of (0, 1), or more than half of the replicates failed
+/// replicates, a confidence outside (0, 1), or more than half of the replicates failed
 Bootstrap bootstrap(int observers, ObserverStatistic const& statistic, BootstrapSettings const& settings = {});
 
-/// Of the scores of fit_pairs (in JOD, mean 0). @param observers  the pairs of each
+/// Bootstrap of the scores of fit_pairs (in JOD, mean 0). @param observers  the pairs of each
 /// @throws std::invalid_argument as bootstrap and fit_pairs
 Bootstrap bootstrap_pairs(std::vector<std::vector<PairCount>> const& observers, int items,
                           PairSettings const& scaling = {}, BootstrapSettings const& settings = {});
 
-/// All observers' pairs in one list, those shown in the same order added up.
+/// All observers' pairs in one list; counts of pairs shown in the same order are added up.
 std::vector<PairCount> pool(std::vector<std::vector<PairCount>> const& observers);
 
 } // namespace study

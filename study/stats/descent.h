@@ -1,6 +1,6 @@
 #pragma once
-// The minimum of a smooth function without derivatives of its own: BFGS (Nocedal & Wright 2006, "Numerical
-// Optimization", ch. 6) with central differences and halving of steps.
+// Minimum of a smooth function without given derivatives: BFGS (Nocedal & Wright 2006, "Numerical
+// Optimization", ch. 6) with central differences and step halving.
 
 #include <functional>
 #include <span>
@@ -11,7 +11,7 @@ namespace study {
 struct Minimum {
     std::vector<double> at;
     double value = 0;
-    bool converged = false; ///< the gradient vanished within what differences can tell
+    bool converged = false; ///< the gradient vanished within the accuracy of the differences
 };
 
 Minimum minimise(std::function<double(std::span<double const>)> const& f, std::vector<double> start,

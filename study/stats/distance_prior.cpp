@@ -11,10 +11,10 @@
 namespace study {
 namespace {
 
-constexpr double kSigma = 1.4826; ///< as pwcmp has it: 1 JOD = 75 %
+constexpr double kSigma = 1.4826; ///< as in pwcmp: 1 JOD = 75 %
 constexpr double kFloor = 0.1;
 
-/// An ordered pair that met.
+/// A compared ordered pair.
 struct Met {
     std::size_t i, j;
     double wins, losses;
@@ -63,7 +63,7 @@ double cost(std::vector<Met> const& met, std::span<double const> scores_but_firs
 
 std::vector<double> scale_with_distance_prior(Matrix const& wins)
 {
-    pairs_of(wins); // refuses what is no table of counts
+    pairs_of(wins); // refuses invalid tables of counts
     std::vector<int> const part = connected_parts(wins);
     if (part.empty() || *std::max_element(part.begin(), part.end()) > 0)
         refuse("the items are not connected by comparisons", "distances between their groups are unknown",

@@ -11,14 +11,14 @@
 namespace study {
 namespace {
 
-constexpr double kLargest = 40; ///< beyond which proportions are 1 to rounding
+constexpr double kLargest = 40; ///< beyond it proportions are 1 within rounding
 constexpr double kSqrt2 = std::numbers::sqrt2;
 
 void check_rate(double rate, char const* name)
 {
     if (!(rate >= 0 && rate <= 1))
-        refuse(std::string(name) + " " + std::to_string(rate), "it is a share of trials, from 0 to 1",
-               "divide a count by its trials, of which there must be some");
+        refuse(std::string(name) + " " + std::to_string(rate), "it is a proportion of trials, from 0 to 1",
+               "divide a count by its number of trials, which must not be 0");
 }
 
 double unbiased_proportion(double hit_rate, double false_alarm_rate)

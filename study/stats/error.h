@@ -1,5 +1,5 @@
 #pragma once
-// How statistics say that their input is wrong: "problem (why) suggestion".
+// Errors of the statistics for invalid input: "problem (why) suggestion".
 
 #include <stdexcept>
 #include <string>

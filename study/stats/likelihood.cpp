@@ -6,9 +6,9 @@
 namespace study {
 namespace {
 
-constexpr double kConverged = 1e-13; ///< of what a step could still gain in log-likelihood
+constexpr double kConverged = 1e-13; ///< threshold on the predicted gain in log-likelihood of a step
 
-/// The parameters that may move: not those at a bound that the gradient presses against.
+/// Free parameters: all except those that the gradient pushes against a bound.
 std::vector<std::size_t> free_parameters(std::vector<double> const& x, std::vector<Bound> const& bounds,
                                          std::vector<double> const& gradient)
 {
@@ -29,7 +29,7 @@ Matrix among(Matrix const& all, std::vector<std::size_t> const& chosen)
     return part;
 }
 
-/// The step of the free parameters, damped until the information can be solved with.
+/// Step of the free parameters, with damping increased until the information is positive definite.
 std::vector<double> damped_step(Matrix const& information, std::vector<double> const& gradient, double& damping)
 {
     for (;; damping = std::max(1e-6, damping * 10)) {
@@ -98,7 +98,7 @@ MaximumLikelihood maximise(LikelihoodAt const& model, std::vector<double> start,
             result.converged = gain < kConverged && damping < 1e-3;
             damping = damping < 1e-9 ? 0 : damping / 10;
         } else {
-            // What cannot be gained within rounding has been gained.
+            // No further gain is possible within rounding.
             result.converged = gain < 1e-11 * (1 + std::abs(here.log_likelihood));
             damping = std::max(1e-4, damping * 10);
             if (damping > 1e14) break;

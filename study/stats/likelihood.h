@@ -14,11 +14,11 @@ struct Likelihood {
     std::vector<double> gradient;
     Matrix information; ///< expected; symmetric
 
-    /// All zero for n parameters.
+    /// Sets everything to zero, for n parameters.
     void clear(std::size_t n);
 };
 
-/// Fills the second argument for the parameters given; -infinity or NaN as log_likelihood = impossible.
+/// Fills the second argument for the given parameters; log_likelihood -infinity or NaN = impossible parameters.
 using LikelihoodAt = std::function<void(std::span<double const>, Likelihood&)>;
 
 struct Bound {
@@ -28,20 +28,20 @@ struct Bound {
 
 struct MaximumLikelihood {
     std::vector<double> estimate;
-    Matrix covariance; ///< of parameters that are not at a bound; zero for those that are, NaN if singular
+    Matrix covariance; ///< of parameters not at a bound; zero for those at a bound, NaN if singular
     double log_likelihood = 0;
     bool converged = false;
     std::vector<bool> at_bound;
 };
 
-/// @param start  within the bounds  @param bounds  one per parameter, or none at all
+/// @param start  within the bounds  @param bounds  one per parameter, or empty
 MaximumLikelihood maximise(LikelihoodAt const& model, std::vector<double> start,
                            std::vector<Bound> const& bounds = {}, int max_iterations = 200);
 
-/// The model with Jeffreys' prior: half the log of the determinant of the information is added. Where estimates of
-/// a binomial model run off to infinity it makes them finite, takes their bias away to first order, and does not
-/// depend on how scores are anchored (Firth 1993, Biometrika 80:27; for links other than the logit Kosmidis &
-/// Firth 2021, Biometrika 108:71). Its gradient is taken by central differences.
+/// Adds Jeffreys' prior to a model: half the log of the determinant of the information. It makes infinite
+/// estimates of a binomial model finite, removes their bias to first order, and does not depend on how scores are
+/// anchored (Firth 1993, Biometrika 80:27; for links other than the logit Kosmidis & Firth 2021, Biometrika
+/// 108:71). Its gradient is computed by central differences.
 LikelihoodAt with_jeffreys_prior(LikelihoodAt model);
 
 } // namespace study

@@ -1,5 +1,5 @@
 #pragma once
-// Small dense matrices: tables of counts, informations, covariances.
+// Small dense matrices: tables of counts, information and covariance matrices.
 
 #include <cstddef>
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace study {
 
-/// Row by row.
+/// Row-major.
 struct Matrix {
     std::size_t rows = 0, columns = 0;
     std::vector<double> values;
@@ -19,11 +19,11 @@ struct Matrix {
     double operator()(std::size_t r, std::size_t c) const { return values[r * columns + c]; }
 };
 
-/// The lower triangle L with L L^T = a; nothing where `a` is not positive definite to rounding.
+/// Lower triangle L with L L^T = a; empty if `a` is not positive definite within rounding.
 std::optional<Matrix> cholesky(Matrix const& a);
-/// x with L L^T x = b. @param factor of cholesky()
+/// Solves L L^T x = b. @param factor  L, a result of cholesky()
 std::vector<double> solve(Matrix const& factor, std::span<double const> b);
-/// The inverse of a symmetric, positive definite matrix, if it is one.
+/// Inverse of a symmetric, positive definite matrix; empty if it is not positive definite.
 std::optional<Matrix> inverse(Matrix const& a);
 
 } // namespace study

@@ -28,10 +28,10 @@ void check(std::vector<std::vector<Matrix>> const& wins)
             if (scene.size() != wins.front().size() || observer.rows != scene.front().rows ||
                 observer.columns != observer.rows)
                 refuse("scenes with different observers or items", "likelihoods are summed over scenes",
-                       "give every observer a square table in every scene, of zeros where one saw nothing");
+                       "give every observer a square table in every scene, with zeros if nothing was seen");
 }
 
-/// Scores of fit_pairs's unit.
+/// Scores in the unit of fit_pairs.
 std::vector<double> scale(Matrix const& wins)
 {
     try {
@@ -77,7 +77,7 @@ std::vector<ObserverFit> observer_outliers(std::vector<std::vector<Matrix>> cons
         if (pairs[o] > 0) known.push_back(sum[o]);
     }
     if (known.size() < 3) refuse_so_few();
-    // As pwcmp, which is MATLAB code, or its published scores would not be met.
+    // MATLAB's quantiles, as in pwcmp, to reproduce its published scores.
     double const q25 = gi::hazen_quantile(known, 0.25), range = gi::hazen_quantile(known, 0.75) - q25;
     std::vector<ObserverFit> result;
     for (double const l : sum) {

@@ -11,7 +11,7 @@
 namespace study {
 namespace {
 
-/// F, its density, and log F with the precision of small tails.
+/// F, its density, and log F, accurate in small tails.
 struct Link {
     PairModel model;
     double log_cdf(double z) const
@@ -27,7 +27,7 @@ struct Link {
     }
 };
 
-/// Which parameter is what: scores of all items but the first, then the others that are fitted.
+/// Layout of the parameters: scores of all items except the first, then the other fitted ones.
 struct Layout {
     int items;
     bool order, threshold;
@@ -85,7 +85,7 @@ void add_pair(Link link, Layout const& layout, PairCount const& pair, std::span<
     }
 }
 
-/// Of one free proportion per pair, and the number of these.
+/// Log-likelihood of one free proportion per pair, and the number of these.
 double saturated(Layout const& layout, std::span<PairCount const> pairs, int& free, double& constant)
 {
     double sum = 0;
@@ -107,7 +107,7 @@ void check_connected(Matrix const& wins)
         if (part[i] != 0)
             refuse("item " + std::to_string(i) + " is not connected with item 0 by any chain of comparisons",
                    "the distance between such items is unknown",
-                   "scale the connected items by themselves, or compare across");
+                   "scale the connected items separately, or add comparisons between them");
 }
 
 } // namespace

@@ -3,7 +3,7 @@
 //   P(first is chosen) = F(s_first - s_second + b),
 // Thurstone's case V (1927, Psychol. Rev. 34:273) with F = Phi, Bradley & Terry's model (1952, Biometrika 39:324)
 // with F = the logistic function; b is the order effect (left or first is preferred; as in Agresti 1990, p. 438).
-// Ties count half for each, or have a threshold t of their own: P(first) = F(d + b - t), P(second) = F(-d - b - t)
+// Ties count half for each item, or have a threshold t: P(first) = F(d + b - t), P(second) = F(-d - b - t)
 // (Glenn & David 1960, Biometrics 16:86, for Phi; Rao & Kupper 1967, JASA 62:194, for the logistic function).
 // Scores are in the unit of F, with mean 0; in JOD a difference of 1 means that 75 % choose the better one.
 
@@ -18,8 +18,8 @@ enum class OrderEffect { none, fitted };
 enum class TieModel { half_wins, threshold };
 enum class Regularisation {
     never,       ///< refuses data whose estimates would be infinite
-    when_needed, ///< Jeffreys' prior (likelihood.h) where estimates would be infinite; `note` says so
-    always       ///< Jeffreys' prior: also takes away bias of small samples
+    when_needed, ///< Jeffreys' prior (likelihood.h) if estimates would be infinite; `note` reports it
+    always       ///< Jeffreys' prior: also removes small-sample bias
 };
 
 struct PairSettings {
@@ -36,27 +36,27 @@ struct Estimate {
 struct PairScale {
     PairModel model = PairModel::thurstone_v;
     std::vector<double> score;          ///< per item, mean 0, unit of F
-    std::vector<double> standard_error; ///< of a score against the mean of all
+    std::vector<double> standard_error; ///< of a score relative to the mean of all
     Matrix covariance;                  ///< of the scores
     std::optional<Estimate> order;      ///< b: positive = the first is preferred
     std::optional<Estimate> tie_threshold;
     double log_likelihood = 0;
     double deviance = 0; ///< against one free proportion per PairCount
     int degrees_of_freedom = 0;
-    double fit_p = 1; ///< P(deviance or more), by chi-square; 1 without degrees of freedom
+    double fit_p = 1; ///< P(deviance or larger), by chi-square; 1 without degrees of freedom
     bool regularised = false;
-    std::string note; ///< what had to be done to get finite numbers; empty = nothing
+    std::string note; ///< measures taken to get finite numbers; empty = none
 };
 
-/// One item has score 0. @throws std::invalid_argument as check_pairs; items that no chain of comparisons
-/// connects; infinite estimates with Regularisation::never; nothing but ties with TieModel::threshold
+/// Fits the scores; a single item has score 0. @throws std::invalid_argument as check_pairs; items not connected
+/// by a chain of comparisons; infinite estimates with Regularisation::never; only ties with TieModel::threshold
 PairScale fit_pairs(std::span<PairCount const> pairs, int items, PairSettings const& settings = {});
 
 /// JOD per unit of F: 1 / z(0.75) = 1.4826 for Thurstone's model, 1 / log 3 for Bradley's and Terry's
 /// (Perez-Ortiz & Mantiuk 2017, arXiv:1712.03686).
 double jod_per_unit(PairModel model);
 
-/// How much better `a` is than `b`, with Wald's test of "not at all".
+/// Difference of the scores of `a` and `b`, with Wald's test of "no difference".
 struct Difference {
     double value, standard_error, p;
 };

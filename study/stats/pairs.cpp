@@ -7,7 +7,7 @@
 namespace study {
 namespace {
 
-/// What can be reached from `start` along edges(from, to) > 0, or against them.
+/// Nodes reachable from `start` along edges(from, to) > 0, or against them.
 std::vector<bool> reached(Matrix const& edges, std::size_t start, bool const along, bool const against)
 {
     std::vector<bool> seen(edges.rows, false);

@@ -1,5 +1,5 @@
 #pragma once
-// Paired comparisons as counts, and what can be said of their design.
+// Paired comparisons as counts, and properties of their design.
 
 #include "study/stats/matrix.h"
 
@@ -7,27 +7,27 @@
 
 namespace study {
 
-/// How often two items met with `first` shown first (or left), and what was chosen. Counts need not be whole.
+/// Choices between two items with `first` shown first (or left). Counts need not be integers.
 struct PairCount {
     int first = 0, second = 0; ///< items, from 0
     double first_wins = 0, second_wins = 0, ties = 0;
 };
 
-/// One count per pair i < j that met, with i as first: for data whose order was not kept.
+/// One count per compared pair i < j, with i as first: for data without presentation order.
 /// @param wins  n x n; wins(i, j) = how often i was chosen over j. @throws std::invalid_argument as check_pairs
 std::vector<PairCount> pairs_of(Matrix const& wins);
 /// n x n, ties as half a win for each.
 Matrix wins_of(std::span<PairCount const> pairs, int items);
 
 /// @throws std::invalid_argument no items, an item out of range or compared with itself, a count that is negative
-/// or no number
+/// or NaN
 void check_pairs(std::span<PairCount const> pairs, int items);
 
-/// The part of the graph of comparisons that each item is in, numbered from 0. Scores of items in different parts
-/// cannot be compared. @param edges  n x n, > 0 = compared (either way)
+/// Connected component of the graph of comparisons for each item, numbered from 0. Scores of items in different
+/// components cannot be compared. @param edges  n x n, > 0 = compared (in either direction)
 std::vector<int> connected_parts(Matrix const& edges);
-/// Whether each item won, over some chain of others, against each other one: the condition for finite scores by
-/// maximum likelihood (Ford 1957, Amer. Math. Monthly 64(8-2):28).
+/// True if each item beats each other item through a chain of wins: the condition for finite scores by maximum
+/// likelihood (Ford 1957, Amer. Math. Monthly 64(8-2):28).
 bool each_beats_each(Matrix const& wins);
 
 } // namespace study

@@ -1,6 +1,6 @@
 #pragma once
-// Power by simulation: how often would an experiment of this size find what is there? The experiment and its test
-// are whatever the caller says.
+// Power by simulation: how often would an experiment of this size detect an existing effect? The caller provides
+// the experiment and its test.
 
 #include "study/stats/binomial.h"
 #include "study/stats/error.h"
@@ -14,13 +14,13 @@ namespace study {
 struct Power {
     int size = 0; ///< as given by the caller
     double power = 0;
-    Interval interval; ///< Wilson, 95 %: of so many simulations
+    Interval interval; ///< 95 % Wilson interval, from the number of simulations
     int simulations = 0;
-    int refused = 0; ///< simulations whose test refused its data (std::invalid_argument): they found nothing
+    int refused = 0; ///< simulations whose test refused its data (std::invalid_argument): not significant
 };
 
-/// @param significant  bool(Random&): simulates once and tests. Simulation i has part i of the seed, whatever
-/// comes before. @throws std::invalid_argument no simulations
+/// @param significant  bool(Random&): simulates once and tests. Simulation i uses Random::part(seed, i),
+/// independently of earlier ones. @throws std::invalid_argument no simulations
 template <class Experiment>
 Power simulate_power(int simulations, std::uint64_t seed, Experiment const& significant, int size = 0)
 {
@@ -40,7 +40,7 @@ Power simulate_power(int simulations, std::uint64_t seed, Experiment const& sign
     return p;
 }
 
-/// The first of `sizes` (of observers, trials, ...) with the power wanted; nothing where none has it.
+/// Returns the first of `sizes` (numbers of observers, trials, ...) that reaches the wanted power, if any.
 /// @param significant  bool(Random&, int size)
 template <class Experiment>
 std::optional<Power> smallest_size(std::span<int const> sizes, double wanted, int simulations, std::uint64_t seed,

@@ -38,7 +38,7 @@ std::vector<LevelCount> count_levels(std::span<double const> levels, std::span<i
     std::map<double, LevelCount> counts;
     for (std::size_t i = 0; i < levels.size(); ++i) {
         if (std::isnan(levels[i]))
-            refuse("a level that is no number", "it has no place on the axis", "leave it out");
+            refuse("a level that is not a number", "it has no place on the axis", "leave it out");
         LevelCount& c = counts[levels[i]];
         c.level = levels[i];
         c.correct += correct[i] != 0;

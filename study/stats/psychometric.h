@@ -1,6 +1,6 @@
 #pragma once
 // Psychometric functions by maximum likelihood (Wichmann & Hill 2001, Percept. Psychophys. 63:1293):
-//   P(x) = guess + (1 - guess - lapse) F((u(x) - threshold) / scale),  u(x) = x or log10 x, or minus that.
+//   P(x) = guess + (1 - guess - lapse) F((u(x) - threshold) / scale),  u(x) = x or log10 x, or its negative.
 // F: logistic 1/(1 + e^-z), Phi(z), or Weibull's 1 - exp(-e^z), which on a logarithmic axis is
 // 1 - exp(-(x/a)^b) with log10 a = threshold and b = log10(e) / scale.
 
@@ -26,7 +26,7 @@ struct PsychometricShape {
 };
 
 struct PsychometricParameters {
-    double threshold = 0; ///< where F is 1/2 (Weibull: 1 - 1/e), in units of u
+    double threshold = 0; ///< point at which F is 1/2 (Weibull: 1 - 1/e), in units of u
     double scale = 1;     ///< > 0, in units of u
     double guess = 0, lapse = 0;
 };
@@ -38,10 +38,10 @@ struct LevelCount {
     double trials = 0;
 };
 
-/// A rate that is known, or fitted within [0, limit].
+/// A rate that is fixed, or fitted within [0, limit].
 struct Rate {
     double value = 0;
-    double limit = 0; ///< > 0 = fitted; `value` is then only the start
+    double limit = 0; ///< > 0 = fitted; `value` is then only the start value
 };
 
 struct PsychometricSettings {
@@ -52,27 +52,27 @@ struct PsychometricSettings {
 struct PsychometricFit {
     PsychometricShape shape;
     PsychometricParameters parameters;
-    PsychometricParameters standard_error; ///< 0 where known or at a bound; NaN where the data do not say
+    PsychometricParameters standard_error; ///< 0 if fixed or at a bound; NaN if the data do not determine it
     Matrix covariance;                     ///< of threshold, log scale, guess, lapse
     double log_likelihood = 0;
     double deviance = 0; ///< against one free proportion per level
     int degrees_of_freedom = 0;
-    double fit_p = 1; ///< P(deviance or more) by chi-square, which is rough where trials per level are few
+    double fit_p = 1; ///< P(deviance or larger) by chi-square, which is inaccurate for few trials per level
     bool converged = false;
-    std::string note; ///< what the data could not settle; empty = nothing
+    std::string note; ///< what the data could not determine; empty = nothing
 };
 
 double transformed(PsychometricShape const& shape, double level); ///< u(x)
 /// P at a level.
 double proportion_at(PsychometricShape const& shape, PsychometricParameters const& p, double level);
-/// The level where P has that value; NaN where it never has, at or beyond guess and 1 - lapse.
+/// Level at which P has this value; NaN if P never reaches it, at or beyond guess and 1 - lapse.
 double level_at(PsychometricShape const& shape, PsychometricParameters const& p, double proportion);
 
-/// Levels without trials are left out, equal levels are one. @throws std::invalid_argument fewer than two levels,
-/// counts that are none, levels that are no numbers, on a logarithmic axis levels <= 0, rates whose sum reaches 1
+/// Ignores levels without trials and merges equal levels. @throws std::invalid_argument fewer than two levels,
+/// invalid counts, levels that are NaN, levels <= 0 on a logarithmic axis, rates whose sum reaches 1
 PsychometricFit fit_psychometric(std::span<LevelCount const> counts, PsychometricSettings const& settings = {});
 
-/// Single trials as counts, levels rising. @throws std::invalid_argument lists of different lengths
+/// Converts single trials to counts, sorted by level. @throws std::invalid_argument lists of different lengths
 std::vector<LevelCount> count_levels(std::span<double const> levels, std::span<int const> correct);
 
 } // namespace study

@@ -16,7 +16,7 @@ struct Point {
     double u, correct, trials;
 };
 
-/// What is fitted: threshold and log scale always, guess and lapse where their Rate says so.
+/// Fitted parameters: threshold and log scale always, guess and lapse if their Rate requires it.
 struct Model {
     Sigmoid kind;
     Rate guess, lapse;
@@ -74,7 +74,7 @@ std::vector<Point> checked_points(std::span<LevelCount const> counts, Psychometr
     for (LevelCount const& c : counts) {
         if (!(c.correct >= 0 && c.correct <= c.trials && std::isfinite(c.trials)))
             refuse(std::to_string(c.correct) + " of " + std::to_string(c.trials) + " trials",
-                   "counts are numbers, and nobody is right more often than asked", "check the table");
+                   "counts are numbers, with no more correct responses than trials", "check the table");
         if (!std::isfinite(c.level) || (shape.axis == Axis::log10 && !(c.level > 0)))
             refuse("level " + std::to_string(c.level), "it has no place on the axis",
                    shape.axis == Axis::log10 ? "use levels above 0, or a linear axis" : "use numbers");
@@ -105,7 +105,7 @@ Model make_model(std::span<LevelCount const> counts, PsychometricSettings const&
     return m;
 }
 
-/// The best fit from the most likely places of a grid.
+/// The best fit from the most likely points of a grid.
 MaximumLikelihood best_fit(Model const& m)
 {
     LikelihoodAt const at = [&](std::span<double const> x, Likelihood& l) { m.evaluate(x, l); };
@@ -140,11 +140,11 @@ std::string note_of(Model const& m, MaximumLikelihood const& fit)
         std::all_of(m.points.begin(), m.points.end(), [](Point const& p) { return p.correct == p.trials; });
     say(none, "no correct response at all: there is no threshold among these levels");
     say(all, "nothing but correct responses: there is no threshold among these levels");
-    say(fit.at_bound[0], "the threshold lies far outside of the levels shown");
-    // Below a hundredth of the range the curve is a step between two levels, wherever it is.
+    say(fit.at_bound[0], "the threshold lies far outside the levels shown");
+    // Below a hundredth of the range the curve is a step between two levels.
     say(fit.estimate[1] < std::log(0.01) || std::isnan(fit.covariance(0, 0)),
         "responses change within one step of level: threshold and scale are known only to lie between");
-    say(fit.estimate[1] > std::log(20.0), "responses hardly change with level: the scale is not known");
+    say(fit.estimate[1] > std::log(20.0), "responses hardly change with level: the scale cannot be estimated");
     say(m.fits_guess() && fit.estimate[2] >= m.guess.limit, "the guess rate is at its limit");
     say(m.fits_lapse() && fit.estimate[m.count() - 1] >= m.lapse.limit, "the lapse rate is at its limit");
     say(!fit.converged, "the fit did not converge");

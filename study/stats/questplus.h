@@ -1,6 +1,6 @@
 #pragma once
-// QUEST+ (Watson 2017, J. Vision 17(3):10): a posterior over a grid of threshold x slope x guess x lapse, and the
-// stimulus that is expected to leave the least entropy in it. QUEST (Watson & Pelli 1983) is the case of one
+// QUEST+ (Watson 2017, J. Vision 17(3):10): a posterior over a grid of threshold x slope x guess x lapse; the next
+// stimulus is the one with the least expected entropy. QUEST (Watson & Pelli 1983) is the case of one
 // slope, guess and lapse, Psi (Kontsevich & Tyler 1999) that of one guess and lapse.
 //   P(x) = guess + (1 - guess - lapse) F(x),  F one of QuestFunction.
 
@@ -10,7 +10,7 @@
 namespace study {
 
 enum class QuestFunction {
-    weibull_db, ///< 1 - exp(-10^(slope (x - threshold) / 20)): x and threshold in dB, as Watson has it
+    weibull_db, ///< 1 - exp(-10^(slope (x - threshold) / 20)): x and threshold in dB, as in Watson's paper
     weibull,    ///< 1 - exp(-(x / threshold)^slope): x and threshold > 0
     gaussian,   ///< Phi((x - threshold) / slope): the slope is a standard deviation
     logistic    ///< 1 / (1 + exp(-slope (x - threshold)))
@@ -26,36 +26,36 @@ struct QuestSettings {
         Direction::rising; ///< falling: larger x are harder, F(threshold - x) and (threshold / x)
     std::vector<double> stimuli;
     std::vector<double> threshold, slope, guess{0.5}, lapse{0.02};
-    /// Of each value of the vectors above, in any unit; empty = uniform.
+    /// Prior weights of the values above, not necessarily normalised; empty = uniform.
     std::vector<double> threshold_prior, slope_prior, guess_prior, lapse_prior;
-    /// Stimuli whose expected entropies differ by less (bits) are tied, and the first one is shown: without it
-    /// rounding would choose, differently on different machines.
+    /// Stimuli whose expected entropies differ by less (bits) are tied, and the first one is shown. Without it the
+    /// choice would depend on rounding, which differs between machines.
     double tie_tolerance = 1e-10;
 };
 
 class QuestPlus {
 public:
-    /// @throws std::invalid_argument an empty vector, values that are no numbers, slopes <= 0, stimuli or
-    /// thresholds <= 0 of QuestFunction::weibull, rates outside of [0, 1) or whose sums reach 1, priors of other
-    /// lengths, negative or all zero
+    /// @throws std::invalid_argument an empty vector, NaN, slopes <= 0, stimuli or thresholds <= 0 for
+    /// QuestFunction::weibull, rates outside [0, 1) or whose sums reach 1, priors of other lengths, negative or
+    /// all zero
     explicit QuestPlus(QuestSettings settings);
 
-    /// Index into settings().stimuli of what to show next.
+    /// Index into settings().stimuli of the next stimulus.
     std::size_t next() const;
     double next_stimulus() const { return settings_.stimuli[next()]; }
     /// @param stimulus  index into settings().stimuli
-    /// @throws std::invalid_argument no such stimulus, or a response that is impossible under every parameter left
+    /// @throws std::invalid_argument no such stimulus, or a response that all remaining parameters exclude
     void respond(std::size_t stimulus, bool correct);
 
-    /// Bits that are expected to be left after showing this stimulus.
+    /// Expected entropy of the posterior after showing this stimulus, bits.
     double expected_entropy(std::size_t stimulus) const;
     double entropy() const; ///< of the posterior, bits
     int trials() const { return trials_; }
 
-    QuestParameters mode() const; ///< the most probable cell; the first of several
+    QuestParameters mode() const; ///< the most probable cell; the first of ties
     QuestParameters mean() const;
     QuestParameters standard_deviation() const;
-    std::vector<double> threshold_posterior() const; ///< the other three summed out
+    std::vector<double> threshold_posterior() const; ///< marginal of the threshold
     QuestSettings const& settings() const { return settings_; }
 
 private:

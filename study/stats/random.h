@@ -2,7 +2,7 @@
 // The random numbers of studies: PCG32 (O'Neill 2014, "PCG: A Family of Simple Fast Space-Efficient Statistically
 // Good Algorithms for Random Number Generation", XSH-RR 64/32) and the shuffle of Fisher and Yates (Durstenfeld
 // 1964, CACM 7(7):420). Standard libraries differ in their distributions and shuffles; integers, uniform() and
-// shuffle() here are the same on every compiler, so that a seed and a participant's number make an order again.
+// shuffle() here are the same on every compiler, so that a seed and a participant's number reproduce an order.
 
 #include "gi/core/rng.h"
 
@@ -17,12 +17,17 @@ namespace study {
 
 class Random {
 public:
-    /// @param stream only its lower 63 bits count. The states of two streams of one seed differ by what only their
-    /// numbers decide: for many of them take part().
-    explicit Random(std::uint64_t seed, std::uint64_t stream = 0) : engine_(seed, stream) {}
+    /// @param stream only its lower 63 bits count. The states of two streams of one seed differ by an amount that
+    /// depends only on their numbers: use part() for many independent streams.
+    explicit Random(std::uint64_t seed, std::uint64_t stream = 0) : increment_((stream << 1) | 1)
+    {
+        next();
+        state_ += seed;
+        next();
+    }
 
-    /// The numbers of one part of many: a participant, a simulation. Seed and index are hashed, so that neighbours
-    /// are independent of each other.
+    /// Generator for one part of many, such as a participant or a simulation. Seed and index are hashed, so that
+    /// neighbours are independent.
     static Random part(std::uint64_t seed, std::uint64_t index)
     {
         std::uint64_t const hashed = gi::mix_bits(index + gi::mix_bits(seed + kGolden));
@@ -35,8 +40,8 @@ public:
     std::uint32_t below(std::uint32_t n)
     {
         if (n == 0)
-            throw std::invalid_argument("random number below 0 (there is none) ask for one below 1 or more");
-        std::uint32_t const uneven = (0u - n) % n; // 2^32 mod n: so many of the lowest would favour some
+            throw std::invalid_argument("random number below 0 (there is none) use 1 or more");
+        std::uint32_t const uneven = (0u - n) % n; // 2^32 mod n: reject this many of the lowest, to avoid bias
         for (;;)
             if (std::uint32_t const r = next(); r >= uneven) return r % n;
     }
@@ -51,7 +56,7 @@ public:
         return radius * std::cos(6.283185307179586476925 * uniform());
     }
 
-    /// Every order equally likely.
+    /// Shuffles; every order is equally likely.
     template <class T>
     void shuffle(std::span<T> items)
     {

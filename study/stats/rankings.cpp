@@ -26,7 +26,7 @@ void check(std::span<ChoiceAmong const> choices, int items)
     }
 }
 
-/// wins(i, j) = how often i was chosen where j could have been.
+/// wins(i, j) = how often i was chosen and j was not.
 Matrix wins_over(std::span<ChoiceAmong const> choices, int items)
 {
     auto const n = std::size_t(items);
@@ -74,7 +74,7 @@ PlackettLuce fit_plackett_luce(std::span<ChoiceAmong const> choices, int items)
     std::vector<int> const part = connected_parts(wins);
     if (*std::max_element(part.begin(), part.end()) > 0)
         refuse("items that no chain of choices connects", "the distance between them is unknown",
-               "scale the connected items by themselves, or rank across");
+               "scale the connected items separately, or add rankings across them");
     std::size_t const parameters = std::size_t(items) - 1;
     LikelihoodAt const model = [&](std::span<double const> at, Likelihood& l) {
         l.clear(parameters);

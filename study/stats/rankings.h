@@ -14,7 +14,7 @@ struct ChoiceAmong {
     std::vector<int> rejected;
 };
 
-/// @param ranking  items from the best on, not necessarily all of them
+/// @param ranking  items, best first, not necessarily all of them
 std::vector<ChoiceAmong> choices_of(std::span<int const> ranking);
 
 struct PlackettLuce {
@@ -23,12 +23,12 @@ struct PlackettLuce {
     Matrix covariance;
     double log_likelihood = 0;
     bool regularised = false;
-    std::string note; ///< what had to be done to get finite numbers; empty = nothing
+    std::string note; ///< measures taken to get finite numbers; empty = none
 };
 
-/// Maximum likelihood; with Jeffreys' prior (likelihood.h) where that would be infinite, and `note` says so.
-/// @throws std::invalid_argument no items, an item out of range or twice in a choice, items that no chain of
-/// choices connects
+/// Fits by maximum likelihood; if that is infinite, with Jeffreys' prior (likelihood.h), and `note` reports it.
+/// @throws std::invalid_argument no items, an item out of range or twice in a choice, items not connected by a
+/// chain of choices
 PlackettLuce fit_plackett_luce(std::span<ChoiceAmong const> choices, int items);
 
 } // namespace study

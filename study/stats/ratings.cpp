@@ -13,7 +13,7 @@ namespace {
 void check(Matrix const& ratings)
 {
     for (double const r : ratings.values)
-        if (std::isinf(r)) refuse("an infinite rating", "scales end", "use NaN for what was not rated");
+        if (std::isinf(r)) refuse("an infinite rating", "scales are finite", "use NaN for missing ratings");
 }
 
 std::vector<double> given(Matrix const& ratings, std::size_t item)
@@ -24,7 +24,7 @@ std::vector<double> given(Matrix const& ratings, std::size_t item)
     return values;
 }
 
-/// Calls use(item, observer, rating) for all there are.
+/// Calls use(item, observer, rating) for all ratings.
 template <class Use>
 void for_each(Matrix const& ratings, Use const& use)
 {
@@ -124,7 +124,7 @@ RatingModel fit_ratings(Matrix const& ratings)
     for (std::size_t o = 0; o < observers; ++o)
         m.bias_error.push_back(m.inconsistency[o] / std::sqrt(by_observer[o]));
     if (floored)
-        m.note = "the ratings of somebody follow the model exactly: the inconsistency is set to its least value";
+        m.note = "the ratings of an observer match the model exactly: the inconsistency is set to its minimum";
     if (!m.converged) m.note += std::string(m.note.empty() ? "" : "; ") + "the fit did not converge";
     return m;
 }

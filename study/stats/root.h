@@ -1,11 +1,11 @@
 #pragma once
-// The root of a rising function between two points, by halving until the bracket is no wider than its rounding.
+// Root of a rising function between two points, by bisection down to the rounding of the bracket.
 
 #include <cmath>
 
 namespace study {
 
-/// @param f rises, f(low) <= 0 <= f(high); where it is not so, the nearer end is returned
+/// @param f rises, f(low) <= 0 <= f(high); otherwise the nearer end is returned
 template <class F>
 double bisect(F const& f, double low, double high)
 {

@@ -1,5 +1,5 @@
 #pragma once
-// Scores that are known only up to a constant: fitted with the first item at 0, reported with mean 0.
+// Scores determined only up to a constant: fitted with the first item at 0, reported with mean 0.
 
 #include "study/stats/likelihood.h"
 
@@ -7,15 +7,15 @@ namespace study {
 
 struct Scores {
     std::vector<double> score;          ///< per item, mean 0
-    std::vector<double> standard_error; ///< of a score against the mean of all
+    std::vector<double> standard_error; ///< of a score relative to the mean of all
     Matrix covariance;
 };
 
-/// @param fit  its first `items` - 1 parameters are the scores of items 1, 2, ... against item 0
+/// @param fit  its first `items` - 1 parameters are the scores of items 1, 2, ... relative to item 0
 Scores centred(MaximumLikelihood const& fit, std::size_t items);
 
-/// Whether estimates went off to infinity: they are stopped where nothing can be gained any more, and have no
-/// error to speak of there.
+/// True if estimates diverged to infinity: the fit stopped where the likelihood no longer grows, and their
+/// standard errors are meaningless.
 bool runs_off(MaximumLikelihood const& fit);
 
 } // namespace study

@@ -80,7 +80,7 @@ double normal_quantile(double p)
     if (p == 0 || p == 1) return p == 0 ? -kInfinity : kInfinity;
     if (p == 0.5) return 0;
     if (p > 0.5) return -normal_quantile(1 - p);
-    // A start that is good to 4.5e-4 (A&S 26.2.23), then Newton's method on log Phi.
+    // A start accurate to 4.5e-4 (A&S 26.2.23), then Newton's method on log Phi.
     double const target = std::log(p), t = std::sqrt(-2 * target);
     double z =
         (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308))) - t;

@@ -22,9 +22,9 @@ Staircase::Staircase(StaircaseSettings settings) : settings_(std::move(settings)
         refuse(std::to_string(s.up) + "-up-" + std::to_string(s.down) + "-down",
                "a step follows one response or more", "use 1 or more for both");
     if (!(s.low <= s.start && s.start <= s.high))
-        refuse("start " + std::to_string(s.start), "it lies outside of the limits", "start within them");
+        refuse("start " + std::to_string(s.start), "it lies outside the limits", "start within them");
     if (s.kind != StepKind::linear && !(s.start > 0 && s.high > 0))
-        refuse("start " + std::to_string(s.start), "steps that multiply need levels above 0",
+        refuse("start " + std::to_string(s.start), "multiplicative steps need levels above 0",
                "use linear steps or other levels");
     if (s.stop.reversals < 0 || s.stop.max_trials < 0 || s.stop.min_trials < 0 ||
         (s.stop.reversals == 0 && s.stop.max_trials == 0))
@@ -82,7 +82,7 @@ double staircase_target(StaircaseSettings const& settings)
     return bisect(
         [&](double p) {
             double const q = 1 - p, pd = std::pow(p, d - 1), qu = std::pow(q, u - 1);
-            // Runs of a coin (Feller 1968, XIII.8.6): all heads first.
+            // Runs of coin tosses (Feller 1968, XIII.8.6): probability that a run of heads comes first.
             return pd * (1 - qu * q) / (pd + qu - pd * qu) - wanted;
         },
         0, 1);

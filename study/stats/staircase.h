@@ -1,7 +1,7 @@
 #pragma once
 // Up-down staircases: transformed (Levitt 1971, JASA 49:467) and weighted (Kaernbach 1991, Percept. Psychophys.
 // 49:227). After `down` correct responses in a row the level falls by a step, after `up` wrong ones it rises. The
-// step is that of the number of reversals so far, the reversal of this trial included.
+// number of reversals so far, including one at this trial, selects the step.
 
 #include "study/stats/psychometric.h"
 
@@ -19,11 +19,11 @@ enum class InitialRule {
     one_by_one ///< until the first reversal every response moves the level, as with up = down = 1
 };
 
-/// Finished = the reversals are complete and so are the fewest trials, or the most trials are complete.
+/// A staircase is finished when it has `reversals` and `min_trials`, or when it has `max_trials`.
 struct StopRule {
-    int reversals = 0;  ///< 0 = they do not stop it
-    int min_trials = 0; ///< with `reversals`
-    int max_trials = 0; ///< 0 = without limit
+    int reversals = 0;  ///< 0 = reversals do not stop it
+    int min_trials = 0; ///< used with `reversals`
+    int max_trials = 0; ///< 0 = no limit
 };
 
 struct StaircaseSettings {
@@ -31,7 +31,7 @@ struct StaircaseSettings {
     std::vector<double> steps{1}; ///< before the first reversal, after it, ...; the last one stays
     StepKind kind = StepKind::linear;
     int up = 1, down = 2;
-    double up_ratio = 1; ///< steps up are so many times those down
+    double up_ratio = 1; ///< size of steps up relative to steps down
     InitialRule initial = InitialRule::one_by_one;
     double low = -1e300, high = 1e300; ///< of levels
     StopRule stop;
@@ -44,11 +44,11 @@ struct Reversal {
 
 class Staircase {
 public:
-    /// @throws std::invalid_argument no steps, steps or a ratio that are not above 0, up or down below 1, a start
-    /// outside of the limits, levels that are not above 0 for steps that multiply, a rule that never stops
+    /// @throws std::invalid_argument no steps, steps or a ratio <= 0, up or down below 1, a start outside the
+    /// limits, levels <= 0 for multiplicative steps, a rule that never stops
     explicit Staircase(StaircaseSettings settings);
 
-    /// Of the next trial.
+    /// Level of the next trial.
     double level() const { return level_; }
     bool finished() const;
     /// @throws std::logic_error after it has finished
@@ -76,8 +76,8 @@ private:
 /// 1-up-2-down.
 double staircase_target(StaircaseSettings const& settings);
 
-/// Mean level of the last reversals, their number made even by leaving out an early one, so that peaks and valleys
-/// weigh the same. Nothing where there are none. @param last  how many, at most; 0 = all
+/// Mean level of the last reversals; an early one is dropped if needed to make their number even, so that peaks
+/// and valleys have equal weight. Empty without reversals. @param last  maximum number; 0 = all
 std::optional<double> mean_of_reversals(Staircase const& staircase, int last = 0);
 
 } // namespace study

@@ -1,14 +1,14 @@
 #pragma once
-// Mean and spread of plain numbers; their quantiles are in gi/core/quantile.h.
+// Mean and standard deviation; for quantiles see gi/core/quantile.h.
 
 #include <span>
 #include <vector>
 
 namespace study {
 
-/// NaN of nothing.
+/// NaN if empty.
 double mean(std::span<double const> values);
-/// With n - 1; NaN of fewer than two.
+/// With n - 1; NaN for fewer than two values.
 double standard_deviation(std::span<double const> values);
 
 } // namespace study

@@ -40,12 +40,12 @@ std::vector<std::uint64_t> circular_triad_counts(int n)
         refuse("the distribution of circular triads of " + std::to_string(n) + " items",
                "it is known here for 1 to " + std::to_string(kExactTriadItems),
                "use the chi-square approximation");
-    // Tournaments by their sorted wins: a new item plays against each of those that are there.
+    // Tournaments by sorted wins: a new item plays against each existing one.
     std::map<std::vector<int>, std::uint64_t> counts{{{0}, 1}};
     for (int k = 1; k < n; ++k) {
         std::map<std::vector<int>, std::uint64_t> grown;
         for (auto const& [wins, count] : counts)
-            for (unsigned lost = 0; lost < (1u << k); ++lost) { // bits: to whom the new item lost
+            for (unsigned lost = 0; lost < (1u << k); ++lost) { // bits: the items to which the new one lost
                 std::vector<int> next = wins;
                 int own = 0;
                 for (int i = 0; i < k; ++i) (lost >> i & 1u) ? ++next[std::size_t(i)] : ++own;

@@ -31,7 +31,7 @@ std::vector<std::pair<std::string, std::string>> about_task(std::string const& n
             {"StimulusPresentation.SoftwareVersion", start.version}};
 }
 
-/// Names that BIDS gives columns of participants.tsv a meaning of its own.
+/// Column names of participants.tsv to which BIDS gives a meaning.
 std::string asked_column(std::string const& question)
 {
     static std::set<std::string> const taken{
@@ -56,16 +56,16 @@ std::string readme(Script const& script, std::size_t sessions)
     return fmt::format(
         "# {}\n\n"
         "Records of the experiment '{}', {} session{}, written by Lightwell from the journals of the sessions\n"
-        "(`journal.jsonl`, one entry per line, which are the truth). Every table can be made anew from them with\n"
+        "(`journal.jsonl`, one entry per line), the primary records. Every table can be rewritten from them with\n"
         "`lightwell study rebuild`.\n\n"
-        "* `sub-*/ses-*/beh/*_task-BLOCK_events.tsv`: a row per trial; the file beside it with the ending .json "
-        "says\n"
-        "  what its columns mean.\n"
-        "* `*_task-BLOCK_acq-stimuli_events.tsv`: a row per stimulus that was shown.\n"
+        "* `sub-*/ses-*/beh/*_task-BLOCK_events.tsv`: a row per trial; the .json file of the same name "
+        "describes\n"
+        "  its columns.\n"
+        "* `*_task-BLOCK_acq-stimuli_events.tsv`: a row per shown stimulus.\n"
         "* `*_task-questionnaires_beh.tsv`: answers and scores.\n"
-        "* `*_task-session_events.tsv`: what was no trial: instructions, rests, notes.\n"
+        "* `*_task-session_events.tsv`: session events: instructions, rests, notes.\n"
         "* `session.json`: provenance. `plan.tsv`: the order of the session, written before its first trial.\n\n"
-        "Participants are numbers; nothing is stored about them but what the script asks.\n",
+        "Participants are numbers; the only personal data are the answers to the script's questions.\n",
         script.title.empty() ? script.id : script.title, script.id, sessions, sessions == 1 ? "" : "s");
 }
 
@@ -103,10 +103,10 @@ std::vector<TextFile> session_files(Script const& script, RecordedSession const&
 Table participants_table(Script const& script, std::vector<RecordedSession> const& sessions)
 {
     Table table{{{"participant_id", "Participant"},
-                 {"number", "Number of the participant, which decides every order"},
-                 {"sessions", "Sessions that were begun"},
+                 {"number", "Number of the participant, which determines every order"},
+                 {"sessions", "Number of sessions started"},
                  {"complete", "Whether all of them were finished"},
-                 {"simulated", "Whether a model observer answered"}}};
+                 {"simulated", "Whether the participant is a model observer"}}};
     for (std::string const& question : script.participants.ask)
         table.columns.push_back({asked_column(question), "Answer to the question: " + question});
     std::map<std::string, std::vector<RecordedSession const*>> people;

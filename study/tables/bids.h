@@ -1,7 +1,7 @@
 #pragma once
 // Records in the layout of BIDS 1.10 (Gorgolewski et al. 2016, Sci. Data 3:160044;
-// https://bids-specification.readthedocs.io), modality `beh`. Everything is made from script, plan and journal,
-// and can be made anew at any time.
+// https://bids-specification.readthedocs.io), modality `beh`. All files are derived from script, plan and journal
+// and can be rewritten at any time.
 
 #include "study/tables/recorded_session.h"
 #include "study/tables/table.h"
@@ -11,20 +11,20 @@ namespace study {
 /// "sub-P001/ses-01/beh"
 std::string session_folder(SessionStarted const& start);
 
-/// Tables with their sidecars and session.json, below the folder of all records:
+/// Tables with their sidecars and session.json, relative to the folder of the data set:
 ///   <folder>/sub-P001_ses-01_task-NAME_events.tsv             a row per trial, NAME of each block
 ///   <folder>/sub-P001_ses-01_task-NAME_acq-stimuli_events.tsv a row per stimulus
 ///   <folder>/sub-P001_ses-01_task-questionnaires_beh.tsv
-///   <folder>/sub-P001_ses-01_task-session_events.tsv          what was no trial
+///   <folder>/sub-P001_ses-01_task-session_events.tsv          session events
 ///   <folder>/session.json                                     provenance
-/// Blocks without a trial have no file.
+/// Blocks without trials have no file.
 std::vector<TextFile> session_files(Script const& script, RecordedSession const& session);
 
 /// dataset_description.json, participants.tsv and .json, README, .bidsignore of all sessions together.
 std::vector<TextFile> dataset_files(Script const& script, std::vector<RecordedSession> const& sessions,
                                     std::string const& program_version);
 
-/// participant_id, number, sessions, complete, simulated, and what the script asks participants.
+/// participant_id, number, sessions, complete, simulated, and the answers to the script's questions.
 Table participants_table(Script const& script, std::vector<RecordedSession> const& sessions);
 
 } // namespace study

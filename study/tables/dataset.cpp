@@ -19,7 +19,7 @@ std::vector<fs::path> journals(fs::path const& dir, std::vector<std::string>& re
     if (found.files.empty())
         throw ScriptError(dir.string(), {}, "no session is there",
                           "sessions are in sub-ID/ses-01/beh/journal.jsonl below that folder",
-                          "name the folder that `study run` or `study simulate` was given");
+                          "name the folder that was given to `study run` or `study simulate`");
     remarks = std::move(found.remarks);
     return std::move(found.files);
 }
@@ -35,7 +35,7 @@ Text script_of(fs::path const& dir, fs::path const& named, std::string const& ha
         if (file.extension() == ".yaml")
             if (std::string text = gi::read_text(file); gi::sha256(text) == hash) return {file.string(), text};
     throw ScriptError((dir / "code").string(), {}, "the script of the sessions is not there",
-                      "trials cannot be understood without it", "name it with --script");
+                      "trials cannot be interpreted without it", "name it with --script");
 }
 
 SessionStarted const& first_of(SessionRecord const& record, fs::path const& file)
@@ -43,7 +43,7 @@ SessionStarted const& first_of(SessionRecord const& record, fs::path const& file
     auto const* start = record.entries.empty() ? nullptr : std::get_if<SessionStarted>(&record.entries.front());
     if (start == nullptr)
         throw ScriptError(file.string(), {}, "the journal does not begin with the start of a session",
-                          "nothing can be said about what follows", "move it away, it has no finished trial");
+                          "the following entries cannot be interpreted", "move it away, it has no finished trial");
     return *start;
 }
 
@@ -55,7 +55,7 @@ void check_place(fs::path const& dir, fs::path const& file, SessionStarted const
         throw ScriptError(file.string(), {},
                           fmt::format("this is the journal of participant {} in session {}", start.participant_id,
                                       start.session),
-                          "its folder says otherwise: what was copied would count twice",
+                          "its folder is that of another: a copy would count twice",
                           "move it to " + right.parent_path().string() + ", or out of the data set");
 }
 
@@ -70,7 +70,7 @@ Dataset read_dataset(fs::path const& dir, fs::path const& script)
     for (fs::path const& file : journals(dir, d.remarks)) {
         JournalText journal = read_journal(file);
         if (journal.torn_bytes > 0)
-            d.remarks.push_back(fmt::format("{}: {} bytes of a line that is not whole are left out", file.string(),
+            d.remarks.push_back(fmt::format("{}: {} bytes of an incomplete line are ignored", file.string(),
                                             journal.torn_bytes));
         if (journal.record.entries.empty()) {
             d.remarks.push_back(fmt::format("{}: nothing has happened in this session yet", file.string()));
@@ -87,19 +87,19 @@ Dataset read_dataset(fs::path const& dir, fs::path const& script)
         if (start.script_sha256 != hash)
             throw ScriptError(file.string(), {}, "the session was recorded with another script",
                               fmt::format("'{}' has another hash", d.script.file),
-                              "name the script as it was then, byte for byte, with --script");
+                              "name the original script, byte for byte, with --script");
         if (start.participant < 1 || start.participant > d.script.participants.count)
             throw ScriptError(file.string(), {}, fmt::format("participant {}", start.participant),
                               "the script has no such participant", "name the right script with --script");
         Plan plan = make_plan(d.script, start.participant);
         if (!start.plan_sha256.empty() && start.plan_sha256 != gi::sha256(plan_table(d.script, plan)))
-            throw ScriptError(file.string(), {}, "the session was planned otherwise",
+            throw ScriptError(file.string(), {}, "the session had another plan",
                               fmt::format("version {} made another plan of this script", start.version),
                               "use that version of the program");
         d.sessions.push_back({std::move(plan), std::move(journal.record)});
     }
     if (d.sessions.empty())
-        throw ScriptError(dir.string(), {}, "no session has begun", "all journals are empty", "run one first");
+        throw ScriptError(dir.string(), {}, "no session has started", "all journals are empty", "run one first");
     return d;
 }
 

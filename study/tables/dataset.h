@@ -11,16 +11,16 @@ struct Dataset {
     Script script;
     std::string script_text;
     std::vector<RecordedSession> sessions; ///< by folder: participant, then session
-    std::vector<std::string> remarks;      ///< folders without a journal, lines that are not whole, and such
+    std::vector<std::string> remarks;      ///< such as folders without a journal, incomplete lines
 };
 
-/// Reads DIR/sub-*/ses-*/beh/journal.jsonl, and plans each session anew.
-/// @param script file; empty = DIR/code/*.yaml, the one with which the sessions were recorded
-/// @throws ScriptError where there is no session, no script, a journal is of another script, broken or in the
-/// folder of another session, or something cannot be read
+/// Reads DIR/sub-*/ses-*/beh/journal.jsonl and recomputes the plan of each session.
+/// @param script file; empty = DIR/code/*.yaml, the script with which the sessions were recorded
+/// @throws ScriptError if there is no session or no script, a journal belongs to another script, is damaged or in
+/// the folder of another session, or a file cannot be read
 Dataset read_dataset(std::filesystem::path const& dir, std::filesystem::path const& script);
 
-/// Where read_dataset looks for the script: DIR/code/ID.yaml.
+/// File in which read_dataset looks for the script: DIR/code/ID.yaml.
 std::filesystem::path kept_script(std::filesystem::path const& dir, Script const& script);
 
 } // namespace study

@@ -8,7 +8,7 @@
 namespace study {
 namespace {
 
-/// What the stimuli of a trial have in common in one row.
+/// Summary of a trial's stimuli for one row.
 struct ShownTogether {
     double onset_s = NAN, end_s = NAN, uncertainty_ms = NAN, render_ms_mean = NAN, render_ms_p99 = NAN;
     std::string methods, settings;
@@ -47,8 +47,8 @@ ShownTogether together(TrialDone const& done)
 std::vector<std::pair<std::string, std::string>> const kPhases{
     {"practice", "before the main trials, not analysed"},
     {"main", "a trial of the experiment"},
-    {"catch", "its answer is certain: shows attention"},
-    {"repeat", "a main or catch trial once more, because the attempt before was not valid"}};
+    {"catch", "its answer is obvious: tests attention"},
+    {"repeat", "a repeated main or catch trial, because the previous attempt was invalid"}};
 std::vector<std::pair<std::string, std::string>> const kOnsetMethods{
     {"oml", "GLX_OML_sync_control: the display's own time stamp"},
     {"wp_presentation", "Wayland presentation time"},
@@ -64,39 +64,39 @@ std::vector<Column> event_columns(Script const& s)
         {"response_time", "From the onset of the last stimulus to the answer", "s"},
         {"trial", "Number of the trial in its pass of the block, from 1"},
         {"block", "Block of the script"},
-        {"pass", "How often the block has come, from 1"},
-        {"part", "1, and one more after each resumption of the session"},
+        {"pass", "Number of the pass of the block, from 1"},
+        {"part", "Part of the session, from 1; each resumption adds one"},
         {"phase", "Kind of trial", "", kPhases},
-        {"attempt", "1, and one more each time that the trial was repeated"},
-        {"repeat", "Repeat of the condition, from 1; of adaptive procedures: which run"}};
+        {"attempt", "Number of the attempt at the trial, from 1"},
+        {"repeat", "Repeat of the condition, from 1; number of the run for adaptive procedures"}};
     auto const names = factor_columns(s);
     for (std::size_t f = 0; f < s.factors.size(); ++f)
         columns.push_back(
-            {names[f], fmt::format("Level of the factor {}; n/a where stimuli differ in it", s.factors[f].name)});
+            {names[f], fmt::format("Level of the factor {}; n/a if stimuli differ in it", s.factors[f].name)});
     std::vector<Column> const more{
         {"cond_a", "Stimulus a"},
         {"cond_b", "Stimulus b"},
-        {"cond_more", "Further stimuli, commas between"},
-        {"reference", "The reference, where it was shown too"},
-        {"order", "Letters of the stimuli in the order in which they were shown"},
-        {"level", "Level of what is varied"},
+        {"cond_more", "Further stimuli, separated by commas"},
+        {"reference", "The reference, if it was also shown"},
+        {"order", "Letters of the stimuli in order of presentation"},
+        {"level", "Level of the varied setting"},
         {"procedure", "Procedure that chose the level"},
-        {"response", "Answer; of rankings the letters of the stimuli, best first"},
-        {"value", "Number that was given: rating, magnitude, adjusted level"},
-        {"answer", "The right answer"},
-        {"correct", "Whether the answer was right"},
-        {"device", "Input that answered"},
-        {"response_uncertainty_ms", "response_time lies within plus or minus this, onset included", "ms"},
+        {"response", "Answer; for rankings the letters of the stimuli, best first"},
+        {"value", "Numeric answer: rating, magnitude, adjusted level"},
+        {"answer", "The correct answer"},
+        {"correct", "Whether the answer was correct"},
+        {"device", "Input that gave the answer"},
+        {"response_uncertainty_ms", "Uncertainty (plus or minus) of response_time, onset included", "ms"},
         {"onset_method", "How onsets were timed", "", kOnsetMethods},
-        {"onset_uncertainty_ms", "Onsets lie within plus or minus this, as far as software can tell", "ms"},
+        {"onset_uncertainty_ms", "Uncertainty (plus or minus) of onsets, as far as software can measure it", "ms"},
         {"frames_planned", "Frames of all stimuli that should have been shown"},
         {"frames_shown", "Frames that were shown"},
         {"frames_dropped", "Frames that came too late"},
-        {"render_ms_mean", "Mean time to render a frame", "ms"},
-        {"render_ms_p99", "99th percentile of that, of the slowest stimulus", "ms"},
-        {"settings_sha256", "Hashes of the renderer's settings of the stimuli, commas between"},
-        {"bookkeeping_ms", "Time between the trials that journal and choice of the next took", "ms"},
-        {"valid", "Whether the trial was as it should be"},
+        {"render_ms_mean", "Mean rendering time per frame", "ms"},
+        {"render_ms_p99", "99th percentile of the rendering time, of the slowest stimulus", "ms"},
+        {"settings_sha256", "Hashes of the stimuli's renderer settings, separated by commas"},
+        {"bookkeeping_ms", "Time between the trials for journal and choice of the next step", "ms"},
+        {"valid", "Whether the trial was valid"},
         {"reason", "Why not"},
         {"analysis", "Whether it counts in analyses, and why not"}};
     columns.insert(columns.end(), more.begin(), more.end());
@@ -250,20 +250,20 @@ Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int
     Table table{{{"onset", "Onset of the stimulus, since the beginning of the session", "s"},
                  {"duration", "How long it was shown", "s"},
                  {"trial", "Number of the trial in its pass of the block, from 1"},
-                 {"pass", "How often the block has come, from 1"},
-                 {"attempt", "1, and one more each time that the trial was repeated"},
+                 {"pass", "Number of the pass of the block, from 1"},
+                 {"attempt", "Number of the attempt at the trial, from 1"},
                  {"place", "Place in the order of presentation, from 1"},
                  {"stimulus", "Letter of the stimulus; r is the reference"}}};
     for (std::string const& name : factor_columns(script))
-        table.columns.push_back({name, "Level of the factor that the stimulus had"});
-    std::vector<Column> const more{{"level", "Level of what is varied, of the stimulus that has it"},
+        table.columns.push_back({name, "Level of the factor"});
+    std::vector<Column> const more{{"level", "Level of the varied setting, for the varied stimulus"},
                                    {"onset_method", "How the onset was timed", "", kOnsetMethods},
-                                   {"onset_uncertainty_ms", "The onset lies within plus or minus this", "ms"},
+                                   {"onset_uncertainty_ms", "Uncertainty (plus or minus) of the onset", "ms"},
                                    {"frames_planned", "Frames that should have been shown"},
                                    {"frames_shown", "Frames that were shown"},
                                    {"frames_dropped", "Frames that came too late"},
-                                   {"render_ms_mean", "Mean time to render a frame", "ms"},
-                                   {"render_ms_p99", "99th percentile of that", "ms"},
+                                   {"render_ms_mean", "Mean rendering time per frame", "ms"},
+                                   {"render_ms_p99", "99th percentile of the rendering time", "ms"},
                                    {"settings_sha256", "Hash of the renderer's settings"}};
     table.columns.insert(table.columns.end(), more.begin(), more.end());
     for (TrialRow const& row : rows) {

@@ -1,36 +1,35 @@
 #pragma once
-// The tables of one session: trials of each block, the stimuli of these trials, questionnaires, everything else
-// that happened.
+// The tables of one session: trials of each block, their stimuli, questionnaires, session events.
 
 #include "study/tables/recorded_session.h"
 #include "study/tables/table.h"
 
 namespace study {
 
-/// Names of columns for the factors of a script, in its order: their own, or "factor_" + name where that is the
-/// name of another column of any table.
+/// Column names for the factors of a script, in its order: the factor's name, or "factor_" + name if another
+/// column of any table has this name.
 std::vector<std::string> factor_columns(Script const& script);
 
-/// A row per trial of a block that was carried through, practice and invalid ones too. Onsets are in seconds since
-/// the beginning of the session.
+/// One row per trial of a block that ran to its end, including practice and invalid ones. Onsets are in seconds
+/// since the beginning of the session.
 Table events_table(Script const& script, std::vector<TrialRow> const& rows, int block);
-/// A row per stimulus that was shown in these trials.
+/// One row per stimulus shown in these trials.
 Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int block);
-/// A row per item, then one per score, of each questionnaire as often as it was answered.
+/// One row per item, then one per score, for each time that a questionnaire was answered.
 Table questionnaires_table(Script const& script, RecordedSession const& session);
-/// What was no trial: starts, calibrations, instructions, rests, walks, notes, ends.
+/// Session events: starts, calibrations, instructions, rests, walks, notes, ends.
 Table happenings_table(RecordedSession const& session);
 
-/// A questionnaire as it was answered, with what of the factors was fixed then.
+/// An answered questionnaire, with its step, which has the factors fixed at that time.
 struct AnsweredQuestionnaire {
     Questionnaire const* questionnaire;
     PlanStep const* step;
     QuestionnaireDone const* done;
-    int time_point; ///< from 1: how often this questionnaire had come in this session
+    int time_point; ///< from 1: the n-th time that this questionnaire was answered in the session
     double offset_s;
     QuestionnaireScores scores;
 };
-/// @throws ScriptError where the journal has answers that the questionnaire does not
+/// @throws ScriptError if the journal has answers that the questionnaire does not allow
 std::vector<AnsweredQuestionnaire> answered_questionnaires(Script const& script, RecordedSession const& session);
 
 } // namespace study

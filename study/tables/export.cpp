@@ -13,7 +13,7 @@ std::vector<Column> with_origin(std::vector<Column> const& columns)
 {
     std::vector<Column> all{{"participant", "Participant"},
                             {"session", "Number of the session, from 1"},
-                            {"simulated", "Whether a model observer answered"}};
+                            {"simulated", "Whether the participant is a model observer"}};
     all.insert(all.end(), columns.begin(), columns.end());
     return all;
 }
@@ -29,7 +29,7 @@ void append(Table& to, Table const& from, SessionStarted const& start, std::vect
     }
 }
 
-/// What was chosen, and what was shown first and second, as labels: what models of choices need.
+/// Labels of the chosen, first and second stimulus, for models of choices.
 void append_trials(Table& to, Script const& s, std::vector<TrialRow> const& rows, SessionStarted const& start)
 {
     for (TrialRow const& row : rows) {
@@ -56,9 +56,9 @@ std::vector<NamedTable> export_tables(Script const& script, std::vector<Recorded
     NamedTable trials{"trials", {}}, stimuli{"stimuli", {}}, answers{"questionnaires", {}},
         other{"happenings", {}};
     trials.table.columns = with_origin(events_table(script, {}, 0).columns);
-    std::vector<Column> const more{{"first", "What was shown first, or on the left"},
-                                   {"second", "What was shown second"},
-                                   {"chosen", "What was chosen of them"},
+    std::vector<Column> const more{{"first", "Stimulus shown first, or on the left"},
+                                   {"second", "Stimulus shown second"},
+                                   {"chosen", "The chosen one"},
                                    {"task", "Task of the block"}};
     trials.table.columns.insert(trials.table.columns.end(), more.begin(), more.end());
     stimuli.table.columns = with_origin(stimuli_table(script, {}, 0).columns);

@@ -37,7 +37,7 @@ std::vector<AnsweredQuestionnaire> answered_questionnaires(Script const& script,
         if (step && which < 0 && step->block >= 0) which = script.blocks[std::size_t(step->block)].questionnaire;
         auto const refuse = [&](std::string const& problem) {
             return ScriptError("journal of " + session.plan.participant_id, {}, problem,
-                               "'" + script.file + "' plans it otherwise",
+                               "'" + script.file + "' gives another plan",
                                "use the script and the plan with which the session was recorded");
         };
         if (which < 0) throw refuse(fmt::format("step {} is no questionnaire", done->step + 1));
@@ -54,16 +54,16 @@ std::vector<AnsweredQuestionnaire> answered_questionnaires(Script const& script,
 Table questionnaires_table(Script const& script, RecordedSession const& session)
 {
     Table table{{{"start", "When the questionnaire was shown, since the beginning of the session", "s"},
-                 {"time_taken", "How long answering it took", "s"},
+                 {"time_taken", "Time taken to answer", "s"},
                  {"questionnaire", "Its name"},
-                 {"time_point", "How often it had come in this session, from 1"}}};
+                 {"time_point", "Number of the occasion in this session, from 1"}}};
     for (std::string const& name : factor_columns(script))
-        table.columns.push_back({name, "Level of the factor at that time; n/a where none was fixed"});
+        table.columns.push_back({name, "Level of the factor at that time; n/a if none was fixed"});
     std::vector<Column> const more{
-        {"kind", "What the row has", "", {{"item", "an answer"}, {"score", "a score computed from answers"}}},
+        {"kind", "Kind of row", "", {{"item", "an answer"}, {"score", "a score computed from answers"}}},
         {"item", "Item, or the name of the score"},
         {"raw", "Answer as given"},
-        {"reversed", "Whether the item is scored the other way round"},
+        {"reversed", "Whether the item is reverse-scored"},
         {"scored", "Answer as scored, or the score"}};
     table.columns.insert(table.columns.end(), more.begin(), more.end());
     for (AnsweredQuestionnaire const& a : answered_questionnaires(script, session)) {
@@ -93,12 +93,12 @@ Table questionnaires_table(Script const& script, RecordedSession const& session)
 
 Table happenings_table(RecordedSession const& session)
 {
-    Table table{{{"onset", "When it began, since the beginning of the session", "s"},
-                 {"duration", "How long it took", "s"},
-                 {"trial_type", "What it was: start, calibration, instructions, rest, free_walk, questionnaire, "
+    Table table{{{"onset", "Start, since the beginning of the session", "s"},
+                 {"duration", "Duration", "s"},
+                 {"trial_type", "Kind of event: start, calibration, instructions, rest, free_walk, questionnaire, "
                                 "end, or the kind of a note (note, pause, skip, abort, warning, ...)"},
                  {"step", "Step of the plan, from 1"},
-                 {"text", "What there is to say"}}};
+                 {"text", "Details"}}};
     for (TimedEntry const& timed : timed_entries(session)) {
         JournalEntry const& entry = *timed.entry;
         double const t = timed.offset_s;

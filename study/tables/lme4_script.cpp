@@ -8,7 +8,7 @@
 namespace study {
 namespace {
 
-/// As a string of R.
+/// Quotes a text as a string of R.
 std::string quoted_for_r(std::string const& text)
 {
     std::string out = "\"";
@@ -20,7 +20,7 @@ std::string quoted_for_r(std::string const& text)
     return out + "\"";
 }
 
-/// As a name of R, which may have anything in it but a backtick.
+/// Quotes a name of R, which may contain anything except a backtick.
 std::string named(std::string const& column) { return "`" + column + "`"; }
 
 std::string listed(std::vector<std::string> const& words)
@@ -30,7 +30,7 @@ std::string listed(std::vector<std::string> const& words)
     return out + ")";
 }
 
-/// Factors that vary within a block, as columns of the table, but for the one that it compares.
+/// Factors that vary within a block, as columns of the table, except the one that it compares.
 std::vector<std::string> varying(Script const& s, Block const& b)
 {
     auto const names = factor_columns(s);
@@ -134,7 +134,7 @@ trials <- read.csv({}, stringsAsFactors = FALSE, na.strings = "NA", check.names 
 trials <- trials[trials$analysis %in% c("counted", "counted though invalid"), ]
 trials$correct <- trials$correct == "true"
 
-# Terms of one level cannot be estimated and are left out, and said.
+# Terms with only one level cannot be estimated: they are left out and printed.
 fit <- function(formula, data, family = NULL) {{
   fixed <- attr(terms(lme4::nobars(formula)), "term.labels")
   constant <- Filter(function(t) length(unique(data[[gsub("`", "", t)]])) < 2, fixed)

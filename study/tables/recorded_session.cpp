@@ -14,7 +14,7 @@ ScriptError broken(Script const& script, RecordedSession const& session, std::st
     return {fmt::format("journal of {}", session.plan.participant_id),
             {},
             problem,
-            fmt::format("'{}' plans it otherwise", script.file),
+            fmt::format("'{}' gives another plan", script.file),
             "use the script and the plan with which the session was recorded"};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A session as it was planned and as its journal says that it went.
+// A session: its plan and its record.
 
 #include "study/journal/entries.h"
 #include "study/plan/plan.h"
@@ -13,14 +13,14 @@ struct RecordedSession {
     SessionRecord record;
 };
 
-/// What the first entry of a journal says. @throws ScriptError where it has none, or where it is of another
-/// experiment or participant than plan and script
+/// The first entry of the journal. @throws ScriptError if there is none, or it belongs to another experiment or
+/// participant than plan and script
 SessionStarted const& start_of(Script const& script, RecordedSession const& session);
-/// Whether every step was done.
+/// True if every step was done.
 bool is_complete(RecordedSession const& session);
 
-/// Entries with the time that has passed since the session's beginning. Clocks start anew in each part: the end of
-/// the part before and the gap that the wall clock shows (if it is positive) are added.
+/// Entries with the time since the session's beginning. Clocks restart in each part: the end of the previous part
+/// and the gap by the wall clock (if it is positive) are added.
 struct TimedEntry {
     JournalEntry const* entry;
     int part;
@@ -28,18 +28,18 @@ struct TimedEntry {
 };
 std::vector<TimedEntry> timed_entries(RecordedSession const& session);
 
-/// Why a trial does not count in analyses; `counted` = it does.
+/// Whether a trial counts in analyses, or why not.
 enum class TrialStatus {
     counted,
     practice,
     catch_trial, ///< counts for attention only
-    superseded,  ///< was repeated later
-    invalid,     ///< flagged, and not repeated (yet)
+    superseded,  ///< repeated later
+    invalid,     ///< invalid and not repeated (yet)
     unanswered,
 };
 std::string_view name_of(TrialStatus status);
 
-/// A trial that was carried through, with its place in the plan.
+/// A trial that ran to its end, with its place in the plan.
 struct TrialRow {
     PlanStep const* step;
     Block const* block;
@@ -47,20 +47,20 @@ struct TrialRow {
     int session, part;
     double offset_s; ///< as TimedEntry
     TrialStatus status;
-    bool is_kept_though_invalid; ///< counted because the script says on_bad_trial: keep
+    bool is_kept_though_invalid; ///< counted because the script sets on_bad_trial: keep
 };
-/// In the order of the journal. The pointers are into script, session and plan.
-/// @throws ScriptError where the journal names a step that the plan has no trial at
+/// All trials in the order of the journal. The pointers are into script, session and plan.
+/// @throws ScriptError if the journal has a trial at a step that is not a trial in the plan
 std::vector<TrialRow> trial_rows(Script const& script, RecordedSession const& session);
 
-/// The stimulus with that letter; of the reference: 'r'. Null where the trial has none.
+/// The stimulus with this letter; 'r' = the reference. Null if the trial has none.
 Stimulus const* stimulus_of(Trial const& trial, char letter);
-/// The level of a factor that all stimuli of a trial share; -1 = none, since it is what the block compares.
+/// The level of a factor that all stimuli of a trial share; -1 = none, because the block compares this factor.
 int shared_level(Block const& block, Trial const& trial, int factor);
 /// The factor whose levels are paired, ranked or compared by a block; -1 = none.
 int compared_factor(Block const& block);
-/// The answer chosen as the letter of a stimulus, of tasks that choose one of the stimuli shown: 'b' of order "ba"
-/// and response "first"; nothing of other answers.
+/// Letter of the chosen stimulus, for tasks that choose one of the stimuli: 'b' for order "ba" and response
+/// "first"; none for other answers.
 std::optional<char> chosen_letter(TrialRow const& row);
 
 } // namespace study

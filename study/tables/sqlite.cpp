@@ -99,7 +99,7 @@ void check_may_become_sqlite(std::filesystem::path const& file)
     std::string begin(magic.size(), '\0');
     std::ifstream(file, std::ios::binary).read(begin.data(), std::streamsize(begin.size()));
     if (begin == magic) return;
-    throw ScriptError(file.string(), {}, "this file is no database", "it would be replaced by one",
+    throw ScriptError(file.string(), {}, "this file is no SQLite database", "it would be overwritten",
                       "name another file, or remove it");
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Tables as texts: columns with what they mean, rows of cells that are written as they are. Numbers are as in the
-// C locale whatever the machine's; "n/a" where there is nothing, as BIDS wants it.
+// Tables as text: columns with descriptions, rows of cells that are written unchanged. Numbers are in the C
+// locale, independent of the machine's; missing values are "n/a", as BIDS requires.
 
 #include <optional>
 #include <string>
@@ -11,46 +11,46 @@
 namespace study {
 
 struct TextFile {
-    std::string path; ///< below a folder that the caller knows, with '/'
+    std::string path; ///< relative to a folder of the caller, with '/'
     std::string text;
 };
 
 struct Column {
     std::string name, description;
     std::string units{};                                         ///< "s", "ms"; empty = none
-    std::vector<std::pair<std::string, std::string>> meanings{}; ///< of its values, where they are few
+    std::vector<std::pair<std::string, std::string>> meanings{}; ///< of its values, if they are few
 };
 
 struct Table {
     std::vector<Column> columns;
-    std::vector<std::vector<std::string>> rows{}; ///< as many cells each as there are columns
+    std::vector<std::vector<std::string>> rows{}; ///< each with one cell per column
 };
 
 inline constexpr std::string_view kNothing = "n/a";
 
-/// Nine digits at most, as short as they allow; n/a of what is no finite number.
+/// The shortest text with at most nine digits; n/a if not finite.
 std::string cell(double value);
 std::string cell(std::optional<double> value);
 std::string cell(int value);
 std::string cell(bool value); ///< true, false
 std::string cell(std::optional<bool> value);
-/// n/a of an empty text. Tabs, line ends and other control characters become spaces: a table has no way to write
-/// them.
+/// n/a for an empty text. Tabs, line ends and other control characters become spaces, because a table cannot
+/// represent them.
 std::string cell(std::string_view text);
 inline std::string cell(char const* text) { return cell(std::string_view(text)); }
 inline std::string cell(std::string const& text) { return cell(std::string_view(text)); }
 /// Seconds with six decimals.
 std::string seconds_cell(double seconds);
 
-/// A line of column names and one per row, tabs between.
+/// A line of column names and one per row, tab-separated.
 std::string tsv_text(Table const& table);
-/// The same with commas (RFC 4180, lines end in "\n"); `nothing` instead of n/a, for R "NA".
+/// Comma-separated text (RFC 4180, lines end in "\n"); `nothing` replaces n/a, such as "NA" for R.
 std::string csv_text(Table const& table, std::string_view nothing = kNothing);
-/// The JSON sidecar that describes the columns (BIDS: Description, Units, Levels) and what else is said;
-/// "a.b" is the key b within a.
+/// The JSON sidecar that describes the columns (BIDS: Description, Units, Levels), plus `facts`; "a.b" is the key
+/// b within a.
 std::string sidecar_json(Table const& table, std::vector<std::pair<std::string, std::string>> const& facts = {});
 
-/// Letters and digits only, first those of `text`, for names of files; told apart from `taken` by a number.
+/// A label for file names: the letters and digits of `text`, with a number appended if it is in `taken`.
 std::string label_of(std::string_view text, std::vector<std::string> const& taken = {});
 
 } // namespace study

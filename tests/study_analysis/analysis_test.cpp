@@ -259,7 +259,7 @@ TEST(Analysis, OfQuestPlusThatNeverReachesItsShareSaysSo)
     };
     EXPECT_EQ(estimate("0.5").method, "QUEST+ posterior");
     EXPECT_TRUE(std::isnan(estimate("0.5").level.value));
-    EXPECT_EQ(estimate("0.5").note, "the function of the posterior's mean never has this share");
+    EXPECT_EQ(estimate("0.5").note, "the function of the posterior's mean never reaches this proportion");
     EXPECT_EQ(estimate("0.2").note, "");
     EXPECT_NEAR(std::log10(estimate("0.2").level.value), std::log10(6), 0.15);
 }

@@ -346,7 +346,7 @@ TEST(Doubts, AreFalseAlarmsOfAHalf)
                                  guess + ", lapse: 0.02, stop: {trials: 12}}\n"));
     };
     ASSERT_EQ(doubts("yes_no", "0.5").size(), 1u);
-    EXPECT_NE(doubts("yes_no", "0.5")[0].find("share of false alarms"), std::string::npos);
+    EXPECT_NE(doubts("yes_no", "0.5")[0].find("false alarm rate"), std::string::npos);
     EXPECT_TRUE(doubts("yes_no", "[0.1, 0.5]").empty());
     EXPECT_TRUE(doubts("2ifc", "0.5").empty());
 }

@@ -116,7 +116,7 @@ TEST(RandomDesigns, KeepTheirRulesOrAreRefusedWithTheReason)
             ++kept;
         } catch (ScriptError const& e) {
             std::string const what = e.what();
-            bool const is_about_rules = what.find("cannot be kept") != what.npos;
+            bool const is_about_rules = what.find("cannot be satisfied") != what.npos;
             bool const is_about_counts = what.find("a catch trial every") != what.npos ||
                                          what.find("practises") != what.npos ||
                                          what.find("is the same in all trials") != what.npos;

@@ -65,7 +65,7 @@ TEST(ScriptErrors, NameTheirPlaceAndWhatToDo)
              {"{count: 12}", "{count: 12.5}", "t.yaml:4:23: ", "not whole"},
              {"{count: 12}", "{count: 0}", "t.yaml:4:23: ", "between 1 and 100000"},
              {"{count: 12}", "{count: 12, id: Anna}", "t.yaml:4:31: ", "write \"P{n:03}\""},
-             {"{count: 12}", "{count: 12, id: \"P_{n}\"}", "t.yaml:4:31: ", "names no participants"},
+             {"{count: 12}", "{count: 12, id: \"P_{n}\"}", "t.yaml:4:31: ", "is no pattern for participants' ids"},
              {"participants: {count: 12}\n", "", "t.yaml:1:1: ", "script has no 'participants'"},
              {"[arches, atrium]", "[arches, arches]", "t.yaml:6:10: ", "'arches' twice in scene"},
              {"{paths: 64}", "{paths: [64]}", "t.yaml:9:19: ", "not text"},
@@ -98,7 +98,7 @@ TEST(ScriptErrors, NameTheirPlaceAndWhatToDo)
               "t.yaml:28:3: ", "factor 'scene' has no level in block 'rate'"},
              {"    cross: [scene]\n", "    cross: [scene, light]\n",
               "t.yaml:22:3: ", "fixed where it runs (line 20)"},
-             {"    cross: [scene]\n", "    cross: [scene, quality]\n", "t.yaml:22:3: ", "has its levels already"},
+             {"    cross: [scene]\n", "    cross: [scene, quality]\n", "t.yaml:22:3: ", "levels are already"},
              {"    cross: [scene]\n", "    cross: [scene, scene]\n", "t.yaml:25:20: ", "crossed twice"},
              {"    cross: [scene]\n", "    only: {scene: [arches, atrium]}\n",
               "t.yaml:22:3: ", "add scene to cross"},
@@ -126,9 +126,9 @@ TEST(ScriptErrors, NameTheirPlaceAndWhatToDo)
               "t.yaml:27:19: ", "is the same in all trials"},
              {"{no_repeat: scene, max_run: 2}", "{max_run: 2}", "t.yaml:27:19: ", "this is no constraint"},
              {"{no_repeat: scene, max_run: 2}", "{min_gap: 2, of: scene}",
-              "t.yaml:27:19: ", "the constraints of block 'pairs' cannot be kept"},
+              "t.yaml:27:19: ", "the constraints of block 'pairs' cannot be satisfied"},
              {"{no_repeat: scene, max_run: 2}", "{never_after: {quality: [best, poor]}}",
-              "t.yaml:27:19: ", "only no_repeat, max_run and min_gap are clear"},
+              "t.yaml:27:19: ", "only no_repeat, max_run and min_gap are defined"},
              {"{min: 1, max: 7}", "{min: 1, max: 7, step: 4}", "t.yaml:30:12: ", "2 to 100001 values"},
              {"{min: 1, max: 7}", "{min: 1, max: 7, labels: {9: much}}", "t.yaml:30:38: ", "between 1 and 7"},
              {"cross: [scene, quality]", "cross: [scene, quality", "t.yaml:32:1: ", "not YAML"},
@@ -171,12 +171,12 @@ TEST(ScriptErrors, OfProceduresSayWhy)
              {"procedure: {method: staircase, start: 2, up: 1, target: 0.7, steps: [1], stop: {trials: 8}}",
               "keep one"},
              {"procedure: {method: questplus, threshold: 4, slope: 1, guess: 0.5, lapse: 0, stop: {trials: 8}}",
-              "one level to ask for"},
+              "only one level to present"},
              {"procedure: {method: questplus, threshold: 1..9/5, slope: 1, guess: 0.5, lapse: 0, stop: "
               "{reversals: 8}}",
               "no reversals"},
-             {"repeats: 2", "is varied by no procedure"},
-             {"interleave: []", "is varied by no procedure, or nothing to interleave"},
+             {"repeats: 2", "no procedure varies"},
+             {"interleave: []", "no procedure varies, or nothing to interleave"},
              {"interleave: [{method: constant, levels: 4}, {method: constant, levels: 8}]",
               "two procedures named"},
          }) {
@@ -195,7 +195,7 @@ TEST(ScriptErrors, OfRankingsThatDigitsCannotGive)
     std::string const rest = "]}\nsequence: [b]\nblocks:\n  b: {task: ranking, rank: {factor: n}}\n";
     EXPECT_EQ(message_of(kHead + nine + rest), "");
     EXPECT_EQ(message_of(kHead + nine + ", j" + rest),
-              "t.yaml:8:28: 10 to rank (the order is given by digits, of which there are 9) omit some");
+              "t.yaml:8:28: 10 to rank (the order is typed as digits 1 to 9) omit some");
 }
 
 TEST(ScriptErrors, OfInputsThatGiveTwoAnswersToAQuestionnaire)
@@ -213,7 +213,7 @@ TEST(ScriptErrors, OfInputsThatGiveTwoAnswersToAQuestionnaire)
     EXPECT_EQ(message_of(with("down")), "");
     EXPECT_EQ(message_of(with("up")),
               "t.yaml:6:23: 'key:up' is both up and down in questionnaire 'ssq' (the answer "
-              "would not be known) choose another input");
+              "would be ambiguous) choose another input");
 }
 
 TEST(ScriptErrors, OfASecondDocumentNameItsLine)

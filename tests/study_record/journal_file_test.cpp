@@ -166,16 +166,16 @@ TEST(Journal, SaysWhichLineIsWrongAndWhy)
     EXPECT_EQ(
         message_of(one + "\n" + three + "\n"),
         "journal.jsonl:2:1: this line of a journal cannot be read (its number is 3, it should be 2: lines are "
-        "missing or twice there) restore the file from a copy, nothing of it has been changed");
+        "missing or duplicated) restore the file from a copy, nothing of it has been changed");
     EXPECT_NE(
         message_of(one + "\n" + replaced(two, "\"step\":2", "\"step\":9") + "\n" + three + "\n").find(":2:1:"),
         std::string::npos);
     EXPECT_NE(message_of(one + "\nnothing\n" + two + "\n").find("no checksum"), std::string::npos);
     EXPECT_NE(message_of(one + "\n" + with_sum(replaced(two, "\"step\":2", "\"step\":\"2\"")) + "\n")
-                  .find("'step' is of another kind"),
+                  .find("'step' has another type"),
               std::string::npos);
     EXPECT_NE(message_of(one + "\n" + with_sum(replaced(two, "\"step\":2", "\"step\":3000000000")) + "\n")
-                  .find("'step' is of another kind"),
+                  .find("'step' has another type"),
               std::string::npos);
     EXPECT_NE(message_of(with_sum(replaced(one, ",\"reason\":\"\"", "")) + "\n").find("no 'reason'"),
               std::string::npos);

@@ -92,8 +92,8 @@ TEST(Session, NeverOverwritesAndSaysWhatToDo)
     std::string const before = file_text(journal_in(dir.path()));
     SessionSettings settings = settings_in(dir.path());
     EXPECT_NE(refusal(s, p, settings)
-                  .find("participant P001 has a session 1 already (what was recorded is never "
-                        "overwritten) go on with it by --resume, or begin another one by --session 2"),
+                  .find("participant P001 has a session 1 already (records are never "
+                        "overwritten) resume it with --resume, or start another one with --session 2"),
               std::string::npos)
         << refusal(s, p, settings);
     EXPECT_EQ(file_text(journal_in(dir.path())), before);

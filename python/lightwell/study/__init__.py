@@ -1,7 +1,7 @@
 """Experiments: plans of scripts, sessions with people or model observers, and their records.
 
-A session is the program's own: its order, adaptive procedures, journal and resumption. Python only shows trials
-and says what was answered:
+The program runs the session: trial order, adaptive procedures, journal and resuming. Python only shows trials
+and returns the answers:
 
 >>> class Keyboard(Presenter):
 ...     def instruct(self, markdown, step):

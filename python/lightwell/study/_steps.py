@@ -1,4 +1,4 @@
-"""Between the program and a presenter: plain dicts on one side, the data of trial.py on the other."""
+"""Adapter between the program and a presenter: converts plain dicts to the dataclasses of trial.py and back."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ def _plain(given: Any, kind: type) -> dict[str, Any]:
     if isinstance(given, Mapping):
         return {k: [_plain(s, StimulusShown) for s in v] if k == "shown" else v for k, v in given.items()}
     raise InputError(
-        f"a presenter gave back {given!r} (a {kind.__name__} or a dict with its fields belongs there) return one"
+        f"a presenter returned {given!r} (it must be a {kind.__name__} or a dict with its fields) return one"
     )
 
 
 def _check_answer(trial: Trial, done: Mapping[str, Any]) -> None:
-    """A journal has only answers that the task knows."""
+    """Raises InputError unless the answer is one that the task allows."""
     response, value = done.get("response", ""), done.get("value")
     if response == "":
         return
@@ -39,15 +39,15 @@ def _check_answer(trial: Trial, done: Mapping[str, Any]) -> None:
         fits, known = response in trial.answers, ", ".join(trial.answers)
     if not fits:
         raise InputError(
-            f"the answer {response!r}, value {value!r} (the task {trial.task} has none such) it is {known}"
+            f"the answer {response!r}, value {value!r} (the task {trial.task} does not allow it) return {known}"
         )
     low, high, _ = trial.scale
     if trial.task == "rating" and not low <= float(value) <= high:  # type: ignore[arg-type]
-        raise InputError(f"the rating {value!r} (the scale goes from {low:g} to {high:g}) choose a value of it")
+        raise InputError(f"the rating {value!r} (the scale is {low:g} to {high:g}) choose a value in this range")
 
 
 class Steps:
-    """What the program calls (python/core/python_presenter.cpp): from plain dicts to a Presenter and back."""
+    """The object that the program calls (python/core/python_presenter.cpp); forwards to a Presenter."""
 
     def __init__(self, presenter: Presenter) -> None:
         self._presenter = presenter
@@ -84,7 +84,7 @@ class Steps:
         if len(answers) != len(items):
             raise InputError(
                 f"{len(answers)} answers to the questionnaire {asked.name} (it has {len(items)} items) "
-                "give one each, None where there is none"
+                "return one per item, None if not answered"
             )
         for item, answer in zip(items, answers):
             if answer is not None and not item.low <= answer <= item.high:

@@ -1,4 +1,4 @@
-"""What shows trials to somebody."""
+"""Base class for code that shows trials to a participant."""
 
 from __future__ import annotations
 
@@ -9,63 +9,67 @@ from .trial import Calibration, Note, Questionnaire, Trial, TrialDone
 
 
 class Presenter:
-    """What shows trials to somebody and takes the answers: to be subclassed. `instruct` and `show` have to be
-    there, the others where a script needs them.
+    """Base class: shows trials to a participant and collects the answers. Override `show` and `instruct`, and the
+    other methods if the script needs them.
 
-    Everything that is kept, chosen or repeated is decided by the session; a presenter needs no memory from one
-    call to the next. Methods return when the participant is done. Nothing is written to a disk meanwhile. What a
-    method raises, KeyboardInterrupt too, ends the session: what is done is kept, the trial under way is not, and
-    `Script.run` raises it again. The session can be gone on with later.
+    The session decides what is recorded, chosen and repeated; a presenter needs no state between calls. Methods
+    return when the participant is done. Nothing is written to the disk during a call. An exception of a method,
+    including KeyboardInterrupt, ends the session: completed steps are kept, the current trial is not, and
+    `Script.run` raises the exception again. The session can be resumed later.
     """
 
     def show(self, trial: Trial) -> TrialDone | Mapping[str, Any]:
-        """Pause of ``timing.iti_ms``, warm-up, stimuli, answer, feedback."""
+        """Runs one trial: pause of ``timing.iti_ms``, warm-up, stimuli, answer, feedback."""
         raise NotImplementedError("a Presenter shows trials: override show()")
 
     def instruct(self, markdown: str, step: int) -> None:
-        """Returns when the text was read."""
+        """Shows instructions; returns when the participant has read them."""
         raise NotImplementedError("the script has instructions: override instruct()")
 
     def rest(self, prompt: str, least_s: float, step: int) -> None:
-        """Returns when the participant goes on, after `least_s` at the earliest. `step` -1: a pause."""
+        """Shows a rest; returns when the participant continues, after `least_s` at the earliest.
+
+        Args:
+            step: index in the plan; -1 = an unplanned pause.
+        """
         self.instruct(prompt, step)
 
     def walk(self, where: Trial, prompt: str, seconds: float) -> None:
-        """The participant goes about in ``where.stimuli["a"]``."""
+        """Lets the participant walk freely in the scene ``where.stimuli["a"]`` for `seconds`."""
         raise NotImplementedError("the script has free walks: override walk()")
 
     def ask(self, questionnaire: Questionnaire, step: int) -> Sequence[float | None]:
-        """An answer per item; None = not answered."""
+        """Shows a questionnaire; returns one answer per item, None = not answered."""
         raise NotImplementedError("the script has questionnaires: override ask()")
 
     def ask_consent(self, markdown: str) -> bool:
-        """Whether the participant agrees; otherwise nothing is kept."""
+        """Asks for consent; returns True if the participant agrees. Otherwise nothing is recorded."""
         raise NotImplementedError("the script asks for consent: override ask_consent()")
 
     def ask_participant(self, questions: Sequence[str]) -> Mapping[str, str]:
-        """Question -> answer."""
+        """Asks questions about the participant; returns question -> answer."""
         raise NotImplementedError("the script asks about the participant: override ask_participant()")
 
     def calibrate(self, timing: Mapping[str, Any]) -> Calibration | Mapping[str, Any]:
         """Measures the display before the first trial of each part of a session.
 
         Args:
-            timing: what the script says: frames, max_sd_ms, max_deviation, expected_hz, vsync.
+            timing: limits of the script: frames, max_sd_ms, max_deviation, expected_hz, vsync.
         """
         return Calibration(reason="this presenter does not measure its display")
 
     def now(self) -> float:
-        """Seconds of a clock that never goes back: that of all times."""
+        """Returns seconds of a monotonic clock. All times of a session refer to this clock."""
         return time.monotonic()
 
     def about(self) -> Mapping[str, str]:
-        """What is worth keeping about device, driver, display."""
+        """Returns facts to record about the device, such as driver and display."""
         return {}
 
     def wish(self) -> str:
-        """The experimenter's, asked between steps: "go_on", "pause", "skip" or "abort"."""
+        """Returns the experimenter's choice, called between steps: "go_on", "pause", "skip" or "abort"."""
         return "go_on"
 
     def notes(self) -> Iterable[Note]:
-        """Since the last call."""
+        """Returns the notes taken since the last call."""
         return ()

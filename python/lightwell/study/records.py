@@ -1,4 +1,4 @@
-"""Records of sessions as tables, those of ``lightwell study export``."""
+"""Records of sessions as the tables of ``lightwell study export``."""
 
 from __future__ import annotations
 
@@ -20,22 +20,23 @@ def pandas_module() -> Any:
         import pandas
     except ImportError as error:
         raise ImportError(
-            "tables need pandas (it is not installed in this Python) pip install pandas, or read texts: "
+            "tables need pandas (it is not installed in this Python) pip install pandas, or use plain text: "
             "Script.plan_tsv(), study.read_journal()"
         ) from error
     return pandas
 
 
 def table_of_text(tsv: str) -> pandas.DataFrame:
-    """A table of the program: tabs between, n/a where there is nothing; words such as "none" stay words."""
+    """Parses a table of the program: tab-separated, n/a = missing; words such as "none" stay strings."""
     pd = pandas_module()
     table: pandas.DataFrame = pd.read_csv(io.StringIO(tsv), sep="\t", na_values=[NOTHING], keep_default_na=False)
     return table
 
 
 def read_journal(file: str | os.PathLike[str]) -> list[dict[str, Any]]:
-    """The entries of a journal.jsonl in order: "kind" and the fields that the program keeps. A last line that is
-    not whole, as a killed process may leave it, is left out.
+    """Reads the entries of a journal.jsonl in order, each with "kind" and the fields of that kind.
+
+    An incomplete last line, which a killed process may leave, is skipped.
 
     Raises:
         ScriptError: lines are missing or were changed.
@@ -46,15 +47,14 @@ def read_journal(file: str | os.PathLike[str]) -> list[dict[str, Any]]:
 
 @dataclass(frozen=True)
 class Records:
-    """All sessions of a data set, finished or not. ``table.attrs["columns"]`` says what each column is, with its
-    unit.
+    """All sessions of a data set, finished or not. ``table.attrs["columns"]`` describes each column with its unit.
 
     Attributes:
-        trials: a row per trial that was carried through, with every factor; `analysis` says whether it counts.
-        stimuli: a row per stimulus that was shown in them.
-        questionnaires: a row per item, then one per score.
-        happenings: starts, calibrations, instructions, rests, walks, notes, ends.
-        participants: a row each.
+        trials: one row per trial that ran to its end, with every factor; `analysis` states whether it counts.
+        stimuli: one row per stimulus shown in these trials.
+        questionnaires: one row per item, then one per score.
+        happenings: session events: starts, calibrations, instructions, rests, walks, notes, ends.
+        participants: one row per participant.
     """
 
     trials: pandas.DataFrame
@@ -68,11 +68,11 @@ def read_records(dir: str | os.PathLike[str], script: str | os.PathLike[str] = "
     """Reads every journal of a data set. Needs pandas.
 
     Args:
-        dir: of the data set: what `Script.run` and `Script.simulate` were given.
-        script: with which it was recorded; "" = the one in DIR/code, where `rebuild` keeps it.
+        dir: folder of the data set, as passed to `Script.run` and `Script.simulate`.
+        script: the script that it was recorded with; "" = the one in DIR/code, where `rebuild` copies it.
 
     Raises:
-        ScriptError: there is no session or no script, or a journal is broken or of another script.
+        ScriptError: there is no session or no script, or a journal is damaged or belongs to another script.
     """
     pandas_module()
     tables = {}
@@ -83,12 +83,12 @@ def read_records(dir: str | os.PathLike[str], script: str | os.PathLike[str] = "
 
 
 def rebuild(dir: str | os.PathLike[str], script: str | os.PathLike[str] = "") -> int:
-    """Writes the BIDS tables of a data set anew, and keeps the script in DIR/code: ``lightwell study rebuild``.
+    """Rewrites the BIDS tables of a data set and copies the script to DIR/code (``lightwell study rebuild``).
 
     Returns:
-        How many files were written.
+        Number of files written.
 
     Raises:
-        ScriptError: as of `read_records`.
+        ScriptError: as for `read_records`.
     """
     return _core.rebuild_tables(os.fspath(dir), os.fspath(script))

@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a session came to.
+    """Result of a session.
 
     Attributes:
-        participant_id: "P001".
-        folder: of its records; empty where nothing is kept, as the participant did not agree.
-        is_complete, reason: every step of the plan is done; why not.
-        trials, bad_trials, steps: of this part.
+        participant_id: for example "P001".
+        folder: folder of its records; empty if nothing is recorded because the participant did not consent.
+        is_complete, reason: True if every step of the plan is done; otherwise why not.
+        trials, bad_trials, steps: numbers in this part of the session, since it was started or resumed.
     """
 
     participant_id: str
@@ -37,11 +37,11 @@ class Outcome:
 
 
 class Script:
-    """An experiment of schema study/1 (docs/study.md), read and checked.
+    """An experiment script of schema study/1 (docs/study.md), read and checked.
 
     Raises:
-        ScriptError: it cannot be; with file, line and column.
-        InputError: there is no such file.
+        ScriptError: the script is invalid; the error has file, line and column.
+        InputError: the file does not exist.
     """
 
     def __init__(self, file: str | os.PathLike[str]) -> None:
@@ -65,45 +65,50 @@ class Script:
 
     @property
     def participants(self) -> int:
-        """How many; they are numbered from 1."""
+        """Number of participants; they are numbered from 1."""
         return self._core.participants
 
     @property
     def factors(self) -> dict[str, list[str]]:
-        """Factor -> its levels."""
+        """Factor name -> names of its levels."""
         return dict(self._core.factors)
 
     @property
     def blocks(self) -> dict[str, str]:
-        """Block -> its task."""
+        """Block name -> its task."""
         return dict(self._core.blocks)
 
     @property
     def doubts(self) -> list[str]:
-        """What may be meant but seldom is, a line each."""
+        """Warnings about valid but unusual parts of the script, one line each."""
         return self._core.doubts()
 
     def text(self) -> str:
-        """What it holds, for people."""
+        """Returns a readable summary of the script."""
         return self._core.text()
 
     def participant_id(self, participant: int) -> str:
-        """ "P001"; also of a participant whose plan cannot be, which raises ScriptError."""
+        """Returns the participant's id, such as "P001".
+
+        Raises:
+            ScriptError: the participant's plan is impossible.
+        """
         return self._core.participant_id(participant)
 
     def plan_tsv(self, participant: int) -> str:
-        """The plan as the table plan.tsv that a session keeps: a line of names, then one per step."""
+        """Returns the plan as text, the table plan.tsv of a session: a line of column names, then one per step."""
         return self._core.plan_tsv(participant)
 
     def plan_seconds(self, participant: int) -> float:
-        """How long it is expected to take."""
+        """Returns the expected duration of the session in seconds."""
         return self._core.plan_seconds(participant)
 
     def plan(self, participant: int) -> pandas.DataFrame:
-        """Every step that will happen to a participant, in its order. Needs pandas.
+        """Returns every step of a participant's session in order. Needs pandas.
 
         Raises:
-            ScriptError: the plan cannot be. InputError: there is no such participant.
+            ScriptError: the plan is impossible.
+            InputError: there is no such participant.
         """
         return table_of_text(self.plan_tsv(participant))
 
@@ -117,20 +122,22 @@ class Script:
         resume: bool = False,
         about: Mapping[str, str] | None = None,
     ) -> Outcome:
-        """Takes one participant through the plan. After each step its journal is on the disk.
+        """Runs the session of one participant. The journal is on the disk after each step.
 
         Args:
-            participant: from 1.
+            participant: number of the participant, from 1.
             presenter: shows the trials.
-            dir: of the data set; "" = the script's ``record.dir``.
-            session: 1 to 99.
-            resume: goes on with the same remaining order where the session was cut off; begins it where there is
-            none. about: what is worth keeping, beside `Presenter.about`.
+            dir: folder of the data set; "" = the script's ``record.dir``.
+            session: number of the session, 1 to 99.
+            resume: continue an interrupted session with its remaining steps in the same order; start it if it
+                does not exist.
+            about: facts to record, in addition to `Presenter.about`.
 
         Raises:
-            ScriptError: the session is there already, another process runs it, its script is another, the display
-                fails the test that the script requires, the disk failed. What is there is never overwritten.
-            BaseException: what the presenter raised, after the session was ended in order.
+            ScriptError: the session exists already, another process runs it, it was recorded with another script,
+                the display fails the test that the script requires, or the disk failed. Existing records are
+                never overwritten.
+            BaseException: an exception of the presenter, raised again after the session was ended properly.
         """
         outcome = self._core.run(
             participant,
@@ -153,18 +160,18 @@ class Script:
         resume: bool = False,
         gap_s: float = 0.0,
     ) -> list[Outcome]:
-        """The same with model observers, in a moment.
+        """Runs sessions with model observers on a simulated clock, without waiting.
 
         Args:
-            participants: None = all.
-            dir: of the data set; what is true of the observers is in its sourcedata/simulation/truth.json.
-            observer: who answers (YAML, docs/study.md); "" = what is usual.
-            seed: of observers and answers; None = that of the script.
-            session, resume: as of `run`.
-            gap_s: with resume: since the session was cut off.
+            participants: numbers of the participants; None = all.
+            dir: folder of the data set; the observers' true parameters go to its sourcedata/simulation/truth.json.
+            observer: file that describes the model observers (YAML, docs/study.md); "" = the default observers.
+            seed: seed of observers and answers; None = that of the script.
+            session, resume: as for `run`.
+            gap_s: with resume: simulated seconds between the interruption and resuming.
 
         Raises:
-            ScriptError: as of `run`.
+            ScriptError: as for `run`.
         """
         chosen = range(1, self.participants + 1) if participants is None else participants
         return [
@@ -174,7 +181,7 @@ class Script:
 
 
 def example(name: str) -> str:
-    """The text of a shipped script: "visibility2026", "pairs", "staircase", "rating"."""
+    """Returns the text of an example script: "visibility2026", "pairs", "staircase" or "rating"."""
     return _core.study_example(name)
 
 

@@ -1,4 +1,4 @@
-"""What passes between a session and a presenter: trials, answers, questionnaires, as plain data."""
+"""Data exchanged between a session and a presenter: trials, answers, questionnaires."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Stimulus:
-    """What is shown.
+    """A stimulus to show.
 
     Attributes:
         levels: factor -> level.
-        settings: of the renderer, key -> value as the script writes it; `FrameRenderer.show` takes them.
-        camera: of the scene, or "path:NAME"; "" = the scene's first.
-        level: of the setting that a procedure varies (it is in `settings` too); None = nothing is varied.
-        settings_sha256: for `StimulusShown`.
+        settings: renderer settings, key -> value as written in the script; `FrameRenderer.show` applies them.
+        camera: name of a camera of the scene, or "path:NAME"; "" = the scene's first.
+        level: value of the setting that a procedure varies (also in `settings`); None = nothing is varied.
+        settings_sha256: hash of the settings, to be copied to `StimulusShown`.
     """
 
     levels: dict[str, str]
@@ -26,7 +26,7 @@ class Stimulus:
 
 @dataclass(frozen=True)
 class Timing:
-    """How a trial runs; ms. None: `stimulus_ms` until the answer, `timeout_ms` waits."""
+    """Timing of a trial, ms. `stimulus_ms` None = shown until the answer; `timeout_ms` None = no timeout."""
 
     warmup_frames: int = 0
     isi_ms: float = 500
@@ -38,25 +38,26 @@ class Timing:
 
 @dataclass(frozen=True)
 class Trial:
-    """A trial with everything decided; also the place of a walk, whose `order` is "".
+    """A fully specified trial; also used for the place of a walk, where `order` is "".
 
     Attributes:
-        step, attempt: of the plan, from 0; more than 1: a trial that was not valid comes again.
-        stimuli: letter -> stimulus; "r" is a reference that is shown too.
-        order: letters in the order of presentation, "ba"; "aab" shows a twice.
-        level: of what is varied.
-        trials_done, trials_planned: of the session.
+        step: index in the plan, from 0.
+        attempt: more than 1 = repetition of an invalid trial.
+        stimuli: letter -> stimulus; "r" is a reference that is also shown.
+        order: letters in order of presentation, for example "ba"; "aab" shows a twice.
+        level: value of the varied setting; None = nothing is varied.
+        trials_done, trials_planned: numbers of trials in the session.
         phase: "practice", "main" or "catch".
-        answer: the right one; "" = there is none.
-        block, task, prompt: of the script.
-        answers: what `TrialDone.response` may be. Of rating, magnitude and adjustment it is "confirm" with a
-        value; of ranking the letters, best first.
-        is_sequential: one after another, else side by side.
-        has_feedback: right or wrong is to be said after the answer.
-        timing: how it runs.
-        scale, labels: of rating: lowest, highest, step; texts of values.
-        modulus: of magnitude: the number of the standard; 0 = free.
-        setting, range: what is varied, from lowest to highest; "" = nothing.
+        answer: the correct answer; "" = there is none.
+        block, task, prompt: block name, task and prompt of the script.
+        answers: allowed values of `TrialDone.response`. For rating, magnitude and adjustment the response is
+            "confirm" with a value, for ranking the letters, best first.
+        is_sequential: True = stimuli are shown one after another, False = side by side.
+        has_feedback: True = show after the answer whether it was correct.
+        timing: timing of the trial.
+        scale, labels: for rating: (lowest, highest, step), and texts by value.
+        modulus: for magnitude: number assigned to the standard; 0 = free modulus.
+        setting, range: the varied setting and its (lowest, highest) value; "" = nothing is varied.
     """
 
     step: int
@@ -83,23 +84,23 @@ class Trial:
 
     @property
     def presented(self) -> list[Stimulus]:
-        """The stimuli in the order in which they are shown, without the reference."""
+        """The stimuli in order of presentation, without the reference."""
         return [self.stimuli[letter] for letter in self.order]
 
 
 @dataclass
 class StimulusShown:
-    """One stimulus as it was shown. Times are of `Presenter.now`, s.
+    """Presentation of one stimulus. Times are in seconds of `Presenter.now`.
 
     Attributes:
-        letter: of `Trial.stimuli`.
-        onset_s, duration_s: when it was first seen, and for how long.
-        onset_method: how the onset was timed, in a word of yours: "swap_finish", "psychopy_flip", ...
-        onset_uncertainty_ms: the onset lies within +- so much, as far as software can tell.
-        frames_planned, frames_shown, frames_dropped: of the display; more dropped than the script allows make the
-            trial invalid.
-        render_ms_mean, render_ms_p99: of the frames rendered for it.
-        settings_sha256: `Stimulus.settings_sha256`.
+        letter: key in `Trial.stimuli`.
+        onset_s, duration_s: onset and duration on the display.
+        onset_method: how the onset was timed, a word of your choice: "swap_finish", "psychopy_flip", ...
+        onset_uncertainty_ms: the onset is known to within +- this value, as far as software can measure it.
+        frames_planned, frames_shown, frames_dropped: display frames; the trial is invalid if more are dropped than
+            the script allows.
+        render_ms_mean, render_ms_p99: mean and 99th percentile of the rendering time per frame.
+        settings_sha256: copy of `Stimulus.settings_sha256`.
     """
 
     letter: str
@@ -117,18 +118,18 @@ class StimulusShown:
 
 @dataclass
 class TrialDone:
-    """A trial that was carried through. Whether it was right, and whether it is valid, the session finds itself.
+    """Result of a trial. The session itself determines whether the answer is correct and the trial valid.
 
     Attributes:
-        response: one of `Trial.answers`; of ranking letters, best first, "bac"; "" = none came (a timeout).
-        value: of rating, magnitude, adjustment.
-        response_s: time of the answer, s, of `Presenter.now`.
-        reaction_ms: from the onset of the last stimulus.
-        response_uncertainty_ms: of `reaction_ms`, onset included.
-        device: that answered: "key:left".
-        shown: in the order of presentation.
-        is_valid, reason: False with why, where you know that it is not: "lost_focus". "skipped" and "aborted" are
-            for the wishes of that name.
+        response: one of `Trial.answers`; for ranking letters, best first, such as "bac"; "" = no answer (timeout).
+        value: the answer of rating, magnitude, adjustment.
+        response_s: time of the answer, s of `Presenter.now`.
+        reaction_ms: reaction time from the onset of the last stimulus.
+        response_uncertainty_ms: uncertainty of `reaction_ms`, including that of the onset.
+        device: input that gave the answer, such as "key:left".
+        shown: presentations in order.
+        is_valid, reason: set False with a reason if you know that the trial is invalid, for example "lost_focus".
+            The reasons "skipped" and "aborted" are for `Presenter.wish` returning "skip" or "abort".
     """
 
     response: str = ""
@@ -144,14 +145,14 @@ class TrialDone:
 
 @dataclass
 class Calibration:
-    """The display as it was measured; a script with ``vsync: required`` refuses one that has not passed.
+    """Measured timing of the display; a script with ``vsync: required`` refuses a display that has not passed.
 
     Attributes:
-        passed, reason: whether it keeps time, and why not.
-        frames: that were timed.
-        nominal_hz: that the display tells; 0 = it does not.
-        period_mean_ms, period_sd_ms: of its refreshes.
-        onset_method: as of `StimulusShown`.
+        passed, reason: True if the timing is within the script's limits; otherwise why not.
+        frames: number of timed frames.
+        nominal_hz: refresh rate reported by the display; 0 = unknown.
+        period_mean_ms, period_sd_ms: mean and standard deviation of the refresh period.
+        onset_method: as in `StimulusShown`.
     """
 
     passed: bool = False
@@ -165,7 +166,7 @@ class Calibration:
 
 @dataclass(frozen=True)
 class QuestionnaireItem:
-    """A question with its scale; `labels` are those of both ends, or of every step."""
+    """A question with its scale; `labels` are for both ends, or for every step."""
 
     id: str
     text: str
@@ -185,7 +186,7 @@ class Questionnaire:
 
 @dataclass
 class Note:
-    """Something that happened, `time_s` of `Presenter.now`."""
+    """A note of the experimenter; `time_s` is a time of `Presenter.now`."""
 
     text: str
     time_s: float
