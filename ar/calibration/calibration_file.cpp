@@ -133,8 +133,7 @@ Photometry read_photometry(gi::Yaml const& top)
             double const v = curve.values[256 * c + i];
             if (v < 0 || v > 1e6 || (i > 0 && v < curve.values[256 * c + i - 1]))
                 throw y.error(fmt::format("the response of channel {} at byte {} is {}", c, i, v),
-                              "responses are non-negative and do not decrease",
-                              "calibrate it again");
+                              "responses are non-negative and do not decrease", "calibrate it again");
             p.unit_of_byte[c][i] = float(v);
         }
     if (!(p.unit_of_byte[0][255] > 0 && p.unit_of_byte[1][255] > 0 && p.unit_of_byte[2][255] > 0))
@@ -254,7 +253,7 @@ void write_calibration(std::filesystem::path const& file, Calibration const& c)
                                  "rename it");
     std::string const text = format_calibration(c);
     parse_calibration(text, file.string()); // refuse to write what could not be read back
-    write_text(file, text);
+    gi::write_text(file, text);
 }
 
 } // namespace ar

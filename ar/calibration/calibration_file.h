@@ -26,9 +26,9 @@ struct Calibration {
 /// coefficients mean pinhole, 4 or 5 radial_tangential, 8 rational, unless lens_model or OpenCV's fisheye_model
 /// states another model. The picture's size may be image_width and image_height, or image_size.
 /// @param file name of the file for messages
-/// @param size_px used if the file states no size. @throws gi::InputError with file:line:column: not YAML, matrices of
-/// wrong sizes, numbers that are not finite, lens models that are unknown or do not fit the coefficients,
-/// decreasing response curves, cameras that `check` refuses
+/// @param size_px used if the file states no size. @throws gi::InputError with file:line:column: not YAML,
+/// matrices of wrong sizes, numbers that are not finite, lens models that are unknown or do not fit the
+/// coefficients, decreasing response curves, cameras that `check` refuses
 Calibration parse_calibration(std::string const& text, std::string const& file,
                               std::optional<glm::ivec2> size_px = std::nullopt);
 std::string format_calibration(Calibration const& calibration);

@@ -13,8 +13,8 @@ struct Bracket {
     std::vector<Exposure> exposures; ///< times, and gains if they differ
 };
 
-/// @throws gi::InputError fewer than `fewest` pictures, sizes, types or counts that differ, exposures without a time,
-/// or all exposures equal
+/// @throws gi::InputError fewer than `fewest` pictures, sizes, types or counts that differ, exposures without a
+/// time, or all exposures equal
 void check(Bracket const& bracket, std::size_t fewest = 2);
 
 struct ResponseFit {

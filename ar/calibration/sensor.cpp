@@ -30,7 +30,7 @@ void check_pictures(std::span<cv::Mat const> rgb, std::string const& what)
     for (cv::Mat const& p : rgb)
         if (p.empty() || p.type() != CV_8UC3 || p.size() != rgb[0].size())
             throw gi::InputError(what + ": a picture is of another kind or size", "pixels are compared one by one",
-                             "take RGB pictures of one camera");
+                                 "take RGB pictures of one camera");
     if (rgb.empty()) throw gi::InputError(what + ": there is no picture", "the fit needs pictures", "take some");
 }
 
@@ -83,8 +83,9 @@ VignettingFit vignetting_of_flat(std::span<cv::Mat const> rgb, Photometry const&
     double furthest = 0;
     for (Sample const& s : samples) furthest = std::max(furthest, std::sqrt(s.r2));
     if (furthest < 0.8)
-        throw gi::InputError(fmt::format("the unclipped part of the flat field reaches to radius {:.2f}", furthest),
-                         "the curve is fitted up to 1, the corners", "expose it so that the corners are in range");
+        throw gi::InputError(
+            fmt::format("the unclipped part of the flat field reaches to radius {:.2f}", furthest),
+            "the curve is fitted up to 1, the corners", "expose it so that the corners are in range");
     // unit = level (1 + a r2 + b r4 + c r6): linear in a, b, c for fixed levels, and vice versa.
     VignettingFit fit;
     std::vector<double> level(std::size_t(levels), 0);
@@ -133,7 +134,7 @@ NoiseFit noise_of_pairs(std::span<cv::Mat const> rgb, Photometry const& response
     for (std::size_t k = 0; k < rgb.size(); k += 2)
         if (cv::norm(rgb[k], rgb[k + 1], cv::NORM_INF) == 0)
             throw gi::InputError(fmt::format("the frames of pair {} do not differ", k / 2 + 1),
-                             "every sensor has noise", "take two pictures, not one twice");
+                                 "every sensor has noise", "take two pictures, not one twice");
     std::map<int, Bin> bins; // of the pair's mean byte in steps of two
     for (std::size_t k = 0; k < rgb.size(); k += 2)
         for (int y = 0; y < rgb[k].rows; ++y)
@@ -222,7 +223,7 @@ ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f cons
     cv::SVD const svd(seen, cv::SVD::NO_UV);
     if (!(svd.w.at<double>(2) > 5e-3 * svd.w.at<double>(0)))
         throw gi::InputError("the patches seen do not span colours", "they do not determine a matrix",
-                         "check the patches' positions");
+                             "check the patches' positions");
     cv::Mat transposed;
     cv::solve(seen, known, transposed, cv::DECOMP_SVD);
     // The chart's illumination is no property of the camera: fit the brightness alone, by least squares.
@@ -242,8 +243,8 @@ ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f cons
     fit.delta_e_before = before;
     if (fit.mean_delta_e > 10)
         throw gi::InputError(fmt::format("the patches are off by delta E {:.0f} on the mean", fit.mean_delta_e),
-                         "no matrix maps them to the chart's colours",
-                         "check the patches' positions and order");
+                             "no matrix maps them to the chart's colours",
+                             "check the patches' positions and order");
     fit.brightness = brightness;
     fit.largest_delta_e = *std::max_element(fit.delta_e.begin(), fit.delta_e.end());
     for (int c = 0; c < 3; ++c)

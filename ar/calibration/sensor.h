@@ -57,7 +57,8 @@ std::array<cv::Vec3f, 24> const& chart_linear_rgb();
 /// Least-squares fit from the patches' units (linear, by the response, vignetting corrected) to their true values.
 /// How brightly the chart was lit is no property of the camera, so the best-fitting overall brightness is divided
 /// out.
-/// @throws gi::InputError fewer than six patches, patches that do not span colours, or a mean ΔE that stays above 10
+/// @throws gi::InputError fewer than six patches, patches that do not span colours, or a mean ΔE that stays above
+/// 10
 ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f const> chart);
 
 /// Pixel positions of the 24 patches of a (flat) ColorChecker, by perspective and the lens.

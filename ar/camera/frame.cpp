@@ -20,9 +20,9 @@ cv::Mat decoded(Frame const& f, int mode)
         throw gi::InputError(fmt::format("frame {} is no JPEG that can be decoded", f.sequence),
                              "it has no pixels", "count it as lost");
     if (picture.cols != f.size_px.x || picture.rows != f.size_px.y)
-        throw gi::InputError(fmt::format("frame {} has {} x {} pixels in place of {} x {}", f.sequence, picture.cols,
-                                     picture.rows, f.size_px.x, f.size_px.y),
-                         "the calibration is for another size", "count it as lost");
+        throw gi::InputError(fmt::format("frame {} has {} x {} pixels in place of {} x {}", f.sequence,
+                                         picture.cols, picture.rows, f.size_px.x, f.size_px.y),
+                             "the calibration is for another size", "count it as lost");
     return picture;
 }
 

@@ -40,7 +40,8 @@ struct Frame {
 };
 
 /// Converts to RGB, CV_8UC3, of the frame's size. RGB frames are not copied (the result is valid as long as the
-/// frame). YUV is BT.601 with limited range. @throws gi::InputError JPEG that cannot be decoded or has another size
+/// frame). YUV is BT.601 with limited range. @throws gi::InputError JPEG that cannot be decoded or has another
+/// size
 cv::Mat rgb_of(Frame const& frame);
 /// Converts to luma, CV_8UC1; not copied if the format has a luma plane.
 cv::Mat gray_of(Frame const& frame);

@@ -8,9 +8,9 @@
 namespace ar {
 
 struct SightedPoint {
-    glm::dvec3 world_m; ///< on the marker, in the world's frame
-    glm::dvec2 pixel;   ///< in the original (distorted) picture; pixel centres are integers
-    int marker = 0;     ///< same number for all points of a marker (or board): outliers affect whole markers
+    glm::dvec3 world_m;    ///< on the marker, in the world's frame
+    glm::dvec2 pixel;      ///< in the original (distorted) picture; pixel centres are integers
+    int marker = 0;        ///< same number for all points of a marker (or board): outliers affect whole markers
     double sigma_px = 0.1; ///< standard deviation of the detector's error
 };
 

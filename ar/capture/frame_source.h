@@ -46,8 +46,8 @@ struct SourceDescription {
 
 struct SourceCounts {
     std::uint64_t delivered = 0;
-    std::uint64_t dropped = 0; ///< gaps in the sequence: lost before arrival, or discarded for newer frames
-    std::uint64_t refused = 0; ///< arrived, but truncated, of a wrong size or undecodable
+    std::uint64_t dropped = 0;     ///< gaps in the sequence: lost before arrival, or discarded for newer frames
+    std::uint64_t refused = 0;     ///< arrived, but truncated, of a wrong size or undecodable
     std::string last_refusal = {}; ///< the frame and the reason
 
     friend bool operator==(SourceCounts const&, SourceCounts const&) = default;
@@ -66,7 +66,8 @@ struct Controls {
     friend bool operator==(Controls const&, Controls const&) = default;
 };
 
-/// @throws gi::InputError values that are not finite or not positive, both automatic and set, or only one colour gain
+/// @throws gi::InputError values that are not finite or not positive, both automatic and set, or only one colour
+/// gain
 void check(Controls const& controls);
 
 class FrameSource {

@@ -38,7 +38,7 @@ void check_frame(Frame const& f)
 {
     auto const refuse = [&](std::string const& why) {
         throw gi::InputError(fmt::format("frame {} cannot be recorded", f.sequence), why,
-                         "pass it as the source delivered it");
+                             "pass it as the source delivered it");
     };
     Exposure const& e = f.exposure;
     for (double const v : {f.captured_s, f.arrived_s, e.time_s, e.gain, e.red_gain, e.blue_gain})
@@ -97,8 +97,9 @@ SessionWriter::SessionWriter(std::filesystem::path const& folder, SessionHeader 
     std::error_code error;
     if (!std::filesystem::create_directory(folder, error))
         throw gi::InputError("cannot make the folder '" + folder.string() + "'",
-                         error ? error.message() : "it exists, and recordings are never overwritten",
-                         error ? "choose a folder that can be written" : "choose another name, or move it away");
+                             error ? error.message() : "it exists, and recordings are never overwritten",
+                             error ? "choose a folder that can be written"
+                                   : "choose another name, or move it away");
     header_.finished.reset();
     if (header_.created.empty()) header_.created = parse_session_header(to_json(header_), folder.string()).created;
     write_header();
@@ -120,21 +121,7 @@ SessionWriter::~SessionWriter()
     }
 }
 
-/// Writes the file atomically.
-void SessionWriter::write_header()
-{
-    auto const path = folder_ / kSessionFile, fresh = folder_ / (std::string(kSessionFile) + ".new");
-    std::string const text = to_json(header_);
-    ::unlink(fresh.c_str());
-    int const file = make_file(fresh);
-    int error = write_all(file, reinterpret_cast<std::uint8_t const*>(text.data()), text.size());
-    if (error == 0 && ::fdatasync(file) != 0) error = errno;
-    ::close(file);
-    if (error == 0 && ::rename(fresh.c_str(), path.c_str()) != 0) error = errno;
-    if (error != 0)
-        throw gi::InputError("cannot write '" + path.string() + "'", std::strerror(error),
-                         "choose a folder that can be written");
-}
+void SessionWriter::write_header() { gi::write_durably(folder_ / kSessionFile, to_json(header_)); }
 
 bool SessionWriter::append(Frame const& frame)
 {

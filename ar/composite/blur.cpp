@@ -73,7 +73,7 @@ RenderedPair defocused(RenderedPair const& pair, double sigma_px)
     check(pair);
     if (!(sigma_px >= 0) || sigma_px > 20)
         throw gi::InputError("a blur with a sigma below 0 or above 20 pixels", "no calibrated camera has it",
-                         "estimate the sharpness again");
+                             "estimate the sharpness again");
     if (sigma_px == 0) return pair;
     cv::Mat const kernel = spread_kernel(sigma_px);
     cv::Mat layer = layer_of(pair);

@@ -104,7 +104,7 @@ Compositor::Compositor(Photometry const& p, CompositeSettings const& settings)
     camera_colour_ = p.colour.inv(cv::DECOMP_LU, &invertible);
     if (!invertible)
         throw gi::InputError("the camera's colour matrix has no inverse", "radiance cannot be converted to bytes",
-                         "calibrate colour again, or use the unit matrix");
+                             "calibrate colour again, or use the unit matrix");
     if (!(p.radiance_per_unit > 0) || !std::isfinite(p.radiance_per_unit))
         throw gi::InputError(fmt::format("radiance_per_unit = {}", p.radiance_per_unit), "it must be positive",
                              "give the radiance that has the unit 1");
@@ -128,7 +128,7 @@ CompositeCounts Compositor::operator()(cv::Mat const& rgb, RenderedPair const& p
 {
     if (rgb.type() != CV_8UC3 || rgb.empty())
         throw gi::InputError("the camera's frame is not RGB of 8 bits", "other formats are not supported",
-                         "convert it with rgb_of()");
+                             "convert it with rgb_of()");
     check(pair, rgb.size());
     out.create(rgb.size(), CV_8UC3);
     if (photometry_.vignetting != std::array<double, 3>{} && vignetting_.size() != rgb.size()) {

@@ -111,8 +111,9 @@ RenderedPair TemporalFilter::operator()(RenderedPair const& pair, cv::Mat const&
     cv::Size const size(camera_.size_px.x, camera_.size_px.y);
     check(pair, size);
     if (depth.type() != CV_32FC1 || depth.size() != size)
-        throw gi::InputError("depth for the temporal filter has another size or type", "surfaces cannot be tracked",
-                         "give metres along the axis as floats, of the size of the pair");
+        throw gi::InputError("depth for the temporal filter has another size or type",
+                             "surfaces cannot be tracked",
+                             "give metres along the axis as floats, of the size of the pair");
     Added const added = added_by(pair, settings_.radius_px);
     cv::Rect const where = added.where;
     counts_ = {};

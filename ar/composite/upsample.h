@@ -28,7 +28,7 @@ struct UpsampleSettings {
 
 struct UpsampleCounts {
     std::size_t without_guide = 0; ///< pixels whose guides match no neighbour's; they get the neighbours' mean
-    std::size_t no_sample = 0; ///< pixels with objects in all low-resolution pixels around: change unknown
+    std::size_t no_sample = 0;     ///< pixels with objects in all low-resolution pixels around: change unknown
 };
 
 /// The centre of output pixel (x, y) lies at ((x + 0.5) low / full - 0.5) in the low-resolution pictures.

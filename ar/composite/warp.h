@@ -20,8 +20,8 @@ public:
     Warp(CameraModel const& to, CameraModel const& from);
 
     /// Bilinear, to 1/32 of a pixel (cv::remap). Outside the view of `from` all pictures are 0, so composites keep
-    /// the camera's bytes. Equal pixels of `with` and `without` stay equal bit for bit. @throws gi::InputError wrong
-    /// size
+    /// the camera's bytes. Equal pixels of `with` and `without` stay equal bit for bit. @throws gi::InputError
+    /// wrong size
     RenderedPair operator()(RenderedPair const& pair) const;
     /// Bilinear, for radiance and irradiance.
     cv::Mat smooth(cv::Mat const& picture) const;

@@ -28,10 +28,10 @@ struct LiveProbeSettings {
     cv::Size size{64, 32};
     int step_px = 4; ///< sample spacing in both directions
     ExposureKnowledge exposure = ExposureKnowledge::known;
-    double memory_s = 0.5; ///< decay time of a texel's older observations
-    double forget_s = 120; ///< decay time of unseen texels to the prior
-    double changed = 0.5; ///< a texel whose light differs by this share of the larger value has changed; it is
-                          ///< reset if it also differs by 5 % of the mean radiance
+    double memory_s = 0.5;    ///< decay time of a texel's older observations
+    double forget_s = 120;    ///< decay time of unseen texels to the prior
+    double changed = 0.5;     ///< a texel whose light differs by this share of the larger value has changed; it is
+                              ///< reset if it also differs by 5 % of the mean radiance
     double lamp_share = 0.05; ///< changed texels with this share of the map's total light count as a lamp
 };
 

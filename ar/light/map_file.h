@@ -6,8 +6,8 @@
 
 namespace ar {
 
-/// Returns CV_32FC3, RGB. @throws gi::InputError if unreadable, without such channels, more than 16384 texels wide, or
-/// refused by check_map
+/// Returns CV_32FC3, RGB. @throws gi::InputError if unreadable, without such channels, more than 16384 texels
+/// wide, or refused by check_map
 cv::Mat read_map(std::filesystem::path const& file);
 /// Reads a picture of any shape from the same formats as CV_32FC3, values unchanged.
 cv::Mat read_radiance(std::filesystem::path const& file);

@@ -95,8 +95,7 @@ public:
         map_ = std::move(map);
         bool const emits = std::any_of(real_.scene.materials.begin(), real_.scene.materials.end(), gi::emits);
         if (!map_ && !emits && real_.scene.lights.empty())
-            throw gi::InputError("the light is unknown",
-                                 "albedo is reflected light over incident light",
+            throw gi::InputError("the light is unknown", "albedo is reflected light over incident light",
                                  "set light: {map: FILE} in the session");
     }
 

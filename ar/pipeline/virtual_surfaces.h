@@ -17,7 +17,7 @@ namespace viewer {
 struct SharpSurfaces {
     ar::DirectlySeen seen;       ///< with occlusion by proxies
     ar::DirectlySeen unoccluded; ///< without occlusion by proxies; empty unless requested
-    std::size_t unlit = 0; ///< points without a nearby rendered pixel of virtual objects, which become black
+    std::size_t unlit = 0;       ///< points without a nearby rendered pixel of virtual objects, which become black
 };
 
 /// Virtual objects in one pixel of the frame: means over its points whose first surface is virtual.

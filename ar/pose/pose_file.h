@@ -27,8 +27,8 @@ enum class CameraAxes {
 };
 
 /// @param file name of the file for messages
-/// @throws gi::InputError with file:line:column: missing columns, not a number, not finite, not a quaternion of length
-/// 1 (within 5 %), times that do not increase, no poses
+/// @throws gi::InputError with file:line:column: missing columns, not a number, not finite, not a quaternion of
+/// length 1 (within 5 %), times that do not increase, no poses
 std::vector<TimedPose> parse_poses(std::string_view text, std::string const& file,
                                    CameraAxes axes = CameraAxes::vision);
 /// @throws gi::InputError, also for files above 1 GiB or that cannot be read

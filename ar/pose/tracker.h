@@ -22,8 +22,8 @@ struct TrackerSettings {
     CameraMotion motion = CameraMotion::moving;
     gi::OneEuroSettings position{1, 5, 1, 0.3, 16}; ///< betas in Hz per m/s
     gi::OneEuroSettings rotation{1, 4, 1, 0.3, 13}; ///< in Hz per rad/s
-    double least_confidence = 0.1;              ///< estimates below this are ignored
-    double fresh_s = 0.05;                      ///< maximum age of an estimate for `tracked`
+    double least_confidence = 0.1;                  ///< estimates below this are ignored
+    double fresh_s = 0.05;                          ///< maximum age of an estimate for `tracked`
     double predict_s = 0.1; ///< extrapolate at constant velocity for this long, then hold the pose
     double lost_after_s = 0.5;
     /// An estimate farther from the predicted motion than this speed explains (plus the floors) is a jump; it is

@@ -123,8 +123,7 @@ gi::Mesh mesh_of(ProxyDepth const& depth, gi::Report& report)
     report.lose("pixels of depth maps that the lens does not see", beyond_lens, name);
     report.lose("triangles of depth maps left out at jumps", cut, name);
     if (mesh.triangles.empty())
-        throw gi::InputError("'" + name + "' gives no triangle",
-                             "no neighbouring pixels have similar depths",
+        throw gi::InputError("'" + name + "' gives no triangle", "no neighbouring pixels have similar depths",
                              "check metres_per_unit, jump and step_px");
     mesh.normals = gi::vertex_normals(mesh.positions, mesh.triangles);
     return mesh;

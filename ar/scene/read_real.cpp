@@ -66,8 +66,8 @@ private:
             p.name = items[i].has("name") ? items[i].at("name").text() : fmt::format("{}-{}", key, i + 1);
             if (std::any_of(out_.proxies.begin(), out_.proxies.end(),
                             [&](ArProxy const& q) { return q.name == p.name; }))
-                throw items[i].error("there is another '" + p.name + "'",
-                                     "estimates refer to proxies by name", "use unique names");
+                throw items[i].error("there is another '" + p.name + "'", "estimates refer to proxies by name",
+                                     "use unique names");
             out_.proxies.push_back(std::move(p));
         }
     }
@@ -94,8 +94,8 @@ private:
         }
         if (y.has("texels")) {
             if (s.from != AlbedoFrom::estimate_texture)
-                throw y.at("texels").error("the texture is not estimated",
-                                           "texture files have their own size", "remove the key");
+                throw y.at("texels").error("the texture is not estimated", "texture files have their own size",
+                                           "remove the key");
             s.texels = int(y.at("texels").integer(1, 4096));
         }
         if (y.has("roughness")) s.roughness = y.at("roughness").number(0, 1);
@@ -104,8 +104,8 @@ private:
         bool const is_estimated = s.from == AlbedoFrom::estimate || s.from == AlbedoFrom::estimate_texture;
         if (is_estimated && s.metallic > 0)
             throw y.at("metallic")
-                .error("a metal's colour cannot be estimated",
-                       "a metal shows reflections, not its albedo", "set its albedo in numbers");
+                .error("a metal's colour cannot be estimated", "a metal shows reflections, not its albedo",
+                       "set its albedo in numbers");
         return s;
     }
 
@@ -183,9 +183,7 @@ private:
     static void need(Yaml const& y, std::vector<char const*> const& keys)
     {
         for (char const* key : keys)
-            if (!y.has(key))
-                throw y.error(fmt::format("no '{}'", key), "it defines position and size",
-                              "add it");
+            if (!y.has(key)) throw y.error(fmt::format("no '{}'", key), "it defines position and size", "add it");
     }
 
     Yaml const& real_;

@@ -46,8 +46,8 @@ std::vector<ar::TimedPose> samples_of(fs::path const& file, TrackerSettings cons
                 {time_s, pose_in_ar(to_room(settings.to_room, s.pose, settings.head.sensor_from_body))});
     }
     if (poses.empty())
-        throw gi::InputError("'" + file.string() + "' has no body '" + body + "'",
-                             "the camera pose comes from it", "correct `body` of the tracker");
+        throw gi::InputError("'" + file.string() + "' has no body '" + body + "'", "the camera pose comes from it",
+                             "correct `body` of the tracker");
     return poses;
 }
 

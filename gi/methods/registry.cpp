@@ -19,14 +19,13 @@ constexpr Method virtual_lights(std::string_view name, std::string_view summary)
 }
 
 constexpr std::array kMethods{
-    Method{"reference", "path tracing with exact rays (Embree): slow, unbiased, for comparison",
-           render_reference, start_reference_frames, true},
+    Method{"reference", "path tracing with exact rays (Embree): slow, unbiased, for comparison", render_reference,
+           start_reference_frames, true},
     Method{"slhb", "path tracing through spherical layered hit buffers: look-ups instead of rays", render_slhb,
            start_slhb_frames, true},
     virtual_lights<VisibilityKind::exact>(
-        "vpl_exact",
-        "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
-        "    methods differ only in how they find visibility"),
+        "vpl_exact", "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
+                     "    methods differ only in how they find visibility"),
     virtual_lights<VisibilityKind::slhb>("vpl_slhb", "... by look-ups in spherical layered hit buffers"),
     virtual_lights<VisibilityKind::imperfect>("vpl_imperfect", "... by imperfect shadow maps, drawn from points"),
     virtual_lights<VisibilityKind::ambient>("vpl_ao", "... by ambient occlusion within a radius"),

@@ -62,8 +62,7 @@ std::string argument(CLI::App const& all, std::string const& keyword, py::handle
     }
     if (option->get_items_expected_max() > 0) return name + "=" + std::string(py::str(value));
     if (!py::isinstance<py::bool_>(value))
-        throw gi::InputError(keyword + " = " + std::string(py::repr(value)), "it is a flag",
-                             "give True or False");
+        throw gi::InputError(keyword + " = " + std::string(py::repr(value)), "it is a flag", "give True or False");
     return py::cast<bool>(value) ? name : "";
 }
 

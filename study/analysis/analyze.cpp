@@ -61,8 +61,7 @@ void add_cautions(Script const& script, Analysis& a)
     int const used = int(std::count_if(a.observers.begin(), a.observers.end(),
                                        [](ObserverSummary const& o) { return !o.is_excluded; }));
     if (used == 0) c.push_back("nobody is left to analyse");
-    if (used == 1)
-        c.push_back("one observer: intervals, if any, apply to this person only");
+    if (used == 1) c.push_back("one observer: intervals, if any, apply to this person only");
     if (used > 1 && used < 8)
         c.push_back(fmt::format("{} observers: intervals over observers are rough with fewer than about 8", used));
     if (used < script.participants.count)

@@ -204,8 +204,8 @@ JournalEntry entry_of_line(std::string_view line, int number)
             throw BadLine(fmt::format("its format is '{}', this version knows '{}'", format, kFormat), true);
     }
     if (n != number)
-        throw BadLine(
-            fmt::format("its number is {}, it should be {}: lines are missing or duplicated", n, number), false);
+        throw BadLine(fmt::format("its number is {}, it should be {}: lines are missing or duplicated", n, number),
+                      false);
     return entry_of(kind, j);
 }
 

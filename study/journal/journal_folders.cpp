@@ -58,8 +58,7 @@ JournalsFound find_journals(fs::path const& dir)
     JournalsFound found;
     for (fs::path const& subject : names_in(dir, "sub-")) {
         auto const sessions = names_in(subject, "ses");
-        if (sessions.empty())
-            found.remarks.push_back(subject.string() + ": it has no session and is ignored");
+        if (sessions.empty()) found.remarks.push_back(subject.string() + ": it has no session and is ignored");
         for (fs::path const& session : sessions)
             if (fs::path const file = session / "beh" / "journal.jsonl"; is_there(file))
                 found.files.push_back(file);

@@ -29,7 +29,8 @@ void read_all_numbers(gi::Yaml const& y, std::vector<Number> const& numbers)
 }
 
 /// Reads {factor: {level: number}}; levels that are not named have 0.
-void read_by_level(gi::Yaml const& y, Script const& s, double low, double high, std::vector<std::vector<double>>& out)
+void read_by_level(gi::Yaml const& y, Script const& s, double low, double high,
+                   std::vector<std::vector<double>>& out)
 {
     for (auto const& [name, levels] : y.entries()) {
         int const factor = read_factor(name, s);

@@ -63,14 +63,13 @@ std::string cheapest_text(ScaleResult const& s)
             "Nothing cheaper than <b>{}</b> ({} ms) is as good as {}: every cheaper one is significantly "
             "worse.",
             gi::escaped(item.name), short_number(item.render_ms.value),
-            c.is_reference ? "it, the reference"
-                           : "it, the best judged item (the reference was not judged)");
-    std::string text =
-        fmt::format("The cheapest without significant difference from {} <b>{}</b> ({} ms) is <b>{}</b> ({} ms): "
-                    "difference {} {}, p = {:.3f} "
-                    "corrected for all pairs.",
-                    stand_in, gi::escaped(against.name), short_number(against.render_ms.value), gi::escaped(item.name),
-                    short_number(item.render_ms.value), interval_text(c.difference), gi::escaped(s.unit), c.p_holm);
+            c.is_reference ? "it, the reference" : "it, the best judged item (the reference was not judged)");
+    std::string text = fmt::format(
+        "The cheapest without significant difference from {} <b>{}</b> ({} ms) is <b>{}</b> ({} ms): "
+        "difference {} {}, p = {:.3f} "
+        "corrected for all pairs.",
+        stand_in, gi::escaped(against.name), short_number(against.render_ms.value), gi::escaped(item.name),
+        short_number(item.render_ms.value), interval_text(c.difference), gi::escaped(s.unit), c.p_holm);
     if (std::isfinite(c.difference.interval.low) && c.difference.interval.low < 0)
         text += fmt::format(" No significant difference does not mean equal: it may be up to {} {} worse.",
                             short_number(-c.difference.interval.low), gi::escaped(s.unit));

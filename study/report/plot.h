@@ -7,8 +7,6 @@
 
 namespace study {
 
-/// Escaped for HTML text and quoted attributes.
-std::string gi::escaped(std::string_view text);
 /// Number with three digits, integers with up to seven: "0.05", "1250".
 std::string short_number(double value);
 /// Approximate width of a text in the plots' font of 12 px.

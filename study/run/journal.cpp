@@ -75,8 +75,7 @@ Journal Journal::create(std::filesystem::path const& file)
 {
     int const fd = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd < 0)
-        throw cannot(file, "the journal cannot be created", std::strerror(errno),
-                     "choose a writable folder");
+        throw cannot(file, "the journal cannot be created", std::strerror(errno), "choose a writable folder");
     lock(fd, file);
     gi::sync_folder(file.parent_path());
     return {file, fd};

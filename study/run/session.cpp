@@ -142,8 +142,7 @@ private:
         CalibrationDone const calibration = call([&] { return p_.calibrate(s_.timing); });
         if (!calibration.passed && s_.timing.vsync == Vsync::required)
             throw ScriptError(s_.file, {}, "the display does not pass the test that the script requires",
-                              calibration.reason,
-                              "fix it, or write timing: {vsync: record} to run anyway");
+                              calibration.reason, "fix it, or write timing: {vsync: record} to run anyway");
         bool const is_first = record_.entries.empty();
         if (is_first && !s_.participants.consent.empty() &&
             !call([&] { return p_.ask_consent(text_of(s_.participants.consent)); })) {
@@ -162,10 +161,9 @@ private:
             note("warning", fmt::format("{} bytes of an incomplete line were cut off the journal's end",
                                         outcome_.torn_bytes));
         if (started_.gap_s < 0)
-            note("clock_changed",
-                 fmt::format("by the wall clock this part begins {:.3f} s before the end of "
-                             "the previous part",
-                             -started_.gap_s));
+            note("clock_changed", fmt::format("by the wall clock this part begins {:.3f} s before the end of "
+                                              "the previous part",
+                                              -started_.gap_s));
         keep(calibration);
         write_summary();
         return true;
@@ -200,10 +198,9 @@ private:
         for (NoteTaken const& taken : call([&] { return p_.notes(); })) keep(taken);
         double const offset_s = unix_s() - p_.now();
         if (std::abs(offset_s - clock_offset_s_) > kClockJump_s)
-            note(
-                "clock_changed",
-                fmt::format("the wall clock jumped by {:+.3f} s; times are of the monotonic clock, which did not",
-                            offset_s - clock_offset_s_));
+            note("clock_changed",
+                 fmt::format("the wall clock jumped by {:+.3f} s; times are of the monotonic clock, which did not",
+                             offset_s - clock_offset_s_));
         clock_offset_s_ = offset_s;
         switch (call([&] { return p_.action(); })) {
         case ExperimenterAction::pause:

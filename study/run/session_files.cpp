@@ -32,8 +32,8 @@ std::optional<SessionStarted> start_of(fs::path const& journal)
 {
     std::ifstream in(journal, std::ios::binary);
     if (!in)
-        throw ScriptError(journal.string(), {}, "this journal cannot be read",
-                          "it may belong to another script", "make it readable");
+        throw ScriptError(journal.string(), {}, "this journal cannot be read", "it may belong to another script",
+                          "make it readable");
     std::string line;
     if (!std::getline(in, line)) return {};
     auto const entries = parse_journal(line + "\n", journal.string()).record.entries;

@@ -19,12 +19,7 @@ class Random {
 public:
     /// @param stream only its lower 63 bits count. The states of two streams of one seed differ by an amount that
     /// depends only on their numbers: use part() for many independent streams.
-    explicit Random(std::uint64_t seed, std::uint64_t stream = 0) : increment_((stream << 1) | 1)
-    {
-        next();
-        state_ += seed;
-        next();
-    }
+    explicit Random(std::uint64_t seed, std::uint64_t stream = 0) : engine_(seed, stream) {}
 
     /// Generator for one part of many, such as a participant or a simulation. Seed and index are hashed, so that
     /// neighbours are independent.
@@ -39,8 +34,7 @@ public:
     /// Uniform in {0, ..., n - 1}, each exactly as likely. @throws std::invalid_argument n = 0
     std::uint32_t below(std::uint32_t n)
     {
-        if (n == 0)
-            throw std::invalid_argument("random number below 0 (there is none) use 1 or more");
+        if (n == 0) throw std::invalid_argument("random number below 0 (there is none) use 1 or more");
         std::uint32_t const uneven = (0u - n) % n; // 2^32 mod n: reject this many of the lowest, to avoid bias
         for (;;)
             if (std::uint32_t const r = next(); r >= uneven) return r % n;

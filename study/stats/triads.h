@@ -12,10 +12,10 @@ namespace study {
 struct CircularTriads {
     int count = 0; ///< T
     int maximum = 0;
-    double expected = 0; ///< under random choices: C(n, 3) / 4
-    double zeta = 1;     ///< NaN for fewer than three items, which have no triads
-    double p = 1; ///< P(T or fewer under random choices): small = consistent choices. Exact up to
-                  ///< kExactTriadItems items, by chi-square beyond
+    double expected = 0;           ///< under random choices: C(n, 3) / 4
+    double zeta = 1;               ///< NaN for fewer than three items, which have no triads
+    double p = 1;                  ///< P(T or fewer under random choices): small = consistent choices. Exact up to
+                                   ///< kExactTriadItems items, by chi-square beyond
     double chi_square = 0;         ///< 8/(n-4) (C(n, 3)/4 - T - 1/2) + df, NaN for n <= 4
     double degrees_of_freedom = 0; ///< n(n-1)(n-2)/(n-4)^2, NaN for n <= 4
 };

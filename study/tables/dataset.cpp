@@ -70,8 +70,8 @@ Dataset read_dataset(fs::path const& dir, fs::path const& script)
     for (fs::path const& file : journals(dir, d.remarks)) {
         JournalText journal = read_journal(file);
         if (journal.torn_bytes > 0)
-            d.remarks.push_back(fmt::format("{}: {} bytes of an incomplete line are ignored", file.string(),
-                                            journal.torn_bytes));
+            d.remarks.push_back(
+                fmt::format("{}: {} bytes of an incomplete line are ignored", file.string(), journal.torn_bytes));
         if (journal.record.entries.empty()) {
             d.remarks.push_back(fmt::format("{}: nothing has happened in this session yet", file.string()));
             continue;

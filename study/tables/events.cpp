@@ -254,8 +254,7 @@ Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int
                  {"attempt", "Number of the attempt at the trial, from 1"},
                  {"place", "Place in the order of presentation, from 1"},
                  {"stimulus", "Letter of the stimulus; r is the reference"}}};
-    for (std::string const& name : factor_columns(script))
-        table.columns.push_back({name, "Level of the factor"});
+    for (std::string const& name : factor_columns(script)) table.columns.push_back({name, "Level of the factor"});
     std::vector<Column> const more{{"level", "Level of the varied setting, for the varied stimulus"},
                                    {"onset_method", "How the onset was timed", "", kOnsetMethods},
                                    {"onset_uncertainty_ms", "Uncertainty (plus or minus) of the onset", "ms"},

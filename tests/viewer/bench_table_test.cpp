@@ -1,9 +1,9 @@
 // Tables of measurements: medians, files, the page.
 
 #include "gi/core/error.h"
+#include "gi/core/html.h"
 #include "tests/viewer/run_program.h"
 #include "viewer/report/chart.h"
-#include "gi/core/html.h"
 #include "viewer/report/html.h"
 #include "viewer/report/log_axis.h"
 #include "viewer/report/page.h"

@@ -71,8 +71,8 @@ std::optional<Json> Requests::handle(RemoteRequest const& r)
     } else if (r.what == "screenshot") {
         std::string const file = r.arguments.at("file").get<std::string>();
         if (!file.ends_with(".png") && !file.ends_with(".exr"))
-            throw gi::InputError("a screenshot called '" + file + "'",
-                                 "its file format is unknown", "end the name in .png or .exr");
+            throw gi::InputError("a screenshot called '" + file + "'", "its file format is unknown",
+                                 "end the name in .png or .exr");
         if (r.has("view") && r.arguments.at("view").get<int>() < 0)
             throw gi::InputError(fmt::format("view {}", r.arguments.at("view").get<int>()), "there is none",
                                  "count from 0");

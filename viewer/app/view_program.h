@@ -15,7 +15,7 @@ namespace viewer {
 
 struct ViewOptions {
     LoadScene load;
-    DriveBodies drive; ///< moves the avatars that `load` added to the scene; empty = none
+    DriveBodies drive;                 ///< moves the avatars that `load` added to the scene; empty = none
     std::vector<AvatarOfUser> avatars; ///< moved by `drive`
     std::string scene;
     std::function<gi::Camera(gi::World const&)> first_camera; ///< start camera of a scene

@@ -13,10 +13,10 @@
 namespace viewer {
 
 enum class CalibrationPattern {
-    grid,    ///< lines at metric distances, a circle in the centre: sizes, aspect, edges, joints with neighbours
-    corners, ///< each corner with its colour, name and position: identity and orientation of the wall
-    eyes,    ///< the eye's letter, and marks in front of, on and behind the wall: eye separation, swapped eyes
-    colours, ///< colour bars, grey ramp, and lines as bright as the patch at gamma 2.2
+    grid,      ///< lines at metric distances, a circle in the centre: sizes, aspect, edges, joints with neighbours
+    corners,   ///< each corner with its colour, name and position: identity and orientation of the wall
+    eyes,      ///< the eye's letter, and marks in front of, on and behind the wall: eye separation, swapped eyes
+    colours,   ///< colour bars, grey ramp, and lines as bright as the patch at gamma 2.2
     crosstalk, ///< fields that are black or white for one eye only: leakage into the other eye
     blend,     ///< white with the wall's blend and gain applied: the overlap should be even
 };

@@ -123,8 +123,7 @@ Wall read_wall(Yaml const& y, Display const& d, std::filesystem::path const& fol
         auto const mode = stereo_mode(y.at("stereo").text());
         if (!mode)
             throw y.at("stereo").error("'" + y.at("stereo").text().substr(0, 64) + "' is no stereo mode",
-                                       "the name is unknown",
-                                       "there are: " + stereo_mode_names());
+                                       "the name is unknown", "there are: " + stereo_mode_names());
         wall.stereo = *mode;
     }
     if (y.has("swap_eyes")) wall.swap_eyes = y.at("swap_eyes").boolean();
@@ -195,8 +194,8 @@ DisplayTracker read_tracker(Yaml const& y)
     std::string const type = needed(y, "type", "dtrack").text();
     auto const known = tracker_type(type);
     if (!known)
-        throw y.at("type").error("'" + type.substr(0, 64) + "' is no type of tracker",
-                                 "the name is unknown", "osc, dtrack, openxr, file or fake");
+        throw y.at("type").error("'" + type.substr(0, 64) + "' is no type of tracker", "the name is unknown",
+                                 "osc, dtrack, openxr, file or fake");
     tracker.type = *known;
     if (y.has("address")) tracker.address = y.at("address").text();
     if (y.has("port")) tracker.port = int(y.at("port").integer(-1000000, 1000000));

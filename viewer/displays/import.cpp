@@ -36,8 +36,7 @@ DisplayFormat format_of(std::filesystem::path const& file)
                                         {".eqc", DisplayFormat::equalizer},
                                         {".cfg", DisplayFormat::vrui}})
         if (end == known) return format;
-    throw gi::InputError("'" + file.string() + "' is of no known kind of display",
-                         "its file extension is unknown",
+    throw gi::InputError("'" + file.string() + "' is of no known kind of display", "its file extension is unknown",
                          ".yaml (ours), .json (SGCT), .pvx (ParaView), .eqc (Equalizer), .cfg (Vrui)");
 }
 

@@ -9,9 +9,9 @@ namespace viewer {
 
 struct ViewSummary {
     DisplayView view;
-    double width_m = 0, height_m = 0;            ///< of the wall
-    double distance_m = 0;                       ///< of the eye from the wall's plane; negative behind it
-    double horizontal_deg = 0, vertical_deg = 0; ///< angles between opposite edges; 0 if it sees nothing
+    double width_m = 0, height_m = 0;                    ///< of the wall
+    double distance_m = 0;                               ///< of the eye from the wall's plane; negative behind it
+    double horizontal_deg = 0, vertical_deg = 0;         ///< angles between opposite edges; 0 if it sees nothing
     double px_per_deg_across = 0, px_per_deg_upward = 0; ///< at the centre of the wall
 };
 

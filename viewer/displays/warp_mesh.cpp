@@ -49,8 +49,8 @@ std::optional<std::string> find_fault(WallMesh const& m)
                     return fmt::format("cell {} of row {} is flat: three of its nodes lie on a line", i, j);
                 if (turn == 0) turn = area;
                 if (turn * area < 0)
-                    return fmt::format("the mesh folds at cell {} of row {}: this part would be drawn twice",
-                                       i, j);
+                    return fmt::format("the mesh folds at cell {} of row {}: this part would be drawn twice", i,
+                                       j);
             }
     return {};
 }

@@ -15,9 +15,8 @@ struct Settings {
     std::string method = "slhb", compare;      ///< compare: second method, shown beside the first; empty = none
     std::string schedule = "auto", directions; ///< as --schedule and --directions
     int resolution = 0, axes = 0, light_samples = 0; ///< of slhb; 0 = chosen by the plan
-    int updated_axes =
-        0; ///< stored axes per bounce updated each frame for dynamic geometry; 0 = all. With the schedule
-              ///< auto, the live viewer sets it every frame (update_governor.h)
+    int updated_axes = 0; ///< stored axes per bounce updated each frame for dynamic geometry; 0 = all. With the
+                          ///< schedule auto, the live viewer sets it every frame (update_governor.h)
     std::string device = "cpu";  ///< of slhb; cuda = its GPU kernels
     int light_paths = 256;       ///< of the methods vpl_*, as are the next two
     std::string points = "1024"; ///< per imperfect shadow map, or "30%" of its texels

@@ -155,8 +155,7 @@ ArStimulus ar_stimulus(study::Patch const& patch, fs::path const& folder)
     s.session = folder / name;
     if (!fs::is_regular_file(s.session))
         throw ArSettingError("ar", name, "there is no AR session '" + s.session.string() + "'",
-                             "the stimulus needs it",
-                             "make one (lightwell ar synthesize), or correct the path");
+                             "the stimulus needs it", "make one (lightwell ar synthesize), or correct the path");
     s.truth = s.session.parent_path() / "truth";
     for (auto const& [key, value] : patch) {
         if (!key.starts_with(kPrefix)) continue;

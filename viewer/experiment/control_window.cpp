@@ -105,8 +105,7 @@ void run_control_window(std::string const& where, gi::StopRequest const& stop, g
 {
     Control control(where);
     if (!control.ask("status"))
-        throw gi::InputError("'" + where + "'", control.problem(),
-                             "give the --remote of a running study run");
+        throw gi::InputError("'" + where + "'", control.problem(), "give the --remote of a running study run");
     WindowSettings settings;
     settings.title = "Lightwell: experimenter";
     settings.size_px = {520, 300};

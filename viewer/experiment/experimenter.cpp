@@ -46,8 +46,7 @@ std::optional<nlohmann::json> Experimenter::handle(RemoteRequest const& r)
         return nlohmann::json::object();
     }
     if (r.what != "session")
-        throw gi::InputError("'" + r.what + "'",
-                             "a running experiment accepts only session, ping and quit",
+        throw gi::InputError("'" + r.what + "'", "a running experiment accepts only session, ping and quit",
                              "send one of these");
     std::string const action = r.arguments.at("action").get<std::string>();
     std::string const text = r.has("text") ? r.arguments.at("text").get<std::string>() : "";

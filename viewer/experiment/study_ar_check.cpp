@@ -51,10 +51,9 @@ void ArStimulusCheck::add(study::Plan const& plan)
             study::Patch const patch = settings_of(s, block, stimuli[0]);
             for (auto const& [key, value] : patch)
                 if (is_ar_setting(key))
-                    throw_at(
-                        loaded_, key, value,
-                        "a free walk through an AR session (its frames have the camera's viewpoint) give "
-                        "it a scene");
+                    throw_at(loaded_, key, value,
+                             "a free walk through an AR session (its frames have the camera's viewpoint) give "
+                             "it a scene");
         }
         if (step.trial.reference) stimuli.push_back(*step.trial.reference);
         for (study::Stimulus& stimulus : stimuli) {

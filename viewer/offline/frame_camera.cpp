@@ -57,10 +57,9 @@ void FrameCamera::place_screen(gi::World const& first)
     gi::dvec3 const middle = gi::dvec3(first.bounds.empty() ? gi::vec3{0} : first.bounds.center()) + first.origin;
     double const distance = std::clamp(glm::length(middle - from), kNearest_m, kFarthest_m);
     choice_.eye->screen_distance_m = distance;
-    first_.note +=
-        fmt::format("{}the pictures of the two eyes coincide {:.3g} m in front of the camera, at the "
-                    "distance of the middle of the scene",
-                    first_.note.empty() ? "" : "; ", distance);
+    first_.note += fmt::format("{}the pictures of the two eyes coincide {:.3g} m in front of the camera, at the "
+                               "distance of the middle of the scene",
+                               first_.note.empty() ? "" : "; ", distance);
 }
 
 gi::Camera FrameCamera::of(gi::World const& world, double time_s, double fraction) const

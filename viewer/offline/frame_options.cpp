@@ -48,9 +48,8 @@ void declare_frames(CLI::App& c, RenderOptions& o)
         ->capture_default_str()
         ->group(kGroup)
         ->needs(frames);
-    c.add_option(
-         "--shutter", o.shutter_s,
-         "motion blur: exposure time, s, from the time of the frame or --time on; includes camera motion")
+    c.add_option("--shutter", o.shutter_s,
+                 "motion blur: exposure time, s, from the time of the frame or --time on; includes camera motion")
         ->check(in_range(0, 1e6))
         ->capture_default_str()
         ->group(kGroup);
@@ -66,8 +65,8 @@ CameraMotion make_motion(RenderOptions const& o)
     if (o.turns) motion.turn_rad = parse_turn(o.turntable);
     if (o.camera_path.empty()) return motion;
     auto const refuse = [](std::string const& other) {
-        return gi::InputError("--camera-path and " + other + " are both given",
-                              "each of them sets the camera", "keep one of them");
+        return gi::InputError("--camera-path and " + other + " are both given", "each of them sets the camera",
+                              "keep one of them");
     };
     if (o.turns) throw refuse("--turntable");
     if (!o.camera.empty()) throw refuse("--camera");

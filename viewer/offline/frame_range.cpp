@@ -100,8 +100,7 @@ FrameName parse_frame_name(std::string const& option, std::string const& pattern
         i = end;
     }
     if (!found) throw refuse("without the frame number all frames would be one file");
-    if (name.after.find('/') != std::string::npos)
-        throw refuse("the frame number is in the name of a folder");
+    if (name.after.find('/') != std::string::npos) throw refuse("the frame number is in the name of a folder");
     return name;
 }
 

@@ -162,8 +162,8 @@ private:
         bool const unfinished = !f_.state.empty() && fs::exists(f_.state);
         if (o_.resume && !unfinished) say("there is no '" + f_.state + "': only missing frames are rendered");
         if (!o_.resume && unfinished)
-            throw gi::InputError("'" + f_.state + "' belongs to unfinished frames",
-                                 "new ones would replace them", "add --resume to continue, or delete it");
+            throw gi::InputError("'" + f_.state + "' belongs to unfinished frames", "new ones would replace them",
+                                 "add --resume to continue, or delete it");
     }
 
     /// Flags of the frames that are complete on disk. Throws InputError if one is of another render.
@@ -215,10 +215,9 @@ private:
         for (int k = f_.range.first; k < f_.range.end; ++k)
             again += there[std::size_t(k - f_.range.first)] != 0 && is_history(there, k);
         if (again > 0)
-            say(fmt::format(
-                "{} existing frames are rendered again but not saved: --reuse {} needs their light. "
-                "Later frames differ in their noise from an uninterrupted render",
-                again, o_.reuse));
+            say(fmt::format("{} existing frames are rendered again but not saved: --reuse {} needs their light. "
+                            "Later frames differ in their noise from an uninterrupted render",
+                            again, o_.reuse));
     }
 
     /// Renders an existing frame again for the light that others reuse. @return false if it was interrupted

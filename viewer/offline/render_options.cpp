@@ -166,9 +166,8 @@ void declare_view_options(CLI::App& c, RenderOptions& o)
 
 void declare_lens_options(CLI::App& c, RenderOptions& o)
 {
-    c.add_option(
-         "--aperture-radius", o.aperture_radius_m,
-         "radius of a thin lens, m, for depth of field (default: the camera's, else 0, a pinhole)")
+    c.add_option("--aperture-radius", o.aperture_radius_m,
+                 "radius of a thin lens, m, for depth of field (default: the camera's, else 0, a pinhole)")
         ->check(in_range(0, gi::kWidestLens_m));
     c.add_option("--focus-distance", o.focus_distance_m,
                  "distance of the plane in focus along the view, m (default: the camera's, else that of\n"

@@ -6,8 +6,7 @@
 
 namespace viewer {
 
-inline constexpr double kLostRatio =
-    1.02; ///< a method loses if its error exceeds this times that of the peer
+inline constexpr double kLostRatio = 1.02; ///< a method loses if its error exceeds this times that of the peer
 
 /// Comparison of a method's picture with the peer's for the same scene, budget and filter.
 struct PictureContest {

@@ -17,7 +17,7 @@ public:
         std::error_code error;
         if (!std::filesystem::exists(file, error))
             throw gi::InputError("no video '" + name_ + "'", error ? error.message() : "there is no such file",
-                             "name another file");
+                                 "name another file");
         // Pass an absolute path, so that the name cannot be parsed as a stream address.
         std::string const path = std::filesystem::absolute(file).string();
         if (!capture_.open(path, cv::CAP_FFMPEG) || !grab())

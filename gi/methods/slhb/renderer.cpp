@@ -241,8 +241,9 @@ void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Vertex
 
 void SlhbRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& counts)
 {
-    if (!std::exchange(shadow_maps_, true)) make_lamps(); // shadow maps show which paths dynamic geometry may
-                                                          // affect
+    if (!std::exchange(shadow_maps_, true))
+        make_lamps(); // shadow maps show which paths dynamic geometry may
+                      // affect
     prepare(index, Sides::pair);
     StageTimer const timer(report_, "paths");
     SlhbTracer::Pass now = tracing(index, false);

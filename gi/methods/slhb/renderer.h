@@ -60,10 +60,16 @@ public:
         settings_.slhb.interleave = n;
         spread_ = n > 1;
     }
-    double indirect_share() const { return paths_.indirect_share(); } ///< fraction of the path time of the last
-                                                                      ///< pass
-    double rays() const { return paths_.rays(); }                     ///< number of look-ups and exact rays so
-                                                                      ///< far
+    double indirect_share() const
+    {
+        return paths_.indirect_share();
+    } ///< fraction of the path time of the last
+      ///< pass
+    double rays() const
+    {
+        return paths_.rays();
+    } ///< number of look-ups and exact rays so
+      ///< far
     /// Number of layers beyond a texel's limit, so far.
     std::uint64_t lost_layers() const { return axes_.lost(); }
     /// Number of notes for which the radiance cache had no room, so far.

@@ -108,8 +108,7 @@ ar::CharucoBoard board_of(BoardArguments const& a)
 cv::Mat read_rgb(std::string const& file)
 {
     std::vector<unsigned char> const bytes = gi::read_bytes(file, std::size_t(1) << 30);
-    std::string problem =
-        ar::is_picture(bytes) ? ar::what_is_missing(bytes) : "it is not a known picture format";
+    std::string problem = ar::is_picture(bytes) ? ar::what_is_missing(bytes) : "it is not a known picture format";
     cv::Mat picture;
     if (problem.empty()) {
         try {

@@ -97,8 +97,7 @@ std::string ArRecording::text() const
                             settings_.video, video_->frames(), video_hz_, repeated_, to_video_->lost());
     if (is_video_lost_) text += fmt::format("{}: the video could not be saved\n", settings_.video);
     if (left_out_ > 0)
-        text +=
-            fmt::format("{}: {} composites left out (faster than this rate)\n", settings_.video, left_out_);
+        text += fmt::format("{}: {} composites left out (faster than this rate)\n", settings_.video, left_out_);
     if (cut_s_ > 0) text += fmt::format("{}: {:.1f} s without frames were cut\n", settings_.video, cut_s_);
     if (input_)
         text += fmt::format("{}: {} frames; {} lost by the queue to the disk\n", settings_.input,

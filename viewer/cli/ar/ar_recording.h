@@ -50,7 +50,7 @@ private:
     double cut_s_ = 0; ///< seconds without frames that were cut from the video
     int left_out_ = 0; ///< pictures dropped because they came too early
     bool is_video_done_ = false, is_video_lost_ = false;
-    int repeated_ = 0; ///< pictures repeated in place of missing frames
+    int repeated_ = 0;                                    ///< pictures repeated in place of missing frames
     std::unique_ptr<PictureThread> to_folder_, to_video_; // destroyed before the outputs they fill
 };
 

@@ -249,11 +249,10 @@ int run(BenchArguments const& a)
 void add_ar_bench(CLI::App& ar, int& exit_code)
 {
     auto const a = std::make_shared<BenchArguments>();
-    CLI::App* const c = ar.add_subcommand(
-        "bench", "Measure frames per second, latency from capture to display, and the error");
-    CLI::Option* const session =
-        c->add_option("session", a->session,
-                      "Session as for run, with its own quality (default: generated desk sessions)");
+    CLI::App* const c =
+        ar.add_subcommand("bench", "Measure frames per second, latency from capture to display, and the error");
+    CLI::Option* const session = c->add_option(
+        "session", a->session, "Session as for run, with its own quality (default: generated desk sessions)");
     c->add_option("--size", a->sizes, "Frame size, WIDTHxHEIGHT; repeatable")
         ->take_all()
         ->excludes(session)

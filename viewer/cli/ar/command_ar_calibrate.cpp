@@ -154,11 +154,10 @@ int run_calibrate(CalibrateOptions const& o)
     Search const s = search(*source, collector, find, o, stop);
     if (stop.requested()) return kInterrupted;
     auto const& counts = collector.counts();
-    fmt::print(
-        "{}; of {} frames examined, {} are new views, {} like others, {} show too little of the board, {} "
-        "show it moving, {} cannot be decoded\n",
-        describe(source->counts()), s.looked_at, counts.taken, counts.alike, counts.too_few_points, counts.moving,
-        s.refused);
+    fmt::print("{}; of {} frames examined, {} are new views, {} like others, {} show too little of the board, {} "
+               "show it moving, {} cannot be decoded\n",
+               describe(source->counts()), s.looked_at, counts.taken, counts.alike, counts.too_few_points,
+               counts.moving, s.refused);
     auto const too_few = [&](std::string const& why) {
         fmt::print(stderr, "lightwell: these views are not enough ({}) {}\n", why,
                    collector.enough() ? "take other views" : collector.next());

@@ -157,8 +157,7 @@ void add_ar_probe(CLI::App& ar, int& exit_code)
     c->add_option("--reflectivity", o->reflectivity, "reflectivity, one value or R,G,B; steel: about 0.6")
         ->capture_default_str();
     c->add_option("--exposures", o->exposures, "exposure times of the pictures of each side, s: 1/30,1/60,1/120");
-    c->add_option("--camera-angle", o->camera_deg,
-                  "half angle of camera and tripod seen from the ball, degrees")
+    c->add_option("--camera-angle", o->camera_deg, "half angle of camera and tripod seen from the ball, degrees")
         ->check(in_range(0, 60))
         ->capture_default_str();
     c->add_option("--size", o->size, "width of the map")->check(CLI::Range(16, 16384))->capture_default_str();

@@ -108,8 +108,7 @@ void print(Played const& p, ar::SourceDescription const& d)
     fmt::print("{}: {} x {} px, {}\n", d.name, d.size_px.x, d.size_px.y, name_of(d.format));
     fmt::print("{} frames in {:.2f} s: {:.2f} per second ({:g} nominal)\n", p.frames, p.span_s(), p.rate_hz(),
                d.frames_per_s);
-    fmt::print("age at arrival: median {:.2f} ms, 95 % {:.2f}, most {:.2f}\n", age.median, age.p95,
-               age.most);
+    fmt::print("age at arrival: median {:.2f} ms, 95 % {:.2f}, most {:.2f}\n", age.median, age.p95, age.most);
     fmt::print("gaps: {}, the longest of {} frames\n", p.gaps, p.longest_gap);
     auto const losses = p.losses();
     fmt::print("lost: {}\n", losses.empty() ? "nothing" : fmt::format("{}", fmt::join(losses, "; ")));

@@ -81,8 +81,7 @@ int run_vignetting(SensorOptions const& o)
     std::string const error = fmt::format("{:.2f} % RMS of {} regions of {} pictures", 100 * fit.rms,
                                           fit.points.size(), o.pictures.size());
     fmt::print("error: {}\n", error);
-    if (fit.rms > 0.03)
-        fmt::print("warning: the surface seems not to be evenly bright: rotate it and compare\n");
+    if (fit.rms > 0.03) fmt::print("warning: the surface seems not to be evenly bright: rotate it and compare\n");
     s.write("vignetting", error);
     return 0;
 }
@@ -113,8 +112,7 @@ cv::Point2d parse_pixel(std::string const& text)
         auto const y = std::from_chars(x.ptr + 1, end, p.y);
         if (y.ec == std::errc() && y.ptr == end && std::isfinite(p.x) && std::isfinite(p.y)) return p;
     }
-    throw gi::InputError("--patches " + text,
-                         "the centre of a patch is two numbers, px from the upper left",
+    throw gi::InputError("--patches " + text, "the centre of a patch is two numbers, px from the upper left",
                          "write it as 120,85.5");
 }
 
@@ -165,8 +163,7 @@ void add_ar_vignetting(CLI::App& ar, int& exit_code)
 {
     auto const o = std::make_shared<SensorOptions>();
     CLI::App* const c = ar.add_subcommand(
-        "vignetting",
-        "Add a lens's vignetting to a calibration, from pictures of an evenly bright surface.");
+        "vignetting", "Add a lens's vignetting to a calibration, from pictures of an evenly bright surface.");
     c->add_option("PICTURES", o->pictures,
                   "pictures of a lit wall through paper, or of a clear sky, out of focus; 8 bits")
         ->required();

@@ -40,8 +40,7 @@ void add_ar_synthesize(CLI::App& ar, int& exit_code)
 {
     auto const made = std::make_shared<SynthesizeArguments>();
     CLI::App* const synthesize = ar.add_subcommand(
-        "synthesize",
-        "Render a synthetic session: frames, true poses, environment map, reference pictures");
+        "synthesize", "Render a synthetic session: frames, true poses, environment map, reference pictures");
     synthesize->add_option("folder", made->folder, "Folder for its files")->required();
     synthesize->add_option("--size", made->size, "Frame size, WIDTHxHEIGHT")->capture_default_str();
     synthesize->add_option("--frames", made->options.frames, "Number of frames")

@@ -85,10 +85,9 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
     c->add_option("--reference-paths", o->reference_paths, "paths per pixel of the reference pictures")
         ->check(CLI::Range(2, 1 << 24))
         ->capture_default_str();
-    c->add_option(
-        "--references", o->references,
-        "folder of the reference pictures; existing ones with the same scene and settings are used\n"
-        "(default: DIR/references)");
+    c->add_option("--references", o->references,
+                  "folder of the reference pictures; existing ones with the same scene and settings are used\n"
+                  "(default: DIR/references)");
     constexpr char const* kInteractive = "Interactive frames";
     CLI::Option* const interactive =
         c->add_flag("--interactive", o->interactive,

@@ -70,8 +70,8 @@ int run_bench_report(BenchReportOptions o)
 void add_bench_report(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<BenchReportOptions>();
-    CLI::App* const c = bench.add_subcommand(
-        "report", "Make one HTML page of all tables and render --stats files in folders.");
+    CLI::App* const c =
+        bench.add_subcommand("report", "Make one HTML page of all tables and render --stats files in folders.");
     c->add_option("DIR", o->folders,
                   "folder with tables of bench commands, and F.json, pictures and videos of render --stats F.json")
         ->required();

@@ -169,8 +169,8 @@ int run(SchedulesOptions const& o)
 void add_bench_schedules(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<SchedulesOptions>();
-    CLI::App* const c = bench.add_subcommand(
-        "schedules", "Compare time and error of hit buffer schedules for moving scenes.");
+    CLI::App* const c =
+        bench.add_subcommand("schedules", "Compare time and error of hit buffer schedules for moving scenes.");
     c->add_option("--scene", o->scenes, "files or names, comma-separated")
         ->delimiter(',')
         ->capture_default_str()

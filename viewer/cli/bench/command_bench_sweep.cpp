@@ -18,10 +18,9 @@ int run(SweepOptions const& o)
     SweepResult const result = run_sweep(o);
     show(result.table, o.out, o.render.json);
     if (!result.interrupted) return 0;
-    std::fputs(
-        "note: interrupted: the rows so far are saved; the same command starts again, but keeps the "
-        "reference pictures\n",
-        stderr);
+    std::fputs("note: interrupted: the rows so far are saved; the same command starts again, but keeps the "
+               "reference pictures\n",
+               stderr);
     return kInterrupted;
 }
 

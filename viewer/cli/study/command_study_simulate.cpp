@@ -104,8 +104,8 @@ void add_study_simulate(CLI::App& study, int& exit_code)
     simulate->add_option("--session", o->session, "number of the session")
         ->check(CLI::Range(1, 99))
         ->capture_default_str();
-    CLI::Option* const resume = simulate->add_flag(
-        "--resume", o->resume, "continue interrupted sessions and start missing ones");
+    CLI::Option* const resume =
+        simulate->add_flag("--resume", o->resume, "continue interrupted sessions and start missing ones");
     simulate->add_option("--gap-min", o->gap_min, "with --resume: minutes since the session was interrupted")
         ->check(CLI::Range(-1e6, 1e6))
         ->needs(resume)

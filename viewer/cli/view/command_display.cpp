@@ -192,8 +192,7 @@ calibrate->add_option("--pattern", o->pattern, "grid, corners, eyes, colours, cr
 calibrate->add_option("--out-dir", o->out_folder, "folder for the PNG files")->required();
 calibrate->callback([o, &exit_code] { exit_code = run_calibrate(*o); });
 
-CLI::App* const example =
-    display->add_subcommand("example", "Write one of the built-in example displays.");
+CLI::App* const example = display->add_subcommand("example", "Write one of the built-in example displays.");
 example
     ->add_option("NAME", o->example,
                  "desktop3d.yaml, powerwall.yaml, cave4.yaml, cave5.yaml, dome.yaml,\n"

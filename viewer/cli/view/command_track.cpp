@@ -237,8 +237,7 @@ void add_listen(CLI::App& track, int& exit_code)
     c->add_option("--type", o->type, "osc, dtrack or file")
         ->check(CLI::IsMember({"osc", "dtrack", "file"}))
         ->capture_default_str();
-    c->add_option("--address", o->address,
-                  "address of this machine to receive at; 0.0.0.0 = all")
+    c->add_option("--address", o->address, "address of this machine to receive at; 0.0.0.0 = all")
         ->capture_default_str();
     c->add_option("--port", o->port, "UDP port; default: osc 9000, dtrack 5000; 0 = any")->check(port_from(0));
     c->add_option("--file", o->file, "with --type file: recorded poses (docs/trackers.md)");

@@ -322,9 +322,8 @@ void add_view(CLI::App& app, int& exit_code)
     c->add_option("--avatar", a->avatar,
                   "skinned model, or avatar (built in): follows the first user's head and hands, seen in mirrors");
     c->add_flag("--seated", a->seated, "with --hmd: space without a floor; the eyes start at --eye-height");
-    c->add_option(
-         "--eye-height", a->eye_height_m,
-         "m above the floor, when walking, with --avatar or --seated; display files set their users' own")
+    c->add_option("--eye-height", a->eye_height_m,
+                  "m above the floor, when walking, with --avatar or --seated; display files set their users' own")
         ->check(in_range(0.2, 3))
         ->capture_default_str();
     declare_rank_options(*c, a->ranks);

@@ -94,8 +94,9 @@ void read_bodies(std::string_view rest, LineForm form, TrackerPacket& packet)
 {
     std::string_view const first = take_word(rest);
     auto count = read_count(first);
-    if (count && form == LineForm::flystick2) count = read_count(take_word(rest)); // number defined, then number
-                                                                                   // in the line
+    if (count && form == LineForm::flystick2)
+        count = read_count(take_word(rest)); // number defined, then number
+                                             // in the line
     if (!count || *count > kMostPacketBodies) {
         ++packet.malformed;
         return;

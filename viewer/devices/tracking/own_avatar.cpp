@@ -159,8 +159,7 @@ gi::AvatarJoints OwnAvatar::joints_in(gi::Scene const& scene) const
 {
     std::int32_t const root = find_root(scene, root_);
     if (root < 0)
-        throw gi::InputError("there is no avatar in '" + scene.name + "'", "no avatar was added to it",
-                             "add one");
+        throw gi::InputError("there is no avatar in '" + scene.name + "'", "no avatar was added to it", "add one");
     gi::AvatarJoints joints = joints_;
     joints.head += root + 1;
     shift(joints.left, root + 1);

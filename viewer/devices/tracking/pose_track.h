@@ -14,8 +14,8 @@
 namespace viewer {
 
 struct FilterSettings {
-    bool enabled = true;                        ///< false: unfiltered samples; velocities still come from the
-                                                ///< filter
+    bool enabled = true;                            ///< false: unfiltered samples; velocities still come from the
+                                                    ///< filter
     gi::OneEuroSettings position{1, 5, 1, 0.3, 16}; ///< betas in Hz per m/s
     gi::OneEuroSettings rotation{1, 4, 1, 0.3, 13}; ///< betas in Hz per rad/s
 

@@ -9,8 +9,7 @@ namespace viewer {
 /// Measures of a person and an avatar. Frames of bodies: -Z forward (hands: along the fingers), +Y up (hands: back
 /// of the hand).
 struct PuppetMeasures {
-    gi::dvec3 head_joint_in_head{0, -0.08,
-                                 0.09}; ///< m, from the midpoint between the eyes; at the user's scale
+    gi::dvec3 head_joint_in_head{0, -0.08, 0.09}; ///< m, from the midpoint between the eyes; at the user's scale
     RoomPose left_wrist_in_hand{{0, 0, 0.06}, {1, 0, 0, 0}}; ///< from the controller's grip
     RoomPose right_wrist_in_hand{{0, 0, 0.06}, {1, 0, 0, 0}};
     gi::dvec3 left_ankle_in_foot{0, 0.08, 0}, right_ankle_in_foot{0, 0.08, 0}; ///< m, from the sole

@@ -72,8 +72,7 @@ TrackerSample read_line(Line const& line, std::size_t columns)
     TrackerSample s;
     s.measured_s = number(0);
     s.body = fields[1];
-    if (s.body.empty())
-        throw line.error(fields[1], "the body has no name", "it identifies the poses", "name it");
+    if (s.body.empty()) throw line.error(fields[1], "the body has no name", "it identifies the poses", "name it");
     s.pose.position = {number(2), number(3), number(4)};
     s.pose.rotation = {number(8), number(5), number(6), number(7)};
     if (columns > 9) {

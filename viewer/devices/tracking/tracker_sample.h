@@ -37,12 +37,12 @@ struct TrackerPacket {
 struct TrackerCounts {
     std::uint64_t packets = 0;
     std::uint64_t samples = 0;
-    std::uint64_t malformed = 0;    ///< packets, lines or messages
-    std::uint64_t ignored = 0;      ///< well formed, but not used
-    std::uint64_t lost = 0;         ///< gaps in the sender's counter; late arrivals are subtracted again
-    std::uint64_t out_of_order = 0; ///< arrived after a later one
-    std::uint64_t duplicate = 0;    ///< arrived twice
-    std::uint64_t restarts = 0;     ///< the sender's counter restarted
+    std::uint64_t malformed = 0;         ///< packets, lines or messages
+    std::uint64_t ignored = 0;           ///< well formed, but not used
+    std::uint64_t lost = 0;              ///< gaps in the sender's counter; late arrivals are subtracted again
+    std::uint64_t out_of_order = 0;      ///< arrived after a later one
+    std::uint64_t duplicate = 0;         ///< arrived twice
+    std::uint64_t restarts = 0;          ///< the sender's counter restarted
     std::uint64_t dropped_by_kernel = 0; ///< the receive buffer was full, because it was polled too rarely
 
     bool operator==(TrackerCounts const&) const = default;

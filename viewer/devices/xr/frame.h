@@ -35,11 +35,11 @@ struct HmdView {
 
 /// One controller. Poses are empty while unknown. Without a controller or the focus, nothing is pressed.
 struct HmdHand {
-    std::string profile; ///< bound by the runtime, "/interaction_profiles/..."; empty = no controller
+    std::string profile;         ///< bound by the runtime, "/interaction_profiles/..."; empty = no controller
     std::optional<RoomPose> aim; ///< pointing ray: starts at the position, along -Z
     glm::dvec2 move{0};          ///< thumb stick or track pad, -1 to 1: right, away from the user
-    bool select = false;  ///< answer button: A, X, track pad; the only button of simple controllers
-    bool trigger = false; ///< pulled beyond the runtime's threshold; select if there is no trigger
+    bool select = false;         ///< answer button: A, X, track pad; the only button of simple controllers
+    bool trigger = false;        ///< pulled beyond the runtime's threshold; select if there is no trigger
     bool menu = false;
 
     bool operator==(HmdHand const&) const = default;

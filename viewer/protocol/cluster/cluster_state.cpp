@@ -14,13 +14,6 @@
 namespace viewer {
 namespace {
 
-std::string host_name()
-{
-    std::array<char, 256> name{};
-    gethostname(name.data(), name.size() - 1);
-    return name.data();
-}
-
 /// Yields to other processes at first and sleeps later, because waits are short while frames follow each other.
 void pause(double waited_s)
 {

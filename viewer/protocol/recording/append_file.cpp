@@ -22,16 +22,6 @@ int make_file(std::filesystem::path const& path)
                          exists ? "choose another name, or move it away" : "choose a folder that can be written");
 }
 
-/// Syncs the folder so that the new file's name also survives a power failure; failure here does no harm.
-void sync_folder_of(std::filesystem::path const& path)
-{
-    auto const parent = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-    int const folder = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder < 0) return;
-    ::fsync(folder);
-    ::close(folder);
-}
-
 } // namespace
 
 AppendFile::AppendFile(std::filesystem::path const& file, std::string what, gi::Report& report)

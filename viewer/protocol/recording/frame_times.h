@@ -26,10 +26,10 @@ struct FrameTimes {
     double input_ms = 0, wait_ms = 0, render_ms = 0, upload_ms = 0, draw_ms = 0; ///< of the CPU
     std::optional<double> gpu_ms;                                                ///< if a GPU renders
     int paths = 1;                                                               ///< per pixel
-    int width = 0, height = 0; ///< rendered pixels of the first view
-    int dropped = 0;           ///< refreshes of the display without a new picture since the previous frame
-    double late_ms = 0;        ///< swap_s - display_s; < 0 = early
-    bool reprojected = false;  ///< an older picture was reprojected to the newer pose
+    int width = 0, height = 0;        ///< rendered pixels of the first view
+    int dropped = 0;                  ///< refreshes of the display without a new picture since the previous frame
+    double late_ms = 0;               ///< swap_s - display_s; < 0 = early
+    bool reprojected = false;         ///< an older picture was reprojected to the newer pose
     std::optional<double> tracker_ms; ///< age of the newest tracker packet when the poses were measured
 
     bool operator==(FrameTimes const&) const = default;

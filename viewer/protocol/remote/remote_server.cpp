@@ -242,8 +242,8 @@ void RemoteServer::send(std::uint64_t number, Client& client, nlohmann::ordered_
     flush(client);
     if (client.out.size() <= limits_.output_bytes) return;
     report_.lose("remote clients dropped", 1,
-                 fmt::format("client {} left {} bytes of answers unread, limit {}", number,
-                             client.out.size(), limits_.output_bytes));
+                 fmt::format("client {} left {} bytes of answers unread, limit {}", number, client.out.size(),
+                             limits_.output_bytes));
     client.dead = true;
 }
 

@@ -16,8 +16,9 @@ CacheKeys SlhbTracer::cache_keys(Pass const& pass, State const& s) const
         (!world_.emitter_pdf.empty() && world_.emitter_pdf[s.triangle] > 0))
         return {};
     vec3 const& t = s.throughput;
-    if (!(std::min({t.x, t.y, t.z}) > 1e-3f * max_component(t))) return {}; // channels with almost no throughput
-                                                                            // cannot teach
+    if (!(std::min({t.x, t.y, t.z}) > 1e-3f * max_component(t)))
+        return {}; // channels with almost no throughput
+                   // cannot teach
     vec3 const position =
         s.has_position ? s.position : shading_detail::SurfacePoint{surface, s.barycentric}.position();
     return pass.cache->keys(surface, position, s.direction, s.footprint, bounces_ - s.scatterings);

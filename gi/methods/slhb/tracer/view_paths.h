@@ -69,15 +69,14 @@ private:
     Report& report_;
     std::size_t block_ = 0; ///< number of pixels whose paths advance together on one thread
     SharedVertices shared_;
-    std::vector<std::vector<CacheNote>> notes_; ///< per block of pixels of a view
-    std::vector<PathSample> samples_;           ///< of the pixels of all views
-    std::vector<SharedVertex> shared_vertices_; ///< per pixel of all views
-    std::vector<std::uint32_t> taken_from_;     ///< per pixel of all views: pixel of the partner's view
-    std::vector<std::uint32_t> light_from_;     ///< per pixel of all views, for all passes of a frame
-    std::vector<std::vector<std::uint32_t>>
-        near_moving_;                           ///< per block: pixels that dynamic geometry may affect
-    std::vector<std::uint32_t> without_pixels_; ///< all of these pixels
-    std::vector<PathSample> without_;           ///< their paths without dynamic geometry
+    std::vector<std::vector<CacheNote>> notes_;           ///< per block of pixels of a view
+    std::vector<PathSample> samples_;                     ///< of the pixels of all views
+    std::vector<SharedVertex> shared_vertices_;           ///< per pixel of all views
+    std::vector<std::uint32_t> taken_from_;               ///< per pixel of all views: pixel of the partner's view
+    std::vector<std::uint32_t> light_from_;               ///< per pixel of all views, for all passes of a frame
+    std::vector<std::vector<std::uint32_t>> near_moving_; ///< per block: pixels that dynamic geometry may affect
+    std::vector<std::uint32_t> without_pixels_;           ///< all of these pixels
+    std::vector<PathSample> without_;                     ///< their paths without dynamic geometry
     SlhbCounts done_;
     double indirect_share_ = 0;
     std::uint64_t taken_ = 0, taking_ = 0;  ///< pixels that reused a partner's light; pixels that could
