@@ -207,7 +207,7 @@ double Yaml::number(double low, double high) const
                         fmt::format("it must lie between {:g} and {:g}", low, high), "change it");
         }
     }
-    throw error(path_ + " is not a finite number", "a number is needed here", "write 1 or 0.5");
+    throw error(path_ + " is not a number", "a finite number is needed here", "write 1 or 0.5");
 }
 
 std::int64_t Yaml::integer(std::int64_t low, std::int64_t high) const

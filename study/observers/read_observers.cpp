@@ -53,9 +53,7 @@ void read_varied(gi::Yaml const& y, ObserverModel& m)
     }
 }
 
-} // namespace
-
-ObserverModel read_observers(std::string const& text, std::string const& name, Script const& s)
+ObserverModel read(std::string const& text, std::string const& name, Script const& s)
 {
     ObserverModel m = usual_observers(s);
     gi::Yaml const y = gi::Yaml::parse(text, name, "observer");
@@ -87,6 +85,19 @@ ObserverModel read_observers(std::string const& text, std::string const& name, S
     if (y.has("display"))
         read_all_numbers(y.at("display"), {{"hz", &m.hz, 1, 1000}, {"period_sd_ms", &m.period_sd_ms, 0, 1000}});
     return m;
+}
+
+} // namespace
+
+ObserverModel read_observers(std::string const& text, std::string const& name, Script const& s)
+{
+    try {
+        return read(text, name, s);
+    } catch (ScriptError const&) {
+        throw;
+    } catch (gi::InputError const& e) {
+        throw ScriptError(e);
+    }
 }
 
 } // namespace study

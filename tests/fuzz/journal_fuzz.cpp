@@ -79,7 +79,7 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
                 progress.apply(e);
                 progress.next();
             }
-        } catch (study::ScriptError const& e) {
+        } catch (gi::InputError const& e) {
             if (std::string(e.what()).find('\n') != std::string::npos) std::abort();
         } catch (std::invalid_argument const&) {
         }

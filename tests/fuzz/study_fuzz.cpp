@@ -33,7 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
         if (!is_small(script)) return 0;
         std::string const table = plan_table(script, make_plan(script, 2));
         if (table != plan_table(script, make_plan(script, 2))) std::abort();
-    } catch (study::ScriptError const& e) {
+    } catch (gi::InputError const& e) {
         if (std::string(e.what()).find('\n') != std::string::npos) std::abort();
     }
     return 0;

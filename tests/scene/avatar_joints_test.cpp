@@ -64,7 +64,7 @@ TEST(AvatarJoints, WhatIsMissingIsToldAndNamesHelp)
         return "found";
     };
     std::string const all = message({});
-    for (char const* part : {"no head, left upper arm", "right hand", "there are: a, b, c"})
+    for (char const* part : {"no head, left upper arm", "right hand", "existing joints: a, b, c"})
         EXPECT_NE(all.find(part), std::string::npos) << all;
     EXPECT_EQ(message({"b", {"c", "d", "e"}, {"f", "g", "h"}}), "found");
     EXPECT_EQ(message({"b", {"c", "", ""}, {"f", "", ""}}), "found") << "the only joint below";

@@ -75,7 +75,7 @@ blocks: {pairs: {task: pair, pairs: {factor: tmo}, cross: [scene]}}
     Analysis const without = analyze(script, sessions, settings);
     EXPECT_EQ(without.blocks[0].scales[0].observers, 17);
     settings.exclude = {"nobody"};
-    EXPECT_THROW(analyze(script, sessions, settings), ScriptError);
+    EXPECT_THROW(analyze(script, sessions, settings), gi::InputError);
 }
 
 TEST(Analysis, OfRatingsHasTheMeansAndFriedmansTestOfR)

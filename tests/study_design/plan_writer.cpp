@@ -17,7 +17,7 @@ int main(int argc, char** argv)
         study::Script const script = study::parse_script(text, argv[1]);
         std::string const table = study::plan_table(script, study::make_plan(script, std::atoi(argv[2])));
         return std::fwrite(table.data(), 1, table.size(), stdout) == table.size() ? 0 : 1;
-    } catch (study::ScriptError const& e) {
+    } catch (gi::InputError const& e) {
         std::fprintf(stderr, "%s\n", e.what());
         return 2;
     }

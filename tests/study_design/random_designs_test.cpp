@@ -114,7 +114,7 @@ TEST(RandomDesigns, KeepTheirRulesOrAreRefusedWithTheReason)
                 for (Rule const& rule : d.rules)
                     EXPECT_TRUE(keeps(s, d.task, run, rule)) << d.text << "participant " << participant;
             ++kept;
-        } catch (ScriptError const& e) {
+        } catch (gi::InputError const& e) {
             std::string const what = e.what();
             bool const is_about_rules = what.find("cannot be satisfied") != what.npos;
             bool const is_about_counts = what.find("a catch trial every") != what.npos ||

@@ -35,7 +35,7 @@ inline std::string message_of(std::string const& text)
 {
     try {
         make_plan(parse_script(text, "t.yaml"), 1);
-    } catch (ScriptError const& e) {
+    } catch (gi::InputError const& e) {
         return e.what();
     }
     return {};

@@ -242,7 +242,7 @@ TEST(ScriptErrors, OfTextFilesThatAreNotThere)
     try {
         check_text_files(s, "/tmp");
         FAIL() << "nowhere.md was found";
-    } catch (ScriptError const& e) {
+    } catch (gi::InputError const& e) {
         EXPECT_EQ(e.where().line, 7);
         EXPECT_EQ(e.where().column, 5);
         EXPECT_EQ(e.problem(), "there is no file 'nowhere.md'");

@@ -27,7 +27,7 @@ std::string message_of(std::string const& text)
 {
     try {
         parse_journal(text, "journal.jsonl");
-    } catch (ScriptError const& e) {
+    } catch (gi::InputError const& e) {
         return e.what();
     }
     return {};
@@ -143,7 +143,7 @@ TEST(Journal, EndsWhereALossOfPowerLeftWhatWasThereBefore)
     EXPECT_EQ(half.good_bytes, text.size());
     EXPECT_EQ(half.torn_bytes, next.size());
     EXPECT_EQ(half.room_bytes, 3u);
-    EXPECT_THROW(parse_journal(text + "\n" + next + "\n" + next + "\n", "x"), ScriptError)
+    EXPECT_THROW(parse_journal(text + "\n" + next + "\n" + next + "\n", "x"), gi::InputError)
         << "an empty line within";
     EXPECT_EQ(parse_journal("\n\n\n", "x").room_bytes, 3u);
 }

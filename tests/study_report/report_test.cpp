@@ -93,7 +93,7 @@ TEST(Report, OfOneObserverOrOfASessionWithoutTrialsSaysSo)
     std::vector<RecordedSession> sessions{session_of(s, 1)};
     std::string const one = report_page(s, sessions, analyze(s, sessions), {"lightwell", {}, {}});
     expect_sound(one);
-    EXPECT_NE(one.find("one observer: intervals say something about this person only"), std::string::npos);
+    EXPECT_NE(one.find("one observer: intervals, if any, apply to this person only"), std::string::npos);
     sessions[0].record.entries.resize(1);
     std::string const none = report_page(s, sessions, analyze(s, sessions), {"lightwell", {}, {}});
     expect_sound(none);
@@ -113,7 +113,7 @@ TEST(SimulatedTruth, GivesTheLevelOfAShareOfRightAnswers)
     EXPECT_NEAR(true_level(t, "points", true, 0.5, 0.75), 100 / std::sqrt(std::log(2.0)), 1e-9);
     EXPECT_NEAR(true_level(t, "size", false, 0.5, 0.75), 5, 1e-9);
     EXPECT_TRUE(std::isnan(true_level(t, "nothing", false, 0.5, 0.75)));
-    EXPECT_THROW(read_truth("{", "truth.json"), ScriptError);
+    EXPECT_THROW(read_truth("{", "truth.json"), gi::InputError);
 }
 
 TEST(Histogram, OfValuesThatHardlyDifferIsDrawn)

@@ -65,7 +65,7 @@ TEST(Resume, GoesOnOnlyWithWhatItBeganWith)
     // A journal of somebody else in this folder.
     fs::create_directories(session_folder(dir.path(), "P002", 1));
     fs::copy(journal_in(dir.path()), journal_in(dir.path(), "P002"));
-    EXPECT_THROW(run_session(s, 2, p, settings_in(dir.path(), SessionStart::go_on)), ScriptError);
+    EXPECT_THROW(run_session(s, 2, p, settings_in(dir.path(), SessionStart::go_on)), gi::InputError);
 }
 
 TEST(Resume, BeginsWhereNothingIsThereToGoOnWith)

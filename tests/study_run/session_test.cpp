@@ -124,7 +124,7 @@ TEST(Session, RefusesAFolderOfAnotherScript)
             try {
                 run_session(s, participant, p, settings);
                 ADD_FAILURE() << "participant " << participant;
-            } catch (ScriptError const& e) {
+            } catch (gi::InputError const& e) {
                 EXPECT_EQ(e.problem(), "the folder has sessions of another script");
                 EXPECT_EQ(e.where().file, journal_in(dir.path()).string());
             }
@@ -151,8 +151,8 @@ TEST(Session, RefusesAFolderWithOtherThings)
 TEST(Session, NamesOfFoldersAreSafe)
 {
     for (char const* id : {"", "..", "a/b", "P_1", "P 1", "\xc3\xa4"})
-        EXPECT_THROW(session_folder("d", id, 1), ScriptError) << id;
-    for (int const session : {0, -1, 100}) EXPECT_THROW(session_folder("d", "P001", session), ScriptError);
+        EXPECT_THROW(session_folder("d", id, 1), gi::InputError) << id;
+    for (int const session : {0, -1, 100}) EXPECT_THROW(session_folder("d", "P001", session), gi::InputError);
     EXPECT_EQ(session_folder("d", "P001", 12), "d/sub-P001/ses-12/beh");
 }
 

@@ -178,7 +178,7 @@ inline std::string refusal(Script const& script, TestPresenter& presenter, Sessi
 {
     try {
         run_session(script, 1, presenter, settings);
-    } catch (ScriptError const& e) {
+    } catch (gi::InputError const& e) {
         return e.what();
     }
     return {};

@@ -177,7 +177,7 @@ TEST(ObserverFile, SaysWhatIsWrongAndWhere)
     auto const message = [&](std::string const& text) -> std::string {
         try {
             read_observers(text, "o.yaml", s);
-        } catch (ScriptError const& e) {
+        } catch (gi::InputError const& e) {
             return e.what();
         }
         return "";

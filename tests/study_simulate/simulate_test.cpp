@@ -116,7 +116,7 @@ TEST(Simulate, ADisplayThatIsTooUnsteadyIsRefused)
     Script const s = example("visibility2026"); // vsync: required
     ObserverModel m = usual_observers(s);
     m.period_sd_ms = 4;
-    EXPECT_THROW(simulate_session(s, 1, draw_observer(m, 3, 1), settings_in(dir.path()), 0), ScriptError);
+    EXPECT_THROW(simulate_session(s, 1, draw_observer(m, 3, 1), settings_in(dir.path()), 0), gi::InputError);
     EXPECT_TRUE(fs::is_empty(dir.path()));
 }
 
@@ -125,7 +125,7 @@ TEST(Simulate, OneFolderHasOneTruth)
     TemporaryFolder const dir;
     keep_truth(dir.path(), "a");
     keep_truth(dir.path(), "a");
-    EXPECT_THROW(keep_truth(dir.path(), "b"), ScriptError);
+    EXPECT_THROW(keep_truth(dir.path(), "b"), gi::InputError);
     EXPECT_EQ(file_text(truth_file(dir.path())), "a");
 }
 

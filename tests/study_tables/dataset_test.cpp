@@ -50,7 +50,7 @@ protected:
     {
         try {
             read();
-        } catch (ScriptError const& e) {
+        } catch (gi::InputError const& e) {
             return e.what();
         }
         return {};
@@ -71,7 +71,7 @@ TEST_F(Datasets, DoNotCountACopyTwice)
         bool const is_session = std::string(copy).find('/') != std::string::npos;
         fs::copy(dir / (is_session ? "sub-P001/ses-01" : "sub-P001"), dir / copy, fs::copy_options::recursive);
         EXPECT_NE(
-            refusal().find("this is the journal of participant P001 in session 1 (its folder says otherwise"),
+            refusal().find("this is the journal of participant P001 in session 1 (its folder is that of another"),
             std::string::npos)
             << refusal();
         fs::remove_all(dir / copy);
@@ -86,8 +86,8 @@ TEST_F(Datasets, SayWhoIsLeftOut)
     Dataset const d = read();
     EXPECT_EQ(d.sessions.size(), 1u);
     ASSERT_EQ(d.remarks.size(), 2u);
-    EXPECT_NE(d.remarks[0].find("sub-P002/ses-01: beh/journal.jsonl is not there"), std::string::npos);
-    EXPECT_NE(d.remarks[1].find("sub-P003: there is no session in it"), std::string::npos);
+    EXPECT_NE(d.remarks[0].find("sub-P002/ses-01: beh/journal.jsonl is missing"), std::string::npos);
+    EXPECT_NE(d.remarks[1].find("sub-P003: it has no session"), std::string::npos);
 }
 
 TEST_F(Datasets, RefuseAFolderThatIsNamedWrongly)

@@ -132,13 +132,13 @@ TEST(Sessions, OfAnotherExperimentAreRefused)
     Script const s = script();
     RecordedSession r = session(s);
     std::get<SessionStarted>(r.record.entries[0]).experiment = "other";
-    EXPECT_THROW(start_of(s, r), ScriptError);
+    EXPECT_THROW(start_of(s, r), gi::InputError);
     r.record.entries.clear();
-    EXPECT_THROW(start_of(s, r), ScriptError);
+    EXPECT_THROW(start_of(s, r), gi::InputError);
     TrialDone nowhere;
     nowhere.step = 99;
     r.record.entries = {started(s, r.plan), nowhere};
-    EXPECT_THROW(trial_rows(s, r), ScriptError);
+    EXPECT_THROW(trial_rows(s, r), gi::InputError);
 }
 
 TEST(BidsFiles, AreNamedAsTheStandardWantsThem)
@@ -239,7 +239,7 @@ TEST(Exports, DoNotReplaceWhatIsNoDatabase)
     write_sqlite(file, export_tables(script(), {session(script())}));
     EXPECT_NO_THROW(check_may_become_sqlite(file));
     std::ofstream(file) << "participants";
-    EXPECT_THROW(check_may_become_sqlite(file), ScriptError);
+    EXPECT_THROW(check_may_become_sqlite(file), gi::InputError);
     std::filesystem::remove(file);
 }
 

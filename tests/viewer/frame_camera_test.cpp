@@ -126,7 +126,7 @@ TEST(FrameCamera, TheScreenOfTwoEyesIsInTheMiddleOfTheSceneAndStays)
     choice.eye = EyeChoice{true, 0.063, std::nullopt, {64, 48}};
     told.eye = EyeChoice{true, 0.063, 10, {64, 48}};
     FrameCamera const found(first, choice, {});
-    EXPECT_NE(found.note().find("10 m before the camera"), std::string::npos) << found.note();
+    EXPECT_NE(found.note().find("10 m in front of the camera"), std::string::npos) << found.note();
     for (gi::World const* const world : {&first, &second})
         EXPECT_EQ(found.of(*world, 0, 0), FrameCamera(first, told, {}).of(*world, 0, 0));
 

@@ -56,7 +56,7 @@ TEST(StudySimulate, GoesOnAndRepeatsPracticeAfterALongGap)
     std::ofstream(journal, std::ios::binary) << text.substr(0, at + 100);
     Outcome const o =
         run_well("study simulate v.yaml --participants 1 --out d --resume --gap-min 90 --each", folder.path());
-    EXPECT_NE(o.err.find("P001: 100 bytes of a line that was not whole were cut off"), std::string::npos) << o.err;
+    EXPECT_NE(o.err.find("P001: 100 bytes of an incomplete line were removed"), std::string::npos) << o.err;
     EXPECT_NE(o.out.find("attempt 2"), std::string::npos) << "practice again";
     std::istringstream lines(file_text(journal));
     std::string kinds;
@@ -81,11 +81,11 @@ TEST(StudySimulate, RefusesInOneLine)
     std::ofstream(folder / "file") << "x";
     for (auto const& [arguments, mentions] :
          {std::pair{"study simulate r.yaml --participants 1 --out d", "participant P001 has a session 1 already"},
-          {"study simulate r.yaml --participants 1,2 --out d", "begin another one by --session 2"},
+          {"study simulate r.yaml --participants 1,2 --out d", "start another one with --session 2"},
           {"study simulate r.yaml --participants 2 --out d --seed 1", "other observers answered in this folder"},
           {"study simulate r.yaml --participants 99", "'99' is not one of 1 to 12"},
           {"study simulate r.yaml --participants 3..1", "write 3, 1..24"},
-          {"study simulate r.yaml --participants x", "'x' is none"},
+          {"study simulate r.yaml --participants x", "'x' is not one of"},
           {"study simulate r.yaml --session 100", "--session"},
           {"study simulate r.yaml --gap-min 3", "--resume"},
           {"study simulate r.yaml --observer o.yaml", "o.yaml:2:1: unknown key 'noize'"},

@@ -129,7 +129,7 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"render cornell --frames -4:4@30", "--frames"},
              {"render cornell --frames 0:4@nan", "frames per second"},
              {"render cornell --frames 0:4@-1", "frames per second"},
-             {"render cornell --frames 0:1000000@30", "the most"},
+             {"render cornell --frames 0:1000000@30", "at most"},
              {"render cornell --frames 0:4@30 --time 1", "--time with --frames"},
              {"render cornell --frames 0:4@30 --turntable nan", "--turntable"},
              {"render cornell --frames 0:4@30 --turntable --camera-path nowhere.yaml",

@@ -103,7 +103,7 @@ TEST(ArCalibrate, FindsTheCameraOfTheViewsOfTheBoard)
     run_well("ar record views --rate 200 --out session", folder.path());
     Outcome const moving = run("ar calibrate session --markers m.yaml --out moving.yaml", folder.path());
     EXPECT_EQ(moving.code, 1) << moving.out;
-    EXPECT_NE(moving.out.find("in 20 it moves"), std::string::npos) << moving.out;
+    EXPECT_NE(moving.out.find("20 show it moving"), std::string::npos) << moving.out;
     run_well("ar calibrate session --markers m.yaml --stills --every 3 --lens pinhole --out stills.yaml",
              folder.path());
     Outcome const again = run("ar board --squares 8x6 --out b.svg --views views", folder.path());
@@ -119,7 +119,7 @@ TEST(ArCalibrate, SaysWhichViewsAreMissing)
                {ar::LensModel::pinhole, {320, 240}, 263, 263, 159.5, 119.5, {}}, 2);
     Outcome const o = run("ar calibrate views --markers m.yaml --out camera.yaml", folder.path());
     EXPECT_EQ(o.code, 1);
-    EXPECT_NE(o.err.find("do not suffice (2 of 4) show the board in the "), std::string::npos) << o.err;
+    EXPECT_NE(o.err.find("are not enough (2 of 4) show the board in the "), std::string::npos) << o.err;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
     EXPECT_FALSE(std::filesystem::exists(folder / "camera.yaml"));
 }

@@ -80,7 +80,7 @@ TEST(ArReplay, TellsOfARecordingThatWasCut)
     EXPECT_EQ(run("ar replay walk --fast", folder.path()).code, 0) << "only --check is a verdict";
     Outcome const o = run("ar replay walk --fast --check", folder.path());
     EXPECT_EQ(o.code, 1);
-    EXPECT_NE(o.out.find("1 damaged or gone"), std::string::npos) << o.out;
+    EXPECT_NE(o.out.find("1 damaged or missing"), std::string::npos) << o.out;
     auto const index = folder / "walk/index.jsonl";
     std::filesystem::resize_file(index, std::filesystem::file_size(index) - 10);
     Outcome const torn = run("ar replay walk --fast --check", folder.path());

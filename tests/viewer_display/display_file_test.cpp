@@ -77,7 +77,7 @@ TEST(DisplayFile, EveryRefusalHasItsPlaceAndItsWords)
         {"walls:", "wals:",
          "d.yaml:1:1: unknown key 'wals' in display (it would be ignored) did you mean 'walls'?"},
         {"    window: w\n", "    window: v\n",
-         "d.yaml:6:13: 'v' is not in windows (there is nothing of that name) there are: w"},
+         "d.yaml:6:13: 'v' is not in windows (no entry has this name) there are: w"},
         {"    window: w\n", "", "d.yaml:2:5: window is missing"},
         {"[-1, 0, -1]", "[-1, 0]", "d.yaml:3:19: display.walls[0].lower_left_m is not three numbers"},
         {"[-1, 0, -1]", "[-1, .nan, -1]", "d.yaml:3:24: display.walls[0].lower_left_m[1] is not a number"},
@@ -85,7 +85,7 @@ TEST(DisplayFile, EveryRefusalHasItsPlaceAndItsWords)
         {"[1, 0, -1]", "[1, 0.5, -1]",
          "d.yaml:3:19: wall 'front': the edges meet at 75.96 degrees (a wall is a rectangle"},
         {"    window: w", "    window: w\n    stereo: 3d",
-         "d.yaml:7:13: '3d' is no stereo mode (it is not known how to show two eyes) there are: off, "
+         "d.yaml:7:13: '3d' is no stereo mode (the name is unknown) there are: off, "
          "side-by-side"},
         {"    window: w", "    window: w\n    stereo: two-windows",
          "d.yaml:7:13: two-windows without a second_window"},
@@ -129,7 +129,7 @@ TEST(DisplayFile, EveryRefusalHasItsPlaceAndItsWords)
         {"size_px: [800, 600]", "size_px: [800]", "not two numbers"},
         {"size_px: [800, 600]", "size_px: [800, 600], position_px: [2000000, 0]", "a million pixels away"},
         {"{name: w, size_px: [800, 600]}", "{name: w, size_px: [800, 600]}\n  - {name: w, size_px: [800, 600]}",
-         "d.yaml:9:12: 'w' is there twice"},
+         "d.yaml:9:12: 'w' is used twice"},
         {"head_position_m: [0, 1.7, 0]", "head_position_m: [0, 1.7, 0], interpupillary_m: 63",
          "d.yaml:10:63: eyes 63 m apart (people's are 0.04 to 0.08 m apart) metres? 63 millimetres are 0.063 m"},
         {"head_position_m: [0, 1.7, 0]", "head_position_m: [0, 1.7, 0], interpupillary_m: 6.3",
