@@ -14,7 +14,7 @@ struct SightedPoint {
     double sigma_px = 0.1; ///< standard deviation of the detector's error
 };
 
-/// Of one picture.
+/// The points of known position that were found in one picture.
 struct Sighting {
     std::vector<SightedPoint> points;
     int markers_seen = 0;        ///< that the map of the world knows

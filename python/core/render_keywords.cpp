@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/filter/filter_names.h"
+#include "gi/methods/slhb/settings.h"
 #include "python/core/errors.h"
 #include "viewer/offline/render_options.h"
 
@@ -82,7 +83,7 @@ void set_options(viewer::RenderOptions& o, py::dict const& given)
         throw gi::InputError(e.what(), "the option has other values", "see lightwell render --help");
     }
     std::vector<viewer::NamedMethod> const methods{
-        {o.method, viewer::parse_schedule(o.schedule), "--schedule " + o.schedule}};
+        {o.method, gi::parse_schedule(o.schedule), "--schedule " + o.schedule}};
     check_slhb(all, methods);
     check_virtual_lights(all, methods);
 }

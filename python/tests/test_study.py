@@ -223,7 +223,8 @@ def test_wishes_and_notes_of_the_experimenter_are_kept(script, tmp_path):
     script.run(1, Watched(), dir=tmp_path / "data")
     records = study.read_records(tmp_path / "data", script.file)
     assert "skipped" in set(records.trials["reason"])
-    assert records.happenings["text"].str.contains("coughs").any()
+    assert records.session_events["text"].str.contains("coughs").any()
+    assert records.happenings is records.session_events
 
 
 def test_staircases_are_those_of_the_program(tmp_path):

@@ -32,7 +32,7 @@ enum class Combine {
     count, ///< number of scored answers that are at least `at_least`
 };
 
-/// score = weight * (combine of the scored answers) + offset
+/// A score of several items: weight * combine(scored answers) + offset.
 struct Subscale {
     std::string name;
     std::vector<int> items; ///< indices; an item listed twice counts twice

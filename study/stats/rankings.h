@@ -1,5 +1,5 @@
 #pragma once
-// Plackett & Luce's model of rankings and of choices among several (Luce 1959, "Individual ChoiceAmong Behavior";
+// Plackett & Luce's model of rankings and of choices among several (Luce 1959, "Individual Choice Behavior";
 // Plackett 1975, Appl. Stat. 24:193): P(i is chosen of C) = exp(s_i) / sum_{j in C} exp(s_j); a ranking is a
 // choice of the best, then of the best of the rest, and so on. Of two items it is Bradley & Terry's model.
 
@@ -14,6 +14,7 @@ struct ChoiceAmong {
     std::vector<int> rejected;
 };
 
+/// The choices that make a ranking: the best among all, the next among the rest, and so on.
 /// @param ranking  items, best first, not necessarily all of them
 std::vector<ChoiceAmong> choices_of(std::span<int const> ranking);
 

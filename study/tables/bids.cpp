@@ -95,7 +95,7 @@ std::vector<TextFile> session_files(Script const& script, RecordedSession const&
     }
     add_table(files, stem + "questionnaires_beh", questionnaires_table(script, session),
               about_task("questionnaires", start));
-    add_table(files, stem + "session_events", happenings_table(session), about_task("session", start));
+    add_table(files, stem + "session_events", session_events_table(session), about_task("session", start));
     files.push_back({folder + "session.json", session_summary(session.record)});
     return files;
 }

@@ -18,7 +18,7 @@ Table stimuli_table(Script const& script, std::vector<TrialRow> const& rows, int
 /// One row per item, then one per score, for each time that a questionnaire was answered.
 Table questionnaires_table(Script const& script, RecordedSession const& session);
 /// Session events: starts, calibrations, instructions, rests, walks, notes, ends.
-Table happenings_table(RecordedSession const& session);
+Table session_events_table(RecordedSession const& session);
 
 /// An answered questionnaire, with its step, which has the factors fixed at that time.
 struct AnsweredQuestionnaire {

@@ -54,7 +54,7 @@ void append_trials(Table& to, Script const& s, std::vector<TrialRow> const& rows
 std::vector<NamedTable> export_tables(Script const& script, std::vector<RecordedSession> const& sessions)
 {
     NamedTable trials{"trials", {}}, stimuli{"stimuli", {}}, answers{"questionnaires", {}},
-        other{"happenings", {}};
+        other{"session_events", {}};
     trials.table.columns = with_origin(events_table(script, {}, 0).columns);
     std::vector<Column> const more{{"first", "Stimulus shown first, or on the left"},
                                    {"second", "Stimulus shown second"},
@@ -70,7 +70,7 @@ std::vector<NamedTable> export_tables(Script const& script, std::vector<Recorded
         for (std::size_t b = 0; b < script.blocks.size(); ++b)
             append(stimuli.table, stimuli_table(script, rows, int(b)), start, {cell(script.blocks[b].name)});
         append(answers.table, questionnaires_table(script, session), start);
-        append(other.table, happenings_table(session), start);
+        append(other.table, session_events_table(session), start);
     }
     return {trials, stimuli, answers, other, {"participants", participants_table(script, sessions)}};
 }

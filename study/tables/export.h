@@ -13,8 +13,8 @@ struct NamedTable {
     Table table;
 };
 
-/// trials (one row each, one column per factor), stimuli, questionnaires, happenings, participants; all except the
-/// last begin with the columns participant, session, simulated.
+/// trials (one row each, one column per factor), stimuli, questionnaires, session_events, participants; all except
+/// the last begin with the columns participant, session, simulated.
 std::vector<NamedTable> export_tables(Script const& script, std::vector<RecordedSession> const& sessions);
 
 /// Files in the layout of Psych-DS (https://psych-ds.github.io): data/study-ID_description-NAME_data.csv,

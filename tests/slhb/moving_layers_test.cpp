@@ -165,7 +165,7 @@ TEST(Moving, SomeAxesFollowInTurns)
         for (std::uint32_t turn = 0; turn < kParts; ++turn) {
             moving.go_to(0.1f * float(kParts * cycle + turn), true);
             some.moved();
-            some.follow_some(kBounces, kCount, kParts * cycle + turn);
+            some.update_some_axes(kBounces, kCount, kParts * cycle + turn);
             AxisSet whole(moving.source(false, 0));
             whole.store(directions);
             auto const one = columns(some.pool()), other = columns(whole.pool());
@@ -208,7 +208,7 @@ TEST(Moving, SomeAxesBringWhatAllDo)
             vec3 const all = mean();
             vec3 some{0};
             for (std::uint32_t turn = 0; turn < kTurns; ++turn) {
-                set.follow_some(3, 16, turn);
+                set.update_some_axes(3, 16, turn);
                 some += mean() / float(kTurns);
             }
             for (int c = 0; c < 3; ++c) EXPECT_NEAR(some[c], all[c], 4e-3f) << c;

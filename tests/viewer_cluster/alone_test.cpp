@@ -21,9 +21,9 @@ TEST(Cluster, AloneNothingWaits)
     EXPECT_TRUE(cluster.leads());
     EXPECT_TRUE(cluster.name().starts_with("rank 0 on "));
     for (std::uint64_t frame = 0; frame < 3; ++frame) {
-        FrameCommand order;
-        order.frame = frame;
-        cluster.send(order);
+        FrameCommand command;
+        command.frame = frame;
+        cluster.send(command);
         KeepAlive const alive(cluster);
         cluster.wait(frame);
         cluster.report_swap(frame, Cluster::now_s());

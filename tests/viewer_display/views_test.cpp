@@ -70,15 +70,15 @@ TEST(Views, OnlyEyesThatSeeAreOrdered)
     gi::dmat4 world(2); // the user is twice as large as the world thinks
     world[3] = {10, 20, 30, 1};
     std::vector<int> sources;
-    auto const orders = view_orders(views, world, &sources);
-    ASSERT_EQ(orders.size(), 7u);
+    auto const commands = view_orders(views, world, &sources);
+    ASSERT_EQ(commands.size(), 7u);
     EXPECT_EQ(sources, (std::vector<int>{1, 2, 3, 4, 5, 6, 7}));
-    EXPECT_EQ(orders[0].partner, -1); // its partner is dark
-    EXPECT_EQ(orders[2].partner, 1);
-    gi::dmat4 const& m = orders[0].camera.world_from_camera;
+    EXPECT_EQ(commands[0].partner, -1); // its partner is dark
+    EXPECT_EQ(commands[2].partner, 1);
+    gi::dmat4 const& m = commands[0].camera.world_from_camera;
     expect_near(gi::dvec3(m[3]), gi::dvec3{10, 20, 30} + 2.0 * gi::dvec3{-1.5 + 0.0315, 1.7, 0});
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(glm::length(gi::dvec3(m[axis])), 1, 1e-12);
-    EXPECT_EQ(orders[0].camera.off_axis, views[1].camera->off_axis);
+    EXPECT_EQ(commands[0].camera.off_axis, views[1].camera->off_axis);
 }
 
 TEST(Views, NeighboursShareTheirPixelEdges)

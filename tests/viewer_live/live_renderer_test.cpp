@@ -23,7 +23,7 @@ struct Live {
     gi::Report report;
     SessionClock clock;
     RenderSession session{cornell, 0, report};
-    std::vector<FrameCommand> orders; ///< finished, by the rendering thread
+    std::vector<FrameCommand> commands; ///< finished, by the rendering thread
     std::vector<std::string> failures;
     gi::Camera eye;
     std::unique_ptr<LiveRenderer> renderer;
@@ -36,7 +36,7 @@ struct Live {
         session.apply({"rate", 50});
         eye = session.world().cameras.at(0);
         LiveRenderer::Hooks hooks;
-        hooks.finished = [this](LiveFrame const& f) { orders.push_back(f.order); };
+        hooks.finished = [this](LiveFrame const& f) { commands.push_back(f.command); };
         hooks.failed = [this](std::string const& why) { failures.push_back(why); };
         renderer = std::make_unique<LiveRenderer>(session, clock, nullptr, hooks);
     }
@@ -88,7 +88,7 @@ TEST(LiveRenderer, GoesByTheSlowestRank)
         hooks.finished = [&](LiveFrame const& f) {
             if (f.result.still_frames <= 1) budget = f.budget;
         };
-        hooks.own_views = [](FrameCommand const& order) { return std::vector{order.views.at(0)}; };
+        hooks.own_views = [](FrameCommand const& command) { return std::vector{command.views.at(0)}; };
         live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, &link, hooks);
         std::shared_ptr<LiveFrame const> frame;
         for (int i = 0; i < 12; ++i) {
@@ -147,8 +147,8 @@ TEST(LiveRenderer, RendersWhatIsLookedAtAndConverges)
     EXPECT_EQ(moved->result.still_frames, 1);
     live.renderer->stop();
     EXPECT_TRUE(live.failures.empty());
-    for (std::size_t i = 1; i < live.orders.size(); ++i)
-        EXPECT_EQ(live.orders[i].frame, live.orders[i - 1].frame + 1);
+    for (std::size_t i = 1; i < live.commands.size(); ++i)
+        EXPECT_EQ(live.commands[i].frame, live.commands[i - 1].frame + 1);
 }
 
 TEST(LiveRenderer, AtRestNoFrameComes)
@@ -200,7 +200,7 @@ TEST(LiveRenderer, AChangeShowsInTheNextFrameAndErrorsComeBack)
     EXPECT_NE(answers[1].find("bounces"), std::string::npos);
     EXPECT_NE(answers[2].find("elsewhere"), std::string::npos);
     std::size_t recorded = 0;
-    for (FrameCommand const& o : live.orders) recorded += o.changes.size();
+    for (FrameCommand const& o : live.commands) recorded += o.changes.size();
     EXPECT_EQ(recorded, 1u);
 }
 
@@ -223,14 +223,14 @@ TEST(LiveRenderer, NobodyWaitsForAFrame)
     }
     live.renderer->stop();
     EXPECT_LT(longest, 0.02);
-    EXPECT_FALSE(live.orders.empty());
+    EXPECT_FALSE(live.commands.empty());
 }
 
 /// What the thread rendered, a session that is given the same orders renders again, bit by bit.
 TEST(LiveRenderer, ItsOrdersCanBeRenderedAgain)
 {
     struct Seen {
-        FrameCommand order;
+        FrameCommand command;
         std::vector<float> color;
     };
     std::vector<Seen> seen;
@@ -238,7 +238,7 @@ TEST(LiveRenderer, ItsOrdersCanBeRenderedAgain)
     live.renderer->stop();
     LiveRenderer::Hooks hooks;
     hooks.finished = [&](LiveFrame const& f) {
-        seen.push_back({f.order, f.result.views[0].picture.find("color")->data});
+        seen.push_back({f.command, f.result.views[0].picture.find("color")->data});
     };
     live.renderer = std::make_unique<LiveRenderer>(live.session, live.clock, nullptr, hooks);
     for (int i = 0; i < 10; ++i) {
@@ -255,8 +255,8 @@ TEST(LiveRenderer, ItsOrdersCanBeRenderedAgain)
         again.apply(c);
     ASSERT_GE(seen.size(), 10u);
     for (Seen const& s : seen) {
-        for (Change const& c : s.order.changes) again.apply(c);
-        ASSERT_EQ(again.render(s.order, {}).views[0].picture.find("color")->data, s.color) << s.order.frame;
+        for (Change const& c : s.command.changes) again.apply(c);
+        ASSERT_EQ(again.render(s.command, {}).views[0].picture.find("color")->data, s.color) << s.command.frame;
     }
 }
 
@@ -278,14 +278,14 @@ TEST(LiveRenderer, FewerDirectionsFollowWhatTakesTooLong)
         RenderSession session(walk, 0, report), again(walk, 0, report);
         for (Change const& c : settings) session.apply(c), again.apply(c);
         struct Seen {
-            FrameCommand order;
+            FrameCommand command;
             std::vector<float> color;
             std::string schedule;
         };
         std::vector<Seen> seen;
         LiveRenderer::Hooks hooks;
         hooks.finished = [&](LiveFrame const& f) {
-            seen.push_back({f.order, f.result.views[0].picture.find("color")->data, f.schedule});
+            seen.push_back({f.command, f.result.views[0].picture.find("color")->data, f.schedule});
         };
         gi::Camera const eye = session.world().cameras.at(0);
         LiveRenderer renderer(session, clock, nullptr, hooks);
@@ -296,11 +296,12 @@ TEST(LiveRenderer, FewerDirectionsFollowWhatTakesTooLong)
         renderer.stop();
         int changed = 0;
         for (Seen const& s : seen) {
-            for (Change const& c : s.order.changes) {
+            for (Change const& c : s.command.changes) {
                 changed += c.key == "updated_axes";
                 again.apply(c);
             }
-            ASSERT_EQ(again.render(s.order, {}).views[0].picture.find("color")->data, s.color) << s.order.frame;
+            ASSERT_EQ(again.render(s.command, {}).views[0].picture.find("color")->data, s.color)
+                << s.command.frame;
         }
         EXPECT_EQ(changed > 0, schedule == "auto");
         EXPECT_EQ(session.settings().updated_axes > 0, schedule == "auto");

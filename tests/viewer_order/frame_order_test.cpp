@@ -58,10 +58,10 @@ FrameCommand cave_order()
     return o;
 }
 
-std::string why_refused(FrameCommand const& order)
+std::string why_refused(FrameCommand const& command)
 {
     try {
-        to_bytes(order);
+        to_bytes(command);
     } catch (gi::InputError const& e) {
         return e.what();
     }

@@ -19,8 +19,8 @@ TEST(HiddenPixels, NoneWithoutTriangles) { EXPECT_EQ(count(hidden_pixels({}, {-1
 TEST(HiddenPixels, CoversMiddlesInTheTriangle)
 {
     gi::ViewTangents const view{-2, 1, -1, 0.5};
-    for (std::vector<std::uint32_t> const& order : {std::vector<std::uint32_t>{0, 1, 2}, {0, 2, 1}}) {
-        HiddenMask const mask{{{-2, 0.5f}, {-2, -1}, {1, 0.5f}}, order};
+    for (std::vector<std::uint32_t> const& command : {std::vector<std::uint32_t>{0, 1, 2}, {0, 2, 1}}) {
+        HiddenMask const mask{{{-2, 0.5f}, {-2, -1}, {1, 0.5f}}, command};
         auto const hidden = hidden_pixels(mask, view, 30, 15);
         for (int y = 0; y < 15; ++y)
             for (int x = 0; x < 30; ++x) {
@@ -75,9 +75,9 @@ TEST(HiddenPixels, ThoseNearWhatIsSeenAreRendered)
 TEST(HiddenMask, ComesThroughAnOrderInAllItsBits)
 {
     HiddenMask const mask{{{-1.1f, 0.1f}, {1 / 3.0f, -2e-7f}, {0, 1e4f}}, {0, 1, 2, 2, 1, 0}};
-    FrameCommand order;
-    order.changes = {hidden_change("left eye", mask), hidden_change("right eye", {})};
-    FrameCommand const back = command_from_bytes(to_bytes(order));
+    FrameCommand command;
+    command.changes = {hidden_change("left eye", mask), hidden_change("right eye", {})};
+    FrameCommand const back = command_from_bytes(to_bytes(command));
     EXPECT_TRUE(is_hidden_mask(back.changes[0].key));
     EXPECT_EQ(hidden_mask_of(back.changes[0]), (std::pair{std::string("left eye"), mask}));
     EXPECT_EQ(hidden_mask_of(back.changes[1]), (std::pair{std::string("right eye"), HiddenMask{}}));
@@ -91,9 +91,9 @@ TEST(HiddenMask, TheLargestFitsAnOrder)
         mask.points.push_back({-1.17549435e-38f * float(i + 1), 0.1f + float(i) * 1.1920929e-7f});
     for (std::size_t i = 0; i < 3 * HiddenMaskLimits::triangles; ++i)
         mask.triangles.push_back(std::uint32_t(mask.points.size() - 1 - i % 7));
-    FrameCommand order;
-    order.changes = {hidden_change("left eye", mask)};
-    EXPECT_EQ(hidden_mask_of(command_from_bytes(to_bytes(order)).changes[0]).second, mask);
+    FrameCommand command;
+    command.changes = {hidden_change("left eye", mask)};
+    EXPECT_EQ(hidden_mask_of(command_from_bytes(to_bytes(command)).changes[0]).second, mask);
     mask.points.push_back({0, 0});
     EXPECT_THROW(hidden_mask_of(hidden_change("left eye", mask)), gi::InputError);
 }

@@ -56,7 +56,7 @@ TEST(ExportCsv, HoldsEveryFrameExactly)
         for (std::size_t c = 0; c < rows[0].size(); ++c) row[rows[0][c]] = rows[n + 1][c];
         ASSERT_EQ(row.size(), rows[0].size()) << "two columns of one name";
         RecordedFrame const f = walk_frame(n);
-        FrameCommand const& o = f.order;
+        FrameCommand const& o = f.command;
         EXPECT_EQ(row["frame"], std::to_string(n));
         EXPECT_EQ(std::stod(row["pose_s"]), o.pose_s);
         EXPECT_EQ(std::stod(row["room_z_m"]), o.world_from_room[3].z);

@@ -150,7 +150,7 @@ TEST(Recorder, RefusesWhatCouldNotBeReplayed)
     recorder.append(walk_frame(3));
     EXPECT_THROW(recorder.append(walk_frame(3)), gi::InputError);
     RecordedFrame bad = walk_frame(4);
-    bad.order.paths = 0;
+    bad.command.paths = 0;
     EXPECT_THROW(recorder.append(bad), gi::InputError);
     recorder.append(walk_frame(4));
     recorder.finish();

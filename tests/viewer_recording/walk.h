@@ -14,7 +14,7 @@ namespace viewer::test {
 inline RecordedFrame walk_frame(std::uint64_t n)
 {
     RecordedFrame f;
-    FrameCommand& o = f.order;
+    FrameCommand& o = f.command;
     double const t = double(n) / 60;
     o.frame = n;
     o.pose_s = t;

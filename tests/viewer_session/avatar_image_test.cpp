@@ -41,7 +41,7 @@ struct Room {
         session->apply({"reuse", 1});
         session->apply({"scene", "mirror"});
     }
-    SessionFrame render(FrameCommand const& order) { return session->render(order, {}); }
+    SessionFrame render(FrameCommand const& command) { return session->render(command, {}); }
 };
 
 /// Standing there, looking into the mirror. @param raised_s  how long the right hand has been rising
@@ -127,10 +127,10 @@ TEST(AvatarInMirror, ItsHeadIsNotInItsUsersWay)
     Room room(gi::generate_avatar());
     std::uint64_t frame = 0;
     for (double const pitch : {-0.9, -0.4, 0.0, 0.7}) {
-        FrameCommand order = standing(frame++, 0, 0, pitch);
-        order.paths = 1;
-        order.views[0].camera.yfov_rad = 1.4; // as wide as headsets
-        SessionFrame const f = room.render(order);
+        FrameCommand command = standing(frame++, 0, 0, pitch);
+        command.paths = 1;
+        command.views[0].camera.yfov_rad = 1.4; // as wide as headsets
+        SessionFrame const f = room.render(command);
         gi::Layer const* const depth = f.views[0].picture.find("depth");
         ASSERT_NE(depth, nullptr);
         float nearest = 1e9f;
@@ -146,22 +146,22 @@ TEST(AvatarInMirror, StepsAreInTheOrders)
     OwnAvatar const model(gi::generate_avatar(), kEyes_m);
     ASSERT_TRUE(model.stance());
     Footsteps feet(*model.stance());
-    std::vector<std::vector<std::uint8_t>> orders;
+    std::vector<std::vector<std::uint8_t>> commands;
     std::vector<std::vector<float>> runs[2];
     Room live(gi::generate_avatar());
     double highest_m = 0;
     for (std::uint64_t f = 0; f < 8; ++f) {
-        FrameCommand order = standing(f, 0, 0.06 * double(f));
-        order.paths = 1;
-        feet.step(order.tracked, order.world_from_room, 0.05);
-        for (auto const& foot : {order.tracked.left_foot, order.tracked.right_foot})
+        FrameCommand command = standing(f, 0, 0.06 * double(f));
+        command.paths = 1;
+        feet.step(command.tracked, command.world_from_room, 0.05);
+        for (auto const& foot : {command.tracked.left_foot, command.tracked.right_foot})
             highest_m = std::max(highest_m, foot->position.y);
-        runs[0].push_back(color(live.render(order)));
-        orders.push_back(to_bytes(order));
+        runs[0].push_back(color(live.render(command)));
+        commands.push_back(to_bytes(command));
     }
     EXPECT_GT(highest_m, 0.02) << "in the middle of a step";
     Room replayed(gi::generate_avatar());
-    for (auto const& bytes : orders) runs[1].push_back(color(replayed.render(command_from_bytes(bytes))));
+    for (auto const& bytes : commands) runs[1].push_back(color(replayed.render(command_from_bytes(bytes))));
     EXPECT_EQ(runs[0], runs[1]);
 }
 
@@ -172,10 +172,10 @@ TEST(AvatarInMirror, TheSameOrdersGiveTheSamePixels)
     for (auto& run : runs) {
         Room room(gi::generate_avatar());
         for (std::uint64_t f = 0; f < 6; ++f) {
-            FrameCommand order = standing(f, 0.15 * double(f), 0.02 * double(f));
-            order.paths = 1;
-            if (f == 4) order.tracked.left_hand.reset();
-            run.push_back(color(room.render(&run == runs ? order : command_from_bytes(to_bytes(order)))));
+            FrameCommand command = standing(f, 0.15 * double(f), 0.02 * double(f));
+            command.paths = 1;
+            if (f == 4) command.tracked.left_hand.reset();
+            run.push_back(color(room.render(&run == runs ? command : command_from_bytes(to_bytes(command)))));
         }
     }
     EXPECT_EQ(runs[0], runs[1]);

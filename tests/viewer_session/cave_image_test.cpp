@@ -78,21 +78,21 @@ TEST(Cave, WallsAreContinuousAcrossTheirEdges)
                           {"front", Side::bottom, "floor", Side::top},
                           {"left", Side::bottom, "floor", Side::left, true},
                           {"right", Side::bottom, "floor", Side::right}};
-    FrameCommand order;
+    FrameCommand command;
     for (Edge const& e : edges) {
-        order.views.push_back(strip_along(view_of(e.wall), e.side));
-        order.views.push_back(strip_along(view_of(e.other), e.other_side));
+        command.views.push_back(strip_along(view_of(e.wall), e.side));
+        command.views.push_back(strip_along(view_of(e.other), e.other_side));
     }
     RenderSession session(room, 0, report);
     session.apply({"directions", "icosahedron:1280"});
     session.apply({"denoise", "none"});
     session.apply({"scene", "room"});
     constexpr int kFrames = 32;
-    order.paths = 256;
+    command.paths = 256;
     SessionFrame frame;
     for (int f = 0; f < kFrames; ++f) {
-        order.frame = std::uint64_t(f);
-        frame = session.render(order, {});
+        command.frame = std::uint64_t(f);
+        frame = session.render(command, {});
     }
     for (std::size_t e = 0; e < std::size(edges); ++e) {
         auto const shown = [&](std::size_t view) {

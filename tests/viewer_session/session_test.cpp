@@ -43,7 +43,7 @@ gi::Camera eye(double aside = 0)
     return camera;
 }
 
-FrameCommand order(std::uint64_t frame, double aside = 0, bool stereo = false)
+FrameCommand command(std::uint64_t frame, double aside = 0, bool stereo = false)
 {
     FrameCommand o;
     o.frame = frame;
@@ -89,7 +89,7 @@ TEST(RenderSession, TheSameOrdersGiveTheSamePixels)
             if (f == 3) s.apply({"object.block.position", {0.2, 0.1, 0}});
             if (f == 5) s.apply({"material.2.base_color", {0.7, 0.1, 0.1}});
             if (f == 6) s.apply({"bounces", 1});
-            run.push_back(color(s.render(order(f, 0.01 * double(f), true), {}), 1));
+            run.push_back(color(s.render(command(f, 0.01 * double(f), true), {}), 1));
         }
     }
     for (std::size_t f = 0; f < 8; ++f) EXPECT_EQ(runs[0][f], runs[1][f]) << "frame " << f;
@@ -108,7 +108,7 @@ TEST(RenderSession, WhatStandsStillConvergesToTheReference)
     SessionFrame frame, truth;
     double first = 0;
     for (std::uint64_t f = 0; f < 200; ++f) {
-        FrameCommand o = order(f, 0, true);
+        FrameCommand o = command(f, 0, true);
         o.paths = 4;
         frame = s.render(o, {});
         truth = judge.render(o, {});
@@ -126,18 +126,18 @@ TEST(RenderSession, ComparesTwoMethods)
     gi::Report report;
     RenderSession s = started(report);
     s.apply({"compare", "reference"});
-    SessionFrame const f = s.render(order(0), {});
+    SessionFrame const f = s.render(command(0), {});
     ASSERT_TRUE(f.views[0].compared.has_value());
     EXPECT_EQ(f.views[0].compared->width, 40);
     s.apply({"compare", ""});
-    EXPECT_FALSE(s.render(order(1), {}).views[0].compared.has_value());
+    EXPECT_FALSE(s.render(command(1), {}).views[0].compared.has_value());
 }
 
 TEST(RenderSession, RefusesWhatCannotBeAndKeepsAll)
 {
     gi::Report report;
     RenderSession s = started(report);
-    std::vector<float> const before = color(s.render(order(0), {}));
+    std::vector<float> const before = color(s.render(command(0), {}));
     Settings const settings = s.settings();
     std::vector<Change> const wrong{{"nonsense", 1},
                                     {"bounces", -1},
@@ -168,9 +168,9 @@ TEST(RenderSession, RefusesWhatCannotBeAndKeepsAll)
     for (Change const& c : wrong) EXPECT_THROW(s.apply(c), gi::InputError) << c.key << " = " << c.value;
     for (SettingKey const& k : setting_keys()) EXPECT_EQ(get(s.settings(), k.key), get(settings, k.key)) << k.key;
     RenderSession fresh = started(report);
-    EXPECT_EQ(color(fresh.render(order(0), {})), before);
-    EXPECT_EQ(color(fresh.render(order(1), {})), color(s.render(order(1), {})));
-    EXPECT_THROW(RenderSession(scene_of, 0, report).render(order(0), {}), gi::InputError);
+    EXPECT_EQ(color(fresh.render(command(0), {})), before);
+    EXPECT_EQ(color(fresh.render(command(1), {})), color(s.render(command(1), {})));
+    EXPECT_THROW(RenderSession(scene_of, 0, report).render(command(0), {}), gi::InputError);
 }
 
 /// Where there is no device it is refused, and the session goes on as it was.
@@ -178,12 +178,12 @@ TEST(RenderSession, RendersByKernelsWhereThereIsADevice)
 {
     gi::Report report;
     RenderSession s = started(report), fresh = started(report);
-    EXPECT_EQ(color(s.render(order(0), {})), color(fresh.render(order(0), {})));
+    EXPECT_EQ(color(s.render(command(0), {})), color(fresh.render(command(0), {})));
     s.apply({"device", "cpu"}); // begins anew
     fresh.apply({"device", "cpu"});
     if (gi::device_present()) {
         s.apply({"device", "cuda"});
-        EXPECT_NEAR(mean(color(s.render(order(1), {}))) / mean(color(fresh.render(order(1), {}))), 1, 0.05);
+        EXPECT_NEAR(mean(color(s.render(command(1), {}))) / mean(color(fresh.render(command(1), {}))), 1, 0.05);
         return;
     }
     try {
@@ -193,7 +193,7 @@ TEST(RenderSession, RendersByKernelsWhereThereIsADevice)
         EXPECT_NE(std::string(e.what()).find("the device cuda cannot be used"), std::string::npos) << e.what();
     }
     EXPECT_EQ(s.settings().device, "cpu");
-    EXPECT_EQ(color(s.render(order(1), {})), color(fresh.render(order(1), {})));
+    EXPECT_EQ(color(s.render(command(1), {})), color(fresh.render(command(1), {})));
     EXPECT_THROW(s.apply({"device", "abacus"}), gi::InputError);
 }
 
@@ -219,7 +219,7 @@ TEST(RenderSession, FewerDirectionsMayFollowWhatMoves)
     judge.apply({"denoise", "none"});
     std::vector<double> error(kFrames);
     for (std::uint64_t f = 0; f < kFrames; ++f) {
-        FrameCommand o = order(f, 0.002 * double(f));
+        FrameCommand o = command(f, 0.002 * double(f));
         o.paths = 2;
         o.changes.push_back({"object.block.position", {0.004 * double(f), 0, 0}});
         if (f == kFewer) o.changes.push_back({"followed", 8});
@@ -257,7 +257,7 @@ TEST(RenderSession, AScheduleThatIsNamedStays)
         s.apply({"schedule", "stored"});
         s.apply({"updated_axes", updated});
         s.apply({"object.block.position", {0.1, 0, 0}});
-        pictures[updated / 8] = color(s.render(order(0), {}));
+        pictures[updated / 8] = color(s.render(command(0), {}));
     }
     EXPECT_EQ(pictures[0], pictures[1]);
 }
@@ -289,7 +289,7 @@ TEST(RenderSession, ApproximationsOfVisibilityAreShownLiveInStereo)
         s.apply({"method", method});
         double sum = 0;
         for (std::uint64_t frame = 0; frame < 4; ++frame) {
-            SessionFrame const f = s.render(order(frame, 0, true), {});
+            SessionFrame const f = s.render(command(frame, 0, true), {});
             sum += mean(color(f)) + mean(color(f, 1));
         }
         if (none == 0) none = sum;
@@ -297,9 +297,9 @@ TEST(RenderSession, ApproximationsOfVisibilityAreShownLiveInStereo)
         EXPECT_GT(sum, 0.5 * none) << method;
     }
     s.apply({"ao_radius", 0.0});
-    double const before = mean(color(s.render(order(0), {})));
+    double const before = mean(color(s.render(command(0), {})));
     s.apply({"ao_radius", 0.8});
-    EXPECT_LT(mean(color(s.render(order(1), {}))), before) << "dao, wider";
+    EXPECT_LT(mean(color(s.render(command(1), {}))), before) << "dao, wider";
 }
 
 TEST(RenderSession, EditsOutliveANewWorld)
@@ -311,7 +311,7 @@ TEST(RenderSession, EditsOutliveANewWorld)
     s.apply({"object.block.position", {0.2, 0, 0}}); // from now on it is apart from what stays
     EXPECT_EQ(s.world().materials[kBlock].base_color, (gi::vec3{0.9f, 0, 0}));
     EXPECT_EQ(s.world().lights[0].intensity, gi::vec3{0});
-    s.render(order(0), {});
+    s.render(command(0), {});
     auto const at = pick(s.world(), gi::look_at({0.4, 0.9, -0.1}, {0.4, 0, -0.1}, 20), 1, {0.5, 0.5});
     ASSERT_TRUE(at.has_value());
     EXPECT_EQ(at->material, kBlock); // where it is now, not where it was
@@ -347,7 +347,7 @@ TEST(RenderSession, ASecondEyeIsAsRightAsTheFirst)
         FrameCommand o;
         SessionFrame last;
         for (std::uint64_t k = 0; k < 12; ++k) {
-            o = order(k, 0.005 * double(k), true);
+            o = command(k, 0.005 * double(k), true);
             last = session.render(o, {});
         }
         if (truth.empty()) {

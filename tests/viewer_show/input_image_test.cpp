@@ -174,10 +174,10 @@ TEST_F(Input, ScreenshotsShowWhatWasAskedBeforeThem)
     std::size_t found = 0;
     RecordingReader walk(view->folder() / "walk.lwr");
     while (auto const f = walk.next())
-        if (auto const a = asked.find(f->order.frame); a != asked.end()) {
+        if (auto const a = asked.find(f->command.frame); a != asked.end()) {
             ++found;
-            EXPECT_LT(glm::distance(glm::dvec3(f->order.views[0].camera.world_from_camera[3]), a->second), 1e-9)
-                << "frame " << f->order.frame;
+            EXPECT_LT(glm::distance(glm::dvec3(f->command.views[0].camera.world_from_camera[3]), a->second), 1e-9)
+                << "frame " << f->command.frame;
         }
     EXPECT_EQ(found, asked.size());
 }

@@ -44,10 +44,10 @@ struct Driven {
     void to(Tracked const& tracked, gi::dmat4 const& world_from_room = gi::dmat4(1))
     {
         pose = gi::evaluate_pose(scene, 0);
-        FrameCommand order;
-        order.tracked = tracked;
-        order.world_from_room = world_from_room;
-        avatar.drive(scene, order, pose);
+        FrameCommand command;
+        command.tracked = tracked;
+        command.world_from_room = world_from_room;
+        avatar.drive(scene, command, pose);
     }
     dvec3 at(std::int32_t joint) const { return pose.world_from_node[std::size_t(joint)][3]; }
     /// How far a hand can be from its shoulder, and how near.
@@ -345,24 +345,24 @@ TEST(OwnAvatar, EveryUserMovesHisOwn)
     gi::Scene const scene = third.joined(first.joined(gi::generate_cornell()));
     std::int32_t const heads[2] = {first.joints_in(scene).head, third.joints_in(scene).head};
     EXPECT_NE(heads[0], heads[1]);
-    FrameCommand order;
-    order.tracked.head = RoomPose{{0.5, 1.6, 0}, {1, 0, 0, 0}};
-    order.others.resize(2);
-    order.others[1].head = RoomPose{{-0.5, 1.5, 0.3}, gi::exp_rotation({0, 1, 0})};
-    order.others[1].left_foot = RoomPose{{-0.6, 0, 0.3}, {1, 0, 0, 0}};
+    FrameCommand command;
+    command.tracked.head = RoomPose{{0.5, 1.6, 0}, {1, 0, 0, 0}};
+    command.others.resize(2);
+    command.others[1].head = RoomPose{{-0.5, 1.5, 0.3}, gi::exp_rotation({0, 1, 0})};
+    command.others[1].left_foot = RoomPose{{-0.6, 0, 0.3}, {1, 0, 0, 0}};
     gi::Pose pose = gi::evaluate_pose(scene, 0);
-    first.drive(scene, order, pose);
-    third.drive(scene, order, pose);
+    first.drive(scene, command, pose);
+    third.drive(scene, command, pose);
     for (auto const& [avatar, user, head] :
-         {std::tuple{&first, &order.tracked, heads[0]}, {&third, &order.others[1], heads[1]}}) {
+         {std::tuple{&first, &command.tracked, heads[0]}, {&third, &command.others[1], heads[1]}}) {
         dvec3 const joint = compose(*user->head, {avatar->measures().head_joint_in_head, {1, 0, 0, 0}}).position;
         EXPECT_LT(glm::distance(dvec3(pose.world_from_node[std::size_t(head)][3]), joint), 1e-9);
     }
     std::int32_t const foot = third.joints_in(scene).left_leg.foot;
     EXPECT_NEAR(pose.world_from_node[std::size_t(foot)][3].x, -0.6, 1e-6);
-    order.others.clear();
+    command.others.clear();
     pose = gi::evaluate_pose(scene, 0);
-    third.drive(scene, order, pose);
+    third.drive(scene, command, pose);
     EXPECT_NEAR(pose.world_from_node[std::size_t(heads[1])][3].x, 0, 1e-9) << "in the middle";
 }
 

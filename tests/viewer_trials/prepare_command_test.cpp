@@ -37,8 +37,10 @@ TEST(PrepareCommand, MakesDamagedStimuliAnew)
         fs::resize_file(entry.path() / "00000_0.exr", 300);
         break;
     }
-    EXPECT_NE(run_well(kPrepare + "out", folder.path()).out.find("1 rendered, 1 existed already"), std::string::npos);
-    EXPECT_NE(run_well(kPrepare + "out", folder.path()).out.find("0 rendered, 2 existed already"), std::string::npos);
+    EXPECT_NE(run_well(kPrepare + "out", folder.path()).out.find("1 rendered, 1 existed already"),
+              std::string::npos);
+    EXPECT_NE(run_well(kPrepare + "out", folder.path()).out.find("0 rendered, 2 existed already"),
+              std::string::npos);
 }
 
 TEST(PrepareCommand, AFileIsNoFolder)
@@ -77,8 +79,9 @@ TEST(PrepareCommand, ScenesLieBesideTheScript)
     EXPECT_NE(run_well("study prepare study/x.yaml" + rest, folder.path()).out.find("2 rendered"),
               std::string::npos);
     fs::rename(folder / "study/room.yaml", folder / "room.yaml");
-    EXPECT_NE(run_well("study prepare study/x.yaml" + rest, folder.path()).out.find("0 rendered, 2 existed already"),
-              std::string::npos)
+    EXPECT_NE(
+        run_well("study prepare study/x.yaml" + rest, folder.path()).out.find("0 rendered, 2 existed already"),
+        std::string::npos)
         << "or in the current folder";
     fs::remove(folder / "room.yaml");
     Outcome const o = run("study prepare study/x.yaml" + rest, folder.path());

@@ -257,7 +257,8 @@ TEST_F(Sessions, PreparedStimuliAreShownAndRenderedOnlyOnce)
     std::ofstream(folder / "x.yaml") << text;
     std::string const prepare = "study prepare x.yaml --size 240x180 --font 12 --out prepared";
     EXPECT_NE(run_well(prepare, folder.path()).out.find("2 stimuli, 2 rendered"), std::string::npos);
-    EXPECT_NE(run_well(prepare, folder.path()).out.find("2 stimuli, 0 rendered, 2 existed already"), std::string::npos);
+    EXPECT_NE(run_well(prepare, folder.path()).out.find("2 stimuli, 0 rendered, 2 existed already"),
+              std::string::npos);
     RunningSession run(folder, text, "--prepared prepared");
     NEED_KEYS(run);
     for (int i = 0; i < 2; ++i) {

@@ -70,11 +70,11 @@ void ClusterLink::report_swaps()
     for (auto const& [frame, time_s] : now) cluster_->report_swap(frame, time_s);
 }
 
-void ClusterLink::send(FrameCommand const& order)
+void ClusterLink::send(FrameCommand const& command)
 {
     guarded([&] {
         report_swaps();
-        cluster_->send(order);
+        cluster_->send(command);
     });
 }
 
@@ -91,17 +91,18 @@ void ClusterLink::check()
     guarded([] {});
 }
 
-FrameWork ClusterLink::wait_for_all(FrameCommand const& order, FrameWork const& own)
+FrameWork ClusterLink::wait_for_all(FrameCommand const& command, FrameWork const& own)
 {
     {
         // The window may be hidden or its loop about to end, so this wait has a time limit.
         std::unique_lock lock(mutex_);
-        changed_.wait_for(lock, kLongestDrawing, [&] { return drawn_ > order.frame; });
+        changed_.wait_for(lock, kLongestDrawing, [&] { return drawn_ > command.frame; });
     }
-    std::vector<std::string> const others = guarded([&] { return cluster_->wait(order.frame, 0, to_bytes(own)); });
+    std::vector<std::string> const others =
+        guarded([&] { return cluster_->wait(command.frame, 0, to_bytes(own)); });
     {
         std::lock_guard const lock(mutex_);
-        released_ = order.frame + 1;
+        released_ = command.frame + 1;
     }
     changed_.notify_all();
     FrameWork slowest = own;

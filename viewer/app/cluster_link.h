@@ -17,10 +17,10 @@ public:
     void begin() override;
     void end() override;
     bool leads() const override;
-    void send(FrameCommand const& order) override;
+    void send(FrameCommand const& command) override;
     std::optional<FrameCommand> receive() override;
     void check() override;
-    FrameWork wait_for_all(FrameCommand const& order, FrameWork const& own) override;
+    FrameWork wait_for_all(FrameCommand const& command, FrameWork const& own) override;
     void drawn(std::uint64_t frame) override;
     void swapped(std::uint64_t frame, double steady_s) override;
 

@@ -49,7 +49,7 @@ void HmdEyes::draw(LiveFrame const& frame, std::array<gi::Camera, 2> const& now,
 {
     make_targets(sizes_px);
     for (std::size_t eye = 0; eye < 2; ++eye) {
-        gi::Camera const& rendered = frame.order.views[eye].camera;
+        gi::Camera const& rendered = frame.command.views[eye].camera;
         EyeView view;
         view.picture = reproject && !(rendered == now[eye])
                            ? reprojections_[eye].draw(pictures_[eye], rendered, now[eye], sizes_px[eye])

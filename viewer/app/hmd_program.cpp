@@ -164,7 +164,8 @@ private:
         picture.views = frame.views;
         picture.values = TextureValues::srgb;
         picture.first_row = FirstRow::top;
-        bool const moved = !(newest->order.views[0].camera == now[0] && newest->order.views[1].camera == now[1]);
+        bool const moved =
+            !(newest->command.views[0].camera == now[0] && newest->command.views[1].camera == now[1]);
         eyes_.draw(*newest, now,
                    {glm::ivec2{frame.views[0].width, frame.views[0].height},
                     glm::ivec2{frame.views[1].width, frame.views[1].height}},
@@ -176,8 +177,8 @@ private:
         ++core_.summary.presented;
         core_.requests.presented(state_.clock.now_s(), {0, 0}, {});
         FrameTimes times;
-        times.frame = newest->order.frame;
-        times.pose_s = newest->order.pose_s;
+        times.frame = newest->command.frame;
+        times.pose_s = newest->command.pose_s;
         times.display_s = frame.display_s + to_session;
         times.swap_s = times.display_s;
         times.swap_method = SwapMethod::openxr;
@@ -185,10 +186,10 @@ private:
         times.render_ms = 1e3 * (newest->done_s - newest->begun_s);
         times.upload_ms = 1e3 * (uploaded - begun);
         times.draw_ms = 1e3 * (state_.clock.now_s() - uploaded);
-        times.paths = newest->order.paths;
-        times.width = newest->order.views[0].width;
-        times.height = newest->order.views[0].height;
-        times.late_ms = 1e3 * (times.swap_s - newest->order.display_s);
+        times.paths = newest->command.paths;
+        times.width = newest->command.views[0].width;
+        times.height = newest->command.views[0].height;
+        times.late_ms = 1e3 * (times.swap_s - newest->command.display_s);
         times.reprojected = moved;
         core_.log(times);
     }

@@ -25,7 +25,7 @@ LiveError measure(LiveFrame const& frame)
     std::vector<float> const &a = v.picture.find("color")->data, &b = v.compared->find("color")->data;
     double const ev = frame.settings.exposure_ev;
     std::vector<float> const flip = gi::flip(exposed(a, ev), exposed(b, ev), v.picture.width, v.picture.height);
-    return {frame.order.frame, gi::measure_errors(a, b, 3).relmse,
+    return {frame.command.frame, gi::measure_errors(a, b, 3).relmse,
             std::accumulate(flip.begin(), flip.end(), 0.0) / double(flip.size())};
 }
 

@@ -51,9 +51,10 @@ void show_numbers(ViewState& s, double frames_per_s)
     ImGui::Text("%s: %u triangles", s.facts.scene.c_str(), s.facts.triangles);
     if (!s.frame) return;
     LiveFrame const& f = *s.frame;
-    ViewCommand const& v = f.order.views[0];
+    ViewCommand const& v = f.command.views[0];
     ImGui::Text("%.1f Hz, frame %.1f ms", frames_per_s, 1e3 * (f.done_s - f.begun_s));
-    ImGui::Text("%d view(s) of %d x %d, %d path(s)", int(f.order.views.size()), v.width, v.height, f.order.paths);
+    ImGui::Text("%d view(s) of %d x %d, %d path(s)", int(f.command.views.size()), v.width, v.height,
+                f.command.paths);
     ImGui::ProgressBar(float(f.still_paths) / float(kConvergedPaths), ImVec2(-1, 0),
                        fmt::format("{} paths while still", f.still_paths).c_str());
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("rests at %u", kConvergedPaths);

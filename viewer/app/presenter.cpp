@@ -43,9 +43,9 @@ void Presenter::take(std::shared_ptr<LiveFrame const> frame, std::vector<Pane> c
 
 EyeView Presenter::eye(int view, std::vector<gi::Camera> const& now)
 {
-    if (!frame_ || view < 0 || std::size_t(view) >= frame_->order.views.size()) return {};
+    if (!frame_ || view < 0 || std::size_t(view) >= frame_->command.views.size()) return {};
     Shown& s = shown_[std::size_t(view)];
-    ViewCommand const& rendered = frame_->order.views[std::size_t(view)];
+    ViewCommand const& rendered = frame_->command.views[std::size_t(view)];
     if (!s.fresh) return {};
     EyeView e{s.picture.shown(), s.has_other ? s.other.shown() : s.picture.shown()};
     bool const moved = std::size_t(view) < now.size() && !rendered.camera.orthographic &&

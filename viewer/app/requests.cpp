@@ -192,7 +192,7 @@ void Requests::step()
 void Requests::pick(RemoteRequest const& r)
 {
     if (!state_.frame) throw gi::InputError("nothing to pick", "no frame was shown yet", "try again later");
-    ViewCommand const& v = state_.frame->order.views[0];
+    ViewCommand const& v = state_.frame->command.views[0];
     double const scale = state_.frame->budget.scale > 0 ? state_.frame->budget.scale : 1;
     double const width = v.width / scale, height = v.height / scale;
     double const x = r.arguments.at("x_px").get<double>(), y = r.arguments.at("y_px").get<double>();
@@ -242,7 +242,7 @@ void Requests::save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned
         } catch (gi::InputError const& e) {
             wrong = e.what();
         }
-        state_.inbox.put([this, shot, wrong, number = frame->order.frame] {
+        state_.inbox.put([this, shot, wrong, number = frame->command.frame] {
             if (wrong.empty())
                 server_->answer(shot.token, {{"file", shot.file}, {"frame", number}});
             else
@@ -266,12 +266,12 @@ void Requests::presented(double shown_s, glm::ivec2 window_px, std::vector<unsig
         return s.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     });
     std::erase_if(keys_, [&](Key const& key) {
-        bool const in_frame = f.order.pose_s >= key.pressed_s;
+        bool const in_frame = f.command.pose_s >= key.pressed_s;
         bool const moved = !(key.camera == state_.navigation.world_from_camera()) && state_.settings.reproject;
         if (!in_frame && !moved) return false;
-        server_->answer(
-            key.token,
-            {{"frame", f.order.frame}, {"after_ms", 1e3 * (shown_s - key.pressed_s)}, {"reprojected", !in_frame}});
+        server_->answer(key.token, {{"frame", f.command.frame},
+                                    {"after_ms", 1e3 * (shown_s - key.pressed_s)},
+                                    {"reprojected", !in_frame}});
         return true;
     });
     std::erase_if(loads_, [&](Loaded const& l) {
@@ -286,15 +286,15 @@ Json Requests::stats() const
     Json j{{"scene", state_.facts.scene}, {"triangles", state_.facts.triangles}};
     if (state_.frame) {
         LiveFrame const& f = *state_.frame;
-        j["frame"] = f.order.frame;
-        j["scene_s"] = f.order.scene_s;
+        j["frame"] = f.command.frame;
+        j["scene_s"] = f.command.scene_s;
         j["render_ms"] = 1e3 * (f.done_s - f.begun_s);
-        j["paths"] = f.order.paths;
+        j["paths"] = f.command.paths;
         j["still_paths"] = f.still_paths;
         j["still_frames"] = f.result.still_frames;
         j["at_rest"] = changed_s_ < stepped_s_ && !state_.drawing && state_.renderer->rests() &&
                        state_.renderer->newest() == state_.frame;
-        for (ViewCommand const& v : f.order.views)
+        for (ViewCommand const& v : f.command.views)
             j["views"].push_back({{"name", v.name}, {"width", v.width}, {"height", v.height}});
         j["stages_ms"] = Json::object();
         for (auto const& [stage, seconds] : f.result.stages_s) j["stages_ms"][stage] = 1e3 * seconds;

@@ -51,7 +51,7 @@ private:
     void load(RemoteRequest const& r);
     void press(RemoteRequest const& r);
     void pick(RemoteRequest const& r);
-    bool has_seen(double changed_s) const { return state_.frame && state_.frame->order.pose_s >= changed_s; }
+    bool has_seen(double changed_s) const { return state_.frame && state_.frame->command.pose_s >= changed_s; }
     void save(Shot const& shot, glm::ivec2 window_px, std::vector<unsigned char> const& bytes);
 
     ViewState& state_;

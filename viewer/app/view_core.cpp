@@ -110,11 +110,11 @@ void ViewCore::start(FrameLink* link, std::function<void()> published,
         ++summary.rendered;
         summary.schedule = f.schedule;
         if (!recorder_) return;
-        FrameCommand order = f.order;
-        if (!f.ordered.empty()) order.views = f.ordered;
+        FrameCommand command = f.command;
+        if (!f.ordered.empty()) command.views = f.ordered;
         // A rank of a cluster renders only its own views, a replay renders all walls, so pixel hashes would
         // differ.
-        recorder_->append({order, f.ordered.empty() ? std::optional(frame_hash(f.result)) : std::nullopt, {}});
+        recorder_->append({command, f.ordered.empty() ? std::optional(frame_hash(f.result)) : std::nullopt, {}});
     };
     hooks.published = std::move(published);
     hooks.own_views = std::move(own_views);
@@ -230,7 +230,7 @@ void ViewCore::finish()
 
 void ViewCore::save_screenshot(glm::ivec2 window_px, std::vector<unsigned char> const& bytes)
 {
-    std::string const base = fmt::format("{}lightwell_{:06}", options.screenshots, state.frame->order.frame);
+    std::string const base = fmt::format("{}lightwell_{:06}", options.screenshots, state.frame->command.frame);
     try {
         gi::write_png(base + ".png", window_px.x, window_px.y, bytes);
         gi::write_exr(base + ".exr", state.frame->result.views[0].picture, gi::PixelType::single, report);

@@ -45,8 +45,8 @@ public:
         if (!shown_.windows.empty()) shown_.windows.front()->window.gl().release(); // to the presenting thread
         std::function<std::vector<ViewCommand>(FrameCommand const&)> own;
         if (link != nullptr && options.display)
-            own = [this](FrameCommand const& order) {
-                return views_of_rank(*core_.display, order.views, core_.options.rank);
+            own = [this](FrameCommand const& command) {
+                return views_of_rank(*core_.display, command.views, core_.options.rank);
             };
         core_.start(
             link, [] { glfwPostEmptyEvent(); }, own);
@@ -280,7 +280,7 @@ private:
         p->settings = present_settings();
         p->wants_bytes = std::exchange(state_.wants_screenshot, false);
         std::vector<gi::Camera> rendered;
-        for (ViewCommand const& v : newest->order.views) rendered.push_back(v.camera);
+        for (ViewCommand const& v : newest->command.views) rendered.push_back(v.camera);
         bool const reprojects =
             state_.settings.reproject && link_ == nullptr && cameras_.size() == rendered.size();
         shown_cameras_ = p->cameras = reprojects ? cameras_ : rendered;
@@ -288,7 +288,7 @@ private:
         if (fresh) {
             state_.frame = newest;
             state_.settings.updated_axes = newest->settings.updated_axes; // set by the renderer
-            if (link_ != nullptr && core_.display) set_panes(display_panes(*core_.display, newest->order.views));
+            if (link_ != nullptr && core_.display) set_panes(display_panes(*core_.display, newest->command.views));
             meter_.see(newest);
         }
         state_.live_error = meter_.latest();
@@ -333,7 +333,7 @@ private:
                 w->window.gl().make_current();
                 glFinish();
             }
-            link_->drawn(p.frame->order.frame);
+            link_->drawn(p.frame->command.frame);
         }
         for (auto const& w : shown_.windows) {
             w->window.gl().make_current();
@@ -359,26 +359,26 @@ private:
              bool reprojected)
     {
         if (link_ != nullptr)
-            link_->swapped(f.order.frame, std::chrono::duration<double>(swap.time.time_since_epoch()).count());
+            link_->swapped(f.command.frame, std::chrono::duration<double>(swap.time.time_since_epoch()).count());
         expected_s_ = (f.done_s - f.begun_s) + (shown_s - begun);
-        times.frame = f.order.frame;
-        times.pose_s = f.order.pose_s;
-        times.display_s = f.order.display_s;
+        times.frame = f.command.frame;
+        times.pose_s = f.command.pose_s;
+        times.display_s = f.command.display_s;
         times.swap_s = shown_s;
         times.swap_method = swap.method == GlSwapMethod::sync_control ? SwapMethod::oml : SwapMethod::fence;
         times.swap_uncertainty_ms = swap.uncertainty_ms;
         times.wait_ms = 1e3 * (begun - f.done_s);
         times.render_ms = 1e3 * (f.done_s - f.begun_s);
-        times.paths = f.order.paths;
-        if (!f.order.views.empty()) {
-            times.width = f.order.views[0].width;
-            times.height = f.order.views[0].height;
+        times.paths = f.command.paths;
+        if (!f.command.views.empty()) {
+            times.width = f.command.views[0].width;
+            times.height = f.command.views[0].height;
         }
         // While nothing moves, frames have no due time.
         bool const due = f.result.still_frames <= 1 && last_fresh_s_ > 0;
         times.dropped =
             due ? std::max(0, int(std::floor((shown_s - last_fresh_s_) * f.settings.rate_hz - 0.5))) : 0;
-        times.late_ms = 1e3 * (shown_s - f.order.display_s);
+        times.late_ms = 1e3 * (shown_s - f.command.display_s);
         times.reprojected = reprojected;
         if (tracking_) times.tracker_ms = tracking_->age_ms(steady_s());
         core_.log(times);

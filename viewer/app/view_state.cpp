@@ -78,8 +78,8 @@ gi::Camera ViewState::now() const
 void ViewState::pick(glm::dvec2 at, double aspect, std::function<void(std::optional<Selection> const&)> done)
 {
     // Pixels are not square if each half of a window holds a whole view.
-    if (frame && !frame->order.views.empty() && frame->order.views[0].camera.off_axis) {
-        gi::ViewTangents const edge = *frame->order.views[0].camera.off_axis;
+    if (frame && !frame->command.views.empty() && frame->command.views[0].camera.off_axis) {
+        gi::ViewTangents const edge = *frame->command.views[0].camera.off_axis;
         aspect = (edge.right - edge.left) / (edge.top - edge.bottom);
     }
     renderer->ask([this, at, aspect, eye = now(), done = std::move(done)](RenderSession& s) {

@@ -1,6 +1,7 @@
 #include "viewer/bench/sweep_methods.h"
 
 #include "gi/core/error.h"
+#include "gi/methods/slhb/settings.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -17,7 +18,8 @@ void check_sweep_methods(CLI::App const& command, RenderOptions const& options,
         std::size_t const colon = name.find(':');
         bool const own = colon != std::string::npos && !name.starts_with("vpl_");
         shared |= name == "slhb";
-        methods.push_back({name.substr(0, colon), parse_schedule(own ? name.substr(colon + 1) : options.schedule),
+        methods.push_back({name.substr(0, colon),
+                           gi::parse_schedule(own ? name.substr(colon + 1) : options.schedule),
                            own ? "--methods " + name : "--schedule " + options.schedule});
     }
     check_slhb(command, methods);

@@ -3,6 +3,7 @@
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
 #include "gi/methods/slhb/directions/directions.h"
+#include "gi/methods/slhb/settings.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/outputs.h"
 #include "viewer/bench/bench_record.h"
@@ -50,13 +51,13 @@ SweepMethod find_sweep_method(std::string const& name, std::string const& schedu
 {
     std::size_t const colon = name.find(':');
     gi::Method const& method = gi::find_method(name.substr(0, colon));
-    if (colon == std::string::npos) return {name, method, parse_schedule(schedule_of_all), ""};
+    if (colon == std::string::npos) return {name, method, gi::parse_schedule(schedule_of_all), ""};
     for (char const* const graded : {"vpl_slhb", "vpl_imperfect", "vpl_ao", "vpl_dao"})
         if (method.name == graded) return {name, method, gi::Schedule::automatic, name.substr(colon + 1)};
     if (method.name != "slhb")
         throw gi::InputError(fmt::format("--methods {}: '{}' has no schedules", name, method.name),
                              "only slhb has schedules", fmt::format("name it '{}'", method.name));
-    return {name, method, parse_schedule(name.substr(colon + 1)), ""};
+    return {name, method, gi::parse_schedule(name.substr(colon + 1)), ""};
 }
 
 gi::RenderSettings sweep_settings(RenderOptions options)

@@ -43,16 +43,17 @@ MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& wor
     renderer_ = gi::find_method(method).frames(world, first.front().camera, s, report);
 }
 
-std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& order, std::span<HiddenPixels const> hidden,
+std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
+                                                   std::span<HiddenPixels const> hidden,
                                                    gi::Changes const& changes, Settings const& settings,
                                                    gi::StopRequest const& stop)
 {
     if (!first_) renderer_->changed(changes);
-    bool anything_moved = first_ || seen_.size() != order.views.size() || changes.any();
-    seen_.resize(order.views.size());
-    std::vector<bool> moved(order.views.size());
-    for (std::size_t k = 0; k < order.views.size(); ++k) {
-        ViewCommand const& now = order.views[k];
+    bool anything_moved = first_ || seen_.size() != command.views.size() || changes.any();
+    seen_.resize(command.views.size());
+    std::vector<bool> moved(command.views.size());
+    for (std::size_t k = 0; k < command.views.size(); ++k) {
+        ViewCommand const& now = command.views[k];
         Seen& s = seen_[k];
         bool const same = s.reuse && s.name == now.name && s.width == now.width && s.height == now.height &&
                           s.most_frames == settings.reuse;
@@ -64,8 +65,8 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& order, st
     first_ = false;
     still_ = anything_moved ? 1 : still_ + 1;
     std::vector<gi::FrameView> views;
-    for (std::size_t k = 0; k < order.views.size(); ++k) {
-        ViewCommand const& v = order.views[k];
+    for (std::size_t k = 0; k < command.views.size(); ++k) {
+        ViewCommand const& v = command.views[k];
         views.push_back(
             {v.camera, v.width, v.height, settings.share_eyes && still_ <= kSharedFrames ? v.partner : -1});
         if (hidden[k]) views.back().hidden = *hidden[k];
@@ -74,7 +75,7 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& order, st
     auto const sharing =
         settings.radiance_cache && anything_moved ? gi::VertexSharing::cached : gi::VertexSharing::exact;
     renderer_->update_axes(settings.schedule == "auto" ? settings.updated_axes : 0);
-    std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(order.paths), sharing, stop);
+    std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(command.paths), sharing, stop);
     for (std::size_t k = 0; k < results.size(); ++k)
         finish(k, results, views[k].partner, scene_change(changes, moved[k]), settings);
     return results;

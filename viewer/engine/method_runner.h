@@ -20,7 +20,7 @@ public:
                  std::vector<ViewCommand> const& first, gi::Report& report);
 
     /// Returns one picture per view. @param hidden  per view  @param changes  of the world since the last frame
-    std::vector<gi::RenderResult> render(FrameCommand const& order, std::span<HiddenPixels const> hidden,
+    std::vector<gi::RenderResult> render(FrameCommand const& command, std::span<HiddenPixels const> hidden,
                                          gi::Changes const& changes, Settings const& settings,
                                          gi::StopRequest const& stop);
     int still_frames() const { return still_; }

@@ -108,34 +108,34 @@ void RenderSession::place_object(Change const& change)
     placed_.push_back(object);
 }
 
-gi::Changes RenderSession::move_to(FrameCommand const& order)
+gi::Changes RenderSession::move_to(FrameCommand const& command)
 {
-    time_s_ = order.scene_s;
+    time_s_ = command.scene_s;
     gi::Pose pose = gi::evaluate_pose(*scene_, time_s_);
     place(*scene_, placed_, pose);
-    if (drive_) drive_(*scene_, order, pose);
+    if (drive_) drive_(*scene_, command, pose);
     gi::Changes changes = std::exchange(pending_, {});
     changes.add(world_->advance(pose));
     return changes;
 }
 
-SessionFrame RenderSession::render(FrameCommand const& order, gi::StopRequest const& stop)
+SessionFrame RenderSession::render(FrameCommand const& command, gi::StopRequest const& stop)
 {
     if (!world_) throw gi::InputError("there is nothing to render", "no scene is loaded", "load one first");
     gi::Changes changes;
     {
         gi::StageTimer const timer(report_, "world");
-        changes = move_to(order);
+        changes = move_to(command);
     }
     SessionFrame frame;
     frame.moved = changes.geometry;
-    if (order.views.empty()) return frame;
+    if (command.views.empty()) return frame;
     if (!main_)
         main_ =
-            std::make_unique<MethodRunner>(settings_.method, *world_, settings_, threads_, order.views, report_);
+            std::make_unique<MethodRunner>(settings_.method, *world_, settings_, threads_, command.views, report_);
     std::vector<HiddenPixels> hidden;
-    for (ViewCommand const& v : order.views) hidden.push_back(hidden_.pixels(v));
-    std::vector<gi::RenderResult> results = main_->render(order, hidden, changes, settings_, stop);
+    for (ViewCommand const& v : command.views) hidden.push_back(hidden_.pixels(v));
+    std::vector<gi::RenderResult> results = main_->render(command, hidden, changes, settings_, stop);
     frame.still_frames = main_->still_frames();
     frame.dynamic_update = main_->dynamic_update();
     frame.options = results[0].options;
@@ -147,8 +147,8 @@ SessionFrame RenderSession::render(FrameCommand const& order, gi::StopRequest co
     if (!settings_.compare.empty() && settings_.compare != settings_.method) {
         if (!compared_)
             compared_ = std::make_unique<MethodRunner>(settings_.compare, *world_, settings_, threads_,
-                                                       order.views, report_);
-        std::vector<gi::RenderResult> others = compared_->render(order, hidden, changes, settings_, stop);
+                                                       command.views, report_);
+        std::vector<gi::RenderResult> others = compared_->render(command, hidden, changes, settings_, stop);
         for (std::size_t k = 0; k < others.size(); ++k) {
             frame.rays += others[k].rays;
             frame.views[k].compared = std::move(others[k].picture);

@@ -43,7 +43,7 @@ public:
     /// changes nothing if the value is invalid.
     void apply(Change const& change);
     /// Renders a frame command, whose changes must have been applied already. Throws InputError without a scene.
-    SessionFrame render(FrameCommand const& order, gi::StopRequest const& stop);
+    SessionFrame render(FrameCommand const& command, gi::StopRequest const& stop);
 
     /// Sets a callback for every following frame.
     void drive_bodies(DriveBodies drive) { drive_ = std::move(drive); }
@@ -61,7 +61,7 @@ private:
     void rebuild(std::shared_ptr<gi::Scene const> scene);
     void place_object(Change const& change);
     void restart();
-    gi::Changes move_to(FrameCommand const& order);
+    gi::Changes move_to(FrameCommand const& command);
 
     LoadScene load_;
     int threads_;

@@ -3,6 +3,7 @@
 #include "gi/core/error.h"
 #include "gi/filter/filter_names.h"
 #include "gi/methods/registry.h"
+#include "gi/methods/slhb/settings.h"
 #include "viewer/displays/stereo_mode.h"
 
 #include <cstdlib>
@@ -256,10 +257,7 @@ gi::RenderSettings render_settings(Settings const& s, int threads)
     r.seed = std::uint64_t(s.seed);
     r.threads = threads;
     r.paths = 1;
-    r.slhb.schedule = s.schedule == "stored"     ? gi::Schedule::stored
-                      : s.schedule == "streamed" ? gi::Schedule::streamed
-                      : s.schedule == "temporal" ? gi::Schedule::temporal
-                                                 : gi::Schedule::automatic;
+    r.slhb.schedule = gi::parse_schedule(s.schedule);
     r.slhb.space = s.device == "cuda" ? gi::Space::device : gi::Space::host;
     r.slhb.directions = s.directions;
     r.slhb.resolution = s.resolution;

@@ -85,7 +85,7 @@ std::shared_ptr<LiveFrame const> frame_of(ArPicture const& p, Settings const& se
         any.fx = any.fy = p.rgb.cols;
         order.camera = gi_camera(any, *p.world_from_camera);
     }
-    frame->order.views.push_back(order);
+    frame->command.views.push_back(order);
     frame->result.views.push_back({std::move(picture), {}});
     return frame;
 }

@@ -110,7 +110,7 @@ void PreparedSource::prepare(StimulusSettings const& stimulus, StimulusView cons
             ViewCommand order;
             order.width = picture.width;
             order.height = picture.height;
-            frame->order.views.push_back(order);
+            frame->command.views.push_back(order);
             frame->result.views.push_back({std::move(picture), {}});
         }
         frames_.push_back(std::move(frame));

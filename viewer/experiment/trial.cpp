@@ -191,7 +191,7 @@ void TrialPresenter::Trial::add_rows(std::string const& letters, ScreenSwap cons
     for (ScreenPane const& pane : c.panes)
         if (pane.frame) row.render_ms = std::max(row.render_ms, render_ms(*pane.frame));
     if (block_.stimuli == study::Stimuli::live && !c.panes.empty() && c.panes[0].frame)
-        p_.keep_pose(row.swap_s, c.panes[0].frame->order.views);
+        p_.keep_pose(row.swap_s, c.panes[0].frame->command.views);
     p_.table_.add(std::move(row));
 }
 

@@ -30,7 +30,7 @@ study::StepDone TrialPresenter::walk(study::TrialRequest const& where, std::stri
         ScreenContent c;
         c.panes = {{{0, 0}, screen_->size_px(), from.newest(), stereo}};
         ScreenSwap const swap = present(c);
-        if (c.panes[0].frame) keep_pose(seconds(swap.time), c.panes[0].frame->order.views);
+        if (c.panes[0].frame) keep_pose(seconds(swap.time), c.panes[0].frame->command.views);
     }
     from.rest();
     done.end_s = now();

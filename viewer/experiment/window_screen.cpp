@@ -139,7 +139,7 @@ void WindowScreen::draw_panes(DrawTarget const& whole, ScreenContent const& cont
     for (std::size_t k = 0; k < content.panes.size(); ++k) {
         ScreenPane const& p = content.panes[k];
         if (!p.frame) continue;
-        int const right = p.frame->order.views.size() > 1 ? 1 : -1;
+        int const right = p.frame->command.views.size() > 1 ? 1 : -1;
         std::vector<Pane> const panes{{p.corner_px, p.size_px, p.stereo, 0, right}};
         if (taken_[k] != p.frame) presenters_[k].take(p.frame, panes);
         taken_[k] = p.frame;
@@ -154,7 +154,7 @@ void WindowScreen::draw_walls(DrawTarget const& whole, ShownWindow& window, Scre
     auto const at = std::find_if(shown_.windows.begin(), shown_.windows.end(),
                                  [&](auto const& w) { return w.get() == &window; });
     auto const number = std::find(shown_.of.begin(), shown_.of.end(), int(at - shown_.windows.begin()));
-    auto const panes = display_panes(*display_, frame->order.views)[std::size_t(number - shown_.of.begin())];
+    auto const panes = display_panes(*display_, frame->command.views)[std::size_t(number - shown_.of.begin())];
     taken_.resize(shown_.windows.size());
     auto& taken = taken_[std::size_t(at - shown_.windows.begin())];
     if (taken != frame) window.presenter.take(frame, panes);

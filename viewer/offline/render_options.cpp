@@ -4,6 +4,7 @@
 #include "gi/filter/filter_names.h"
 #include "gi/kernel/device.h"
 #include "gi/methods/registry.h"
+#include "gi/methods/slhb/settings.h"
 #include "gi/scene/model/camera.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/validators.h"
@@ -64,20 +65,6 @@ std::string default_out(std::string const& scene, char const* ending)
     return (path.has_filename() ? path : path.parent_path()).stem().string() + ending;
 }
 
-} // namespace
-
-gi::Schedule parse_schedule(std::string const& name)
-{
-    if (name == "stored") return gi::Schedule::stored;
-    if (name == "streamed") return gi::Schedule::streamed;
-    if (name == "temporal") return gi::Schedule::temporal;
-    if (name == "auto") return gi::Schedule::automatic;
-    throw gi::InputError("there is no schedule '" + name + "'", "slhb does not have it",
-                         "choose auto, stored, streamed or temporal");
-}
-
-namespace {
-
 gi::LookUps parse_look_ups(std::string const& name)
 {
     if (name == "all") return gi::LookUps::all;
@@ -127,7 +114,7 @@ gi::RenderSettings make_settings(RenderOptions& o)
     s.slhb = o.slhb;
     s.vpl = o.vpl;
     if (!o.points.empty()) s.vpl.points = parse_points("--points " + o.points, o.points, o.vpl.point_map);
-    s.slhb.schedule = parse_schedule(o.schedule);
+    s.slhb.schedule = gi::parse_schedule(o.schedule);
     s.slhb.look_ups = parse_look_ups(o.look_ups);
     s.slhb.cache = parse_cache(o.radiance_cache);
     s.slhb.shadows = parse_shadows(o.shadows);

@@ -39,9 +39,6 @@ struct RenderOptions {
     RankOptions ranks;
 };
 
-/// Throws InputError listing the known schedules.
-gi::Schedule parse_schedule(std::string const& name);
-
 /// Options of camera, environment map and time, for every command that renders.
 void declare_view_options(CLI::App& command, RenderOptions& options);
 /// Options of the camera's lens, for commands that render whole pictures.

@@ -18,8 +18,8 @@ std::pair<int, int> largest_view(RecordingReader& reader)
 {
     std::pair<int, int> size{0, 0};
     while (auto const frame = reader.next())
-        if (!frame->order.views.empty())
-            size = std::max(size, {frame->order.views[0].width, frame->order.views[0].height});
+        if (!frame->command.views.empty())
+            size = std::max(size, {frame->command.views[0].width, frame->command.views[0].height});
     reader.rewind();
     return {size.first / 2 * 2, size.second / 2 * 2};
 }
@@ -97,27 +97,27 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
             summary.interrupted = true;
             break;
         }
-        FrameCommand& order = frame->order;
-        for (Change const& c : order.changes)
+        FrameCommand& command = frame->command;
+        for (Change const& c : command.changes)
             if (!overridden.contains(c.key)) session.apply(c);
-        if (o.paths > 0) order.paths = o.paths;
-        for (ViewCommand& v : order.views)
+        if (o.paths > 0) command.paths = o.paths;
+        for (ViewCommand& v : command.views)
             if (o.size) std::tie(v.width, v.height) = *o.size;
-        SessionFrame const result = session.render(order, {});
+        SessionFrame const result = session.render(command, {});
         ++summary.frames;
         bar.update(0, fmt::format("{} frames", summary.frames));
         if (frame->pixel_hash && as_recorded(o)) {
             bool const same = frame_hash(result) == *frame->pixel_hash;
             ++(same ? summary.same : summary.other);
-            if (!same && !summary.first_other) summary.first_other = order.frame;
+            if (!same && !summary.first_other) summary.first_other = command.frame;
         } else {
             ++summary.unknown;
         }
         if (result.views.empty()) continue;
         gi::ToneMapSettings const tone = tone_settings(session.settings());
         gi::Picture const& picture = result.views[0].picture;
-        if (!o.out.empty()) save(o.out, order.frame, picture, tone, report);
-        if (video) video->show(picture, tone, order.display_s);
+        if (!o.out.empty()) save(o.out, command.frame, picture, tone, report);
+        if (video) video->show(picture, tone, command.display_s);
     }
     if (video && summary.frames > 0) video->finish();
     summary.end = reader.end();

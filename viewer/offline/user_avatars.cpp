@@ -124,8 +124,8 @@ RecordedScenes scenes_with(RenderOptions const& options, std::vector<AvatarChoic
         return scene;
     };
     if (!all.empty())
-        s.drive = [all](gi::Scene const& scene, FrameCommand const& order, gi::Pose& pose) {
-            for (auto const& avatar : all) avatar->drive(scene, order, pose);
+        s.drive = [all](gi::Scene const& scene, FrameCommand const& command, gi::Pose& pose) {
+            for (auto const& avatar : all) avatar->drive(scene, command, pose);
         };
     return s;
 }

@@ -193,9 +193,9 @@ FrameCommand command_from_bytes(std::span<std::uint8_t const> bytes)
     try {
         if (bytes.size() > CommandLimits::bytes) throw BadBytes("they are too many");
         ByteReader from(bytes);
-        FrameCommand order = get_order(from);
-        check_command(order);
-        return order;
+        FrameCommand command = get_order(from);
+        check_command(command);
+        return command;
     } catch (BadBytes const& e) {
         throw gi::InputError(fmt::format("{} bytes are no frame command", bytes.size()), e.what(),
                              "use the same version of the program on both sides");

@@ -81,11 +81,11 @@ struct CommandLimits {
 /// Throws InputError if a command cannot be rendered: non-finite numbers, a matrix that is not affine or is
 /// singular, rotations that are not unit, views without a size, a partner that is not an earlier view, a lens that
 /// gi::check_lens rejects, or anything beyond CommandLimits.
-void check_command(FrameCommand const& order);
+void check_command(FrameCommand const& command);
 
 /// Encodes doubles with all bits and omits default values: about 150 bytes for a desktop's frame, 120 more for
 /// each further view. The first byte is the format version. Throws InputError as check_command does.
-std::vector<std::uint8_t> to_bytes(FrameCommand const& order);
+std::vector<std::uint8_t> to_bytes(FrameCommand const& command);
 /// Inverse of to_bytes. Throws InputError on any other bytes.
 FrameCommand command_from_bytes(std::span<std::uint8_t const> bytes);
 

@@ -47,7 +47,7 @@ SlhbRenderer::SlhbRenderer(World const& world, std::span<FrameView const> views,
     build_exact();
     end_frame();
     make_axes();
-    make_lamps();
+    make_light_points();
     if (slhb_.cache != RadianceCaching::off && settings_.bounces > 0)
         cache_.emplace(world.bounds.radius(), std::size_t(slhb_.memory_mib) << 20);
 }
@@ -91,7 +91,7 @@ void SlhbRenderer::make_axes()
                walks());
 }
 
-void SlhbRenderer::make_lamps()
+void SlhbRenderer::make_light_points()
 {
     if (light_points_) earlier_maps_ += light_points_->maps_built();
     light_points_.emplace(world_, grid_bounds_, soup_, cut_outs_,
@@ -107,7 +107,7 @@ void SlhbRenderer::changed(Changes const& c)
     if (c.geometry || c.materials || c.coverage || c.lights || c.emitters || c.environment || c.light_select)
         forget();
     if (c.materials || c.environment) materials_changed();
-    bool const lights = changes_lamps(c);
+    bool const lights = changes_lights(c);
     if (c.geometry || lights) world_moved(c.geometry, lights);
 }
 
@@ -133,7 +133,7 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
         }
         light_points_->moved();
     }
-    if (lights) make_lamps();
+    if (lights) make_light_points();
 }
 
 void SlhbRenderer::materials_changed()
@@ -242,8 +242,8 @@ void SlhbRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Vertex
 void SlhbRenderer::pair_pass(std::uint32_t index, PairSums& sums, PathCounts& counts)
 {
     if (!std::exchange(shadow_maps_, true))
-        make_lamps(); // shadow maps show which paths dynamic geometry may
-                      // affect
+        make_light_points(); // shadow maps show which paths dynamic geometry may
+                             // affect
     prepare(index, Sides::pair);
     StageTimer const timer(report_, "paths");
     SlhbTracer::Pass now = tracing(index, false);

@@ -90,7 +90,7 @@ private:
     bool orthographic() const;
     void build_exact();
     void make_axes();
-    void make_lamps();
+    void make_light_points();
     bool walks() const;
     bool to_the_end() const;
     enum class Sides : std::uint8_t { one, pair };

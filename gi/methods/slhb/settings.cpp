@@ -34,6 +34,16 @@ double layers_per_texel(World const& world, TriangleSoup const& soup)
 
 } // namespace
 
+Schedule parse_schedule(std::string const& name)
+{
+    if (name == "stored") return Schedule::stored;
+    if (name == "streamed") return Schedule::streamed;
+    if (name == "temporal") return Schedule::temporal;
+    if (name == "auto") return Schedule::automatic;
+    throw InputError("there is no schedule '" + name + "'", "slhb does not have it",
+                     "choose auto, stored, streamed or temporal");
+}
+
 bool needs_exact_rays(World const& world, bool orthographic, SlhbSettings const& s)
 {
     return s.shadows == Shadows::rays || s.look_ups == LookUps::none || s.exact.any() || orthographic ||
@@ -89,14 +99,14 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
     if (s.fresh_axes == 0) s.fresh_axes = std::max(1, s.axes / 8);
     s.fresh_axes = std::min(s.fresh_axes, s.axes);
     bool const from_points = world.emitters.empty() && world.environment_select.empty();
-    int const most_lamps = sky ? 16 : enough;
+    int const most_light_samples = sky ? 16 : enough;
     if (s.shadow_resolution == 0)
-        s.shadow_resolution =
-            from_points ? 1024
-                        : texels_for(sky && budget == double(kInf) ? 512 : 256, most_lamps, unless_few, map);
+        s.shadow_resolution = from_points ? 1024
+                                          : texels_for(sky && budget == double(kInf) ? 512 : 256,
+                                                       most_light_samples, unless_few, map);
     if (s.light_samples == 0)
         s.light_samples =
-            from_points ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), sky ? 8 : 1, most_lamps);
+            from_points ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), sky ? 8 : 1, most_light_samples);
     if (s.memory_mib == 0) s.memory_mib = int((physical_bytes() >> 20) / 4);
     auto const map_bytes = [&] { // cube maps, the largest
         return 6.0 * s.light_samples * s.shadow_resolution * s.shadow_resolution * sizeof(NearestTexel);
@@ -181,11 +191,11 @@ SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& wor
     SlhbSettings s = choose_look_ups(lasting, world, costs);
     // Each pass replaces only a few light points, and has at least as many as a window of the discontinuity
     // filter has pixels.
-    constexpr int kLamps = 16, kPasses = 4; // passes that replace as many light points as choose_settings uses in
-                                            // one
+    constexpr int kLightSamples = 16, kPasses = 4; // passes that replace as many light points as choose_settings
+                                                   // uses in one
     int const fresh = asked.slhb.fresh_light_samples > 0 ? asked.slhb.fresh_light_samples
                                                          : std::max(1, s.light_samples / kPasses);
-    if (asked.slhb.light_samples == 0) s.light_samples = std::max(s.light_samples, kLamps);
+    if (asked.slhb.light_samples == 0) s.light_samples = std::max(s.light_samples, kLightSamples);
     s.fresh_light_samples = std::min(fresh, s.light_samples);
     return with_rays(asked, s, world, soup, camera, costs, true);
 }

@@ -17,7 +17,7 @@ struct LightPath {
     Pcg32 rng{0, 0};
     EmittedLight light;
     int scatterings = 0; ///< non-delta, so far
-    bool from_lamp = true;
+    bool from_light = true;
     std::vector<VirtualLight> left; ///< left along the path
 };
 
@@ -27,12 +27,12 @@ bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit cons
     if (hit.triangle == kNoTriangle) return false;
     vec3 const direction = p.light.ray.direction;
     ShadingPoint const at = shading_point(world, hit.triangle, hit.barycentric, direction);
-    if (p.from_lamp && p.light.range > 0) {
+    if (p.from_light && p.light.range > 0) {
         Light window;
         window.range = p.light.range;
         p.light.power *= light_detail::distance_attenuation(window, hit.distance) * square(hit.distance);
     }
-    p.from_lamp = false;
+    p.from_light = false;
     vec3 const arrived = at.frame.to_local(-direction);
     float const cos_arrived = std::abs(glm::dot(direction, at.geometric_normal));
     if (!(arrived.z > 0) || !(cos_arrived > 0)) return false;

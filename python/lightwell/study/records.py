@@ -53,15 +53,20 @@ class Records:
         trials: one row per trial that ran to its end, with every factor; `analysis` states whether it counts.
         stimuli: one row per stimulus shown in these trials.
         questionnaires: one row per item, then one per score.
-        happenings: session events: starts, calibrations, instructions, rests, walks, notes, ends.
+        session_events: starts, calibrations, instructions, rests, walks, notes, ends.
         participants: one row per participant.
     """
 
     trials: pandas.DataFrame
     stimuli: pandas.DataFrame
     questionnaires: pandas.DataFrame
-    happenings: pandas.DataFrame
+    session_events: pandas.DataFrame
     participants: pandas.DataFrame
+
+    @property
+    def happenings(self) -> pandas.DataFrame:
+        """The former name of `session_events`."""
+        return self.session_events
 
 
 def read_records(dir: str | os.PathLike[str], script: str | os.PathLike[str] = "") -> Records:
@@ -73,6 +78,7 @@ def read_records(dir: str | os.PathLike[str], script: str | os.PathLike[str] = "
 
     Raises:
         ScriptError: there is no session or no script, or a journal is damaged or belongs to another script.
+        InputError: a file cannot be read.
     """
     pandas_module()
     tables = {}

@@ -33,10 +33,10 @@ FrameCommand order_of(std::uint64_t frame)
     return o;
 }
 
-std::uint64_t hash_of(FrameCommand const& order)
+std::uint64_t hash_of(FrameCommand const& command)
 {
     std::uint64_t h = 0;
-    for (std::uint8_t const b : to_bytes(order)) h = gi::mix_bits(h + b + 1);
+    for (std::uint8_t const b : to_bytes(command)) h = gi::mix_bits(h + b + 1);
     return h;
 }
 
@@ -70,16 +70,16 @@ Call parse(int argc, char** argv)
 void show(Cluster& cluster, Call const& call, std::ofstream& log)
 {
     for (std::uint64_t frame = 0;; ++frame) {
-        FrameCommand order = order_of(frame);
+        FrameCommand command = order_of(frame);
         if (cluster.leads()) {
             if (frame == call.frames) break;
-            cluster.send(order);
+            cluster.send(command);
         } else {
             auto const received = cluster.receive();
             if (!received) break;
-            order = *received;
+            command = *received;
         }
-        log << fmt::format("{} {} {:016x}", order.frame, order.scene_s, hash_of(order)) << std::endl;
+        log << fmt::format("{} {} {:016x}", command.frame, command.scene_s, hash_of(command)) << std::endl;
         std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(call.frame_ms));
         if (call.is("--busy", cluster.rank()) && frame == 10) { // longer than others are patient
             KeepAlive const alive(cluster);
@@ -87,11 +87,11 @@ void show(Cluster& cluster, Call const& call, std::ofstream& log)
         }
         bool const astray =
             call.is("--astray", cluster.rank()) && double(frame) >= call.special.at("--astray").second;
-        std::vector<std::string> const notes =
-            cluster.wait(order.frame, astray ? 1 : 0, fmt::format("{} of rank {}", order.frame, cluster.rank()));
+        std::vector<std::string> const notes = cluster.wait(
+            command.frame, astray ? 1 : 0, fmt::format("{} of rank {}", command.frame, cluster.rank()));
         for (std::string const& note : notes)
             if (frame == 10) log << "note " << note << std::endl;
-        cluster.report_swap(order.frame, Cluster::now_s());
+        cluster.report_swap(command.frame, Cluster::now_s());
         for (std::string const& text : cluster.take_news()) log << "said " << text << std::endl;
     }
     cluster.finish();

@@ -77,7 +77,7 @@ public:
             for (Variant& v : variants_) pictures.push_back(frame(f, v)); // variants take turns
             if (f < o_.frames - o_.judged) continue;
             gi::Layer const truth =
-                reference_of(*variants_[0].session, order(f, 1).views[0], o_.reference_paths, reference_report_);
+                reference_of(*variants_[0].session, command(f, 1).views[0], o_.reference_paths, reference_report_);
             for (std::size_t k = 0; k < variants_.size(); ++k) {
                 auto const errors = gi::measure_errors(pictures[k].data, truth.data, 3);
                 variants_[k].relmse += errors.relmse / o_.judged;
@@ -102,24 +102,24 @@ public:
     }
 
 private:
-    FrameCommand order(int f, int paths) const
+    FrameCommand command(int f, int paths) const
     {
         auto const [width, height] = parse_size(o_.size);
         gi::Camera camera = start_;
         camera.world_from_camera =
             camera.world_from_camera * glm::translate(gi::dmat4(1), gi::dvec3{0.01 * f, 0, 0});
-        FrameCommand order;
-        order.frame = std::uint64_t(f);
-        order.scene_s = f / o_.rate_hz;
-        order.paths = paths;
-        order.views.push_back({"view", camera, width, height, -1});
-        return order;
+        FrameCommand command;
+        command.frame = std::uint64_t(f);
+        command.scene_s = f / o_.rate_hz;
+        command.paths = paths;
+        command.views.push_back({"view", camera, width, height, -1});
+        return command;
     }
 
     gi::Layer frame(int f, Variant& v) const
     {
         SessionFrame done;
-        double const s = seconds_of([&] { done = v.session->render(order(f, v.paths), {}); });
+        double const s = seconds_of([&] { done = v.session->render(command(f, v.paths), {}); });
         if (f >= kFirstMeasured) {
             v.ms.push_back(1e3 * s);
             v.following_ms.push_back(1e3 * done.dynamic_update.seconds);

@@ -81,10 +81,10 @@ void write_picture(gi::Layer const& color, ViewCommand const& view, std::filesys
 }
 
 /// relMSE of the last view of a frame against the reference from the same camera; writes both as pictures.
-double error_of(RenderSession const& session, FrameCommand const& order, SessionFrame const& frame, int paths,
+double error_of(RenderSession const& session, FrameCommand const& command, SessionFrame const& frame, int paths,
                 std::filesystem::path const& pictures, gi::Report& report)
 {
-    ViewCommand const& view = order.views.back();
+    ViewCommand const& view = command.views.back();
     gi::Layer const right = reference_of(session, view, paths, report);
     gi::Layer const& seen = *frame.views.back().picture.find("color");
     write_picture(seen, view, pictures.string() + ".png");
@@ -132,29 +132,29 @@ void measure(ViewsOptions const& o, std::string const& scene, BenchTable& table)
     gi::Camera const in_cave = inside(start, variants[0].session->world());
     double const step = 0.002 * double(variants[0].session->world().bounds.radius());
     auto const eye = [&](ViewVariant const& v, int f) { return aside(v.in_cave ? in_cave : start, step * f); };
-    FrameCommand order;
+    FrameCommand command;
     for (int f = 0; f < o.frames; ++f) // variants take turns
         for (ViewVariant& v : variants) {
-            order.frame = std::uint64_t(f);
-            order.scene_s = f / 20.0;
-            order.views = v.views(eye(v, f));
-            double const s = seconds_of([&] { v.last = v.session->render(order, {}); });
+            command.frame = std::uint64_t(f);
+            command.scene_s = f / 20.0;
+            command.views = v.views(eye(v, f));
+            double const s = seconds_of([&] { v.last = v.session->render(command, {}); });
             if (f < 4) continue; // the first frames build lasting structures
             v.ms.push_back(1e3 * s);
             for (auto const& [stage, stage_s] : v.last.stages_s) v.stages_ms[stage].push_back(1e3 * stage_s);
         }
     for (std::size_t k = 0; k < variants.size(); ++k) {
         ViewVariant& v = variants[k];
-        order.views = v.views(eye(v, o.frames - 1));
-        double const more = double(order.views.size()) - 1;
+        command.views = v.views(eye(v, o.frames - 1));
+        double const more = double(command.views.size()) - 1;
         // Relative to the single-view variant of the same round.
         std::vector<double> const& first = variants[v.in_cave ? 4 : 0].ms;
         std::vector<double> extra;
         for (std::size_t f = 0; f < v.ms.size(); ++f) extra.push_back((v.ms[f] - first[f]) / std::max(1.0, more));
-        table.add({scene, v.name, double(order.views.size()),
-                   fmt::format("{}x{}", order.views[0].width, order.views[0].height), summarise(v.ms),
+        table.add({scene, v.name, double(command.views.size()),
+                   fmt::format("{}x{}", command.views[0].width, command.views[0].height), summarise(v.ms),
                    more > 0 ? Cell(ratio(extra, first)) : Cell(),
-                   error_of(*v.session, order, v.last, o.reference_paths,
+                   error_of(*v.session, command, v.last, o.reference_paths,
                             std::filesystem::path(o.out) /
                                 fmt::format("{} {}", std::filesystem::path(scene).stem().string(), v.name),
                             *v.report)});

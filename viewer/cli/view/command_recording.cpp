@@ -30,14 +30,14 @@ Json describe(RecordingReader& reader)
     FrameCommand last;
     std::set<std::string> views;
     while (auto frame = reader.next()) {
-        changes += frame->order.changes.size();
+        changes += frame->command.changes.size();
         hashes += frame->pixel_hash ? 1 : 0;
         timed += frame->times ? 1 : 0;
         if (frame->times) statistics.add(*frame->times);
-        for (ViewCommand const& v : frame->order.views)
+        for (ViewCommand const& v : frame->command.views)
             views.insert(fmt::format("{} {}x{}", v.name, v.width, v.height));
-        if (!first) first = frame->order;
-        last = std::move(frame->order);
+        if (!first) first = frame->command;
+        last = std::move(frame->command);
     }
     RecordingHeader const& h = reader.header();
     Json j{{"recording", reader.name()}, {"bytes", reader.bytes()},        {"program", h.program},

@@ -169,16 +169,16 @@ gi::AvatarJoints OwnAvatar::joints_in(gi::Scene const& scene) const
     return joints;
 }
 
-void OwnAvatar::drive(gi::Scene const& scene, FrameCommand const& order, gi::Pose& pose) const
+void OwnAvatar::drive(gi::Scene const& scene, FrameCommand const& command, gi::Pose& pose) const
 {
     std::int32_t const root = find_root(scene, root_);
     if (root < 0) return;
     gi::Avatar avatar = avatar_;
     shift(avatar, root + 1);
     Tracked tracked;
-    if (user_ <= order.others.size()) tracked = user_ == 0 ? order.tracked : order.others[user_ - 1];
+    if (user_ <= command.others.size()) tracked = user_ == 0 ? command.tracked : command.others[user_ - 1];
     if (!tracked.head) tracked.head = RoomPose{{0, eye_height_m_, 0}, {1, 0, 0, 0}};
-    gi::AvatarTargets targets = puppet_targets(tracked, order.world_from_room, measures_);
+    gi::AvatarTargets targets = puppet_targets(tracked, command.world_from_room, measures_);
     if (!targets.left_hand || !targets.right_hand) {
         gi::Pose standing = pose;
         gi::drive(scene, avatar, {targets.head, {}, {}}, standing);

@@ -33,7 +33,7 @@ public:
     gi::Scene joined(gi::Scene scene) const;
     /// Poses the avatar as its user in the frame command. Without tracking, the head is at the room's centre,
     /// hands hang down, and feet keep their places below the head. Scenes without the avatar are unchanged.
-    void drive(gi::Scene const& scene, FrameCommand const& order, gi::Pose& pose) const;
+    void drive(gi::Scene const& scene, FrameCommand const& command, gi::Pose& pose) const;
 
     PuppetMeasures const& measures() const { return measures_; }
     /// Positions of its feet when standing; none for an avatar without legs.

@@ -190,37 +190,37 @@ bool LiveRenderer::anything_moves(Viewpoint const& now) const
 }
 
 /// Posts the choice as a change, like the user's, so that a replay and the other ranks apply it too.
-void LiveRenderer::choose_followed(bool may_move)
+void LiveRenderer::choose_updated_axes(bool may_move)
 {
     Settings const& s = session_.settings();
     bool const is_governed = s.method == "slhb" && s.schedule == "auto";
-    int const updated = is_governed ? follow_governor_.next(may_move) : 0;
+    int const updated = is_governed ? update_governor_.next(may_move) : 0;
     if (updated == s.updated_axes) return;
     Change const change{"updated_axes", updated};
     session_.apply(change);
     changes_.push_back(change);
 }
 
-FrameCommand LiveRenderer::make_order(Viewpoint const& now, bool still, FrameBudget& budget)
+FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameBudget& budget)
 {
     Settings const& s = session_.settings();
     budget = governor_.next(pixels_of(now.views), still, {s.paths, s.scale});
-    FrameCommand order;
-    order.frame = frame_++;
-    order.pose_s = now.pose_s;
-    order.display_s = now.display_s;
-    order.scene_s = scene_s_;
-    order.world_from_room = now.world_from_room;
-    order.tracked = now.tracked;
-    order.others = now.others;
-    order.changes = std::exchange(changes_, {});
-    order.views = now.views;
-    for (ViewCommand& v : order.views) {
+    FrameCommand command;
+    command.frame = frame_++;
+    command.pose_s = now.pose_s;
+    command.display_s = now.display_s;
+    command.scene_s = scene_s_;
+    command.world_from_room = now.world_from_room;
+    command.tracked = now.tracked;
+    command.others = now.others;
+    command.changes = std::exchange(changes_, {});
+    command.views = now.views;
+    for (ViewCommand& v : command.views) {
         v.width = std::max(1, int(std::lround(v.width * budget.scale)));
         v.height = std::max(1, int(std::lround(v.height * budget.scale)));
     }
-    order.paths = budget.paths;
-    return order;
+    command.paths = budget.paths;
+    return command;
 }
 
 void LiveRenderer::run_leading()
@@ -254,10 +254,10 @@ void LiveRenderer::run_leading()
             wait_until(begun + 0.01);
             continue;
         }
-        choose_followed(scene_may_move(now));
+        choose_updated_axes(scene_may_move(now));
         FrameBudget budget;
-        FrameCommand order = make_order(now, still, budget);
-        if (link_ != nullptr) link_->send(order);
+        FrameCommand command = make_command(now, still, budget);
+        if (link_ != nullptr) link_->send(command);
         {
             std::lock_guard const lock(mutex_);
             resting_ = false;
@@ -265,7 +265,7 @@ void LiveRenderer::run_leading()
             bool const may_end_early = still && link_ == nullptr && s.method == "slhb" && s.compare.empty();
             refining_ = may_end_early ? std::make_shared<gi::StopRequest>() : nullptr;
         }
-        if (!render(std::move(order), budget)) wait_until(clock_.now_s() + 0.2);
+        if (!render(std::move(command), budget)) wait_until(clock_.now_s() + 0.2);
         if (!still) wait_until(begun + 1 / s.rate_hz);
     }
 }
@@ -273,10 +273,10 @@ void LiveRenderer::run_leading()
 void LiveRenderer::run_following()
 {
     while (!quit_) {
-        std::optional<FrameCommand> order = link_->receive();
-        if (!order) return;
-        for (Change const& c : order->changes) session_.apply(c);
-        render(std::move(*order), {});
+        std::optional<FrameCommand> command = link_->receive();
+        if (!command) return;
+        for (Change const& c : command->changes) session_.apply(c);
+        render(std::move(*command), {});
     }
 }
 
@@ -287,10 +287,10 @@ void LiveRenderer::measure(FrameWork const& work, FrameBudget const& budget)
     governor_.measured({last_.paths, budget.scale}, pixels_of(last_views_) / (budget.scale * budget.scale),
                        work.seconds, s.rate_hz);
     if (s.method == "slhb" && s.schedule == "auto")
-        follow_governor_.measured({work.dynamic_update, work.moved, s.rate_hz});
+        update_governor_.measured({work.dynamic_update, work.moved, s.rate_hz});
 }
 
-bool LiveRenderer::render(FrameCommand order, FrameBudget const& budget)
+bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget)
 {
     auto frame = std::make_shared<LiveFrame>();
     frame->begun_s = clock_.now_s();
@@ -298,11 +298,11 @@ bool LiveRenderer::render(FrameCommand order, FrameBudget const& budget)
     gi::StopRequest never;
     std::shared_ptr<gi::StopRequest> const stop = refining_;
     if (hooks_.own_views) {
-        frame->ordered = order.views;
-        order.views = hooks_.own_views(order);
+        frame->ordered = command.views;
+        command.views = hooks_.own_views(command);
     }
     try {
-        frame->result = session_.render(order, stop ? *stop : never);
+        frame->result = session_.render(command, stop ? *stop : never);
     } catch (gi::InputError const& e) {
         if (hooks_.failed) hooks_.failed(e.what());
         frame->result = {};
@@ -312,26 +312,26 @@ bool LiveRenderer::render(FrameCommand order, FrameBudget const& budget)
         refining_ = nullptr;
     }
     frame->done_s = clock_.now_s();
-    bool const done = !frame->result.views.empty() || order.views.empty(); // a rank may have no walls to draw
+    bool const done = !frame->result.views.empty() || command.views.empty(); // a rank may have no walls to draw
     if (!frame->result.views.empty()) {
-        order.paths = frame->result.paths;
-        still_paths_ = frame->result.still_frames > 1 ? still_paths_ + std::uint32_t(order.paths)
-                                                      : std::uint32_t(order.paths);
+        command.paths = frame->result.paths;
+        still_paths_ = frame->result.still_frames > 1 ? still_paths_ + std::uint32_t(command.paths)
+                                                      : std::uint32_t(command.paths);
     }
     frame->still_paths = still_paths_;
     frame->settings = session_.settings();
-    last_views_ = frame->ordered.empty() ? order.views : frame->ordered;
-    last_ = order;
+    last_views_ = frame->ordered.empty() ? command.views : frame->ordered;
+    last_ = command;
     has_last_ = true;
-    frame->order = std::move(order);
+    frame->command = std::move(command);
     FrameWork const own{frame->done_s - frame->begun_s, frame->result.dynamic_update, frame->result.moved};
     if (done && link_ == nullptr) measure(own, budget);
     if (!frame->result.views.empty()) stored_ = own.dynamic_update.stored;
     if (Settings const& s = frame->settings; s.method == "slhb")
-        frame->schedule = schedule_sentence(s.schedule, s.updated_axes, stored_, follow_governor_.share_of_all());
+        frame->schedule = schedule_sentence(s.schedule, s.updated_axes, stored_, update_governor_.share_of_all());
     if (done && hooks_.finished) hooks_.finished(*frame);
     if (!done) return false;
-    FrameCommand const shown = frame->order;
+    FrameCommand const shown = frame->command;
     {
         std::lock_guard const lock(mutex_);
         newest_ = std::move(frame);

@@ -42,7 +42,7 @@ struct Viewpoint {
 };
 
 struct LiveFrame {
-    FrameCommand order;               ///< with the views rendered by this process
+    FrameCommand command;             ///< with the views rendered by this process
     std::vector<ViewCommand> ordered; ///< all views, if other processes render some of them; else empty
     SessionFrame result;
     FrameBudget budget;
@@ -70,14 +70,14 @@ public:
     virtual void begin() = 0;
     virtual void end() = 0;
     virtual bool leads() const = 0;
-    virtual void send(FrameCommand const& order) = 0;
+    virtual void send(FrameCommand const& command) = 0;
     /// Empty when the session ends.
     virtual std::optional<FrameCommand> receive() = 0;
     /// Called now and then while there is nothing to render. Throws if a rank that is needed was lost.
     virtual void check() = 0;
     /// Returns when all ranks have drawn the frame and may swap. @param own  of this rank
     /// @return on the leader: of the ranks with the longest frame and the longest dynamic update; else `own`
-    virtual FrameWork wait_for_all(FrameCommand const& order, FrameWork const& own) = 0;
+    virtual FrameWork wait_for_all(FrameCommand const& command, FrameWork const& own) = 0;
     /// Called by the presenting thread when the frame is drawn; returns when all ranks may swap.
     virtual void drawn(std::uint64_t frame) = 0;
     virtual void swapped(std::uint64_t frame, double steady_s) = 0;
@@ -127,10 +127,10 @@ private:
     void do_jobs();
     bool scene_may_move(Viewpoint const& now) const;
     bool anything_moves(Viewpoint const& now) const;
-    void choose_followed(bool may_move);
+    void choose_updated_axes(bool may_move);
     void measure(FrameWork const& work, FrameBudget const& budget);
-    FrameCommand make_order(Viewpoint const& now, bool still, FrameBudget& budget);
-    bool render(FrameCommand order, FrameBudget const& budget);
+    FrameCommand make_command(Viewpoint const& now, bool still, FrameBudget& budget);
+    bool render(FrameCommand command, FrameBudget const& budget);
     void wait_until(double time_s);
 
     RenderSession& session_;
@@ -150,7 +150,7 @@ private:
 
     // Used only by the rendering thread
     Governor governor_;
-    UpdateGovernor follow_governor_;
+    UpdateGovernor update_governor_;
     int stored_ = 0; ///< stored axes in the last measured frame
     std::vector<Change> changes_;
     FrameCommand last_;

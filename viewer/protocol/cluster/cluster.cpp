@@ -58,27 +58,27 @@ void Cluster::check()
     if (!alone()) state_->pump();
 }
 
-void Cluster::send(FrameCommand const& order)
+void Cluster::send(FrameCommand const& command)
 {
     if (alone()) return;
-    std::vector<std::uint8_t> const bytes = to_bytes(order);
+    std::vector<std::uint8_t> const bytes = to_bytes(command);
     state_->note_order(bytes);
     state_->pump();
-    state_->send_to_others(Writer(MessageKind::order).append(bytes));
+    state_->send_to_others(Writer(MessageKind::command).append(bytes));
 }
 
 std::optional<FrameCommand> Cluster::receive()
 {
     if (alone()) return {};
     State& s = *state_;
-    s.await([&s] { return !s.orders.empty() || s.is_ended; }, [](int who) { return who == 0; },
+    s.await([&s] { return !s.commands.empty() || s.is_ended; }, [](int who) { return who == 0; },
             s.settings.silence_s, "while waiting for a frame command");
-    if (s.orders.empty()) {
+    if (s.commands.empty()) {
         finish();
         return {};
     }
-    std::vector<std::uint8_t> const bytes = std::move(s.orders.front());
-    s.orders.pop_front();
+    std::vector<std::uint8_t> const bytes = std::move(s.commands.front());
+    s.commands.pop_front();
     s.note_order(bytes);
     return command_from_bytes(bytes);
 }

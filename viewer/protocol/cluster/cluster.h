@@ -77,7 +77,7 @@ public:
 
     // Frames.
     /// Leader: sends to all others.
-    void send(FrameCommand const& order);
+    void send(FrameCommand const& command);
     /// Follower: waits for the next frame command. None: the leader has finished.
     std::optional<FrameCommand> receive();
     /// Waits before the swap until all ranks are ready. Compares a hash of all frame commands so far; a rank with

@@ -204,9 +204,9 @@ void Cluster::State::handle(Message const& message)
         from.clock.add(in.get<Echo>(), now_s());
         ++pongs;
         return;
-    case MessageKind::order: {
+    case MessageKind::command: {
         auto const bytes = in.rest();
-        orders.emplace_back(bytes.begin(), bytes.end());
+        commands.emplace_back(bytes.begin(), bytes.end());
         return;
     }
     case MessageKind::arrived: {

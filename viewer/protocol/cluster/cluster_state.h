@@ -76,9 +76,9 @@ struct Cluster::State {
     std::vector<Peer> peers; ///< all ranks, including this one
     std::vector<ClusterIdentity> identities;
     std::uint64_t orders_check = 0;
-    std::deque<std::vector<std::uint8_t>> orders; ///< received but not yet fetched
-    std::optional<std::uint64_t> gone;            ///< frame of the last `go`
-    Echo last_go;                                 ///< to be answered by a follower
+    std::deque<std::vector<std::uint8_t>> commands; ///< received but not yet fetched
+    std::optional<std::uint64_t> gone;              ///< frame of the last `go`
+    Echo last_go;                                   ///< to be answered by a follower
     int pongs = 0, wants = 0;
     bool is_started = false, is_ended = false, over = false;
     bool is_leaving = false; ///< follower: has sent goodbye

@@ -18,7 +18,7 @@ enum class MessageKind : std::uint8_t {
     started, ///< leader: all ranks have started; their names
     ping,    ///< leader: its time, s
     pong,    ///< follower: Echo
-    order,   ///< leader: to_bytes of a FrameCommand
+    command, ///< leader: to_bytes of a FrameCommand
     arrived, ///< follower: ready to swap; with a note
     go,      ///< leader: all ranks are ready to swap
     alive,   ///< any rank: sign of life while it waits or works

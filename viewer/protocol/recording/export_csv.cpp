@@ -120,7 +120,7 @@ void add_tracked(Row& row, Tracked const& tracked)
 
 std::string row_of(RecordedFrame const& f, Most const& most)
 {
-    FrameCommand const& o = f.order;
+    FrameCommand const& o = f.command;
     Row row;
     row.add(std::to_string(o.frame));
     for (double const t : {o.pose_s, o.display_s, o.scene_s}) row.add(t);
@@ -148,8 +148,8 @@ RecordingEnd export_csv(RecordingReader& recording, std::filesystem::path const&
     Most most;
     recording.rewind();
     while (auto const frame = recording.next())
-        most = {std::max(most.others, frame->order.others.size()),
-                std::max(most.views, frame->order.views.size())};
+        most = {std::max(most.others, frame->command.others.size()),
+                std::max(most.views, frame->command.views.size())};
     recording.rewind();
 
     gi::write_by_rename(file, [&](std::filesystem::path const& temporary) {

@@ -54,18 +54,18 @@ Recorder::~Recorder() { finish(); }
 
 void Recorder::append(RecordedFrame const& f)
 {
-    if (last_frame_ && f.order.frame <= *last_frame_)
-        throw gi::InputError(fmt::format("frame {} cannot be recorded", f.order.frame),
+    if (last_frame_ && f.command.frame <= *last_frame_)
+        throw gi::InputError(fmt::format("frame {} cannot be recorded", f.command.frame),
                              fmt::format("it comes after frame {}", *last_frame_), "count frames up");
     ByteWriter payload;
     payload.put_byte(std::uint8_t((f.pixel_hash ? 1 : 0) + (f.times ? 2 : 0)));
     if (f.pixel_hash) payload.put_u64(*f.pixel_hash);
     if (f.times) put(payload, *f.times);
-    payload.put_raw(to_bytes(f.order));
+    payload.put_raw(to_bytes(f.command));
     ByteWriter record;
     put_record(record, kFrameRecord, payload.bytes());
     file_.append(record.bytes());
-    last_frame_ = f.order.frame;
+    last_frame_ = f.command.frame;
     ++frames_;
 }
 

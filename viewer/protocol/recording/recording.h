@@ -30,7 +30,7 @@ struct RecordingHeader {
 };
 
 struct RecordedFrame {
-    FrameCommand order;
+    FrameCommand command;
     std::optional<std::uint64_t> pixel_hash; ///< see pixel_hash.h
     std::optional<FrameTimes> times;
 

@@ -40,11 +40,11 @@ RecordedFrame frame_of(Bytes const& payload)
     if (flags > 3) throw BadBytes("a frame has unknown content");
     if ((flags & 1) != 0) f.pixel_hash = from.u64();
     if ((flags & 2) != 0) f.times = get_frame_times(from);
-    f.order = command_from_bytes(from.take(from.left()));
+    f.command = command_from_bytes(from.take(from.left()));
     if (f.times) {
-        f.times->frame = f.order.frame;
-        f.times->pose_s = f.order.pose_s;
-        f.times->display_s = f.order.display_s;
+        f.times->frame = f.command.frame;
+        f.times->pose_s = f.command.pose_s;
+        f.times->display_s = f.command.display_s;
     }
     return f;
 }
@@ -156,9 +156,9 @@ std::optional<RecordedFrame> RecordingReader::next()
         }
         if (record.type != kFrameRecord) throw BadBytes(fmt::format("a record is of type {}", record.type));
         RecordedFrame frame = frame_of(record.payload);
-        if (end_.last_frame && frame.order.frame <= *end_.last_frame)
-            throw BadBytes(fmt::format("frame {} follows frame {}", frame.order.frame, *end_.last_frame));
-        end_.last_frame = frame.order.frame;
+        if (end_.last_frame && frame.command.frame <= *end_.last_frame)
+            throw BadBytes(fmt::format("frame {} follows frame {}", frame.command.frame, *end_.last_frame));
+        end_.last_frame = frame.command.frame;
         ++end_.frames;
         return frame;
     } catch (Cut const& e) {

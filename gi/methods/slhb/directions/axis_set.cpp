@@ -116,7 +116,7 @@ void AxisSet::update_axes()
     move(std::vector<std::uint8_t>(cut_seeds_.size(), 1));
 }
 
-std::size_t AxisSet::follow_some(std::uint32_t sequences, std::uint32_t count, std::uint32_t turn)
+std::size_t AxisSet::update_some_axes(std::uint32_t sequences, std::uint32_t count, std::uint32_t turn)
 {
     std::size_t const n = tables_.axes.size();
     auto const parts = std::uint32_t(

@@ -116,7 +116,7 @@ public:
     /// part of the set with about `count` axes (up to FewAxes::kMost). Successive turns visit all parts in random
     /// order; the mean over the parts equals the result of all axes. @param count  0 = all
     /// @return number of distinct axes updated
-    std::size_t follow_some(std::uint32_t sequences, std::uint32_t count, std::uint32_t turn);
+    std::size_t update_some_axes(std::uint32_t sequences, std::uint32_t count, std::uint32_t turn);
     /// Makes look-ups find dynamic geometry or ignore it.
     void show_moving(bool shown) { pool_.without_moving = !shown; }
 

@@ -60,7 +60,7 @@ void FrameAxes::prepare(int surfaces, std::uint32_t index)
         return;
     }
     auto const begun = std::chrono::steady_clock::now();
-    std::size_t const axes = set_->follow_some(sequences, slhb_.gather ? 0 : updated_axes_, frames_);
+    std::size_t const axes = set_->update_some_axes(sequences, slhb_.gather ? 0 : updated_axes_, frames_);
     double const s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     if (!std::exchange(follows_, true)) dynamic_update_ = {0, int(axes), int(sequences), 0};
     dynamic_update_.seconds += s;

@@ -13,6 +13,6 @@ Bounds grid_bounds(World const& world, TriangleSoup const& soup, std::size_t fir
 bool grow(Bounds& bounds, Bounds const& world);
 
 /// True if light points have to be chosen again.
-inline bool changes_lamps(Changes const& c) { return c.lights || c.light_select || c.emitters || c.environment; }
+inline bool changes_lights(Changes const& c) { return c.lights || c.light_select || c.emitters || c.environment; }
 
 } // namespace gi

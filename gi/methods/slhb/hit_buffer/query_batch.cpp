@@ -249,7 +249,7 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
             return grids.pair;
     };
     auto const queries_of = [&](std::size_t pair) { return std::min(two, n - pair * two); };
-    auto const judge = [&](std::vector<std::uint32_t>& queries) {
+    auto const check = [&](std::vector<std::uint32_t>& queries) {
         for (std::uint32_t const q : queries) // their surfaces have been prefetched by now
             if (!query_detail::can_be_hit(surfaces[b.hit[q] & kPrimitiveMask], b.hit[q], b.origin(q), grids.of(q)))
                 unsure.push_back(q);
@@ -300,11 +300,11 @@ void ask(AxisPool const& pool, Grids const& grids, View<Surface const> surfaces,
         for (std::uint32_t bits = ~a.found & there; bits != 0; bits &= bits - 1)
             unsure.push_back(std::uint32_t(first) + std::uint32_t(std::countr_zero(bits)));
         if (pair % 4 != 3) continue;
-        judge(doubted);
+        check(doubted);
         std::swap(doubtful, doubted);
     }
-    judge(doubted);
-    judge(doubtful);
+    check(doubted);
+    check(doubtful);
     std::ranges::sort(unsure);
 }
 

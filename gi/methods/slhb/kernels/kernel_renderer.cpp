@@ -45,7 +45,7 @@ KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const>
     see(views);
     end_frame();
     make_axes();
-    make_lamps();
+    make_light_points();
 }
 
 /// Paths also leave the last surface along axes.
@@ -74,10 +74,10 @@ void KernelRenderer<S>::make_axes()
 }
 
 template <Space S>
-void KernelRenderer<S>::make_lamps()
+void KernelRenderer<S>::make_light_points()
 {
     if (light_points_) earlier_maps_ += light_points_->maps_built();
-    scene_.forget_lamps();
+    scene_.forget_light_points();
     light_points_.emplace(world_, grid_bounds_, soup_, cut_outs_,
                           LightPointSettings{.count = std::uint32_t(slhb_.light_samples),
                                              .fresh = std::uint32_t(slhb_.fresh_light_samples),
@@ -98,7 +98,7 @@ void KernelRenderer<S>::changed(Changes const& c)
         }
         scene_.update(world_, soup_, c);
     }
-    bool axes = axes_.walks() != walks(), light_points = changes_lamps(c);
+    bool axes = axes_.walks() != walks(), light_points = changes_lights(c);
     if (c.geometry) {
         if (grow(grid_bounds_, world_.bounds)) {
             if (slhb_.schedule != Schedule::streamed) // streamed buffers are rebuilt in every pass
@@ -109,7 +109,7 @@ void KernelRenderer<S>::changed(Changes const& c)
         light_points_->moved();
     }
     if (axes) make_axes();
-    if (light_points) make_lamps();
+    if (light_points) make_light_points();
 }
 
 template <Space S>

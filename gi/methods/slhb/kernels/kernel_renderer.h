@@ -59,7 +59,7 @@ private:
     bool meets_light() const;
     bool walks() const { return settings_.bounces > 0 || meets_light(); }
     void make_axes();
-    void make_lamps();
+    void make_light_points();
     void prepare(std::uint32_t index);
 
     World const& world_;

@@ -68,7 +68,7 @@ public:
         }
         light_points_ = upload<S>(views);
     }
-    void forget_lamps()
+    void forget_light_points()
     {
         maps_.clear();
         light_points_ = {};

@@ -63,9 +63,9 @@ private:
         vec3 position{0};  ///< only read after the first surface
         vec3 direction{0}; ///< of arrival
         vec3 throughput{1};
-        float arrival_pdf = 0;    ///< of the direction, 1/sr; 0 = camera
-        float distance = 0;       ///< length of the last walk, m
-        bool meets_lamps = false; ///< emission of lights hit by the last walk counts
+        float arrival_pdf = 0;        ///< of the direction, 1/sr; 0 = camera
+        float distance = 0;           ///< length of the last walk, m
+        bool counts_emission = false; ///< emission of lights hit by the last walk counts
         int scatterings = 0;
 
         GI_FN std::uint32_t dimension(PathDimension d) const

@@ -33,7 +33,7 @@ GI_FN inline vec3 TracePaths::sky(State const& s) const
 GI_FN inline vec3 TracePaths::emission(State const& s, ShadingPoint const& at) const
 {
     if (s.scatterings == 0) return at.emission;
-    if (!s.meets_lamps || !(max_component(at.emission) > 0)) return vec3{0};
+    if (!s.counts_emission || !(max_component(at.emission) > 0)) return vec3{0};
     float const cos_light = std::abs(glm::dot(s.direction, at.geometric_normal));
     float const pdf = emitter_direction_pdf(world, s.triangle, s.distance, cos_light);
     return s.throughput * at.emission * power_heuristic(s.arrival_pdf, pdf);
@@ -108,7 +108,7 @@ GI_FN inline bool TracePaths::leave(State& s, ShadingPoint const& at, vec3 wo, b
     ++local.queries;
     s.triangle = hit.triangle;
     s.distance = glm::length(hit.position - at.position);
-    s.meets_lamps = !narrow;
+    s.counts_emission = !narrow;
     s.position = hit.position;
     s.barycentric = vec2{1.0f / 3};
     s.direction = a.direction;

@@ -32,7 +32,7 @@ enum class PathDimension : std::uint32_t {
     lobe_v,
     roulette,
     light_point,
-    lamp_pick,
+    light_sample_pick,
     shadow, ///< from here on plain pseudo-random, not low-discrepancy
     cone,
     cache,

@@ -66,8 +66,8 @@ void SlhbTracer::aim_at_light(Pass const& pass, State const& s, Leaving const& f
 {
     VertexNumbers const& u = *s.u;
     vec3 const normal = from.at.frame.normal;
-    ChosenLight const chosen =
-        pass.lights->choose(from.at.position, normal, u[PathDimension::light_point], u[PathDimension::lamp_pick]);
+    ChosenLight const chosen = pass.lights->choose(from.at.position, normal, u[PathDimension::light_point],
+                                                   u[PathDimension::light_sample_pick]);
     if (chosen.light == nullptr) return;
     LightSample const light = chosen.light->seen_from(world_, from.at.position);
     vec3 const value = chosen.weight * unshadowed(from, light);

@@ -91,7 +91,7 @@ Table questionnaires_table(Script const& script, RecordedSession const& session)
     return table;
 }
 
-Table happenings_table(RecordedSession const& session)
+Table session_events_table(RecordedSession const& session)
 {
     Table table{{{"onset", "Start, since the beginning of the session", "s"},
                  {"duration", "Duration", "s"},
