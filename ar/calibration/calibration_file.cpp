@@ -1,5 +1,6 @@
 #include "ar/calibration/calibration_file.h"
 
+#include "gi/core/durable_file.h"
 #include "gi/core/file.h"
 #include "gi/core/yaml.h"
 
@@ -253,7 +254,7 @@ void write_calibration(std::filesystem::path const& file, Calibration const& c)
                                  "rename it");
     std::string const text = format_calibration(c);
     parse_calibration(text, file.string()); // refuse to write what could not be read back
-    gi::write_text(file, text);
+    gi::write_durably(file, text);
 }
 
 } // namespace ar

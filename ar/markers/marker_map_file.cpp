@@ -1,5 +1,6 @@
 #include "ar/markers/marker_map_file.h"
 
+#include "gi/core/durable_file.h"
 #include "gi/core/file.h"
 #include "gi/core/yaml.h"
 
@@ -157,7 +158,7 @@ MarkerMap read_marker_map(std::filesystem::path const& file)
 void write_marker_map(std::filesystem::path const& file, MarkerMap const& map)
 {
     check(map, file.string());
-    gi::write_text(file, format_marker_map(map));
+    gi::write_durably(file, format_marker_map(map));
 }
 
 } // namespace ar
