@@ -11,7 +11,7 @@ struct ZTest {
     double mean_z = 0;     ///< mean of z; the most sensitive sign of a bias
     double beyond_2 = 0;   ///< fraction with |z| > 2; 0.0455 expected
     double beyond_3 = 0;   ///< fraction with |z| > 3; 0.0027 expected
-    double largest = 0;    ///< ///< largest |z|
+    double largest = 0;    ///< largest |z|
     double sidak_p = 1;    ///< probability of a maximum |z| this large among `count` values (Sidak)
     double mean_p = 1;     ///< probability of a mean this far from 0, assuming independent values
     double chi2_p = 1;     ///< probability of a sum of z^2 this large or larger, assuming independent values

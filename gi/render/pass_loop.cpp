@@ -37,7 +37,7 @@ bool PassLoop::save(std::uint64_t print)
         save_checkpoint(settings_.checkpoint, sums_, print);
         return true;
     } catch (InputError const& e) {
-        report_.lose("states to go on from that could not be written", 1, e.what());
+        report_.lose("checkpoints that could not be written", 1, e.what());
         return false;
     }
 }

@@ -105,7 +105,7 @@ TEST(Determinism, AStateThatCannotBeWrittenCostsNoPicture)
     EXPECT_FALSE(part.resumable);
     EXPECT_GT(part.paths, 0u);
     EXPECT_FALSE(part.picture.layers.empty());
-    EXPECT_EQ(report.losses().count("states to go on from that could not be written"), 1u);
+    EXPECT_EQ(report.losses().count("checkpoints that could not be written"), 1u);
 }
 
 /// Whatever changes the picture makes a state unusable.

@@ -115,7 +115,7 @@ TEST(RayPlan, BuffersStayWithinTheirMemory)
     s.slhb.resolution = 256;
     s.slhb.memory_mib = 64; // 160 axes of 256 x 256 take about 500
     SlhbRun const run = render_with_slhb(world, look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70), s);
-    std::string const what = "times that hit buffers got half as many texels on a side, to stay within --memory";
+    std::string const what = "times the resolution of hit buffers was halved to stay within --memory";
     ASSERT_EQ(run.losses.count(what), 1u);
     EXPECT_GE(run.losses.at(what).count, 1u);
 }

@@ -225,14 +225,13 @@ TEST(DisplayFile, DoubtsAreCounted)
     parse_display(text, "d.yaml", report);
     EXPECT_EQ(report.losses().size(), 3u);
     EXPECT_EQ(report.losses().at("windows without a wall, which stay dark").first, "idle");
-    EXPECT_TRUE(report.losses().contains("walls that were not quite rectangular, made so"));
-    EXPECT_TRUE(
-        report.losses().contains("unusual distances between the eyes: most people's are 0.050 to 0.075 m"));
+    EXPECT_TRUE(report.losses().contains("walls not quite rectangular, made rectangular"));
+    EXPECT_TRUE(report.losses().contains("unusual interpupillary distances: most people's are 0.050 to 0.075 m"));
     gi::Report blend;
     Display power = shipped("powerwall.yaml");
     power.walls[1].blend.left_m = 0.1;
     parse_display(to_yaml(power), "d.yaml", blend);
-    EXPECT_EQ(blend.losses().at("walls that overlap by another width than they are blended over").count, 1u);
+    EXPECT_EQ(blend.losses().at("walls whose overlap differs from their blend width").count, 1u);
 }
 
 TEST(DisplayFile, MeshesAreReadBesideTheFile)

@@ -82,7 +82,7 @@ TEST(Import, SgctStereoModesAndWhatIsLost)
     EXPECT_EQ(d.users[0].interpupillary_m, 0.063);
     for (char const* what :
          {"SGCT window.msaa: not imported", "SGCT settings: not imported", "SGCT user.tracking: not imported",
-          "distances between the eyes that nobody has, replaced by 0.063 m"})
+          "implausible interpupillary distances, replaced by 0.063 m"})
         EXPECT_TRUE(lost.losses().contains(what)) << what;
 }
 
@@ -217,7 +217,7 @@ endsection
     for (char const* what :
          {"Vrui windowType Strange: shown without stereo",
           "windows whose size the file does not tell, taken as 1920 x 1080",
-          "Vrui device daemons are not trackers of ours: the head rests until a tracker is added",
+          "Vrui device daemons are not supported trackers: the head rests until a tracker is added",
           "Vrui environments other than the one imported",
           "Vrui settings that are not about walls, windows and viewers: not imported"})
         EXPECT_TRUE(report.losses().contains(what)) << what;

@@ -118,13 +118,13 @@ TEST(VisibilityHardCases, WhatIsBoundedAndWhatNoAxisLeavesIsCounted)
     s.vpl.near_m = 0.2f;
     VisibilityRun const exact = render_visibility(VisibilityKind::exact, world, in_the_box(), s);
     EXPECT_GT(exact.counts.at("virtual lights"), 64 * 4);
-    EXPECT_GT(exact.counts.at("of these bounded, the rest by camera paths"), 0);
+    EXPECT_GT(exact.counts.at("connections bounded, the rest computed by camera paths"), 0);
     EXPECT_GT(exact.counts.at("connections to virtual lights"),
-              10 * exact.counts.at("of these bounded, the rest by camera paths"));
+              10 * exact.counts.at("connections bounded, the rest computed by camera paths"));
     EXPECT_TRUE(exact.losses.empty());
     VisibilityRun const slhb =
         render_visibility(VisibilityKind::slhb, world, in_the_box(), small_picture(16, 4, 2));
-    EXPECT_GT(slhb.losses.at("connections that no axis leaves, taken as free").count, 0u);
+    EXPECT_GT(slhb.losses.at("connections without a suitable axis, taken as unoccluded").count, 0u);
 }
 
 TEST(VisibilityHardCases, MapsThatCannotBeAreRefused)

@@ -112,7 +112,8 @@ private:
             if (same(mask, told_[eye])) continue;
             told_[eye] = mask;
             core_.renderer->post(hidden_change(kEyes[eye], mask), [this](std::string const& wrong) {
-                if (!wrong.empty()) core_.report.lose("masks of eyes not used: all is rendered", 1, wrong);
+                if (!wrong.empty())
+                    core_.report.lose("visibility masks of eyes not used: all pixels are rendered", 1, wrong);
             });
         }
     }

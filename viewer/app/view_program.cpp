@@ -170,7 +170,7 @@ private:
         StereoMode const mode = *stereo_mode(state_.settings.stereo);
         if (mode != StereoMode::quad_buffer || shown_.windows[0]->window.has_quad_buffer()) return mode;
         if (!std::exchange(fallback_told_, true))
-            core_.report.lose("stereo by quad buffers, which this window has not: side by side instead");
+            core_.report.lose("quad-buffer stereo not supported by this window: side by side instead");
         return StereoMode::side_by_side;
     }
 

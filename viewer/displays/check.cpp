@@ -400,7 +400,7 @@ void report_doubts(Display const& d, gi::Report& report)
 {
     for (User const& u : d.users)
         if (!is_within(u.interpupillary_m, kFewNarrower_m, kFewWider_m))
-            report.lose("unusual distances between the eyes: most people's are 0.050 to 0.075 m", 1,
+            report.lose("unusual interpupillary distances: most people's are 0.050 to 0.075 m", 1,
                         fmt::format("user '{}', {} m", u.name, u.interpupillary_m));
     std::set<int> used;
     for (Wall const& wall : d.walls) used.insert({wall.window, wall.second_window});
@@ -410,7 +410,7 @@ void report_doubts(Display const& d, gi::Report& report)
     for (Wall const& wall : d.walls) frames.push_back(wall_frame(wall.corners));
     for (std::size_t i = 0; i < frames.size(); ++i)
         if (frames[i].skew_deg > 0.01)
-            report.lose("walls that were not quite rectangular, made so", 1,
+            report.lose("walls not quite rectangular, made rectangular", 1,
                         fmt::format("'{}', {:.3g} degrees", d.walls[i].name, frames[i].skew_deg));
     for (std::size_t i = 0; i < frames.size(); ++i)
         for (std::size_t j = 0; j < frames.size(); ++j) {
@@ -419,7 +419,7 @@ void report_doubts(Display const& d, gi::Report& report)
             double const slack = 0.01 + 0.02 * overlap_width;
             if (std::abs(d.walls[i].blend.right_m - overlap_width) > slack ||
                 std::abs(d.walls[j].blend.left_m - overlap_width) > slack)
-                report.lose("walls that overlap by another width than they are blended over", 1,
+                report.lose("walls whose overlap differs from their blend width", 1,
                             fmt::format("'{}' and '{}' overlap by {:.4g} m", d.walls[i].name, d.walls[j].name,
                                         overlap_width));
         }

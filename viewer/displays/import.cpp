@@ -66,7 +66,7 @@ Display import_display(std::filesystem::path const& file, std::string const& sec
 double imported_eyes(double metres, std::string const& where, gi::Report& report)
 {
     if (metres >= kNarrowestEyes_m && metres <= kWidestEyes_m) return metres;
-    report.lose("distances between the eyes that nobody has, replaced by 0.063 m", 1,
+    report.lose("implausible interpupillary distances, replaced by 0.063 m", 1,
                 fmt::format("{}: {} m", where, metres));
     return User{}.interpupillary_m;
 }

@@ -177,11 +177,11 @@ User read_viewer(TextNode const& s, VruiContext& c)
                           c.where(*t));
     }
     if (s.text("headTracked") == "true")
-        c.report.lose("Vrui device daemons are not trackers of ours: the head rests until a tracker is added", 1,
+        c.report.lose("Vrui device daemons are not supported trackers: the head rests until a tracker is added", 1,
                       c.where(s));
     TextNode const *const left = s.find("leftEyePosition"), *const right = s.find("rightEyePosition");
     if (!left || !right) {
-        c.report.lose("eyes that the file does not place: taken as 0.063 m apart", 1, c.where(s));
+        c.report.lose("interpupillary distance not in the file: 0.063 m assumed", 1, c.where(s));
         return user;
     }
     gi::dvec3 const l = c.place(point_of(*left, c.file)), r = c.place(point_of(*right, c.file)), between = r - l;

@@ -168,7 +168,7 @@ ScreenSwap HmdScreen::present(ScreenContent const& content)
     context_.gl().make_current();
     draw_text(content);
     if (content.patch_size_px.x > 0 && !std::exchange(patch_told_, true))
-        report_.lose("patches for a photodiode, which a headset has not");
+        report_.lose("photodiode patches not shown: a headset has no place for them");
     if (!next) { // show it only in the window
         context_.window->swap();
         return {Clock::now(), Clock::now(), 1e3, "openxr_predicted"};

@@ -68,7 +68,7 @@ Markers::Markers(std::vector<std::string> const& wanted, int port, std::string c
             lsl_ = std::make_unique<Lsl>();
             if (lsl_->open(experiment)) continue;
             lsl_.reset();
-            report.lose("marker streams that could not be opened: liblsl is not there");
+            report.lose("marker streams that could not be opened: liblsl is not installed");
         } else {
             throw gi::InputError("record.markers: " + w, "there is no such kind of marker", "choose udp or lsl");
         }

@@ -130,7 +130,7 @@ void RankWork::gather(gi::RenderResult& result, gi::Report& report,
                 report.lose(what, loss.count, loss.first);
             add_other_losses(report, loaded, losses_of(theirs.at("loaded")), cluster.name(r));
         }
-        report.lose("paths of each pixel that lost ranks did not bring", missing_paths_);
+        report.lose("paths per pixel missing because ranks were lost", missing_paths_);
     });
 }
 

@@ -124,7 +124,7 @@ public:
         }
         if (changes.materials || changes.coverage) structures_.visibility.reset();
         if (!changes.geometry || !structures_.visibility) return;
-        StageTimer const timer(report_, "BVH of what moves (Embree)");
+        StageTimer const timer(report_, "BVH of dynamic triangles (Embree)");
         structures_.visibility->moved(world_.world());
     }
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,

@@ -258,7 +258,8 @@ private:
         report_.lose("layers beyond the limit of a texel", renderer_->lost_layers() - lost_);
         lost_ = renderer_->lost_layers();
         if constexpr (!kByKernels) {
-            report_.lose("notes that the radiance cache had no room for", renderer_->refused_notes() - refused_);
+            report_.lose("radiance samples for which the radiance cache had no room",
+                         renderer_->refused_notes() - refused_);
             refused_ = renderer_->refused_notes();
         }
     }

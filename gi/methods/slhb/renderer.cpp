@@ -115,19 +115,19 @@ void SlhbRenderer::world_moved(bool geometry, bool lights)
 {
     if (geometry) {
         {
-            StageTimer const timer(report_, "triangles that moved");
+            StageTimer const timer(report_, "update of dynamic triangles");
             if (earlier_.corners.empty()) earlier_.corners = corners_of(soup_, first_moving_);
             update_soup(world_, first_moving_, soup_);
         }
         {
-            StageTimer const timer(report_, "BVH of what moves (Embree)");
+            StageTimer const timer(report_, "BVH of dynamic triangles (Embree)");
             if (exact_) exact_->moved(world_);
         }
         if (!grow(grid_bounds_, world_.bounds)) {
             axes_.set().moved();
         } else {
             if (slhb_.schedule != Schedule::streamed) // streamed buffers are rebuilt in every pass
-                report_.lose("frames that left the bounds of the hit buffers, which were built anew");
+                report_.lose("frames outside the bounds of the hit buffers, which were rebuilt");
             make_axes();
             lights = true; // the maps of parallel lights depend on the same bounds
         }

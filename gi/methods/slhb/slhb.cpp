@@ -39,7 +39,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     });
     renderer.report_work();
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());
-    report.lose("notes that the radiance cache had no room for", renderer.refused_notes());
+    report.lose("radiance samples for which the radiance cache had no room", renderer.refused_notes());
     result.rays = renderer.rays();
     result.options = as_options(chosen.slhb);
     result.picture = loop.sums().picture(world);

@@ -9,16 +9,7 @@
 // mirrors and glass. No light is lost by clamping, and with exact visibility of virtual lights the sum is
 // unbiased. f_x is the largest channel; cos_x uses the shading normal and cos_y the geometric one.
 
-#include "gi/core/rng.h"
-#include "gi/render/exact_visibility.h"
-#include "gi/render/path_sample.h"
-#include "gi/render/sampling.h"
-#include "gi/scene/model/camera.h"
-#include "gi/scene/shading/light_sampling.h"
-#include "gi/scene/shading/shading_point.h"
-
-#include <span>
-#include <vector>
+#include "gi/render/ray_path.h"
 
 namespace gi {
 
@@ -45,21 +36,9 @@ struct Receiver {
     bool matt;
 };
 
-struct CameraSubpath {
-    Pcg32 rng{0, 0};
-    Ray ray;
-    vec3 throughput{1};
-    float arrival_pdf = 0; ///< of the arrival direction; 0 = camera or delta lobe
-    int scatterings = 0;   ///< non-delta, so far
+struct CameraSubpath : RayPath {
     bool straight = false; ///< arrives directly from the first surface with non-delta scattering
     float value_x = 0;     ///< at that surface, see bounded_term
-    bool ended = false;
-    RayQuery shadow;
-    vec3 shadow_radiance{0};
-    int shadow_bucket = 0;
-    PathSample sample;
-
-    vec3& bucket(int scattered) { return sample.radiance[std::size_t(std::min(scattered, 2))]; }
 };
 
 struct CameraPaths {
@@ -79,7 +58,6 @@ struct CameraPaths {
 private:
     bool advance(CameraSubpath& p, Hit const& hit, int surface, std::uint32_t index,
                  std::vector<Receiver>& receivers, PathCounts& counts) const;
-    void aim_at_light(CameraSubpath& p, ShadingPoint const& at, vec3 wo, float share) const;
 };
 
 } // namespace gi

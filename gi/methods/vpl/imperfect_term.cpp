@@ -69,7 +69,7 @@ void ImperfectTerm::of_connections(ReceiverTile const& tile, std::span<Connectio
 void ImperfectTerm::report_work(Report& report)
 {
     report.count("imperfect shadow maps", double(drawn_));
-    report.count("points in each", double(vpl_.points));
+    report.count("points per imperfect shadow map", double(vpl_.points));
 }
 
 } // namespace gi

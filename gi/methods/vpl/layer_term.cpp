@@ -143,7 +143,7 @@ void LayerTerm::of_connections(ReceiverTile const& tile, std::span<Connection co
 void LayerTerm::report_work(Report& report)
 {
     report.count("look-ups in hit buffers", double(queries_));
-    report.lose("connections that no axis leaves, taken as free", unanswered_.exchange(0));
+    report.lose("connections without a suitable axis, taken as unoccluded", unanswered_.exchange(0));
     report.lose("layers beyond the limit of a texel", axes_->lost() - lost_);
     lost_ = axes_->lost();
 }

@@ -105,18 +105,12 @@ void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index,
         gathered.assign(receivers.size(), vec3{0});
         gather({receivers, hash_words(hash_words(std::uint32_t(settings_.seed), std::uint32_t(tile)), index)},
                lights, *term_, paths.bound, gathered, local.paths, local.gather);
-        for (std::size_t k = 0; k < receivers.size(); ++k) batch[receivers[k].path].bucket(2) += gathered[k];
+        for (std::size_t k = 0; k < receivers.size(); ++k)
+            layer_of(batch[receivers[k].path].sample, 2) += gathered[k];
         auto next = batch.begin();
         for (int y = top; y < bottom; ++y)
-            for (int x = left; x < right; ++x) {
-                PathSample& s = (next++)->sample;
-                for (vec3& part : s.radiance)
-                    if (!all_finite(part)) {
-                        part = vec3{0};
-                        ++local.paths.invalid_paths;
-                    }
-                sums.add(std::size_t(y) * std::size_t(v.width) + std::size_t(x), s, sums.paths);
-            }
+            for (int x = left; x < right; ++x)
+                sums.add(std::size_t(y) * std::size_t(v.width) + std::size_t(x), (next++)->sample, sums.paths);
     });
     ++sums.paths;
     Counts const all = counts.combine([](Counts a, Counts const& b) {
@@ -133,7 +127,7 @@ void VirtualLightRenderer::report_work()
 {
     report_.count("virtual lights", double(lights_));
     report_.count("connections to virtual lights", double(gathered_.connections));
-    report_.count("of these bounded, the rest by camera paths", double(gathered_.bounded));
+    report_.count("connections bounded, the rest computed by camera paths", double(gathered_.bounded));
     term_->report_work(report_);
 }
 

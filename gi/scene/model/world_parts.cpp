@@ -166,7 +166,7 @@ WorldParts build_world_parts(std::shared_ptr<Scene const> scene, SceneTime time_
     report.count("emissive triangles", double(world.emitters.size()));
     if (all > fixed) {
         report.count("triangles that can move", double(all - fixed));
-        report.count("of them without area now", double(parts.moving_extent.flat));
+        report.count("dynamic triangles without area", double(parts.moving_extent.flat));
     }
     return parts;
 }

@@ -67,7 +67,7 @@ int run_check(DisplayOptions const& o)
     std::vector<ViewSummary> const views = summarise_views(d);
     for (ViewSummary const& v : views)
         if (!v.view.camera)
-            report.lose("eyes at rest that do not see their wall, which stays dark", 1,
+            report.lose("eyes that cannot see their wall from the rest position: it stays dark", 1,
                         fmt::format("{}: the eye is {} the wall", v.view.name, name_of(v.view.place)));
     if (o.json) {
         nlohmann::ordered_json j = display_json(d, views);

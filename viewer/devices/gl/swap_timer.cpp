@@ -34,7 +34,7 @@ SwapTime SwapTimer::swap()
     if (sync_control_) {
         if (try_sync_control(called, out)) return out;
         sync_control_ = false;
-        report_.lose("windows whose GLX_OML_sync_control is listed and does not work", 1,
+        report_.lose("windows whose GLX_OML_sync_control is listed but does not work", 1,
                      "glXWaitForSbcOML refused or did not count the swap");
     } else {
         window_.swap();
@@ -44,7 +44,7 @@ SwapTime SwapTimer::swap()
     glDeleteSync(fence);
     Clock::time_point const done = Clock::now();
     if (reached != GL_ALREADY_SIGNALED && reached != GL_CONDITION_SATISFIED)
-        report_.lose("swaps whose fence was not reached within 1 s");
+        report_.lose("buffer swaps whose fence was not reached within 1 s");
     out.method = GlSwapMethod::fence;
     out.time = called + (done - called) / 2;
     out.seen = done;

@@ -39,7 +39,7 @@ void FrameAxes::make_smaller()
                                      source_->most_bytes >> 20),
                          "raise --memory, or choose --look-ups none");
     source_->resolution /= 2;
-    report_.lose("times that hit buffers got half as many texels on a side, to stay within --memory", 1,
+    report_.lose("times the resolution of hit buffers was halved to stay within --memory", 1,
                  fmt::format("now {}", source_->resolution));
     set_.emplace(*source_);
 }

@@ -91,7 +91,7 @@ template <Space S>
 void KernelRenderer<S>::changed(Changes const& c)
 {
     {
-        StageTimer const timer(report_, "triangles that moved");
+        StageTimer const timer(report_, "update of dynamic triangles");
         if (c.geometry) {
             if (earlier_.corners.empty()) earlier_.corners = corners_of(soup_, first_moving_);
             update_soup(world_, first_moving_, soup_);
@@ -102,7 +102,7 @@ void KernelRenderer<S>::changed(Changes const& c)
     if (c.geometry) {
         if (grow(grid_bounds_, world_.bounds)) {
             if (slhb_.schedule != Schedule::streamed) // streamed buffers are rebuilt in every pass
-                report_.lose("frames that left the bounds of the hit buffers, which were built anew");
+                report_.lose("frames outside the bounds of the hit buffers, which were rebuilt");
             axes = light_points = true; // the maps of parallel lights depend on the same bounds
         }
         axes_.set().moved();

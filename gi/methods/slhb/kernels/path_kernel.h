@@ -8,16 +8,10 @@
 // will find the light. Cone, gathering, interleaving and shared vertices are not supported.
 
 #include "gi/kernel/atomics.h"
-#include "gi/methods/slhb/directions/axis_set.h"
-#include "gi/methods/slhb/hit_buffer/cut_outs.h"
+#include "gi/methods/slhb/kernels/axis_step.h"
 #include "gi/methods/slhb/kernels/path_random.h"
 #include "gi/methods/slhb/lights/shadow_look.h"
-#include "gi/render/path_sample.h"
-#include "gi/render/sampling.h"
-#include "gi/scene/model/camera.h"
-#include "gi/scene/shading/light_sampling.h"
 #include "gi/scene/shading/narrow_lobes.h"
-#include "gi/scene/shading/shading_point.h"
 
 namespace gi {
 
@@ -55,18 +49,16 @@ struct TracePaths {
     GI_FN void operator()(std::size_t i) const;
 
 private:
-    /// State of one path. Every surface scatters once, so that scatterings also count surfaces.
-    struct State {
+    /// State of one path; an arrival_pdf of 0 means the camera. Every surface scatters once, so that scatterings
+    /// also count surfaces.
+    struct State : PathState {
         RqmcStream random;
         std::uint32_t triangle = kNoPrimitive;
         vec2 barycentric{1.0f / 3};
-        vec3 position{0};  ///< only read after the first surface
-        vec3 direction{0}; ///< of arrival
-        vec3 throughput{1};
-        float arrival_pdf = 0;        ///< of the direction, 1/sr; 0 = camera
-        float distance = 0;           ///< length of the last walk, m
-        bool counts_emission = false; ///< emission of lights hit by the last walk counts
-        int scatterings = 0;
+        vec3 position{0};            ///< only read after the first surface
+        vec3 direction{0};           ///< of arrival
+        float distance = 0;          ///< length of the last walk, m
+        bool counts_emission = true; ///< emission of the surface hit counts
 
         GI_FN std::uint32_t dimension(PathDimension d) const
         {
@@ -84,11 +76,6 @@ private:
     GI_FN bool lit_alone(State const& s, bool narrow) const
     {
         return s.scatterings == bounces && !narrow && !smooth;
-    }
-    GI_FN static void add(PathSample& out, int scattered, vec3 radiance)
-    {
-        vec3& to = scattered == 0 ? out.radiance[0] : scattered == 1 ? out.radiance[1] : out.radiance[2];
-        to += radiance;
     }
     GI_FN void add_counts(PathKernelCounts const& local) const;
 };

@@ -61,12 +61,4 @@ struct VertexNumbers {
     vec2 pair(PathDimension d) const { return {u[std::size_t(d)], u[std::size_t(d) + 1]}; }
 };
 
-/// Probability that a path continues. @param throughput  its largest channel  @param scatterings  so far
-/// @param roulette  see SlhbSettings
-GI_FN inline float chance_to_go_on(float throughput, int scatterings, float roulette)
-{
-    if (roulette > 0) return glm::min(1.0f, roulette * throughput);
-    return scatterings >= 3 && throughput < 0.95f ? throughput : 1.0f;
-}
-
 } // namespace gi

@@ -29,7 +29,7 @@ struct LightPointSettings {
     std::uint32_t fresh = 1; ///< of these, points replaced in every pass
     std::uint32_t resolution = 64; ///< texels per side of a shadow map
     std::uint64_t seed = 0;
-    std::size_t first_moving = ~std::size_t(0); ///< ///< index of the first triangle that may move
+    std::size_t first_moving = ~std::size_t(0); ///< index of the first triangle that may move
 };
 
 class LightPoints {

@@ -20,7 +20,7 @@ public:
 
 private:
     World const* world_ = nullptr;
-    std::vector<double> light_sums_, texel_sums_; ///< ///< cumulative probabilities
+    std::vector<double> light_sums_, texel_sums_; ///< cumulative probabilities
     double texel_total_ = 0;                      ///< of the table from which they were computed
 };
 

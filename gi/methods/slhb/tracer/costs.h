@@ -13,7 +13,7 @@ struct Costs {
     double triangles, layers; ///< numbers of triangles, and of layers per texel
     double direct, bounce;    ///< per pixel, including look-ups
     double ray, shadow_ray;   ///< per exact, incoherent ray
-    double bvh;               ///< ///< building it
+    double bvh;               ///< building it
 
     /// @param layers_each  mean number of layers per non-empty texel, see HitBuffer
     Costs(World const& world, double layers_each)

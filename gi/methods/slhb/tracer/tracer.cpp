@@ -76,8 +76,9 @@ void SlhbTracer::add_exactly(Pass const& pass, std::span<Unshadowed const> direc
     for (Unshadowed const& d : direct) {
         LightSample const light = sample_light(world_, d.light_point->choice, d.position, d.light_point->u);
         Surface const& surface = world_.surfaces[d.triangle];
-        rays.push_back(shadow_ray(d.position, shading_detail::triangle_normal(surface), surface.clearance, light,
-                                  hash_words(hash_words(pass.index, d.triangle), std::uint32_t(rays.size()))));
+        RayQuery ray = shadow_ray(d.position, shading_detail::triangle_normal(surface), surface.clearance, light);
+        ray.seed = hash_words(hash_words(pass.index, d.triangle), std::uint32_t(rays.size()));
+        rays.push_back(ray);
     }
     blocked.resize(rays.size());
     pass.exact->occluded(rays, blocked);
@@ -106,7 +107,6 @@ void SlhbTracer::start_paths(Pass const& pass, std::span<PathStart const> starts
             s.has_position = s.along_axis = s.emitted = true;
             s.scatterings = s.vertex = 1;
         } else if (start.triangle != kNoPrimitive) {
-            // The raster gives the triangle; the ray gives the point on its plane.
             s.barycentric = barycentric_of(world_.surfaces[start.triangle], start.ray);
         }
         states[k] = s;
@@ -122,12 +122,7 @@ void SlhbTracer::prepare_vertices(std::span<Vertex const> vertices, std::vector<
         State& s = states[v.path];
         if (s.triangle == kNoPrimitive) continue;
         *s.u = VertexNumbers(s.random, std::uint32_t(s.vertex));
-        Surface const& surface = world_.surfaces[s.triangle];
-        for (int k = 0; k < 3; ++k) {
-            if (surface.is(Surface::kSmooth)) __builtin_prefetch(&world_.normals[surface.vertex[k]]);
-            if (surface.is(Surface::kVaries) && !world_.uv0.empty())
-                __builtin_prefetch(&world_.uv0[surface.vertex[k]]);
-        }
+        prefetch_vertices(world_, world_.surfaces[s.triangle]);
     }
 }
 
@@ -257,15 +252,11 @@ void SlhbTracer::trace(Pass const& pass, std::span<PathStart const> starts, std:
         }
     }
     for (Open const& o : open)
-        notes.push_back({o.keys, (states[o.path].bucket(2) - o.before) / o.throughput, o.weight, o.directional});
+        notes.push_back(
+            {o.keys, (layer_of(samples[o.path], 2) - o.before) / o.throughput, o.weight, o.directional});
     counts.direct_s += std::chrono::duration<double>(turned - begun).count();
     counts.indirect_s += std::chrono::duration<double>(Clock::now() - turned).count();
-    for (PathSample& s : samples)
-        for (vec3& part : s.radiance)
-            if (!all_finite(part)) {
-                part = vec3{0};
-                ++paths.invalid_paths;
-            }
+    for (PathSample& s : samples) paths.invalid_paths += discard_invalid(s);
 }
 
 } // namespace gi

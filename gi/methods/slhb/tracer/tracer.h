@@ -10,7 +10,7 @@
 // power heuristic.
 
 #include "gi/core/rqmc.h"
-#include "gi/methods/slhb/directions/axis_set.h"
+#include "gi/methods/slhb/kernels/axis_step.h"
 #include "gi/methods/slhb/lights/light_points.h"
 #include "gi/methods/slhb/tracer/radiance_cache.h"
 #include "gi/render/exact_visibility.h"
@@ -47,14 +47,6 @@ struct SharedVertex {
     vec3 arrival{0}; ///< direction of the path
     vec3 throughput{0};
 };
-
-/// Barycentric coordinates where a camera ray hits its triangle's plane, clamped to the triangle.
-inline vec2 barycentric_of(Surface const& surface, Ray const& ray)
-{
-    vec3 const normal = glm::cross(surface.edge1, surface.edge2);
-    float const t = glm::dot(normal, surface.corner - ray.origin) / glm::dot(normal, ray.direction);
-    return std::isfinite(t) ? barycentric_at(surface, ray.origin + t * ray.direction) : vec2{1.0f / 3};
-}
 
 /// Sky radiance for a path along an axis that hits nothing.
 struct SkyAlong {

@@ -45,13 +45,14 @@ void SlhbTracer::end_in_cells(Pass const& pass, std::span<State> states, std::ve
             State& s = states[path];
             RadianceCache::CachedRadiance const known = pass.cache->find(keys[k]);
             if (!(s.random.noise2(s.dimension(PathDimension::cache)).x < known.go_on)) {
-                s.bucket(2) += s.throughput * known.radiance;
+                layer_of(*s.sample, 2) += s.throughput * known.radiance;
                 ++counts.cache_reads;
                 continue;
             }
             std::fill(keys[k].level.begin() + std::ptrdiff_t(known.to_teach), keys[k].level.end(), 0);
             s.open = int(open.size());
-            open.push_back({path, keys[k], s.throughput, s.bucket(2), luminance(s.throughput) / known.go_on});
+            open.push_back(
+                {path, keys[k], s.throughput, layer_of(*s.sample, 2), luminance(s.throughput) / known.go_on});
         }
         if (left != k) vertices[left] = vertices[k];
         ++left;

@@ -1,8 +1,6 @@
 // Shading of a path vertex: its direct light and the sampling of the next direction.
 
 #include "gi/methods/slhb/tracer/tracer_state.h"
-#include "gi/render/sampling.h"
-#include "gi/scene/shading/warp.h"
 
 #include <utility>
 
@@ -38,27 +36,22 @@ void SlhbTracer::add_sky(Pass const& pass, State& s, Vertex const& last) const
                                                            : look_at_sky(world_, s.direction);
     vec3 light = sky.radiance;
     if (s.arrival_pdf > 0) light *= power_heuristic(s.arrival_pdf, sky.pdf);
-    s.bucket(s.scatterings) += s.throughput * light;
+    layer_of(*s.sample, s.scatterings) += s.throughput * light;
 }
 
 vec3 SlhbTracer::unshadowed(Leaving const& from, LightSample const& light) const
 {
-    if (!(light.pdf > 0)) return vec3{0};
     ShadingPoint const& at = from.at;
     if (bsdf_detail::is_matt(at.bsdf)) { // the same with fewer operations
+        if (!(light.pdf > 0)) return vec3{0};
         float const cosine = glm::dot(light.direction, at.frame.normal);
         if (!(cosine > 0) || !(from.wo.z > 0) || !(glm::dot(light.direction, at.geometric_normal) > 0))
             return vec3{0};
         vec3 const value = at.bsdf.diffuse * kInvPi * light.radiance * (cosine / light.pdf);
         return light.delta || from.alone ? value : value * power_heuristic(light.pdf, cosine * kInvPi);
     }
-    vec3 const wi = at.frame.to_local(light.direction);
-    if ((wi.z > 0) != (glm::dot(light.direction, at.geometric_normal) > 0)) return vec3{0};
-    BsdfValue const bsdf = evaluate(at.bsdf, from.wo, wi);
-    vec3 value = bsdf.f * light.radiance * (std::abs(wi.z) / light.pdf);
-    if (!(max_component(value) > 0)) return vec3{0};
-    if (!light.delta && !from.alone) value *= power_heuristic(light.pdf, from.pdf(bsdf, wi));
-    return value;
+    auto const pdf = [&](BsdfValue const& bsdf, vec3 wi) { return from.pdf(bsdf, wi); };
+    return unshadowed_light(at, from.wo, light, from.alone, pdf);
 }
 
 void SlhbTracer::aim_at_light(Pass const& pass, State const& s, Leaving const& from,
@@ -72,9 +65,9 @@ void SlhbTracer::aim_at_light(Pass const& pass, State const& s, Leaving const& f
     LightSample const light = chosen.light->seen_from(world_, from.at.position);
     vec3 const value = chosen.weight * unshadowed(from, light);
     if (!(max_component(value) > 0)) return;
-    vec3* const to = &s.bucket(s.scatterings + 1);
-    RayQuery const query = shadow_ray(from.at.position, from.at.geometric_normal, from.at.clearance, light,
-                                      hash_words(s.random.own_seed() + std::uint32_t(s.vertex), ~s.random.index));
+    vec3* const to = &layer_of(*s.sample, s.scatterings + 1);
+    RayQuery query = shadow_ray(from.at.position, from.at.geometric_normal, from.at.clearance, light);
+    query.seed = hash_words(s.random.own_seed() + std::uint32_t(s.vertex), ~s.random.index);
     if (query.reach > 0)
         rays.push_back({query, s.throughput * value, to});
     else // the light lies on the surface
@@ -101,19 +94,15 @@ void SlhbTracer::add_direct(Pass const& pass, State const& s, Leaving const& fro
     ShadowMap::Place const place =
         l.shadow.look(at.position, at.geometric_normal, s.random.noise2(s.dimension(PathDimension::shadow)));
     __builtin_prefetch(place.texel);
-    direct.push_back(
-        {&l, place, at.position, s.triangle, s.throughput * value, &s.bucket(s.scatterings + 1), s.sample});
+    direct.push_back({&l, place, at.position, s.triangle, s.throughput * value,
+                      &layer_of(*s.sample, s.scatterings + 1), s.sample});
 }
 
 void SlhbTracer::add_emission(State const& s, Vertex const& last, ShadingPoint const& at) const
 {
-    vec3 light = at.emission;
-    if (s.arrival_pdf > 0) {
-        float const cos_light = std::abs(glm::dot(s.direction, at.geometric_normal));
-        float const distance = glm::length(at.position - (last.exact ? last.ray.origin : last.origin.position));
-        light *= power_heuristic(s.arrival_pdf, emitter_direction_pdf(world_, s.triangle, distance, cos_light));
-    }
-    s.bucket(s.scatterings) += s.throughput * light;
+    float const distance = glm::length(at.position - (last.exact ? last.ray.origin : last.origin.position));
+    layer_of(*s.sample, s.scatterings) +=
+        s.throughput * met_emission(world_, s, at, s.triangle, s.direction, distance);
 }
 
 /// Scatters by a mirror, glass or a narrow lobe.
@@ -123,7 +112,7 @@ SlhbTracer::Scattered SlhbTracer::scatter_by_ray(State& s, Leaving const& from, 
     BsdfSample const sampled = gi::sample(at.bsdf, from.wo, at.front, u_lobe, s.u->pair(PathDimension::lobe_u));
     if (last && !sampled.delta) return Scattered::not_at_all;
     s.direction = at.frame.to_world(sampled.wi);
-    if ((glm::dot(s.direction, at.geometric_normal) > 0) != (sampled.wi.z > 0)) return Scattered::not_at_all;
+    if (!is_on_one_side(at, s.direction, sampled.wi)) return Scattered::not_at_all;
     s.throughput *= sampled.weight;
     s.arrival_pdf = sampled.delta ? 0 : sampled.pdf;
     return sampled.delta ? Scattered::by_delta_lobe : Scattered::widely;
@@ -180,21 +169,12 @@ bool SlhbTracer::scatter_along_axis(Pass const& pass, State& s, Leaving const& f
     ShadingPoint const& at = from.at;
     AxisSample const a = choose_axis(pass, s, at);
     s.direction = a.direction;
-    vec3 const wi = at.frame.to_local(s.direction);
-    float const side = glm::dot(s.direction, at.geometric_normal);
-    if (!(wi.z > 0) || !(side > 0)) return false;
-    BsdfValue const value = evaluate(at.bsdf, from.wo, wi);
-    float const pdf = from.pdf(value, wi);
-    if (!(pdf > 0)) return false;
-    s.throughput *= value.f * (wi.z * a.weight / pdf);
-    s.arrival_pdf = pdf;
     next.axis = a.axis;
-    Surface const& surface = world_.surfaces[s.triangle];
-    vec3 const normal = glm::cross(surface.edge1, surface.edge2);
-    vec3 const along_axis = pass.axes.axis(a.axis);
-    next.origin = {at.position, s.triangle, glm::dot(normal, along_axis) > 0,
-                   glm::dot(s.direction, along_axis) > 0, std::sqrt(std::max(0.0f, 1 - side * side)) / side};
+    if (!scatter_along(s, at, from.wo, from.narrow, a, world_.surfaces[s.triangle], s.triangle,
+                       pass.axes.axis(a.axis), next.origin))
+        return false;
     if (cone_ > 0) {
+        float const side = glm::dot(s.direction, at.geometric_normal);
         RasterGrid const& grid = pass.axes.pool().grids[a.axis];
         vec2 const off = cone_ * grid.texel * square_to_disk(s.random.noise2(s.dimension(PathDimension::cone)));
         vec3 const shift = off.x * grid.right + off.y * grid.up;
@@ -223,13 +203,7 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
     ShadingPoint at = shading_point(world_, s.triangle, s.barycentric, s.direction);
     if (s.has_position) at.position = s.position;
     if (s.open >= 0) open[std::size_t(s.open)].directional = is_directional(at.bsdf);
-    if (s.vertex == 0) {
-        s.sample->hit = true;
-        s.sample->albedo = albedo(at.bsdf);
-        s.sample->normal = at.frame.normal;
-        s.sample->position = at.position;
-        s.sample->depth = glm::dot(at.position - camera_.origin, camera_.forward);
-    }
+    if (s.vertex == 0) see_first_surface(*s.sample, at, camera_);
     if (!std::exchange(s.emitted, false) && max_component(at.emission) > 0) add_emission(s, next, at);
     if (s.vertex == kLongestPath) {
         ++paths.cut_paths;
@@ -267,17 +241,8 @@ bool SlhbTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct,
         s.emitted = from.alone;
         if (!(free_ ? scatter_freely(s, from, next) : scatter_along_axis(pass, s, from, next))) return false;
     }
-    float const survival = max_component(s.throughput);
-    if (!(survival > 0)) return false;
-    float const keep = chance_to_go_on(survival, s.scatterings, roulette_);
-    if (keep < 1) {
-        if ((*s.u)[PathDimension::roulette] >= keep) return false;
-        s.throughput /= keep;
-    }
-    if (next.exact) {
-        float const offset = glm::dot(s.direction, at.geometric_normal) > 0 ? at.clearance : -at.clearance;
-        next.ray = {at.position + offset * at.geometric_normal, s.direction};
-    }
+    if (!survives_roulette(s, roulette_, [&] { return (*s.u)[PathDimension::roulette]; })) return false;
+    if (next.exact) next.ray = {leave(at, s.direction), s.direction};
     s.along_axis = !next.exact;
     if (scattered == Scattered::widely) ++s.scatterings;
     ++s.vertex;

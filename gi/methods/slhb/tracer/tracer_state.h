@@ -3,42 +3,39 @@
 
 #include "gi/methods/slhb/kernels/path_random.h"
 #include "gi/methods/slhb/tracer/tracer.h"
+#include "gi/render/ray_path.h"
 #include "gi/scene/shading/narrow_lobes.h"
-#include "gi/scene/shading/shading_point.h"
 
 #include <algorithm>
 
 namespace gi {
 
 /// State of one path that has arrived at a surface.
-struct SlhbTracer::State {
+struct SlhbTracer::State : PathState {
     RqmcStream random;
     std::uint32_t triangle, pixel;
     vec2 barycentric;
     vec3 position; ///< only read where has_position
     bool has_position = false;
-    vec3 direction; ///< of arrival
-    vec3 throughput{1};
-    float arrival_pdf = 0;   ///< of the direction, 1/sr; 0 = camera or delta lobe
+    vec3 direction;          ///< of arrival
     bool along_axis = false; ///< arrived by a broad lobe (along an axis if look-ups are used)
     bool emitted = false;    ///< emission of its surface has already been added
-    int scatterings = 0, vertex = 0;
+    int vertex = 0;
     float footprint = 0; ///< approximate width of the bundle of paths that this one represents, m
     int open = -1;       ///< index of the note about its surface; -1 = none
     PathSample* sample;
 
-    VertexNumbers* u = nullptr; ///< ///< of the current vertex
+    VertexNumbers* u = nullptr; ///< of the current vertex
 
     std::uint32_t dimension(PathDimension d) const { return dimension_of(std::uint32_t(vertex), d); }
-    vec3& bucket(int scattered) const { return sample->radiance[std::size_t(std::min(scattered, 2))]; }
 };
 
 /// Next segment of a path from its surface.
 struct SlhbTracer::Vertex {
     std::uint32_t path;
     bool exact;
-    Ray ray;           ///< ///< if exact
-    WalkOrigin origin; ///< ///< otherwise
+    Ray ray;           ///< if exact
+    WalkOrigin origin; ///< otherwise
     std::uint32_t axis;
     LayerHit hit; ///< result of the look-up
     std::uint32_t layer;
@@ -91,21 +88,5 @@ struct SlhbTracer::Leaving {
     /// Probability density with which paths leave along wi, 1/sr. @param bsdf  for wi, see evaluate
     float pdf(BsdfValue const& bsdf, vec3 wi) const { return narrow ? bsdf.pdf : std::max(wi.z, 0.0f) * kInvPi; }
 };
-
-/// Shadow ray from a surface to just before a light; reach <= 0 if the light lies on the surface.
-inline RayQuery shadow_ray(vec3 position, vec3 normal, float clearance, LightSample const& light,
-                           std::uint32_t seed)
-{
-    float const side = glm::dot(light.direction, normal) > 0 ? clearance : -clearance;
-    RayQuery q{.ray = {position + side * normal, light.direction}, .reach = light.distance, .seed = seed};
-    if (light.distance == kInf) return q;
-    // As in the reference: aims from the ray's start, and ends before the light by more than the rounding of both
-    // ends.
-    vec3 const way = position + light.distance * light.direction - q.ray.origin;
-    float const length = glm::length(way);
-    q.ray.direction = way / length;
-    q.reach = length * (1 - 2e-5f) - clearance;
-    return q;
-}
 
 } // namespace gi

@@ -3,8 +3,7 @@
 #include "gi/methods/slhb/kernels/path_random.h"
 #include "gi/render/flush_denormals.h"
 #include "gi/render/pass_samples.h"
-#include "gi/render/sampling.h"
-#include "gi/scene/shading/warp.h"
+#include "gi/render/ray_path.h"
 
 #include <algorithm>
 #include <bit>
@@ -34,9 +33,7 @@ void exact_hits(SlhbTracer::Pass const& pass, SeenView const& view, RenderSettin
         RqmcStream const stream = pixel_stream(random_key(s.seed), std::uint32_t(p), width, pass.index);
         vec2 const place =
             vec2{float(p % width) + 0.5f, float(p / width) + 0.5f} + filter_offset(s.filter, stream.sample2(0));
-        Ray const ray = view.rays.has_lens()
-                            ? view.rays.at_lens(square_to_disk(stream.sample2(kLens))).through(place)
-                            : view.rays.through(place);
+        Ray const ray = camera_ray(view.rays, place, [&] { return stream.sample2(kLens); });
         out.push_back({std::uint32_t(p), kNoPrimitive, ray});
         rays.push_back(
             {.ray = ray, .seed = stream.own_seed() + pass.index, .start = camera_clearance(ray.origin)});

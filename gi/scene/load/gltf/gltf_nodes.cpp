@@ -35,8 +35,7 @@ public:
         }
         for (int const r : roots) {
             if (has_parent_[std::size_t(r)])
-                report_.lose("roots of the scene that have a parent, taken without it", 1,
-                             fmt::format("node {}", r));
+                report_.lose("scene roots that have a parent, used without it", 1, fmt::format("node {}", r));
             add_tree(r, true);
         }
         for (std::size_t i = 0; i < place_.size(); ++i)
