@@ -49,9 +49,9 @@ GI_FN inline vec3 TracePaths::direct(State const& s, ShadingPoint const& at, vec
     vec3 const value = unshadowed_light(at, wo, light, alone, pdf);
     if (!(max_component(value) > 0)) return vec3{0};
     vec2 const u = s.random.noise2(s.dimension(PathDimension::shadow));
-    ShadowPlace const place = shadow_detail::look(l.shadow, at.position, at.geometric_normal, u);
+    ShadowPlace const in_map = shadow_detail::look(l.shadow, at.position, at.geometric_normal, u);
     ++local.shadow_lookups;
-    bool const reached = shadow_detail::lit(l.shadow, place, world.surfaces, at.position, s.triangle);
+    bool const reached = shadow_detail::lit(l.shadow, in_map, world.surfaces, at.position, s.triangle);
     return reached ? s.throughput * value : vec3{0};
 }
 
