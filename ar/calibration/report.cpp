@@ -1,11 +1,11 @@
 #include "ar/calibration/report.h"
 
 #include "gi/core/base64.h"
-#include "gi/core/file.h"
 #include "gi/core/html/html.h"
 #include "gi/core/html/plot.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -151,11 +151,6 @@ std::string to_html(CalibrationReport const& r)
             "Noise", fmt::format("<p>Variance of a unit: {:.3g} + {:.3g} unit; sigma at 0.18: {:.4f}.</p>\n",
                                  r.noise->read, r.noise->photon, r.noise->sigma(0.18)));
     return gi::html_page("Camera calibration", html, about + gi::html_cautions(r.lens.warnings));
-}
-
-void write_report(std::filesystem::path const& file, CalibrationReport const& report)
-{
-    gi::write_text(file, to_html(report));
 }
 
 } // namespace ar

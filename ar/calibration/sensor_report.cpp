@@ -1,6 +1,5 @@
 #include "ar/calibration/sensor_report.h"
 
-#include "gi/core/file.h"
 #include "gi/core/html/html.h"
 #include "gi/core/html/plot.h"
 
@@ -104,11 +103,6 @@ std::string to_html(SensorReport const& r)
     if (r.noise) html += noise_part(*r.noise);
     if (r.colour) html += colour_part(*r.colour, r.patches);
     return gi::html_page("Camera sensor", html);
-}
-
-void write_report(std::filesystem::path const& file, SensorReport const& report)
-{
-    gi::write_text(file, to_html(report));
 }
 
 } // namespace ar

@@ -18,12 +18,6 @@ gi::HtmlCell cell_html(Cell const& cell)
     return gi::HtmlCell::of(to_text(Cell(m->median)) + spread);
 }
 
-bool holds_text(BenchTable const& t, std::size_t column)
-{
-    return std::any_of(t.rows.begin(), t.rows.end(),
-                       [&](auto const& row) { return std::holds_alternative<std::string>(row[column]); });
-}
-
 std::string rows_html(BenchTable const& t)
 {
     std::vector<gi::HtmlColumn> columns;

@@ -1,6 +1,7 @@
 #include "gi/core/html/plot.h"
 
 #include "gi/core/html/html.h"
+#include "gi/core/text.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,12 +22,7 @@ double row_names_width(std::vector<std::string> const& names)
 
 } // namespace
 
-double text_width(std::string_view text)
-{
-    auto const characters = std::count_if(text.begin(), text.end(),
-                                          [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; });
-    return 7.0 * double(characters);
-}
+double text_width(std::string_view text) { return 7.0 * double(characters(text)); }
 
 Plot::Plot(double width, double height, PlotAxis x, PlotAxis y) : width_(width), height_(height), x_(x), y_(y) {}
 
