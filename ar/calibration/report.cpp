@@ -1,11 +1,11 @@
 #include "ar/calibration/report.h"
 
-#include "ar/calibration/page.h"
 #include "gi/core/base64.h"
-#include "gi/core/file.h"
-#include "gi/core/html.h"
+#include "gi/core/html/html.h"
+#include "gi/core/html/plot.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -25,13 +25,13 @@ std::string image_of(cv::Mat const& picture, glm::ivec2 size)
                        size.x, size.y, gi::encode_base64(jpeg));
 }
 
-/// Residual arrows at the observed points, 50 times enlarged; views left out are red.
+/// Residual arrows at the observed points, 50 times enlarged; views left out in another colour.
 std::string residual_drawing(CalibrationReport const& r)
 {
     auto const& c = r.lens.camera;
     constexpr double kLonger = 50;
     double const stroke = c.size_px.x / 800.;
-    std::string s = fmt::format("<svg viewBox=\"-0.5 -0.5 {} {}\" class=\"picture\">", c.size_px.x, c.size_px.y);
+    std::string s = fmt::format("<svg viewBox=\"-0.5 -0.5 {} {}\" width=\"800\">", c.size_px.x, c.size_px.y);
     s += image_of(r.background, c.size_px);
     for (std::size_t v = 0; v < r.views.size() && v < r.lens.views.size(); ++v) {
         ViewResult const& result = r.lens.views[v];
@@ -40,77 +40,98 @@ std::string residual_drawing(CalibrationReport const& r)
             glm::dvec2 const p = r.views[v].pixels[i], d = kLonger * result.residuals_px[i];
             path += fmt::format("M{:.1f} {:.1f}l{:.1f} {:.1f}", p.x, p.y, d.x, d.y);
         }
-        s += fmt::format(
-            "<path d=\"{}\" stroke=\"{}\" stroke-width=\"{:.2f}\" fill=\"none\"><title>{}</title></path>", path,
-            result.used ? "#1565c0" : "#c62828", stroke, gi::escaped(result.name));
+        s += fmt::format("<path class=\"{}\" d=\"{}\" stroke-width=\"{:.2f}\"><title>{}</title></path>",
+                         result.used ? "c0" : "c1", path, stroke, gi::escaped(result.name));
     }
-    return s + "</svg>\n<p>What each point is off, 50 times as long. Red: views that were left out.</p>\n";
+    return gi::html_figure(s + "</svg>\n",
+                           "What each point is off, 50 times as long. Orange: views that were left out.");
 }
 
 std::string coverage_drawing(CalibrationReport const& r)
 {
     constexpr int kAcross = 16, kDown = 12;
     auto const size = r.lens.camera.size_px;
-    std::array<int, kAcross * kDown> count{};
+    std::array<std::array<int, kAcross>, kDown> count{};
+    int most = 1;
     for (std::size_t v = 0; v < r.views.size() && v < r.lens.views.size(); ++v)
         if (r.lens.views[v].used)
             for (auto const& p : r.views[v].pixels) {
                 int const x = std::clamp(int((p.x + 0.5) / size.x * kAcross), 0, kAcross - 1);
                 int const y = std::clamp(int((p.y + 0.5) / size.y * kDown), 0, kDown - 1);
-                ++count[std::size_t(kAcross * y + x)];
+                most = std::max(most, ++count[std::size_t(y)][std::size_t(x)]);
             }
-    int const most = std::max(1, *std::max_element(count.begin(), count.end()));
-    std::string s = fmt::format("<svg viewBox=\"0 0 {} {}\" class=\"picture\">", 40 * kAcross, 40 * kDown);
-    for (int y = 0; y < kDown; ++y)
-        for (int x = 0; x < kAcross; ++x) {
-            int const n = count[std::size_t(kAcross * y + x)];
-            s += fmt::format(
-                "<rect x=\"{}\" y=\"{}\" width=\"39\" height=\"39\" fill=\"#2e7d32\" fill-opacity=\"{:.2f}\"/>"
-                "<text x=\"{}\" y=\"{}\">{}</text>",
-                40 * x, 40 * y, n == 0 ? 0 : 0.15 + 0.85 * n / most, 40 * x + 20, 40 * y + 25, n);
-        }
-    return s +
-           fmt::format("</svg>\n<p>Points in each part of the picture; {:.0f} % of 8 x 6 parts have some.</p>\n",
-                       100 * r.lens.coverage);
+    std::vector<std::vector<gi::ShadedCell>> cells(kDown);
+    for (std::size_t y = 0; y < kDown; ++y)
+        for (int const n : count[y]) cells[y].push_back({std::to_string(n), n == 0 ? 0 : 0.15 + 0.75 * n / most});
+    return gi::html_figure(gi::html_matrix("", {}, cells),
+                           fmt::format("Points in each part of the picture; {:.0f} % of 8 x 6 parts have some.",
+                                       100 * r.lens.coverage));
 }
 
 std::string view_table(LensCalibration const& lens)
 {
     double most = 1e-9;
     for (auto const& v : lens.views) most = std::max(most, v.rms_px);
-    std::string s =
-        "<table><tr><th>view</th><th>points</th><th>RMS, px</th><th></th><th>distance, m</th><th></th></tr>\n";
+    std::vector<std::vector<gi::HtmlCell>> rows;
     for (auto const& v : lens.views)
-        s += fmt::format(
-            "<tr><td>{}</td><td>{}</td><td>{:.3f}</td><td><div class=\"bar{}\" style=\"width:{:.0f}px\"></div>"
-            "</td><td>{:.3f}</td><td>{}</td></tr>\n",
-            gi::escaped(v.name), v.residuals_px.size(), v.rms_px, v.used ? "" : " out", 200 * v.rms_px / most,
-            glm::length(v.camera_from_board.position_m), v.used ? "" : "left out: " + gi::escaped(v.why));
-    return s + "</table>\n";
+        rows.push_back({v.name, std::to_string(v.residuals_px.size()), fmt::format("{:.3f}", v.rms_px),
+                        gi::HtmlCell::of(fmt::format("<div class=\"bar{}\" style=\"width:{:.0f}px\"></div>",
+                                                     v.used ? "" : " out", 200 * v.rms_px / most)),
+                        fmt::format("{:.3f}", glm::length(v.camera_from_board.position_m)),
+                        v.used ? "" : "left out: " + v.why});
+    return gi::html_table({{"view", false, ""},
+                           {"points", true, ""},
+                           {"RMS, px", true, ""},
+                           {"", false, ""},
+                           {"distance, m", true, ""},
+                           {"", false, ""}},
+                          rows);
 }
 
-std::string curve_drawing(Photometry const& p)
+std::string curve_figure(Photometry const& p)
 {
-    constexpr std::array<char const*, 3> colours{"#c62828", "#2e7d32", "#1565c0"};
-    std::string s = "<svg viewBox=\"-40 -10 620 330\" class=\"picture\"><path d=\"M0 0V300H512\" stroke=\"#888\" "
-                    "fill=\"none\"/>";
-    float most = 1e-9f;
-    for (auto const& c : p.unit_of_byte) most = std::max(most, c[255]);
+    constexpr std::array kStyles{"curve c1", "curve c2", "curve c0"};
+    double most = 1e-9;
+    for (auto const& c : p.unit_of_byte) most = std::max(most, double(c[255]));
+    gi::Plot plot(640, 380, {0, 255}, {0, 1.04 * most});
+    plot.margins(70, 12, 20, 46);
+    plot.x_axis("byte");
+    plot.y_axis("light of each byte, units");
     for (std::size_t c = 0; c < 3; ++c) {
-        std::string path;
-        for (std::size_t i = 0; i < 256; ++i)
-            path += fmt::format("{}{} {:.2f}", i == 0 ? "M" : "L", 2 * i, 300 - 300 * p.unit_of_byte[c][i] / most);
-        s += fmt::format("<path d=\"{}\" stroke=\"{}\" stroke-width=\"2\" fill=\"none\"/>", path, colours[c]);
+        std::vector<std::pair<double, double>> line;
+        for (std::size_t i = 0; i < 256; ++i) line.emplace_back(double(i), p.unit_of_byte[c][i]);
+        plot.curve(line, kStyles[c]);
     }
-    s += fmt::format("<text x=\"256\" y=\"318\">byte, 0 to 255</text><text x=\"-4\" y=\"8\" "
-                     "style=\"text-anchor:end\">{:.3g}</text></svg>\n",
-                     most);
     auto const& g = p.vignetting;
-    s += fmt::format(
-        "<p>Light of each byte, in units. Vignetting leaves {:.1f} % in the corners (1 {:+.4f} r² {:+.4f} r⁴ "
-        "{:+.4f} r⁶).</p>\n",
-        100 * (1 + g[0] + g[1] + g[2]), g[0], g[1], g[2]);
-    return s;
+    return plot.figure(
+        "response", fmt::format("Light of each byte, in units: red (orange line), green, blue. Vignetting leaves "
+                                "{:.1f} % in the corners (1 {:+.4f} r² {:+.4f} r⁴ {:+.4f} r⁶).",
+                                100 * (1 + g[0] + g[1] + g[2]), g[0], g[1], g[2]));
+}
+
+std::string lens_tables(CalibrationReport const& r)
+{
+    std::vector<std::vector<gi::HtmlCell>> rows, trials;
+    auto const values = parameters_of(r.lens.camera);
+    for (std::size_t i = 0; i < values.size() && i < r.lens.standard_deviations.size(); ++i)
+        rows.push_back({r.lens.parameters[i], fmt::format("{:.6g}", values[i]),
+                        fmt::format("{:.2g}", r.lens.standard_deviations[i])});
+    std::string const html =
+        gi::html_table({{"parameter", false, ""}, {"value", true, ""}, {"standard deviation", true, ""}}, rows);
+    if (!r.choice) return html;
+    for (auto const& t : r.choice->trials) {
+        bool const fitted = t.failed.empty();
+        trials.push_back({name_of(t.lens), fitted ? fmt::format("{:.4f}", t.fitted_rms_px) : "",
+                          fitted ? fmt::format("{:.4f}", t.validated_rms_px) : "",
+                          !fitted                      ? t.failed
+                          : t.lens == r.choice->chosen ? "chosen"
+                                                       : ""});
+    }
+    return html +
+           gi::html_table(
+               {{"model", false, ""}, {"fitted, px", true, ""}, {"unseen views, px", true, ""}, {"", false, ""}},
+               trials) +
+           "<p>" + gi::escaped(r.choice->why) + "</p>\n";
 }
 
 } // namespace
@@ -118,41 +139,18 @@ std::string curve_drawing(Photometry const& p)
 std::string to_html(CalibrationReport const& r)
 {
     auto const& c = r.lens.camera;
-    std::string s = page_begin("Camera calibration");
-    s += fmt::format("<p>{} x {} pixels, {}; {} of {} views; RMS reprojection error {:.3f} "
-                     "px.</p>\n",
-                     c.size_px.x, c.size_px.y, name_of(c.lens), r.lens.used_views(), r.lens.views.size(),
-                     r.lens.rms_px);
-    for (auto const& w : r.lens.warnings) s += "<p class=\"warning\">" + gi::escaped(w) + "</p>\n";
-    s += "<h2>Lens</h2>\n<table><tr><th></th><th>value</th><th>standard deviation</th></tr>\n";
-    auto const values = parameters_of(c);
-    for (std::size_t i = 0; i < values.size() && i < r.lens.standard_deviations.size(); ++i)
-        s += fmt::format("<tr><td>{}</td><td>{:.6g}</td><td>{:.2g}</td></tr>\n", r.lens.parameters[i], values[i],
-                         r.lens.standard_deviations[i]);
-    s += "</table>\n";
-    if (r.choice) {
-        s += "<table><tr><th>model</th><th>fitted, px</th><th>unseen views, px</th><th></th></tr>\n";
-        for (auto const& t : r.choice->trials)
-            s += t.failed.empty() ? fmt::format("<tr><td>{}</td><td>{:.4f}</td><td>{:.4f}</td><td>{}</td></tr>\n",
-                                                name_of(t.lens), t.fitted_rms_px, t.validated_rms_px,
-                                                t.lens == r.choice->chosen ? "chosen" : "")
-                                  : fmt::format("<tr><td>{}</td><td colspan=\"3\">{}</td></tr>\n", name_of(t.lens),
-                                                gi::escaped(t.failed));
-        s += "</table>\n<p>" + gi::escaped(r.choice->why) + "</p>\n";
-    }
-    s += "<h2>Residuals</h2>\n" + residual_drawing(r) + "<h2>Coverage</h2>\n" + coverage_drawing(r);
-    s += "<h2>Views</h2>\n" + view_table(r.lens);
-    if (r.photometry) s += "<h2>Response</h2>\n" + curve_drawing(*r.photometry);
+    std::string const about = fmt::format(
+        "<p class=\"about\">{} x {} pixels, {}; {} of {} views; RMS reprojection error {:.3f} px.</p>\n",
+        c.size_px.x, c.size_px.y, name_of(c.lens), r.lens.used_views(), r.lens.views.size(), r.lens.rms_px);
+    std::string html =
+        gi::html_section("Lens", lens_tables(r)) + gi::html_section("Residuals", residual_drawing(r)) +
+        gi::html_section("Coverage", coverage_drawing(r)) + gi::html_section("Views", view_table(r.lens));
+    if (r.photometry) html += gi::html_section("Response", curve_figure(*r.photometry));
     if (r.noise)
-        s += fmt::format(
-            "<h2>Noise</h2>\n<p>Variance of a unit: {:.3g} + {:.3g} unit; sigma at 0.18: {:.4f}.</p>\n",
-            r.noise->read, r.noise->photon, r.noise->sigma(0.18));
-    return s + page_end();
-}
-
-void write_report(std::filesystem::path const& file, CalibrationReport const& report)
-{
-    gi::write_text(file, to_html(report));
+        html += gi::html_section(
+            "Noise", fmt::format("<p>Variance of a unit: {:.3g} + {:.3g} unit; sigma at 0.18: {:.4f}.</p>\n",
+                                 r.noise->read, r.noise->photon, r.noise->sigma(0.18)));
+    return gi::html_page("Camera calibration", html, about + gi::html_cautions(r.lens.warnings));
 }
 
 } // namespace ar

@@ -19,7 +19,4 @@ struct CalibrationReport {
 
 std::string to_html(CalibrationReport const& report);
 
-/// @throws gi::InputError the file cannot be written
-void write_report(std::filesystem::path const& file, CalibrationReport const& report);
-
 } // namespace ar

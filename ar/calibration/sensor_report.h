@@ -3,7 +3,6 @@
 
 #include "ar/calibration/sensor.h"
 
-#include <filesystem>
 #include <optional>
 
 namespace ar {
@@ -16,8 +15,5 @@ struct SensorReport {
 };
 
 std::string to_html(SensorReport const& report);
-
-/// @throws gi::InputError the file cannot be written
-void write_report(std::filesystem::path const& file, SensorReport const& report);
 
 } // namespace ar

@@ -1,6 +1,7 @@
 #include "ar/camera/pose.h"
 
-#include <algorithm>
+#include "gi/core/rotation.h"
+
 #include <cmath>
 
 namespace ar {
@@ -23,20 +24,13 @@ Pose inverse(Pose const& a_from_b)
 
 Pose pose_of(cv::Vec3d const& r, cv::Vec3d const& t)
 {
-    glm::dvec3 const axis(r[0], r[1], r[2]);
-    double const angle = glm::length(axis);
-    // sin(a/2)/a stays exact where the axis vanishes.
-    double const s = angle > 1e-8 ? std::sin(angle / 2) / angle : 0.5;
-    return {glm::normalize(glm::dquat(std::cos(angle / 2), s * axis)), {t[0], t[1], t[2]}};
+    return {gi::exp_rotation({r[0], r[1], r[2]}), {t[0], t[1], t[2]}};
 }
 
 cv::Vec3d rotation_vector(Pose const& p)
 {
-    glm::dquat const q = p.rotation.w < 0 ? -p.rotation : p.rotation;
-    glm::dvec3 const v(q.x, q.y, q.z);
-    double const sine = glm::length(v);
-    double const factor = sine > 1e-12 ? 2 * std::atan2(sine, q.w) / sine : 2;
-    return {factor * v.x, factor * v.y, factor * v.z};
+    glm::dvec3 const v = gi::log_rotation(p.rotation);
+    return {v.x, v.y, v.z};
 }
 
 double angle_between_deg(glm::dquat const& a, glm::dquat const& b)

@@ -1,8 +1,8 @@
 #include "ar/capture/picture_source.h"
 #include "gi/core/error.h"
+#include "gi/core/text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 
 namespace ar {
@@ -56,10 +56,7 @@ std::optional<std::uint64_t> number_in(std::string const& name, Pattern const& p
     if (digits.empty() || !std::all_of(digits.begin(), digits.end(), is_digit)) return std::nullopt;
     bool const is_padded = digits.size() > 1 && digits.front() == '0';
     if (is_padded && !(p.has_zeros && digits.size() == p.width)) return std::nullopt;
-    std::uint64_t number = 0;
-    auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (error != std::errc()) return std::nullopt;
-    return number;
+    return gi::parse_number<std::uint64_t>(digits);
 }
 
 std::vector<fs::path> files_in(fs::path const& folder)

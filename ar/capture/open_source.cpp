@@ -6,8 +6,7 @@
 #include "ar/capture/session_reader.h"
 #include "ar/capture/video_source.h"
 #include "gi/core/error.h"
-
-#include <charconv>
+#include "gi/core/text.h"
 
 namespace ar {
 namespace {
@@ -20,12 +19,11 @@ std::optional<std::string> after(std::string const& name, std::string const& pre
 
 int device_number(std::string const& text)
 {
-    int number = -1;
-    auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size() || number < 0)
+    auto const number = gi::parse_number<int>(text);
+    if (!number || *number < 0)
         throw gi::InputError("device:" + text, "'" + text + "' is no number of a camera",
                              "write device:0 for /dev/video0");
-    return number;
+    return *number;
 }
 
 std::unique_ptr<FrameSource> open_files(std::filesystem::path const& path, OpenOptions const& o)

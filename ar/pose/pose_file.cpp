@@ -1,11 +1,10 @@
 #include "ar/pose/pose_file.h"
 
-#include "gi/core/error.h"
 #include "gi/core/rotation.h"
+#include "gi/core/text.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
@@ -18,44 +17,16 @@ constexpr std::array<std::string_view, 8> kColumns{"time_s", "x_m", "y_m", "z_m"
 constexpr double kLargest = 1e15;
 constexpr std::uintmax_t kLargestFile = std::uintmax_t(1) << 30;
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-
-std::string_view trimmed(std::string_view text)
-{
-    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-    return text;
-}
-
-struct Line {
-    std::string_view text;
-    std::string const& file;
-    int number;
-
-    gi::InputError error(std::string_view at, std::string const& problem, std::string const& why,
-                         std::string const& suggestion) const
-    {
-        return {gi::TextLocation{file, number, int(at.data() - text.data()) + 1}, problem, why, suggestion};
-    }
-};
-
 std::vector<std::string_view> fields_of(std::string_view text, bool by_commas)
 {
+    if (by_commas) return gi::split_at_commas(text);
     std::vector<std::string_view> fields;
-    while (true) {
-        if (!by_commas) {
-            text = trimmed(text);
-            if (text.empty()) return fields;
-        }
-        std::size_t const n = by_commas ? text.find(',') : text.find_first_of(" \t\r");
-        std::string_view const field = trimmed(text.substr(0, n));
-        fields.push_back(field.empty() ? text.substr(0, 0) : field);
-        if (n == std::string_view::npos) return fields;
-        text.remove_prefix(n + 1);
-    }
+    for (std::string_view word = gi::take_word(text); !word.empty(); word = gi::take_word(text))
+        fields.push_back(word);
+    return fields;
 }
 
-void read_header(Line const& line)
+void read_header(gi::TextLine const& line)
 {
     auto const fields = fields_of(line.text, true);
     for (std::size_t i = 0; i < kColumns.size(); ++i)
@@ -69,7 +40,7 @@ void read_header(Line const& line)
                          fmt::format("begin with {}", fmt::join(kColumns, ",")));
 }
 
-TimedPose read_pose(Line const& line, bool by_commas, CameraAxes axes)
+TimedPose read_pose(gi::TextLine const& line, bool by_commas, CameraAxes axes)
 {
     auto const fields = fields_of(line.text, by_commas);
     if (fields.size() != kColumns.size())
@@ -77,11 +48,11 @@ TimedPose read_pose(Line const& line, bool by_commas, CameraAxes axes)
                          fmt::format("give {}", fmt::join(kColumns, " ")));
     std::array<double, 8> v{};
     for (std::size_t i = 0; i < v.size(); ++i) {
-        auto const [end, error] = std::from_chars(fields[i].data(), fields[i].data() + fields[i].size(), v[i]);
-        bool const whole = error == std::errc{} && end == fields[i].data() + fields[i].size();
-        if (fields[i].empty() || !whole || !(std::abs(v[i]) <= kLargest))
+        auto const number = gi::parse_finite(fields[i], kLargest);
+        if (!number)
             throw line.error(fields[i], fmt::format("'{}' is not a number", fields[i]),
                              fmt::format("{} is one, of at most 1e15", kColumns[i]), "correct it");
+        v[i] = *number;
     }
     glm::dquat const q(v[7], v[4], v[5], v[6]);
     double const length = glm::length(q);
@@ -100,10 +71,8 @@ std::vector<TimedPose> parse_poses(std::string_view text, std::string const& fil
     std::vector<TimedPose> poses;
     bool by_commas = false, begun = false;
     for (int number = 1; !text.empty(); ++number) {
-        std::size_t const n = text.find('\n');
-        Line const line{text.substr(0, n), file, number};
-        text.remove_prefix(n == std::string_view::npos ? text.size() : n + 1);
-        std::string_view const content = trimmed(line.text);
+        gi::TextLine const line{gi::take_until(text, '\n'), file, number};
+        std::string_view const content = gi::trimmed(line.text);
         if (content.empty() || content.front() == '#') continue;
         if (!begun) {
             begun = true;

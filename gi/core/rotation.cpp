@@ -18,4 +18,16 @@ dquat exp_rotation(dvec3 r)
     return glm::normalize(dquat(std::cos(0.5 * angle), r.x * scale, r.y * scale, r.z * scale));
 }
 
+dvec3 heading(dquat const& body)
+{
+    dvec3 const forward = body * dvec3{0, 0, -1}, top = body * dvec3{0, 1, 0};
+    return {forward.x - forward.y * top.x, 0, forward.z - forward.y * top.z};
+}
+
+dquat heading_of(dquat const& body)
+{
+    dvec3 const faced = heading(body);
+    return exp_rotation({0, std::atan2(-faced.x, -faced.z), 0});
+}
+
 } // namespace gi

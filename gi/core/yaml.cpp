@@ -1,9 +1,9 @@
 #include "gi/core/yaml.h"
 
 #include "gi/core/edit_distance.h"
+#include "gi/core/text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
@@ -194,15 +194,11 @@ std::vector<Yaml> Yaml::one_or_more() const { return is_list() ? items() : std::
 
 double Yaml::number(double low, double high) const
 {
-    double v = 0;
     if (node_.IsScalar()) {
         std::string s = node_.Scalar();
         if (s.ends_with('.')) s += '0'; // OpenCV writes 1. for 1
-        char const* const begin = s.data() + (s.starts_with('+') ? 1 : 0);
-        char const* const all = s.data() + s.size();
-        auto const [end, failure] = std::from_chars(begin, all, v);
-        if (failure == std::errc{} && end == all && begin != end && std::isfinite(v)) {
-            if (v >= low && v <= high) return v;
+        if (auto const v = parse_finite(std::string_view(s).substr(s.starts_with('+') ? 1 : 0))) {
+            if (*v >= low && *v <= high) return *v;
             throw error(fmt::format("{} is {}", path_, shortened(s)),
                         fmt::format("it must lie between {:g} and {:g}", low, high), "change it");
         }
@@ -219,12 +215,8 @@ std::int64_t Yaml::integer(std::int64_t low, std::int64_t high) const
 
 std::uint64_t Yaml::seed() const
 {
-    std::uint64_t v = 0;
-    std::string const s = text();
-    auto const [end, failure] = std::from_chars(s.data(), s.data() + s.size(), v);
-    if (failure != std::errc{} || end != s.data() + s.size())
-        throw error(path_ + " is no seed", "it is a whole number from 0 to 2^64 - 1", "write 20261");
-    return v;
+    if (auto const v = parse_number<std::uint64_t>(text())) return *v;
+    throw error(path_ + " is no seed", "it is a whole number from 0 to 2^64 - 1", "write 20261");
 }
 
 bool Yaml::boolean() const

@@ -1,8 +1,8 @@
+#include "gi/core/text.h"
 #include "study/analysis/result_tables.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -13,18 +13,9 @@ using Json = nlohmann::ordered_json;
 
 std::optional<double> number(std::string const& cell)
 {
-    if (cell.empty() || cell.find_first_not_of("0123456789+-.e") != std::string::npos) return {};
+    if (cell.find_first_not_of("0123456789+-.e") != std::string::npos) return {};
     if (cell.size() > 1 && cell[0] == '0' && cell[1] != '.') return {}; // a name: participant 007
-    char* end = nullptr;
-    double const v = std::strtod(cell.c_str(), &end);
-    return end == cell.c_str() + cell.size() ? std::optional(v) : std::nullopt;
-}
-
-/// Characters, not bytes.
-std::size_t width(std::string const& text)
-{
-    return std::size_t(std::count_if(text.begin(), text.end(),
-                                     [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+    return gi::parse_finite(cell);
 }
 
 Json json_of(std::string const& text)
@@ -68,24 +59,16 @@ std::string to_text(Analysis const& a)
         }
         out += "\n" + r.title + "\n";
         if (!r.note.empty()) out += "  " + r.note + "\n";
-        std::vector<std::size_t> widths;
+        // The indent is the first column.
+        std::vector<std::vector<std::string>> rows(1 + r.table.rows.size(), std::vector<std::string>{""});
+        std::vector<bool> right{false};
         for (std::size_t c = 0; c < r.table.columns.size(); ++c) {
-            widths.push_back(width(r.table.columns[c].name));
-            for (auto const& row : r.table.rows)
-                widths[c] = std::max(widths[c], width(shown_cell(r.table.columns[c], row[c])));
+            right.push_back(is_number_column(r.table, c));
+            rows[0].push_back(r.table.columns[c].name);
+            for (std::size_t k = 0; k < r.table.rows.size(); ++k)
+                rows[k + 1].push_back(shown_cell(r.table.columns[c], r.table.rows[k][c]));
         }
-        auto const line = [&](auto const& text_of) {
-            std::string l = " ";
-            for (std::size_t c = 0; c < widths.size(); ++c) {
-                std::string const text = text_of(c);
-                std::string const space(widths[c] - width(text), ' ');
-                l += " " + (is_number_column(r.table, c) ? space + text : text + space);
-            }
-            out += l.substr(0, l.find_last_not_of(' ') + 1) + "\n";
-        };
-        line([&](std::size_t c) { return r.table.columns[c].name; });
-        for (auto const& row : r.table.rows)
-            line([&](std::size_t c) { return shown_cell(r.table.columns[c], row[c]); });
+        out += gi::aligned(rows, right);
     }
     if (!left_out.empty()) out += "\nrows only in --json and --out: " + left_out + "\n";
     return out;

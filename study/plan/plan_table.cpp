@@ -1,3 +1,4 @@
+#include "gi/core/text.h"
 #include "study/plan/plan.h"
 
 #include <algorithm>
@@ -8,15 +9,12 @@ namespace {
 
 std::string or_none(std::string const& text) { return text.empty() ? "n/a" : text; }
 
-/// Shortens to one line of at most 60 bytes, without split characters or tabs.
-std::string shortened(std::string const& text)
+/// One line of at most 60 bytes, without tabs.
+std::string one_line(std::string text)
 {
-    std::string out;
-    for (char const c : text) out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    if (out.size() <= 60) return out;
-    std::size_t end = 57;
-    while (end > 0 && (static_cast<unsigned char>(out[end]) & 0xc0) == 0x80) --end;
-    return out.substr(0, end) + "...";
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    return gi::shortened(text, 60);
 }
 
 std::string seconds(std::int64_t us) { return fmt::format("{}.{:06}", us / 1000000, us % 1000000); }
@@ -76,7 +74,7 @@ std::vector<std::string> row_of(Script const& s, PlanStep const& step, std::size
     row.push_back(is_trial ? seconds(step.onset_us) : seconds(step.start_us));
     row.push_back(seconds(step.duration_us));
     row.push_back(step.questionnaire >= 0 ? s.questionnaires[std::size_t(step.questionnaire)].name
-                                          : or_none(shortened(step.text)));
+                                          : or_none(one_line(step.text)));
     return row;
 }
 

@@ -1,5 +1,6 @@
 #include "study/plan/plan_text.h"
 
+#include "gi/core/text.h"
 #include "study/plan/counterbalance.h"
 #include "study/plan/transitions.h"
 
@@ -19,14 +20,7 @@ std::string fixed_levels(Script const& s, std::vector<int> const& levels)
     return text;
 }
 
-std::string first_line(std::string const& text)
-{
-    std::string const line = text.substr(0, text.find('\n'));
-    if (line.size() <= 70) return line;
-    std::size_t end = 67;
-    while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xc0) == 0x80) --end;
-    return line.substr(0, end) + "...";
-}
+std::string first_line(std::string const& text) { return gi::shortened(text.substr(0, text.find('\n')), 70); }
 
 /// Crossed levels that the stimuli's label does not contain.
 std::string cell_text(Script const& s, Block const& b, Trial const& t)

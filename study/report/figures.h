@@ -5,6 +5,11 @@
 
 namespace study {
 
+/// Indices of the items, best first.
+std::vector<int> by_score(ScaleResult const& scale);
+/// The comparison of two items; null = none.
+ItemDifference const* difference_of(ScaleResult const& scale, int a, int b);
+
 /// Items by rising score with their intervals; bars at the right join items that do not differ significantly.
 /// @param truth true scores by item, in the unit of the scores, NaN = unknown; empty = all unknown
 /// @param shared ends of the axis, common to all groups for comparison

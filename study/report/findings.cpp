@@ -1,7 +1,8 @@
 #include "study/report/findings.h"
 
-#include "gi/core/html.h"
-#include "study/report/plot.h"
+#include "gi/core/html/axis.h"
+#include "gi/core/html/html.h"
+#include "study/report/figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,27 +13,21 @@ namespace {
 
 std::string interval_text(Uncertain const& u)
 {
-    std::string text = short_number(u.value);
+    std::string text = gi::short_number(u.value);
     if (std::isfinite(u.interval.low))
-        text += fmt::format(" [{}, {}]", short_number(u.interval.low), short_number(u.interval.high));
+        text += fmt::format(" [{}, {}]", gi::short_number(u.interval.low), gi::short_number(u.interval.high));
     return text;
 }
 
 /// Items, best first; "~" joins an item to the next one if they do not differ significantly.
 std::string ranking_text(ScaleResult const& s)
 {
-    std::vector<int> order;
-    for (std::size_t i = 0; i < s.items.size(); ++i) order.push_back(int(i));
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-        return s.items[std::size_t(a)].score.value > s.items[std::size_t(b)].score.value;
-    });
+    auto const order = by_score(s);
     std::string text;
     for (std::size_t k = 0; k < order.size(); ++k) {
         if (k > 0) {
-            bool is_told = false;
-            for (ItemDifference const& d : s.differences)
-                if ((d.a == order[k] && d.b == order[k - 1]) || (d.b == order[k] && d.a == order[k - 1]))
-                    is_told = d.p_holm < 0.05;
+            ItemDifference const* const d = difference_of(s, order[k], order[k - 1]);
+            bool const is_told = d != nullptr && d->p_holm < 0.05;
             text += is_told ? " &gt; " : " ~ ";
         }
         text += gi::escaped(s.items[std::size_t(order[k])].name);
@@ -62,17 +57,17 @@ std::string cheapest_text(ScaleResult const& s)
         return fmt::format(
             "Nothing cheaper than <b>{}</b> ({} ms) is as good as {}: every cheaper one is significantly "
             "worse.",
-            gi::escaped(item.name), short_number(item.render_ms.value),
+            gi::escaped(item.name), gi::short_number(item.render_ms.value),
             c.is_reference ? "it, the reference" : "it, the best judged item (the reference was not judged)");
     std::string text = fmt::format(
         "The cheapest without significant difference from {} <b>{}</b> ({} ms) is <b>{}</b> ({} ms): "
         "difference {} {}, p = {:.3f} "
         "corrected for all pairs.",
-        stand_in, gi::escaped(against.name), short_number(against.render_ms.value), gi::escaped(item.name),
-        short_number(item.render_ms.value), interval_text(c.difference), gi::escaped(s.unit), c.p_holm);
+        stand_in, gi::escaped(against.name), gi::short_number(against.render_ms.value), gi::escaped(item.name),
+        gi::short_number(item.render_ms.value), interval_text(c.difference), gi::escaped(s.unit), c.p_holm);
     if (std::isfinite(c.difference.interval.low) && c.difference.interval.low < 0)
         text += fmt::format(" No significant difference does not mean equal: it may be up to {} {} worse.",
-                            short_number(-c.difference.interval.low), gi::escaped(s.unit));
+                            gi::short_number(-c.difference.interval.low), gi::escaped(s.unit));
     return text;
 }
 
@@ -95,10 +90,9 @@ std::string findings(Analysis const& a)
                                     c.fit.note.empty() ? "" : " Doubtful: " + gi::escaped(c.fit.note) + ".");
     }
     if (html.empty()) return {};
-    return "<h2>In short</h2>\n<ul class=\"findings\">\n" + html +
-           "</ul>\n<p class=\"note\">Best first; &gt; means significantly better than the next one (5 %, "
-           "corrected for all "
-           "pairs by Holm's procedure), ~ that this was not shown.</p>\n";
+    return "<h2>In short</h2>\n<ul class=\"findings\">\n" + html + "</ul>\n" +
+           gi::html_note("Best first; &gt; means significantly better than the next one (5 %, corrected for all "
+                         "pairs by Holm's procedure), ~ that this was not shown.");
 }
 
 } // namespace study

@@ -1,11 +1,10 @@
 #include "study/report/page.h"
 
-#include "gi/core/html.h"
+#include "gi/core/html/html.h"
+#include "study/analysis/result_tables.h"
 #include "study/analysis/threshold_run.h"
 #include "study/report/figures.h"
 #include "study/report/findings.h"
-#include "study/report/html.h"
-#include "study/report/plot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,28 @@
 
 namespace study {
 namespace {
+
+/// A table with its title and note; column descriptions are shown as hints.
+std::string html_of(ResultTable const& t)
+{
+    std::vector<gi::HtmlColumn> columns;
+    std::vector<std::vector<gi::HtmlCell>> rows;
+    for (std::size_t c = 0; c < t.table.columns.size(); ++c) {
+        Column const& column = t.table.columns[c];
+        std::string name = column.name;
+        std::replace(name.begin(), name.end(), '_', ' ');
+        bool const is_number = std::all_of(t.table.rows.begin(), t.table.rows.end(), [&](auto const& row) {
+            return row[c] == kNothing || row[c].find_first_not_of("0123456789+-.e") == std::string::npos;
+        });
+        columns.push_back({name, is_number, column.description});
+    }
+    for (auto const& row : t.table.rows) {
+        rows.emplace_back();
+        for (std::size_t c = 0; c < row.size(); ++c) rows.back().push_back(shown_cell(t.table.columns[c], row[c]));
+    }
+    return fmt::format("<h3>{}</h3>\n", gi::escaped(t.title)) +
+           (t.note.empty() ? "" : gi::html_note(gi::escaped(t.note))) + gi::html_table(columns, rows);
+}
 
 Block const* block_of(Script const& s, std::string const& name)
 {
@@ -50,6 +71,13 @@ double true_threshold(Block const& b, ReportFacts const& facts, double share)
 std::string figures(std::string const& html)
 {
     return html.empty() ? "" : "<div class=\"figures\">\n" + html + "</div>\n";
+}
+
+/// Figures with their heading; empty without figures.
+std::string part(std::string const& heading, std::string const& note, std::string const& html)
+{
+    if (html.empty()) return {};
+    return "<h3>" + heading + "</h3>\n" + (note.empty() ? "" : gi::html_note(note)) + figures(html);
 }
 
 /// Range from the lowest to the highest score of all groups.
@@ -96,57 +124,49 @@ std::string scales_html(Script const& s, Block const& b, BlockResult const& r, A
         wins += wins_table(scale, level);
         spreads += spread_figure(scale, b.scale, scale.group);
     }
-    std::string html = "<h3>Scores</h3>\n<p class=\"note\">";
+    std::string note;
     if (r.task == "pair" || r.task == "pair_with_reference")
-        html += "1 JOD: 75 % choose the better one (Thurstone, case V; mean 0). Intervals by a bootstrap over "
-                "observers. ";
-    html += "Grey bars at the right join items that do not differ significantly.";
-    if (has_truth) html += " Diamonds: true values of the simulated observers.";
-    html += "</p>\n" + figures(scales);
-    if (!spreads.empty())
-        html += "<h3>Distribution of answers</h3>\n<p class=\"note\">Proportions of the answers (bars), mean and "
-                "interval over "
-                "observers (dots).</p>\n" +
-                figures(spreads);
-    if (!costs.empty()) {
-        html += "<h3>Perceived quality against rendering time</h3>\n<p class=\"note\">Square: the item compared "
-                "with. Ring: "
-                "the cheapest item that does not differ significantly from it.</p>\n" +
-                figures(costs) + cheapest_table(a, r.name);
-    }
-    if (!wins.empty())
-        html += "<h3>Pairs</h3>\n<p class=\"note\">Per cent of times that the row was chosen over the column; * "
-                "differs "
-                "significantly (corrected).</p>\n" +
-                figures(wins);
-    return html;
+        note = "1 JOD: 75 % choose the better one (Thurstone, case V; mean 0). Intervals by a bootstrap over "
+               "observers. ";
+    note += "Grey bars at the right join items that do not differ significantly.";
+    if (has_truth) note += " Diamonds: true values of the simulated observers.";
+    std::string html =
+        part("Scores", note, scales) +
+        part("Distribution of answers",
+             "Proportions of the answers (bars), mean and interval over observers (dots).", spreads);
+    if (!costs.empty())
+        html += part("Perceived quality against rendering time",
+                     "Square: the item compared with. Ring: the cheapest item that does not differ significantly "
+                     "from it.",
+                     costs) +
+                cheapest_table(a, r.name);
+    return html + part("Pairs",
+                       "Per cent of times that the row was chosen over the column; * differs significantly "
+                       "(corrected).",
+                       wins);
 }
 
 std::string thresholds_html(Block const& b, BlockResult const& r, ReportFacts const& facts)
 {
     std::string html, curves;
-    if (!r.detections.empty())
-        html += "<h3>Detection</h3>\n" + figures(detections_figure(r.detections, guess_rate(b.task), r.name));
+    html += part("Detection", "", detections_figure(r.detections, guess_rate(b.task), r.name));
     std::string const setting = b.compare ? b.compare->vary : "level";
     for (CurveResult const& c : r.curves)
         curves += curve_figure(c, r, setting, true_threshold(b, facts, c.proportion));
-    if (!curves.empty())
-        html += "<h3>Psychometric functions</h3>\n<p class=\"note\">Trials of all observers and procedures "
-                "pooled, with "
-                "Wilson's intervals; larger dots mean more trials. Shaded: interval of the threshold." +
-                std::string(facts.truth ? " Diamond: true value of the simulated observers." : "") + "</p>\n" +
-                figures(curves);
-    if (!r.thresholds.empty()) {
-        std::map<std::string, std::vector<ThresholdSummary>> cells;
-        for (ThresholdSummary const& t : r.thresholds) cells[t.cell].push_back(t);
-        std::string drawn;
-        for (auto const& [cell, list] : cells) {
-            std::vector<double> truth;
-            for (ThresholdSummary const& t : list) truth.push_back(true_threshold(b, facts, t.proportion));
-            drawn += thresholds_figure(list, r, truth, cell);
-        }
-        html += "<h3>Thresholds by method</h3>\n" + figures(drawn);
+    html += part("Psychometric functions",
+                 "Trials of all observers and procedures pooled, with Wilson's intervals; larger dots mean more "
+                 "trials. Shaded: interval of the threshold." +
+                     std::string(facts.truth ? " Diamond: true value of the simulated observers." : ""),
+                 curves);
+    std::map<std::string, std::vector<ThresholdSummary>> cells;
+    for (ThresholdSummary const& t : r.thresholds) cells[t.cell].push_back(t);
+    std::string drawn;
+    for (auto const& [cell, list] : cells) {
+        std::vector<double> truth;
+        for (ThresholdSummary const& t : list) truth.push_back(true_threshold(b, facts, t.proportion));
+        drawn += thresholds_figure(list, r, truth, cell);
     }
+    html += part("Thresholds by method", "", drawn);
     std::map<std::string, std::vector<ThresholdRun>> runs;
     for (ThresholdRun const& run : r.runs)
         for (Procedure const& p : b.procedures)
@@ -164,15 +184,13 @@ std::string block_html(Script const& s, BlockResult const& r, Analysis const& a,
 {
     Block const* const b = block_of(s, r.name);
     if (b == nullptr) return {};
-    std::string html =
-        fmt::format("<section>\n<h2>{} <small>({})</small></h2>\n", gi::escaped(r.name), gi::escaped(r.task));
+    std::string html;
     if (!r.prompt.empty()) html += fmt::format("<p>“{}”</p>\n", gi::escaped(r.prompt));
     for (ScaleResult const& scale : r.scales)
         if (!scale.refused.empty())
             html += fmt::format("<p>{}: no scale: {}</p>\n", gi::escaped(scale.group), gi::escaped(scale.refused));
     if (!r.scales.empty()) html += scales_html(s, *b, r, a, facts);
-    html += thresholds_html(*b, r, facts);
-    return html + "</section>\n";
+    return gi::html_section(r.name + " (" + r.task + ")", html + thresholds_html(*b, r, facts));
 }
 
 /// Exclusions by reason; lists the participants if they are few.
@@ -220,19 +238,18 @@ std::string provenance(std::span<RecordedSession const> sessions, ReportFacts co
                 ++values["date"][s->utc.substr(0, 10)];
                 for (auto const& [key, value] : s->about) ++values[key][value];
             }
-    std::string html = "<h2>Provenance</h2>\n<dl>\n";
-    html += fmt::format("<dt>report by</dt><dd>{}</dd>\n", gi::escaped(facts.program));
+    std::vector<std::pair<std::string, std::string>> entries{{"report by", facts.program}};
     for (auto const& [key, list] : values) {
-        html += "<dt>" + gi::escaped(key) + "</dt><dd>";
+        std::string text;
         std::size_t shown = 0;
         for (auto const& [value, n] : list) {
             if (++shown > 5) break;
-            html += (shown > 1 ? "; " : "") + gi::escaped(value);
+            text += (shown > 1 ? "; " : "") + value;
         }
-        if (list.size() > 5) html += fmt::format("; and {} more", list.size() - 5);
-        html += "</dd>\n";
+        if (list.size() > 5) text += fmt::format("; and {} more", list.size() - 5);
+        entries.emplace_back(key, text);
     }
-    return html + "</dl>\n";
+    return "<h2>Provenance</h2>\n" + gi::html_definitions(entries);
 }
 
 } // namespace
@@ -240,45 +257,34 @@ std::string provenance(std::span<RecordedSession const> sessions, ReportFacts co
 std::string report_page(Script const& script, std::span<RecordedSession const> sessions, Analysis const& a,
                         ReportFacts const& facts)
 {
-    std::string html =
-        fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-                    "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{}</title>\n<style>\n",
-                    gi::escaped(a.title));
-    html += report_style();
-    html += fmt::format(
-        "</style>\n</head>\n<body>\n<header><h1>{}</h1>\n<p class=\"about\">Experiment {}: {} of {} "
-        "participants, {} sessions, {} complete. Intervals of {:.0f} %, {} replicates of bootstraps.</p>\n",
-        gi::escaped(a.title), gi::escaped(a.experiment), a.participants, a.planned, a.sessions, a.complete,
-        100 * a.settings.confidence, a.settings.replicates);
-    if (!a.cautions.empty()) {
-        html += "<ul class=\"cautions\">";
-        for (std::string const& c : a.cautions) html += "<li>" + gi::escaped(c) + "</li>";
-        html += "</ul>\n";
-    }
-    html += "</header>\n<main>\n" + findings(a);
+    std::string html = findings(a);
     for (BlockResult const& b : a.blocks) html += block_html(script, b, a, facts);
 
     auto const tables = result_tables(a);
-    auto const add = [&](std::initializer_list<std::string_view> names) {
+    auto const shown = [&](std::initializer_list<std::string_view> names) {
+        std::string found;
         for (std::string_view const name : names)
             for (ResultTable const& t : tables)
-                if (t.name == name && !t.is_long) html += html_of(t);
+                if (t.name == name && !t.is_long) found += html_of(t);
+        return found;
     };
-    html += "<section>\n<h2>Observers</h2>\n";
-    if (a.exclusions.empty()) html += "<p>Nothing except practice was excluded.</p>\n";
-    html += exclusions_html(a);
-    add({"observers", "agreement"});
-    html += "</section>\n<section>\n<h2>Timing</h2>\n" + timing_html(a, facts);
-    add({"timing", "reactions", "calibrations"});
-    html += "</section>\n<section>\n<h2>Order</h2>\n<p class=\"note\">How trials followed each other, summed over "
-            "participants: from the row to the column.</p>\n";
+    html += gi::html_section("Observers",
+                             (a.exclusions.empty() ? "<p>Nothing except practice was excluded.</p>\n" : "") +
+                                 exclusions_html(a) + shown({"observers", "agreement"}));
+    html += gi::html_section("Timing", timing_html(a, facts) + shown({"timing", "reactions", "calibrations"}));
     std::string orders;
     for (TransitionResult const& t : a.transitions) orders += transitions_table(t);
-    html += figures(orders) + "</section>\n<section>\n<h2>Numbers</h2>\n";
-    add({"scores", "thresholds", "curves", "detection", "questionnaires", "changes", "remarks"});
-    html += "</section>\n" + provenance(sessions, facts);
-    return html + "</main>\n</body>\n</html>\n";
+    html += gi::html_section("Order", gi::html_note("How trials followed each other, summed over participants: "
+                                                    "from the row to the column.") +
+                                          figures(orders));
+    html += gi::html_section(
+        "Numbers", shown({"scores", "thresholds", "curves", "detection", "questionnaires", "changes", "remarks"}));
+    std::string const about = fmt::format("<p class=\"about\">Experiment {}: {} of {} participants, {} sessions, "
+                                          "{} complete. Intervals of {:.0f} %, "
+                                          "{} replicates of bootstraps.</p>\n",
+                                          gi::escaped(a.experiment), a.participants, a.planned, a.sessions,
+                                          a.complete, 100 * a.settings.confidence, a.settings.replicates);
+    return gi::html_page(a.title, html + provenance(sessions, facts), about + gi::html_cautions(a.cautions));
 }
 
 } // namespace study

@@ -1,6 +1,6 @@
-#include "gi/core/html.h"
+#include "gi/core/html/html.h"
+#include "gi/core/html/plot.h"
 #include "study/report/figures.h"
-#include "study/report/plot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <numeric>
 
 namespace study {
-namespace {
 
 ItemDifference const* difference_of(ScaleResult const& s, int a, int b)
 {
@@ -26,6 +25,8 @@ std::vector<int> by_score(ScaleResult const& s)
     });
     return order;
 }
+
+namespace {
 
 /// Longest runs [first, last] of sorted items in which no two differ significantly.
 std::vector<std::pair<std::size_t, std::size_t>> equal_runs(ScaleResult const& s, std::vector<int> const& order)
@@ -57,7 +58,7 @@ double overlap(Rectangle const& a, Rectangle const& b)
 }
 
 /// Position beside a point where a text overlaps least.
-Rectangle free_spot(Plot const& p, double x, double y, double width, std::vector<Rectangle> const& taken)
+Rectangle free_spot(gi::Plot const& p, double x, double y, double width, std::vector<Rectangle> const& taken)
 {
     constexpr double kHeight = 15;
     Rectangle best{};
@@ -77,11 +78,11 @@ Rectangle free_spot(Plot const& p, double x, double y, double width, std::vector
     return best;
 }
 
-double widest(ScaleResult const& s)
+std::vector<std::string> names_of(ScaleResult const& s, std::vector<int> const& order)
 {
-    double w = 0;
-    for (ScaledItem const& i : s.items) w = std::max(w, text_width(i.name));
-    return w;
+    std::vector<std::string> names;
+    for (int const i : order) names.push_back(s.items[std::size_t(i)].name);
+    return names;
 }
 
 } // namespace
@@ -92,26 +93,18 @@ std::string scale_figure(ScaleResult const& s, std::vector<double> const& truth,
     if (!s.refused.empty() || s.items.empty()) return {};
     auto const order = by_score(s);
     auto const runs = equal_runs(s, order);
-    double const row = 24, left = std::max(60.0, widest(s) + 16);
-    Plot p(std::max(370.0, left + 250), row * double(order.size()) + 62, axis_over({shared.low, shared.high}),
-           {0, 1, false});
     // Space for four bars, so that axes are equal.
-    p.margins(left, 8, 12 + 10 * double(std::max<std::size_t>(4, runs.size())), 46);
-    p.x_axis(s.unit);
+    gi::RowPlot p(names_of(s, order), gi::axis_over({shared.low, shared.high}), s.unit, 254,
+                  12 + 10 * double(std::max<std::size_t>(4, runs.size())));
     for (std::size_t k = 0; k < order.size(); ++k) {
-        ScaledItem const& item = s.items[std::size_t(order[k])];
-        double const y = p.top() + row * (double(k) + 0.6);
-        p.text(left - 8, y + 4, item.name, "end");
-        if (std::isfinite(item.score.interval.low))
-            p.line(p.x(item.score.interval.low), y, p.x(item.score.interval.high), y, "interval");
-        p.dot(p.x(item.score.value), y, 4, "point");
+        Uncertain const& score = s.items[std::size_t(order[k])].score;
+        p.estimate(score.value, score.interval.low, score.interval.high, p.row(k));
         if (!truth.empty() && std::isfinite(truth[std::size_t(order[k])]))
-            p.diamond(p.x(truth[std::size_t(order[k])]), y, 6, "truth");
+            p.diamond(p.x(truth[std::size_t(order[k])]), p.row(k), 6, "truth");
     }
     for (std::size_t k = 0; k < runs.size(); ++k) {
         double const x = p.right() + 10 + 10 * double(k);
-        p.line(x, p.top() + row * (double(runs[k].first) + 0.6) - 6, x,
-               p.top() + row * (double(runs[k].second) + 0.6) + 6, "equal");
+        p.line(x, p.row(runs[k].first) - 6, x, p.row(runs[k].second) + 6, "equal");
     }
     return p.figure(title + ": scores", fmt::format("<b>{}</b> {} observers, {} judgements", gi::escaped(title),
                                                     s.observers, s.observations));
@@ -127,7 +120,8 @@ std::string cost_figure(ScaleResult const& s, std::string const& title)
     }
     if (!s.refused.empty() || costs.size() < 6) return {};
     auto const [low, high] = std::minmax_element(costs.begin(), costs.end());
-    Plot p(550, 350, axis_over(costs, *low > 0 && *high > 5 * *low, 0.12), axis_over(scores, false, 0.1));
+    gi::Plot p(550, 350, gi::axis_over(costs, *low > 0 && *high > 5 * *low, 0.12),
+               gi::axis_over(scores, false, 0.1));
     p.margins(56, 12, 20, 46);
     p.x_axis("rendering time per frame, ms");
     p.y_axis(s.unit);
@@ -152,7 +146,7 @@ std::string cost_figure(ScaleResult const& s, std::string const& title)
         if (is_chosen) p.dot(x, y, 10, "ring");
         is_base ? p.box(x - 5, y - 5, 10, 10, "base") : p.dot(x, y, 4.5, "point");
         std::string const words = item.name + (is_base && s.cheapest->is_reference ? " (reference)" : "");
-        Rectangle const spot = free_spot(p, x, y, text_width(words), taken);
+        Rectangle const spot = free_spot(p, x, y, gi::text_width(words), taken);
         taken.push_back(spot);
         p.text(spot.x1, spot.y2 - 3, words);
     }
@@ -163,29 +157,21 @@ std::string wins_table(ScaleResult const& s, double level)
 {
     if (s.wins.empty() || !s.refused.empty()) return {};
     auto const order = by_score(s);
-    std::string html = fmt::format("<figure><table class=\"matrix\"><caption>{}</caption><thead><tr><th></th>",
-                                   gi::escaped(s.group));
-    for (int const c : order)
-        html += "<th scope=\"col\"><span>" + gi::escaped(s.items[std::size_t(c)].name) + "</span></th>";
-    html += "</tr></thead><tbody>";
+    std::vector<std::vector<gi::ShadedCell>> cells;
     for (int const r : order) {
-        html += "<tr><th scope=\"row\">" + gi::escaped(s.items[std::size_t(r)].name) + "</th>";
+        cells.emplace_back();
         for (int const c : order) {
             double const won = s.wins[std::size_t(r)][std::size_t(c)],
                          lost = s.wins[std::size_t(c)][std::size_t(r)];
-            if (r == c || won + lost == 0) {
-                html += "<td></td>";
-                continue;
-            }
+            cells.back().emplace_back();
+            if (r == c || won + lost == 0) continue;
             double const share = won / (won + lost);
             auto const* d = difference_of(s, r, c);
-            html += fmt::format("<td style=\"--share:{:.0f}%\"{}>{:.0f}{}</td>", 100 * std::abs(share - 0.5),
-                                share < 0.5 ? " class=\"lost\"" : "", 100 * share,
-                                d != nullptr && d->p_holm < level ? "*" : "");
+            cells.back().back() = {
+                fmt::format("{:.0f}{}", 100 * share, d != nullptr && d->p_holm < level ? "*" : ""), share - 0.5};
         }
-        html += "</tr>";
     }
-    return html + "</tbody></table></figure>\n";
+    return gi::html_figure(gi::html_matrix(s.group, names_of(s, order), cells), "");
 }
 
 std::string spread_figure(ScaleResult const& s, RatingScale const& rating, std::string const& title)
@@ -193,26 +179,18 @@ std::string spread_figure(ScaleResult const& s, RatingScale const& rating, std::
     if (s.spread.empty()) return {};
     auto const order = by_score(s);
     auto const steps = s.spread.front().size();
-    double const row = 26, left = std::max(60.0, widest(s) + 16);
-    Plot p(std::max(460.0, left + 340), row * double(order.size()) + 62,
-           {rating.low - 0.6 * rating.step, rating.high + 0.6 * rating.step, false}, {0, 1, false});
-    p.margins(left, 8, 24, 46);
-    p.x_axis(s.unit, int(std::min<std::size_t>(steps, 10)) + 1);
+    gi::RowPlot p(names_of(s, order), {rating.low - 0.6 * rating.step, rating.high + 0.6 * rating.step}, s.unit,
+                  330, 24, int(std::min<std::size_t>(steps, 10)) + 1);
+    double const width = std::max(3.0, (p.right() - p.left()) / double(steps) - 3);
     for (std::size_t k = 0; k < order.size(); ++k) {
         auto const& counts = s.spread[std::size_t(order[k])];
-        ScaledItem const& item = s.items[std::size_t(order[k])];
-        double const base = p.top() + row * (double(k) + 0.95);
+        Uncertain const& score = s.items[std::size_t(order[k])].score;
         int const sum = std::max(1, std::accumulate(counts.begin(), counts.end(), 0));
-        double const width = std::max(3.0, (p.right() - p.left()) / double(steps) - 3);
         for (std::size_t v = 0; v < steps; ++v) {
-            double const share = double(counts[v]) / sum, h = (row - 5) * std::min(1.0, share / 0.6);
-            p.box(p.x(rating.low + double(v) * rating.step) - width / 2, base - h, width, h, "bar");
+            double const h = (p.kRow - 5) * std::min(1.0, double(counts[v]) / sum / 0.6);
+            p.box(p.x(rating.low + double(v) * rating.step) - width / 2, p.row(k) + 10 - h, width, h, "bar");
         }
-        p.text(left - 8, base - 5, item.name, "end");
-        double const y = base - row / 2 + 2;
-        if (std::isfinite(item.score.interval.low))
-            p.line(p.x(item.score.interval.low), y, p.x(item.score.interval.high), y, "interval");
-        p.dot(p.x(item.score.value), y, 4, "point");
+        p.estimate(score.value, score.interval.low, score.interval.high, p.row(k));
     }
     return p.figure(title + ": ratings", fmt::format("<b>{}</b> {} observers, {} ratings", gi::escaped(title),
                                                      s.observers, s.observations));

@@ -1,6 +1,6 @@
-#include "gi/core/html.h"
+#include "gi/core/html/html.h"
+#include "gi/core/html/plot.h"
 #include "study/report/figures.h"
-#include "study/report/plot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,8 @@ std::string curve_figure(CurveResult const& c, BlockResult const& block, std::st
         levels.push_back(l.level);
         most = std::max(most, l.trials);
     }
-    Axis1D const axis = axis_over(levels, block.is_log);
-    Plot p(460, 320, axis, {0, 1.04, false});
+    gi::PlotAxis const axis = gi::axis_over(levels, block.is_log);
+    gi::Plot p(460, 320, axis, {0, 1.04, false});
     p.margins(54, 12, 16, 46);
     p.x_axis(setting);
     p.y_axis("proportion correct");
@@ -34,21 +34,21 @@ std::string curve_figure(CurveResult const& c, BlockResult const& block, std::st
         double const share = i / 100.0;
         double const level = block.is_log ? axis.low * std::pow(axis.high / axis.low, share)
                                           : axis.low + share * (axis.high - axis.low);
-        line.emplace_back(p.x(level), p.y(proportion_at(c.fit.shape, c.fit.parameters, level)));
+        line.emplace_back(level, proportion_at(c.fit.shape, c.fit.parameters, level));
     }
-    p.polyline(line, "fit");
+    p.curve(line, "fit");
     for (LevelCount const& l : c.counts) {
         Interval const i = wilson(l.correct, l.trials);
         p.line(p.x(l.level), p.y(i.low), p.x(l.level), p.y(i.high), "interval thin");
         p.dot(p.x(l.level), p.y(l.correct / l.trials), 2 + 4 * std::sqrt(l.trials / most), "point");
     }
     std::string const range = std::isfinite(c.threshold.interval.low)
-                                  ? fmt::format(" [{}, {}]", short_number(c.threshold.interval.low),
-                                                short_number(c.threshold.interval.high))
+                                  ? fmt::format(" [{}, {}]", gi::short_number(c.threshold.interval.low),
+                                                gi::short_number(c.threshold.interval.high))
                                   : "";
     return p.figure("psychometric function, " + c.cell,
                     fmt::format("<b>{}</b> {:.0f} % correct at {}{}; {} observers{}", gi::escaped(c.cell),
-                                100 * c.proportion, short_number(c.threshold.value), range, c.observers,
+                                100 * c.proportion, gi::short_number(c.threshold.value), range, c.observers,
                                 c.fit.note.empty() ? "" : ". Doubtful: " + gi::escaped(c.fit.note)));
 }
 
@@ -63,15 +63,15 @@ std::string tracks_figure(std::vector<ThresholdRun> const& runs, BlockResult con
         levels.insert(levels.end(), r.levels.begin(), r.levels.end());
         trials = std::max(trials, r.levels.size());
     }
-    Axis1D const y = axis_over(levels, block.is_log);
+    gi::PlotAxis const y = gi::axis_over(levels, block.is_log);
     std::string html;
     for (std::size_t k = 0; k < std::min(kMost, runs.size()); ++k) {
         ThresholdRun const& r = runs[k];
-        Plot p(216, 150, {0, double(trials) + 1, false}, y);
+        gi::Plot p(216, 150, {0, double(trials) + 1, false}, y);
         p.margins(46, 20, 6, 22);
         for (double const v : y.ticks(3)) {
             p.line(p.left(), p.y(v), p.right(), p.y(v), "grid");
-            p.text(p.left() - 5, p.y(v) + 4, short_number(v), "end", "tick");
+            p.text(p.left() - 5, p.y(v) + 4, gi::short_number(v), "end", "tick");
         }
         p.text(p.right(), p.bottom() + 16, fmt::format("{} trials", r.levels.size()), "end", "tick");
         p.text(p.left(), 14, r.participant + (r.run > 1 ? fmt::format(", run {}", r.run) : ""), "start", "label");
@@ -98,25 +98,16 @@ std::string thresholds_figure(std::vector<ThresholdSummary> const& thresholds, B
 {
     if (thresholds.empty()) return {};
     std::vector<double> values = truth;
-    double widest = 60;
     std::vector<std::string> names;
     for (ThresholdSummary const& t : thresholds) {
         values.insert(values.end(), {t.level.value, t.level.interval.low, t.level.interval.high});
         names.push_back(fmt::format("{}, {} at {:.0f} %", t.procedure, t.method, 100 * t.proportion));
-        widest = std::max(widest, text_width(names.back()));
     }
-    double const row = 24, left = widest + 12;
-    Plot p(left + 300, row * double(names.size()) + 62, axis_over(values, block.is_log), {0, 1, false});
-    p.margins(left, 8, 20, 46);
-    p.x_axis("level");
+    gi::RowPlot p(names, gi::axis_over(values, block.is_log), "level", 280);
     for (std::size_t k = 0; k < names.size(); ++k) {
-        ThresholdSummary const& t = thresholds[k];
-        double const y = p.top() + row * (double(k) + 0.6);
-        p.text(left - 8, y + 4, names[k], "end");
-        if (std::isfinite(t.level.interval.low))
-            p.line(p.x(t.level.interval.low), y, p.x(t.level.interval.high), y, "interval");
-        if (std::isfinite(t.level.value)) p.dot(p.x(t.level.value), y, 4, "point");
-        if (k < truth.size() && std::isfinite(truth[k])) p.diamond(p.x(truth[k]), y, 6, "truth");
+        Uncertain const& level = thresholds[k].level;
+        p.estimate(level.value, level.interval.low, level.interval.high, p.row(k));
+        if (k < truth.size() && std::isfinite(truth[k])) p.diamond(p.x(truth[k]), p.row(k), 6, "truth");
     }
     return p.figure(title, "<b>" + gi::escaped(title) + "</b>");
 }
@@ -125,19 +116,13 @@ std::string detections_figure(std::vector<DetectionResult> const& detections, do
                               std::string const& title)
 {
     if (detections.empty()) return {};
-    double widest = 60;
-    for (DetectionResult const& d : detections) widest = std::max(widest, text_width(d.condition));
-    double const row = 24, left = widest + 12;
-    Plot p(left + 300, row * double(detections.size()) + 62, {0, 1.02, false}, {0, 1, false});
-    p.margins(left, 8, 20, 46);
-    p.x_axis("proportion correct");
+    std::vector<std::string> names;
+    for (DetectionResult const& d : detections) names.push_back(d.condition);
+    gi::RowPlot p(names, {0, 1.02}, "proportion correct", 280);
     if (guess > 0) p.line(p.x(guess), p.top(), p.x(guess), p.bottom(), "mark");
-    for (std::size_t k = 0; k < detections.size(); ++k) {
+    for (std::size_t k = 0; k < names.size(); ++k) {
         DetectionResult const& d = detections[k];
-        double const y = p.top() + row * (double(k) + 0.6);
-        p.text(left - 8, y + 4, d.condition, "end");
-        p.line(p.x(d.interval.low), y, p.x(d.interval.high), y, "interval");
-        p.dot(p.x(d.correct / d.trials), y, 4, "point");
+        p.estimate(d.correct / d.trials, d.interval.low, d.interval.high, p.row(k));
     }
     return p.figure(title,
                     "<b>" + gi::escaped(title) + "</b> Wilson's intervals of all trials; dashed: guessing.");
@@ -160,7 +145,7 @@ std::string histogram(std::vector<double> const& values, std::string const& labe
     for (double const v : known)
         v > high ? ++beyond : ++counts[std::size_t(std::min(kBins - 1, int((v - low) / (high - low) * kBins)))];
     double const most = *std::max_element(counts.begin(), counts.end());
-    Plot p(380, 220, {low, high, false}, {0, most * 1.05, false});
+    gi::Plot p(380, 220, {low, high, false}, {0, most * 1.05, false});
     p.margins(52, 10, 16, 46);
     p.x_axis(label, 4);
     p.y_axis("", 3);
@@ -177,23 +162,13 @@ std::string transitions_table(TransitionResult const& t)
 {
     auto const n = t.names.size();
     if (n < 2 || n > 12) return {};
-    int most = 1;
-    for (int const c : t.counts) most = std::max(most, c);
-    std::string html = fmt::format("<figure><table class=\"matrix\"><caption>{}: {}</caption><thead><tr><th></th>",
-                                   gi::escaped(t.block), gi::escaped(t.subject));
-    for (std::string const& name : t.names)
-        html += "<th scope=\"col\"><span>" + gi::escaped(name) + "</span></th>";
-    html += "</tr></thead><tbody>";
-    for (std::size_t r = 0; r < n; ++r) {
-        html += "<tr><th scope=\"row\">" + gi::escaped(t.names[r]) + "</th>";
-        for (std::size_t c = 0; c < n; ++c)
-            html += fmt::format("<td style=\"--share:{:.0f}%\">{}</td>", 50.0 * t.counts[r * n + c] / most,
-                                t.counts[r * n + c]);
-        html += "</tr>";
-    }
-    return html + fmt::format("</tbody></table><figcaption>Neighbours that differ: {:.0f} %, by chance {:.0f} %"
-                              "</figcaption></figure>\n",
-                              100 * t.switched, 100 * t.by_chance);
+    int const most = std::max(1, *std::max_element(t.counts.begin(), t.counts.end()));
+    std::vector<std::vector<gi::ShadedCell>> cells(n);
+    for (std::size_t i = 0; i < n * n; ++i)
+        cells[i / n].push_back({std::to_string(t.counts[i]), 0.5 * t.counts[i] / most});
+    return gi::html_figure(
+        gi::html_matrix(t.block + ": " + t.subject, t.names, cells),
+        fmt::format("Neighbours that differ: {:.0f} %, by chance {:.0f} %", 100 * t.switched, 100 * t.by_chance));
 }
 
 } // namespace study

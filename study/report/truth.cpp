@@ -1,4 +1,5 @@
 #include "study/report/page.h"
+#include "study/stats/special.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -32,12 +33,7 @@ double true_level(SimulatedTruth const& truth, std::string const& setting, bool 
     SimulatedTruth::Varied const& v = it->second;
     double const sign = harder_up ? -1 : 1;
     if (v.is_weibull) return v.threshold * std::pow(-std::log1p(-f), sign / v.slope);
-    double low = -10, high = 10; // the quantile of the normal distribution
-    for (int i = 0; i < 100; ++i) {
-        double const z = (low + high) / 2;
-        (0.5 * std::erfc(-z / std::sqrt(2.0)) < f ? low : high) = z;
-    }
-    return v.threshold + sign * v.slope * low;
+    return v.threshold + sign * v.slope * normal_quantile(f);
 }
 
 } // namespace study

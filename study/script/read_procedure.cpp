@@ -1,7 +1,7 @@
+#include "gi/core/text.h"
 #include "study/script/read.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -9,14 +9,6 @@ namespace study {
 namespace {
 
 constexpr double kAny = 1e12;
-
-std::optional<double> parse_number(std::string_view s)
-{
-    double v = 0;
-    auto const [end, failure] = std::from_chars(s.data(), s.data() + s.size(), v);
-    if (s.empty() || failure != std::errc{} || end != s.data() + s.size() || !std::isfinite(v)) return {};
-    return v;
-}
 
 /// Reads "a..b/n".
 std::vector<double> parse_range(gi::Yaml const& y, Scale scale)
@@ -28,9 +20,9 @@ std::vector<double> parse_range(gi::Yaml const& y, Scale scale)
     };
     if (dots == std::string::npos || slash == std::string::npos || slash < dots)
         throw bad("it is neither a number, a list nor from..to/count");
-    auto const low = parse_number(std::string_view(s).substr(0, dots)),
-               high = parse_number(std::string_view(s).substr(dots + 2, slash - dots - 2)),
-               count = parse_number(std::string_view(s).substr(slash + 1));
+    auto const low = gi::parse_finite(std::string_view(s).substr(0, dots)),
+               high = gi::parse_finite(std::string_view(s).substr(dots + 2, slash - dots - 2)),
+               count = gi::parse_finite(std::string_view(s).substr(slash + 1));
     if (!low || !high || !count || !(*low < *high)) throw bad("from and to must be rising numbers");
     if (!(*count >= 2 && *count <= 1000) || *count != std::floor(*count)) throw bad("it needs 2 to 1000 points");
     if (scale != Scale::linear && *low <= 0) throw bad("a logarithmic scale begins above 0");
@@ -116,8 +108,8 @@ std::vector<double> read_grid(gi::Yaml const& y, Scale scale, double low, double
     std::vector<double> grid;
     if (y.is_list())
         for (gi::Yaml const& item : y.items()) grid.push_back(item.number(-kAny, kAny));
-    else if (y.is_text() && parse_number(y.text()))
-        grid.push_back(*parse_number(y.text()));
+    else if (y.is_text() && gi::parse_finite(y.text()))
+        grid.push_back(*gi::parse_finite(y.text()));
     else
         grid = parse_range(y, scale);
     if (grid.empty() || grid.size() > 1000)

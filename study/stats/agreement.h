@@ -3,6 +3,8 @@
 
 #include "study/stats/matrix.h"
 
+#include <span>
+
 namespace study {
 
 /// Kendall's coefficient of agreement between m observers who each judged every pair of n items once (Kendall &

@@ -1,7 +1,9 @@
 #include "study/stats/likelihood.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace study {
 namespace {
@@ -21,23 +23,32 @@ std::vector<std::size_t> free_parameters(std::vector<double> const& x, std::vect
     return free;
 }
 
-Matrix among(Matrix const& all, std::vector<std::size_t> const& chosen)
+using Factor = Eigen::LLT<Eigen::MatrixXd>;
+
+Eigen::MatrixXd among(Matrix const& all, std::vector<std::size_t> const& chosen)
 {
-    Matrix part(chosen.size(), chosen.size());
-    for (std::size_t r = 0; r < chosen.size(); ++r)
-        for (std::size_t c = 0; c < chosen.size(); ++c) part(r, c) = all(chosen[r], chosen[c]);
-    return part;
+    auto const n = Eigen::Index(chosen.size());
+    return Eigen::MatrixXd::NullaryExpr(
+        n, n, [&](Eigen::Index r, Eigen::Index c) { return all(chosen[std::size_t(r)], chosen[std::size_t(c)]); });
+}
+
+/// Cholesky factor; empty if `a` is not positive definite within rounding.
+std::optional<Factor> cholesky(Eigen::MatrixXd const& a)
+{
+    Factor factor(a);
+    bool const is_regular =
+        (factor.matrixLLT().diagonal().array().square() > 1e-14 * a.diagonal().array()).all() && a.allFinite();
+    return factor.info() == Eigen::Success && is_regular ? std::optional(factor) : std::nullopt;
 }
 
 /// Step of the free parameters, with damping increased until the information is positive definite.
-std::vector<double> damped_step(Matrix const& information, std::vector<double> const& gradient, double& damping)
+Eigen::VectorXd damped_step(Eigen::MatrixXd const& information, Eigen::VectorXd const& gradient, double& damping)
 {
     for (;; damping = std::max(1e-6, damping * 10)) {
-        Matrix damped = information;
-        for (std::size_t i = 0; i < damped.rows; ++i)
-            damped(i, i) += damping * (information(i, i) > 0 ? information(i, i) : 1);
-        if (auto const factor = cholesky(damped)) return solve(*factor, gradient);
-        if (!(damping < 1e12)) return std::vector<double>(gradient.size(), 0);
+        Eigen::MatrixXd damped = information;
+        for (double& d : damped.diagonal()) d += damping * (d > 0 ? d : 1);
+        if (auto const factor = cholesky(damped)) return factor->solve(gradient);
+        if (!(damping < 1e12)) return Eigen::VectorXd::Zero(gradient.size());
     }
 }
 
@@ -52,10 +63,13 @@ void set_covariance(MaximumLikelihood& result, Matrix const& information, std::v
         if (!result.at_bound[i]) inside.push_back(i);
     }
     result.covariance = Matrix(n, n);
-    auto const part = inverse(among(information, inside));
-    for (std::size_t r = 0; r < inside.size(); ++r)
-        for (std::size_t c = 0; c < inside.size(); ++c)
-            result.covariance(inside[r], inside[c]) = part ? (*part)(r, c) : std::nan("");
+    auto const factor = cholesky(among(information, inside));
+    auto const m = Eigen::Index(inside.size());
+    Eigen::MatrixXd part = Eigen::MatrixXd::Constant(m, m, std::nan(""));
+    if (factor) part = factor->solve(Eigen::MatrixXd::Identity(m, m));
+    for (Eigen::Index r = 0; r < m; ++r)
+        for (Eigen::Index c = 0; c < m; ++c)
+            result.covariance(inside[std::size_t(r)], inside[std::size_t(c)]) = part(r, c);
 }
 
 } // namespace
@@ -79,17 +93,17 @@ MaximumLikelihood maximise(LikelihoodAt const& model, std::vector<double> start,
     double damping = 0;
     for (int iteration = 0; iteration < max_iterations && !result.converged; ++iteration) {
         auto const free = free_parameters(x, bounds, here.gradient);
-        std::vector<double> gradient;
-        for (std::size_t const i : free) gradient.push_back(here.gradient[i]);
-        std::vector<double> const step = damped_step(among(here.information, free), gradient, damping);
+        Eigen::VectorXd gradient(Eigen::Index(free.size()));
+        for (std::size_t k = 0; k < free.size(); ++k) gradient[Eigen::Index(k)] = here.gradient[free[k]];
+        Eigen::VectorXd const step = damped_step(among(here.information, free), gradient, damping);
 
         std::vector<double> next = x;
         double gain = 0;
         for (std::size_t k = 0; k < free.size(); ++k) {
             double& v = next[free[k]];
-            v += step[k];
+            v += step[Eigen::Index(k)];
             if (!bounds.empty()) v = std::clamp(v, bounds[free[k]].low, bounds[free[k]].high);
-            gain += gradient[k] * (v - x[free[k]]);
+            gain += gradient[Eigen::Index(k)] * (v - x[free[k]]);
         }
         model(next, there);
         if (there.log_likelihood >= here.log_likelihood) {
@@ -112,11 +126,10 @@ MaximumLikelihood maximise(LikelihoodAt const& model, std::vector<double> start,
 LikelihoodAt with_jeffreys_prior(LikelihoodAt model)
 {
     auto const half_log_determinant = [](Likelihood const& l) {
-        auto const factor = cholesky(l.information);
-        if (!factor) return -std::numeric_limits<double>::infinity();
-        double sum = 0;
-        for (std::size_t i = 0; i < factor->rows; ++i) sum += std::log((*factor)(i, i));
-        return sum;
+        auto const n = Eigen::Index(l.information.rows);
+        auto const factor = cholesky(Eigen::MatrixXd::Map(l.information.values.data(), n, n)); // symmetric
+        return factor ? factor->matrixLLT().diagonal().array().log().sum()
+                      : -std::numeric_limits<double>::infinity();
     };
     return [=](std::span<double const> at, Likelihood& l) {
         constexpr double kStep = 1e-4;

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <limits>
+#include <span>
 
 namespace study {
 

@@ -95,7 +95,7 @@ double saturated(Layout const& layout, std::span<PairCount const> pairs, int& fr
         if (n == 0) continue;
         free += layout.threshold ? 2 : 1;
         sum += x_log_x_over(a, n) + x_log_x_over(b, n) + x_log_x_over(ties, n);
-        constant += log_gamma(n + 1) - log_gamma(a + 1) - log_gamma(b + 1) - log_gamma(ties + 1);
+        constant += std::lgamma(n + 1) - std::lgamma(a + 1) - std::lgamma(b + 1) - std::lgamma(ties + 1);
     }
     return sum;
 }

@@ -10,6 +10,7 @@
 #include "study/stats/pairs.h"
 
 #include <optional>
+#include <span>
 
 namespace study {
 

@@ -3,6 +3,7 @@
 
 #include "study/stats/matrix.h"
 
+#include <span>
 #include <string>
 
 namespace study {

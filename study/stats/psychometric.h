@@ -8,6 +8,7 @@
 #include "study/stats/matrix.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace study {

@@ -5,6 +5,7 @@
 
 #include "study/stats/scores.h"
 
+#include <span>
 #include <string>
 
 namespace study {

@@ -1,7 +1,6 @@
 #pragma once
-// Special functions and distributions. Relative errors are near 1e-12 unless the result is tiny; tails keep
-// their relative accuracy down to the smallest doubles. Equations: Abramowitz & Stegun 1964 (A&S), DLMF.
-// NaN in, NaN out.
+// Special functions and distributions, by Boost.Math where it has them. Relative errors are near 1e-14 unless the
+// result is tiny; tails keep their relative accuracy down to the smallest doubles. NaN in, NaN out.
 
 #include <limits>
 
@@ -11,18 +10,13 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double normal_pdf(double z);
 double normal_cdf(double z);
-/// log Phi(z); finite for all finite z, by the asymptotic series A&S 26.2.12 below -30.
+/// log Phi(z); finite for all finite z, by the asymptotic series 26.2.12 of Abramowitz & Stegun 1964 below -30.
 double log_normal_cdf(double z);
 /// z with Phi(z) = p: -infinity at 0, infinity at 1, NaN outside [0, 1].
 double normal_quantile(double p);
 
-double log_gamma(double x);
 /// log of the binomial coefficient n over k, also for non-integers.
 double log_choose(double n, double k);
-/// Regularised incomplete gamma function Q(a, x), a > 0, x >= 0: series A&S 6.5.29, continued fraction A&S 6.5.31.
-double gamma_q(double a, double x);
-/// Regularised incomplete beta function I_x(a, b), a, b > 0, x in [0, 1]: continued fraction DLMF 8.17.22.
-double beta_i(double a, double b, double x);
 
 /// P(X >= x) of a chi-square distribution; 1 if x <= 0. With no degrees of freedom X is 0.
 double chi_square_tail(double x, double degrees_of_freedom);

@@ -1,7 +1,7 @@
 #pragma once
 // What every parser of tracker packets promises of its samples.
 
-#include "viewer/devices/tracking/pose_math.h"
+#include "gi/core/pose.h"
 #include "viewer/devices/tracking/tracker_sample.h"
 
 namespace viewer {

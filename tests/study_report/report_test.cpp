@@ -1,5 +1,4 @@
 #include "study/report/figures.h"
-#include "study/report/plot.h"
 #include "tests/study_analysis/made_sessions.h"
 
 #include <cmath>
@@ -123,16 +122,6 @@ TEST(Histogram, OfValuesThatHardlyDifferIsDrawn)
     EXPECT_NE(drawn.find("4 values"), std::string::npos);
     EXPECT_LT(drawn.size(), 20000u);
     EXPECT_EQ(histogram({16, 16}, "ms", "Intervals"), "");
-}
-
-TEST(Axis, HasRoundTicksWithinItsEnds)
-{
-    Axis1D const linear = axis_over({-1.4, 1.05});
-    EXPECT_EQ(linear.ticks(5), (std::vector<double>{-1.5, -1, -0.5, 0, 0.5, 1}));
-    EXPECT_EQ(axis_over({2, 42}, true).ticks(5), (std::vector<double>{2, 5, 10, 20, 50}));
-    EXPECT_EQ((Axis1D{16, 16 + 1e-14, false}.ticks(5)), (std::vector<double>{16}));
-    EXPECT_EQ(axis_over({}).low, 0);
-    EXPECT_GT(axis_over({3, 3}).high, 3);
 }
 
 } // namespace

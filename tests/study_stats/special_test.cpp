@@ -5,6 +5,7 @@
 #include "tests/study_stats/support/study_data.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace study::test {
 namespace {
@@ -30,17 +31,32 @@ TEST(Special, LogOfTheNormalDistributionGoesOnWhereThatIsNought)
     EXPECT_NEAR(log_normal_cdf(8), -normal_cdf(-8), 1e-28);
 }
 
-TEST(Special, IncompleteGammaAndBetaMeetTheirClosedForms)
+TEST(Special, ChiSquareAndStudentMeetTheirClosedForms)
 {
     for (double x : {1e-6, 0.3, 1.0, 5.0, 40.0}) {
-        EXPECT_NEAR(gamma_q(1, x), std::exp(-x), 1e-14);
-        EXPECT_NEAR(gamma_q(0.5, x), std::erfc(std::sqrt(x)), 1e-14);
+        EXPECT_NEAR(chi_square_tail(2 * x, 2), std::exp(-x), 1e-14);
+        EXPECT_NEAR(chi_square_tail(2 * x, 1), std::erfc(std::sqrt(x)), 1e-14);
     }
-    for (double x : {1e-5, 0.2, 0.5, 0.9}) {
-        EXPECT_NEAR(beta_i(1, 3, x), 1 - std::pow(1 - x, 3), 1e-14);
-        EXPECT_NEAR(beta_i(4, 1, x), std::pow(x, 4), 1e-14);
-        EXPECT_NEAR(beta_i(2.5, 6, x), 1 - beta_i(6, 2.5, 1 - x), 1e-13);
+    for (double t : {-30.0, -2.0, -0.01, 0.0, 0.7, 5.0}) {
+        EXPECT_NEAR(student_cdf(t, 1), 0.5 + std::atan(t) / std::numbers::pi, 1e-14);
+        EXPECT_NEAR(student_cdf(t, 2), 0.5 + t / (2 * std::sqrt(2 + t * t)), 1e-14);
+        EXPECT_NEAR(student_cdf(t, 1e7), normal_cdf(t), 1e-7);
     }
+    for (double p : {1e-12, 0.025, 0.3, 0.975})
+        for (double n : {1.0, 2.5, 40.0, 1e4}) EXPECT_NEAR(student_cdf(student_quantile(p, n), n) / p, 1, 1e-11);
+}
+
+TEST(Special, EndsAndNonsenseAreInfiniteOrNaN)
+{
+    double const nan = std::nan("");
+    EXPECT_EQ(normal_quantile(0), -kInfinity);
+    EXPECT_EQ(student_quantile(1, 3), kInfinity);
+    EXPECT_EQ(student_cdf(-kInfinity, 3), 0);
+    EXPECT_EQ(chi_square_tail(kInfinity, 3), 0);
+    for (double p : {-0.1, 1.1, nan})
+        EXPECT_TRUE(std::isnan(student_quantile(p, 3)) && std::isnan(normal_quantile(p)));
+    for (double n : {-1.0, 0.0, nan})
+        EXPECT_TRUE(std::isnan(student_cdf(1, n)) && std::isnan(student_quantile(0.3, n)));
 }
 
 TEST(Special, ChiSquareAndStudentAreThoseOfTables)

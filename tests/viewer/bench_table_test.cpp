@@ -1,11 +1,9 @@
 // Tables of measurements: medians, files, the page.
 
 #include "gi/core/error.h"
-#include "gi/core/html.h"
 #include "tests/viewer/run_program.h"
 #include "viewer/report/chart.h"
 #include "viewer/report/html.h"
-#include "viewer/report/log_axis.h"
 #include "viewer/report/page.h"
 #include "viewer/report/table_file.h"
 
@@ -127,34 +125,17 @@ TEST(Machine, IsKnown)
     EXPECT_EQ(shell_quoted(""), "''");
 }
 
-TEST(LogAxis, EndsAtRoundNumbersAroundItsValues)
-{
-    LogAxis const axis = make_axis({0.03, 0.9});
-    EXPECT_NEAR(axis.low, 0.02, 1e-12);
-    EXPECT_NEAR(axis.high, 1, 1e-12);
-    EXPECT_EQ(axis.ticks.size(), 6u);
-    EXPECT_NEAR(axis.position(0.02), 0, 1e-12);
-    EXPECT_NEAR(axis.position(1), 1, 1e-12);
-    EXPECT_EQ(make_axis({1e-6, 1e2}).ticks.size(), 9u) << "powers of ten";
-    EXPECT_GE(make_axis({0.5}).ticks.size(), 2u);
-    EXPECT_GE(make_axis({}).ticks.size(), 2u);
-    EXPECT_EQ(tick_text(0.05), "0.05");
-    EXPECT_EQ(tick_text(2e-5), "2·10⁻⁵");
-    EXPECT_EQ(tick_text(1e4), "10⁴");
-}
-
 TEST(Chart, SaysWhatItLeavesOut)
 {
     Chart const chart{"t", "x", "y", {{"a", {{0.1, 0}, {1, 2}, {std::nan(""), 1}}}}, 0, ""};
-    std::string const svg = to_svg(chart);
+    std::string const svg = to_figure(chart);
     EXPECT_NE(svg.find("2 points without a logarithm left out"), std::string::npos);
     EXPECT_EQ(svg.find("nan"), std::string::npos) << svg;
-    EXPECT_EQ(to_svg(Chart{}).find("nan"), std::string::npos);
+    EXPECT_EQ(to_figure(Chart{}).find("nan"), std::string::npos);
 }
 
 TEST(Page, EscapesAllText)
 {
-    EXPECT_EQ(gi::escaped("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&#39;");
     EXPECT_EQ(readable("frame_s"), "frame, s");
     EXPECT_EQ(readable("Mrays_per_s"), "Mrays per s");
     BenchTable t{"<t>", {"<c>", "scene", "method", "budget_s", "frame_s", "relmse", "picture_file"}};

@@ -1,8 +1,8 @@
 // ART DTrack's ASCII packets.
 
+#include "gi/core/pose.h"
 #include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/devices/tracking/dtrack.h"
-#include "viewer/devices/tracking/pose_math.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // One-euro filter, rotations as vectors, clock, latency.
 
 #include "gi/core/one_euro.h"
+#include "gi/core/pose.h"
 #include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/devices/tracking/arrival_clock.h"
 #include "viewer/devices/tracking/clock_offset.h"
 #include "viewer/devices/tracking/latency.h"
-#include "viewer/devices/tracking/pose_math.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -13,22 +13,6 @@
 
 namespace viewer::test {
 namespace {
-
-TEST(PoseMath, LogAndExpAreInverse)
-{
-    std::mt19937 rng(1);
-    std::normal_distribution<double> normal;
-    for (int i = 0; i < 1000; ++i) {
-        gi::dvec3 const axis = glm::normalize(gi::dvec3(normal(rng), normal(rng), normal(rng)));
-        double const angle = i < 10 ? 1e-13 * i : 3.14 * i / 1000.0;
-        EXPECT_LT(glm::distance(gi::log_rotation(gi::exp_rotation(angle * axis)), angle * axis), 1e-9) << angle;
-        EXPECT_LT(glm::distance(gi::log_rotation(-gi::exp_rotation(angle * axis)), angle * axis), 1e-9) << angle;
-    }
-    RoomPose const a{{1, 2, 3}, gi::exp_rotation({0.3, 2, -1})};
-    RoomPose const same = compose(a, inverted(a));
-    EXPECT_LT(glm::length(same.position), 1e-12);
-    EXPECT_LT(angle_between(same.rotation, {1, 0, 0, 0}), 1e-12);
-}
 
 TEST(OneEuro, StepResponseIsThatOfALowPass)
 {

@@ -1,10 +1,10 @@
 // Feet that nobody tracks: they stand on the floor and step after their user, one at a time.
 
+#include "gi/core/pose.h"
 #include "viewer/devices/tracking/footsteps.h"
 
 #include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/devices/tracking/known_walk.h"
-#include "viewer/devices/tracking/pose_math.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 // A tracker that sees a known motion, a network that loses and delays, a display that asks for poses; and how far
 // these are from the truth.
 
+#include "gi/core/pose.h"
 #include "viewer/devices/tracking/known_walk.h"
-#include "viewer/devices/tracking/pose_math.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,9 +1,9 @@
 // Poses in OSC packets.
 
 #include "gi/core/error.h"
+#include "gi/core/pose.h"
 #include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/devices/tracking/osc.h"
-#include "viewer/devices/tracking/pose_math.h"
 
 #include <gtest/gtest.h>
 #include <limits>

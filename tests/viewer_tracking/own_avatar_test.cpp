@@ -1,6 +1,7 @@
 // A user's avatar in a scene: its head and hands are where the trackers are, and it never stands in its user's
 // view.
 
+#include "gi/core/pose.h"
 #include "viewer/devices/tracking/own_avatar.h"
 
 #include "gi/core/error.h"
@@ -12,7 +13,6 @@
 #include "viewer/devices/tracking/footsteps.h"
 #include "viewer/devices/tracking/key_hands.h"
 #include "viewer/devices/tracking/known_walk.h"
-#include "viewer/devices/tracking/pose_math.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -105,7 +105,7 @@ void expect_follows(std::string const& name)
     for (int i = 0; i < 200; ++i) {
         Tracked const t = known_walk(i * 0.07);
         d.to(t, elsewhere());
-        dvec3 const joint = compose(*t.head, {m.head_joint_in_head, {1, 0, 0, 0}}).position;
+        dvec3 const joint = *t.head * m.head_joint_in_head;
         EXPECT_LT(glm::distance(d.at(d.joints.head), dvec3(elsewhere() * glm::dvec4(joint, 1))), 1e-3) << i;
         gi::AvatarTargets const targets = puppet_targets(t, elsewhere(), m);
         for (auto const& [arm, target] :
@@ -355,7 +355,7 @@ TEST(OwnAvatar, EveryUserMovesHisOwn)
     third.drive(scene, command, pose);
     for (auto const& [avatar, user, head] :
          {std::tuple{&first, &command.tracked, heads[0]}, {&third, &command.others[1], heads[1]}}) {
-        dvec3 const joint = compose(*user->head, {avatar->measures().head_joint_in_head, {1, 0, 0, 0}}).position;
+        dvec3 const joint = *user->head * avatar->measures().head_joint_in_head;
         EXPECT_LT(glm::distance(dvec3(pose.world_from_node[std::size_t(head)][3]), joint), 1e-9);
     }
     std::int32_t const foot = third.joints_in(scene).left_leg.foot;

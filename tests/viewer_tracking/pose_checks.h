@@ -1,17 +1,12 @@
 #pragma once
-#include "viewer/devices/tracking/pose_math.h"
+
+#include "gi/core/pose.h"
 
 #include <glm/glm.hpp>
 
 namespace viewer::test {
 
-inline RoomPose inverted(RoomPose const& a)
-{
-    gi::dquat const back = glm::inverse(a.rotation);
-    return {-(back * a.position), back};
-}
-
-inline gi::dmat4 to_matrix(RoomPose const& pose)
+inline gi::dmat4 to_matrix(gi::RigidPose const& pose)
 {
     gi::dmat4 m = glm::mat4_cast(pose.rotation);
     m[3] = glm::dvec4(pose.position, 1);

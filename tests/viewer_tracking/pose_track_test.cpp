@@ -1,8 +1,8 @@
 // One body: prediction, order, dropouts, recovery.
 
+#include "gi/core/pose.h"
 #include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/devices/tracking/known_walk.h"
-#include "viewer/devices/tracking/pose_math.h"
 #include "viewer/devices/tracking/pose_track.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // Avatars as puppets: joints go where the trackers are.
 
 #include "gi/core/error.h"
+#include "gi/core/pose.h"
 #include "gi/scene/load/load.h"
 #include "tests/support/data.h"
 #include "viewer/devices/tracking/known_walk.h"
-#include "viewer/devices/tracking/pose_math.h"
 #include "viewer/devices/tracking/puppet.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Axes, units and the tracker's place in the room.
 
+#include "gi/core/pose.h"
 #include "viewer/devices/tracking/fake_tracker.h"
-#include "viewer/devices/tracking/pose_math.h"
 #include "viewer/devices/tracking/tracker_to_room.h"
 
 #include <gtest/gtest.h>

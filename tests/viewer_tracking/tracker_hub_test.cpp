@@ -1,11 +1,11 @@
 // Trackers put together.
 
 #include "gi/core/error.h"
+#include "gi/core/pose.h"
 #include "tests/viewer_tracking/pose_checks.h"
 #include "viewer/devices/tracking/display_tracker.h"
 #include "viewer/devices/tracking/dtrack.h"
 #include "viewer/devices/tracking/known_walk.h"
-#include "viewer/devices/tracking/pose_math.h"
 #include "viewer/devices/tracking/tracker_hub.h"
 #include "viewer/displays/display_file.h"
 

@@ -1,10 +1,10 @@
 #include "viewer/base/arguments.h"
 
 #include "gi/core/error.h"
+#include "gi/core/text.h"
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -20,20 +20,11 @@ gi::InputError bad(std::string const& option, std::string const& text, std::stri
 
 } // namespace
 
-std::optional<double> to_number(std::string_view text)
-{
-    double value = 0;
-    auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (text.empty() || error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-        return std::nullopt;
-    return value;
-}
-
 std::pair<int, int> parse_size(std::string const& text)
 {
     auto const cross = text.find('x');
     auto const number = [&](std::string_view part) {
-        auto const v = to_number(part);
+        auto const v = gi::parse_finite(part);
         return v && *v >= 1 && *v <= 65536 && *v == std::floor(*v) ? int(*v) : 0;
     };
     if (cross != std::string::npos) {
@@ -52,7 +43,7 @@ gi::dvec3 parse_point(std::string const& option, std::string const& text, std::s
     std::string_view rest = text;
     for (int i = 0; i < 3; ++i) {
         auto const comma = i < 2 ? rest.find(',') : rest.size();
-        auto const v = comma == std::string_view::npos ? std::nullopt : to_number(rest.substr(0, comma));
+        auto const v = comma == std::string_view::npos ? std::nullopt : gi::parse_finite(rest.substr(0, comma));
         if (!v) throw bad(option, text, "three numbers with commas between them are needed", "write " + example);
         point[i] = *v;
         rest.remove_prefix(std::min(comma + 1, rest.size()));
@@ -62,7 +53,7 @@ gi::dvec3 parse_point(std::string const& option, std::string const& text, std::s
 
 gi::dvec3 parse_color(std::string const& option, std::string const& text)
 {
-    if (auto const grey = to_number(text); grey && *grey >= 0 && *grey <= 1e9) return gi::dvec3{*grey};
+    if (auto const grey = gi::parse_finite(text); grey && *grey >= 0 && *grey <= 1e9) return gi::dvec3{*grey};
     if (text.find(',') != std::string::npos) {
         gi::dvec3 const c = parse_point(option, text, "0.9,0.5,0.1");
         if (std::min({c.x, c.y, c.z}) >= 0 && std::max({c.x, c.y, c.z}) <= 1e9) return c;
@@ -79,7 +70,7 @@ double parse_duration(std::string const& option, std::string const& text)
     };
     for (Unit const unit : {Unit{"ms", 1e-3}, Unit{"min", 60}, Unit{"h", 3600}, Unit{"s", 1}, Unit{"", 1}}) {
         if (!text.ends_with(unit.name)) continue;
-        auto const v = to_number(std::string_view(text).substr(0, text.size() - unit.name.size()));
+        auto const v = gi::parse_finite(std::string_view(text).substr(0, text.size() - unit.name.size()));
         if (v && *v > 0 && std::isfinite(*v * unit.seconds)) return *v * unit.seconds;
     }
     throw bad(option, text, "a positive duration is needed", "write 500ms, 2s or 3min");
@@ -90,7 +81,7 @@ std::pair<std::string, double> parse_limit(std::string const& option, std::strin
 {
     auto const equals = text.find('=');
     if (equals != std::string::npos && equals > 0)
-        if (auto const v = to_number(std::string_view(text).substr(equals + 1)))
+        if (auto const v = gi::parse_finite(std::string_view(text).substr(equals + 1)))
             return {text.substr(0, equals), *v};
     throw bad(option, text, "a name, '=' and a number are needed", "write " + example);
 }

@@ -10,8 +10,6 @@
 
 namespace viewer {
 
-/// Parses the whole text as a finite number, independent of the locale; nullopt if it is none.
-std::optional<double> to_number(std::string_view text);
 /// Parses "512x384": each from 1 to 65536, at most 2^28 pixels.
 std::pair<int, int> parse_size(std::string const& text);
 /// Parses "1,2.5,-3".

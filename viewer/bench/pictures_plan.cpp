@@ -2,11 +2,11 @@
 
 #include "gi/core/durable_file.h"
 #include "gi/core/error.h"
+#include "gi/core/text.h"
 #include "viewer/base/arguments.h"
 #include "viewer/bench/bench_record.h"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cstdio>
 #include <fmt/format.h>
 
@@ -71,13 +71,12 @@ PictureBudget parse_picture_budget(std::string const& text)
     for (std::string_view const unit : {"paths", "path"})
         if (digits.ends_with(unit)) {
             digits.remove_suffix(unit.size());
-            std::uint32_t paths = 0;
-            auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), paths);
+            auto const paths = gi::parse_number<std::uint32_t>(digits);
             constexpr std::uint32_t kMost = 1 << 24;
-            if (error != std::errc() || end != digits.data() + digits.size() || paths < 1 || paths > kMost)
+            if (!paths || *paths < 1 || *paths > kMost)
                 throw gi::InputError("--budgets " + text, "it is not a number of paths",
                                      fmt::format("write 1path to {}paths", kMost));
-            return {text, 0, paths};
+            return {text, 0, *paths};
         }
     return {text, parse_duration("--budgets", text), 0};
 }

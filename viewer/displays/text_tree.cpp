@@ -1,6 +1,7 @@
 #include "viewer/displays/text_tree.h"
 
-#include <charconv>
+#include "gi/core/text.h"
+
 #include <cmath>
 #include <fmt/format.h>
 
@@ -61,14 +62,12 @@ std::vector<TextToken> tokens_of(std::string const& text, std::string const& mar
 
 double number_of(TextToken const& token, std::string const& file)
 {
-    double value = 0;
     std::string const& s = token.text;
-    char const* const begin = s.data() + (s.starts_with('+') ? 1 : 0);
-    auto const [end, failure] = std::from_chars(begin, s.data() + s.size(), value);
-    if (token.is_quoted || failure != std::errc{} || end != s.data() + s.size() || !(std::abs(value) <= 1e12))
+    auto const value = gi::parse_finite(std::string_view(s).substr(s.starts_with('+') ? 1 : 0));
+    if (token.is_quoted || !value || std::abs(*value) > 1e12)
         throw gi::InputError({file, token.line, token.column}, "'" + s.substr(0, 64) + "' is not a number",
                              "a number is needed here", "write 1 or 0.5");
-    return value;
+    return *value;
 }
 
 std::vector<double> numbers_of(TextNode const& node, std::size_t count, std::string const& file)

@@ -1,9 +1,9 @@
 #include "viewer/engine/scene_edits.h"
 
 #include "gi/core/error.h"
+#include "gi/core/text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -61,9 +61,7 @@ std::size_t find(Change const& c, std::string const& name, std::size_t count, Na
 {
     for (std::size_t i = 0; i < count; ++i)
         if (!name.empty() && name_of(i) == name) return i;
-    std::size_t index = 0;
-    auto const [end, error] = std::from_chars(name.data(), name.data() + name.size(), index);
-    if (error == std::errc{} && end == name.data() + name.size() && index < count) return index;
+    if (auto const index = gi::parse_number<std::size_t>(name); index && *index < count) return *index;
     refuse(c, fmt::format("there are {}, and none is called '{}'", count, name),
            "give a name, or a number from 0");
 }

@@ -3,9 +3,9 @@
 #include "ar/scene/session_inputs.h"
 #include "gi/core/file.h"
 #include "gi/core/sha256.h"
+#include "gi/core/text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <fmt/format.h>
 #include <map>
 #include <yaml-cpp/yaml.h>
@@ -93,11 +93,10 @@ void check_overrides(std::string const& text, ArStimulus const& s)
 template <class Number>
 Number number_of(std::string const& key, std::string const& text, char const* what)
 {
-    Number n{};
-    auto const [end, failure] = std::from_chars(text.data(), text.data() + text.size(), n);
-    if (failure != std::errc{} || end != text.data() + text.size() || !(n >= 0) || !(double(n) < 1e9))
+    auto const n = gi::parse_number<Number>(text);
+    if (!n || !(*n >= 0) || !(double(*n) < 1e9))
         throw ArSettingError(key, text, key + ": " + text, std::string("it is not a ") + what, "write 0 or more");
-    return n;
+    return *n;
 }
 
 ArShow show_of(std::string const& key, std::string const& text)

@@ -1,6 +1,7 @@
 #include "viewer/offline/frame_camera.h"
 
 #include "gi/core/error.h"
+#include "gi/core/text.h"
 #include "viewer/base/arguments.h"
 #include "viewer/engine/live/desktop_views.h"
 
@@ -16,7 +17,7 @@ double parse_turn(std::string const& text)
     constexpr double kMostTurns = 1000;
     if (text.empty()) return 2 * std::numbers::pi;
     bool const degrees = text.ends_with("deg");
-    auto const value = to_number(std::string_view(text).substr(0, text.size() - (degrees ? 3 : 0)));
+    auto const value = gi::parse_finite(std::string_view(text).substr(0, text.size() - (degrees ? 3 : 0)));
     double const turns = value.value_or(0) / (degrees ? 360 : 1);
     if (turns == 0 || !(std::abs(turns) <= kMostTurns))
         throw gi::InputError("--turntable '" + text + "' is not understood",

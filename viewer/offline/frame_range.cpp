@@ -1,6 +1,7 @@
 #include "viewer/offline/frame_range.h"
 
 #include "gi/core/error.h"
+#include "gi/core/text.h"
 #include "viewer/base/arguments.h"
 
 #include <cmath>
@@ -23,8 +24,8 @@ gi::InputError bad(std::string const& text, std::string const& why)
 void parse_rate(std::string const& text, std::string_view rate, FrameRange& range)
 {
     auto const slash = rate.find('/');
-    auto const frames = to_number(rate.substr(0, slash));
-    auto const seconds = slash == rate.npos ? std::optional(1.0) : to_number(rate.substr(slash + 1));
+    auto const frames = gi::parse_finite(rate.substr(0, slash));
+    auto const seconds = slash == rate.npos ? std::optional(1.0) : gi::parse_finite(rate.substr(slash + 1));
     if (!frames || !seconds || !(*frames > 0) || !(*seconds > 0) || !(*frames / *seconds >= kLowestFps) ||
         !(*frames / *seconds <= kHighestFps))
         throw bad(text,
@@ -36,7 +37,7 @@ void parse_rate(std::string const& text, std::string_view rate, FrameRange& rang
 int parse_frame(std::string const& text, std::string_view part, FrameRange const& range)
 {
     bool const in_seconds = part.ends_with('s');
-    auto const value = to_number(part.substr(0, part.size() - (in_seconds ? 1 : 0)));
+    auto const value = gi::parse_finite(part.substr(0, part.size() - (in_seconds ? 1 : 0)));
     if (!value) throw bad(text, fmt::format("'{}' is not a frame", part));
     double const exact = in_seconds ? *value * range.fps() : *value, frame = std::round(exact);
     if (frame < 0 || frame > kLastFrame)

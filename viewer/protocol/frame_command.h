@@ -3,6 +3,7 @@
 // sequence of commands renders the same pixels in any process. The live viewer makes one command per frame, a
 // recording stores them, the leading rank of a cluster sends them, and a replay reads them.
 
+#include "gi/core/pose.h"
 #include "gi/scene/model/camera.h"
 
 #include <array>
@@ -24,13 +25,8 @@ struct Change {
     bool operator==(Change const&) const = default;
 };
 
-/// Pose of a body in the room: right-handed, m, +Y up; heads, hands and feet face along -Z.
-struct RoomPose {
-    gi::dvec3 position{0};          ///< m
-    gi::dquat rotation{1, 0, 0, 0}; ///< unit, room from body
-
-    bool operator==(RoomPose const&) const = default;
-};
+/// Pose of a body in the room.
+using RoomPose = gi::RigidPose;
 
 /// Tracked bodies of a user; those that are not tracked (yet, or any more) have no pose.
 struct Tracked {

@@ -3,7 +3,7 @@
 #include "gi/core/base64.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
-#include "gi/core/html.h"
+#include "gi/core/html/html.h"
 
 #include <algorithm>
 #include <fmt/format.h>

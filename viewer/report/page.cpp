@@ -1,6 +1,6 @@
 #include "viewer/report/page.h"
 
-#include "gi/core/html.h"
+#include "gi/core/html/html.h"
 #include "viewer/report/html.h"
 
 #include <algorithm>
@@ -9,39 +9,25 @@
 namespace viewer {
 namespace {
 
-std::string cell_html(Cell const& cell)
+gi::HtmlCell cell_html(Cell const& cell)
 {
-    if (std::holds_alternative<std::string>(cell)) return "<td>" + gi::escaped(to_text(cell)) + "</td>";
     auto const* m = std::get_if<Measured>(&cell);
-    std::string spread;
-    if (m != nullptr) {
-        std::string const min = fmt::format("{:.3g}", m->min), max = fmt::format("{:.3g}", m->max);
-        if (min != max) spread = " <small>" + min + "–" + max + "</small>";
-    }
-    return "<td class=\"number\">" + to_text(m != nullptr ? Cell(m->median) : cell) + spread + "</td>";
-}
-
-bool holds_text(BenchTable const& t, std::size_t column)
-{
-    return std::any_of(t.rows.begin(), t.rows.end(),
-                       [&](auto const& row) { return std::holds_alternative<std::string>(row[column]); });
+    if (m == nullptr) return to_text(cell);
+    std::string const min = fmt::format("{:.3g}", m->min), max = fmt::format("{:.3g}", m->max);
+    std::string const spread = min != max ? " <small>" + min + "–" + max + "</small>" : "";
+    return gi::HtmlCell::of(to_text(Cell(m->median)) + spread);
 }
 
 std::string rows_html(BenchTable const& t)
 {
-    std::string html = "<div class=\"wide\"><table>\n<thead><tr>";
-    for (std::size_t c = 0; c < t.columns.size(); ++c)
-        if (!names_file(t.columns[c]))
-            html += fmt::format("<th scope=\"col\"{}>{}</th>", holds_text(t, c) ? "" : " class=\"number\"",
-                                gi::escaped(readable(t.columns[c])));
-    html += "</tr></thead>\n<tbody>\n";
-    for (auto const& row : t.rows) {
-        html += "<tr>";
-        for (std::size_t c = 0; c < row.size(); ++c)
-            if (!names_file(t.columns[c])) html += cell_html(row[c]);
-        html += "</tr>\n";
+    std::vector<gi::HtmlColumn> columns;
+    std::vector<std::vector<gi::HtmlCell>> rows(t.rows.size());
+    for (std::size_t c = 0; c < t.columns.size(); ++c) {
+        if (names_file(t.columns[c])) continue;
+        columns.push_back({readable(t.columns[c]), !holds_text(t, c), ""});
+        for (std::size_t r = 0; r < rows.size(); ++r) rows[r].push_back(cell_html(t.rows[r][c]));
     }
-    return html + "</tbody></table></div>\n";
+    return gi::html_table(columns, rows);
 }
 
 bool has_spread(BenchTable const& t)
@@ -56,52 +42,35 @@ bool has_spread(BenchTable const& t)
 
 std::string origin_html(BenchTable const& t)
 {
-    std::string html =
-        "<details>\n<summary>how it was measured: " + gi::escaped(to_text(t.machine)) + "</summary>\n<dl>\n";
-    auto const entry = [&](std::string const& what, std::string const& value) {
-        html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", gi::escaped(what), gi::escaped(value));
-    };
-    entry("machine", to_text(t.machine));
-    entry("program", t.program);
-    entry("date", t.date);
-    for (auto const& [what, value] : t.facts) entry(what, value);
-    return html + "</dl>\n<p>To repeat it:</p>\n<pre><code>" + gi::escaped(t.command) +
-           "</code></pre>\n</details>\n";
+    std::vector<std::pair<std::string, std::string>> entries{
+        {"machine", to_text(t.machine)}, {"program", t.program}, {"date", t.date}};
+    entries.insert(entries.end(), t.facts.begin(), t.facts.end());
+    return gi::html_details("how it was measured: " + to_text(t.machine),
+                            gi::html_definitions(entries) + "<p>To repeat it:</p>\n" + gi::html_code(t.command));
 }
 
 std::string section(BenchTable const& t, std::filesystem::path const& folder, PagePictures pictures)
 {
-    std::string html = fmt::format("<section>\n<h2>{}</h2>\n", gi::escaped(t.title.empty() ? t.name : t.title));
     std::string const figures = sweep_figures(t, folder) + picture_grids(t, folder, pictures);
-    html +=
-        origin_html(t) + figures + (figures.empty() ? "<h3>Rows</h3>\n" : "<details>\n<summary>rows</summary>\n");
+    std::string rows = rows_html(t);
     if (has_spread(t))
-        html += "<p class=\"note\">Medians; below them the smallest and largest measured values.</p>\n";
-    return html + rows_html(t) + (figures.empty() ? "" : "</details>\n") + "</section>\n";
+        rows = gi::html_note("Medians; below them the smallest and largest measured values.") + rows;
+    return gi::html_section(t.title.empty() ? t.name : t.title,
+                            origin_html(t) + figures +
+                                (figures.empty() ? "<h3>Rows</h3>\n" + rows : gi::html_details("rows", rows)));
 }
 
 } // namespace
 
 std::string make_page(Page const& page)
 {
-    std::string const title = gi::escaped(page.title);
-    std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-                       "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
-                       title + "</title>\n<style>\n";
-    html += page_style();
-    html += "</style>\n</head>\n<body>\n<header><h1>" + title + "</h1></header>\n<main>\n";
+    std::string html, next;
     if (!page.lead.empty()) html += "<p>" + gi::escaped(page.lead) + "</p>\n";
     for (BenchFolder const& folder : page.folders) html += render_figures(folder);
     for (BenchFolder const& folder : page.folders)
         for (BenchTable const& table : folder.tables) html += section(table, folder.path, page.pictures);
-    if (!page.next.empty()) {
-        html += "<section>\n<h2>Next</h2>\n";
-        for (std::string const& command : page.next)
-            html += "<pre><code>" + gi::escaped(command) + "</code></pre>\n";
-        html += "</section>\n";
-    }
-    return html + "</main>\n</body>\n</html>\n";
+    for (std::string const& command : page.next) next += gi::html_code(command);
+    return gi::html_page(page.title, html + (next.empty() ? "" : gi::html_section("Next", next)));
 }
 
 } // namespace viewer

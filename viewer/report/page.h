@@ -1,5 +1,5 @@
 #pragma once
-// Self-contained HTML page of tables: no scripts, inline drawings, embedded pictures.
+// An HTML page of tables, curves and pictures.
 
 #include "viewer/report/folder.h"
 
@@ -26,10 +26,14 @@ std::string render_figures(BenchFolder const& folder);
 /// method, budget_s, frame_s and relmse.
 std::string sweep_figures(BenchTable const& table, std::filesystem::path const& folder);
 
+/// Strips of figures, each with its heading, beside a reference picture.
+std::string picture_strips(std::string const& reference_html,
+                           std::vector<std::pair<std::string, std::string>> const& strips);
+/// What the strips show below the pictures.
+std::string picture_note();
+
 /// For each scene and budget the pictures of all methods and filters beside the reference, worst first; empty
 /// unless the table is from `bench pictures`.
 std::string picture_grids(BenchTable const& table, std::filesystem::path const& folder, PagePictures pictures);
-
-std::string_view page_style();
 
 } // namespace viewer

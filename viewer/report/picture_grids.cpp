@@ -1,4 +1,4 @@
-#include "gi/core/html.h"
+#include "gi/core/html/html.h"
 #include "viewer/report/html.h"
 #include "viewer/report/page.h"
 #include "viewer/report/picture_summary.h"
@@ -45,22 +45,16 @@ public:
     {
         std::string html = fmt::format("<h3>{}, {}</h3>\n", gi::escaped(g.scene), gi::escaped(g.budget));
         if (g.worst > 0)
-            html += fmt::format("<p class=\"note\">largest error, relative to the method reference: {:.3g}</p>\n",
-                                g.worst);
-        html += "<div class=\"pictures\">\n<div>\n<h4>reference picture</h4>\n<figure>\n" +
-                picture(*g.rows.front(), "reference_file", g.scene + ", reference picture") +
-                "</figure>\n</div>\n<div>\n";
-        std::vector<std::string> filters;
-        for (auto const* row : g.rows)
-            if (std::string const f = text(*row, "filter"); std::ranges::find(filters, f) == filters.end())
-                filters.push_back(f);
-        for (std::string const& f : filters) {
-            html += "<h4>filter " + gi::escaped(f) + "</h4>\n<div class=\"strip\">\n";
-            for (auto const* row : g.rows)
-                if (text(*row, "filter") == f) html += figure(*row);
-            html += "</div>\n";
+            html += gi::html_note(fmt::format("largest error, relative to the method reference: {:.3g}", g.worst));
+        std::vector<std::pair<std::string, std::string>> strips;
+        for (auto const* row : g.rows) {
+            std::string const heading = "filter " + text(*row, "filter");
+            auto at = std::ranges::find(strips, heading, [](auto const& s) { return s.first; });
+            if (at == strips.end()) at = strips.emplace(at, heading, "");
+            at->second += figure(*row);
         }
-        return html + "</div>\n</div>\n";
+        return html +
+               picture_strips(picture(*g.rows.front(), "reference_file", g.scene + ", reference picture"), strips);
     }
 
 private:
@@ -83,13 +77,11 @@ private:
     {
         std::string const what =
             fmt::format("{}, {}, {}", text(row, "scene"), text(row, "method"), text(row, "budget"));
-        return "<figure>\n" + picture(row, "picture_file", what) +
-               picture(row, "flip_file", "FLIP error of " + what) +
-               fmt::format(
-                   "<figcaption><strong>{}</strong>, {:.3g} paths, {:.3g} s<br>relMSE {:.3g}, FLIP {:.3g}<br>"
-                   "correlation {:.2f}</figcaption>\n</figure>\n",
-                   gi::escaped(text(row, "method")), value(row, "paths"), value(row, "total_s"),
-                   value(row, "relmse"), value(row, "flip"), value(row, "neighbour_correlation"));
+        return gi::html_figure(
+            picture(row, "picture_file", what) + picture(row, "flip_file", "FLIP error of " + what),
+            fmt::format("<b>{}</b>, {:.3g} paths, {:.3g} s<br>relMSE {:.3g}, FLIP {:.3g}<br>correlation {:.2f}",
+                        gi::escaped(text(row, "method")), value(row, "paths"), value(row, "total_s"),
+                        value(row, "relmse"), value(row, "flip"), value(row, "neighbour_correlation")));
     }
 
     BenchTable const& t_;
@@ -106,8 +98,7 @@ std::string picture_grids(BenchTable const& table, std::filesystem::path const& 
         if (table.column(needed) < 0) return "";
     if (table.rows.empty()) return "";
     GridWriter const writer(table, folder, pictures);
-    std::string html = "<p class=\"note\">Below each picture its FLIP error: 0 <span class=\"scale\"></span> 1. "
-                       "Click a picture to see it at full size.</p>\n";
+    std::string html = picture_note();
     for (PictureGroup const& g : picture_groups(table)) html += writer.group(g);
     return html;
 }

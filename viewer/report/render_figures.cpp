@@ -1,4 +1,4 @@
-#include "gi/core/html.h"
+#include "gi/core/html/html.h"
 #include "viewer/report/html.h"
 #include "viewer/report/page.h"
 
@@ -33,8 +33,8 @@ std::string cost_sentence(RenderStats const& r)
 
 std::string captioned(std::string const& inside, std::string const& title, RenderStats const& r)
 {
-    return "<figure>\n" + inside + "\n<figcaption><strong>" + gi::escaped(title) + "</strong><br>" +
-           gi::escaped(made_how(r) + "; " + cost_sentence(r)) + "</figcaption>\n</figure>\n";
+    return gi::html_figure(inside, "<b>" + gi::escaped(title) + "</b><br>" +
+                                       gi::escaped(made_how(r) + "; " + cost_sentence(r)));
 }
 
 std::string pair_html(BenchFolder const& folder, RenderStats const& left, RenderStats const& right)
@@ -48,42 +48,45 @@ std::string pair_html(BenchFolder const& folder, RenderStats const& left, Render
     std::string words = fmt::format("The same moment from two eyes {:.3g} mm apart, with a common virtual screen",
                                     1000 * left.eye_distance_m);
     if (left.screen_distance_m > 0) words += fmt::format(" {:.3g} m away", left.screen_distance_m);
-    html += "<p class=\"note\">" + gi::escaped(words) + ".</p>\n";
+    html += gi::html_note(gi::escaped(words) + ".");
     if (left.anaglyph.empty()) return html;
-    return html + "<details>\n<summary>the pair for red and cyan glasses</summary>\n" +
-           embedded_png(folder.path / left.anaglyph, "anaglyph of both eyes") + "\n</details>\n";
+    return html + gi::html_details("the pair for red and cyan glasses",
+                                   embedded_png(folder.path / left.anaglyph, "anaglyph of both eyes"));
 }
 
-std::string number_cell(double value, char const* form)
-{
-    return "<td class=\"number\">" + (std::isfinite(value) ? fmt::format(fmt::runtime(form), value) : "") +
-           "</td>";
-}
-
-std::string cost_row(RenderStats const& r)
+std::vector<gi::HtmlCell> cost_row(RenderStats const& r)
 {
     constexpr double kMiB = 1024.0 * 1024;
-    return "<tr><td>" + gi::escaped(r.name) + "</td><td>" + gi::escaped(made_how(r)) + "</td>" +
-           number_cell(r.structures_s, "{:.2f}") + number_cell(r.trace_s, "{:.2f}") +
-           number_cell(r.denoise_s, "{:.2f}") + number_cell(r.whole_s, "{:.2f}") +
-           number_cell(r.frame_s, "{:.2f}") + number_cell(r.frame_p95_s, "{:.2f}") +
-           number_cell(r.relmse, "{:.2g}") + number_cell(r.memory_bytes / kMiB, "{:.0f}") + "</tr>\n";
+    auto const known = [](double value, int digits) {
+        return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "";
+    };
+    return {r.name,
+            made_how(r),
+            known(r.structures_s, 2),
+            known(r.trace_s, 2),
+            known(r.denoise_s, 2),
+            known(r.whole_s, 2),
+            known(r.frame_s, 2),
+            known(r.frame_p95_s, 2),
+            std::isfinite(r.relmse) ? fmt::format("{:.2g}", r.relmse) : "",
+            known(r.memory_bytes / kMiB, 0)};
 }
 
 std::string costs_html(std::vector<RenderStats const*> const& renders)
 {
-    std::string html = "<h3>Times and memory</h3>\n";
+    std::string html = "<h3>Times and memory</h3>\n", commands;
     if (std::string const& machine = renders.front()->machine; !machine.empty())
-        html += "<p class=\"note\">" + gi::escaped(machine + "; " + renders.front()->program) + "</p>\n";
-    html += "<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\">file</th><th scope=\"col\">what</th>";
+        html += gi::html_note(gi::escaped(machine + "; " + renders.front()->program));
+    std::vector<gi::HtmlColumn> columns{{"file", false, ""}, {"what", false, ""}};
     for (char const* column : {"structures, s", "tracing, s", "filter, s", "whole, s", "median of frames, s",
                                "95 % of frames, s", "estimated relMSE, unfiltered", "most memory, MiB"})
-        html += fmt::format("<th scope=\"col\" class=\"number\">{}</th>", column);
-    html += "</tr></thead>\n<tbody>\n";
-    for (RenderStats const* const r : renders) html += cost_row(*r);
-    html += "</tbody></table></div>\n<details>\n<summary>to repeat them</summary>\n<pre><code>";
-    for (RenderStats const* const r : renders) html += gi::escaped(r->command) + "\n";
-    return html + "</code></pre>\n</details>\n";
+        columns.push_back({column, true, ""});
+    std::vector<std::vector<gi::HtmlCell>> rows;
+    for (RenderStats const* const r : renders) {
+        rows.push_back(cost_row(*r));
+        commands += r->command + "\n";
+    }
+    return html + gi::html_table(columns, rows) + gi::html_details("to repeat them", gi::html_code(commands));
 }
 
 } // namespace
@@ -91,7 +94,7 @@ std::string costs_html(std::vector<RenderStats const*> const& renders)
 std::string render_figures(BenchFolder const& folder)
 {
     if (folder.renders.empty()) return "";
-    std::string html = "<section>\n<h2>Pictures</h2>\n";
+    std::string html;
     std::vector<bool> shown(folder.renders.size(), false);
     for (auto const& [left, right] : stereo_pairs(folder.renders)) {
         html += pair_html(folder, folder.renders[left], folder.renders[right]);
@@ -107,7 +110,7 @@ std::string render_figures(BenchFolder const& folder)
         else if (!r.png.empty() && r.frames == 0 && !shown[i])
             html += captioned(embedded_png(folder.path / r.png, r.name), r.name, r);
     }
-    return html + "</div>\n" + costs_html(all) + "</section>\n";
+    return gi::html_section("Pictures", html + "</div>\n" + costs_html(all));
 }
 
 } // namespace viewer

@@ -1,4 +1,4 @@
-#include "gi/core/html.h"
+#include "gi/core/html/html.h"
 #include "viewer/report/chart.h"
 #include "viewer/report/html.h"
 #include "viewer/report/page.h"
@@ -44,7 +44,7 @@ std::string chart_html(BenchTable const& t, Group const& scene, std::string cons
     chart.x_label = "time of a whole frame, s";
     chart.y_label = label;
     for (Group const& method : group_by(t, scene.rows, "method")) {
-        Curve curve{method.value, {}};
+        gi::PlotSeries curve{method.value, {}};
         for (Row const* row : method.rows) {
             Cell const& error = cell(t, *row, metric);
             auto const* m = std::get_if<Measured>(&error);
@@ -58,8 +58,7 @@ std::string chart_html(BenchTable const& t, Group const& scene, std::string cons
         chart.level = noise;
         chart.level_label = "noise of the reference";
     }
-    return fmt::format("<figure>\n<figcaption>{}</figcaption>\n{}</figure>\n", gi::escaped(chart.title),
-                       to_svg(chart));
+    return to_figure(chart);
 }
 
 /// Accepts only names within the folder, as tables may be from an untrusted source.
@@ -75,33 +74,46 @@ std::string picture_figure(BenchTable const& t, Row const& row, std::filesystem:
                            std::string const& what)
 {
     std::string const budget = seconds_text(number(cell(t, row, "budget_s")));
-    std::string words = fmt::format("<strong>{}</strong>, took {}<br>relMSE {:.3g}", budget,
+    std::string words = fmt::format("<b>{}</b>, took {}<br>relMSE {:.3g}", budget,
                                     seconds_text(number(cell(t, row, "frame_s"))), number(cell(t, row, "relmse")));
     if (t.column("flip") >= 0) words += fmt::format(", FLIP {:.3g}", number(cell(t, row, "flip")));
-    return "<figure>\n" + picture_html(t, row, "picture_file", folder, what + ", " + budget) +
-           picture_html(t, row, "flip_file", folder, "FLIP error of " + what + ", " + budget) + "<figcaption>" +
-           words + "</figcaption>\n</figure>\n";
+    return gi::html_figure(picture_html(t, row, "picture_file", folder, what + ", " + budget) +
+                               picture_html(t, row, "flip_file", folder, "FLIP error of " + what + ", " + budget),
+                           words);
 }
 
 std::string pictures_html(BenchTable const& t, Group const& scene, std::filesystem::path const& folder)
 {
     if (t.column("picture_file") < 0) return "";
-    std::string html =
-        "<div class=\"pictures\">\n<div>\n<h4>reference picture</h4>\n<figure>\n" +
-        picture_html(t, *scene.rows.front(), "reference_file", folder, scene.value + ", reference") +
-        "</figure>\n</div>\n<div>\n";
+    std::vector<std::pair<std::string, std::string>> strips;
     for (Group const& method : group_by(t, scene.rows, "method")) {
-        html += "<h4>" + gi::escaped(method.value) + "</h4>\n<div class=\"strip\">\n";
+        strips.emplace_back(method.value, "");
         for (Row const* row : method.rows)
-            html += picture_figure(t, *row, folder, scene.value + ", " + method.value);
-        html += "</div>\n";
+            strips.back().second += picture_figure(t, *row, folder, scene.value + ", " + method.value);
     }
-    return html + "</div>\n</div>\n"
-                  "<p class=\"note\">Below each picture its FLIP error: 0 <span class=\"scale\"></span> 1. "
-                  "Click a picture to see it at full size.</p>\n";
+    return picture_strips(
+               picture_html(t, *scene.rows.front(), "reference_file", folder, scene.value + ", reference"),
+               strips) +
+           picture_note();
 }
 
 } // namespace
+
+std::string picture_strips(std::string const& reference_html,
+                           std::vector<std::pair<std::string, std::string>> const& strips)
+{
+    std::string html = "<div class=\"pictures\">\n<div>\n<h4>reference picture</h4>\n<figure>\n" + reference_html +
+                       "</figure>\n</div>\n<div>\n";
+    for (auto const& [heading, figures] : strips)
+        html += "<h4>" + gi::escaped(heading) + "</h4>\n<div class=\"strip\">\n" + figures + "</div>\n";
+    return html + "</div>\n</div>\n";
+}
+
+std::string picture_note()
+{
+    return gi::html_note("Below each picture its FLIP error: 0 <span class=\"scale\"></span> 1. "
+                         "Click a picture to see it at full size.");
+}
 
 std::string sweep_figures(BenchTable const& table, std::filesystem::path const& folder)
 {

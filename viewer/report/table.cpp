@@ -1,5 +1,7 @@
 #include "viewer/report/table.h"
 
+#include "gi/core/text.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -24,19 +26,6 @@ std::string short_text(Cell const& cell)
     if (m == nullptr) return to_text(cell);
     double const half = m->median != 0 ? 50 * (m->max - m->min) / std::abs(m->median) : 0;
     return number_text(m->median) + (m->repeats < 2 ? "" : fmt::format(" ±{:.0f}%", half));
-}
-
-/// Length in characters, not bytes.
-std::size_t width(std::string const& text)
-{
-    return std::size_t(std::count_if(text.begin(), text.end(),
-                                     [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
-std::string padded(std::string const& text, std::size_t to, bool right)
-{
-    std::string const blanks(to - std::min(to, width(text)), ' ');
-    return right ? blanks + text : text + blanks;
 }
 
 } // namespace
@@ -81,29 +70,25 @@ std::string to_text(Cell const& cell)
     return "";
 }
 
+bool holds_text(BenchTable const& table, std::size_t column)
+{
+    return std::any_of(table.rows.begin(), table.rows.end(),
+                       [&](auto const& row) { return std::holds_alternative<std::string>(row[column]); });
+}
+
 bool names_file(std::string const& column_name) { return column_name.ends_with("_file"); }
 
 std::string to_text(BenchTable const& table)
 {
-    std::vector<std::string> lines(table.rows.size() + 1);
+    std::vector<std::vector<std::string>> lines(table.rows.size() + 1);
+    std::vector<bool> right;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
         if (names_file(table.columns[c])) continue;
-        bool const is_text = std::any_of(table.rows.begin(), table.rows.end(), [&](auto const& row) {
-            return std::holds_alternative<std::string>(row[c]);
-        });
-        std::vector<std::string> texts{table.columns[c]};
-        for (auto const& row : table.rows) texts.push_back(short_text(row[c]));
-        std::size_t widest = 0;
-        for (std::string const& text : texts) widest = std::max(widest, width(text));
-        for (std::size_t r = 0; r < lines.size(); ++r)
-            lines[r] += (lines[r].empty() ? "" : "  ") + padded(texts[r], widest, !is_text);
+        right.push_back(!holds_text(table, c));
+        lines[0].push_back(table.columns[c]);
+        for (std::size_t r = 0; r < table.rows.size(); ++r) lines[r + 1].push_back(short_text(table.rows[r][c]));
     }
-    std::string all;
-    for (std::string& line : lines) {
-        line.erase(line.find_last_not_of(' ') + 1);
-        all += line + "\n";
-    }
-    return all;
+    return gi::aligned(lines, right);
 }
 
 void print(BenchTable const& table) { std::fputs(to_text(table).c_str(), stdout); }

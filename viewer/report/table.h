@@ -35,6 +35,8 @@ Cell const& cell(BenchTable const& table, std::vector<Cell> const& row, std::str
 double number(Cell const& cell);
 /// Readable text with four digits: "0.1013 (0.1002 to 0.105)".
 std::string to_text(Cell const& cell);
+/// True if a column holds texts, not numbers.
+bool holds_text(BenchTable const& table, std::size_t column);
 /// True if a column holds file names, which are left out of readable tables.
 bool names_file(std::string const& column_name);
 

@@ -1,9 +1,9 @@
 #include "viewer/study/study_script.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
+#include "gi/core/text.h"
 #include "study/script/script_file.h"
 
-#include <charconv>
 #include <fmt/format.h>
 #include <numeric>
 #include <set>
@@ -26,13 +26,12 @@ std::vector<int> parse_participants(std::string const& text, int count)
     std::iota(all.begin(), all.end(), 1);
     if (text.empty()) return all;
     auto const number = [&](std::string const& part) {
-        int n = 0;
-        auto const [end, failure] = std::from_chars(part.data(), part.data() + part.size(), n);
-        if (failure != std::errc{} || end != part.data() + part.size() || part.empty() || n < 1 || n > count)
+        auto const n = gi::parse_number<int>(part);
+        if (!n || *n < 1 || *n > count)
             throw gi::InputError(fmt::format("participants '{}'", text),
                                  fmt::format("'{}' is not one of 1 to {}", part, count),
                                  "write 3, 1..24 or 1,4,7..9, or raise participants.count");
-        return n;
+        return *n;
     };
     std::set<int> chosen;
     std::istringstream in(text);

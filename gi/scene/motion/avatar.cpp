@@ -1,6 +1,7 @@
 #include "gi/scene/motion/avatar.h"
 
 #include "gi/core/error.h"
+#include "gi/core/rotation.h"
 #include "gi/scene/motion/avatar_legs.h"
 #include "gi/scene/motion/inverse_kinematics.h"
 #include "gi/scene/motion/joint_motion.h"
@@ -66,14 +67,6 @@ bool tracked(std::optional<dmat4> const& target)
         for (int r = 0; r < 4; ++r)
             if (!std::isfinite((*target)[c][r])) return false;
     return true;
-}
-
-/// Horizontal direction that a head faces; valid even if it looks straight up or down, since its top then points
-/// backwards or forwards.
-dvec3 heading(dquat const& head)
-{
-    dvec3 const forward = head * dvec3{0, 0, -1}, top = head * kUp;
-    return {forward.x - forward.y * top.x, 0, forward.z - forward.y * top.z};
 }
 
 void drive_head(Scene const& scene, Avatar const& avatar, dmat4 const& target, dquat const& yaw, Pose& pose)

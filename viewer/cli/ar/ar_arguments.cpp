@@ -3,6 +3,7 @@
 #include "ar/capture/whole_picture.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
+#include "gi/core/text.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/validators.h"
 
@@ -85,7 +86,7 @@ glm::ivec2 parse_squares(std::string const& option, std::string const& text)
 {
     auto const cross = text.find('x');
     auto const number = [&](std::string_view part) {
-        auto const v = to_number(part);
+        auto const v = gi::parse_finite(part);
         return v && *v >= 2 && *v <= 200 && *v == std::floor(*v) ? int(*v) : 0;
     };
     if (cross != std::string::npos) {
@@ -131,8 +132,9 @@ std::vector<double> parse_exposures(std::string const& text)
         std::size_t const comma = std::min(text.find(',', at), text.size());
         std::string_view const one = std::string_view(text).substr(at, comma - at);
         std::size_t const slash = one.find('/');
-        auto const above = to_number(one.substr(0, slash));
-        auto const below = slash == std::string_view::npos ? std::optional(1.0) : to_number(one.substr(slash + 1));
+        auto const above = gi::parse_finite(one.substr(0, slash));
+        auto const below =
+            slash == std::string_view::npos ? std::optional(1.0) : gi::parse_finite(one.substr(slash + 1));
         double const value = above && below && *below > 0 ? *above / *below : 0;
         if (!(value > 0 && std::isfinite(value)))
             throw gi::InputError("--exposures '" + text + "' is not understood",

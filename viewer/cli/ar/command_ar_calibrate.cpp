@@ -4,6 +4,7 @@
 #include "ar/markers/detect.h"
 #include "ar/markers/marker_map_file.h"
 #include "gi/core/error.h"
+#include "gi/core/file.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/validators.h"
@@ -189,7 +190,7 @@ int run_calibrate(CalibrateOptions const& o)
     report.photometry = calibration.photometry;
     report.noise = calibration.noise;
     ar::write_calibration(o.out, calibration);
-    if (!o.report.empty()) ar::write_report(o.report, report);
+    if (!o.report.empty()) gi::write_text(o.report, ar::to_html(report));
     if (report.choice) fmt::print("lens: {}\n", report.choice->why);
     print(report.lens);
     fmt::print("coverage: {:.0f} % of the picture{}\n", 100 * report.lens.coverage,

@@ -3,12 +3,13 @@
 #include "ar/calibration/calibration_file.h"
 #include "ar/calibration/sensor_report.h"
 #include "gi/core/error.h"
+#include "gi/core/file.h"
+#include "gi/core/text.h"
 #include "viewer/base/outputs.h"
 #include "viewer/cli/ar/ar_arguments.h"
 #include "viewer/cli/commands.h"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
@@ -64,7 +65,7 @@ struct SensorSession {
         p.emplace_back(name, fit);
         std::string const out = options.out.empty() ? options.calibration : options.out;
         ar::write_calibration(out, calibration);
-        if (!options.report.empty()) ar::write_report(options.report, report);
+        if (!options.report.empty()) gi::write_text(options.report, ar::to_html(report));
         fmt::print("{}\n", out);
     }
 };
@@ -105,13 +106,9 @@ int run_noise(SensorOptions const& o)
 
 cv::Point2d parse_pixel(std::string const& text)
 {
-    cv::Point2d p;
-    char const* const end = text.data() + text.size();
-    auto const x = std::from_chars(text.data(), end, p.x);
-    if (x.ec == std::errc() && x.ptr != end && *x.ptr == ',') {
-        auto const y = std::from_chars(x.ptr + 1, end, p.y);
-        if (y.ec == std::errc() && y.ptr == end && std::isfinite(p.x) && std::isfinite(p.y)) return p;
-    }
+    std::string_view y = text;
+    std::string_view const x = gi::take_until(y, ',');
+    if (auto const px = gi::parse_finite(x), py = gi::parse_finite(y); px && py) return {*px, *py};
     throw gi::InputError("--patches " + text, "the centre of a patch is two numbers, px from the upper left",
                          "write it as 120,85.5");
 }

@@ -1,5 +1,6 @@
 #include "gi/core/durable_file.h"
 #include "gi/core/error.h"
+#include "gi/core/text.h"
 #include "gi/metrics/metrics.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/report_json.h"
@@ -10,7 +11,6 @@
 #include "viewer/report/table_file.h"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
@@ -42,14 +42,12 @@ std::vector<Change> changes_of(std::string const& text)
 {
     std::size_t const slash = text.find('/');
     if (slash == std::string::npos) return {{"schedule", text}};
-    int updated = 0;
-    char const *const from = text.data() + slash + 1, *const to = text.data() + text.size();
-    auto const [end, error] = std::from_chars(from, to, updated);
-    if (text.substr(0, slash) != "stored" || error != std::errc() || end != to)
+    auto const updated = gi::parse_number<int>(std::string_view(text).substr(slash + 1));
+    if (text.substr(0, slash) != "stored" || !updated)
         throw gi::InputError("'" + text + "' is no schedule",
                              "only the stored schedule can update a part of its directions",
                              "give stored, stored/16, temporal or streamed");
-    return {{"schedule", "auto"}, {"updated_axes", updated}};
+    return {{"schedule", "auto"}, {"updated_axes", *updated}};
 }
 
 constexpr int kFirstMeasured = 4; ///< earlier frames build lasting structures and are not measured

@@ -1,6 +1,6 @@
 #include "viewer/devices/tracking/dtrack.h"
 
-#include "viewer/devices/tracking/read_number.h"
+#include "gi/core/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,14 +14,14 @@ constexpr std::size_t kMostPacketBodies = 256; ///< per packet
 /// Reads the numbers of one [...] and removes it from the text; false if there is none or a value is not a number.
 bool take_block(std::string_view& text, std::vector<double>& numbers)
 {
-    text = without_blanks(text);
+    text = gi::trimmed(text);
     std::size_t const end = text.find(']');
     if (text.empty() || text.front() != '[' || end == std::string_view::npos) return false;
     std::string_view inside = text.substr(1, end - 1);
     text.remove_prefix(end + 1);
     numbers.clear();
-    for (std::string_view word = take_word(inside); !word.empty(); word = take_word(inside)) {
-        auto const n = read_number(word);
+    for (std::string_view word = gi::take_word(inside); !word.empty(); word = gi::take_word(inside)) {
+        auto const n = gi::parse_finite(word, kLargestNumber);
         if (!n) return false;
         numbers.push_back(*n);
     }
@@ -92,11 +92,11 @@ bool take_body(std::string_view& text, LineForm form, TrackerSample& sample)
 
 void read_bodies(std::string_view rest, LineForm form, TrackerPacket& packet)
 {
-    std::string_view const first = take_word(rest);
-    auto count = read_count(first);
+    std::string_view const first = gi::take_word(rest);
+    auto count = gi::parse_number<std::uint64_t>(first);
     if (count && form == LineForm::flystick2)
-        count = read_count(take_word(rest)); // number defined, then number
-                                             // in the line
+        count = gi::parse_number<std::uint64_t>(gi::take_word(rest)); // number defined, then number
+                                                                      // in the line
     if (!count || *count > kMostPacketBodies) {
         ++packet.malformed;
         return;
@@ -109,7 +109,7 @@ void read_bodies(std::string_view rest, LineForm form, TrackerPacket& packet)
         }
         packet.samples.push_back(std::move(sample));
     }
-    if (!without_blanks(rest).empty()) ++packet.malformed;
+    if (!gi::trimmed(rest).empty()) ++packet.malformed;
 }
 
 } // namespace
@@ -119,17 +119,17 @@ TrackerPacket parse_dtrack(std::string_view text)
     TrackerPacket packet;
     std::optional<double> time_s;
     while (!text.empty()) {
-        std::string_view rest = take_until(text, '\n');
-        std::string_view const name = take_word(rest);
+        std::string_view rest = gi::take_until(text, '\n');
+        std::string_view const name = gi::take_word(rest);
         if (name.empty()) continue;
         if (name == "fr") {
-            packet.frame = read_count(without_blanks(rest));
+            packet.frame = gi::parse_number<std::uint64_t>(gi::trimmed(rest));
             if (!packet.frame) ++packet.malformed;
         } else if (name == "ts") {
-            time_s = read_number(without_blanks(rest));
+            time_s = gi::parse_finite(gi::trimmed(rest), kLargestNumber);
             if (!time_s) ++packet.malformed;
         } else if (name == "6dcal") {
-            if (!read_count(without_blanks(rest))) ++packet.malformed;
+            if (!gi::parse_number<std::uint64_t>(gi::trimmed(rest))) ++packet.malformed;
         } else if (name == "6d") {
             read_bodies(rest, LineForm::body, packet);
         } else if (name == "6df") {
@@ -151,7 +151,7 @@ std::string format_dtrack(std::vector<TrackerSample> const& samples, std::uint64
     std::string time;
     for (TrackerSample const& s : samples) {
         bool const is_flystick = s.body.starts_with("flystick");
-        auto const id = read_count(std::string_view(s.body).substr(is_flystick ? 8 : 0));
+        auto const id = gi::parse_number<std::uint64_t>(std::string_view(s.body).substr(is_flystick ? 8 : 0));
         if (!id || *id > 9999) continue;
         if (s.measured_s && time.empty()) time = fmt::format("ts {:.6f}\r\n", *s.measured_s);
         glm::dmat3 const m = s.visible ? glm::mat3_cast(s.pose.rotation) : glm::dmat3(0);

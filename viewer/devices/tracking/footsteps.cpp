@@ -1,6 +1,6 @@
 #include "viewer/devices/tracking/footsteps.h"
 
-#include "viewer/devices/tracking/pose_math.h"
+#include "gi/core/pose.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,9 +75,9 @@ void Footsteps::step(Tracked& body, gi::dmat4 const& world_from_room, double sec
         gi::dvec3 const p(room_from_world * glm::dvec4(world, 1));
         return gi::dvec3{p.x, 0, p.z};
     };
-    gi::dvec3 middle = compose(*body.head, {stance_.head_joint_in_head, {1, 0, 0, 0}}).position;
+    gi::dvec3 middle = *body.head * stance_.head_joint_in_head;
     middle.y = 0;
-    double const yaw = yaw_of(heading_of(body.head->rotation) * gi::dvec3{0, 0, -1});
+    double const yaw = yaw_of(gi::heading_of(body.head->rotation) * gi::dvec3{0, 0, -1});
     gi::dvec3 const by = begun_ ? middle - on_floor(last_) : gi::dvec3{0};
     bool anew = !begun_ || glm::length(by) > kJump_m;
     begun_ = true;
@@ -101,7 +101,8 @@ void Footsteps::step(Tracked& body, gi::dmat4 const& world_from_room, double sec
         goes[f] = {middle + turned(yaw) * below[f] + (is_still ? gi::dvec3{0} : lead), yaw};
         if (is_tracked[f]) {
             gi::dvec3 const p = (*poses[f])->position;
-            stand_at(feet_[f], {{p.x, 0, p.z}, yaw_of(heading_of((*poses[f])->rotation) * gi::dvec3{0, 0, -1})},
+            stand_at(feet_[f],
+                     {{p.x, 0, p.z}, yaw_of(gi::heading_of((*poses[f])->rotation) * gi::dvec3{0, 0, -1})},
                      world_from_room);
         } else if (anew) {
             stand_at(feet_[f], {middle + turned(yaw) * below[f], yaw}, world_from_room);

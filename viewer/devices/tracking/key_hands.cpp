@@ -1,6 +1,6 @@
 #include "viewer/devices/tracking/key_hands.h"
 
-#include "viewer/devices/tracking/pose_math.h"
+#include "gi/core/pose.h"
 
 #include <algorithm>
 
@@ -36,8 +36,8 @@ void KeyHands::step(bool left_rises, bool right_rises, double seconds)
 
 Tracked KeyHands::with_head(RoomPose const& head) const
 {
-    RoomPose const body{head.position, heading_of(head.rotation)};
-    return {head, compose(body, hand_at(-1, left_)), compose(body, hand_at(1, right_))};
+    RoomPose const body{head.position, gi::heading_of(head.rotation)};
+    return {head, body * hand_at(-1, left_), body * hand_at(1, right_)};
 }
 
 } // namespace viewer

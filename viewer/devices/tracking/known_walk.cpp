@@ -1,6 +1,6 @@
 #include "viewer/devices/tracking/known_walk.h"
 
-#include "viewer/devices/tracking/pose_math.h"
+#include "gi/core/pose.h"
 
 #include <cmath>
 
@@ -20,8 +20,8 @@ Tracked known_walk(double t)
     Tracked tracked;
     tracked.head = RoomPose{body.position, body.rotation * gi::exp_rotation({0, yaw, 0}) *
                                                gi::exp_rotation({pitch, 0, 0}) * gi::exp_rotation({0, 0, roll})};
-    tracked.left_hand = compose(body, {{-0.25, -0.75, -0.1 + swing}, {1, 0, 0, 0}});
-    tracked.right_hand = compose(body, {{0.25, -0.75, -0.1 - swing}, {1, 0, 0, 0}});
+    tracked.left_hand = body * RoomPose{{-0.25, -0.75, -0.1 + swing}};
+    tracked.right_hand = body * RoomPose{{0.25, -0.75, -0.1 - swing}};
     return tracked;
 }
 

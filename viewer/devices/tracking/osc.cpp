@@ -1,8 +1,8 @@
 #include "viewer/devices/tracking/osc.h"
 
 #include "gi/core/error.h"
-#include "viewer/devices/tracking/pose_math.h"
-#include "viewer/devices/tracking/read_number.h"
+#include "gi/core/pose.h"
+#include "gi/core/text.h"
 
 #include <algorithm>
 #include <cstring>
@@ -108,7 +108,7 @@ std::optional<std::string> match(std::string_view pattern, std::string_view path
 {
     std::string body;
     while (!pattern.empty() && !path.empty()) {
-        std::string_view const wanted = take_until(pattern, '/'), given = take_until(path, '/');
+        std::string_view const wanted = gi::take_until(pattern, '/'), given = gi::take_until(path, '/');
         if (wanted == "<body>" && !given.empty())
             body = given;
         else if (wanted != given)
@@ -129,7 +129,7 @@ std::optional<TrackerSample> read_sample(Message const& m, OscPattern const& pat
     bool has_position = false, has_quaternion = false, has_angles = false, may_end = false;
     std::size_t at = 0;
     std::string_view words = pattern.arguments;
-    for (std::string_view word = take_word(words); !word.empty(); word = take_word(words)) {
+    for (std::string_view word = gi::take_word(words); !word.empty(); word = gi::take_word(words)) {
         if (word.front() == '[') may_end = true;
         while (!word.empty() && word.front() == '[') word.remove_prefix(1);
         while (!word.empty() && word.back() == ']') word.remove_suffix(1);
@@ -308,7 +308,7 @@ void check(OscPattern const& pattern)
     std::vector<std::string> seen;
     int quaternion = 0, position = 0, angles = 0;
     std::string_view words = pattern.arguments;
-    for (std::string_view word = take_word(words); !word.empty(); word = take_word(words)) {
+    for (std::string_view word = gi::take_word(words); !word.empty(); word = gi::take_word(words)) {
         while (!word.empty() && word.front() == '[') word.remove_prefix(1);
         while (!word.empty() && word.back() == ']') word.remove_suffix(1);
         std::string const w(word);

@@ -1,6 +1,6 @@
 #include "viewer/devices/tracking/pose_track.h"
 
-#include "viewer/devices/tracking/pose_math.h"
+#include "gi/core/pose.h"
 
 #include <algorithm>
 #include <cmath>

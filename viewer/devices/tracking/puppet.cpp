@@ -1,7 +1,7 @@
 #include "viewer/devices/tracking/puppet.h"
 
 #include "gi/core/error.h"
-#include "viewer/devices/tracking/pose_math.h"
+#include "gi/core/pose.h"
 
 #include <fmt/format.h>
 
@@ -43,14 +43,14 @@ gi::AvatarTargets puppet_targets(Tracked const& tracked, gi::dmat4 const& world_
     double const s = measures.avatar_per_user;
     gi::dvec3 user_joint{0}, joint{0}; // the user's and the avatar's head joint, in the room
     if (tracked.head) {
-        user_joint = compose(*tracked.head, {measures.head_joint_in_head, {1, 0, 0, 0}}).position;
+        user_joint = *tracked.head * measures.head_joint_in_head;
         joint = {user_joint.x, s * user_joint.y, user_joint.z};
         targets.head = in_world(world_from_room, {joint, tracked.head->rotation});
     }
     auto const limb = [&](std::optional<RoomPose> const& pose,
                           RoomPose const& joint_in_body) -> std::optional<gi::dmat4> {
         if (!pose) return std::nullopt;
-        RoomPose p = compose(*pose, joint_in_body);
+        RoomPose p = *pose * joint_in_body;
         if (tracked.head)
             p.position = joint + s * (p.position - user_joint);
         else

@@ -2,7 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/core/file.h"
-#include "viewer/devices/tracking/read_number.h"
+#include "gi/core/text.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -15,36 +15,10 @@ constexpr char const* kColumns[] = {"time_s", "body", "x_m", "y_m",     "z_m",  
                                     "qy",     "qz",   "qw",  "buttons", "visible"};
 constexpr std::size_t kFewestColumns = 9;
 
-struct Line {
-    std::string_view text;
-    std::string const& file;
-    int number;
-
-    gi::InputError error(std::string_view at, std::string const& problem, std::string const& why,
-                         std::string const& suggestion) const
-    {
-        int const column = int(at.data() - text.data()) + 1;
-        return {gi::TextLocation{file, number, column}, problem, why, suggestion};
-    }
-};
-
-std::vector<std::string_view> split(std::string_view text)
-{
-    std::vector<std::string_view> fields;
-    while (true) {
-        std::size_t const n = text.find(',');
-        std::string_view const field = text.substr(0, n);
-        std::string_view const trimmed = without_blanks(field);
-        fields.push_back(trimmed.empty() ? field.substr(0, 0) : trimmed);
-        if (n == std::string_view::npos) return fields;
-        text.remove_prefix(n + 1);
-    }
-}
-
 /// Number of columns of the file.
-std::size_t read_header(Line const& line)
+std::size_t read_header(gi::TextLine const& line)
 {
-    auto const fields = split(line.text);
+    auto const fields = gi::split_at_commas(line.text);
     for (std::size_t i = 0; i < fields.size(); ++i)
         if (i >= std::size(kColumns) || fields[i] != kColumns[i])
             throw line.error(fields[i], "column '" + std::string(fields[i]) + "' is not understood",
@@ -56,14 +30,14 @@ std::size_t read_header(Line const& line)
     return fields.size();
 }
 
-TrackerSample read_line(Line const& line, std::size_t columns)
+TrackerSample read_line(gi::TextLine const& line, std::size_t columns)
 {
-    auto const fields = split(line.text);
+    auto const fields = gi::split_at_commas(line.text);
     if (fields.size() != columns)
         throw line.error(line.text, fmt::format("there are {} values", fields.size()),
                          fmt::format("the first line names {} columns", columns), "give one value per column");
     auto const number = [&](std::size_t i) {
-        auto const n = read_number(fields[i]);
+        auto const n = gi::parse_finite(fields[i], kLargestNumber);
         if (!n)
             throw line.error(fields[i], "'" + std::string(fields[i]) + "' is not a number",
                              std::string(kColumns[i]) + " must be one, of at most 1e15", "correct it");
@@ -76,7 +50,7 @@ TrackerSample read_line(Line const& line, std::size_t columns)
     s.pose.position = {number(2), number(3), number(4)};
     s.pose.rotation = {number(8), number(5), number(6), number(7)};
     if (columns > 9) {
-        auto const buttons = read_count(fields[9]);
+        auto const buttons = gi::parse_number<std::uint64_t>(fields[9]);
         if (!buttons || *buttons > 0xffffffffu)
             throw line.error(fields[9], "'" + std::string(fields[9]) + "' is no set of buttons",
                              "bits 0 to 31 are, as a whole number", "write 0");
@@ -104,8 +78,8 @@ std::vector<TrackerSample> parse_tracker_file(std::string_view text, std::string
     std::vector<TrackerSample> samples;
     std::size_t columns = 0;
     for (int number = 1; !text.empty(); ++number) {
-        Line const line{take_until(text, '\n'), file, number};
-        std::string_view const content = without_blanks(line.text);
+        gi::TextLine const line{gi::take_until(text, '\n'), file, number};
+        std::string_view const content = gi::trimmed(line.text);
         if (content.empty() || content.front() == '#') continue;
         if (columns == 0) {
             columns = read_header(line);

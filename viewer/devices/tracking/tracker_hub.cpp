@@ -1,9 +1,9 @@
 #include "viewer/devices/tracking/tracker_hub.h"
 
 #include "gi/core/error.h"
+#include "gi/core/pose.h"
 #include "viewer/devices/tracking/arrival_clock.h"
 #include "viewer/devices/tracking/clock_offset.h"
-#include "viewer/devices/tracking/pose_math.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,6 +10,9 @@
 
 namespace viewer {
 
+/// Numbers of larger magnitude are rejected: trackers do not send them, and integers would no longer be exact.
+inline constexpr double kLargestNumber = 1e15;
+
 /// Parts of a pose that a sample contains; senders may send positions and rotations in separate messages.
 enum class SampleParts { pose, position, rotation, buttons };
 

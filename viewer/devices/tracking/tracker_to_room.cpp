@@ -1,6 +1,6 @@
 #include "viewer/devices/tracking/tracker_to_room.h"
 
-#include "viewer/devices/tracking/pose_math.h"
+#include "gi/core/pose.h"
 
 namespace viewer {
 namespace {
@@ -31,7 +31,7 @@ RoomPose to_room(TrackerToRoom const& t, RoomPose const& pose, RoomPose const& s
     // mirrors.
     gi::dvec3 const axis = glm::determinant(c) * (c * gi::dvec3{p.rotation.x, p.rotation.y, p.rotation.z});
     p.rotation = glm::normalize(gi::dquat(p.rotation.w, axis.x, axis.y, axis.z));
-    return compose(compose(t.room_from_tracker, p), sensor_from_body);
+    return t.room_from_tracker * p * sensor_from_body;
 }
 
 } // namespace viewer

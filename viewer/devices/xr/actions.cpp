@@ -65,7 +65,7 @@ std::optional<RoomPose> locate(XrSpace what, XrSpace space, RoomPose const& room
         XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
     if ((at.locationFlags & kKnown) != kKnown) return std::nullopt;
     auto const [q, p] = at.pose;
-    return after(room_from_space, pose_of({q.x, q.y, q.z, q.w}, {p.x, p.y, p.z}));
+    return room_from_space * pose_of({q.x, q.y, q.z, q.w}, {p.x, p.y, p.z});
 }
 
 Actions::Actions(XrInstance instance, XrSession session) : instance_(instance), session_(session)

@@ -4,17 +4,6 @@
 
 namespace viewer {
 
-RoomPose after(RoomPose const& a, RoomPose const& b)
-{
-    return {a.position + a.rotation * b.position, a.rotation * b.rotation};
-}
-
-RoomPose inverse(RoomPose const& pose)
-{
-    gi::dquat const back = glm::conjugate(pose.rotation);
-    return {-(back * pose.position), back};
-}
-
 RoomPose pose_of(std::array<float, 4> const& q, std::array<float, 3> const& p)
 {
     gi::dquat const rotation(q[3], q[0], q[1], q[2]);

@@ -5,9 +5,6 @@
 
 namespace viewer {
 
-/// Composition, first b, then a: room from body = (room from space) after (space from body).
-RoomPose after(RoomPose const& a, RoomPose const& b);
-RoomPose inverse(RoomPose const& pose);
 /// Normalised in double precision; the identity if the quaternion is invalid.
 RoomPose pose_of(std::array<float, 4> const& rotation_xyzw, std::array<float, 3> const& position);
 RoomPose pose_of(HmdRawView const& view);

@@ -242,7 +242,7 @@ std::optional<std::array<HmdView, 2>> HmdSession::Parts::views_at(XrTime time)
     for (std::size_t e = 0; e < 2; ++e) {
         HmdRawView const raw = raw_of(found[e]);
         if (!spans_view(raw)) return std::nullopt;
-        RoomPose const room_from_eye = after(spaces->room_from_space(), pose_of(raw));
+        RoomPose const room_from_eye = spaces->room_from_space() * pose_of(raw);
         views[e] = {eye_camera(HmdEye(e), room_from_eye, tangents(raw)), runtime.info.width, runtime.info.height,
                     raw, spaces->moves()};
     }

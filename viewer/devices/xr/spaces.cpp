@@ -63,7 +63,7 @@ std::optional<RoomPose> Spaces::found_by_head(XrTime change) const
     if (before == heads_.rend()) return std::nullopt;
     auto const now = locate(head_, base_, {}, before->time);
     if (!now) return std::nullopt;
-    return after(before->space_from_head, inverse(*now));
+    return before->space_from_head * inverse(*now);
 }
 
 bool Spaces::take(XrEventDataReferenceSpaceChangePending const& change)
@@ -94,7 +94,7 @@ XrPosef Spaces::moved_on(HmdRawView const& view, std::uint64_t space) const
     if (space >= moves_.size()) return as_it_was;
     RoomPose pose = pose_of(view);
     for (std::size_t i = space; i < moves_.size(); ++i)
-        if (moves_[i]) pose = after(inverse(*moves_[i]), pose);
+        if (moves_[i]) pose = inverse(*moves_[i]) * pose;
     auto const& [p, q] = pose;
     return {{float(q.x), float(q.y), float(q.z), float(q.w)}, {float(p.x), float(p.y), float(p.z)}};
 }

@@ -1,10 +1,10 @@
 #include "viewer/protocol/remote/socket.h"
 
 #include "gi/core/error.h"
+#include "gi/core/text.h"
 
 #include <arpa/inet.h>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <fmt/format.h>
 #include <netinet/in.h>
@@ -124,19 +124,17 @@ Socket listen_on_loopback(int& port)
 
 Socket connect_to(std::string const& where)
 {
-    int port = 0;
-    auto const [rest, wrong] = std::from_chars(where.data(), where.data() + where.size(), port);
-    bool const is_port = wrong == std::errc() && rest == where.data() + where.size();
-    if (is_port && (port < 1 || port > 65535))
+    auto const port = gi::parse_number<int>(where);
+    if (port && (*port < 1 || *port > 65535))
         throw gi::InputError("cannot connect to port " + where, "ports are 1 to 65535",
                              "use the port that the viewer printed");
-    Socket s = make_socket(is_port ? AF_INET : AF_UNIX, 0);
-    int const error = is_port ? connect_with(s, loopback(port)) : connect_with(s, address_of(where));
+    Socket s = make_socket(port ? AF_INET : AF_UNIX, 0);
+    int const error = port ? connect_with(s, loopback(*port)) : connect_with(s, address_of(where));
     if (error != 0)
         throw gi::InputError("cannot connect to '" + where + "'", std::strerror(error),
                              "start lightwell view with --remote first");
     int const yes = 1;
-    if (is_port) ::setsockopt(s.fd(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+    if (port) ::setsockopt(s.fd(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
     return s;
 }
 
