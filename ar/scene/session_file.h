@@ -28,13 +28,19 @@ struct ArReal : ArPlaced {
     std::vector<ArProxy> proxies;
 };
 
+/// Settings of renders as AR sessions begin with them.
+inline gi::RenderSettings ar_render_settings()
+{
+    gi::RenderSettings r;
+    r.bounces = 3;
+    return r;
+}
+
 struct ArRender {
-    std::uint32_t paths = 2; ///< per rendered pixel and frame
-    double resolution = 0.5; ///< rendered pixels per pixel of the camera
-    int bounces = 3;
-    gi::DenoiseSettings denoise; ///< no effect with fewer than two paths
-    std::uint64_t seed = 0;
-    gi::SlhbSettings slhb; ///< directions, resolution, light_samples, fresh_light_samples, shadow_resolution
+    std::uint32_t paths = 2;                            ///< per rendered pixel and frame
+    double resolution = 0.5;                            ///< rendered pixels per pixel of the camera
+    gi::DenoiseSettings denoise;                        ///< no effect with fewer than two paths
+    gi::RenderSettings settings = ar_render_settings(); ///< of method slhb
 };
 
 /// Processing of a rendered pair before compositing; each step costs time only if enabled.

@@ -3,7 +3,9 @@
 #include "gi/core/error.h"
 #include "gi/methods/reference/reference.h"
 #include "gi/methods/slhb/frames.h"
+#include "gi/methods/slhb/options.h"
 #include "gi/methods/slhb/slhb.h"
+#include "gi/methods/vpl/options.h"
 #include "gi/methods/vpl/visibility.h"
 
 #include <array>
@@ -15,14 +17,14 @@ namespace {
 template <VisibilityKind kind>
 constexpr Method virtual_lights(std::string_view name, std::string_view summary)
 {
-    return {name, summary, render_visibility<kind>, start_visibility_frames<kind>, false};
+    return {name, summary, render_visibility<kind>, start_visibility_frames<kind>, false, virtual_light_options};
 }
 
 constexpr std::array kMethods{
     Method{"reference", "path tracing with exact rays (Embree): slow, unbiased, for comparison", render_reference,
            start_reference_frames, true},
     Method{"slhb", "path tracing through spherical layered hit buffers: look-ups instead of rays", render_slhb,
-           start_slhb_frames, true},
+           start_slhb_frames, true, slhb_options},
     virtual_lights<VisibilityKind::exact>(
         "vpl_exact", "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
                      "    methods differ only in how they find visibility"),

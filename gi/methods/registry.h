@@ -3,6 +3,7 @@
 // benchmarks, in studies and in --help.
 
 #include "gi/render/frame_renderer.h"
+#include "gi/render/render_option.h"
 
 #include <span>
 #include <string_view>
@@ -18,6 +19,7 @@ struct Method {
     RenderFunction render;
     StartFrames frames;
     bool motion_vectors = false; ///< its frames have the layer "motion", which temporal reuse needs
+    RenderOptionTable const& (*options)() = nullptr; ///< of its own; nullptr = none
 };
 
 std::span<Method const> methods();

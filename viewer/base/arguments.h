@@ -2,16 +2,15 @@
 // Parsers of command-line values. They throw InputError on invalid text; the message names `option`.
 
 #include "gi/core/math.h"
+#include "gi/core/to_number.h"
 
-#include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 
 namespace viewer {
 
-/// Parses the whole text as a finite number, independent of the locale; nullopt if it is none.
-std::optional<double> to_number(std::string_view text);
+using gi::to_number;
+
 /// Parses "512x384": each from 1 to 65536, at most 2^28 pixels.
 std::pair<int, int> parse_size(std::string const& text);
 /// Parses "1,2.5,-3".

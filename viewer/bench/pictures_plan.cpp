@@ -110,7 +110,7 @@ void skip(Skipped const& s, BenchTable& table)
 PicturesPlan plan_pictures(PicturesOptions const& o)
 {
     PicturesPlan plan;
-    for (std::string const& name : o.methods) plan.methods.push_back(find_sweep_method(name, o.render.schedule));
+    for (std::string const& name : o.methods) plan.methods.push_back(find_sweep_method(name));
     refuse_twins("--methods", o.methods, o.methods);
     for (std::string const& text : o.budgets) plan.budgets.push_back(parse_picture_budget(text));
     refuse_twins("--budgets", o.budgets, o.budgets);

@@ -16,9 +16,6 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
 SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup,
                                    Camera const& camera);
 
-/// auto, stored, streamed or temporal. Throws InputError on another name.
-Schedule parse_schedule(std::string const& name);
-
 /// Returns chosen settings as command-line options that reproduce the picture.
 std::string as_options(SlhbSettings const& chosen);
 
