@@ -4,7 +4,7 @@
 #include "ar/scene/read_values.h"
 #include "gi/core/file.h"
 #include "gi/filter/filter_names.h"
-#include "gi/methods/options.h"
+#include "gi/methods/registry.h"
 
 #include <fmt/format.h>
 
@@ -94,7 +94,7 @@ private:
     {
         std::vector<std::string> keys{"paths", "resolution", "denoise"};
         for (gi::RenderOption const& o : gi::render_options()) {
-            if (!o.use.live || !reads("slhb", o) || o.name == "device") continue; // pairs need the CPU
+            if (!o.live || !o.read_by("slhb") || o.name == "device") continue; // pairs need the CPU
             std::vector<std::string> names = o.former;
             names.push_back(o.key);
             for (std::string const& key : names)

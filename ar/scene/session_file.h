@@ -28,19 +28,11 @@ struct ArReal : ArPlaced {
     std::vector<ArProxy> proxies;
 };
 
-/// Settings of renders as AR sessions begin with them.
-inline gi::RenderSettings ar_render_settings()
-{
-    gi::RenderSettings r;
-    r.bounces = 3;
-    return r;
-}
-
 struct ArRender {
-    std::uint32_t paths = 2;                            ///< per rendered pixel and frame
-    double resolution = 0.5;                            ///< rendered pixels per pixel of the camera
-    gi::DenoiseSettings denoise;                        ///< no effect with fewer than two paths
-    gi::RenderSettings settings = ar_render_settings(); ///< of method slhb
+    std::uint32_t paths = 2;                                ///< per rendered pixel and frame
+    double resolution = 0.5;                                ///< rendered pixels per pixel of the camera
+    gi::DenoiseSettings denoise;                            ///< no effect with fewer than two paths
+    gi::RenderSettings settings = gi::settings_of_frames(); ///< of method slhb
 };
 
 /// Processing of a rendered pair before compositing; each step costs time only if enabled.

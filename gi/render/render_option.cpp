@@ -8,12 +8,12 @@
 
 namespace gi {
 
-bool reads(std::string_view method, RenderOption const& option)
+bool RenderOption::read_by(std::string_view method) const
 {
     auto const fits = [&](std::string_view m) {
         return m.ends_with('*') ? method.starts_with(m.substr(0, m.size() - 1)) : method == m;
     };
-    return option.use.methods.empty() || std::ranges::any_of(option.use.methods, fits);
+    return methods.empty() || std::ranges::any_of(methods, fits);
 }
 
 std::string as_options(RenderOptionTable const& table, RenderSettings const& settings,
@@ -33,19 +33,24 @@ std::string as_options(RenderOptionTable const& table, RenderSettings const& set
 
 RenderOptionTable const& common_options()
 {
-    auto const common = [](OptionFacts facts, auto RenderSettings::*member, bool live = true) {
-        return RenderOption{make_option<RenderSettings>(
-                                std::move(facts), [member](auto& s) -> auto& { return s.*member; }),
-                            "",
-                            {.methods = {}, .unused_by = {}, .live = live}};
+    using S = RenderSettings;
+    auto const common = [](char const* name, OptionValues values, char const* meaning, auto S::*member) {
+        return RenderOption{
+            make_option<S>(
+                name, std::move(values), meaning, [member](auto& s) -> auto& { return s.*member; }),
+            "",
+            {}};
     };
-    static RenderOptionTable const all{
-        common(whole_option("bounces", 0, 1024, "indirect bounces; 0 = direct light only"),
-               &RenderSettings::bounces),
-        common(word_option("filter", {"box", "tent"}, "pixel filter"), &RenderSettings::filter),
-        common(whole_option("seed", 0, 0x1p64, "seed of the random numbers"), &RenderSettings::seed),
-        common(whole_option("threads", 0, 4096, "threads; 0 = all"), &RenderSettings::threads, false),
-    };
+    static RenderOptionTable const all = [&] {
+        RenderOptionTable table{
+            common("bounces", {0, 1024}, "indirect bounces; 0 = direct light only", &S::bounces),
+            common("filter", {"box", "tent"}, "pixel filter", &S::filter),
+            common("seed", {0, 0x1p64}, "seed of the random numbers", &S::seed),
+            common("threads", {0, 4096}, "threads; 0 = all", &S::threads),
+        };
+        table.back().live = false;
+        return table;
+    }();
     return all;
 }
 

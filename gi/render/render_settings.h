@@ -135,6 +135,14 @@ struct RenderSettings {
     PathShare share;     ///< for single pictures only; frame sequences and checkpoints need all paths
 };
 
+/// The defaults of viewers and AR sessions.
+inline RenderSettings settings_of_frames()
+{
+    RenderSettings s;
+    s.bounces = 3;
+    return s;
+}
+
 struct RenderStatus {
     double fraction = 0;
     std::uint32_t paths = 0; ///< per pixel so far

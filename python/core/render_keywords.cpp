@@ -3,7 +3,7 @@
 #include "gi/core/error.h"
 #include "gi/filter/filter_names.h"
 #include "gi/kernel/device.h"
-#include "gi/methods/options.h"
+#include "gi/methods/registry.h"
 #include "python/core/errors.h"
 
 #include <fmt/format.h>
@@ -48,7 +48,7 @@ void set_options(gi::RenderSettings& s, py::dict const& options, std::string con
 {
     std::vector<std::string> given, known;
     for (gi::RenderOption const& o : gi::render_options())
-        if (!o.use.methods.empty()) known.push_back(o.key);
+        if (!o.methods.empty()) known.push_back(o.key);
     for (auto const& [key, value] : options) {
         auto const keyword = py::cast<std::string>(key);
         gi::RenderOption const* const option = gi::find_render_option(keyword);

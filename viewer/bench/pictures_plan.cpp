@@ -2,28 +2,16 @@
 
 #include "gi/core/durable_file.h"
 #include "gi/core/error.h"
+#include "gi/filter/filter_names.h"
 #include "viewer/base/arguments.h"
 #include "viewer/bench/bench_record.h"
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdio>
 #include <fmt/format.h>
 
 namespace viewer {
 namespace {
-
-/// Parses the name by the option --denoise, so that both have the same filters.
-void choose_filter(std::string const& name, RenderOptions& options)
-{
-    CLI::App parser;
-    declare_denoise(parser, options);
-    try {
-        parser.parse(std::vector<std::string>{"--denoise=" + name});
-    } catch (CLI::ParseError const& e) {
-        throw gi::InputError("there is no filter '" + name + "'", e.what(), "see lightwell render --help");
-    }
-}
 
 /// Throws InputError if the filter cannot work here, as a library or its weights are missing.
 void try_filter(gi::DenoiseSettings const& settings)
@@ -41,7 +29,8 @@ void try_filter(gi::DenoiseSettings const& settings)
 void add_filter(PicturesOptions const& o, std::string const& name, PicturesPlan& plan)
 {
     RenderOptions options = o.render;
-    choose_filter(name, options);
+    options.denoise = name;
+    gi::find_filter(name); // throws
     try {
         gi::DenoiseSettings const settings = make_denoise_settings(options, plan.settings);
         try_filter(settings);

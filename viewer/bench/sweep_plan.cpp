@@ -2,7 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
-#include "gi/methods/options.h"
+#include "gi/methods/registry.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/outputs.h"
 #include "viewer/bench/bench_record.h"

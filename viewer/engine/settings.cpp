@@ -3,7 +3,6 @@
 #include "gi/core/error.h"
 #include "gi/core/to_number.h"
 #include "gi/filter/filter_names.h"
-#include "gi/methods/options.h"
 #include "gi/methods/registry.h"
 #include "viewer/displays/stereo_mode.h"
 
@@ -30,65 +29,57 @@ std::vector<std::string> stereo_names()
 }
 
 template <class T>
-SettingKey own(gi::OptionFacts facts, T Settings::*member)
+SettingKey own(char const* names, gi::OptionValues values, char const* meaning, T Settings::*member)
 {
     return {gi::make_option<Settings>(
-                std::move(facts), [member](auto& s) -> auto& { return s.*member; }),
+                names, std::move(values), meaning, [member](auto& s) -> auto& { return s.*member; }),
             ""};
 }
 
 /// An option of renders as a setting. Whether paths end in the radiance cache is decided for every frame.
 SettingKey of_renders(gi::RenderOption const& o)
 {
-    SettingKey key{{o, {}, {}}, o.group, o.name != "radiance-cache"};
-    key.set = [&o](Settings& s, std::string const& text, std::string const& given) {
-        o.set(s.render, text, given);
-    };
-    key.get = [&o](Settings const& s) { return o.get(s.render); };
-    return key;
+    return {{o, [&o](Settings& s, auto const& text, auto const& given) { o.set(s.render, text, given); },
+             [&o](Settings const& s) { return o.get(s.render); }},
+            o.group,
+            o.name != "radiance-cache"};
 }
 
 std::vector<SettingKey> make_keys()
 {
-    using gi::flag_option, gi::number_option, gi::whole_option, gi::word_option;
     using S = Settings;
-    std::vector<SettingKey> keys{
-        own(word_option("method", method_names(false), "light transport"), &S::method),
-        own(word_option("compare", method_names(true),
-                        "second method, shown beside the first for comparison; empty = none"),
-            &S::compare)};
+    std::vector<SettingKey> keys{own("method", method_names(false), "light transport", &S::method),
+                                 own("compare", method_names(true),
+                                     "second method, shown beside the first for comparison; empty = none",
+                                     &S::compare)};
     keys[0].restarts = true;
     for (gi::RenderOption const& o : gi::render_options())
-        if (o.use.live) keys.push_back(of_renders(o));
+        if (o.live) keys.push_back(of_renders(o));
     keys.insert(
         keys.end(),
-        {own(whole_option("updated-axes,followed", 0, 64,
-                          "slhb: stored axes per bounce updated each frame for dynamic geometry, 0 = all; set by "
-                          "the schedule auto"),
+        {own("updated-axes,followed", {0, 64},
+             "slhb: stored axes per bounce updated each frame for dynamic geometry, 0 = all; set by the schedule "
+             "auto",
              &S::updated_axes),
-         own(whole_option("reuse", 1, 256, "frames that temporal reuse averages over, 1 = none"), &S::reuse),
-         own(word_option("denoise", gi::filter_names(), "filter that removes noise"), &S::denoise),
-         own(flag_option("share-eyes", "each eye may reuse light computed for the other eye"), &S::share_eyes),
-         own(number_option("exposure", -32, 32, "exposure, stops"), &S::exposure_ev),
-         own(word_option("tone", {"srgb", "filmic"}, "tone curve"), &S::tone),
-         own(number_option("rate", 0.1, 1000, "target frame rate, Hz"), &S::rate_hz),
-         own(whole_option("paths", 0, 65536, "paths per pixel and frame, 0 = as the frame rate allows"),
-             &S::paths),
-         own(number_option("scale", 0, 1,
-                           "side of the picture relative to the window's, 0 = as large as the frame rate allows"),
-             &S::scale),
-         own(flag_option("play", "animation clips run"), &S::play),
-         own(number_option("speed", -100, 100, "playback speed of animation clips, 1 = real time"), &S::speed),
-         own(number_option("eye-distance", 0, 1, "distance between the pupils, m"), &S::eye_distance_m),
-         own(word_option("stereo", stereo_names(), "how the two eyes' pictures are shown in a window"),
-             &S::stereo),
-         own(flag_option("swap-eyes", "exchange the left and right eye"), &S::swap_eyes),
-         own(word_option("view", {"picture", "split", "flicker", "difference"}, "how two methods are shown"),
-             &S::view),
-         own(number_option("split", 0, 1, "position of the split, as a share of the picture's width"), &S::split),
-         own(flag_option("reproject", "reproject the last picture to the current head pose"), &S::reproject),
-         own(flag_option("refine", "keep adding paths while nothing moves"), &S::refine),
-         own(flag_option("panel", "show the panel"), &S::panel)});
+         own("reuse", {1, 256}, "frames that temporal reuse averages over, 1 = none", &S::reuse),
+         own("denoise", gi::filter_names(), "filter that removes noise", &S::denoise),
+         own("share-eyes", {}, "each eye may reuse light computed for the other eye", &S::share_eyes),
+         own("exposure", {-32, 32}, "exposure, stops", &S::exposure_ev),
+         own("tone", {"srgb", "filmic"}, "tone curve", &S::tone),
+         own("rate", {0.1, 1000}, "target frame rate, Hz", &S::rate_hz),
+         own("paths", {0, 65536}, "paths per pixel and frame, 0 = as the frame rate allows", &S::paths),
+         own("scale", {0, 1},
+             "side of the picture relative to the window's, 0 = as large as the frame rate allows", &S::scale),
+         own("play", {}, "animation clips run", &S::play),
+         own("speed", {-100, 100}, "playback speed of animation clips, 1 = real time", &S::speed),
+         own("eye-distance", {0, 1}, "distance between the pupils, m", &S::eye_distance_m),
+         own("stereo", stereo_names(), "how the two eyes' pictures are shown in a window", &S::stereo),
+         own("swap-eyes", {}, "exchange the left and right eye", &S::swap_eyes),
+         own("view", {"picture", "split", "flicker", "difference"}, "how two methods are shown", &S::view),
+         own("split", {0, 1}, "position of the split, as a share of the picture's width", &S::split),
+         own("reproject", {}, "reproject the last picture to the current head pose", &S::reproject),
+         own("refine", {}, "keep adding paths while nothing moves", &S::refine),
+         own("panel", {}, "show the panel", &S::panel)});
     return keys;
 }
 
@@ -101,7 +92,7 @@ SettingKey const* find(std::string_view key)
     for (auto const& [before, now] : kFormer)
         if (key == before) key = now;
     for (SettingKey const& k : setting_keys())
-        if (is_called(k, key)) return &k;
+        if (k.is_called(key)) return &k;
     return nullptr;
 }
 
@@ -116,16 +107,8 @@ std::string dumped(Json const& value) { return value.dump(-1, ' ', false, Json::
 Json value_of(SettingKey const& k, Settings const& s)
 {
     std::string const text = k.get(s);
-    switch (k.type) {
-    case gi::OptionType::word:
-        return text;
-    case gi::OptionType::number:
-        return gi::to_number(text).value_or(0);
-    case gi::OptionType::whole_number:
-    case gi::OptionType::yes_or_no:
-        break;
-    }
-    return Json::parse(text);
+    if (k.type == gi::OptionType::word) return text;
+    return k.type == gi::OptionType::number ? Json(gi::to_number(text).value_or(0)) : Json::parse(text);
 }
 
 } // namespace

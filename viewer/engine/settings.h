@@ -12,17 +12,9 @@
 
 namespace viewer {
 
-/// Settings of renders as viewers begin with them.
-inline gi::RenderSettings first_render_settings()
-{
-    gi::RenderSettings r;
-    r.bounces = 3;
-    return r;
-}
-
 struct Settings {
     std::string method = "slhb", compare; ///< compare: second method, shown beside the first; empty = none
-    gi::RenderSettings render = first_render_settings(); ///< those of gi::render_options() that are live count
+    gi::RenderSettings render = gi::settings_of_frames(); ///< those of gi::render_options() that are live count
     int updated_axes = 0; ///< stored axes per bounce updated each frame for dynamic geometry; 0 = all. With the
                           ///< schedule auto, the live viewer sets it every frame (update_governor.h)
     int reuse = 16;       ///< frames of temporal reuse; 1 = none

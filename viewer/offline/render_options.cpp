@@ -140,31 +140,11 @@ void declare_denoise(CLI::App& c, RenderOptions& o)
 
 namespace {
 
-/// The kind of its values, for --help.
-std::string value_name(gi::OptionFacts const& o)
-{
-    switch (o.type) {
-    case gi::OptionType::number:
-        return fmt::format("FLOAT in [{} - {}]", o.low, o.high);
-    case gi::OptionType::whole_number:
-        return o.high < 0x1p31 ? fmt::format("INT in [{:.0f} - {:.0f}]", o.low, o.high) : "UINT";
-    case gi::OptionType::word:
-    case gi::OptionType::yes_or_no:
-        break;
-    }
-    return o.takes_other_words ? "TEXT" : fmt::format("TEXT:{{{}}}", fmt::join(o.words, ","));
-}
-
-std::string dashed(std::string key)
-{
-    std::ranges::replace(key, '_', '-');
-    return "--" + key;
-}
-
 CLI::Option* declare(CLI::App& c, gi::RenderSettings& settings, gi::RenderOption const& o)
 {
     std::string names = "--" + o.name;
-    for (std::string const& former : o.former) names += "," + dashed(former);
+    for (std::string const& former : o.former) names += ",--" + former;
+    std::ranges::replace(names, '_', '-');
     auto const set = [&settings, &o](std::string const& text) {
         o.set(settings, text, fmt::format("--{} {}", o.name, text));
     };
@@ -172,7 +152,7 @@ CLI::Option* declare(CLI::App& c, gi::RenderSettings& settings, gi::RenderOption
         o.type == gi::OptionType::yes_or_no
             ? c.add_flag_callback(
                   names, [set] { set("true"); }, o.meaning)
-            : c.add_option_function<std::string>(names, set, o.meaning)->type_name(value_name(o));
+            : c.add_option_function<std::string>(names, set, o.meaning)->type_name("[" + o.values_text() + "]");
     if (!o.group.empty()) option->group(o.group);
     bool const explains_default = o.meaning.find("(default") != std::string::npos;
     if (o.type != gi::OptionType::yes_or_no && !explains_default) option->default_str(o.get(settings));
@@ -198,8 +178,8 @@ void declare_method_options(CLI::App& c, gi::RenderSettings& settings,
                             std::vector<std::string_view> const& except)
 {
     for (gi::RenderOption const& o : gi::render_options()) {
-        bool const is_read = std::ranges::any_of(methods, [&](std::string_view m) { return reads(m, o); });
-        if (!o.use.methods.empty() && is_read && std::ranges::find(except, o.name) == except.end())
+        bool const is_read = std::ranges::any_of(methods, [&](std::string_view m) { return o.read_by(m); });
+        if (!o.methods.empty() && is_read && std::ranges::find(except, o.name) == except.end())
             declare(c, settings, o);
     }
 }

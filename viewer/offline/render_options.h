@@ -2,7 +2,7 @@
 // Command-line options of `lightwell render`.
 
 #include "gi/filter/denoise.h"
-#include "gi/methods/options.h"
+#include "gi/methods/registry.h"
 #include "gi/render/render_settings.h"
 #include "viewer/offline/rank_options.h"
 

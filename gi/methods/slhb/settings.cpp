@@ -4,7 +4,6 @@
 #include "gi/methods/slhb/directions/axis_set.h"
 #include "gi/methods/slhb/directions/directions.h"
 #include "gi/methods/slhb/hit_buffer/hit_buffer.h"
-#include "gi/methods/slhb/options.h"
 #include "gi/methods/slhb/ray_plan.h"
 
 #include <algorithm>

@@ -1,8 +1,7 @@
 #include "gi/methods/vpl/visibility.h"
 
 #include "gi/core/threads.h"
-#include "gi/methods/slhb/options.h"
-#include "gi/methods/vpl/options.h"
+#include "gi/methods/slhb/settings.h"
 #include "gi/methods/vpl/renderer.h"
 #include "gi/render/fingerprint.h"
 #include "gi/render/pass_loop.h"
