@@ -40,10 +40,10 @@ bool OptionFacts::is_called(std::string_view text) const
 std::string OptionFacts::values_text() const
 {
     if (takes_other_words) return "text";
-    if (type == OptionType::number) return fmt::format("number, {} to {}", low, high);
+    if (type == OptionType::number) return fmt::format("number from {} to {}", low, high);
     if (type == OptionType::whole_number) {
         double const most = double(UINT64_MAX);
-        return fmt::format("whole number, {:.0f} to {}", low, high < most ? std::uint64_t(high) : UINT64_MAX);
+        return fmt::format("whole number from {:.0f} to {}", low, high < most ? std::uint64_t(high) : UINT64_MAX);
     }
     std::string all = fmt::format("{}", fmt::join(words, ", "));
     return all.starts_with(',') ? "\"\"" + all : all;

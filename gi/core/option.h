@@ -41,7 +41,7 @@ struct OptionFacts : OptionValues {
 
     /// True for the name, the key and former ones.
     bool is_called(std::string_view text) const;
-    /// "whole number, 0 to 64" or "cpu, cuda"
+    /// "whole number from 0 to 64" or "cpu, cuda"
     std::string values_text() const;
 };
 

@@ -126,22 +126,14 @@ struct RenderSettings {
     int threads = 0;                       ///< 0 = all
     PixelFilter filter = PixelFilter::box; ///< sampled by filter importance sampling; tent has a radius of one
                                            ///< pixel
-    std::filesystem::path checkpoint;      ///< file for the exact state of an unfinished render, or of a resuming
+    std::filesystem::path checkpoint{};    ///< file for the exact state of an unfinished render, or of a resuming
                                            ///< one that stops early; empty = none. The caller deletes it after
                                            ///< saving the picture unless RenderResult::resumable
-    SlhbSettings slhb;
-    VirtualLightSettings vpl;
+    SlhbSettings slhb{};
+    VirtualLightSettings vpl{};
     bool resume = false; ///< continue from the checkpoint if it exists and fits
-    PathShare share;     ///< for single pictures only; frame sequences and checkpoints need all paths
+    PathShare share{};   ///< for single pictures only; frame sequences and checkpoints need all paths
 };
-
-/// The defaults of viewers and AR sessions.
-inline RenderSettings settings_of_frames()
-{
-    RenderSettings s;
-    s.bounces = 3;
-    return s;
-}
 
 struct RenderStatus {
     double fraction = 0;

@@ -46,6 +46,11 @@ SweepScene load_sweep_scene(RenderOptions const& options, std::string const& nam
 /// The common settings, with those given in the name of the method. Throws InputError.
 gi::RenderSettings settings_of(SweepMethod const& method, gi::RenderSettings common);
 
+/// Throws InputError if options are given that none of the methods of a sweep ("slhb:streamed", "vpl_ao:0.5")
+/// uses.
+void check_sweep_methods(CLI::App const& command, RenderOptions const& options,
+                         std::vector<std::string> const& names);
+
 struct SweepPlan {
     gi::RenderSettings settings; ///< common to all renders, except budget and seed
     gi::DenoiseSettings filter;  ///< applied to every picture

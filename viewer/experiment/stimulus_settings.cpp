@@ -183,7 +183,7 @@ std::vector<PlannedStimulus> stimuli_of(study::Script const& script, study::Plan
                 std::string const digits = s.sha256;
                 all.emplace(digits, PlannedStimulus{std::move(s), where});
             } catch (gi::InputError const& e) {
-                throw gi::InputError(where, e.what(), "lightwell info --settings lists all keys");
+                throw gi::InputError(where, e.what(), "docs/viewer.md has a list of all keys");
             }
         };
         std::vector<study::Stimulus> stimuli = step.trial.stimuli;

@@ -138,10 +138,9 @@ void declare_denoise(CLI::App& c, RenderOptions& o)
         ->capture_default_str();
 }
 
-namespace {
-
-CLI::Option* declare(CLI::App& c, gi::RenderSettings& settings, gi::RenderOption const& o)
+CLI::Option* declare_option(CLI::App& c, gi::RenderSettings& settings, std::string_view name)
 {
+    gi::RenderOption const& o = gi::render_option(name);
     std::string names = "--" + o.name;
     for (std::string const& former : o.former) names += ",--" + former;
     std::ranges::replace(names, '_', '-');
@@ -159,28 +158,15 @@ CLI::Option* declare(CLI::App& c, gi::RenderSettings& settings, gi::RenderOption
     return option;
 }
 
-} // namespace
-
-CLI::Option* declare_option(CLI::App& c, gi::RenderSettings& settings, std::string_view name)
-{
-    return declare(c, settings, gi::render_option(name));
-}
-
-std::vector<std::string_view> all_methods()
-{
-    std::vector<std::string_view> names;
-    for (gi::Method const& m : gi::methods()) names.push_back(m.name);
-    return names;
-}
-
 void declare_method_options(CLI::App& c, gi::RenderSettings& settings,
                             std::vector<std::string_view> const& methods,
                             std::vector<std::string_view> const& except)
 {
     for (gi::RenderOption const& o : gi::render_options()) {
-        bool const is_read = std::ranges::any_of(methods, [&](std::string_view m) { return o.read_by(m); });
+        bool const is_read =
+            methods.empty() || std::ranges::any_of(methods, [&](std::string_view m) { return o.read_by(m); });
         if (!o.methods.empty() && is_read && std::ranges::find(except, o.name) == except.end())
-            declare(c, settings, o);
+            declare_option(c, settings, o.name);
     }
 }
 
@@ -250,7 +236,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_flag("--quiet", o.quiet, "no progress bar");
     declare_frames(c, o);
     declare_rank_options(c, o.ranks);
-    declare_method_options(c, o.settings, all_methods());
+    declare_method_options(c, o.settings);
     c.footer(R"(Examples:
   lightwell render atrium --size 160x100 --paths 16 --png atrium.png --out atrium.exr
   lightwell render atrium --camera courtyard --time 0.4 --size 96x64 --budget 500ms --out walk.exr --stats walk.json

@@ -45,11 +45,9 @@ void declare_eye_options(CLI::App& command, RenderOptions& options);
 void declare_denoise(CLI::App& command, RenderOptions& options);
 /// Declares one option of gi::render_options(), with its default. The text goes to `settings`.
 CLI::Option* declare_option(CLI::App& command, gi::RenderSettings& settings, std::string_view name);
-/// The names of all methods.
-std::vector<std::string_view> all_methods();
-/// Declares the options that one of the methods reads, but for those of all methods.
+/// Declares the options that one of the methods reads, but for those of all methods. @param methods  empty = all
 void declare_method_options(CLI::App& command, gi::RenderSettings& settings,
-                            std::vector<std::string_view> const& methods,
+                            std::vector<std::string_view> const& methods = {},
                             std::vector<std::string_view> const& except = {});
 /// The method with the schedule of the options.
 gi::ChosenMethod chosen_method(RenderOptions const& options, std::string const& method);

@@ -4,7 +4,7 @@
 #include "viewer/base/validators.h"
 #include "viewer/bench/bench_record.h"
 #include "viewer/bench/pictures.h"
-#include "viewer/bench/sweep_methods.h"
+#include "viewer/bench/sweep_plan.h"
 #include "viewer/cli/commands.h"
 #include "viewer/report/picture_summary.h"
 #include "viewer/report/table_file.h"
@@ -106,7 +106,7 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
                             "these and their mean"))
         ->delimiter(',')
         ->allow_extra_args(false);
-    declare_method_options(*c, r.settings, all_methods());
+    declare_method_options(*c, r.settings);
     declare_option(*c, r.settings, "threads");
     c->add_option("--out", o->out, "folder for tables, pictures and pictures.html")->required();
     c->add_flag("--resume", o->resume, "keep existing rows in the folder from the same program and settings");

@@ -2,7 +2,7 @@
 #include "viewer/base/interrupt.h"
 #include "viewer/bench/bench_record.h"
 #include "viewer/bench/sweep.h"
-#include "viewer/bench/sweep_methods.h"
+#include "viewer/bench/sweep_plan.h"
 #include "viewer/cli/commands.h"
 
 #include <CLI/CLI.hpp>
@@ -61,7 +61,7 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     declare_denoise(*c, r);
-    declare_method_options(*c, r.settings, all_methods());
+    declare_method_options(*c, r.settings);
     declare_option(*c, r.settings, "threads");
     c->add_option("--out", o->out, "folder for sweep.json, sweep.csv and the pictures")->required();
     c->add_flag("--json", r.json, "print the table as JSON");
