@@ -34,15 +34,6 @@ LocalScene local_scene(ArSession const& s, gi::Report& report)
                        v.scene.empty() ? gi::Scene{} : gi::load_scene(v.scene.string(), report), placement(v));
 }
 
-gi::RenderSettings render_settings(ArRender const& r)
-{
-    gi::RenderSettings settings;
-    settings.bounces = r.bounces;
-    settings.seed = r.seed;
-    settings.slhb = r.slhb;
-    return settings;
-}
-
 ar::CompositeSettings with_noise(ar::CompositeSettings settings, ar::SensorNoise const& noise)
 {
     settings.noise = noise;
@@ -65,7 +56,7 @@ ArPipeline::ArPipeline(ArSession const& session, ArCamera const& camera, ar::Mar
     : session_(session),
       camera_(camera),
       detector_(markers),
-      renderer_(local_scene(session, report), render_settings(session.render), report),
+      renderer_(local_scene(session, report), session.render.settings, report),
       light_(session),
       finish_(session, camera.model, markers),
       compositor_(camera.photometry,

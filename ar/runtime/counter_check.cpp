@@ -71,7 +71,7 @@ CounterSession make_counter_session(std::filesystem::path const& folder, glm::iv
     s.frames.options.frames_per_s = rate_hz;
     s.render.paths = 1;
     s.render.resolution = 1;
-    s.render.bounces = 1;
+    s.render.settings.bounces = 1;
     s.render.denoise.denoiser = gi::Denoiser::none;
     return c;
 }

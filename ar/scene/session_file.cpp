@@ -4,7 +4,7 @@
 #include "ar/scene/read_values.h"
 #include "gi/core/file.h"
 #include "gi/filter/filter_names.h"
-#include "gi/methods/slhb/directions/directions.h"
+#include "gi/methods/registry.h"
 
 #include <fmt/format.h>
 
@@ -92,22 +92,29 @@ private:
 
     void read_render(Yaml const& r)
     {
-        r.only_keys({"paths", "resolution", "bounces", "denoise", "seed", "directions", "hit_buffer",
-                     "light_samples", "fresh_light_samples", "lamps", "fresh_lamps", "shadow_map"});
-        gi::SlhbSettings& slhb = session_.render.slhb;
-        if (r.has("directions")) slhb.directions = directions(r.at("directions"));
-        if (r.has("hit_buffer")) slhb.resolution = int(r.at("hit_buffer").integer(8, 4096));
-        for (char const* const key :
-             {"lamps", "light_samples"}) // lamps, fresh_lamps: what they were called before
-            if (r.has(key)) slhb.light_samples = int(r.at(key).integer(1, 1024));
-        for (char const* const key : {"fresh_lamps", "fresh_light_samples"})
-            if (r.has(key)) slhb.fresh_light_samples = int(r.at(key).integer(1, 1024));
-        if (r.has("shadow_map")) slhb.shadow_resolution = int(r.at("shadow_map").integer(8, 4096));
+        std::vector<std::string> keys{"paths", "resolution", "denoise"};
+        for (gi::RenderOption const& o : gi::render_options()) {
+            if (!o.live || !o.read_by("slhb") || o.name == "device") continue; // pairs need the CPU
+            std::vector<std::string> names = o.former;
+            names.push_back(o.key);
+            for (std::string const& key : names)
+                if (r.has(key)) set(o, r.at(key));
+            keys.insert(keys.end(), names.begin(), names.end());
+        }
+        r.only_keys(keys);
         if (r.has("denoise")) session_.render.denoise = filter(r.at("denoise"));
         if (r.has("paths")) session_.render.paths = std::uint32_t(r.at("paths").integer(1, 65536));
         if (r.has("resolution")) session_.render.resolution = r.at("resolution").number(0.1, 4);
-        if (r.has("bounces")) session_.render.bounces = int(r.at("bounces").integer(0, 64));
-        if (r.has("seed")) session_.render.seed = std::uint64_t(r.at("seed").integer(0, INT64_MAX));
+    }
+
+    void set(gi::RenderOption const& option, Yaml const& at)
+    {
+        std::string const text = at.text();
+        try {
+            option.set(session_.render.settings, text, fmt::format("'{}' = {}", option.key, text));
+        } catch (gi::InputError const& e) {
+            throw at.error(e.problem(), e.why(), e.suggestion());
+        }
     }
 
     static gi::DenoiseSettings filter(Yaml const& at)
@@ -119,18 +126,6 @@ private:
         gi::DenoiseSettings const chosen = choice<gi::DenoiseSettings>(at, words);
         gi::check_filter(chosen);
         return chosen;
-    }
-
-    static std::string directions(Yaml const& at)
-    {
-        std::string const name = at.text();
-        try {
-            gi::make_directions(name);
-        } catch (gi::InputError const& e) {
-            throw at.error("'" + name + "' is no set of directions", e.what(),
-                           "write icosahedron:80 or icosahedron:320");
-        }
-        return name;
     }
 
     void read_composite(Yaml const& c)

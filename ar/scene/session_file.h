@@ -29,12 +29,10 @@ struct ArReal : ArPlaced {
 };
 
 struct ArRender {
-    std::uint32_t paths = 2; ///< per rendered pixel and frame
-    double resolution = 0.5; ///< rendered pixels per pixel of the camera
-    int bounces = 3;
-    gi::DenoiseSettings denoise; ///< no effect with fewer than two paths
-    std::uint64_t seed = 0;
-    gi::SlhbSettings slhb; ///< directions, resolution, light_samples, fresh_light_samples, shadow_resolution
+    std::uint32_t paths = 2;                   ///< per rendered pixel and frame
+    double resolution = 0.5;                   ///< rendered pixels per pixel of the camera
+    gi::DenoiseSettings denoise;               ///< no effect with fewer than two paths
+    gi::RenderSettings settings{.bounces = 3}; ///< of method slhb
 };
 
 /// Processing of a rendered pair before compositing; each step costs time only if enabled.

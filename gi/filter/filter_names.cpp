@@ -47,6 +47,14 @@ void check_filter(DenoiseSettings const& settings)
     if (settings.denoiser == Denoiser::oidn) check_oidn();
 }
 
+void check_filter(DenoiseSettings const& settings, std::uint32_t paths, bool has_reuse)
+{
+    check_filter(settings);
+    if (settings.denoiser != Denoiser::none && !can_filter(settings, paths, has_reuse))
+        throw InputError("--denoise atrous with --paths 1", "it needs the variance, which one path does not give",
+                         "trace two paths or more, add --reuse to frames, or choose --denoise discontinuity");
+}
+
 bool can_filter(DenoiseSettings const& settings, std::uint32_t paths, bool has_reuse)
 {
     return settings.denoiser != Denoiser::none &&

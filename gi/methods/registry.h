@@ -1,8 +1,9 @@
 #pragma once
-// Table of the light-transport methods by name. One entry makes a method available on the command line, in
-// benchmarks, in studies and in --help.
+// Table of the light-transport methods by name, with their options. One entry makes a method available on the
+// command line, in benchmarks, in viewers, in studies, in Python and in --help.
 
 #include "gi/render/frame_renderer.h"
+#include "gi/render/render_option.h"
 
 #include <span>
 #include <string_view>
@@ -18,10 +19,30 @@ struct Method {
     RenderFunction render;
     StartFrames frames;
     bool motion_vectors = false; ///< its frames have the layer "motion", which temporal reuse needs
+    RenderOptionTable const& (*options)() = nullptr; ///< of its own; nullptr = none
 };
 
 std::span<Method const> methods();
 /// Throws InputError, listing the known methods.
 Method const& find_method(std::string_view name);
+
+/// The options of all methods, common ones first.
+RenderOptionTable const& render_options();
+/// nullptr if none has this name, key or former key.
+RenderOption const* find_render_option(std::string_view name);
+/// The option of this name, which must be in the table.
+RenderOption const& render_option(std::string_view name);
+
+/// A method that will render.
+struct ChosenMethod {
+    std::string name;
+    Schedule schedule = Schedule::automatic;
+    std::string as_given; ///< how the user chose the schedule: "--schedule stored"
+};
+
+/// Throws InputError if none of the methods (at least one) reads one of the options, or if they contradict.
+/// @param given  names of the options that the user set  @param settings  their values
+void check_options(std::vector<std::string> const& given, RenderSettings const& settings,
+                   std::vector<ChosenMethod> const& methods);
 
 } // namespace gi

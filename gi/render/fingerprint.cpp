@@ -123,7 +123,7 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
     if (method.starts_with("vpl_")) {
         VirtualLightSettings const& o = s.vpl;
         for (char const c : s.slhb.directions) h.add(std::uint64_t(c));
-        for (int const v : {s.slhb.resolution, s.slhb.most_layers, o.light_paths, o.points, o.point_map})
+        for (int const v : {s.slhb.resolution, s.slhb.most_layers, o.light_paths, o.points_per_map(), o.point_map})
             h.add(std::uint64_t(v));
         h.add(o.near_m);
         h.add(o.ao_radius_m);

@@ -6,6 +6,8 @@
 #include "gi/core/report.h"
 #include "gi/kernel/space.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -92,8 +94,15 @@ struct VirtualLightSettings {
     float near_m = 0;         ///< virtual lights nearer than about this are bounded, and camera paths add the
                               ///< rest; 0 = 2 % of the scene's radius
     int points = 1024;        ///< drawn into each imperfect shadow map
+    double points_percent = 0; ///< if > 0: the points, as a share of the map's texels, %
     int point_map = 64;       ///< texels per side of an imperfect shadow map
     float ao_radius_m = 0.5f; ///< ambient and directional occlusion ignore surfaces farther away
+
+    int points_per_map() const
+    {
+        double const share = std::round(points_percent / 100 * point_map * point_map);
+        return points_percent > 0 ? int(std::clamp(share, 0.0, 1e9)) : points;
+    }
 };
 
 struct Accumulator; // gi/render/accumulator.h
@@ -117,13 +126,13 @@ struct RenderSettings {
     int threads = 0;                       ///< 0 = all
     PixelFilter filter = PixelFilter::box; ///< sampled by filter importance sampling; tent has a radius of one
                                            ///< pixel
-    std::filesystem::path checkpoint;      ///< file for the exact state of an unfinished render, or of a resuming
+    std::filesystem::path checkpoint{};    ///< file for the exact state of an unfinished render, or of a resuming
                                            ///< one that stops early; empty = none. The caller deletes it after
                                            ///< saving the picture unless RenderResult::resumable
-    SlhbSettings slhb;
-    VirtualLightSettings vpl;
+    SlhbSettings slhb{};
+    VirtualLightSettings vpl{};
     bool resume = false; ///< continue from the checkpoint if it exists and fits
-    PathShare share;     ///< for single pictures only; frame sequences and checkpoints need all paths
+    PathShare share{};   ///< for single pictures only; frame sequences and checkpoints need all paths
 };
 
 struct RenderStatus {

@@ -51,8 +51,8 @@ py::list keys()
     for (viewer::SettingKey const& k : viewer::setting_keys()) {
         py::dict d;
         d["key"] = k.key;
-        d["type"] = viewer::name_of(k.type);
-        d["what"] = k.what;
+        d["type"] = gi::name_of(k.type);
+        d["what"] = k.meaning;
         d["words"] = k.words;
         d["low"] = k.low;
         d["high"] = k.high;

@@ -52,10 +52,7 @@ gi::Camera Frames::find_camera(std::string const& name) const
 void Frames::take(viewer::StimulusSettings const& stimulus)
 {
     std::lock_guard const lock(mutex_);
-    for (viewer::SettingKey const& k : viewer::setting_keys())
-        if (nlohmann::json const wanted = viewer::get(stimulus.settings, k.key);
-            wanted != viewer::get(session_.settings(), k.key))
-            change({k.key, wanted});
+    for (viewer::Change const& c : viewer::differences(session_.settings(), stimulus.settings)) change(c);
     // Only reloading the scene undoes edits.
     if (stimulus.scene != session_.scene_name() || is_edited_) change({"scene", stimulus.scene});
     for (viewer::Change const& c : stimulus.edits) change(c);

@@ -2,12 +2,10 @@
 
 #include "gi/core/error.h"
 #include "gi/filter/filter_names.h"
-#include "gi/methods/slhb/settings.h"
+#include "gi/kernel/device.h"
+#include "gi/methods/registry.h"
 #include "python/core/errors.h"
-#include "viewer/offline/render_options.h"
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -38,84 +36,60 @@ double positive(py::dict const& k, char const* name)
     return value;
 }
 
-std::string one_of(py::dict const& k, char const* name, std::vector<std::string> const& words)
+void set(gi::RenderSettings& s, gi::RenderOption const& option, std::string const& keyword, py::handle value)
 {
-    auto const word = py::cast<std::string>(k[name]);
-    if (std::ranges::find(words, word) == words.end())
-        throw gi::InputError(fmt::format("{} = '{}'", name, word), "the value is unknown",
-                             fmt::format("choose from: {}", fmt::join(words, ", ")));
-    return word;
+    bool const is_bool = py::isinstance<py::bool_>(value);
+    std::string const text = is_bool ? (py::cast<bool>(value) ? "true" : "false") : std::string(py::str(value));
+    option.set(s, text, fmt::format("{} = {}", keyword, std::string(py::repr(value))));
 }
 
-/// Returns a command-line argument such as "--light-paths=64", for flags without a value; empty = the flag is off.
-std::string argument(CLI::App const& all, std::string const& keyword, py::handle value)
+/// Sets the method's options, which the method must read.
+void set_options(gi::RenderSettings& s, py::dict const& options, std::string const& method)
 {
-    std::string name = "--" + keyword;
-    std::ranges::replace(name, '_', '-');
-    CLI::Option const* const option = all.get_option_no_throw(name);
-    if (option == nullptr) {
-        std::vector<std::string> known;
-        for (CLI::Option const* const o : all.get_options())
-            if (o->get_lnames().size() == 1 && o->get_lnames()[0] != "help") known.push_back(o->get_lnames()[0]);
-        for (std::string& n : known) std::ranges::replace(n, '-', '_');
-        throw gi::InputError("methods have no option '" + keyword + "'", "the keyword is unknown",
-                             fmt::format("choose from: {}", fmt::join(known, ", ")));
+    std::vector<std::string> given, known;
+    for (gi::RenderOption const& o : gi::render_options())
+        if (!o.methods.empty()) known.push_back(o.key);
+    for (auto const& [key, value] : options) {
+        auto const keyword = py::cast<std::string>(key);
+        gi::RenderOption const* const option = gi::find_render_option(keyword);
+        if (option == nullptr)
+            throw gi::InputError("methods have no option '" + keyword + "'", "the keyword is unknown",
+                                 fmt::format("choose from: {}", fmt::join(known, ", ")));
+        set(s, *option, keyword, value);
+        bool const is_off = py::isinstance<py::bool_>(value) && !py::cast<bool>(value);
+        if (!is_off) given.push_back(option->name);
     }
-    if (option->get_items_expected_max() > 0) return name + "=" + std::string(py::str(value));
-    if (!py::isinstance<py::bool_>(value))
-        throw gi::InputError(keyword + " = " + std::string(py::repr(value)), "it is a flag", "give True or False");
-    return py::cast<bool>(value) ? name : "";
-}
-
-/// Sets the method's options with the command line's parser and checks.
-void set_options(viewer::RenderOptions& o, py::dict const& given)
-{
-    CLI::App all;
-    viewer::declare_slhb(all, o);
-    viewer::declare_virtual_lights(all, o);
-    std::vector<std::string> arguments;
-    for (auto const& [keyword, value] : given)
-        if (auto text = argument(all, py::cast<std::string>(keyword), value); !text.empty())
-            arguments.push_back(std::move(text));
-    try {
-        all.parse(arguments);
-    } catch (CLI::ParseError const& e) {
-        throw gi::InputError(e.what(), "the option has other values", "see lightwell render --help");
-    }
-    std::vector<viewer::NamedMethod> const methods{
-        {o.method, gi::parse_schedule(o.schedule), "--schedule " + o.schedule}};
-    check_slhb(all, methods);
-    check_virtual_lights(all, methods);
+    std::string const schedule = gi::render_option("schedule").get(s);
+    check_options(given, s, {{method, s.slhb.schedule, "--schedule " + schedule}});
+    gi::check_device(s.slhb.space);
 }
 
 } // namespace
 
 gi::RenderSettings settings_of(py::dict const& k, py::dict const& options, std::string const& method)
 {
-    viewer::RenderOptions o;
-    o.method = method;
-    o.size = fmt::format("{}x{}", whole(k, "width", 1, kWidest_px), whole(k, "height", 1, kWidest_px));
-    if (!k["paths"].is_none()) o.paths = std::uint32_t(whole(k, "paths", 1, kNoLimit));
-    o.bounces = int(whole(k, "bounces", 0, 1000));
-    o.seed = std::uint64_t(whole(k, "seed", 0, 9e18));
-    o.threads = int(whole(k, "threads", 0, 4096));
-    o.filter = one_of(k, "filter", {"box", "tent"});
-    o.png = "in memory"; // so that no output or checkpoint file is chosen
-    set_options(o, options);
-    gi::RenderSettings s = viewer::make_settings(o);
+    gi::RenderSettings s;
+    s.width = int(whole(k, "width", 1, kWidest_px));
+    s.height = int(whole(k, "height", 1, kWidest_px));
+    gi::check_picture_size(s.width, s.height);
+    for (char const* const name : {"bounces", "seed", "threads", "filter"})
+        set(s, gi::render_option(name), name, k[name]);
+    set_options(s, options, method);
     s.budget_s = positive(k, "budget_s");
     s.until_relmse = positive(k, "until_relmse");
-    if (!o.paths && (s.budget_s > 0 || s.until_relmse > 0)) s.paths = kNoLimit;
+    if (!k["paths"].is_none())
+        s.paths = std::uint32_t(whole(k, "paths", 1, kNoLimit));
+    else if (s.budget_s > 0 || s.until_relmse > 0)
+        s.paths = kNoLimit;
     return s;
 }
 
 gi::DenoiseSettings denoise_of(std::string const& name, gi::RenderSettings const& settings)
 {
-    py::dict k;
-    k["denoise"] = name;
-    viewer::RenderOptions o;
-    o.denoise = one_of(k, "denoise", gi::filter_names());
-    return viewer::make_denoise_settings(o, settings);
+    gi::DenoiseSettings d = gi::find_filter(name);
+    gi::check_filter(d, settings.paths, false);
+    d.threads = settings.threads;
+    return d;
 }
 
 } // namespace bindings

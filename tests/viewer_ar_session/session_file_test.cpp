@@ -45,6 +45,36 @@ composite: {blend: ratio, clipped: as_measured, largest_ratio: 4, smoothing: 0.3
     EXPECT_TRUE(least.light.empty());
 }
 
+TEST(ArSessions, TakeOptionsOfSlhb)
+{
+    gi::RenderSettings const s =
+        parse_ar_session(kLeastSession +
+                             "render: {bounces: 2, seed: 9, directions: 'icosahedron:80', hit_buffer: 64, "
+                             "lamps: 8, fresh_light_samples: 2, shadow_map: 128, roulette: 0.5, "
+                             "packed: true, shadows: maps}\n",
+                         "s.yaml")
+            .render.settings;
+    EXPECT_EQ(s.bounces, 2);
+    EXPECT_EQ(s.seed, 9u);
+    EXPECT_EQ(s.slhb.directions, "icosahedron:80");
+    EXPECT_EQ(s.slhb.resolution, 64);
+    EXPECT_EQ(s.slhb.light_samples, 8);
+    EXPECT_EQ(s.slhb.fresh_light_samples, 2);
+    EXPECT_EQ(s.slhb.shadow_resolution, 128);
+    EXPECT_EQ(s.slhb.roulette, 0.5f);
+    EXPECT_TRUE(s.slhb.packed);
+    EXPECT_EQ(s.slhb.shadows, gi::Shadows::maps);
+    EXPECT_EQ(parse_ar_session(kLeastSession, "s.yaml").render.settings.bounces, 3);
+    for (char const* wrong : {"hit_buffer: 1e9", "directions: 'cube:6'", "shadows: some", "packed: 1"})
+        EXPECT_NE(session_refusal(kLeastSession + "render: {" + wrong + "}\n").find("s.yaml:5:"),
+                  std::string::npos)
+            << wrong;
+    for (char const* unknown : {"threads: 2", "device: cuda", "light_paths: 8", "hit-buffer: 64"})
+        EXPECT_NE(session_refusal(kLeastSession + "render: {" + unknown + "}\n").find("s.yaml:5:"),
+                  std::string::npos)
+            << unknown;
+}
+
 TEST(ArSessions, SayHowPairsAreFinishedAndPosesUsed)
 {
     ArSession const s = parse_ar_session(

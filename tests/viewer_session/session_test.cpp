@@ -192,7 +192,7 @@ TEST(RenderSession, RendersByKernelsWhereThereIsADevice)
     } catch (gi::InputError const& e) {
         EXPECT_NE(std::string(e.what()).find("the device cuda cannot be used"), std::string::npos) << e.what();
     }
-    EXPECT_EQ(s.settings().device, "cpu");
+    EXPECT_EQ(get(s.settings(), "device"), "cpu");
     EXPECT_EQ(color(s.render(command(1), {})), color(fresh.render(command(1), {})));
     EXPECT_THROW(s.apply({"device", "abacus"}), gi::InputError);
 }
@@ -203,7 +203,7 @@ TEST(RenderSession, EveryKeyCanBeSetToWhatItIs)
     for (SettingKey const& k : setting_keys()) {
         set(s, {k.key, get(Settings{}, k.key)});
         EXPECT_EQ(get(s, k.key), get(Settings{}, k.key)) << k.key;
-        EXPECT_FALSE(k.what.empty());
+        EXPECT_FALSE(k.meaning.empty());
     }
 }
 
@@ -271,10 +271,10 @@ TEST(RenderSession, PointsAreANumberOrAShareOfTheTexels)
                                         {nlohmann::json("25%"), texels / 4},
                                         {nlohmann::json(90.51), 91}}) {
         set(s, {"points", value});
-        EXPECT_EQ(render_settings(s, 0).vpl.points, points) << value;
+        EXPECT_EQ(s.render.vpl.points_per_map(), points) << value;
         Settings again; // as recordings do
         set(again, {"points", get(s, "points")});
-        EXPECT_EQ(render_settings(again, 0).vpl.points, points) << value;
+        EXPECT_EQ(again.render.vpl.points_per_map(), points) << value;
     }
 }
 

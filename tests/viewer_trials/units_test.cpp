@@ -310,7 +310,7 @@ TEST(Stimuli, SettingsOfTheScriptBecomeThoseOfTheRenderer)
     EXPECT_EQ(s.scene, "atrium");
     EXPECT_EQ(s.camera, "arches");
     EXPECT_EQ(s.path, StimulusPath::orbit);
-    EXPECT_EQ(s.settings.bounces, 2);
+    EXPECT_EQ(s.settings.render.bounces, 2);
     EXPECT_EQ(s.settings.denoise, "none");
     ASSERT_EQ(s.edits.size(), 1u);
     EXPECT_EQ(s.edits[0].value, nlohmann::json({1, 2, 3}));

@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -21,17 +22,17 @@ void try_change(ViewState& s, Change const& c)
 void edit_setting(ViewState& s, SettingKey const& k)
 {
     nlohmann::json const value = get(s.settings, k.key);
-    if (k.type == SettingType::yes_or_no) {
+    if (k.type == gi::OptionType::yes_or_no) {
         bool on = value.get<bool>();
         if (ImGui::Checkbox(k.key.c_str(), &on)) try_change(s, {k.key, on});
-    } else if (k.type == SettingType::word) {
+    } else if (k.type == gi::OptionType::word) {
         std::string const now = value.get<std::string>();
         if (ImGui::BeginCombo(k.key.c_str(), now.empty() ? "(none)" : now.c_str())) {
             for (std::string const& w : k.words)
                 if (ImGui::Selectable(w.empty() ? "(none)" : w.c_str(), w == now)) try_change(s, {k.key, w});
             ImGui::EndCombo();
         }
-    } else if (k.type == SettingType::whole_number) {
+    } else if (k.type == gi::OptionType::whole_number) {
         int n = value.get<int>();
         bool const done = ImGui::InputInt(k.key.c_str(), &n, 1, 16, ImGuiInputTextFlags_EnterReturnsTrue);
         if (done || (n != value.get<int>() && ImGui::IsItemDeactivated())) try_change(s, {k.key, n});
@@ -43,7 +44,19 @@ void edit_setting(ViewState& s, SettingKey const& k)
                    : ImGui::InputFloat(k.key.c_str(), &v, 0, 0, "%.3f", ImGuiInputTextFlags_EnterReturnsTrue);
         if (moved) try_change(s, {k.key, double(v)});
     }
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", k.what.c_str());
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", k.meaning.c_str());
+}
+
+/// Settings under the headings of their groups, the viewer's own first.
+void edit_settings(ViewState& s)
+{
+    std::vector<std::string> groups{""};
+    for (SettingKey const& k : setting_keys())
+        if (std::ranges::find(groups, k.group) == groups.end()) groups.push_back(k.group);
+    for (std::string const& group : groups)
+        if (ImGui::CollapsingHeader(group.empty() ? "Settings" : group.c_str()))
+            for (SettingKey const& k : setting_keys())
+                if (k.group == group) edit_setting(s, k);
 }
 
 void show_numbers(ViewState& s, double frames_per_s)
@@ -134,8 +147,7 @@ void fill_panel(ViewState& s, double frames_per_s)
         if (ImGui::Button(name_of(s.navigation.mode())))
             s.navigation.set_mode(NavigationMode((int(s.navigation.mode()) + 1) % 3));
         ImGui::PushItemWidth(150);
-        if (ImGui::CollapsingHeader("Settings"))
-            for (SettingKey const& k : setting_keys()) edit_setting(s, k);
+        edit_settings(s);
         edit_scene(s);
         ImGui::PopItemWidth();
     }

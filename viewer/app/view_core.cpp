@@ -11,13 +11,6 @@
 namespace viewer {
 namespace {
 
-nlohmann::json all_settings(Settings const& s)
-{
-    nlohmann::json j = nlohmann::json::object();
-    for (SettingKey const& k : setting_keys()) j[k.key] = get(s, k.key);
-    return j;
-}
-
 std::string next(std::string const& key, std::string const& now)
 {
     for (SettingKey const& k : setting_keys()) {

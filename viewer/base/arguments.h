@@ -3,9 +3,7 @@
 
 #include "gi/core/math.h"
 
-#include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 
 namespace viewer {

@@ -25,7 +25,7 @@ gi::Layer reference_of(RenderSession const& session, ViewCommand const& view, in
     s.height = view.height;
     s.paths = std::uint32_t(paths);
     s.seed = 99; // differs from that of the frames
-    s.bounces = session.settings().bounces;
+    s.bounces = session.settings().render.bounces;
     return *gi::find_method("reference")
                 .render(session.world(), view.camera, s, {}, {}, report)
                 .picture.find("color");

@@ -104,7 +104,7 @@ private:
     {
         gi::RenderSettings settings = settings_of(method, plan_.settings);
         settings.budget_s = parse_duration("--frame-budget", o_.frame_budget);
-        settings.seed = o_.render.seed;
+        settings.seed = o_.render.settings.seed;
         FrameFollower follower(sequence.scene(), sequence.time_s(0), method.method, settings, o_.reuse,
                                sequence.origin());
         std::vector<FrameScores> scores(plan_.filters.size());

@@ -3,6 +3,7 @@
 #include "gi/core/durable_file.h"
 #include "gi/core/error.h"
 #include "gi/core/text.h"
+#include "gi/filter/filter_names.h"
 #include "viewer/base/arguments.h"
 #include "viewer/bench/bench_record.h"
 
@@ -12,18 +13,6 @@
 
 namespace viewer {
 namespace {
-
-/// Parses the name by the option --denoise, so that both have the same filters.
-void choose_filter(std::string const& name, RenderOptions& options)
-{
-    CLI::App parser;
-    declare_denoise(parser, options);
-    try {
-        parser.parse(std::vector<std::string>{"--denoise=" + name});
-    } catch (CLI::ParseError const& e) {
-        throw gi::InputError("there is no filter '" + name + "'", e.what(), "see lightwell render --help");
-    }
-}
 
 /// Throws InputError if the filter cannot work here, as a library or its weights are missing.
 void try_filter(gi::DenoiseSettings const& settings)
@@ -41,7 +30,8 @@ void try_filter(gi::DenoiseSettings const& settings)
 void add_filter(PicturesOptions const& o, std::string const& name, PicturesPlan& plan)
 {
     RenderOptions options = o.render;
-    choose_filter(name, options);
+    options.denoise = name;
+    gi::find_filter(name); // throws
     try {
         gi::DenoiseSettings const settings = make_denoise_settings(options, plan.settings);
         try_filter(settings);
@@ -109,7 +99,7 @@ void skip(Skipped const& s, BenchTable& table)
 PicturesPlan plan_pictures(PicturesOptions const& o)
 {
     PicturesPlan plan;
-    for (std::string const& name : o.methods) plan.methods.push_back(find_sweep_method(name, o.render.schedule));
+    for (std::string const& name : o.methods) plan.methods.push_back(find_sweep_method(name));
     refuse_twins("--methods", o.methods, o.methods);
     for (std::string const& text : o.budgets) plan.budgets.push_back(parse_picture_budget(text));
     refuse_twins("--budgets", o.budgets, o.budgets);

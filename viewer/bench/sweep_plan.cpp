@@ -2,18 +2,17 @@
 
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
-#include "gi/methods/slhb/directions/directions.h"
-#include "gi/methods/slhb/settings.h"
+#include "gi/methods/registry.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/outputs.h"
 #include "viewer/bench/bench_record.h"
-#include "viewer/engine/settings.h"
 #include "viewer/offline/load_world.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace viewer {
 namespace {
@@ -47,17 +46,20 @@ void check_pictures(SweepOptions const& o, std::vector<std::string> const& names
 
 } // namespace
 
-SweepMethod find_sweep_method(std::string const& name, std::string const& schedule_of_all)
+SweepMethod find_sweep_method(std::string const& name)
 {
+    constexpr std::pair<std::string_view, char const*> kOptions[]{{"slhb", "schedule"},
+                                                                  {"vpl_slhb", "directions"},
+                                                                  {"vpl_imperfect", "points"},
+                                                                  {"vpl_ao", "ao-radius"},
+                                                                  {"vpl_dao", "ao-radius"}};
     std::size_t const colon = name.find(':');
     gi::Method const& method = gi::find_method(name.substr(0, colon));
-    if (colon == std::string::npos) return {name, method, gi::parse_schedule(schedule_of_all), ""};
-    for (char const* const graded : {"vpl_slhb", "vpl_imperfect", "vpl_ao", "vpl_dao"})
-        if (method.name == graded) return {name, method, gi::Schedule::automatic, name.substr(colon + 1)};
-    if (method.name != "slhb")
-        throw gi::InputError(fmt::format("--methods {}: '{}' has no schedules", name, method.name),
-                             "only slhb has schedules", fmt::format("name it '{}'", method.name));
-    return {name, method, gi::parse_schedule(name.substr(colon + 1)), ""};
+    if (colon == std::string::npos) return {name, method, nullptr, ""};
+    for (auto const& [of, option] : kOptions)
+        if (method.name == of) return {name, method, &gi::render_option(option), name.substr(colon + 1)};
+    throw gi::InputError(fmt::format("--methods {}: '{}' has no schedules", name, method.name),
+                         "only slhb has schedules", fmt::format("name it '{}'", method.name));
 }
 
 gi::RenderSettings sweep_settings(RenderOptions options)
@@ -84,28 +86,32 @@ std::string picture_stem(std::string const& scene, std::string method, std::stri
 
 gi::RenderSettings settings_of(SweepMethod const& m, gi::RenderSettings s)
 {
-    s.slhb.schedule = m.schedule;
-    if (m.quality.empty()) return s;
-    std::string const what = "--methods " + m.name;
-    if (m.method.name == "vpl_imperfect") {
-        s.vpl.points = parse_points(what, m.quality, s.vpl.point_map);
-    } else if (m.method.name == "vpl_slhb") {
-        gi::make_directions(m.quality);
-        s.slhb.directions = m.quality;
-    } else {
-        char* end = nullptr;
-        s.vpl.ao_radius_m = std::strtof(m.quality.c_str(), &end);
-        if (*end != 0 || !(s.vpl.ao_radius_m >= 0 && s.vpl.ao_radius_m <= 1e9f))
-            throw gi::InputError(what, "the number after the colon is its radius, m",
-                                 fmt::format("write {}:0.5", m.method.name));
-    }
+    if (m.option != nullptr) m.option->set(s, m.value, "--methods " + m.name);
     return s;
+}
+
+void check_sweep_methods(CLI::App const& command, RenderOptions const& options,
+                         std::vector<std::string> const& names)
+{
+    std::vector<gi::ChosenMethod> methods;
+    for (std::string const& name : names) {
+        SweepMethod const m = find_sweep_method(name);
+        methods.push_back(chosen_method(options, std::string(m.method.name)));
+        if (m.option == nullptr || m.option->name != "schedule") continue;
+        methods.back().schedule = settings_of(m, options.settings).slhb.schedule;
+        methods.back().as_given = "--methods " + name;
+    }
+    check_method_options(command, options.settings, methods);
+    bool const shared = std::ranges::find(names, "slhb") != names.end(); // some method uses --schedule
+    if (!shared && command.get_option("--schedule")->count() > 0)
+        throw gi::InputError(fmt::format("--schedule with --methods {}", fmt::join(names, ",")),
+                             "it applies only to 'slhb' without a schedule of its own", "leave one of them out");
 }
 
 SweepPlan plan_sweep(SweepOptions const& o, gi::Report& report)
 {
     SweepPlan plan;
-    for (std::string const& name : o.methods) plan.methods.push_back(find_sweep_method(name, o.render.schedule));
+    for (std::string const& name : o.methods) plan.methods.push_back(find_sweep_method(name));
     refuse_twins("--methods", o.methods, o.methods);
     for (std::string const& text : o.budgets) plan.budgets_s.push_back(parse_duration("--budgets", text));
     refuse_twins("--budgets", plan.budgets_s, o.budgets);

@@ -22,12 +22,12 @@ struct SweepScene {
 struct SweepMethod {
     std::string name; ///< for tables: "slhb", "slhb:streamed", "vpl_imperfect:30%"
     gi::Method method;
-    gi::Schedule schedule = gi::Schedule::automatic; ///< for method slhb
-    std::string quality; ///< of vpl_slhb, vpl_imperfect, vpl_ao, vpl_dao: text after the colon; or empty
+    gi::RenderOption const* option = nullptr; ///< that the text after the colon sets; nullptr if there is none
+    std::string value;
 };
 
 /// Parses a method; "slhb:streamed" is slhb with that schedule. Throws InputError listing the known methods.
-SweepMethod find_sweep_method(std::string const& name, std::string const& schedule_of_all);
+SweepMethod find_sweep_method(std::string const& name);
 /// Throws InputError if a list has a value twice. @param texts  the values as given
 template <class T>
 void refuse_twins(std::string const& option, std::vector<T> const& values, std::vector<std::string> const& texts)
@@ -45,6 +45,11 @@ SweepScene load_sweep_scene(RenderOptions const& options, std::string const& nam
 
 /// The common settings, with those given in the name of the method. Throws InputError.
 gi::RenderSettings settings_of(SweepMethod const& method, gi::RenderSettings common);
+
+/// Throws InputError if options are given that none of the methods of a sweep ("slhb:streamed", "vpl_ao:0.5")
+/// uses.
+void check_sweep_methods(CLI::App const& command, RenderOptions const& options,
+                         std::vector<std::string> const& names);
 
 struct SweepPlan {
     gi::RenderSettings settings; ///< common to all renders, except budget and seed

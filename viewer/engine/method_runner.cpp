@@ -32,7 +32,10 @@ MethodRunner::MethodRunner(std::string const& method, gi::MovingWorld const& wor
                            int threads, std::vector<ViewCommand> const& first, gi::Report& report)
     : report_(report), threads_(threads)
 {
-    gi::RenderSettings s = render_settings(settings, threads);
+    gi::RenderSettings s = settings.render;
+    s.threads = threads;
+    s.paths = 1;
+    s.slhb.cache = gi::RadianceCaching::automatic; // render() says for every frame whether paths end in it
     double pixels = 0;
     for (ViewCommand const& v : first) pixels += double(v.width) * v.height;
     s.width = std::max(1, int(std::sqrt(pixels))); // the plan needs only the number of pixels
@@ -72,9 +75,11 @@ std::vector<gi::RenderResult> MethodRunner::render(FrameCommand const& command,
         if (hidden[k]) views.back().hidden = *hidden[k];
     }
     // Its blur would stay in the mean of a still picture.
-    auto const sharing =
-        settings.radiance_cache && anything_moved ? gi::VertexSharing::cached : gi::VertexSharing::exact;
-    renderer_->update_axes(settings.schedule == "auto" ? settings.updated_axes : 0);
+    gi::RadianceCaching const cache = settings.render.slhb.cache;
+    bool const cached =
+        cache == gi::RadianceCaching::on || (cache == gi::RadianceCaching::automatic && anything_moved);
+    auto const sharing = cached ? gi::VertexSharing::cached : gi::VertexSharing::exact;
+    renderer_->update_axes(settings.has_automatic_schedule() ? settings.updated_axes : 0);
     std::vector<gi::RenderResult> results = renderer_->views(views, std::uint32_t(command.paths), sharing, stop);
     for (std::size_t k = 0; k < results.size(); ++k)
         finish(k, results, views[k].partner, scene_change(changes, moved[k]), settings);

@@ -9,18 +9,6 @@
 #include <malloc.h>
 
 namespace viewer {
-namespace {
-
-/// True for settings whose change requires rebuilding the method's structures.
-bool decides_method(std::string const& key)
-{
-    for (char const* const k : {"method", "device", "schedule", "directions", "resolution", "axes",
-                                "light_samples", "light_paths", "points", "ao_radius", "bounces", "seed"})
-        if (key == k) return true;
-    return false;
-}
-
-} // namespace
 
 RenderSession::RenderSession(LoadScene load, int threads, gi::Report& report)
     : load_(std::move(load)), threads_(threads), report_(report)
@@ -48,10 +36,10 @@ void RenderSession::apply(Change const& change)
     if (is_hidden_mask(change.key)) return hidden_.apply(change);
     Settings changed = settings_;
     set(changed, change);
-    if (change.key == "device") gi::check_device(changed.device == "cuda" ? gi::Space::device : gi::Space::host);
+    if (change.key == "device") gi::check_device(changed.render.slhb.space);
     if (change.key == "denoise") gi::check_filter(denoise_settings(changed, 0));
     settings_ = std::move(changed);
-    if (decides_method(current_key(change.key))) restart();
+    if (restarts_methods(change.key)) restart();
     if (change.key == "compare") compared_.reset();
 }
 

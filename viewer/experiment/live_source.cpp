@@ -36,8 +36,7 @@ void LiveSource::post(Change const& change)
 
 void LiveSource::post_settings(Settings const& wanted)
 {
-    for (SettingKey const& k : setting_keys())
-        if (nlohmann::json const value = get(wanted, k.key); value != get(posted_, k.key)) post({k.key, value});
+    for (Change const& c : differences(posted_, wanted)) post(c);
     posted_ = wanted;
 }
 

@@ -60,9 +60,7 @@ bool prepare_stimulus(PreparedStimulus const& wanted, std::filesystem::path cons
     StimulusSettings const& s = wanted.stimulus;
     if (s.ar) return prepare_ar_stimulus(s, wanted.view, folder, key, stop, report);
     RenderSession session(scenes.load, threads, report);
-    for (SettingKey const& k : setting_keys())
-        if (auto const value = get(s.settings, k.key); value != get(session.settings(), k.key))
-            session.apply({k.key, value});
+    for (Change const& c : differences(session.settings(), s.settings)) session.apply(c);
     session.apply({"scene", s.scene});
     for (Change const& c : s.edits) session.apply(c);
     StimulusPlace const place = place_of(session.world(), scenes.camera(session.world(), s.camera));

@@ -37,10 +37,12 @@ Json json_value_of(std::string const& text)
 /// Levels chosen by a procedure may be fractional; whole-number settings use the nearest integer.
 Json fitting(std::string const& key, Json const& value)
 {
-    auto const known = setting_keys();
-    auto const k = std::find_if(known.begin(), known.end(), [&](SettingKey const& s) { return s.key == key; });
-    bool const is_whole = k != known.end() && k->type == SettingType::whole_number;
-    return is_whole && value.is_number_float() ? Json(std::llround(value.get<double>())) : value;
+    auto const is_whole = [&](SettingKey const& k) {
+        return k.key == current_key(key) && k.type == gi::OptionType::whole_number;
+    };
+    return std::ranges::any_of(setting_keys(), is_whole) && value.is_number_float()
+               ? Json(std::llround(value.get<double>()))
+               : value;
 }
 
 StimulusPath path_of(std::string const& name)
@@ -83,9 +85,8 @@ std::string scene_file(std::filesystem::path const& folder, std::string const& s
 
 std::string text_of(StimulusSettings const& s)
 {
-    Json all = Json::object();
-    for (SettingKey const& k : setting_keys())
-        if (std::string_view(k.key) != "device") all[k.key] = get(s.settings, k.key); // it is always cpu
+    Json all = all_settings(s.settings);
+    all.erase("device"); // it is always cpu
     if (s.ar) all["ar"] = text_of(*s.ar);
     Json edits = Json::array();
     for (Change const& c : s.edits) edits.push_back({c.key, c.value});
@@ -182,7 +183,7 @@ std::vector<PlannedStimulus> stimuli_of(study::Script const& script, study::Plan
                 std::string const digits = s.sha256;
                 all.emplace(digits, PlannedStimulus{std::move(s), where});
             } catch (gi::InputError const& e) {
-                throw gi::InputError(where, e.what(), "lightwell info --settings lists all keys");
+                throw gi::InputError(where, e.what(), "docs/viewer.md has a list of all keys");
             }
         };
         std::vector<study::Stimulus> stimuli = step.trial.stimuli;

@@ -4,18 +4,16 @@
 #include "gi/filter/filter_names.h"
 #include "gi/kernel/device.h"
 #include "gi/methods/registry.h"
-#include "gi/methods/slhb/settings.h"
 #include "gi/scene/model/camera.h"
 #include "viewer/base/arguments.h"
 #include "viewer/base/validators.h"
-#include "viewer/engine/settings.h"
 #include "viewer/offline/frame_options.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
-#include <unistd.h>
+#include <fmt/ranges.h>
 
 namespace viewer {
 namespace {
@@ -23,27 +21,6 @@ namespace {
 constexpr std::array<std::string_view, 9> kLayers{"color",  "L0",    "L1",       "L2",      "albedo",
                                                   "normal", "depth", "position", "variance"};
 constexpr std::uint32_t kDefaultPaths = 64, kNoLimit = 0x7fffffff;
-
-/// Throws if the picture does not fit into memory; otherwise the machine would swap or kill the program.
-void check_memory(gi::RenderSettings const& s)
-{
-    constexpr double kBytesPerPixel = 300; // sums in double and all layers in float
-    double const needed = kBytesPerPixel * s.width * s.height;
-    double const there = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
-    if (needed > there)
-        throw gi::InputError(
-            fmt::format("--size {}x{} is too large", s.width, s.height),
-            fmt::format("it needs about {:.0f} GB of memory, and there are {:.0f}", needed * 1e-9, there * 1e-9),
-            "choose a smaller one");
-}
-
-void check_device(RenderOptions const& o, gi::SlhbSettings const& s)
-{
-    if (s.space == gi::Space::device && o.method != "slhb")
-        throw gi::InputError("--device cuda with --method " + o.method, "it runs on the CPU only",
-                             "add --method slhb, or leave --device out");
-    gi::check_device(s.space);
-}
 
 void check_shutter(RenderOptions const& o, gi::RenderSettings const& s)
 {
@@ -65,24 +42,6 @@ std::string default_out(std::string const& scene, char const* ending)
     return (path.has_filename() ? path : path.parent_path()).stem().string() + ending;
 }
 
-gi::LookUps parse_look_ups(std::string const& name)
-{
-    if (name == "all") return gi::LookUps::all;
-    return name == "none" ? gi::LookUps::none : gi::LookUps::automatic;
-}
-
-gi::Shadows parse_shadows(std::string const& name)
-{
-    if (name == "maps") return gi::Shadows::maps;
-    return name == "rays" ? gi::Shadows::rays : gi::Shadows::automatic;
-}
-
-gi::RadianceCaching parse_cache(std::string const& name)
-{
-    if (name == "on") return gi::RadianceCaching::on;
-    return name == "off" ? gi::RadianceCaching::off : gi::RadianceCaching::automatic;
-}
-
 } // namespace
 
 gi::RenderSettings make_settings(RenderOptions& o)
@@ -101,25 +60,13 @@ gi::RenderSettings make_settings(RenderOptions& o)
         throw gi::InputError("--resume, --half and --aovs need an EXR output", "none is saved",
                              is_sequence ? "add --out f_%04d.exr" : "add --out F.exr");
 
-    gi::RenderSettings s;
+    gi::RenderSettings s = o.settings;
     std::tie(s.width, s.height) = parse_size(o.size);
-    check_memory(s);
+    gi::check_picture_size(s.width, s.height);
     s.paths = o.budget.empty() && o.until.empty() ? o.paths.value_or(kDefaultPaths) : kNoLimit;
     if (!o.budget.empty()) s.budget_s = parse_duration("--budget", o.budget);
     if (!o.until.empty()) s.until_relmse = parse_target("--until", o.until, "relmse");
-    s.bounces = o.bounces;
-    s.seed = o.seed;
-    s.threads = o.threads;
-    s.filter = o.filter == "tent" ? gi::PixelFilter::tent : gi::PixelFilter::box;
-    s.slhb = o.slhb;
-    s.vpl = o.vpl;
-    if (!o.points.empty()) s.vpl.points = parse_points("--points " + o.points, o.points, o.vpl.point_map);
-    s.slhb.schedule = gi::parse_schedule(o.schedule);
-    s.slhb.look_ups = parse_look_ups(o.look_ups);
-    s.slhb.cache = parse_cache(o.radiance_cache);
-    s.slhb.shadows = parse_shadows(o.shadows);
-    s.slhb.space = o.device == "cuda" ? gi::Space::device : gi::Space::host;
-    check_device(o, s.slhb);
+    gi::check_device(s.slhb.space);
     s.resume = o.resume && !is_sequence; // a sequence is resumed frame by frame
     if (o.shutter_s > 0) check_shutter(o, s);
     if (!o.out.empty() && !is_sequence && o.shutter_s == 0) s.checkpoint = o.out + ".state";
@@ -129,12 +76,8 @@ gi::RenderSettings make_settings(RenderOptions& o)
 gi::DenoiseSettings make_denoise_settings(RenderOptions const& o, gi::RenderSettings const& s)
 {
     gi::DenoiseSettings d = gi::find_filter(o.denoise);
-    gi::check_filter(d);
+    gi::check_filter(d, s.paths, o.reuse > 1);
     d.threads = s.threads;
-    if (d.denoiser != gi::Denoiser::none && !gi::can_filter(d, s.paths, o.reuse > 1))
-        throw gi::InputError("--denoise atrous with --paths 1",
-                             "it needs the variance, which one path does not give",
-                             "trace two paths or more, add --reuse to frames, or choose --denoise discontinuity");
     return d;
 }
 
@@ -195,146 +138,52 @@ void declare_denoise(CLI::App& c, RenderOptions& o)
         ->capture_default_str();
 }
 
-constexpr char const* kSlhbGroup = "Method slhb";
-
-void slhb_number(CLI::App& c, char const* name, int& value, int low, int high, char const* meaning)
+CLI::Option* declare_option(CLI::App& c, gi::RenderSettings& settings, std::string_view name)
 {
-    c.add_option(name, value, meaning)->check(CLI::Range(low, high))->group(kSlhbGroup);
+    gi::RenderOption const& o = gi::render_option(name);
+    std::string names = "--" + o.name;
+    for (std::string const& former : o.former) names += ",--" + former;
+    std::ranges::replace(names, '_', '-');
+    auto const set = [&settings, &o](std::string const& text) {
+        o.set(settings, text, fmt::format("--{} {}", o.name, text));
+    };
+    CLI::Option* const option =
+        o.type == gi::OptionType::yes_or_no
+            ? c.add_flag_callback(
+                  names, [set] { set("true"); }, o.meaning)
+            : c.add_option_function<std::string>(names, set, o.meaning)->type_name("[" + o.values_text() + "]");
+    if (!o.group.empty()) option->group(o.group);
+    bool const explains_default = o.meaning.find("(default") != std::string::npos;
+    if (o.type != gi::OptionType::yes_or_no && !explains_default) option->default_str(o.get(settings));
+    return option;
 }
 
-void declare_slhb_quality(CLI::App& c, RenderOptions& o)
+void declare_method_options(CLI::App& c, gi::RenderSettings& settings,
+                            std::vector<std::string_view> const& methods,
+                            std::vector<std::string_view> const& except)
 {
-    gi::SlhbSettings& s = o.slhb;
-    slhb_number(c, "--axes", s.axes, 1, 64, "axes per bounce in a pass; schedules streamed and temporal");
-    slhb_number(c, "--fresh-axes", s.fresh_axes, 1, 64, "axes replaced per pass; schedule temporal");
-    slhb_number(c, "--light-samples,--lamps", s.light_samples, 1, 64,
-                "number of light samples given a shadow map per pass");
-    slhb_number(c, "--fresh-light-samples,--fresh-lamps", s.fresh_light_samples, 1, 64,
-                "light samples replaced per pass (default: all; few in consecutive frames)");
-    slhb_number(c, "--shadow-map", s.shadow_resolution, 2, 8192, "size of a shadow map, texels on a side");
-    slhb_number(c, "--interleave", s.interleave, 1, 16,
-                "compute indirect light for one pixel in each n x n block per pass (default: by the budget)");
-    slhb_number(c, "--memory", s.memory_mib, 1, 1 << 24,
-                "MiB for hit buffers, and as much for shadow maps; they get fewer texels if it is not enough\n"
-                "(default: a quarter of the machine's memory)");
-    slhb_number(c, "--max-layers", s.most_layers, 0, 1 << 20, "most layers per texel, others counted; 0 = all");
-    c.add_option(
-         "--roulette", s.roulette,
-         "Russian roulette: paths continue with a probability of this times their throughput; 0: all paths\n"
-         "continue up to the fourth scattering (default: 2 with --until, --frames, or a --budget for more than\n"
-         "one path; 3 if paths end in a cache; else 0)")
-        ->check(in_range(0, 1000))
-        ->group(kSlhbGroup);
-    c.add_option("--cone", s.cone, "radius of the cone approximation, texels")
-        ->check(in_range(0, 64))
-        ->group(kSlhbGroup);
-    c.add_flag("--packed", s.packed, "use layers of 32 bits instead of 64, for up to 524288 triangles")
-        ->group(kSlhbGroup);
-    c.add_flag("--gather", s.gather, "first bounce along all axes in turn instead of at random")
-        ->group(kSlhbGroup);
-}
-
-namespace {
-
-/// Reason why a method, with its schedule, does not use an option; null if it does.
-char const* why_unread(NamedMethod const& method, std::string const& option)
-{
-    if (method.method == "vpl_slhb") {
-        for (char const* const read : {"--directions", "--hit-buffer", "--max-layers"})
-            if (option == read) return nullptr;
-        return "it uses only the stored axes of --directions";
+    for (gi::RenderOption const& o : gi::render_options()) {
+        bool const is_read =
+            methods.empty() || std::ranges::any_of(methods, [&](std::string_view m) { return o.read_by(m); });
+        if (!o.methods.empty() && is_read && std::ranges::find(except, o.name) == except.end())
+            declare_option(c, settings, o.name);
     }
-    gi::Schedule const schedule = method.schedule;
-    bool const directions = option == "--directions", axes = option == "--axes", fresh = option == "--fresh-axes";
-    switch (schedule) {
-    case gi::Schedule::stored:
-        return axes ? "all axes of --directions are used" : fresh ? "its axes do not change" : nullptr;
-    case gi::Schedule::streamed:
-        if (fresh) return "all axes of a pass are new";
-        [[fallthrough]];
-    case gi::Schedule::temporal:
-        return directions ? "axes are drawn from all directions" : nullptr;
-    case gi::Schedule::automatic:
-        break;
-    }
-    return nullptr;
 }
 
-} // namespace
-
-void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods)
+gi::ChosenMethod chosen_method(RenderOptions const& o, std::string const& method)
 {
-    for (CLI::Option const* const option : command.get_options()) {
-        if (option->get_group() != kSlhbGroup || option->count() == 0) continue;
-        std::string const name = option->get_name();
-        NamedMethod const* unread = nullptr; // by the first method that has options of slhb
-        bool read = false;
-        for (NamedMethod const& m : methods) {
-            if (m.method != "slhb" && m.method != "vpl_slhb") continue;
-            read |= why_unread(m, name) == nullptr;
-            if (unread == nullptr) unread = &m;
-        }
-        if (unread == nullptr)
-            throw gi::InputError(name + " with --method " + methods.front().method, "it applies to method slhb",
-                                 "add method slhb, or leave it out");
-        if (!read)
-            throw gi::InputError(name + " with " +
-                                     (unread->method == "slhb" ? unread->as_given : "--method " + unread->method),
-                                 why_unread(*unread, name), "leave one of them out");
-    }
-    auto const given = [&](char const* name) { return command.get_option(name)->count() > 0; };
-    bool const any_schedule = std::ranges::all_of(
-        methods, [](NamedMethod const& m) { return m.method != "slhb" || m.schedule == gi::Schedule::automatic; });
-    if (any_schedule && given("--directions") && (given("--axes") || given("--fresh-axes")))
-        throw gi::InputError("--directions with --axes or --fresh-axes",
-                             "only the stored schedule uses --directions, only the others draw axes",
-                             "leave one of them out");
-    for (auto const& [part, all] :
-         {std::pair{"--fresh-axes", "--axes"}, std::pair{"--fresh-light-samples", "--light-samples"}})
-        if (given(part) && given(all) && command.get_option(part)->as<int>() > command.get_option(all)->as<int>())
-            throw gi::InputError(std::string(part) + " is larger than " + all, "it is the part that is new",
-                                 fmt::format("give at most {}", command.get_option(all)->as<int>()));
+    return {method, o.settings.slhb.schedule, "--schedule " + gi::render_option("schedule").get(o.settings)};
 }
 
-void declare_slhb(CLI::App& c, RenderOptions& o)
+void check_method_options(CLI::App const& command, gi::RenderSettings const& settings,
+                          std::vector<gi::ChosenMethod> const& methods)
 {
-    c.add_option("--device", o.device,
-                 "cpu; or cuda: all by CUDA kernels, also with --reuse or --shutter; paths end at mirrors,\n"
-                 "glass and narrow lobes, which is counted")
-        ->check(CLI::IsMember({"cpu", "cuda"}))
-        ->capture_default_str()
-        ->group(kSlhbGroup);
-    c.add_option(
-         "--schedule", o.schedule,
-         "stored: one set of axes; streamed: new axes in every pass; temporal: some new; auto: "
-         "streamed,\nbut stored under a sky; in moving scenes stored with --reuse, streamed with --shutter")
-        ->check(CLI::IsMember({"auto", "stored", "streamed", "temporal"}))
-        ->capture_default_str()
-        ->group(kSlhbGroup);
-    c.add_option("--look-ups", o.look_ups,
-                 "all: paths find surfaces by look-ups in hit buffers; none: by exact rays; auto: by the plan")
-        ->check(CLI::IsMember({"auto", "all", "none"}))
-        ->capture_default_str()
-        ->group(kSlhbGroup);
-    c.add_option(
-         "--shadows", o.shadows,
-         "maps: shadow maps of --light-samples samples, shared by all paths of a pass;\nrays: exact rays to "
-         "light samples of each path; auto: by the plan")
-        ->check(CLI::IsMember({"auto", "maps", "rays"}))
-        ->capture_default_str()
-        ->group(kSlhbGroup);
-    c.add_option(
-         "--radiance-cache", o.radiance_cache,
-         "paths may end in cached cells of radiance from earlier paths: far less noise in the same time, but\n"
-         "slightly blurred indirect light; auto: on with --budget, and in viewers while something moves")
-        ->check(CLI::IsMember({"auto", "on", "off"}))
-        ->capture_default_str()
-        ->group(kSlhbGroup);
-    c.add_option("--directions", o.slhb.directions, "stored directions, FAMILY:COUNT (default icosahedron:320)")
-        ->group(kSlhbGroup);
-    slhb_number(c, "--hit-buffer", o.slhb.resolution, 2, 8192,
-                "size of a hit buffer, texels on a side (default: by the plan)");
-    declare_slhb_quality(c, o);
+    std::vector<std::string> given;
+    for (gi::RenderOption const& o : gi::render_options()) {
+        CLI::Option const* const option = command.get_option_no_throw("--" + o.name);
+        if (option != nullptr && option->count() > 0) given.push_back(o.name);
+    }
+    gi::check_options(given, settings, methods);
 }
 
 void declare_options(CLI::App& c, RenderOptions& o)
@@ -363,15 +212,11 @@ void declare_options(CLI::App& c, RenderOptions& o)
         ->check(CLI::Range(1u, kNoLimit));
     c.add_option("--budget", o.budget, "time for structures and paths: 500ms, 2s, 3min");
     c.add_option("--until", o.until, "relmse=E: render until the estimated relMSE is below E");
-    c.add_option("--bounces", o.bounces, "indirect bounces; 0 = direct light only")
-        ->check(CLI::Range(0, 1000))
-        ->capture_default_str();
-    c.add_option("--filter", o.filter, "pixel filter")
-        ->check(CLI::IsMember({"box", "tent"}))
-        ->capture_default_str();
+    declare_option(c, o.settings, "bounces");
+    declare_option(c, o.settings, "filter");
     declare_denoise(c, o);
-    c.add_option("--seed", o.seed, "seed of the random numbers")->check(check_seed)->capture_default_str();
-    c.add_option("--threads", o.threads, "threads; 0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
+    declare_option(c, o.settings, "seed");
+    declare_option(c, o.settings, "threads");
     c.add_option("--out", o.out, "EXR file for all layers, .exr (default: the scene's name)");
     c.add_flag("--half", o.half, "16-bit floats for layers for which they suffice");
     c.add_option("--png", o.png, "PNG file for the tone-mapped picture, .png");
@@ -391,8 +236,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
     c.add_flag("--quiet", o.quiet, "no progress bar");
     declare_frames(c, o);
     declare_rank_options(c, o.ranks);
-    declare_slhb(c, o);
-    declare_virtual_lights(c, o);
+    declare_method_options(c, o.settings);
     c.footer(R"(Examples:
   lightwell render atrium --size 160x100 --paths 16 --png atrium.png --out atrium.exr
   lightwell render atrium --camera courtyard --time 0.4 --size 96x64 --budget 500ms --out walk.exr --stats walk.json

@@ -2,6 +2,7 @@
 // Command-line options of `lightwell render`.
 
 #include "gi/filter/denoise.h"
+#include "gi/methods/registry.h"
 #include "gi/render/render_settings.h"
 #include "viewer/offline/rank_options.h"
 
@@ -12,24 +13,20 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+} // namespace CLI
 
 namespace viewer {
 
 struct RenderOptions {
     std::string scene, method = "reference", size = "512x512", camera, look_from, look_at, environment, background,
-                       budget, until, filter = "box", denoise = "none", out, png, stats, tone = "srgb", eye;
+                       budget, until, denoise = "none", out, png, stats, tone = "srgb", eye;
     std::vector<std::string> layers;
     std::optional<double> fov_deg, time_s, aperture_radius_m, focus_distance_m;
     double environment_rotate_deg = 0, environment_scale = 1, exposure_ev = 0, eye_distance_m = 0.063;
     std::optional<double> screen_distance_m; ///< with --eye
     std::optional<std::uint32_t> paths;
-    std::uint64_t seed = 0;
-    int bounces = 64, threads = 0;
-    std::string schedule = "auto", device = "cpu", look_ups = "auto", shadows = "auto", radiance_cache = "auto";
-    gi::SlhbSettings slhb;
-    gi::VirtualLightSettings vpl;
-    std::string points; ///< "4096" or "30%"; empty = the default of vpl
+    gi::RenderSettings settings; ///< of gi::render_options(); make_settings() adds the others
     bool half = false, resume = false, json = false, quiet = false;
     std::string frames, video, turntable, camera_path; ///< empty = none
     bool turns = false;                                ///< --turntable was given, maybe without a value
@@ -46,20 +43,18 @@ void declare_lens_options(CLI::App& command, RenderOptions& options);
 /// Options of the eyes of a stereo pair.
 void declare_eye_options(CLI::App& command, RenderOptions& options);
 void declare_denoise(CLI::App& command, RenderOptions& options);
-/// A chosen method, with its schedule in the case of slhb.
-struct NamedMethod {
-    std::string method;
-    gi::Schedule schedule;
-    std::string as_given; ///< "--schedule stored"
-};
-/// Throws InputError if an option of slhb is given that none of the methods (at least one) uses.
-void check_slhb(CLI::App const& command, std::vector<NamedMethod> const& methods);
-/// Options of method slhb: all, or only those of quality without axes and buffers.
-void declare_slhb(CLI::App& command, RenderOptions& options);
-void declare_slhb_quality(CLI::App& command, RenderOptions& options);
-/// Options of the methods vpl_* (gi/methods/vpl), and the check that some method uses the given ones.
-void declare_virtual_lights(CLI::App& command, RenderOptions& options);
-void check_virtual_lights(CLI::App const& command, std::vector<NamedMethod> const& methods);
+/// Declares one option of gi::render_options(), with its default. The text goes to `settings`.
+CLI::Option* declare_option(CLI::App& command, gi::RenderSettings& settings, std::string_view name);
+/// Declares the options that one of the methods reads, but for those of all methods. @param methods  empty = all
+void declare_method_options(CLI::App& command, gi::RenderSettings& settings,
+                            std::vector<std::string_view> const& methods = {},
+                            std::vector<std::string_view> const& except = {});
+/// The method with the schedule of the options.
+gi::ChosenMethod chosen_method(RenderOptions const& options, std::string const& method);
+/// Throws InputError if a given option is read by none of the methods (at least one), or if some contradict.
+void check_method_options(CLI::App const& command, gi::RenderSettings const& settings,
+                          std::vector<gi::ChosenMethod> const& methods);
+/// Options of `lightwell render`.
 void declare_options(CLI::App& command, RenderOptions& options);
 
 /// Sets the default output name and checks that the options work together. Throws InputError.

@@ -13,13 +13,16 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kSchema = 1; // of the statistics; incremented if a key changes its meaning or is removed
 
+std::string filter_of(gi::RenderSettings const& s) { return gi::render_option("filter").get(s); }
+
 /// All options that determine the picture, in a fixed order and with defaults written out.
 std::string normalised_command(RenderOptions const& o, gi::RenderSettings const& s, std::string const& amount,
                                std::string const& chosen)
 {
-    std::string command = fmt::format(
-        "lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} {}", o.scene, o.method,
-        s.width, s.height, s.bounces, o.filter, o.seed_per_frame && !o.frames.empty() ? o.seed : s.seed, amount);
+    std::string command =
+        fmt::format("lightwell render {} --method {} --size {}x{} --bounces {} --filter {} --seed {} {}", o.scene,
+                    o.method, s.width, s.height, s.bounces, filter_of(s),
+                    o.seed_per_frame && !o.frames.empty() ? o.settings.seed : s.seed, amount);
     auto const add = [&](char const* option, std::string const& value) {
         if (!value.empty()) command += fmt::format(" {} {}", option, value);
     };
@@ -99,7 +102,7 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::Ren
             {"method", o.method},
             {"size", fmt::format("{}x{}", s.width, s.height)},
             {"seed", std::to_string(s.seed)},
-            {"filter", o.filter},
+            {"filter", filter_of(s)},
             {"denoise", o.denoise},
             {"bounces", std::to_string(s.bounces)},
             {"paths", std::to_string(result.paths)},
@@ -139,7 +142,7 @@ Json describe_call(RenderOptions const& o, gi::RenderSettings const& s, std::str
                      {"budget_s", s.budget_s > 0 ? Json(s.budget_s) : Json()},
                      {"until_relmse", s.until_relmse > 0 ? Json(s.until_relmse) : Json()},
                      {"bounces", s.bounces},
-                     {"filter", o.filter},
+                     {"filter", filter_of(s)},
                      {"denoise", o.denoise},
                      {"seed", s.seed},
                      {"threads", s.threads},

@@ -85,9 +85,10 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
     session.drive_bodies(scenes.drive);
     std::set<std::string> overridden;
     nlohmann::json const settings = header.settings.value("settings", nlohmann::json::object());
-    for (Change const& c : o.settings) overridden.insert(c.key);
+    for (Change const& c : o.settings) overridden.insert(current_key(c.key));
     for (auto const& [key, value] : settings.items())
-        if (!overridden.contains(key)) session.apply({key, value}); // e.g. a device that is missing here
+        if (!overridden.contains(current_key(key)))
+            session.apply({key, value}); // e.g. a device that is missing here
     for (Change const& c : o.settings) session.apply(c);
     session.apply({"scene", header.scene});
     ReplaySummary summary;
@@ -99,7 +100,7 @@ ReplaySummary replay(ReplayOptions const& o, LoadRecorded const& load, gi::StopR
         }
         FrameCommand& command = frame->command;
         for (Change const& c : command.changes)
-            if (!overridden.contains(c.key)) session.apply(c);
+            if (!overridden.contains(current_key(c.key))) session.apply(c);
         if (o.paths > 0) command.paths = o.paths;
         for (ViewCommand& v : command.views)
             if (o.size) std::tie(v.width, v.height) = *o.size;

@@ -34,16 +34,6 @@ double layers_per_texel(World const& world, TriangleSoup const& soup)
 
 } // namespace
 
-Schedule parse_schedule(std::string const& name)
-{
-    if (name == "stored") return Schedule::stored;
-    if (name == "streamed") return Schedule::streamed;
-    if (name == "temporal") return Schedule::temporal;
-    if (name == "auto") return Schedule::automatic;
-    throw InputError("there is no schedule '" + name + "'", "slhb does not have it",
-                     "choose auto, stored, streamed or temporal");
-}
-
 bool needs_exact_rays(World const& world, bool orthographic, SlhbSettings const& s)
 {
     return s.shadows == Shadows::rays || s.look_ups == LookUps::none || s.exact.any() || orthographic ||
@@ -200,30 +190,23 @@ SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& wor
     return with_rays(asked, s, world, soup, camera, costs, true);
 }
 
-std::string as_options(SlhbSettings const& s)
+std::string as_options(SlhbSettings const& chosen)
 {
-    char const* const names[] = {"auto", "stored", "streamed", "temporal"};
-    std::string text =
-        fmt::format("--schedule {} --hit-buffer {} --light-samples {} --shadow-map {} --interleave {}",
-                    names[int(s.schedule)], s.resolution, s.light_samples, s.shadow_resolution, s.interleave);
-    if (s.schedule == Schedule::stored)
-        text += " --directions " + s.directions;
-    else
-        text += fmt::format(" --axes {}", s.axes);
-    if (s.schedule == Schedule::temporal) text += fmt::format(" --fresh-axes {}", s.fresh_axes);
-    if (s.fresh_light_samples < s.light_samples)
-        text += fmt::format(" --fresh-light-samples {}", s.fresh_light_samples);
-    if (s.most_layers > 0) text += fmt::format(" --max-layers {}", s.most_layers);
-    text += fmt::format(" --look-ups {} --shadows {}", s.look_ups == LookUps::none ? "none" : "all",
-                        s.shadows == Shadows::rays ? "rays" : "maps");
-    text += fmt::format(" --roulette {}", s.roulette);
-    if (s.cache != RadianceCaching::automatic)
-        text += fmt::format(" --radiance-cache {}", s.cache == RadianceCaching::on ? "on" : "off");
-    if (s.cone > 0) text += fmt::format(" --cone {}", s.cone);
-    if (s.packed) text += " --packed";
-    if (s.gather) text += " --gather";
-    if (s.space == Space::device) text += " --device cuda";
-    return text;
+    RenderSettings all;
+    SlhbSettings& s = all.slhb = chosen;
+    if (s.look_ups == LookUps::automatic) s.look_ups = LookUps::all;
+    if (s.shadows == Shadows::automatic) s.shadows = Shadows::maps;
+    std::vector<std::string_view> names{"schedule", "hit-buffer", "light-samples", "shadow-map", "interleave"};
+    names.push_back(s.schedule == Schedule::stored ? "directions" : "axes");
+    if (s.schedule == Schedule::temporal) names.push_back("fresh-axes");
+    if (s.fresh_light_samples < s.light_samples) names.push_back("fresh-light-samples");
+    if (s.most_layers > 0) names.push_back("max-layers");
+    names.insert(names.end(), {"look-ups", "shadows", "roulette"});
+    if (s.cache != RadianceCaching::automatic) names.push_back("radiance-cache");
+    if (s.cone > 0) names.push_back("cone");
+    names.insert(names.end(), {"packed", "gather"});
+    if (s.space == Space::device) names.push_back("device");
+    return as_options(slhb_options(), all, names);
 }
 
 std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, Camera const& camera)

@@ -2,7 +2,7 @@
 // How the scene plan chooses the settings of slhb that were not given, and why.
 
 #include "gi/raster/triangle_soup.h"
-#include "gi/render/render_settings.h"
+#include "gi/render/render_option.h"
 #include "gi/scene/model/camera.h"
 #include "gi/scene/model/plan.h"
 
@@ -16,8 +16,8 @@ SlhbSettings choose_settings(RenderSettings const& asked, World const& world, Tr
 SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& world, TriangleSoup const& soup,
                                    Camera const& camera);
 
-/// auto, stored, streamed or temporal. Throws InputError on another name.
-Schedule parse_schedule(std::string const& name);
+/// Options of the method slhb; vpl_slhb reads some.
+RenderOptionTable const& slhb_options();
 
 /// Returns chosen settings as command-line options that reproduce the picture.
 std::string as_options(SlhbSettings const& chosen);

@@ -1,6 +1,7 @@
 #include "gi/methods/vpl/visibility.h"
 
 #include "gi/core/threads.h"
+#include "gi/methods/slhb/settings.h"
 #include "gi/methods/vpl/renderer.h"
 #include "gi/render/fingerprint.h"
 #include "gi/render/pass_loop.h"
@@ -19,17 +20,15 @@ constexpr std::array<char const*, 6> kNames{"vpl_exact", "vpl_slhb", "vpl_imperf
                                             "vpl_ao",    "vpl_dao",  "vpl_none"};
 
 /// Settings as command-line options that reproduce the picture.
-std::string as_options(VisibilityKind kind, RenderSettings const& s)
+std::string options_of(VisibilityKind kind, RenderSettings const& s)
 {
-    std::string text = fmt::format("--light-paths {}", s.vpl.light_paths);
-    if (s.vpl.near_m > 0) text += fmt::format(" --near {}", s.vpl.near_m);
-    if (kind == VisibilityKind::slhb)
-        text += fmt::format(" --directions {} --hit-buffer {}", s.slhb.directions, s.slhb.resolution);
-    if (kind == VisibilityKind::imperfect)
-        text += fmt::format(" --points {} --point-map {}", s.vpl.points, s.vpl.point_map);
-    if (kind == VisibilityKind::ambient || kind == VisibilityKind::directional)
-        text += fmt::format(" --ao-radius {}", s.vpl.ao_radius_m);
-    return text;
+    std::vector<std::string_view> own{"light-paths"};
+    if (s.vpl.near_m > 0) own.push_back("near");
+    if (kind == VisibilityKind::imperfect) own.insert(own.end(), {"points", "point-map"});
+    if (kind == VisibilityKind::ambient || kind == VisibilityKind::directional) own.push_back("ao-radius");
+    std::string const text = as_options(virtual_light_options(), s, own);
+    if (kind != VisibilityKind::slhb) return text;
+    return text + " " + as_options(slhb_options(), s, {"directions", "hit-buffer"});
 }
 
 /// Returns the settings with defaults chosen.
@@ -37,6 +36,8 @@ RenderSettings chosen(RenderSettings settings)
 {
     if (settings.slhb.directions.empty()) settings.slhb.directions = "icosahedron:320";
     if (settings.slhb.resolution == 0) settings.slhb.resolution = 128;
+    settings.vpl.points = settings.vpl.points_per_map();
+    settings.vpl.points_percent = 0;
     return settings;
 }
 
@@ -101,7 +102,7 @@ private:
     {
         renderer_->report_work();
         result.rays = renderer_->rays() - rays_before;
-        result.options = as_options(kind_, settings_);
+        result.options = options_of(kind_, settings_);
     }
 
     VisibilityKind kind_;
@@ -133,7 +134,7 @@ RenderResult render_with_virtual_lights(VisibilityKind kind, World const& world,
     });
     renderer.report_work();
     result.rays = renderer.rays();
-    result.options = as_options(kind, settings);
+    result.options = options_of(kind, settings);
     result.picture = loop.sums().picture(world);
     return result;
 }

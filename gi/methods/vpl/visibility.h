@@ -5,6 +5,7 @@
 
 #include "gi/methods/vpl/visibility_term.h"
 #include "gi/render/frame_renderer.h"
+#include "gi/render/render_option.h"
 
 namespace gi {
 
@@ -17,6 +18,9 @@ RenderResult render_with_virtual_lights(VisibilityKind kind, World const& world,
 /// See StartFrames. BVHs, hit buffers and points are kept; every frame has its own virtual lights.
 std::unique_ptr<FrameRenderer> start_virtual_light_frames(VisibilityKind kind, MovingWorld const& world,
                                                           RenderSettings const& settings, Report& report);
+
+/// Options of the methods vpl_*.
+RenderOptionTable const& virtual_light_options();
 
 /// For the registry.
 template <VisibilityKind kind>

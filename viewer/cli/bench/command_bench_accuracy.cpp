@@ -248,7 +248,7 @@ int run(AccuracyOptions& o)
                      "of_shadow_maps", "of_shadow_maps_error", "of_directions", "of_directions_error",
                      "systematic_relmse_indirect", "relmse_indirect", "lost_layers", "seconds"});
     table.facts = {{"size", o.render.size},
-                   {"bounces", std::to_string(o.render.bounces)},
+                   {"bounces", std::to_string(o.render.settings.bounces)},
                    {"seeds", std::to_string(o.seeds)},
                    {"paths", std::to_string(o.paths)},
                    {"direction_paths", std::to_string(o.direction_paths)},
@@ -273,7 +273,7 @@ void add_bench_accuracy(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<AccuracyOptions>();
     o->render.size = "64x64";
-    o->render.bounces = 2;
+    o->render.settings.bounces = 2;
     CLI::App* const c =
         bench.add_subcommand("accuracy", "Measure the bias of slhb for sets of directions and hit buffer sizes.");
     auto const list = [&](char const* name, auto& values, char const* help) {
@@ -288,17 +288,17 @@ void add_bench_accuracy(CLI::App& bench, int& exit_code)
     declare_view_options(*c, o->render);
     declare_lens_options(*c, o->render);
     c->add_option("--size", o->render.size, "width x height, pixels")->capture_default_str();
-    c->add_option("--bounces", o->render.bounces, "indirect bounces")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
+    declare_option(*c, o->render.settings, "bounces")->check(CLI::Range(1, 1000));
     c->add_option("--seeds", o->seeds, "renders of each kind, for the standard errors")
         ->check(CLI::Range(2, 1000))
         ->capture_default_str();
     paths("--paths", o->paths, "paths per pixel and seed");
     paths("--direction-paths", o->direction_paths, "the same, for comparing directions by exact rays");
     paths("--reference-paths", o->reference_paths, "paths per pixel of the reference, all seeds together");
-    c->add_option("--threads", o->render.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
-    declare_slhb_quality(*c, o->render);
+    declare_option(*c, o->render.settings, "threads");
+    declare_method_options(
+        *c, o->render.settings, {"slhb"},
+        {"device", "schedule", "look-ups", "shadows", "radiance-cache", "directions", "hit-buffer"});
     c->add_option("--out", o->out, "folder for accuracy.json and accuracy.csv")->required();
     c->add_flag("--json", o->render.json, "print the table as JSON");
     c->footer(R"(Example:

@@ -28,7 +28,7 @@ int run(DynamicOptions& o)
 void add_bench_dynamic(CLI::App& bench, int& exit_code)
 {
     auto const o = std::make_shared<DynamicOptions>();
-    o->render.bounces = 2;
+    o->render.settings.bounces = 2;
     o->render.denoise = "discontinuity";
     CLI::App* const c = bench.add_subcommand("dynamic", "Measure the cost of each part of moving frames.");
     auto const list = [&](char const* name, auto& values, char const* help) {
@@ -50,15 +50,14 @@ void add_bench_dynamic(CLI::App& bench, int& exit_code)
         ->capture_default_str();
     c->add_option("--budget", o->render.budget,
                   "time per frame, without reuse and filter (default: one path per pixel)");
-    number("--bounces", o->render.bounces, 0, 1000, "indirect bounces");
+    declare_option(*c, o->render.settings, "bounces");
     number("--reuse", o->most_frames, 1, 1000,
            "largest number of frames averaged per pixel; 1 = no temporal reuse");
     number("--reference-paths", o->reference_paths, 0, 1 << 24, "paths per pixel and frame; 0 = no errors");
     number("--seeds", o->seeds, 1, 64, "number of sequences; 4 or more separate the lag of reuse from noise");
     declare_denoise(*c, o->render);
-    declare_slhb(*c, o->render);
-    c->remove_option(c->get_option("--schedule")); // set by --structures
-    c->add_option("--threads", o->render.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
+    declare_method_options(*c, o->render.settings, {"slhb"}, {"schedule"}); // which --structures sets
+    declare_option(*c, o->render.settings, "threads");
     c->add_option("--out", o->out, "folder for the tables")->required();
     c->add_flag("--json", o->render.json, "print the table as JSON");
     c->footer(R"(Example:
@@ -72,10 +71,10 @@ leaves out the first frame, which builds lasting structures. In the summary, mem
 with its range from frame 100 on; raised counts frames with more error than without reuse; not_finite counts values
 in all pictures. The last frame is saved as a picture, with its FLIP map.)");
     c->callback([o, c, &exit_code] {
-        std::vector<NamedMethod> methods;
+        std::vector<gi::ChosenMethod> methods;
         for (std::string const& s : o->structures)
             methods.push_back({"slhb", find_structure(s).schedule, "--structures " + s});
-        check_slhb(*c, methods);
+        check_method_options(*c, o->render.settings, methods);
         exit_code = run(*o);
     });
 }

@@ -4,7 +4,7 @@
 #include "viewer/base/validators.h"
 #include "viewer/bench/bench_record.h"
 #include "viewer/bench/pictures.h"
-#include "viewer/bench/sweep_methods.h"
+#include "viewer/bench/sweep_plan.h"
 #include "viewer/cli/commands.h"
 #include "viewer/report/picture_summary.h"
 #include "viewer/report/table_file.h"
@@ -60,8 +60,8 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
     auto const o = std::make_shared<PicturesOptions>();
     RenderOptions& r = o->render;
     r.size = "256x256";
-    r.bounces = 3;
-    r.seed = 1;
+    r.settings.bounces = 3;
+    r.settings.seed = 1;
     CLI::App* const c =
         bench.add_subcommand("pictures", "Compare the pictures of methods over scenes, budgets and filters.");
     auto const list = [&](char const* name, std::vector<std::string>& values, std::string const& help) {
@@ -77,11 +77,9 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
     c->add_option("--repeats", o->repeats, "renders per row, each with its own seed; rows hold medians")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    c->add_option("--seed", r.seed, "seed of the first repeat")->check(check_seed)->capture_default_str();
+    declare_option(*c, r.settings, "seed")->description("seed of the first repeat");
     c->add_option("--size", r.size, "width x height, pixels")->capture_default_str();
-    c->add_option("--bounces", r.bounces, "indirect bounces; 0 = direct light only")
-        ->check(CLI::Range(0, 1000))
-        ->capture_default_str();
+    declare_option(*c, r.settings, "bounces");
     c->add_option("--reference-paths", o->reference_paths, "paths per pixel of the reference pictures")
         ->check(CLI::Range(2, 1 << 24))
         ->capture_default_str();
@@ -108,9 +106,8 @@ void add_bench_pictures(CLI::App& bench, int& exit_code)
                             "these and their mean"))
         ->delimiter(',')
         ->allow_extra_args(false);
-    declare_slhb(*c, r);
-    declare_virtual_lights(*c, r);
-    c->add_option("--threads", r.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
+    declare_method_options(*c, r.settings);
+    declare_option(*c, r.settings, "threads");
     c->add_option("--out", o->out, "folder for tables, pictures and pictures.html")->required();
     c->add_flag("--resume", o->resume, "keep existing rows in the folder from the same program and settings");
     c->add_flag("--json", r.json, "print both tables as JSON");

@@ -2,7 +2,7 @@
 #include "viewer/base/interrupt.h"
 #include "viewer/bench/bench_record.h"
 #include "viewer/bench/sweep.h"
-#include "viewer/bench/sweep_methods.h"
+#include "viewer/bench/sweep_plan.h"
 #include "viewer/cli/commands.h"
 
 #include <CLI/CLI.hpp>
@@ -51,9 +51,7 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
     c->add_option("--size", r.size, "width x height, pixels")->capture_default_str();
     declare_view_options(*c, r);
     declare_lens_options(*c, r);
-    c->add_option("--bounces", r.bounces, "indirect bounces; 0 = direct light only")
-        ->check(CLI::Range(0, 1000))
-        ->capture_default_str();
+    declare_option(*c, r.settings, "bounces");
     CLI::Option* const paths = c->add_option("--reference-paths", o->reference_paths,
                                              "paths per pixel of the reference picture, which is kept in DIR")
                                    ->check(CLI::Range(2, 1 << 24))
@@ -63,9 +61,8 @@ void add_bench_sweep(CLI::App& bench, int& exit_code)
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     declare_denoise(*c, r);
-    declare_slhb(*c, r);
-    declare_virtual_lights(*c, r);
-    c->add_option("--threads", r.threads, "0 = all")->check(CLI::Range(0, 4096))->capture_default_str();
+    declare_method_options(*c, r.settings);
+    declare_option(*c, r.settings, "threads");
     c->add_option("--out", o->out, "folder for sweep.json, sweep.csv and the pictures")->required();
     c->add_flag("--json", r.json, "print the table as JSON");
     c->add_flag("--quiet", r.quiet, "no progress bar");

@@ -2,7 +2,6 @@
 #include "gi/core/file.h"
 #include "gi/image_io/picture_file.h"
 #include "gi/methods/registry.h"
-#include "gi/methods/slhb/settings.h"
 #include "viewer/base/interrupt.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/report_json.h"
@@ -232,9 +231,7 @@ void add_render(CLI::App& app, int& exit_code)
     CLI::App* const c = app.add_subcommand("render", about("render"));
     declare_options(*c, *o);
     c->callback([o, c, &exit_code] {
-        NamedMethod const method{o->method, gi::parse_schedule(o->schedule), "--schedule " + o->schedule};
-        check_slhb(*c, {method});
-        check_virtual_lights(*c, {method});
+        check_method_options(*c, o->settings, {chosen_method(*o, o->method)});
         check_display(*c, *o);
         exit_code = run(*o);
     });

@@ -92,7 +92,7 @@ ViewOptions view_options(ViewArguments const& a, std::string const& command_line
     o.size_px = {size.first, size.second};
     o.monitors = a.fullscreen;
     o.swap_interval = a.no_vsync ? 0 : 1;
-    o.threads = scene.threads;
+    o.threads = scene.settings.threads;
     o.navigation = parse_navigation(a.navigate);
     o.screenshots = a.screenshots;
     o.record = a.record;
@@ -240,7 +240,7 @@ int run_replay(ViewArguments const& a)
     o.out = a.out;
     o.video = a.video;
     o.fps = a.fps;
-    o.threads = a.scene.threads;
+    o.threads = a.scene.settings.threads;
     ReplaySummary const done = replay(
         o,
         [&report](nlohmann::json const& load) {
@@ -328,7 +328,7 @@ void add_view(CLI::App& app, int& exit_code)
         ->capture_default_str();
     declare_rank_options(*c, a->ranks);
     c->add_option("--navigate", a->navigate, "navigation: fly, walk or orbit")->capture_default_str();
-    c->add_option("--threads", a->scene.threads, "render threads; 0 = all")->check(in_range(0, 1024));
+    declare_option(*c, a->scene.settings, "threads");
     c->add_option("--record", a->record, "recording (.lwr) to write, of everything that determines the pixels");
     c->add_option("--frame-log", a->frame_log, "CSV file with the times of every frame");
     c->add_option("--remote", a->remote, "Unix socket for remote control (docs/remote.md)");

@@ -193,7 +193,7 @@ bool LiveRenderer::anything_moves(Viewpoint const& now) const
 void LiveRenderer::choose_updated_axes(bool may_move)
 {
     Settings const& s = session_.settings();
-    bool const is_governed = s.method == "slhb" && s.schedule == "auto";
+    bool const is_governed = s.method == "slhb" && s.has_automatic_schedule();
     int const updated = is_governed ? update_governor_.next(may_move) : 0;
     if (updated == s.updated_axes) return;
     Change const change{"updated_axes", updated};
@@ -286,7 +286,7 @@ void LiveRenderer::measure(FrameWork const& work, FrameBudget const& budget)
     Settings const& s = session_.settings();
     governor_.measured({last_.paths, budget.scale}, pixels_of(last_views_) / (budget.scale * budget.scale),
                        work.seconds, s.rate_hz);
-    if (s.method == "slhb" && s.schedule == "auto")
+    if (s.method == "slhb" && s.has_automatic_schedule())
         update_governor_.measured({work.dynamic_update, work.moved, s.rate_hz});
 }
 
@@ -328,7 +328,8 @@ bool LiveRenderer::render(FrameCommand command, FrameBudget const& budget)
     if (done && link_ == nullptr) measure(own, budget);
     if (!frame->result.views.empty()) stored_ = own.dynamic_update.stored;
     if (Settings const& s = frame->settings; s.method == "slhb")
-        frame->schedule = schedule_sentence(s.schedule, s.updated_axes, stored_, update_governor_.share_of_all());
+        frame->schedule = schedule_sentence(get(s, "schedule").get<std::string>(), s.updated_axes, stored_,
+                                            update_governor_.share_of_all());
     if (done && hooks_.finished) hooks_.finished(*frame);
     if (!done) return false;
     FrameCommand const shown = frame->command;

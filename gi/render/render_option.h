@@ -1,0 +1,36 @@
+#pragma once
+// Options of RenderSettings. Each setting is declared once, in the table of its method's folder or, if all methods
+// share it, in common_options(); gi/methods/registry.h lists all.
+
+#include "gi/core/option.h"
+#include "gi/render/render_settings.h"
+
+namespace gi {
+
+/// Why slhb with a schedule does not use an option.
+struct UnusedBy {
+    Schedule schedule;
+    char const* why;
+};
+
+struct RenderOption : Option<RenderSettings> {
+    std::string group;                     ///< heading in --help and panel; empty for options of all methods
+    std::vector<std::string_view> methods; ///< that read it, a last * for any ending; empty = all
+    std::vector<UnusedBy> unused_by = {};
+    bool live = true; ///< viewers and AR sessions have it
+
+    bool read_by(std::string_view method) const;
+};
+using RenderOptionTable = std::vector<RenderOption>;
+
+/// Bounces, seed, pixel filter and threads.
+RenderOptionTable const& common_options();
+
+/// Options and their values as on the command line: "--hit-buffer 128 --packed". Flags that are off are left out.
+std::string as_options(RenderOptionTable const& table, RenderSettings const& settings,
+                       std::vector<std::string_view> const& names);
+
+/// Throws InputError if a picture of this size does not fit into memory.
+void check_picture_size(int width, int height);
+
+} // namespace gi
