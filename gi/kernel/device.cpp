@@ -1,8 +1,10 @@
 #include "gi/kernel/device.h"
 
 #include "gi/core/error.h"
+#include "gi/core/huge_pages.h"
 #include "gi/kernel/device_memory.h"
 
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -31,13 +33,18 @@ void check_device(Space space)
 
 void* allocate_bytes(Space space, std::size_t bytes)
 {
-    return space == Space::host ? ::operator new(bytes) : device::allocate(bytes);
+    if (space == Space::device) return device::allocate(bytes);
+    constexpr std::size_t kLine = 64;
+    void* const start = std::aligned_alloc(kLine, (bytes + kLine - 1) / kLine * kLine);
+    if (start == nullptr) throw std::bad_alloc();
+    advise_huge_pages(start, bytes);
+    return start;
 }
 
 void free_bytes(Space space, void* bytes) noexcept
 {
     if (space == Space::host)
-        ::operator delete(bytes);
+        std::free(bytes);
     else
         device::release(bytes);
 }

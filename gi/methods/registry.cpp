@@ -6,6 +6,7 @@
 #include "gi/methods/slhb/settings.h"
 #include "gi/methods/slhb/slhb.h"
 #include "gi/methods/vpl/visibility.h"
+#include "gi/methods/whitted/whitted.h"
 
 #include <algorithm>
 #include <array>
@@ -27,6 +28,8 @@ constexpr std::array kMethods{
            start_reference_frames, true},
     Method{"slhb", "path tracing through spherical layered hit buffers: look-ups instead of rays", render_slhb,
            start_slhb_frames, true, slhb_options},
+    Method{"whitted", "ray trees: direct light, mirrors and glass, no diffuse interreflection", render_whitted,
+           start_whitted_frames, false, whitted_options},
     virtual_lights<VisibilityKind::exact>(
         "vpl_exact", "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
                      "    methods differ only in how they find visibility"),

@@ -1,7 +1,6 @@
 #include "gi/render/exact_visibility.h"
 
-#include "gi/core/rng.h"
-#include "gi/scene/shading/shading_point.h"
+#include "gi/render/coverage_test.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -105,11 +104,7 @@ void ExactVisibility::coverage_filter(RTCFilterFunctionNArguments const* a)
         std::uint32_t const triangle = self.part_of(RTCHitN_instID(a->hit, a->N, i, 0))
                                            .world_triangle(kCutOut, RTCHitN_primID(a->hit, a->N, i));
         vec2 const uv{RTCHitN_u(a->hit, a->N, i), RTCHitN_v(a->hit, a->N, i)};
-        float const covered = coverage(self.world_, triangle, uv);
-        if (covered >= 1) continue;
-        std::uint64_t const key = (std::uint64_t(RTCRayN_id(a->ray, a->N, i)) << 32) | triangle;
-        float const u = float(mix_bits(key) >> 40) * 0x1p-24f;
-        if (u >= covered) a->valid[i] = 0;
+        if (!covers(self.world_, triangle, uv, RTCRayN_id(a->ray, a->N, i))) a->valid[i] = 0;
     }
 }
 

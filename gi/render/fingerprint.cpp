@@ -128,6 +128,10 @@ std::uint64_t fingerprint(World const& world, Camera const& camera, RenderSettin
         h.add(o.near_m);
         h.add(o.ao_radius_m);
     }
+    if (method == "whitted") {
+        for (int const v : {s.whitted.recursion, s.whitted.light_samples}) h.add(std::uint64_t(v));
+        h.add(s.whitted.cutoff);
+    }
     for (std::uint64_t const v : {std::uint64_t(s.width), std::uint64_t(s.height), std::uint64_t(s.bounces),
                                   s.seed, std::uint64_t(s.filter)})
         h.add(v);

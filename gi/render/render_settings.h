@@ -105,6 +105,13 @@ struct VirtualLightSettings {
     }
 };
 
+/// Settings of the method whitted, see gi/methods/whitted.
+struct WhittedSettings {
+    int recursion = 8;       ///< mirrors and glass along a ray tree; rays beyond are cut and counted
+    float cutoff = 1.0f / 256; ///< rays that would contribute less than this share are cut and counted
+    int light_samples = 4;   ///< shadow rays at a surface seen directly; in mirrors and glass one
+};
+
 struct Accumulator; // gi/render/accumulator.h
 
 /// The part of a picture's paths that one of several processes traces. Every path has its own random numbers, so
@@ -131,6 +138,7 @@ struct RenderSettings {
                                            ///< saving the picture unless RenderResult::resumable
     SlhbSettings slhb{};
     VirtualLightSettings vpl{};
+    WhittedSettings whitted{};
     bool resume = false; ///< continue from the checkpoint if it exists and fits
     PathShare share{};   ///< for single pictures only; frame sequences and checkpoints need all paths
 };

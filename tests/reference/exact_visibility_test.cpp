@@ -1,5 +1,5 @@
 #include "gi/core/rng.h"
-#include "gi/render/exact_visibility.h"
+#include "gi/render/bvh_visibility.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -26,10 +26,24 @@ World world_at(float t, bool holes)
     return world_of(scene);
 }
 
-class MovingVisibility : public testing::TestWithParam<bool> {};
+struct Embree {
+    ExactVisibility visibility;
+    Embree(World const& world, bool holes) : visibility(world, holes, 1, kStays) {}
+};
+struct OwnBvh {
+    BvhVisibility visibility;
+    OwnBvh(World const& world, bool holes) : visibility(world, holes, kStays) {}
+};
+
+template <class Rays>
+class MovingVisibility : public testing::Test {
+};
+using BothRays = testing::Types<Embree, OwnBvh>;
+TYPED_TEST_SUITE(MovingVisibility, BothRays);
 
 /// Do rays find in `moving` what they find in `now`? @return how many of them hit what moves
-std::size_t expect_equal(ExactVisibility const& moving, World const& now, bool holes)
+template <class Visibility>
+std::size_t expect_equal(Visibility const& moving, World const& now, bool holes)
 {
     ExactVisibility const anew(now, holes, 1);
     Pcg32 rng(4, 4);
@@ -56,44 +70,45 @@ std::size_t expect_equal(ExactVisibility const& moving, World const& now, bool h
 }
 
 /// After a move, rays find what they find in a world that is new.
-TEST_P(MovingVisibility, AnswersAsIfBuiltAnew)
+TYPED_TEST(MovingVisibility, AnswersAsIfBuiltAnew)
 {
-    World world = world_at(0, GetParam());
-    ExactVisibility moving(world, GetParam(), 1, kStays);
-    for (float const t : {0.0f, 0.7f, 1.6f, 0.2f}) {
-        World const now = world_at(t, GetParam());
-        world.positions = now.positions; // of equal size: the view of `world` stays good
-        moving.moved(world);
-        EXPECT_GT(expect_equal(moving, now, GetParam()), 100u);
+    for (bool const holes : {false, true}) {
+        World world = world_at(0, holes);
+        TypeParam rays(world, holes);
+        for (float const t : {0.0f, 0.7f, 1.6f, 0.2f}) {
+            World const now = world_at(t, holes);
+            world.positions = now.positions; // of equal size: the view of `world` stays good
+            rays.visibility.moved(world);
+            EXPECT_GT(expect_equal(rays.visibility, now, holes), 100u);
+        }
     }
 }
 
 /// What collapses, or is nowhere for a while, comes back; also where it began so.
-TEST_P(MovingVisibility, UnusableVerticesLeaveAndComeBack)
+TYPED_TEST(MovingVisibility, UnusableVerticesLeaveAndComeBack)
 {
     float const nan = std::numeric_limits<float>::quiet_NaN();
-    for (float const away : {0.0f, 1.0f, nan, kInf, 1e20f})
-        for (bool const away_at_first : {false, true}) {
-            World world = world_at(0.5f, GetParam());
-            World const now = world_at(0.5f, GetParam());
-            auto const send_away = [&] {
-                // All to one place, else triangles would lie in each other.
-                std::size_t const step = std::abs(away) <= 1 ? 1 : 2;
-                for (std::size_t i = world.triangles[kStays].x; i < world.positions.size(); i += step)
-                    world.positions[i] = vec3{away};
-            };
-            if (away_at_first) send_away();
-            ExactVisibility moving(world, GetParam(), 1, kStays);
-            send_away();
-            moving.moved(world);
-            expect_equal(moving, world, GetParam());
-            world.positions = now.positions;
-            moving.moved(world);
-            EXPECT_GT(expect_equal(moving, now, GetParam()), 100u) << away;
-        }
+    for (bool const holes : {false, true})
+        for (float const away : {0.0f, 1.0f, nan, kInf, 1e20f})
+            for (bool const away_at_first : {false, true}) {
+                World world = world_at(0.5f, holes);
+                World const now = world_at(0.5f, holes);
+                auto const send_away = [&] {
+                    // All to one place, else triangles would lie in each other.
+                    std::size_t const step = std::abs(away) <= 1 ? 1 : 2;
+                    for (std::size_t i = world.triangles[kStays].x; i < world.positions.size(); i += step)
+                        world.positions[i] = vec3{away};
+                };
+                if (away_at_first) send_away();
+                TypeParam rays(world, holes);
+                send_away();
+                rays.visibility.moved(world);
+                expect_equal(rays.visibility, world, holes);
+                world.positions = now.positions;
+                rays.visibility.moved(world);
+                EXPECT_GT(expect_equal(rays.visibility, now, holes), 100u) << away;
+            }
 }
-
-INSTANTIATE_TEST_SUITE_P(Holes, MovingVisibility, testing::Bool());
 
 } // namespace
 } // namespace gi::test

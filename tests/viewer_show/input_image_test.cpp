@@ -113,7 +113,7 @@ TEST_F(Input, ClosingTheWindowEndsInOrder)
     window->ask_to_close();
     Outcome const o = view->program().wait(std::chrono::seconds(20));
     EXPECT_EQ(o.code, 0) << "signal " << o.signal << "\n" << o.err;
-    EXPECT_EQ(run_well("recording info walk.lwr --json", view->folder().path()).out.find("cut"),
+    EXPECT_NE(run_well("recording info walk.lwr --json", view->folder().path()).out.find("in order"),
               std::string::npos);
 }
 

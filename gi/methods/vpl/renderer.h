@@ -2,27 +2,24 @@
 // Renders pictures with virtual lights and one visibility term; keeps structures between passes and frames.
 
 #include "gi/methods/vpl/gather.h"
-#include "gi/render/accumulator.h"
-#include "gi/render/frame_renderer.h"
+#include "gi/render/pass_renderer.h"
 
 #include <tbb/combinable.h>
 
 namespace gi {
 
-class VirtualLightRenderer {
+class VirtualLightRenderer : public PassRenderer {
 public:
     /// `world`, `settings` and `report` must outlive this object, and the world's arrays must not be reallocated.
     VirtualLightRenderer(VisibilityKind kind, World const& world, RenderSettings const& settings,
                          std::size_t first_moving, Report& report);
 
-    /// See Changes.
-    void changed(Changes const& changes);
-    /// Traces one more path for every pixel of all views, lit by the virtual lights of this pass.
-    /// @param sums  one per view
-    void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums);
-    /// Reports the work done since the last call.
-    void report_work();
-    double rays() const { return rays_; } ///< number of closest-hit and shadow rays so far
+    void changed(Changes const& changes) override;
+    /// All views are lit by the virtual lights of this pass.
+    void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums) override;
+    void report_work() override;
+    double rays() const override { return rays_; }
+    std::string options() const override;
 
 private:
     struct Counts {

@@ -59,6 +59,8 @@ GI_FN BsdfValue evaluate(Bsdf const& bsdf, vec3 wo, vec3 wi);
 /// @param front  wo is on the front face (determines which side of a dielectric is the inside)
 /// @param u_lobe selects the lobe, u the direction; uniform in [0, 1)
 GI_FN BsdfSample sample(Bsdf const& bsdf, vec3 wo, bool front, float u_lobe, vec2 u);
+/// The delta lobes' directions, each with all of its light; pdf and chances do not matter. Returns their number.
+GI_FN int delta_lobes(Bsdf const& bsdf, vec3 wo, bool front, BsdfSample lobes[3]);
 /// True when every lobe is delta or black, so that sampling lights is useless.
 GI_FN bool only_delta(Bsdf const& bsdf);
 

@@ -93,28 +93,46 @@ GI_FN inline bool is_matt(Bsdf const& b)
     return b.model == MaterialModel::metal_rough && b.f90.x == 0 && b.clear == 0;
 }
 
-/// Samples smooth glass or a thin sheet. @param chance probability of having chosen this lobe
-GI_FN inline BsdfSample sample_clear(Bsdf const& b, vec3 wo, bool front, float u, float chance)
-{
-    BsdfSample s;
-    s.delta = true;
-    float const eta = front || b.thin ? 1 / b.ior : b.ior;
-    DielectricInterface const face = fresnel_dielectric(wo.z, eta);
-    float const reflectance = b.thin ? 2 * face.reflectance / (1 + face.reflectance) : face.reflectance;
-    if (u < reflectance) {
+/// Smooth glass, or a thin sheet of it, met along wo.
+struct GlassInterface {
+    DielectricInterface face;
+    float eta, reflectance; ///< reflectance: of a thin sheet, both of its faces together
+
+    GI_FN GlassInterface(Bsdf const& b, vec3 wo, bool front)
+        : face(fresnel_dielectric(wo.z, front || b.thin ? 1 / b.ior : b.ior)),
+          eta(front || b.thin ? 1 / b.ior : b.ior),
+          reflectance(b.thin ? 2 * face.reflectance / (1 + face.reflectance) : face.reflectance)
+    {
+    }
+    /// @param chance  by which the weights are divided
+    GI_FN BsdfSample reflected(Bsdf const& b, vec3 wo, float chance) const
+    {
+        BsdfSample s;
+        s.delta = true;
         s.wi = mirror(wo);
         s.weight = vec3{b.clear / chance};
         return s;
     }
-    s.transmitted = true;
-    s.weight = b.transmitted / chance;
-    if (b.thin) {
-        s.wi = -wo;
-    } else {
-        s.wi = glm::normalize(vec3{-eta * wo.x, -eta * wo.y, -face.cos_transmitted});
-        s.weight *= eta * eta;
+    GI_FN BsdfSample transmitted(Bsdf const& b, vec3 wo, float chance) const
+    {
+        BsdfSample s;
+        s.delta = s.transmitted = true;
+        s.weight = b.transmitted / chance;
+        if (b.thin) {
+            s.wi = -wo;
+        } else {
+            s.wi = glm::normalize(vec3{-eta * wo.x, -eta * wo.y, -face.cos_transmitted});
+            s.weight *= eta * eta;
+        }
+        return s;
     }
-    return s;
+};
+
+/// Samples smooth glass or a thin sheet. @param chance probability of having chosen this lobe
+GI_FN inline BsdfSample sample_clear(Bsdf const& b, vec3 wo, bool front, float u, float chance)
+{
+    GlassInterface const glass(b, wo, front);
+    return u < glass.reflectance ? glass.reflected(b, wo, chance) : glass.transmitted(b, wo, chance);
 }
 
 /// Samples the specular lobe if it is not delta.
@@ -186,6 +204,31 @@ GI_FN inline BsdfSample sample(Bsdf const& b, vec3 wo, bool front, float u_lobe,
     s.pdf = value.pdf;
     if (s.pdf > 0) s.weight = value.f * (s.wi.z / s.pdf);
     return s;
+}
+
+GI_FN inline int delta_lobes(Bsdf const& b, vec3 wo, bool front, BsdfSample lobes[3])
+{
+    using namespace bsdf_detail;
+    if (!(wo.z > 0)) return 0;
+    int n = 0;
+    if (b.clear > 0) {
+        GlassInterface const glass(b, wo, front);
+        if (glass.reflectance > 0) {
+            lobes[n] = glass.reflected(b, wo, 1);
+            lobes[n++].weight *= glass.reflectance;
+        }
+        if (glass.reflectance < 1) {
+            lobes[n] = glass.transmitted(b, wo, 1);
+            lobes[n++].weight *= 1 - glass.reflectance;
+        }
+    }
+    if (specular_is_delta(b) && b.f90.x > 0) {
+        lobes[n] = {};
+        lobes[n].delta = true;
+        lobes[n].wi = mirror(wo);
+        lobes[n++].weight = schlick(b.f0, b.f90, wo.z);
+    }
+    return n;
 }
 
 } // namespace gi

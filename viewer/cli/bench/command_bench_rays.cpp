@@ -3,7 +3,7 @@
 #include "gi/core/rng.h"
 #include "gi/methods/slhb/directions/directions.h"
 #include "gi/methods/slhb/hit_buffer/query_batch.h"
-#include "gi/render/exact_visibility.h"
+#include "gi/render/bvh_visibility.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/shading/warp.h"
 #include "viewer/bench/bench_record.h"
@@ -103,6 +103,7 @@ void measure_scene(RaysOptions const& o, std::string const& scene, BenchTable& t
     World const world = load_world(options, report);
     Camera const camera = choose_camera(world, camera_choice(options)).camera;
     ExactVisibility const exact(world, false, 1);
+    BvhVisibility const own(world, false);
     TriangleSoup const soup = make_soup(world);
     DirectionSet const set = make_directions(o.directions);
     Pcg32 rng(1, 1);
@@ -174,7 +175,7 @@ void measure_scene(RaysOptions const& o, std::string const& scene, BenchTable& t
          [&] {
              for (std::size_t k = 0; k < used; ++k) nearest_layers(pool, k * step, world.surfaces, few[k]);
          },
-         [&] { nearest_layers(pool, the_one, world.surfaces, one); }});
+         [&] { nearest_layers(pool, the_one, world.surfaces, one); }, [&] { own.nearest(rays, hits); }});
     if (sink == 0)
         throw InputError("no ray of '" + scene + "' hits anything", "the camera sees nothing",
                          "choose another view");
@@ -198,7 +199,8 @@ void measure_scene(RaysOptions const& o, std::string const& scene, BenchTable& t
     double const each = double(n);
     char const* const names[] = {"Embree, single rays",      "Embree, packets of 16",
                                  "slhb, random axes, plain", "slhb, random axes, vectors",
-                                 "slhb, 16 axes, by axis",   "slhb, one axis"};
+                                 "slhb, 16 axes, by axis",   "slhb, one axis",
+                                 "own BVH, single rays"};
     for (std::size_t k = 0; k < s.size(); ++k) {
         double const count = k == 5 ? double(one.size()) : each;
         std::vector<double> ns, single;

@@ -1,0 +1,66 @@
+#pragma once
+// Ray trees from the camera (Whitted 1980): at each surface, direct light by shadow rays, and one ray for each
+// mirror or glass direction, down to a recursion limit and a cut-off weight. Light that has scattered before at
+// another surface that is neither mirror nor glass is left to a SurfaceLight; without one it is missing.
+//
+// Trees advance together, one generation at a time: all nearest hits, then all surfaces, then all shadow rays.
+
+#include "gi/core/rng.h"
+#include "gi/render/path_step.h"
+#include "gi/render/ray_path.h"
+
+#include <span>
+#include <vector>
+
+namespace gi {
+
+/// Indirect light at surfaces.
+class SurfaceLight {
+public:
+    virtual ~SurfaceLight() = default;
+    /// Radiance that leaves a surface towards wo (in at.frame) by its non-delta lobes, of light that does not come
+    /// directly from its source. @param direct  of this surface only: false behind mirrors and glass
+    virtual vec3 indirect(ShadingPoint const& at, vec3 wo, Pcg32& rng, bool direct) const = 0;
+};
+
+/// Work and losses.
+struct TreeCounts {
+    PathCounts paths;
+    std::uint64_t cut_rays = 0; ///< by the recursion limit or the cut-off weight
+    double cut_weight = 0;      ///< sum of their throughputs' largest channels
+};
+
+struct TreeTracer {
+    WorldView world;
+    ExactVisibility const& visibility;
+    CameraRays camera;
+    WhittedSettings settings;
+    std::uint64_t seed;
+    PixelFilter filter;
+    int width;
+    SurfaceLight const* light = nullptr; ///< null = no indirect light
+
+    /// Traces the trees number `index` of some pixels to their ends.
+    /// @param samples  one per pixel, overwritten
+    void trace(std::span<glm::ivec2 const> pixels, std::uint32_t index, std::span<PathSample> samples,
+               TreeCounts& counts) const;
+
+private:
+    struct TreeRay {
+        Pcg32 rng{0, 0};
+        Ray ray;
+        vec3 throughput{1};
+        PathSample* sample;
+    };
+    struct ShadowRay {
+        RayQuery query;
+        vec3 radiance;
+        PathSample* sample;
+    };
+    void shade(TreeRay& r, Hit const& hit, int generation, std::vector<TreeRay>& next,
+               std::vector<ShadowRay>& shadows, TreeCounts& counts) const;
+    void aim_at_lights(TreeRay& r, ShadingPoint const& at, vec3 wo, int generation,
+                       std::vector<ShadowRay>& shadows) const;
+};
+
+} // namespace gi

@@ -1,0 +1,116 @@
+#include "gi/methods/whitted/whitted.h"
+
+#include "gi/render/flush_denormals.h"
+#include "gi/scene/model/plan.h"
+
+#include <algorithm>
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+
+TreeRenderer::TreeRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
+                           Report& report)
+    : world_(world), settings_(settings), first_moving_(first_moving), report_(report)
+{
+    build();
+}
+
+void TreeRenderer::build()
+{
+    StageTimer const timer(report_, "build (Embree BVH)");
+    visibility_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, settings_.threads,
+                                                    first_moving_);
+}
+
+void TreeRenderer::changed(Changes const& changes)
+{
+    // Rays with coverage tests use the materials from when the BVH was built.
+    if (changes.coverage || (changes.materials && plan_scene(world_).alpha_tests)) return build();
+    if (changes.geometry) visibility_->moved(world_);
+}
+
+void TreeRenderer::pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums)
+{
+    SurfaceLight const* const light = prepare(index);
+    StageTimer const timer(report_, "ray trees");
+    for (std::size_t k = 0; k < views.size(); ++k) trace_view(views[k], index, light, sums[k]);
+}
+
+void TreeRenderer::trace_view(FrameView const& v, std::uint32_t index, SurfaceLight const* light,
+                              Accumulator& sums)
+{
+    constexpr int kTile = 16; // px; trees of a tile advance together
+    TreeTracer const tracer{.world = view(world_),
+                            .visibility = *visibility_,
+                            .camera = camera_rays(v.camera, v.width, v.height, world_.origin),
+                            .settings = settings_.whitted,
+                            .seed = settings_.seed,
+                            .filter = settings_.filter,
+                            .width = v.width,
+                            .light = light};
+    tbb::combinable<TreeCounts> counts;
+    int const columns = (v.width + kTile - 1) / kTile, rows = (v.height + kTile - 1) / kTile;
+    tbb::parallel_for(0, columns * rows, [&](int tile) {
+        FlushDenormals const guard;
+        int const left = tile % columns * kTile, right = std::min(left + kTile, v.width);
+        int const top = tile / columns * kTile, bottom = std::min(top + kTile, v.height);
+        std::vector<glm::ivec2> pixels;
+        for (int y = top; y < bottom; ++y)
+            for (int x = left; x < right; ++x) pixels.emplace_back(x, y);
+        std::vector<PathSample> samples(pixels.size());
+        tracer.trace(pixels, index, samples, counts.local());
+        for (std::size_t k = 0; k < pixels.size(); ++k)
+            sums.add(std::size_t(pixels[k].y) * std::size_t(v.width) + std::size_t(pixels[k].x), samples[k],
+                     sums.paths);
+    });
+    ++sums.paths;
+    trees_ += double(v.width) * double(v.height);
+    counts.combine_each([&](TreeCounts const& c) {
+        sums.counts += c.paths;
+        work_.cut_rays += c.cut_rays;
+        work_.cut_weight += c.cut_weight;
+        work_.paths += c.paths;
+        rays_ += double(c.paths.nearest_rays + c.paths.shadow_rays);
+    });
+}
+
+void TreeRenderer::report_work()
+{
+    report_.count("closest-hit rays", double(work_.paths.nearest_rays));
+    report_.count("shadow rays", double(work_.paths.shadow_rays));
+    report_.lose("rays cut by the recursion limit or the cut-off weight", work_.cut_rays);
+    if (work_.cut_rays > 0)
+        report_.count("their mean share of a picture's light, at most", work_.cut_weight / trees_);
+    work_ = {};
+    trees_ = 0;
+}
+
+std::string TreeRenderer::options() const
+{
+    return as_options(whitted_options(), settings_, {"recursion", "cutoff", "shadow-rays"});
+}
+
+namespace {
+
+std::unique_ptr<PassRenderer> start(World const& world, RenderSettings const& settings, std::size_t first_moving,
+                                    Report& report)
+{
+    return std::make_unique<TreeRenderer>(world, settings, first_moving, report);
+}
+
+} // namespace
+
+RenderResult render_whitted(World const& world, Camera const& camera, RenderSettings const& settings,
+                            StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    return render_passes("whitted", start, world, camera, settings, stop, progress, report);
+}
+
+std::unique_ptr<FrameRenderer> start_whitted_frames(MovingWorld const& world, Camera const&,
+                                                    RenderSettings const& settings, Report& report)
+{
+    return start_pass_frames(start, world, settings, report);
+}
+
+} // namespace gi

@@ -1,0 +1,122 @@
+#include "gi/render/pass_renderer.h"
+
+#include "gi/core/threads.h"
+#include "gi/render/fingerprint.h"
+#include "gi/render/pass_loop.h"
+
+#include <chrono>
+#include <optional>
+#include <tbb/global_control.h>
+
+namespace gi {
+namespace {
+
+/// Also limits the building of structures before the passes.
+std::optional<tbb::global_control> limit_threads(int threads)
+{
+    std::optional<tbb::global_control> limit;
+    if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+    return limit;
+}
+
+class PassFrames : public FrameRenderer {
+public:
+    PassFrames(StartPasses const& start, MovingWorld const& world, RenderSettings const& settings, Report& report)
+        : world_(world),
+          settings_(settings),
+          report_(report),
+          threads_(limit_threads(settings.threads)),
+          renderer_(start(world.world(), settings_, world.world().static_triangles, report))
+    {
+    }
+    void changed(Changes const& changes) override { renderer_->changed(changes); }
+    RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
+                       Moments const& moments) override
+    {
+        PassLoop loop(settings_, stop, progress, report_);
+        double const earlier = renderer_->rays();
+        RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
+            for (std::uint32_t i = 0; i < paths; ++i) {
+                FrameView eye{camera, settings_.width, settings_.height};
+                if (moments) {
+                    Moment const now = moments(sums.paths);
+                    changed(now.changes);
+                    eye.camera = now.camera;
+                }
+                renderer_->pass(passes_++, {&eye, 1}, {&sums, 1});
+            }
+        });
+        finish(result, earlier);
+        result.picture = loop.sums().picture(world_.world());
+        return result;
+    }
+    std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, VertexSharing,
+                                    StopRequest const& stop) override
+    {
+        auto const begun = std::chrono::steady_clock::now();
+        double const earlier = renderer_->rays();
+        std::vector<Accumulator> sums;
+        for (FrameView const& v : views) sums.emplace_back(v.width, v.height);
+        for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
+            on_threads(settings_.threads, [&] { renderer_->pass(passes_++, views, sums); });
+        std::vector<RenderResult> results(views.size());
+        PathCounts lost;
+        for (std::size_t k = 0; k < views.size(); ++k) {
+            results[k].paths = sums[k].paths;
+            results[k].end = sums[k].paths < paths ? RenderEnd::interrupted : RenderEnd::paths;
+            results[k].picture = sums[k].picture(world_.world());
+            hide_pixels(results[k].picture, views[k].hidden);
+            lost += sums[k].counts;
+        }
+        report_.lose("paths cut at 1024 surfaces", lost.cut_paths);
+        report_.lose("path terms that were not finite, dropped", lost.invalid_paths);
+        finish(results[0], earlier);
+        results[0].seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        return results;
+    }
+
+private:
+    void finish(RenderResult& result, double rays_before)
+    {
+        renderer_->report_work();
+        result.rays = renderer_->rays() - rays_before;
+        result.options = renderer_->options();
+    }
+
+    MovingWorld const& world_;
+    RenderSettings settings_;
+    Report& report_;
+    std::optional<tbb::global_control> threads_;
+    std::unique_ptr<PassRenderer> renderer_;
+    std::uint32_t passes_ = 0; ///< so far, over all frames
+};
+
+} // namespace
+
+RenderResult render_passes(char const* name, StartPasses const& start, World const& world, Camera const& camera,
+                           RenderSettings const& settings, StopRequest const& stop, RenderProgress const& progress,
+                           Report& report)
+{
+    auto const limit = limit_threads(settings.threads);
+    PassLoop loop(settings, stop, progress, report);
+    auto const renderer = start(world, settings, world.triangles.size(), report);
+    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name) : 0;
+    FrameView const eye{camera, settings.width, settings.height};
+    RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
+        for (std::uint32_t i = 0; i < paths; ++i)
+            renderer->pass(loop.first_path() + sums.paths, {&eye, 1}, {&sums, 1});
+    });
+    renderer->report_work();
+    result.rays = renderer->rays();
+    result.options = renderer->options();
+    result.picture = loop.sums().picture(world);
+    return result;
+}
+
+std::unique_ptr<FrameRenderer> start_pass_frames(StartPasses const& start, MovingWorld const& world,
+                                                 RenderSettings const& settings, Report& report)
+{
+    return std::make_unique<PassFrames>(start, world, settings, report);
+}
+
+} // namespace gi

@@ -1,0 +1,136 @@
+// The project's BVH beside Embree: building, refitting, incoherent rays (cosine-distributed from points on
+// surfaces), single and on one thread, by turns in one process; and how many answers differ.
+//   bench_bvh_rays [SCENE...]      default: boxes of 1M triangles, atrium, cornell
+
+#include "gi/core/quantile.h"
+#include "gi/core/report.h"
+#include "gi/core/rng.h"
+#include "gi/render/bvh_visibility.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/load/load.h"
+#include "gi/scene/model/plan.h"
+#include "gi/scene/shading/warp.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+
+namespace {
+
+using namespace gi;
+
+template <class Work>
+double seconds(Work const& work)
+{
+    auto const start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::vector<RayQuery> incoherent_rays(World const& world, std::size_t n)
+{
+    std::vector<double> area;
+    double sum = 0;
+    for (Surface const& s : world.surfaces)
+        area.push_back(sum += double(glm::length(glm::cross(s.edge1, s.edge2))));
+    Pcg32 rng(1, 2);
+    std::vector<RayQuery> rays;
+    for (std::size_t i = 0; i < n; ++i) {
+        auto const at = std::ranges::upper_bound(area, rng.uniform_double() * sum);
+        Surface const& s = world.surfaces[std::min(std::size_t(at - area.begin()), area.size() - 1)];
+        vec2 const w = square_to_triangle(rng.uniform2());
+        vec3 normal = glm::normalize(glm::cross(s.edge1, s.edge2));
+        if (rng.uniform() < 0.5f) normal = -normal;
+        vec3 const d = Frame::about(normal).to_world(square_to_cosine_hemisphere(rng.uniform2()));
+        rays.push_back({.ray = {s.corner + w.x * s.edge1 + w.y * s.edge2 + s.clearance * normal, d},
+                        .seed = std::uint32_t(i)});
+    }
+    return rays;
+}
+
+void by_embree(ExactVisibility const& exact, std::span<RayQuery const> queries, std::vector<Hit>& hits)
+{
+    ExactVisibility::Context context(exact);
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        RayQuery const& q = queries[i];
+        RTCRayHit r;
+        r.ray.org_x = q.ray.origin.x;
+        r.ray.org_y = q.ray.origin.y;
+        r.ray.org_z = q.ray.origin.z;
+        r.ray.tnear = 0;
+        r.ray.dir_x = q.ray.direction.x;
+        r.ray.dir_y = q.ray.direction.y;
+        r.ray.dir_z = q.ray.direction.z;
+        r.ray.time = 0;
+        r.ray.tfar = q.reach;
+        r.ray.mask = 0xffffffffu;
+        r.ray.id = q.seed;
+        r.ray.flags = 0;
+        r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(exact.scene(), &context.rtc, &r);
+        hits[i] =
+            r.hit.geomID == RTC_INVALID_GEOMETRY_ID ? Hit{} : Hit{r.hit.primID, {r.hit.u, r.hit.v}, r.ray.tfar};
+    }
+}
+
+void measure(std::string const& name, Scene scene)
+{
+    constexpr std::size_t kRays = 400'000;
+    constexpr int kRounds = 7;
+    Report report;
+    World const world = build_world(std::make_shared<Scene const>(std::move(scene)), std::nullopt, report);
+    std::optional<ExactVisibility> exact;
+    std::optional<BvhVisibility> own;
+    std::vector<double> embree_build_s, build_s, refit_s, embree_s, packets_s, own_s, ratio;
+    for (int round = 0; round < 3; ++round) {
+        embree_build_s.push_back(seconds([&] { exact.emplace(world, false, 0); }));
+        build_s.push_back(seconds([&] { own.emplace(world, false, 0); })); // all in the tree that can be refitted
+        refit_s.push_back(seconds([&] { own->moved(world); }));
+    }
+    std::vector<RayQuery> const rays = incoherent_rays(world, kRays);
+    std::vector<Hit> a(kRays), b(kRays);
+    for (int round = 0; round < kRounds; ++round) {
+        embree_s.push_back(seconds([&] { by_embree(*exact, rays, a); }));
+        own_s.push_back(seconds([&] { own->nearest(rays, b); }));
+        ratio.push_back(embree_s.back() / own_s.back());
+    }
+    std::size_t different = 0, unexplained = 0;
+    for (std::size_t i = 0; i < kRays; ++i) {
+        if (a[i].triangle == b[i].triangle) continue;
+        ++different;
+        // Other triangles at the same distance, within the rounding of coordinates, lie in one place.
+        float const rounding = 1e-5f * std::max(a[i].distance, b[i].distance) + 1e-6f * world.bounds.radius();
+        if (!(std::abs(a[i].distance - b[i].distance) <= rounding) && ++unexplained <= 3)
+            fmt::print("  ray {}: Embree {} at {}, own {} at {}\n", i, a[i].triangle, a[i].distance, b[i].triangle,
+                       b[i].distance);
+    }
+    auto const [low, high] = std::minmax_element(ratio.begin(), ratio.end());
+    HostBvh const& tree = own->moving();
+    fmt::print(
+        "{:<24} {:>9} {:>8.3f} {:>8.3f} {:>8.3f} {:>7.2f} {:>7.2f} {:>6.3f} [{:.3f}, {:.3f}] {:>6} {:>6} {:>7.1f} "
+        "{:>5} {:>6.1f}\n",
+        name, world.triangles.size(), median(embree_build_s), median(build_s), median(refit_s),
+        double(kRays) / median(embree_s) * 1e-6, double(kRays) / median(own_s) * 1e-6, median(ratio), *low, *high,
+        different, unexplained, traversal_cost(tree), tree.level.size() - 1,
+        double(tree.bytes()) / double(world.triangles.size()));
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    fmt::print("{:<24} {:>9} {:^26} {:^15} {:>6} {:^14} {:^13} {:>7} {:>5} {:>6}\n", "", "",
+               "build Embree, own, refit", "Mray/s", "own /", "", "differences", "", "", "B/tri-");
+    fmt::print("{:<24} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>6} {:^14} {:>6} {:>6} {:>7} {:>5} {:>6}\n", "scene",
+               "triangles", "s", "s", "s", "Embree", "own", "Embree", "[min, max]", "all", "unexpl", "SAH",
+               "depth", "angle");
+    if (argc == 1) {
+        measure("boxes, 1M triangles", generate_boxes(1'000'000, 0));
+        measure("atrium", generate_atrium({}));
+        measure("cornell", generate_cornell());
+    }
+    for (int i = 1; i < argc; ++i) {
+        Report report;
+        measure(argv[i], load_scene(argv[i], report));
+    }
+}
