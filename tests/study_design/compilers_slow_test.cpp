@@ -28,10 +28,11 @@ TEST(PlanFiles, AreTheSameFromGccAndClang)
     ASSERT_NE(mkdtemp(folder.data()), nullptr);
     std::string const root = LIGHTWELL_SOURCE_DIR, other = folder + "/plan_writer";
     // Another level of optimisation and other vector units as well.
-    std::string const build = "bash -c 'clang++-14 -std=c++20 -O1 -ffp-contract=off -I " + root + " " + root +
-                              "/study/script/*.cpp " + root + "/study/plan/*.cpp " + root + "/study/stats/*.cpp " +
-                              root + "/gi/core/{error,edit_distance,yaml}.cpp " + STUDY_EXAMPLES_SOURCE + " " +
-                              root + "/tests/study_design/plan_writer.cpp -lyaml-cpp -lfmt -o " + other + "' 2>&1";
+    std::string const build =
+        "bash -c 'clang++-14 -std=c++20 -O1 -ffp-contract=off -isystem " EIGEN_HEADERS " -I " + root + " " + root +
+        "/study/script/*.cpp " + root + "/study/plan/*.cpp " + root + "/study/stats/*.cpp " + root +
+        "/gi/core/{error,edit_distance,text,yaml}.cpp " + STUDY_EXAMPLES_SOURCE + " " + root +
+        "/tests/study_design/plan_writer.cpp -lyaml-cpp -lfmt -o " + other + "' 2>&1";
     std::string const messages = output_of(build);
     ASSERT_TRUE(std::filesystem::exists(other)) << messages;
     int count = 0;
