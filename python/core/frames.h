@@ -4,7 +4,7 @@
 
 #include "viewer/engine/governor.h"
 #include "viewer/engine/render_session.h"
-#include "viewer/experiment/stimulus_place.h"
+#include "viewer/experiment/stimuli/stimulus_place.h"
 
 #include <mutex>
 

@@ -4,8 +4,8 @@
 #include "study/script/script_file.h"
 #include "study/script/setting_place.h"
 #include "tests/viewer/run_program.h"
-#include "viewer/experiment/ar_source.h"
 #include "viewer/experiment/prepared_list.h"
+#include "viewer/experiment/stimuli/ar_source.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>

@@ -1,4 +1,4 @@
-#include "viewer/experiment/prepared_files.h"
+#include "viewer/experiment/stimuli/prepared_files.h"
 
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"

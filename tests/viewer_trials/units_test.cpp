@@ -10,9 +10,9 @@
 #include "viewer/experiment/experimenter.h"
 #include "viewer/experiment/page.h"
 #include "viewer/experiment/prepared_list.h"
-#include "viewer/experiment/refresh.h"
 #include "viewer/experiment/response.h"
-#include "viewer/experiment/stimulus_settings.h"
+#include "viewer/experiment/screens/refresh.h"
+#include "viewer/experiment/stimuli/stimulus_settings.h"
 #include "viewer/experiment/trial.h"
 #include "viewer/protocol/remote/remote_client.h"
 

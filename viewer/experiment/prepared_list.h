@@ -1,5 +1,5 @@
 #pragma once
-#include "viewer/experiment/prepared.h"
+#include "viewer/experiment/stimuli/prepared.h"
 
 #include <map>
 

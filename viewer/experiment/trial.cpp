@@ -3,7 +3,7 @@
 #include "gi/core/quantile.h"
 #include "study/run/trial.h"
 #include "viewer/experiment/page.h"
-#include "viewer/experiment/refresh.h"
+#include "viewer/experiment/screens/refresh.h"
 
 #include <algorithm>
 #include <cmath>

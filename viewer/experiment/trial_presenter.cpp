@@ -1,13 +1,13 @@
 #include "viewer/experiment/trial_presenter.h"
 
 #include "gi/core/error.h"
-#include "viewer/experiment/ar_source.h"
-#include "viewer/experiment/hmd_screen.h"
-#include "viewer/experiment/live_source.h"
 #include "viewer/experiment/page.h"
-#include "viewer/experiment/prepared.h"
-#include "viewer/experiment/refresh.h"
-#include "viewer/experiment/window_screen.h"
+#include "viewer/experiment/screens/hmd_screen.h"
+#include "viewer/experiment/screens/refresh.h"
+#include "viewer/experiment/screens/window_screen.h"
+#include "viewer/experiment/stimuli/ar_source.h"
+#include "viewer/experiment/stimuli/live_source.h"
+#include "viewer/experiment/stimuli/prepared.h"
 
 #include <GLFW/glfw3.h>
 #include <algorithm>

@@ -7,8 +7,8 @@
 #include "viewer/experiment/experimenter.h"
 #include "viewer/experiment/frame_table.h"
 #include "viewer/experiment/markers.h"
-#include "viewer/experiment/screen_settings.h"
-#include "viewer/experiment/stimulus_source.h"
+#include "viewer/experiment/screens/screen_settings.h"
+#include "viewer/experiment/stimuli/stimulus_source.h"
 
 namespace viewer {
 

@@ -3,7 +3,7 @@
 #include "study/plan/plan_text.h"
 #include "viewer/base/report_json.h"
 #include "viewer/cli/command_table.h"
-#include "viewer/experiment/study_stimuli.h"
+#include "viewer/experiment/stimuli/study_stimuli.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

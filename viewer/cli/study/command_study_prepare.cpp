@@ -7,7 +7,7 @@
 #include "viewer/base/version.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/experiment/prepared_list.h"
-#include "viewer/experiment/study_stimuli.h"
+#include "viewer/experiment/stimuli/study_stimuli.h"
 #include "viewer/offline/rank_options.h"
 #include "viewer/offline/rank_work.h"
 

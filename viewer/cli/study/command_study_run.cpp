@@ -9,9 +9,9 @@
 #include "viewer/base/version.h"
 #include "viewer/cli/command_table.h"
 #include "viewer/displays/display_file.h"
-#include "viewer/experiment/prepared_files.h"
 #include "viewer/experiment/prepared_list.h"
-#include "viewer/experiment/study_stimuli.h"
+#include "viewer/experiment/stimuli/prepared_files.h"
+#include "viewer/experiment/stimuli/study_stimuli.h"
 #include "viewer/experiment/trial_presenter.h"
 #include "viewer/study/study_outcome.h"
 

@@ -1,4 +1,4 @@
-#include "viewer/experiment/refresh.h"
+#include "viewer/experiment/screens/refresh.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "viewer/devices/gl/gamepads.h"
 #include "viewer/devices/gl/panel.h"
 #include "viewer/devices/xr/keeper.h"
-#include "viewer/experiment/screen_settings.h"
+#include "viewer/experiment/screens/screen_settings.h"
 
 namespace viewer {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "viewer/devices/gl/window.h"
 #include "viewer/displays/display.h"
-#include "viewer/experiment/screen.h"
+#include "viewer/experiment/screens/screen.h"
 
 #include <optional>
 

@@ -1,4 +1,4 @@
-#include "viewer/experiment/window_screen.h"
+#include "viewer/experiment/screens/window_screen.h"
 
 #include "viewer/app/layout.h"
 #include "viewer/devices/gl/draw_target.h"

@@ -1,4 +1,4 @@
-#include "viewer/experiment/stimulus_place.h"
+#include "viewer/experiment/stimuli/stimulus_place.h"
 
 #include "viewer/displays/compose.h"
 #include "viewer/engine/live/desktop_views.h"

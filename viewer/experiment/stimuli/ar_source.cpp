@@ -1,10 +1,10 @@
-#include "viewer/experiment/ar_source.h"
+#include "viewer/experiment/stimuli/ar_source.h"
 
 #include "ar/pipeline/bridge.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
-#include "viewer/experiment/prepared.h"
-#include "viewer/experiment/prepared_files.h"
+#include "viewer/experiment/stimuli/prepared.h"
+#include "viewer/experiment/stimuli/prepared_files.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #include "gi/core/error.h"
 #include "study/script/condition.h"
 #include "study/script/setting_place.h"
-#include "viewer/experiment/ar_pictures.h"
-#include "viewer/experiment/study_stimuli.h"
+#include "viewer/experiment/stimuli/ar_pictures.h"
+#include "viewer/experiment/stimuli/study_stimuli.h"
 
 #include <algorithm>
 #include <regex>

@@ -4,11 +4,11 @@
 // Keys are those of viewer/engine/settings.h, with or without the prefix "gi.", edits of the scene
 // (viewer/engine/scene_edits.h), and: scene (a file or a built-in name), camera (of the scene), view (window,
 // openxr), and gi.visibility, which selects a method that approximates the visibility of indirect light
-// (gi/methods/vpl). Alternatively, only those of an AR session (viewer/experiment/ar_stimulus.h).
+// (gi/methods/vpl). Alternatively, only those of an AR session (viewer/experiment/stimuli/ar_stimulus.h).
 
 #include "study/plan/plan.h"
 #include "viewer/engine/settings.h"
-#include "viewer/experiment/ar_stimulus.h"
+#include "viewer/experiment/stimuli/ar_stimulus.h"
 
 namespace viewer {
 

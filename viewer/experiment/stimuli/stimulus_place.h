@@ -1,5 +1,5 @@
 #pragma once
-#include "viewer/experiment/stimulus_source.h"
+#include "viewer/experiment/stimuli/stimulus_source.h"
 
 namespace viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/experiment/ar_pictures.h"
+#include "viewer/experiment/stimuli/ar_pictures.h"
 
 #include "ar/capture/open_source.h"
 #include "ar/markers/marker_map_file.h"
@@ -8,7 +8,7 @@
 #include "ar/runtime/source_losses.h"
 #include "ar/scene/read_values.h"
 #include "gi/core/error.h"
-#include "viewer/experiment/screen.h"
+#include "viewer/experiment/screens/screen.h"
 
 #include <algorithm>
 #include <cmath>

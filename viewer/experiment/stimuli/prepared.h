@@ -2,7 +2,7 @@
 // Stimuli rendered ahead: one folder of pictures per stimulus, named by a hash of everything that determines them,
 // so that existing folders are valid and are not rendered again.
 
-#include "viewer/experiment/stimulus_source.h"
+#include "viewer/experiment/stimuli/stimulus_source.h"
 
 namespace viewer {
 

@@ -4,7 +4,7 @@
 #include "viewer/displays/stereo_mode.h"
 #include "viewer/engine/live/live_renderer.h"
 #include "viewer/engine/live/navigation.h"
-#include "viewer/experiment/stimulus_settings.h"
+#include "viewer/experiment/stimuli/stimulus_settings.h"
 
 namespace viewer {
 

@@ -1,12 +1,12 @@
-#include "viewer/experiment/prepared.h"
+#include "viewer/experiment/stimuli/prepared.h"
 
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "gi/core/sha256.h"
 #include "gi/image_io/picture_file.h"
-#include "viewer/experiment/ar_source.h"
-#include "viewer/experiment/prepared_files.h"
-#include "viewer/experiment/stimulus_place.h"
+#include "viewer/experiment/stimuli/ar_source.h"
+#include "viewer/experiment/stimuli/prepared_files.h"
+#include "viewer/experiment/stimuli/stimulus_place.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "viewer/experiment/hmd_screen.h"
+#include "viewer/experiment/screens/hmd_screen.h"
 
 #include "gi/core/error.h"
 #include "viewer/engine/live/navigation.h"

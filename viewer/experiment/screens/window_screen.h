@@ -7,7 +7,7 @@
 #include "viewer/app/user_tracking.h"
 #include "viewer/devices/gl/gamepads.h"
 #include "viewer/devices/gl/panel.h"
-#include "viewer/experiment/screen_settings.h"
+#include "viewer/experiment/screens/screen_settings.h"
 
 namespace viewer {
 

@@ -6,8 +6,8 @@
 #include "ar/camera/pose.h"
 #include "gi/core/progress.h"
 #include "gi/core/report.h"
-#include "viewer/experiment/ar_stimulus.h"
-#include "viewer/experiment/stimulus_source.h"
+#include "viewer/experiment/stimuli/ar_stimulus.h"
+#include "viewer/experiment/stimuli/stimulus_source.h"
 
 namespace viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/experiment/ar_stimulus.h"
+#include "viewer/experiment/stimuli/ar_stimulus.h"
 
 #include "ar/scene/session_inputs.h"
 #include "gi/core/file.h"

@@ -1,4 +1,4 @@
-#include "viewer/experiment/stimulus_settings.h"
+#include "viewer/experiment/stimuli/stimulus_settings.h"
 
 #include "gi/core/error.h"
 #include "gi/core/sha256.h"

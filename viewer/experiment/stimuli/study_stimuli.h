@@ -2,7 +2,7 @@
 // Scenes and AR sessions that a script uses for stimuli.
 
 #include "study/plan/plan.h"
-#include "viewer/experiment/stimulus_source.h"
+#include "viewer/experiment/stimuli/stimulus_source.h"
 #include "viewer/study/study_script.h"
 
 #include <set>

@@ -1,5 +1,5 @@
 #pragma once
-#include "viewer/experiment/stimulus_place.h"
+#include "viewer/experiment/stimuli/stimulus_place.h"
 
 namespace viewer {
 

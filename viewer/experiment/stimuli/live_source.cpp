@@ -1,4 +1,4 @@
-#include "viewer/experiment/live_source.h"
+#include "viewer/experiment/stimuli/live_source.h"
 
 #include "gi/core/error.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "viewer/experiment/ar_pictures.h"
+#include "viewer/experiment/stimuli/ar_pictures.h"
 
 #include <future>
 
