@@ -61,9 +61,13 @@ std::array<cv::Vec3f, 24> const& chart_linear_rgb();
 /// 10
 ColourFit fit_colour(std::span<cv::Vec3f const> camera, std::span<cv::Vec3f const> chart);
 
-/// Pixel positions of the 24 patches of a (flat) ColorChecker, by perspective and the lens.
-/// @param corners_px centres of the four corner patches: dark skin (1), bluish green (6), black (24), white (19)
-/// @throws gi::InputError corners that do not form a convex quadrilateral, or that the lens cannot see
+/// Where the centres of the 24 patches of a flat ColorChecker are in a picture, px, row by row from dark skin (1) to
+/// black (24). The lens distortion is removed from the four corners, a homography places the other patches, and the
+/// distortion is applied again.
+/// @param corners_px  centres of the corner patches in order around the chart: dark skin (1), bluish green (6),
+/// black (24), white (19)
+/// @throws gi::InputError corners that, without distortion, form no convex quadrilateral, or a patch that the lens
+/// cannot see
 std::vector<cv::Point2d> chart_centres(std::array<cv::Point2d, 4> const& corners_px, CameraModel const& camera);
 
 /// Mean linear units of each patch of a picture. @param centres_px one per patch; @param half_px half the side

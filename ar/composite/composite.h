@@ -72,7 +72,9 @@ public:
     Photometry const& photometry() const { return photometry_; }
     CompositeSettings const& settings() const { return settings_; }
     ResponseTable const& response(int channel) const { return response_[std::size_t(channel)]; }
-    /// Matrix from radiance to units of camera RGB: gains colour^-1 / radiance_per_unit, without vignetting.
+    /// Matrix from radiance (linear BT.709) to the camera's linear RGB: diag(gains) inverse(colour) /
+    /// radiance_per_unit. The gains are those of the exposure relative to Photometry::reference. Vignetting is not
+    /// included.
     cv::Matx33f unit_of_radiance(Exposure const& exposure) const;
     NoiseField const& noise() const { return noise_; }
 

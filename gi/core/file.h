@@ -18,7 +18,7 @@ void write_text(std::filesystem::path const& file, std::string_view text);
 /// The whole file. Throws InputError if it does not exist, is a folder, or is larger than max_bytes.
 std::vector<unsigned char> read_bytes(std::filesystem::path const& file, std::size_t max_bytes = std::size_t(8)
                                                                                                  << 30);
-/// The same as text.
+/// The whole file as text, its bytes unchanged. Throws like read_bytes().
 std::string read_text(std::filesystem::path const& file, std::size_t max_bytes = std::size_t(1) << 30);
 
 } // namespace gi

@@ -29,6 +29,7 @@ inline constexpr float kFarthest = 1e18f; ///< m; the square of a larger coordin
 /// Rec. 709 luminance of linear RGB.
 GI_FN inline float luminance(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 GI_FN inline float max_component(vec3 c) { return glm::max(c.x, glm::max(c.y, c.z)); }
+GI_FN inline float min_component(vec3 c) { return glm::min(c.x, glm::min(c.y, c.z)); }
 GI_FN inline float square(float x) { return x * x; }
 GI_FN inline bool all_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 

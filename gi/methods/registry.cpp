@@ -2,6 +2,7 @@
 
 #include "gi/core/error.h"
 #include "gi/methods/reference/reference.h"
+#include "gi/methods/sh_grid/sh_grid.h"
 #include "gi/methods/slhb/frames.h"
 #include "gi/methods/slhb/settings.h"
 #include "gi/methods/slhb/slhb.h"
@@ -30,6 +31,8 @@ constexpr std::array kMethods{
            start_slhb_frames, true, slhb_options},
     Method{"whitted", "ray trees: direct light, mirrors and glass, no diffuse interreflection", render_whitted,
            start_whitted_frames, false, whitted_options},
+    Method{"sh_grid", "ray trees, with indirect light from photons in a field of spherical harmonics",
+           render_sh_grid, start_sh_grid_frames, false, sh_grid_options},
     virtual_lights<VisibilityKind::exact>(
         "vpl_exact", "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
                      "    methods differ only in how they find visibility"),

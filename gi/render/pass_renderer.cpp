@@ -26,7 +26,7 @@ public:
           settings_(settings),
           report_(report),
           threads_(limit_threads(settings.threads)),
-          renderer_(start(world.world(), settings_, world.world().static_triangles, report))
+          renderer_(start(world.world(), settings_, world.world().static_triangles, report, nullptr))
     {
     }
     void changed(Changes const& changes) override { renderer_->changed(changes); }
@@ -99,7 +99,7 @@ RenderResult render_passes(char const* name, StartPasses const& start, World con
 {
     auto const limit = limit_threads(settings.threads);
     PassLoop loop(settings, stop, progress, report);
-    auto const renderer = start(world, settings, world.triangles.size(), report);
+    auto const renderer = start(world, settings, world.triangles.size(), report, &stop);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name) : 0;
     FrameView const eye{camera, settings.width, settings.height};
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {

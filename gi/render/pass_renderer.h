@@ -28,8 +28,9 @@ public:
 
 /// Makes the renderer of a world. All arguments must outlive it, and the world's arrays must not be reallocated.
 /// @param first_moving  index of the first triangle that may move
-using StartPasses = std::function<std::unique_ptr<PassRenderer>(World const&, RenderSettings const&,
-                                                                std::size_t first_moving, Report&)>;
+/// @param stop  checked while structures are built before the first pass, which throws Interrupted; null = never
+using StartPasses = std::function<std::unique_ptr<PassRenderer>(
+    World const&, RenderSettings const&, std::size_t first_moving, Report&, StopRequest const* stop)>;
 
 /// Renders one picture. Layers: see RenderResult. The same seed gives the same bits for any number of threads, if
 /// the passes do. @param name  of the method, for checkpoints. Throws InputError if the checkpoint does not fit.

@@ -44,7 +44,7 @@ RenderOptionTable const& common_options()
     static RenderOptionTable const all = [&] {
         RenderOptionTable table{
             common("bounces", {0, 1024}, "indirect bounces; 0 = direct light only", &S::bounces),
-            common("filter", {"box", "tent"}, "pixel filter", &S::filter),
+            common("filter", {"box", "tent"}, "pixel filter: box, one pixel wide; tent, a radius of one pixel", &S::filter),
             common("seed", {0, 0x1p64}, "seed of the random numbers", &S::seed),
             common("threads", {0, 4096}, "threads; 0 = all", &S::threads),
         };

@@ -13,7 +13,7 @@ struct ResultTable {
     Table table;
 };
 
-/// The tables that have rows. The columns' descriptions explain each number.
+/// The tables of an analysis, without those that are empty. What each number means is in Column::description.
 std::vector<ResultTable> result_tables(Analysis const& analysis);
 
 /// Readable form of a cell: four digits, "<0.001" for small probabilities (columns named p or p_...), "–" for n/a.

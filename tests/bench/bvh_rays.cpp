@@ -1,6 +1,8 @@
 // The project's BVH beside Embree: building, refitting, incoherent rays (cosine-distributed from points on
 // surfaces), single and on one thread, by turns in one process; and how many answers differ.
-//   bench_bvh_rays [SCENE...]      default: boxes of 1M triangles, atrium, cornell
+// Then rays that only ask whether anything is in the way; and what a frame costs with a tree for what moves
+// beside that for what stays, and with one tree of everything, built anew.
+//   bench_bvh_rays [--rays N] [SCENE...]      default: 400,000 rays; boxes of 1M triangles, atrium, cornell
 
 #include "gi/core/quantile.h"
 #include "gi/core/report.h"
@@ -73,9 +75,48 @@ void by_embree(ExactVisibility const& exact, std::span<RayQuery const> queries, 
     }
 }
 
-void measure(std::string const& name, Scene scene)
+std::size_t occluded_by_embree(ExactVisibility const& exact, std::span<RayQuery const> queries)
 {
-    constexpr std::size_t kRays = 400'000;
+    ExactVisibility::Context context(exact);
+    std::size_t n = 0;
+    for (RayQuery const& q : queries) {
+        RTCRay r{};
+        r.org_x = q.ray.origin.x;
+        r.org_y = q.ray.origin.y;
+        r.org_z = q.ray.origin.z;
+        r.dir_x = q.ray.direction.x;
+        r.dir_y = q.ray.direction.y;
+        r.dir_z = q.ray.direction.z;
+        r.tfar = q.reach;
+        r.mask = 0xffffffffu;
+        rtcOccluded1(exact.scene(), &context.rtc, &r);
+        n += r.tfar < 0 ? 1 : 0;
+    }
+    return n;
+}
+
+/// A frame: updating for what moved, and rays.
+void measure_frame(World const& world, std::span<RayQuery const> rays)
+{
+    if (world.static_triangles == world.triangles.size()) return;
+    BvhVisibility two(world, false, world.static_triangles);
+    std::vector<Hit> hits(rays.size());
+    std::vector<double> refit_s, two_s, build_s, one_s;
+    for (int round = 0; round < 5; ++round) {
+        refit_s.push_back(seconds([&] { two.moved(world); }));
+        two_s.push_back(seconds([&] { two.nearest(rays, hits); }));
+        std::optional<BvhVisibility> one;
+        build_s.push_back(seconds([&] { one.emplace(world, false); }));
+        one_s.push_back(seconds([&] { one->nearest(rays, hits); }));
+    }
+    fmt::print(
+        "  a frame of {} rays, {} of {} triangles move: two trees {:.4f} + {:.3f} s, one tree {:.4f} + {:.3f} s\n",
+        rays.size(), world.triangles.size() - world.static_triangles, world.triangles.size(), median(refit_s),
+        median(two_s), median(build_s), median(one_s));
+}
+
+void measure(std::string const& name, Scene scene, std::size_t kRays)
+{
     constexpr int kRounds = 7;
     Report report;
     World const world = build_world(std::make_shared<Scene const>(std::move(scene)), std::nullopt, report);
@@ -105,6 +146,16 @@ void measure(std::string const& name, Scene scene)
                        b[i].distance);
     }
     auto const [low, high] = std::minmax_element(ratio.begin(), ratio.end());
+    std::vector<RayQuery> shadow = rays; // to half the scene's radius
+    for (RayQuery& q : shadow) q.reach = 0.5f * world.bounds.radius();
+    std::vector<std::uint8_t> blocked(kRays);
+    std::vector<double> any_embree_s, any_own_s;
+    std::size_t embree_blocked = 0;
+    for (int round = 0; round < 3; ++round) {
+        any_embree_s.push_back(seconds([&] { embree_blocked = occluded_by_embree(*exact, shadow); }));
+        any_own_s.push_back(seconds([&] { own->occluded(shadow, blocked); }));
+    }
+    auto const own_blocked = std::size_t(std::ranges::count(blocked, std::uint8_t(1)));
     HostBvh const& tree = own->moving();
     fmt::print(
         "{:<24} {:>9} {:>8.3f} {:>8.3f} {:>8.3f} {:>7.2f} {:>7.2f} {:>6.3f} [{:.3f}, {:.3f}] {:>6} {:>6} {:>7.1f} "
@@ -113,6 +164,10 @@ void measure(std::string const& name, Scene scene)
         double(kRays) / median(embree_s) * 1e-6, double(kRays) / median(own_s) * 1e-6, median(ratio), *low, *high,
         different, unexplained, traversal_cost(tree), tree.level.size() - 1,
         double(tree.bytes()) / double(world.triangles.size()));
+    fmt::print("  any hit: Embree {:.2f}, own {:.2f} Mray/s, ratio {:.3f}; blocked {} and {} of {}\n",
+               double(kRays) / median(any_embree_s) * 1e-6, double(kRays) / median(any_own_s) * 1e-6,
+               median(any_embree_s) / median(any_own_s), embree_blocked, own_blocked, kRays);
+    measure_frame(world, rays);
 }
 
 } // namespace
@@ -124,13 +179,19 @@ int main(int argc, char** argv)
     fmt::print("{:<24} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>6} {:^14} {:>6} {:>6} {:>7} {:>5} {:>6}\n", "scene",
                "triangles", "s", "s", "s", "Embree", "own", "Embree", "[min, max]", "all", "unexpl", "SAH",
                "depth", "angle");
-    if (argc == 1) {
-        measure("boxes, 1M triangles", generate_boxes(1'000'000, 0));
-        measure("atrium", generate_atrium({}));
-        measure("cornell", generate_cornell());
+    int first = 1;
+    std::size_t rays = 400'000;
+    if (argc > 2 && std::string(argv[1]) == "--rays") {
+        rays = std::stoul(argv[2]);
+        first = 3;
     }
-    for (int i = 1; i < argc; ++i) {
+    if (argc == first) {
+        measure("boxes, 1M triangles", generate_boxes(1'000'000, 0), rays);
+        measure("atrium", generate_atrium({}), rays);
+        measure("cornell", generate_cornell(), rays);
+    }
+    for (int i = first; i < argc; ++i) {
         Report report;
-        measure(argv[i], load_scene(argv[i], report));
+        measure(argv[i], load_scene(argv[i], report), rays);
     }
 }

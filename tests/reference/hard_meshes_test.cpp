@@ -3,6 +3,7 @@
 
 #include "gi/core/error.h"
 #include "gi/methods/reference/reference.h"
+#include "gi/methods/sh_grid/sh_grid.h"
 #include "gi/scene/load/load.h"
 #include "tests/support/data.h"
 #include "tests/support/scenes.h"
@@ -49,6 +50,10 @@ Outcome try_to_load(fs::path const& file)
         Camera const camera = look_at(middle + dvec3{0, 0, distance}, middle, 45);
         Picture const picture = render_reference(world, camera, settings, {}, {}, report).picture;
         for (float const v : picture.find("color")->data) EXPECT_TRUE(std::isfinite(v)) << file;
+        settings.sh_grid.voxels = 32;
+        settings.sh_grid.photons = 1000;
+        Picture const gridded = render_sh_grid(world, camera, settings, {}, {}, report).picture;
+        for (float const v : gridded.find("color")->data) EXPECT_TRUE(std::isfinite(v)) << file;
     } catch (InputError const& e) {
         outcome = Outcome::refused;
         EXPECT_NE(std::string(e.what()).find(file.filename().string()), std::string::npos) << e.what();

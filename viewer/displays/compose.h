@@ -31,7 +31,8 @@ std::vector<unsigned char> compose_stereo(StereoMode mode, std::span<unsigned ch
 /// Matrices for red/cyan glasses, on linear light; row = channel of the result, column = channel of the eye's
 /// picture.
 /// E. Dubois, "Conversion of a Stereo Pair to Anaglyph with the Least-Squares Projection Method", 2009; the
-/// method: "A projection method to generate anaglyph stereo images", ICASSP 2001. Results beyond 0..1 are clipped.
+/// method: "A projection method to generate anaglyph stereo images", ICASSP 2001. The left eye
+/// looks through red. Results beyond 0..1 are clipped.
 struct DuboisMatrices {
     float left[3][3] = {{0.437f, 0.449f, 0.164f}, {-0.062f, -0.062f, -0.024f}, {-0.048f, -0.050f, -0.017f}};
     float right[3][3] = {{-0.011f, -0.032f, -0.007f}, {0.377f, 0.761f, 0.009f}, {-0.026f, -0.093f, 1.234f}};

@@ -29,8 +29,9 @@ public:
     /// Calls `what` to exchange messages with other ranks. Throws RankLoss; RankInterrupted after a stop request.
     void talk(std::function<void(Cluster&)> const& what);
 
-    /// The share of this rank in the paths of one picture; its merge sends all sums to the leader, which adds them
-    /// in the order of ranks.
+    /// The paths per pixel that this rank traces, as a range of path numbers; one process alone traces all.
+    /// PathShare::merge sends this rank's pixel sums to the leader, which adds them in the order of ranks.
+    /// @param paths  per pixel, of all ranks together
     gi::PathShare share(std::uint32_t paths);
     /// Call after rendering: sends the other counts of all ranks to the leader.
     /// @param loaded  losses of the report before path tracing, which every rank has

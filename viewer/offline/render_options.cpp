@@ -88,7 +88,8 @@ void declare_view_options(CLI::App& c, RenderOptions& o)
     c.add_option("--look-at", o.look_at, "point to look at, x,y,z, m (default: middle of the scene)");
     c.add_option("--fov", o.fov_deg, "vertical field of view, degrees")->check(in_range(0.001, 179));
     c.add_option("--envmap", o.environment, "lat-long environment map, HDR or EXR");
-    c.add_option("--envmap-rotate", o.environment_rotate_deg, "degrees about +Y, counter-clockwise from above")
+    c.add_option("--envmap-rotate", o.environment_rotate_deg,
+                 "turns the map about +Y, degrees, counter-clockwise from above, besides the scene's own rotation")
         ->check(in_range(-1e6, 1e6));
     c.add_option("--envmap-scale", o.environment_scale, "scale factor of its radiance")->check(in_range(0, 1e9));
     c.add_option("--time", o.time_s, "animation time, s")->check(in_range(-1e9, 1e9));
@@ -100,8 +101,8 @@ void declare_lens_options(CLI::App& c, RenderOptions& o)
                  "radius of a thin lens, m, for depth of field (default: the camera's, else 0, a pinhole)")
         ->check(in_range(0, gi::kWidestLens_m));
     c.add_option("--focus-distance", o.focus_distance_m,
-                 "distance of the plane in focus along the view, m (default: the camera's, else that of\n"
-                 "--look-at or the middle of the scene)")
+                 "distance of the plane in focus along the view, m; needs an aperture radius above 0 (default: the\n"
+                 "camera's, else the distance of the point of --look-at, else of the middle of the scene)")
         ->check(in_range(gi::kNearestFocus_m, gi::kFarthestFocus_m));
 }
 

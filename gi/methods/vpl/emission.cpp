@@ -45,6 +45,12 @@ EmittedLight emit_triangle(WorldView const& world, std::uint32_t triangle, vec2 
 
 } // namespace
 
+bool comes_from_afar(WorldView const& world, LightChoice choice)
+{
+    return light_detail::is_environment(world, choice) ||
+           (choice.light < world.lights.size() && world.lights[choice.light].type == LightType::directional);
+}
+
 EmittedLight emit_light(WorldView const& world, LightChoice choice, Bounds const& bounds, vec2 place,
                         vec2 direction, float side)
 {

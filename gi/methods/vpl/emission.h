@@ -14,6 +14,9 @@ struct EmittedLight {
     float range = 0; ///< m, of a punctual light (see Light); 0 = unlimited
 };
 
+/// True for the sky and for parallel lights.
+bool comes_from_afar(WorldView const& world, LightChoice choice);
+
 /// @param choice  from choose_light  @param bounds  of the world  @param place, direction  uniform in [0, 1)^2
 /// @param side  uniform in [0, 1): selects the face of a double-sided light
 EmittedLight emit_light(WorldView const& world, LightChoice choice, Bounds const& bounds, vec2 place,

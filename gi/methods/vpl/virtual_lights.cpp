@@ -3,6 +3,7 @@
 #include "gi/core/rng.h"
 #include "gi/methods/vpl/emission.h"
 #include "gi/render/flush_denormals.h"
+#include "gi/scene/shading/warp.h"
 
 #include <algorithm>
 #include <tbb/parallel_for.h>
@@ -67,6 +68,25 @@ bool advance(WorldView const& world, LightPaths const& s, LightPath& p, Hit cons
     return true;
 }
 
+/// Sends a ray from the sky, or of a parallel light, through the sphere around the focus, or lets it pass beside.
+void focus_light(LightPaths const& s, Bounds const& bounds, bool through, vec2 place, EmittedLight& light)
+{
+    light.power *= 2;
+    vec3 const travels = light.ray.direction, center = s.focus.center();
+    float const radius = 1.001f * s.focus.radius(); // as the disk of emit_light()
+    vec3 const beside = light.ray.origin - center;
+    bool const hits = glm::length(beside - glm::dot(beside, travels) * travels) < radius;
+    if (!through) {
+        if (hits) light.power = vec3{0};
+        return;
+    }
+    Frame const frame = Frame::about(travels);
+    vec2 const on_disk = radius * square_to_disk(place);
+    float const back = 1.001f * bounds.radius() + glm::length(center - bounds.center());
+    light.ray.origin = center - back * travels + on_disk.x * frame.tangent + on_disk.y * frame.bitangent;
+    light.power *= square(radius / (1.001f * bounds.radius()));
+}
+
 void trace(WorldView const& world, ExactVisibility const& visibility, LightPaths const& s,
            std::vector<LightPath>& paths, PathCounts& counts)
 {
@@ -99,12 +119,15 @@ std::vector<VirtualLight> trace_light_paths(WorldView const& world, Bounds const
                                             PathCounts& counts)
 {
     if (s.bounces < 1 || world.light_select.empty()) return {};
-    std::uint32_t const blocks = (s.count + kPathsTogether - 1) / kPathsTogether;
+    std::uint32_t const end = std::min(s.count, s.last);
+    if (s.first >= end) return {};
+    std::uint32_t const blocks = (end - s.first + kPathsTogether - 1) / kPathsTogether;
     std::vector<std::vector<VirtualLight>> found(blocks);
     std::vector<PathCounts> of_block(blocks);
     tbb::parallel_for(0u, blocks, [&](std::uint32_t block) {
         FlushDenormals const guard;
-        std::uint32_t const first = block * kPathsTogether, last = std::min(s.count, first + kPathsTogether);
+        if (s.stop != nullptr && s.stop->given_up()) throw Interrupted();
+        std::uint32_t const first = s.first + block * kPathsTogether, last = std::min(end, first + kPathsTogether);
         std::vector<LightPath> paths(last - first);
         for (std::uint32_t i = first; i < last; ++i) {
             LightPath& p = paths[i - first];
@@ -115,6 +138,8 @@ std::vector<VirtualLight> trace_light_paths(WorldView const& world, Bounds const
             vec2 const place = p.rng.uniform2(), direction = p.rng.uniform2();
             p.light = emit_light(world, choice, bounds, place, direction, p.rng.uniform());
             p.light.power /= float(s.count);
+            if (!s.focus.empty() && comes_from_afar(world, choice))
+                focus_light(s, bounds, p.rng.uniform() < 0.5f, place, p.light);
         }
         trace(world, visibility, s, paths, of_block[block]);
         for (LightPath const& p : paths) found[block].insert(found[block].end(), p.left.begin(), p.left.end());

@@ -25,10 +25,15 @@ struct VirtualLight {
 };
 
 struct LightPaths {
-    std::uint32_t count = 256; ///< >= 1
-    int bounces = 1;           ///< indirect bounces of the picture; a virtual light is the first of them
+    std::uint32_t count = 256;           ///< >= 1
+    std::uint32_t first = 0, last = ~0u; ///< those of them to trace: first to last - 1
+    int bounces = 1;                     ///< indirect bounces of the picture; a virtual light is the first of them
     std::uint64_t seed = 0;
     std::uint32_t pass = 0;
+    /// Half of the sky's and the parallel lights' paths go through the sphere around this box, the others past it;
+    /// empty = all go through the whole scene.
+    Bounds focus{};
+    BuildStop const* stop = nullptr; ///< null = never; else trace_light_paths() throws Interrupted
 };
 
 /// Returns virtual lights in the order of the paths, for any number of threads. Empty if there are no lights or

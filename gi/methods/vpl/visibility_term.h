@@ -22,7 +22,7 @@ enum class VisibilityKind : std::uint8_t {
     none         ///< everything is visible
 };
 
-/// Receivers of one tile and the random seed of its pass.
+/// The receivers of one tile, and a random seed that differs for every tile and pass.
 struct ReceiverTile {
     std::span<Receiver const> receivers;
     std::uint32_t seed;

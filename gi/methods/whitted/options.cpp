@@ -8,8 +8,8 @@ RenderOption ray_trees(char const* name, OptionValues values, char const* meanin
 {
     return {make_option<RenderSettings>(
                 name, std::move(values), meaning, [member](auto& s) -> auto& { return s.whitted.*member; }),
-            "Method whitted",
-            {"whitted"}};
+            "Methods whitted and sh_grid",
+            {"whitted", "sh_grid"}};
 }
 
 } // namespace

@@ -23,7 +23,7 @@ void TreeTracer::aim_at_lights(TreeRay& r, ShadingPoint const& at, vec3 wo, int 
 }
 
 void TreeTracer::shade(TreeRay& r, Hit const& hit, int generation, std::vector<TreeRay>& next,
-                       std::vector<ShadowRay>& shadows, TreeCounts& counts) const
+                       std::vector<ShadowRay>& shadows, std::vector<TreePoint>& points, TreeCounts& counts) const
 {
     vec3 const arrival = r.ray.direction;
     if (hit.triangle == kNoTriangle) {
@@ -39,8 +39,10 @@ void TreeTracer::shade(TreeRay& r, Hit const& hit, int generation, std::vector<T
     vec3 const wo = at.frame.to_local(-arrival);
     if (!only_delta(at.bsdf)) {
         if (!world.light_select.empty()) aim_at_lights(r, at, wo, generation, shadows);
-        if (light != nullptr)
-            layer_of(*r.sample, 2) += r.throughput * light->indirect(at, wo, r.rng, generation == 0);
+        if (light != nullptr) {
+            Pcg32 const rng = Pcg32::for_path(r.rng.next(), 0, 0);
+            points.push_back({at, wo, rng, generation == 0, r.throughput, r.sample});
+        }
     }
     BsdfSample lobes[3];
     int const n = delta_lobes(at.bsdf, wo, at.front, lobes);
@@ -69,6 +71,8 @@ void TreeTracer::trace(std::span<glm::ivec2 const> pixels, std::uint32_t index, 
     std::vector<RayQuery> queries;
     std::vector<Hit> hits;
     std::vector<std::uint8_t> blocked;
+    std::vector<TreePoint> points;
+    std::vector<vec3> indirect;
     for (std::size_t k = 0; k < pixels.size(); ++k) {
         RayPath start;
         start_path(start, camera, filter, seed, pixels[k], width, index);
@@ -79,6 +83,7 @@ void TreeTracer::trace(std::span<glm::ivec2 const> pixels, std::uint32_t index, 
         queries.clear();
         next.clear();
         shadows.clear();
+        points.clear();
         for (TreeRay& r : rays) {
             queries.push_back({.ray = r.ray, .seed = r.rng.next()});
             if (generation == 0) queries.back().start = camera_clearance(r.ray.origin);
@@ -86,7 +91,8 @@ void TreeTracer::trace(std::span<glm::ivec2 const> pixels, std::uint32_t index, 
         hits.resize(rays.size());
         visibility.nearest(queries, hits);
         counts.paths.nearest_rays += rays.size();
-        for (std::size_t k = 0; k < rays.size(); ++k) shade(rays[k], hits[k], generation, next, shadows, counts);
+        for (std::size_t k = 0; k < rays.size(); ++k)
+            shade(rays[k], hits[k], generation, next, shadows, points, counts);
         queries.clear();
         for (ShadowRay const& s : shadows) queries.push_back(s.query);
         blocked.resize(queries.size());
@@ -94,6 +100,12 @@ void TreeTracer::trace(std::span<glm::ivec2 const> pixels, std::uint32_t index, 
         counts.paths.shadow_rays += queries.size();
         for (std::size_t k = 0; k < shadows.size(); ++k)
             if (blocked[k] == 0) layer_of(*shadows[k].sample, 1) += shadows[k].radiance;
+        if (!points.empty()) {
+            indirect.resize(points.size());
+            light->indirect(points, indirect, counts.paths);
+            for (std::size_t k = 0; k < points.size(); ++k)
+                layer_of(*points[k].sample, 2) += points[k].throughput * indirect[k];
+        }
         std::swap(rays, next);
     }
     for (PathSample& s : samples) counts.paths.invalid_paths += discard_invalid(s);

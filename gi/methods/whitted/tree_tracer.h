@@ -14,13 +14,23 @@
 
 namespace gi {
 
+/// A surface in a ray tree.
+struct TreePoint {
+    ShadingPoint at;
+    vec3 wo; ///< unit, in at.frame
+    Pcg32 rng;
+    bool direct; ///< seen by the camera, not in mirrors or through glass
+    vec3 throughput;
+    PathSample* sample;
+};
+
 /// Indirect light at surfaces.
 class SurfaceLight {
 public:
     virtual ~SurfaceLight() = default;
-    /// Radiance that leaves a surface towards wo (in at.frame) by its non-delta lobes, of light that does not come
-    /// directly from its source. @param direct  of this surface only: false behind mirrors and glass
-    virtual vec3 indirect(ShadingPoint const& at, vec3 wo, Pcg32& rng, bool direct) const = 0;
+    /// Radiance that leaves surfaces towards wo by their non-delta lobes, of light that does not come directly
+    /// from its source. @param out  one per point, overwritten
+    virtual void indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts& counts) const = 0;
 };
 
 /// Work and losses.
@@ -58,7 +68,7 @@ private:
         PathSample* sample;
     };
     void shade(TreeRay& r, Hit const& hit, int generation, std::vector<TreeRay>& next,
-               std::vector<ShadowRay>& shadows, TreeCounts& counts) const;
+               std::vector<ShadowRay>& shadows, std::vector<TreePoint>& points, TreeCounts& counts) const;
     void aim_at_lights(TreeRay& r, ShadingPoint const& at, vec3 wo, int generation,
                        std::vector<ShadowRay>& shadows) const;
 };

@@ -10,29 +10,29 @@
 namespace gi {
 
 TreeRenderer::TreeRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving,
-                           Report& report)
+                           Report& report, StopRequest const* stop)
     : world_(world), settings_(settings), first_moving_(first_moving), report_(report)
 {
-    build();
+    build(stop);
 }
 
-void TreeRenderer::build()
+void TreeRenderer::build(StopRequest const* stop)
 {
     StageTimer const timer(report_, "build (Embree BVH)");
     visibility_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, settings_.threads,
-                                                    first_moving_);
+                                                    first_moving_, stop);
 }
 
 void TreeRenderer::changed(Changes const& changes)
 {
     // Rays with coverage tests use the materials from when the BVH was built.
-    if (changes.coverage || (changes.materials && plan_scene(world_).alpha_tests)) return build();
+    if (changes.coverage || (changes.materials && plan_scene(world_).alpha_tests)) return build(nullptr);
     if (changes.geometry) visibility_->moved(world_);
 }
 
 void TreeRenderer::pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums)
 {
-    SurfaceLight const* const light = prepare(index);
+    SurfaceLight const* const light = prepare(index, views);
     StageTimer const timer(report_, "ray trees");
     for (std::size_t k = 0; k < views.size(); ++k) trace_view(views[k], index, light, sums[k]);
 }
@@ -94,9 +94,9 @@ std::string TreeRenderer::options() const
 namespace {
 
 std::unique_ptr<PassRenderer> start(World const& world, RenderSettings const& settings, std::size_t first_moving,
-                                    Report& report)
+                                    Report& report, StopRequest const* stop)
 {
-    return std::make_unique<TreeRenderer>(world, settings, first_moving, report);
+    return std::make_unique<TreeRenderer>(world, settings, first_moving, report, stop);
 }
 
 } // namespace

@@ -14,7 +14,8 @@ namespace gi {
 class TreeRenderer : public PassRenderer {
 public:
     /// See StartPasses.
-    TreeRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report);
+    TreeRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
+                 StopRequest const* stop);
 
     void changed(Changes const& changes) override;
     void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums) override;
@@ -24,7 +25,7 @@ public:
 
 protected:
     /// Called before the trees of a pass. Returns their indirect light, or null.
-    virtual SurfaceLight const* prepare(std::uint32_t) { return nullptr; }
+    virtual SurfaceLight const* prepare(std::uint32_t, std::span<FrameView const>) { return nullptr; }
 
     World const& world_;
     RenderSettings const& settings_;
@@ -32,12 +33,12 @@ protected:
     Report& report_;
     std::unique_ptr<ExactVisibility> visibility_;
     double rays_ = 0;
+    TreeCounts work_; ///< since the last report
 
 private:
-    void build();
+    void build(StopRequest const* stop);
     void trace_view(FrameView const& view, std::uint32_t index, SurfaceLight const* light, Accumulator& sums);
 
-    TreeCounts work_;  ///< since the last report
     double trees_ = 0; ///< since the last report
 };
 

@@ -32,7 +32,8 @@ std::vector<Instance> find_instances(Scene const& scene);
 /// for normals and tangents that a mesh does not have.
 void prepare_vertices(World& world, std::vector<Instance> const& instances);
 
-/// Writes the vertices of an instance from its placement. Call it before the functions for its triangles.
+/// Writes the world positions, normals and tangents of an instance's vertices, as its placement moves, skins and
+/// morphs them. Call it before append_static_triangles() or write_moving_triangles().
 void deform_into(World& world, Instance const& instance);
 
 /// Appends the triangles of a static instance; skips and reports those that are not finite or have no area.

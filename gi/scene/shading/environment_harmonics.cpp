@@ -1,6 +1,7 @@
 #include "gi/scene/shading/environment_harmonics.h"
 
 #include "gi/scene/shading/light_sampling.h"
+#include "gi/scene/shading/spherical_harmonics.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -69,14 +70,8 @@ constexpr double kGauss[8][2] = {
 
 std::array<double, EnvironmentHarmonics::kMost> spherical_harmonics(dvec3 d)
 {
-    Values const p = polar_parts(d.y, std::sqrt(d.x * d.x + d.z * d.z));
-    double const phi = std::atan2(d.x, d.z);
     Values y{};
-    for (int l = 0; l < kDegrees; ++l)
-        for (int m = 0; m <= l; ++m) {
-            y[EnvironmentHarmonics::index(l, -m)] = p[EnvironmentHarmonics::index(l, m)] * std::sin(m * phi);
-            y[EnvironmentHarmonics::index(l, m)] = p[EnvironmentHarmonics::index(l, m)] * std::cos(m * phi);
-        }
+    spherical_harmonics(d, EnvironmentHarmonics::kMostDegree, y.data());
     return y;
 }
 

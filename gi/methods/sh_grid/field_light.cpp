@@ -1,0 +1,251 @@
+#include "gi/methods/sh_grid/field_light.h"
+
+#include "gi/methods/slhb/directions/direction_map.h"
+#include "gi/scene/shading/warp.h"
+
+#include <algorithm>
+
+namespace gi {
+namespace {
+
+template <class T>
+T series(T const* coefficients, float const* y, int n)
+{
+    T sum{0};
+    for (int k = 0; k < n; ++k) sum += y[k] * coefficients[k];
+    return sum;
+}
+
+/// Mean distance and mean square in a direction, in cells: bilinear in the octahedral map, which goes on over its
+/// sides turned by half a turn.
+vec2 near_surfaces(FieldCell const& cell, vec3 direction)
+{
+    constexpr int n = FieldCell::kNear;
+    vec2 const at = octahedral_from_direction(direction) * float(n) - 0.5f, low = glm::floor(at), part = at - low;
+    vec2 sum{0};
+    for (int k = 0; k < 4; ++k) {
+        int x = int(low.x) + k % 2, y = int(low.y) + k / 2;
+        if (x < 0 || x >= n) {
+            x = glm::clamp(x, 0, n - 1);
+            y = n - 1 - y;
+        }
+        if (y < 0 || y >= n) {
+            y = glm::clamp(y, 0, n - 1);
+            x = n - 1 - x;
+        }
+        float const weight = (k % 2 == 0 ? 1 - part.x : part.x) * (k / 2 == 0 ? 1 - part.y : part.y);
+        sum += weight * cell.near[y * n + x];
+    }
+    return sum;
+}
+
+/// Upper bound of the probability that nothing is between a cell's centre and a point. @param from_center  in
+/// cells
+float visibility(FieldCell const& cell, vec3 from_center)
+{
+    float const distance = glm::length(from_center);
+    if (!(distance > 0)) return 1;
+    vec2 const near = near_surfaces(cell, from_center / distance);
+    if (distance <= near.x) return 1;
+    float const variance = std::max(near.y - square(near.x), 0.002f);
+    float const bound = variance / (variance + square(distance - near.x));
+    return std::max(bound * bound * bound, 1e-6f);
+}
+
+} // namespace
+
+vec3 field_radiance(FieldCell const& cell, int degree, vec3 direction)
+{
+    float y[FieldCell::kMost];
+    spherical_harmonics(direction, degree, y);
+    return glm::max(series(cell.radiance, y, (degree + 1) * (degree + 1)), vec3{0});
+}
+
+vec3 field_irradiance(FieldCell const& cell, int degree, vec3 normal)
+{
+    // Ramamoorthi and Hanrahan 2001, eq. 7 and 8.
+    constexpr float kCosine[kMostHarmonicsDegree + 1] = {kPi, 2 * kPi / 3, kPi / 4, 0, -kPi / 24};
+    float y[FieldCell::kMost];
+    spherical_harmonics(normal, degree, y);
+    vec3 sum{0};
+    for (int l = 0; l <= degree; ++l)
+        for (int k = l * l; k < (l + 1) * (l + 1); ++k) sum += kCosine[l] * y[k] * cell.radiance[k];
+    return glm::max(sum, vec3{0});
+}
+
+FieldLight::FieldLight(std::span<GridLevel const> levels, ExactVisibility const& visibility,
+                       GatherSettings const& settings)
+    : visibility_(visibility),
+      degree_(levels[0].field.degree),
+      coefficients_((degree_ + 1) * (degree_ + 1)),
+      settings_(settings)
+{
+    for (GridLevel const& level : levels) levels_.push_back(level.field.cells.view());
+}
+
+void FieldLight::add_cells(std::size_t level, vec3 position, vec3 normal, float share,
+                           std::vector<NearCell>& out) const
+{
+    constexpr float kReach = 1.75f; // r_max, cells
+    constexpr float kAbove = 0.15f; // from where visibility is judged, cells above the surface
+    CellsView<FieldCell> const& cells = levels_[level];
+    vec3 const at = (position - cells.frame.low) / cells.frame.cell;
+    glm::ivec3 const middle = cells.frame.at(position);
+    std::size_t const first = out.size();
+    float sum = 0;
+    for (int k = 0; k < 27; ++k) {
+        glm::ivec3 const c = middle + glm::ivec3{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+        FieldCell const* const cell = cells.find(c);
+        if (cell == nullptr) continue;
+        vec3 const to_center = vec3(c) + 0.5f - at;
+        float const d = glm::length(to_center) / kReach;
+        if (d >= 1) continue;
+        float weight = (2 * d - 3) * square(d) + 1; // w_sh
+        if (settings_.block_leaks) {
+            weight *= glm::clamp(2 * glm::dot(to_center, normal) + 0.1f, 1e-4f, 1.0f);
+            weight *= std::max(square(cell->open), 1e-4f) * visibility(*cell, kAbove * normal - to_center);
+        }
+        sum += weight;
+        out.push_back({cell, cells.frame.center(c), weight, cells.frame.cell});
+    }
+    for (std::size_t k = first; k < out.size(); ++k) out[k].weight *= sum > 0 ? share / sum : 0;
+}
+
+void FieldLight::find_cells(vec3 position, vec3 normal, std::vector<NearCell>& out) const
+{
+    out.clear();
+    float left = 1;
+    for (std::size_t level = 0; level < levels_.size(); ++level) {
+        GridFrame const& frame = levels_[level].frame;
+        vec3 const end = vec3(frame.size), at = (position - frame.low) / frame.cell;
+        // Towards the sides of the fine grid, the coarse one takes over.
+        float const inside = 0.5f * min_component(glm::min(at, end - at)) - 0.5f;
+        float const share = level + 1 == levels_.size() ? left : left * glm::clamp(inside, 0.0f, 1.0f);
+        std::size_t const before = out.size();
+        if (share > 0) add_cells(level, position, normal, share, out);
+        if (out.size() > before) left -= share;
+    }
+    float sum = 0;
+    for (NearCell const& near : out) sum += near.weight;
+    for (NearCell& near : out) near.weight = sum > 0 ? near.weight / sum : 1 / float(out.size());
+}
+
+vec3 FieldLight::reflect(TreePoint& point, FieldCell const& cell) const
+{
+    ShadingPoint const& at = point.at;
+    Bsdf const& b = at.bsdf;
+    vec3 out{0};
+    if (max_component(b.diffuse) > 0) {
+        float through =
+            b.model == MaterialModel::metal_rough
+                ? bsdf_detail::through_coat(b, point.wo.z, 1 / 1.5f) // the coat's mean angle of incidence
+                : 1.0f;
+        vec3 arriving{0};
+        if (settings_.directions == 0) {
+            arriving = field_irradiance(cell, degree_, at.frame.normal);
+        } else {
+            for (int k = 0; k < settings_.directions; ++k) {
+                vec2 const u{(float(k) + point.rng.uniform()) / float(settings_.directions), point.rng.uniform()};
+                arriving += field_radiance(cell, degree_, at.frame.to_world(square_to_cosine_hemisphere(u)));
+            }
+            arriving *= kPi / float(settings_.directions);
+        }
+        if (settings_.obscurance_m > 0) {
+            float y[FieldCell::kMost];
+            spherical_harmonics(at.frame.normal, degree_, y);
+            through *= glm::clamp(series(cell.distance, y, coefficients_) / settings_.obscurance_m, 0.0f, 1.0f);
+        }
+        out += through * b.diffuse * kInvPi * arriving;
+    }
+    bool const glossy = b.model == MaterialModel::phong ? max_component(b.phong_specular) > 0
+                                                        : b.f90.x > 0 && !bsdf_detail::specular_is_delta(b);
+    if (!glossy) return out;
+    int const n = point.direct ? settings_.glossy_directions : std::max(1, settings_.glossy_directions / 8);
+    Bsdf lobe = b; // the glossy one alone: its value and density, without the diffuse base
+    lobe.diffuse = vec3{0};
+    lobe.clear = 0;
+    vec3 sum{0};
+    for (int k = 0; k < n; ++k) {
+        vec2 const u{(float(k) + point.rng.uniform()) / float(n), point.rng.uniform()};
+        vec3 const wi = bsdf_detail::sample_specular(b, point.wo, u);
+        if (!(wi.z > 0)) continue;
+        BsdfValue const value = evaluate(lobe, point.wo, wi);
+        if (value.pdf > 0)
+            sum += value.f * (wi.z / value.pdf) * field_radiance(cell, degree_, at.frame.to_world(wi));
+    }
+    return out + sum / float(n);
+}
+
+void FieldLight::indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts& counts) const
+{
+    std::vector<NearCell> cells;
+    std::vector<FieldCell> around(points.size());
+    std::vector<ShadowRay> rays;
+    std::vector<std::uint8_t> seen(points.size());
+    auto const shadow_ray = [&](std::uint32_t i, NearCell const& near, float weight) {
+        TreePoint& p = points[i];
+        vec3 const from = leave(p.at, p.at.geometric_normal), way = near.center - from;
+        float const length = glm::length(way);
+        if (!(length > 0)) return;
+        rays.push_back({{.ray = {from, way / length}, .reach = length, .seed = p.rng.next()}, near, weight, i});
+    };
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        TreePoint& p = points[i];
+        if (!(p.wo.z > 0)) continue;
+        find_cells(p.at.position, p.at.geometric_normal, cells);
+        int const chosen = p.direct ? settings_.shadow_rays : std::min(settings_.shadow_rays, 1);
+        if (chosen == 0) {
+            for (NearCell const& near : cells) add(near, near.weight, around[i]);
+            seen[i] = cells.empty() ? 0 : 1;
+            continue;
+        }
+        float sum = 0, next = p.rng.uniform() / float(chosen);
+        for (NearCell const& near : cells) {
+            sum += near.weight;
+            for (; sum > next; next += 1 / float(chosen)) shadow_ray(i, near, 1);
+        }
+    }
+    add_visible(rays, around, counts, seen);
+    rays.clear();
+    for (std::uint32_t i = 0; i < points.size(); ++i) { // where none of these was seen: all cells
+        if (seen[i] != 0 || !(points[i].wo.z > 0)) continue;
+        find_cells(points[i].at.position, points[i].at.geometric_normal, cells);
+        for (NearCell const& near : cells) shadow_ray(i, near, near.weight);
+    }
+    add_visible(rays, around, counts, seen);
+    std::uint64_t none = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        out[i] = points[i].wo.z > 0 ? reflect(points[i], around[i]) : vec3{0};
+        none += points[i].wo.z > 0 && seen[i] == 0 ? 1 : 0;
+    }
+    unseen_.fetch_add(none, std::memory_order_relaxed);
+}
+
+void FieldLight::add(NearCell const& near, float weight, FieldCell& out) const
+{
+    for (int c = 0; c < coefficients_; ++c) {
+        out.radiance[c] += weight * near.cell->radiance[c];
+        out.distance[c] += weight * near.cell_m * near.cell->distance[c];
+    }
+}
+
+void FieldLight::add_visible(std::span<ShadowRay const> rays, std::span<FieldCell> out, PathCounts& counts,
+                             std::span<std::uint8_t> seen) const
+{
+    std::vector<RayQuery> queries;
+    for (ShadowRay const& r : rays) queries.push_back(r.query);
+    std::vector<std::uint8_t> blocked(queries.size());
+    visibility_.occluded(queries, blocked);
+    counts.shadow_rays += queries.size();
+    for (std::size_t k = 0; k < rays.size();) {
+        std::uint32_t const i = rays[k].point;
+        std::size_t end = k;
+        float open = 0;
+        for (; end < rays.size() && rays[end].point == i; ++end) open += blocked[end] == 0 ? rays[end].weight : 0;
+        if (open > 0) seen[i] = 1;
+        for (; k < end; ++k)
+            if (blocked[k] == 0 && open > 0) add(rays[k].near, rays[k].weight / open, out[i]);
+    }
+}
+
+} // namespace gi

@@ -1,0 +1,69 @@
+#include "gi/methods/sh_grid/focus.h"
+
+#include "gi/core/rng.h"
+#include "gi/scene/shading/shading_point.h"
+#include "gi/scene/shading/warp.h"
+
+#include <algorithm>
+
+namespace gi {
+
+std::vector<vec3> shown_points(World const& world, ExactVisibility const& visibility,
+                               std::span<FrameView const> views)
+{
+    constexpr int kSide = 32; // rays across and down each view
+    WorldView const w = view(world);
+    std::vector<vec3> points;
+    std::vector<RayQuery> queries;
+    for (FrameView const& v : views) {
+        CameraRays const camera = camera_rays(v.camera, v.width, v.height, world.origin);
+        for (int k = 0; k < kSide * kSide; ++k) {
+            vec2 const at = (vec2{float(k % kSide), float(k / kSide)} + 0.5f) / float(kSide);
+            Ray const ray = camera.through(at * vec2{float(v.width), float(v.height)});
+            queries.push_back({.ray = ray, .seed = std::uint32_t(k), .start = camera_clearance(ray.origin)});
+        }
+    }
+    Pcg32 rng(7, 7);
+    for (int bounce = 0; bounce < 2; ++bounce) {
+        std::vector<Hit> hits(queries.size());
+        visibility.nearest(queries, hits);
+        std::vector<RayQuery> next;
+        for (std::size_t k = 0; k < hits.size(); ++k) {
+            if (hits[k].triangle == kNoTriangle) continue;
+            ShadingPoint const at =
+                shading_point(w, hits[k].triangle, hits[k].barycentric, queries[k].ray.direction);
+            points.push_back(at.position);
+            vec3 const direction =
+                Frame::about(at.geometric_normal).to_world(square_to_cosine_hemisphere(rng.uniform2()));
+            next.push_back({.ray = {leave(at, direction), direction}, .seed = rng.next()});
+        }
+        queries = std::move(next);
+    }
+    return points;
+}
+
+Bounds focus_of(std::span<vec3 const> points)
+{
+    if (points.empty()) return {};
+    Bounds box;
+    std::vector<float> along(points.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t k = 0; k < points.size(); ++k) along[k] = points[k][axis];
+        std::ranges::sort(along);
+        std::size_t const cut = points.size() / 100;
+        box.low[axis] = along[cut];
+        box.high[axis] = along[points.size() - 1 - cut];
+    }
+    float const margin = 0.05f * max_component(box.high - box.low);
+    return {box.low - margin, box.high + margin};
+}
+
+double share_in(Bounds const& box, std::span<vec3 const> points)
+{
+    auto const inside = std::ranges::count_if(points, [&](vec3 p) {
+        return glm::all(glm::lessThanEqual(box.low, p)) && glm::all(glm::lessThanEqual(p, box.high));
+    });
+    return points.empty() ? 1 : double(inside) / double(points.size());
+}
+
+} // namespace gi

@@ -1,0 +1,21 @@
+#pragma once
+// The part of a world that a picture shows, and that lights it nearly: a box for a fine grid.
+
+#include "gi/render/exact_visibility.h"
+#include "gi/render/frame_renderer.h"
+
+#include <span>
+#include <vector>
+
+namespace gi {
+
+/// What rays from the cameras meet, and after one more ray in a random direction. The same rays for the same
+/// cameras. m
+std::vector<vec3> shown_points(World const& world, ExactVisibility const& visibility,
+                               std::span<FrameView const> views);
+/// A box around all but 2 % of the points along each axis, and a margin. Empty without points.
+Bounds focus_of(std::span<vec3 const> points);
+/// Share of the points in a box.
+double share_in(Bounds const& box, std::span<vec3 const> points);
+
+} // namespace gi

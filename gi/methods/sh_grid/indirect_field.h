@@ -1,0 +1,91 @@
+#pragma once
+// All that sh_grid keeps between passes and frames: voxels, what surfaces meet, photons, radiance grids, fields.
+// A world that is much larger than what is shown has two levels: a fine grid around the latter, and one of all.
+
+#include "gi/core/report.h"
+#include "gi/methods/sh_grid/field.h"
+#include "gi/methods/sh_grid/focus.h"
+#include "gi/render/path_sample.h"
+#include "gi/render/render_settings.h"
+#include "gi/scene/motion/moving_world.h"
+
+#include <optional>
+
+namespace gi {
+
+struct GridLevel {
+    struct Geometry {
+        VoxelGrid voxels;
+        Surroundings surroundings;
+        Patches patches;
+    };
+    Bounds bounds;
+    Geometry fixed;                 ///< triangles that stay
+    std::optional<Geometry> moving; ///< all triangles; none = nothing can move
+    std::optional<ReachedSides> reached;
+    RadianceGrids grids;
+    Field field;
+    std::vector<std::uint32_t> new_cells; ///< indices of those without a value yet
+    std::vector<std::uint8_t> lit;        ///< per patch, front and back: photons hit it
+    double hidden_m2 = 0;                 ///< area that no light can reach, of both sides
+
+    Geometry const& geometry() const { return moving ? *moving : fixed; }
+};
+
+class IndirectField {
+public:
+    /// @param world  must outlive it  @param first_moving  index of the first triangle that may move
+    /// @param stop  see StartPasses
+    IndirectField(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
+                  StopRequest const* stop);
+
+    /// Follows the world: geometry that moved, lights or materials that changed.
+    void changed(Changes const& changes);
+    /// Brings the fields up to date for one more pass. After a change their cells follow within `field_passes`
+    /// calls; in a world at rest, calls 4, 8, 16, ... average the fields of more photons
+    /// and other directions.
+    /// @param visibility  of the world as it is now  @param index  of the pass; the first decides which photons
+    /// are traced. Throws Interrupted if a stop is requested and there is no field yet.
+    void prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
+                 PathCounts& counts);
+    /// The finest level first; empty without indirect light.
+    std::span<GridLevel const> levels() const { return levels_; }
+    void report_counts();
+
+private:
+    void update(ExactVisibility const& visibility, std::span<FrameView const> views, BuildStop const& stop,
+                PathCounts& counts);
+    std::vector<bool> only_smooth() const;
+    void place_levels(ExactVisibility const& visibility, std::span<FrameView const> views, BuildStop const& stop);
+    void find_moving_surfaces(ExactVisibility const& visibility, BuildStop const& stop);
+    void trace_photons(ExactVisibility const& visibility, BuildStop const& stop, PathCounts& counts);
+    void make_radiance_grids();
+    void place_cells(GridLevel& level);
+    void update_cells(ExactVisibility const& visibility, int part, int parts, BuildStop const& stop,
+                      PathCounts& counts);
+    RadianceBy by() const { return settings_.sh_grid.radiance_by; }
+    bool sky_shines() const { return !view(world_).environment_radiance.empty(); }
+
+    World const& world_;
+    RenderSettings const& settings_;
+    std::size_t first_moving_;
+    Report& report_;
+    StopRequest const* stop_;
+    std::optional<std::uint32_t> first_index_; ///< of the passes
+    std::vector<Camera> cameras_;              ///< of the last call
+    std::vector<bool> only_smooth_;            ///< per material, when the grids were placed
+
+    std::vector<GridLevel> levels_;
+    bool surfaces_changed_ = true, light_changed_ = true, coverage_changed_ = false, materials_changed_ = false;
+    std::vector<Photon> photons_;   ///< of the last set
+    std::uint32_t photon_sets_ = 0; ///< since the last change
+    dvec3 stored_{0};               ///< flux of photons, W
+    bool has_field_ = false;
+    bool update_all_ = true;    ///< cells in the next update
+    std::uint32_t updates_ = 0; ///< of the whole fields since the last change, each with other directions
+    int parts_left_ = 0;        ///< of the fields, that do not know the latest light
+    int next_part_ = 0;
+    std::uint32_t calls_at_rest_ = 0;
+};
+
+} // namespace gi

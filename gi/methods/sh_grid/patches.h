@@ -1,0 +1,61 @@
+#pragma once
+// The surfaces of a cell in patches: triangles that touch each other and face the same way. The two sides of a
+// thin wall are different patches, and so is what lies behind it.
+
+#include "gi/methods/sh_grid/axis_bins.h"
+#include "gi/methods/sh_grid/voxels.h"
+
+namespace gi {
+
+/// To find patches. Those of a cell follow each other, in the order of the cells' values.
+struct PatchesView {
+    View<std::uint32_t const> first_entry; ///< per cell, and one more
+    View<std::uint32_t const> triangles;   ///< of entries, ascending in each cell
+    View<std::uint32_t const> patches;     ///< of entries
+
+    /// The patch of a triangle in a cell, or kNoCell. @param place  of the cell's value
+    GI_FN std::uint32_t find(std::uint32_t place, std::uint32_t triangle) const
+    {
+        std::uint32_t low = first_entry[place], high = first_entry[place + 1];
+        std::uint32_t const end = high;
+        while (low < high) {
+            std::uint32_t const middle = (low + high) / 2;
+            if (triangles[middle] < triangle)
+                low = middle + 1;
+            else
+                high = middle;
+        }
+        return low < end && triangles[low] == triangle ? patches[low] : kNoCell;
+    }
+};
+
+struct Patches {
+    std::vector<std::uint32_t> first_entry, triangles, patches; ///< see PatchesView
+    std::vector<std::uint32_t> first_patch;                     ///< per cell, and one more
+    std::vector<std::uint32_t> cell_of_patch;                   ///< index of its value
+    std::vector<std::uint32_t> of_piece;                        ///< per VoxelGrid::pieces
+
+    PatchesView view() const { return {first_entry, triangles, patches}; }
+    std::size_t count() const { return first_patch.empty() ? 0 : first_patch.back(); }
+};
+
+/// Patches of less than a twentieth of a cell's face are joined with the others of their cell that face the same
+/// way: else single photons would make them glare.
+Patches find_patches(World const& world, VoxelGrid const& grid);
+
+/// The patch that a point on a triangle belongs to, also where rounding moved the point to the next cell, or
+/// kNoCell.
+GI_FN inline std::uint32_t patch_at(CellsView<BlockVoxels> const& blocks, PatchesView const& patches, vec3 point,
+                                    std::uint32_t triangle)
+{
+    for (int k = -1; k < 6; ++k) {
+        vec3 p = point;
+        if (k >= 0) p[k / 2] += (k % 2 == 0 ? -1e-3f : 1e-3f) * blocks.frame.cell;
+        std::uint32_t const place = blocks.find_place(blocks.frame.at(p));
+        std::uint32_t const patch = place == kNoCell ? kNoCell : patches.find(place, triangle);
+        if (patch != kNoCell) return patch;
+    }
+    return kNoCell;
+}
+
+} // namespace gi

@@ -1,0 +1,38 @@
+#pragma once
+// Photons as the radiance grids store them (Chang, Park and Ihm, sec. 3.2): where light leaves a surface after a
+// reflection, and in which direction.
+
+#include "gi/methods/sh_grid/axis_bins.h"
+#include "gi/methods/sh_grid/voxels.h"
+#include "gi/methods/vpl/virtual_lights.h"
+
+#include <span>
+
+namespace gi {
+
+struct Photon {
+    vec3 position;
+    vec3 normal;    ///< unit, geometric, on the side that the light leaves
+    vec3 direction; ///< unit, in which it leaves
+    vec3 flux;      ///< W
+    std::uint32_t triangle;
+    bool front; ///< it leaves the counter-clockwise side
+};
+
+/// The sides of surfaces that light has reached, by cell: bit side_index() of them.
+struct ReachedSides {
+    /// 0 to 11. @param normal  on the side that is lit or seen  @param front  it is the counter-clockwise one
+    static std::uint32_t side_index(vec3 normal, bool front) { return 2 * main_axis(normal) + (front ? 0 : 1); }
+
+    GridFrame frame;
+    std::vector<std::uint16_t> of_cell;
+
+    explicit ReachedSides(GridFrame const& f) : frame(f), of_cell(f.cells()) {}
+    void add(std::span<VirtualLight const> vertices);
+};
+
+/// Reflects each vertex of light paths once, in a random direction, and appends the photons.
+/// @param seed  of the directions
+void reflect_photons(std::span<VirtualLight const> vertices, std::uint64_t seed, std::vector<Photon>& out);
+
+} // namespace gi

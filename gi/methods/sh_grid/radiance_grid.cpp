@@ -1,0 +1,66 @@
+#include "gi/methods/sh_grid/radiance_kernels.h"
+
+#include "gi/kernel/launch.h"
+#include "gi/kernel/sort.h"
+
+namespace gi {
+namespace {
+
+SparseCells<CellLight> coarser(SparseCells<CellLight> const& fine)
+{
+    GridFrame frame = fine.frame;
+    frame.cell *= 2;
+    frame.size = (frame.size + 1) / 2;
+    SparseCells<CellLight> out(frame);
+    for (std::size_t k = 0; k < fine.values.size(); ++k)
+        out.at(fine.frame.cell_of(fine.cells[k]) / 2) += fine.values[k];
+    return out;
+}
+
+} // namespace
+
+RadianceGrids make_radiance_grids(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
+                                  ExposedAreas const& areas, std::span<Photon const> photons, RadianceBy by)
+{
+    std::size_t const n = photons.size(), cells = blocks.values.size(), sides = 2 * patches.count();
+    RadianceGrids grids;
+    grids.patches.resize(patches.count());
+    for (std::size_t k = 0; k < grids.patches.size(); ++k)
+        for (std::size_t side = 0; side < 2; ++side) grids.patches[k].area[side] = areas.of_patch[k][side];
+    View<Photon const> const all{photons.data(), n};
+    std::vector<std::uint64_t> keys(n), scratch_keys(n);
+    std::vector<std::uint32_t> order(n), scratch_order(n), firsts(sides + 1);
+    launch(Space::host, "find photon patches", n,
+           FindPhotonPatches{blocks.view(), patches.view(), all, keys, order});
+    sort_pairs(Space::host, keys, order, scratch_keys, scratch_order);
+    launch(Space::host, "find first photons", sides + 1, FindFirstPhotons{keys, firsts});
+
+    SparseCells<CellLight> finest(blocks.frame);
+    finest.place = blocks.place;
+    finest.cells = blocks.cells;
+    finest.values.resize(cells);
+    launch(Space::host, "sum photons", cells,
+           SumPhotons{.photons = all,
+                      .order = order,
+                      .firsts = firsts,
+                      .first_patch = patches.first_patch,
+                      .areas = areas.of_cell,
+                      .by = by,
+                      .patches = grids.patches,
+                      .cells = finest.values});
+    for (std::size_t k = firsts[sides]; k < n; ++k) grids.lost += dvec3(photons[order[k]].flux);
+    grids.levels.push_back(std::move(finest));
+    while (max_component(vec3(grids.levels.back().frame.size)) > 1)
+        grids.levels.push_back(coarser(grids.levels.back()));
+    return grids;
+}
+
+dvec3 RadianceGrids::flux() const
+{
+    dvec3 sum{0};
+    for (CellLight const& light : levels[0].values)
+        for (vec3 const f : light.flux.bin) sum += dvec3(f);
+    return sum;
+}
+
+} // namespace gi

@@ -1,0 +1,81 @@
+#include "gi/methods/sh_grid/sh_grid.h"
+
+#include "gi/methods/sh_grid/field_light.h"
+#include "gi/methods/sh_grid/indirect_field.h"
+#include "gi/methods/whitted/whitted.h"
+
+namespace gi {
+namespace {
+
+class ShGridRenderer : public TreeRenderer {
+public:
+    ShGridRenderer(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
+                   StopRequest const* stop)
+        : TreeRenderer(world, settings, first_moving, report, stop),
+          field_(world, settings, first_moving, report, stop)
+    {
+    }
+    void changed(Changes const& changes) override
+    {
+        TreeRenderer::changed(changes);
+        field_.changed(changes);
+    }
+    void report_work() override
+    {
+        TreeRenderer::report_work();
+        if (light_) unseen_ += light_->unseen();
+        light_.reset();
+        report_.lose("points of surfaces from which no cell of the field is seen, without indirect light",
+                     unseen_);
+        unseen_ = 0;
+        field_.report_counts();
+    }
+    std::string options() const override
+    {
+        return TreeRenderer::options() + " " + as_options(sh_grid_options(), settings_, {"voxels", "photons"});
+    }
+
+protected:
+    SurfaceLight const* prepare(std::uint32_t index, std::span<FrameView const> views) override
+    {
+        PathCounts counts;
+        field_.prepare(*visibility_, index, views, counts);
+        rays_ += double(counts.nearest_rays);
+        work_.paths += counts;
+        if (light_) unseen_ += light_->unseen();
+        light_.reset();
+        if (field_.levels().empty()) return nullptr;
+        ShGridSettings const& s = settings_.sh_grid;
+        light_.emplace(field_.levels(), *visibility_,
+                       GatherSettings{s.gather_directions, s.glossy_directions, s.obscurance_m,
+                                      s.leak_weights == Switch::on, s.field_shadow_rays});
+        return &*light_;
+    }
+
+private:
+    IndirectField field_;
+    std::uint64_t unseen_ = 0; ///< see FieldLight::unseen()
+    std::optional<FieldLight> light_;
+};
+
+std::unique_ptr<PassRenderer> start(World const& world, RenderSettings const& settings, std::size_t first_moving,
+                                    Report& report, StopRequest const* stop)
+{
+    return std::make_unique<ShGridRenderer>(world, settings, first_moving, report, stop);
+}
+
+} // namespace
+
+RenderResult render_sh_grid(World const& world, Camera const& camera, RenderSettings const& settings,
+                            StopRequest const& stop, RenderProgress const& progress, Report& report)
+{
+    return render_passes("sh_grid", start, world, camera, settings, stop, progress, report);
+}
+
+std::unique_ptr<FrameRenderer> start_sh_grid_frames(MovingWorld const& world, Camera const&,
+                                                    RenderSettings const& settings, Report& report)
+{
+    return start_pass_frames(start, world, settings, report);
+}
+
+} // namespace gi
