@@ -58,6 +58,13 @@ Bounds focus_of(std::span<vec3 const> points)
     return {box.low - margin, box.high + margin};
 }
 
+float longest_side(Bounds const& b) { return b.empty() ? 0 : max_component(b.high - b.low); }
+
+bool needs_fine_grid(Bounds const& focus, Bounds const& world)
+{
+    return longest_side(focus) > 0 && longest_side(focus) < 0.5f * longest_side(world);
+}
+
 double share_in(Bounds const& box, std::span<vec3 const> points)
 {
     auto const inside = std::ranges::count_if(points, [&](vec3 p) {

@@ -15,6 +15,10 @@ std::vector<vec3> shown_points(World const& world, ExactVisibility const& visibi
                                std::span<FrameView const> views);
 /// A box around all but 2 % of the points along each axis, and a margin. Empty without points.
 Bounds focus_of(std::span<vec3 const> points);
+/// Longest side of a box, m; 0 if it is empty.
+float longest_side(Bounds const& b);
+/// True if what is shown is less than half as long as the world. An empty focus needs none.
+bool needs_fine_grid(Bounds const& focus, Bounds const& world);
 /// Share of the points in a box.
 double share_in(Bounds const& box, std::span<vec3 const> points);
 

@@ -17,8 +17,6 @@ bool holds(Bounds const& box, Bounds const& inner)
     return glm::all(glm::lessThanEqual(box.low, inner.low)) && glm::all(glm::lessThanEqual(inner.high, box.high));
 }
 
-float longest_side(Bounds const& b) { return b.empty() ? 0 : max_component(b.high - b.low); }
-
 RadianceLevels to_levels(GridLevel const& of)
 {
     RadianceLevels out;
@@ -79,7 +77,7 @@ void IndirectField::place_levels(ExactVisibility const& visibility, std::span<Fr
         whole = {whole.low - room, whole.high + room};
     }
     Bounds const focus = focus_of(points);
-    bool const wants_two = longest_side(focus) > 0 && longest_side(focus) < 0.5f * longest_side(whole);
+    bool const wants_two = needs_fine_grid(focus, whole);
     bool const shows =
         fits && (levels_.size() == 1 ? !wants_two
                                      : share_in(levels_[0].bounds, points) >= kLeastShown &&

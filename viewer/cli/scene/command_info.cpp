@@ -1,5 +1,6 @@
 #include "gi/core/error.h"
 #include "gi/image_io/picture_file.h"
+#include "gi/methods/sh_grid/explain.h"
 #include "gi/methods/slhb/directions/direction_picture.h"
 #include "gi/methods/slhb/directions/direction_quality.h"
 #include "gi/methods/slhb/settings.h"
@@ -91,15 +92,20 @@ int run(InfoOptions const& o)
     gi::World const world = gi::build_world(scene, o.time_s, report);
     gi::SceneSummary const summary = gi::summarise(world);
     gi::ScenePlan const plan = gi::plan_scene(world);
-    std::vector<gi::PlanItem> const slhb = gi::explain_settings({}, world, choose_camera(world, {}).camera);
+    gi::Camera const camera = choose_camera(world, {}).camera;
+    std::vector<gi::PlanItem> const slhb = gi::explain_settings({}, world, camera),
+                                    sh_grid = gi::explain_sh_grid(world, {}, camera);
     if (o.json) {
         nlohmann::ordered_json j;
         j["scene"] = o.scene;
         for (gi::SummaryLine const& line : summary.lines) j["content"][line.what] = line.value;
-        for (gi::PlanItem const& item : slhb)
-            j["plan_slhb"].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
-        for (gi::PlanItem const& item : plan.items)
-            j["plan"].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
+        auto const add_plan = [&](char const* name, std::vector<gi::PlanItem> const& items) {
+            for (gi::PlanItem const& item : items)
+                j[name].push_back({{"what", item.what}, {"build", item.build}, {"reason", item.reason}});
+        };
+        add_plan("plan_slhb", slhb);
+        add_plan("plan_sh_grid", sh_grid);
+        add_plan("plan", plan.items);
         j["report"] = to_json(report);
         std::fputs(to_text(j).c_str(), stdout);
         return 0;
@@ -113,6 +119,7 @@ int run(InfoOptions const& o)
     };
     print_plan("What is built for the scene", plan.items);
     print_plan("What method slhb builds, at 512 x 512 pixels", slhb);
+    print_plan("What method sh_grid builds", sh_grid);
     std::fflush(stdout);
     print_losses(report);
     return 0;
