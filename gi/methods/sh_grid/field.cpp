@@ -57,8 +57,7 @@ std::vector<std::uint32_t> cells_near_surfaces(SparseCells<BlockVoxels> const& b
             if (frame.holds(c)) all.push_back(frame.index(c));
         }
     std::ranges::sort(all);
-    auto const rest = std::ranges::unique(all);
-    all.erase(rest.begin(), rest.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
 }
 
