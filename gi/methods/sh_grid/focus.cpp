@@ -65,11 +65,14 @@ bool needs_fine_grid(Bounds const& focus, Bounds const& world)
     return longest_side(focus) > 0 && longest_side(focus) < 0.5f * longest_side(world);
 }
 
+bool holds(Bounds const& box, Bounds const& inner)
+{
+    return glm::all(glm::lessThanEqual(box.low, inner.low)) && glm::all(glm::lessThanEqual(inner.high, box.high));
+}
+
 double share_in(Bounds const& box, std::span<vec3 const> points)
 {
-    auto const inside = std::ranges::count_if(points, [&](vec3 p) {
-        return glm::all(glm::lessThanEqual(box.low, p)) && glm::all(glm::lessThanEqual(p, box.high));
-    });
+    auto const inside = std::ranges::count_if(points, [&](vec3 p) { return holds(box, {p, p}); });
     return points.empty() ? 1 : double(inside) / double(points.size());
 }
 

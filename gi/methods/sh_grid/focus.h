@@ -19,6 +19,8 @@ Bounds focus_of(std::span<vec3 const> points);
 float longest_side(Bounds const& b);
 /// True if what is shown is less than half as long as the world. An empty focus needs none.
 bool needs_fine_grid(Bounds const& focus, Bounds const& world);
+/// True if a box holds another.
+bool holds(Bounds const& box, Bounds const& inner);
 /// Share of the points in a box.
 double share_in(Bounds const& box, std::span<vec3 const> points);
 

@@ -12,11 +12,6 @@ namespace {
 
 constexpr double kLeastShown = 0.9; ///< share of what is shown that a fine grid holds before it is placed anew
 
-bool holds(Bounds const& box, Bounds const& inner)
-{
-    return glm::all(glm::lessThanEqual(box.low, inner.low)) && glm::all(glm::lessThanEqual(inner.high, box.high));
-}
-
 RadianceLevels to_levels(GridLevel const& of)
 {
     RadianceLevels out;
