@@ -21,18 +21,18 @@ namespace {
 template <VisibilityKind kind>
 constexpr Method virtual_lights(std::string_view name, std::string_view summary)
 {
-    return {name, summary, render_visibility<kind>, start_visibility_frames<kind>, false, virtual_light_options};
+    return {name, summary, render_visibility<kind>, start_visibility_frames<kind>, virtual_light_options};
 }
 
 constexpr std::array kMethods{
     Method{"reference", "path tracing with exact rays (Embree): slow, unbiased, for comparison", render_reference,
-           start_reference_frames, true},
+           start_reference_frames},
     Method{"slhb", "path tracing through spherical layered hit buffers: look-ups instead of rays", render_slhb,
-           start_slhb_frames, true, slhb_options},
+           start_slhb_frames, slhb_options},
     Method{"whitted", "ray trees: direct light, mirrors and glass, no diffuse interreflection", render_whitted,
-           start_whitted_frames, false, whitted_options},
+           start_whitted_frames, whitted_options},
     Method{"sh_grid", "ray trees, with indirect light from photons in a field of spherical harmonics",
-           render_sh_grid, start_sh_grid_frames, false, sh_grid_options},
+           render_sh_grid, start_sh_grid_frames, sh_grid_options},
     virtual_lights<VisibilityKind::exact>(
         "vpl_exact", "virtual point lights for indirect light, visibility by exact rays; the other vpl_*\n"
                      "    methods differ only in how they find visibility"),

@@ -18,7 +18,6 @@ struct Method {
     std::string_view summary; ///< one line for --help
     RenderFunction render;
     StartFrames frames;
-    bool motion_vectors = false; ///< its frames have the layer "motion", which temporal reuse needs
     RenderOptionTable const& (*options)() = nullptr; ///< of its own; nullptr = none
 };
 

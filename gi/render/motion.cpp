@@ -45,4 +45,55 @@ void add_motion(SeenRow const& seen, CameraRays const& now, CameraRays const& ca
     });
 }
 
+MotionVectors::MotionVectors(World const& world) : world_(world), now_(corners_of(world, first_moving()))
+{
+    earlier_.first_moving = first_moving();
+}
+
+void MotionVectors::changed(Changes const& changes)
+{
+    if (!changes.geometry) return;
+    if (earlier_.corners.empty()) earlier_.corners = std::move(now_);
+    now_ = corners_of(world_, first_moving());
+}
+
+void MotionVectors::see(std::span<FrameView const> views)
+{
+    std::size_t const known = std::min(views_.size(), views.size());
+    views_.resize(views.size());
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        FrameView const& v = views[k];
+        View& own = views_[k];
+        bool const same = k < known && own.width == v.width && own.height == v.height;
+        own.now = camera_rays(v.camera, v.width, v.height, world_.origin);
+        if (!same) own.earlier = own.now;
+        own.width = v.width;
+        own.height = v.height;
+        own.hits.assign(std::size_t(v.width) * std::size_t(v.height), {});
+    }
+}
+
+void MotionVectors::add(std::size_t view, Picture& picture) const
+{
+    View const& own = views_[view];
+    if (own.now.orthographic) return;
+    std::size_t const width = std::size_t(own.width);
+    auto const seen = [&](std::size_t y, std::span<SeenPoint> row) {
+        for (std::size_t x = 0; x < width; ++x) {
+            auto const [triangle, weights] = own.hits[y * width + x];
+            if (triangle == kNoTriangle) continue;
+            uvec3 const v = world_.triangles[triangle];
+            Corners const corners{world_.positions[v.x], world_.positions[v.y], world_.positions[v.z]};
+            row[x] = {triangle, weights, point_on(corners, weights)};
+        }
+    };
+    add_motion(seen, own.now, own.earlier, earlier_, picture);
+}
+
+void MotionVectors::end_frame()
+{
+    earlier_.corners.clear();
+    for (View& v : views_) v.earlier = v.now;
+}
+
 } // namespace gi

@@ -1,9 +1,10 @@
 #pragma once
-// Motion vectors: where the surface seen in each pixel was in the previous frame. For every method that records
-// the triangle and the point first hit by a pixel's last path.
+// Motion vectors: where the surface seen in each pixel was in the previous frame, from the triangle and the point
+// first hit by a pixel's last path.
 
 #include "gi/image_io/picture.h"
-#include "gi/render/exact_visibility.h"
+#include "gi/render/frame_renderer.h"
+#include "gi/render/ray_path.h"
 #include "gi/scene/model/camera.h"
 #include "gi/scene/model/world.h"
 
@@ -45,5 +46,35 @@ using SeenRow = std::function<void(std::size_t y, std::span<SeenPoint> row)>;
 /// static camera gets exactly 0, 0.
 void add_motion(SeenRow const& seen, CameraRays const& now, CameraRays const& camera_before,
                 EarlierCorners const& before, Picture& picture);
+
+/// What a method that traces paths from the camera keeps for motion vectors, over frames.
+class MotionVectors {
+public:
+    /// @param world  must outlive it
+    explicit MotionVectors(World const& world);
+    /// Call for every change of the world.
+    void changed(Changes const& changes);
+    /// Begins a frame. Each view continues the previous frame's view of the same index.
+    void see(std::span<FrameView const> views);
+    /// One per pixel of a view, to be set by the pixel's last path.
+    std::span<FirstHit> first_hits(std::size_t view) { return views_[view].hits; }
+    /// Adds the layer "motion" to the picture of a view; an orthographic camera has none.
+    void add(std::size_t view, Picture& picture) const;
+    /// Ends a frame: the next motion vectors refer to its state.
+    void end_frame();
+
+private:
+    struct View {
+        CameraRays now, earlier; ///< through the centre of the lens
+        int width = 0, height = 0;
+        std::vector<FirstHit> hits;
+    };
+    std::size_t first_moving() const { return world_.static_triangles; }
+
+    World const& world_;
+    std::vector<View> views_;
+    std::vector<Corners> now_; ///< of dynamic triangles
+    EarlierCorners earlier_;
+};
 
 } // namespace gi

@@ -26,28 +26,37 @@ public:
           settings_(settings),
           report_(report),
           threads_(limit_threads(settings.threads)),
-          renderer_(start(world.world(), settings_, world.world().static_triangles, report, nullptr))
+          renderer_(start(world.world(), settings_, world.world().static_triangles, report, nullptr)),
+          motion_(world.world())
     {
     }
-    void changed(Changes const& changes) override { renderer_->changed(changes); }
+    void changed(Changes const& changes) override
+    {
+        motion_.changed(changes);
+        renderer_->changed(changes);
+    }
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                        Moments const& moments) override
     {
         PassLoop loop(settings_, stop, progress, report_);
         double const earlier = renderer_->rays();
+        FrameView const whole{camera, settings_.width, settings_.height};
+        motion_.see({&whole, 1});
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
             for (std::uint32_t i = 0; i < paths; ++i) {
-                FrameView eye{camera, settings_.width, settings_.height};
+                FrameView eye = whole;
                 if (moments) {
                     Moment const now = moments(sums.paths);
                     changed(now.changes);
                     eye.camera = now.camera;
                 }
-                renderer_->pass(passes_++, {&eye, 1}, {&sums, 1});
+                renderer_->pass(passes_++, {&eye, 1}, {&sums, 1}, &motion_);
             }
         });
         finish(result, earlier);
         result.picture = loop.sums().picture(world_.world());
+        if (!moments) motion_.add(0, result.picture);
+        motion_.end_frame();
         return result;
     }
     std::vector<RenderResult> views(std::span<FrameView const> views, std::uint32_t paths, VertexSharing,
@@ -55,19 +64,22 @@ public:
     {
         auto const begun = std::chrono::steady_clock::now();
         double const earlier = renderer_->rays();
+        motion_.see(views);
         std::vector<Accumulator> sums;
         for (FrameView const& v : views) sums.emplace_back(v.width, v.height);
         for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
-            on_threads(settings_.threads, [&] { renderer_->pass(passes_++, views, sums); });
+            on_threads(settings_.threads, [&] { renderer_->pass(passes_++, views, sums, &motion_); });
         std::vector<RenderResult> results(views.size());
         PathCounts lost;
         for (std::size_t k = 0; k < views.size(); ++k) {
             results[k].paths = sums[k].paths;
             results[k].end = sums[k].paths < paths ? RenderEnd::interrupted : RenderEnd::paths;
             results[k].picture = sums[k].picture(world_.world());
+            motion_.add(k, results[k].picture);
             hide_pixels(results[k].picture, views[k].hidden);
             lost += sums[k].counts;
         }
+        motion_.end_frame();
         report_.lose("paths cut at 1024 surfaces", lost.cut_paths);
         report_.lose("path terms that were not finite, dropped", lost.invalid_paths);
         finish(results[0], earlier);
@@ -88,6 +100,7 @@ private:
     Report& report_;
     std::optional<tbb::global_control> threads_;
     std::unique_ptr<PassRenderer> renderer_;
+    MotionVectors motion_;
     std::uint32_t passes_ = 0; ///< so far, over all frames
 };
 
@@ -104,7 +117,7 @@ RenderResult render_passes(char const* name, StartPasses const& start, World con
     FrameView const eye{camera, settings.width, settings.height};
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
         for (std::uint32_t i = 0; i < paths; ++i)
-            renderer->pass(loop.first_path() + sums.paths, {&eye, 1}, {&sums, 1});
+            renderer->pass(loop.first_path() + sums.paths, {&eye, 1}, {&sums, 1}, nullptr);
     });
     renderer->report_work();
     result.rays = renderer->rays();

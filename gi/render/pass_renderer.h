@@ -4,6 +4,7 @@
 
 #include "gi/render/accumulator.h"
 #include "gi/render/frame_renderer.h"
+#include "gi/render/motion.h"
 
 #include <functional>
 #include <memory>
@@ -16,8 +17,9 @@ public:
     /// See Changes.
     virtual void changed(Changes const& changes) = 0;
     /// Traces one more path for every pixel of all views. @param index  of the pass, over all frames
-    /// @param sums  one per view
-    virtual void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums) = 0;
+    /// @param sums  one per view  @param motion  gets the first hits of all views; null = not needed
+    virtual void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
+                      MotionVectors* motion) = 0;
     /// Reports the work done since the last call.
     virtual void report_work() = 0;
     /// Number of closest-hit and shadow rays so far.

@@ -13,6 +13,12 @@
 
 namespace gi {
 
+/// First surface of a path from the camera.
+struct FirstHit {
+    std::uint32_t triangle = kNoTriangle;
+    vec2 weights{0}; ///< of corners 1 and 2
+};
+
 struct RayPath : PathState {
     Pcg32 rng{0, 0};
     Ray ray;

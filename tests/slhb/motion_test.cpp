@@ -1,6 +1,7 @@
 // Motion vectors of the reference path tracer against those of slhb.
 
 #include "gi/methods/reference/reference.h"
+#include "gi/methods/registry.h"
 #include "gi/methods/slhb/frames.h"
 #include "gi/methods/slhb/hit_buffer/motion.h"
 #include "gi/scene/generate/figure.h"
@@ -131,6 +132,22 @@ TEST(MotionVectors, OfTheReferenceAreThoseOfSlhb)
         EXPECT_GT(moves, camera_moves ? all * 99 / 100 : 50u);
         if (camera_moves) continue;
         EXPECT_LT(moves, all / 2); // what stands still has 0, 0 exactly
+    }
+}
+
+/// Methods whose paths start with the same rays.
+TEST(MotionVectors, OfOtherMethodsAreThoseOfTheReference)
+{
+    auto const scene = room_with_walker();
+    Picture const reference = second_frame(start_reference_frames, scene, true);
+    for (Method const& m : methods()) {
+        if (m.name == "slhb") continue;
+        Picture const own = second_frame(m.frames, scene, true);
+        ASSERT_NE(own.find("motion"), nullptr) << m.name;
+        std::size_t differ = 0;
+        for (std::size_t i = 0; i < own.pixels(); ++i)
+            differ += rgb(*own.find("motion"), i) != rgb(*reference.find("motion"), i);
+        EXPECT_EQ(differ, 0u) << m.name;
     }
 }
 

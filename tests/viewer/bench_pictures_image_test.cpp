@@ -142,7 +142,6 @@ TEST(BenchPictures, WrongCallsAreRefused)
                        {"--scenes cornell --budgets 0path", "0path"},
                        {"--scenes cornell --denoise soap", "soap"},
                        {"--scenes cornell --size 0x8", "0x8"},
-                       {"--scenes atrium --interactive --methods vpl_slhb", "motion vectors"},
                        {"--scenes atrium --interactive --frames 4 --scored-frames 5", "--scored-frames 5"},
                        {"--scenes atrium --interactive --resume", "--resume with --interactive"},
                        {"--scenes atrium --interactive --budgets 1s", "--budgets"},

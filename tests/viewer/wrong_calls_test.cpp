@@ -312,11 +312,15 @@ TEST(WrongCalls, OtherEndingsAreRight)
 TEST(WrongCalls, RefusedFramesLeaveNoState)
 {
     TemporaryFolder const folder;
-    std::string const call =
-        "render cornell --size 8x8 --paths 1 --quiet --frames 0:2@4 --reuse 4 --out f_%d.exr ";
-    expect_refused(call + "--method vpl_exact", "--reuse with method 'vpl_exact'", folder.path());
-    EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
-    run_well(call + "--method slhb", folder.path());
+    std::ofstream(folder / "plan.gltf")
+        << R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}], "nodes": [{"camera": 0},)"
+           R"( {"extensions": {"KHR_lights_punctual": {"light": 0}}}], "extensionsUsed": ["KHR_lights_punctual"],)"
+           R"( "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional"}]}},)"
+           R"( "cameras": [{"type": "orthographic", "orthographic": {"xmag": 3, "ymag": 2, "znear": 0, "zfar": 9}}]})";
+    std::string const call = "render plan.gltf --size 8x8 --paths 1 --quiet --frames 0:2@4 --out f_%d.exr ";
+    expect_refused(call + "--reuse 4", "--reuse with an orthographic camera", folder.path());
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"plan.gltf"});
+    run_well(call, folder.path());
 }
 
 TEST(WrongCalls, DamagedScenes)

@@ -172,13 +172,8 @@ private:
     BenchTable& table_;
 };
 
-void check_interactive(PicturesOptions const& o, PicturesPlan const& plan)
+void check_interactive(PicturesOptions const& o)
 {
-    for (SweepMethod const& m : plan.methods)
-        if (!m.method.motion_vectors)
-            throw gi::InputError("--interactive with --methods " + m.name,
-                                 "it gives no motion vectors, which reuse needs to find earlier light",
-                                 "choose from: reference, slhb");
     for (int const frame : o.scored_frames)
         if (frame < 1 || frame > o.frames)
             throw gi::InputError(fmt::format("--scored-frames {}", frame),
@@ -212,7 +207,7 @@ BenchTable frame_summary_of(BenchTable const& frames)
 PicturesResult run_interactive_pictures(PicturesOptions const& o)
 {
     PicturesPlan const plan = plan_pictures(o);
-    check_interactive(o, plan);
+    check_interactive(o);
     PicturesResult result{start_table("interactive", "Consecutive frames",
                                       {"scene", "budget", "method", "filter", "paths", "frame_s", "filter_s",
                                        "total_s", "relmse", "relmse_of_reference", "flip", "neighbour_correlation",

@@ -12,7 +12,7 @@ constexpr int kFilteredFrames = 48;
 /// Likewise, light is reused from the other eye only at first.
 constexpr int kSharedFrames = 16;
 
-/// For methods without motion vectors: no temporal reuse while anything moves.
+/// Orthographic cameras have no motion vectors: no temporal reuse while anything moves.
 void without_motion(gi::Picture& picture)
 {
     if (picture.find("motion") != nullptr) return;

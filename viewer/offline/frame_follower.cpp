@@ -12,10 +12,6 @@ FrameFollower::FrameFollower(std::shared_ptr<gi::Scene const> scene, double time
       flat_(world_.advance(time_s)),
       reuse_({.most_frames = most_frames})
 {
-    if (!method.motion_vectors)
-        throw gi::InputError("--reuse with method '" + std::string(method.name) + "'",
-                             "it gives no motion vectors, which reuse needs to find earlier light",
-                             "use --method slhb or --method reference");
 }
 
 gi::World const& FrameFollower::go_to(double time_s)

@@ -18,7 +18,6 @@ public:
     };
 
     /// @param origin  origin of the world, as in build_world
-    /// Throws InputError if the method gives no motion vectors.
     FrameFollower(std::shared_ptr<gi::Scene const> scene, double time_s, gi::Method const& method,
                   gi::RenderSettings const& settings, int most_frames,
                   std::optional<gi::dvec3> origin = std::nullopt);

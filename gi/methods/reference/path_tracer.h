@@ -21,8 +21,7 @@ struct Path : RayPath {
     LightChoice light;       ///< chosen for the next surface
     bool emitted = false;    ///< emission of the next surface or sky has already been counted
     std::uint32_t share = 1; ///< number of pixels for which it computes indirect light, see Interleaving
-    std::uint32_t first_triangle = kNoTriangle; ///< triangle seen by the camera
-    vec2 first_weights{0};                      ///< hit point on it: weights of corners 1 and 2
+    FirstHit first;
 };
 
 /// @tparam Visibility  see trace_together
@@ -73,8 +72,7 @@ bool PathTracer<Visibility>::advance(Path& p, Hit const& hit, int vertex, PathCo
     vec3 const arrival = p.ray.direction;
     ShadingPoint const at = shading_point(world, hit.triangle, hit.barycentric, arrival);
     if (vertex == 0) {
-        p.first_triangle = hit.triangle;
-        p.first_weights = hit.barycentric;
+        p.first = {hit.triangle, hit.barycentric};
         see_first_surface(p.sample, at, camera);
     }
     if (!std::exchange(p.emitted, false) && max_component(at.emission) > 0)

@@ -16,12 +16,6 @@ namespace {
 
 double rays_of(PathCounts const& c) { return double(c.nearest_rays + c.shadow_rays); }
 
-/// First surface of a pixel's last path.
-struct FirstHit {
-    std::uint32_t triangle;
-    vec2 weights; ///< of corners 1 and 2
-};
-
 /// @param first_hits  one per pixel, set by its last path; empty = not needed
 /// @param memory  buffer for interleaved passes, in which pixels take indirect light from those in turn
 void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t first_path,
@@ -57,7 +51,7 @@ void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, st
                         waiting[pixel] = next->sample;
                     else
                         sums.add(pixel, next->sample, sums.paths + i);
-                    if (last) first_hits[pixel] = {next->first_triangle, next->first_weights};
+                    if (last) first_hits[pixel] = next->first;
                 }
         }
     });
@@ -105,23 +99,17 @@ RenderResult trace_all(PassLoop& loop, std::uint64_t print, PassLoop::Pass const
 
 class ReferenceFrames : public FrameRenderer {
 public:
-    ReferenceFrames(MovingWorld const& world, Camera const& camera, RenderSettings const& settings, Report& report)
+    ReferenceFrames(MovingWorld const& world, RenderSettings const& settings, Report& report)
         : world_(world),
           settings_(settings),
           report_(report),
           interleaving_(settings.budget_s > 0 ? kMostInterleaving : 1, settings.budget_s),
-          now_(corners_of(world.world(), first_moving()))
+          motion_(world.world())
     {
-        earlier_.first_moving = first_moving();
-        FrameView const whole{camera, settings.width, settings.height};
-        see({&whole, 1});
     }
     void changed(Changes const& changes) override
     {
-        if (changes.geometry) {
-            if (earlier_.corners.empty()) earlier_.corners = std::move(now_);
-            now_ = corners_of(world_.world(), first_moving());
-        }
+        motion_.changed(changes);
         if (changes.materials || changes.coverage) structures_.visibility.reset();
         if (!changes.geometry || !structures_.visibility) return;
         StageTimer const timer(report_, "BVH of dynamic triangles (Embree)");
@@ -133,7 +121,7 @@ public:
         interleaving_.frame_begins();
         PassLoop loop(settings_, stop, progress, report_);
         FrameView const whole{camera, settings_.width, settings_.height};
-        see({&whole, 1});
+        motion_.see({&whole, 1});
         auto const pass = [&](Accumulator& sums, std::uint32_t paths) {
             if (!moments) return trace_frame(camera, sums, paths);
             for (std::uint32_t i = 0; i < paths; ++i) {
@@ -145,8 +133,8 @@ public:
         tracer(camera); // so that the BVH is built before the passes
         RenderResult result = trace_all(loop, 0, pass, world_.world(), report_);
         paths_ += result.paths;
-        if (!moments) add_motion(seen_.front(), result.picture);
-        end_frame();
+        if (!moments) motion_.add(0, result.picture);
+        motion_.end_frame();
         interleaving_.frame_ended();
         return result;
     }
@@ -155,8 +143,9 @@ public:
     {
         RenderProgress const silent;
         std::vector<RenderResult> results;
-        see(views);
+        motion_.see(views);
         for (FrameView const& v : views) {
+            std::size_t const k = results.size();
             RenderSettings settings = settings_;
             settings.width = v.width;
             settings.height = v.height;
@@ -166,78 +155,33 @@ public:
             PathTracer<ExactVisibility> const through = tracer(v.camera, settings);
             results.push_back(trace_all(
                 loop, 0,
-                [&](Accumulator& sums, std::uint32_t n) { trace_pass(through, sums, paths_, n, first_hits_); },
+                [&](Accumulator& sums, std::uint32_t n) {
+                    trace_pass(through, sums, paths_, n, motion_.first_hits(k));
+                },
                 world_.world(), report_));
-            add_motion(seen_[results.size() - 1], results.back().picture);
+            motion_.add(k, results.back().picture);
             hide_pixels(results.back().picture, v.hidden);
         }
         paths_ += paths;
-        end_frame();
+        motion_.end_frame();
         return results;
     }
 
 private:
-    /// Rays through the centre of the lens.
-    struct SeenFrom {
-        CameraRays now, earlier;
-        int width, height;
-    };
-
     /// With a budget, renders passes of one path, in which pixels may wait for indirect light.
     void trace_frame(Camera const& camera, Accumulator& sums, std::uint32_t paths)
     {
         PathTracer<ExactVisibility> through = tracer(camera);
-        if (!(settings_.budget_s > 0)) return trace_pass(through, sums, paths_, paths, first_hits_);
+        if (!(settings_.budget_s > 0)) return trace_pass(through, sums, paths_, paths, motion_.first_hits(0));
         for (std::uint32_t i = 0; i < paths; ++i) {
             double const earlier = rays_of(sums.counts);
             through.interleaving.n = std::uint32_t(interleaving_.n());
-            trace_pass(through, sums, paths_, 1, first_hits_, &waiting_);
+            trace_pass(through, sums, paths_, 1, motion_.first_hits(0), &waiting_);
             // Two rays per pixel are for its first surface.
             double const first = 2.0 * sums.width * sums.height,
                          later = std::max(0.0, rays_of(sums.counts) - earlier - first);
             interleaving_.pass_ended(later / (first + later));
         }
-    }
-
-    std::size_t first_moving() const { return world_.world().static_triangles; }
-
-    /// Each view continues the previous frame's view of the same index.
-    void see(std::span<FrameView const> views)
-    {
-        std::size_t const known = std::min(seen_.size(), views.size());
-        seen_.resize(views.size());
-        std::size_t most_pixels = 0;
-        for (std::size_t k = 0; k < views.size(); ++k) {
-            FrameView const& v = views[k];
-            SeenFrom& s = seen_[k];
-            CameraRays const now = camera_rays(v.camera, v.width, v.height, world_.world().origin);
-            bool const same = k < known && s.width == v.width && s.height == v.height;
-            s = {now, same ? s.earlier : now, v.width, v.height};
-            most_pixels = std::max(most_pixels, std::size_t(v.width) * std::size_t(v.height));
-        }
-        first_hits_.resize(most_pixels);
-    }
-    void end_frame()
-    {
-        earlier_.corners.clear();
-        for (SeenFrom& s : seen_) s.earlier = s.now;
-    }
-    /// Adds the motion vectors of the view traced last.
-    void add_motion(SeenFrom const& from, Picture& picture) const
-    {
-        if (from.now.orthographic) return;
-        World const& world = world_.world();
-        std::size_t const width = std::size_t(from.width);
-        auto const seen = [&](std::size_t y, std::span<SeenPoint> row) {
-            for (std::size_t x = 0; x < width; ++x) {
-                auto const [triangle, weights] = first_hits_[y * width + x];
-                if (triangle == kNoTriangle) continue;
-                uvec3 const v = world.triangles[triangle];
-                Corners const corners{world.positions[v.x], world.positions[v.y], world.positions[v.z]};
-                row[x] = {triangle, weights, point_on(corners, weights)};
-            }
-        };
-        gi::add_motion(seen, from.now, from.earlier, earlier_, picture);
     }
 
     /// Returns a tracer for the current world.
@@ -256,10 +200,7 @@ private:
     std::uint32_t paths_ = 0; ///< so far, over all frames
     FrameInterleaving interleaving_;
     std::vector<PathSample> waiting_; ///< buffer for interleaved passes
-    std::vector<SeenFrom> seen_;
-    std::vector<FirstHit> first_hits_; ///< of the view traced last
-    std::vector<Corners> now_;         ///< of dynamic triangles
-    EarlierCorners earlier_;
+    MotionVectors motion_;
 };
 
 } // namespace
@@ -278,10 +219,10 @@ RenderResult render_reference(World const& world, Camera const& camera, RenderSe
     return trace_all(loop, print, pass, world, report);
 }
 
-std::unique_ptr<FrameRenderer> start_reference_frames(MovingWorld const& world, Camera const& camera,
+std::unique_ptr<FrameRenderer> start_reference_frames(MovingWorld const& world, Camera const&,
                                                       RenderSettings const& settings, Report& report)
 {
-    return std::make_unique<ReferenceFrames>(world, camera, settings, report);
+    return std::make_unique<ReferenceFrames>(world, settings, report);
 }
 
 } // namespace gi

@@ -24,7 +24,10 @@ bool CameraPaths::advance(CameraSubpath& p, Hit const& hit, int surface, std::ui
     }
     vec3 const direction = p.ray.direction;
     ShadingPoint const at = shading_point(world, hit.triangle, hit.barycentric, direction);
-    if (surface == 0) see_first_surface(p.sample, at, camera);
+    if (surface == 0) {
+        see_first_surface(p.sample, at, camera);
+        p.first = {hit.triangle, hit.barycentric};
+    }
     if (max_component(at.emission) > 0)
         layer_of(p.sample, p.scatterings) +=
             p.throughput * met_emission(world, p, at, hit.triangle, direction, hit.distance);

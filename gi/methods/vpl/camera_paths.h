@@ -37,6 +37,7 @@ struct Receiver {
 };
 
 struct CameraSubpath : RayPath {
+    FirstHit first;
     bool straight = false; ///< arrives directly from the first surface with non-delta scattering
     float value_x = 0;     ///< at that surface, see bounded_term
 };

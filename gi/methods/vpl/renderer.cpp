@@ -52,7 +52,8 @@ void VirtualLightRenderer::changed(Changes const& changes)
     term_->world_changed();
 }
 
-void VirtualLightRenderer::pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums)
+void VirtualLightRenderer::pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
+                                MotionVectors* motion)
 {
     PathCounts counts;
     std::vector<VirtualLight> lights;
@@ -73,11 +74,14 @@ void VirtualLightRenderer::pass(std::uint32_t index, std::span<FrameView const> 
         term_->prepare(lights, index);
     }
     StageTimer const timer(report_, "paths");
-    for (std::size_t k = 0; k < views.size(); ++k) trace_view(views[k], index, lights, sums[k]);
+    for (std::size_t k = 0; k < views.size(); ++k)
+        trace_view(views[k], index, lights, sums[k],
+                   motion == nullptr ? std::span<FirstHit>{} : motion->first_hits(k));
 }
 
 void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index,
-                                      std::span<VirtualLight const> lights, Accumulator& sums)
+                                      std::span<VirtualLight const> lights, Accumulator& sums,
+                                      std::span<FirstHit> first_hits)
 {
     CameraPaths const paths{.world = view(world_),
                             .visibility = *visibility_,
@@ -109,8 +113,11 @@ void VirtualLightRenderer::trace_view(FrameView const& v, std::uint32_t index,
             layer_of(batch[receivers[k].path].sample, 2) += gathered[k];
         auto next = batch.begin();
         for (int y = top; y < bottom; ++y)
-            for (int x = left; x < right; ++x)
-                sums.add(std::size_t(y) * std::size_t(v.width) + std::size_t(x), (next++)->sample, sums.paths);
+            for (int x = left; x < right; ++x, ++next) {
+                std::size_t const pixel = std::size_t(y) * std::size_t(v.width) + std::size_t(x);
+                sums.add(pixel, next->sample, sums.paths);
+                if (!first_hits.empty()) first_hits[pixel] = next->first;
+            }
     });
     ++sums.paths;
     Counts const all = counts.combine([](Counts a, Counts const& b) {

@@ -16,7 +16,8 @@ public:
 
     void changed(Changes const& changes) override;
     /// All views are lit by the virtual lights of this pass.
-    void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums) override;
+    void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
+              MotionVectors* motion) override;
     void report_work() override;
     double rays() const override { return rays_; }
     std::string options() const override;
@@ -28,7 +29,7 @@ private:
     };
     void build();
     void trace_view(FrameView const& view, std::uint32_t index, std::span<VirtualLight const> lights,
-                    Accumulator& sums);
+                    Accumulator& sums, std::span<FirstHit> first_hits);
 
     VisibilityKind kind_;
     World const& world_;

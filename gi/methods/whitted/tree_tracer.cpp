@@ -64,7 +64,7 @@ void TreeTracer::shade(TreeRay& r, Hit const& hit, int generation, std::vector<T
 }
 
 void TreeTracer::trace(std::span<glm::ivec2 const> pixels, std::uint32_t index, std::span<PathSample> samples,
-                       TreeCounts& counts) const
+                       std::span<FirstHit> first, TreeCounts& counts) const
 {
     std::vector<TreeRay> rays, next;
     std::vector<ShadowRay> shadows;
@@ -91,6 +91,8 @@ void TreeTracer::trace(std::span<glm::ivec2 const> pixels, std::uint32_t index, 
         hits.resize(rays.size());
         visibility.nearest(queries, hits);
         counts.paths.nearest_rays += rays.size();
+        if (generation == 0)
+            for (std::size_t k = 0; k < hits.size(); ++k) first[k] = {hits[k].triangle, hits[k].barycentric};
         for (std::size_t k = 0; k < rays.size(); ++k)
             shade(rays[k], hits[k], generation, next, shadows, points, counts);
         queries.clear();

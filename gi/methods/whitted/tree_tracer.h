@@ -51,9 +51,9 @@ struct TreeTracer {
     SurfaceLight const* light = nullptr; ///< null = no indirect light
 
     /// Traces the trees number `index` of some pixels to their ends.
-    /// @param samples  one per pixel, overwritten
+    /// @param samples, first  one per pixel, overwritten
     void trace(std::span<glm::ivec2 const> pixels, std::uint32_t index, std::span<PathSample> samples,
-               TreeCounts& counts) const;
+               std::span<FirstHit> first, TreeCounts& counts) const;
 
 private:
     struct TreeRay {

@@ -30,15 +30,18 @@ void TreeRenderer::changed(Changes const& changes)
     if (changes.geometry) visibility_->moved(world_);
 }
 
-void TreeRenderer::pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums)
+void TreeRenderer::pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
+                        MotionVectors* motion)
 {
     SurfaceLight const* const light = prepare(index, views);
     StageTimer const timer(report_, "ray trees");
-    for (std::size_t k = 0; k < views.size(); ++k) trace_view(views[k], index, light, sums[k]);
+    for (std::size_t k = 0; k < views.size(); ++k)
+        trace_view(views[k], index, light, sums[k],
+                   motion == nullptr ? std::span<FirstHit>{} : motion->first_hits(k));
 }
 
 void TreeRenderer::trace_view(FrameView const& v, std::uint32_t index, SurfaceLight const* light,
-                              Accumulator& sums)
+                              Accumulator& sums, std::span<FirstHit> first_hits)
 {
     constexpr int kTile = 16; // px; trees of a tile advance together
     TreeTracer const tracer{.world = view(world_),
@@ -59,10 +62,13 @@ void TreeRenderer::trace_view(FrameView const& v, std::uint32_t index, SurfaceLi
         for (int y = top; y < bottom; ++y)
             for (int x = left; x < right; ++x) pixels.emplace_back(x, y);
         std::vector<PathSample> samples(pixels.size());
-        tracer.trace(pixels, index, samples, counts.local());
-        for (std::size_t k = 0; k < pixels.size(); ++k)
-            sums.add(std::size_t(pixels[k].y) * std::size_t(v.width) + std::size_t(pixels[k].x), samples[k],
-                     sums.paths);
+        std::vector<FirstHit> first(pixels.size());
+        tracer.trace(pixels, index, samples, first, counts.local());
+        for (std::size_t k = 0; k < pixels.size(); ++k) {
+            std::size_t const pixel = std::size_t(pixels[k].y) * std::size_t(v.width) + std::size_t(pixels[k].x);
+            sums.add(pixel, samples[k], sums.paths);
+            if (!first_hits.empty()) first_hits[pixel] = first[k];
+        }
     });
     ++sums.paths;
     trees_ += double(v.width) * double(v.height);

@@ -18,7 +18,8 @@ public:
                  StopRequest const* stop);
 
     void changed(Changes const& changes) override;
-    void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums) override;
+    void pass(std::uint32_t index, std::span<FrameView const> views, std::span<Accumulator> sums,
+              MotionVectors* motion) override;
     void report_work() override;
     double rays() const override { return rays_; }
     std::string options() const override;
@@ -37,7 +38,8 @@ protected:
 
 private:
     void build(StopRequest const* stop);
-    void trace_view(FrameView const& view, std::uint32_t index, SurfaceLight const* light, Accumulator& sums);
+    void trace_view(FrameView const& view, std::uint32_t index, SurfaceLight const* light, Accumulator& sums,
+                    std::span<FirstHit> first_hits);
 
     double trees_ = 0; ///< since the last report
 };

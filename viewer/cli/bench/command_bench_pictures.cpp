@@ -39,7 +39,7 @@ int run(PicturesOptions const& o)
     return kInterrupted;
 }
 
-/// Defaults differ as methods without motion vectors cannot take part and each frame needs its own reference.
+/// Defaults differ as each frame needs its own reference.
 void set_interactive_defaults(CLI::App const& command, PicturesOptions& o)
 {
     auto const is_given = [&](char const* name) { return command.get_option(name)->count() > 0; };
