@@ -61,7 +61,7 @@ Misses compare(World const& world, int voxels)
         return block != nullptr && (*block >> (in.x + 4 * in.y + 16 * in.z) & 1) != 0;
     };
     Misses m;
-    m.marked = all.voxels();
+    m.marked = count_voxels(all.blocks);
     std::set<std::tuple<int, int, int>> allowed;
     for (uvec3 const t : world.triangles) {
         std::array<dvec3, 3> v;
@@ -188,12 +188,12 @@ TEST(Voxels, LeaveOutWhatIsNoSurface)
     VoxelGrid alone = empty_voxel_grid(room.bounds, 32), with = alone;
     add_triangles(room, 0, room.triangles.size(), alone);
     add_triangles(world, 0, world.triangles.size(), with);
-    EXPECT_EQ(alone.voxels(), with.voxels());
+    EXPECT_EQ(count_voxels(alone.blocks), count_voxels(with.blocks));
     world.positions[world.triangles.back().x] = vec3{std::nanf("")};
     world.positions[world.triangles.back().y] = vec3{1e30f};
     VoxelGrid broken = empty_voxel_grid(room.bounds, 32);
     add_triangles(world, 0, world.triangles.size(), broken);
-    EXPECT_EQ(broken.voxels(), alone.voxels());
+    EXPECT_EQ(count_voxels(broken.blocks), count_voxels(alone.blocks));
 }
 
 TEST(Voxels, RefuseTooMany) { EXPECT_THROW(empty_voxel_grid({vec3{0}, vec3{1}}, 2048), InputError); }
@@ -207,14 +207,17 @@ TEST(Voxels, PatchesAreWhatTouchesAndFacesTheSameWay)
     World const world = world_of(scene);
     VoxelGrid grid = empty_voxel_grid(world.bounds, 32);
     add_triangles(world, 0, world.triangles.size(), grid);
-    Patches const patches = find_patches(world, grid);
+    Patches patches;
+    patches.first_moving = 1u << 20;
+    std::vector<std::uint32_t> of_piece;
+    patches.fixed = find_patches(world, grid, patches.cell_of_patch, of_piece);
     // In the middle: two quads of two triangles each.
     std::uint32_t const cell = grid.blocks.view().find_place(grid.blocks.frame.at({0.5f, 0.005f, 0.5f}));
     ASSERT_NE(cell, kNoCell);
-    EXPECT_EQ(patches.first_patch[cell + 1] - patches.first_patch[cell], 2u);
+    EXPECT_EQ(patches.fixed.first_patch[cell + 1] - patches.fixed.first_patch[cell], 2u);
     for (std::size_t i = 0; i < grid.pieces.size(); ++i) {
         SurfacePiece const& p = grid.pieces[i];
-        EXPECT_EQ(patch_at(grid.blocks.view(), patches.view(), p.point, p.triangle), patches.of_piece[i]);
+        EXPECT_EQ(patch_at(grid.blocks.view(), patches.view(), p.point, p.triangle), of_piece[i]);
     }
     EXPECT_EQ(patch_at(grid.blocks.view(), patches.view(), vec3{0.5f, 0.005f, 0.5f}, 1000), kNoCell);
 }

@@ -5,6 +5,7 @@
 #include "gi/scene/shading/warp.h"
 
 #include <algorithm>
+#include <numeric>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -31,29 +32,54 @@ void add_piece(vec3 normal, float area, RadianceBy by, CellArea& out)
 
 } // namespace
 
-void look_around(World const& world, ExactVisibility const& visibility, VoxelGrid const& grid, std::size_t first,
-                 RayWorld met, BuildStop const& stop, Surroundings& out)
+void choose_samples(std::span<SurfacePiece const> pieces, std::span<std::uint32_t const> patch_of,
+                    std::vector<PatchSample>& out)
 {
-    constexpr std::size_t kTogether = 64, kRays = Surroundings::kRays, kOfSide = kRays + 1;
-    GridFrame const& frame = grid.blocks.frame;
+    constexpr std::size_t kMost = 16; // of a patch
+    std::vector<std::uint32_t> order(pieces.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return patch_of[i]; });
+    auto const add = [&](std::uint32_t i, float area) {
+        SurfacePiece const& p = pieces[i];
+        out.push_back({patch_of[i], p.triangle, p.point, p.normal, area, {}});
+    };
+    for (std::size_t first = 0, end = 0; first < order.size(); first = end) {
+        float whole = 0;
+        for (end = first; end < order.size() && patch_of[order[end]] == patch_of[order[first]]; ++end)
+            whole += pieces[order[end]].area;
+        if (end - first <= kMost) {
+            for (std::size_t k = first; k < end; ++k) add(order[k], pieces[order[k]].area);
+            continue;
+        }
+        float const part = whole / float(kMost);
+        float sum = 0, next = 0.5f * part;
+        std::size_t added = 0;
+        for (std::size_t k = first; k < end && added < kMost; ++k) {
+            sum += pieces[order[k]].area;
+            for (; added < kMost && (sum > next || k + 1 == end); ++added, next += part) add(order[k], part);
+        }
+    }
+}
+
+void look_around(World const& world, ExactVisibility const& visibility, GridFrame const& frame, RayWorld met,
+                 BuildStop const& stop, std::span<PatchSample> samples)
+{
+    constexpr std::size_t kTogether = 64, kOfSide = PatchSample::kRays + 1;
     WorldView const w = view(world);
-    std::size_t const n = grid.pieces.size() - first;
-    out.of_piece.resize(grid.pieces.size());
-    tbb::parallel_for(std::size_t(0), (n + kTogether - 1) / kTogether, [&](std::size_t group) {
+    tbb::parallel_for(std::size_t(0), (samples.size() + kTogether - 1) / kTogether, [&](std::size_t group) {
         if (stop.given_up()) throw Interrupted();
-        std::size_t const begin = first + group * kTogether, end = std::min(grid.pieces.size(), begin + kTogether);
+        std::size_t const begin = group * kTogether, end = std::min(samples.size(), begin + kTogether);
         std::vector<RayQuery> queries;
         for (std::size_t i = begin; i < end; ++i) {
-            SurfacePiece const& piece = grid.pieces[i];
-            vec3 const normal = piece.normal;
-            float const clearance = 1e-4f * frame.cell + 1e-6f * max_component(glm::abs(piece.point));
+            PatchSample const& sample = samples[i];
+            float const clearance = 1e-4f * frame.cell + 1e-6f * max_component(glm::abs(sample.point));
             Pcg32 rng = Pcg32::for_path(0xe490, std::uint32_t(i), 0);
             for (int side = 0; side < 2; ++side) {
-                Frame const about = Frame::about(side == 0 ? normal : -normal);
-                vec3 const above = piece.point + clearance * about.normal;
+                Frame const about = Frame::about(side == 0 ? sample.normal : -sample.normal);
+                vec3 const above = sample.point + clearance * about.normal;
                 // Back to the piece itself, unless another one lies on it.
                 queries.push_back({.ray = {above, -about.normal}, .reach = 2 * clearance, .seed = rng.next()});
-                for (std::size_t k = 0; k < kRays; ++k)
+                for (std::size_t k = 0; k < PatchSample::kRays; ++k)
                     queries.push_back({.ray = {above, about.to_world(square_to_cosine_hemisphere(rng.uniform2()))},
                                        .seed = rng.next()});
             }
@@ -61,70 +87,68 @@ void look_around(World const& world, ExactVisibility const& visibility, VoxelGri
         std::vector<Hit> hits(queries.size());
         visibility.nearest(queries, hits, met);
         for (std::size_t k = 0; k < hits.size(); ++k) {
-            std::size_t const ray = k % kOfSide, piece = begin + k / (2 * kOfSide);
+            std::size_t const ray = k % kOfSide;
             if (ray == 0) continue;
-            std::uint32_t& code = out.of_piece[piece][k / kOfSide % 2][ray - 1];
+            PatchSample& sample = samples[begin + k / (2 * kOfSide)];
+            std::uint32_t& code = sample.met[k / kOfSide % 2][ray - 1];
             std::uint32_t const lies_there = hits[k - ray].triangle;
-            if (lies_there != kNoTriangle && lies_there != grid.pieces[piece].triangle) {
-                code = Surroundings::kNear;
+            if (lies_there != kNoTriangle && lies_there != sample.triangle) {
+                code = PatchSample::kNear;
                 continue;
             }
-            code = Surroundings::kSky;
+            code = PatchSample::kSky;
             if (hits[k].triangle == kNoTriangle) continue;
             ShadingPoint const at =
                 shading_point(w, hits[k].triangle, hits[k].barycentric, queries[k].ray.direction);
             glm::ivec3 const cell = frame.at(at.position);
             if (hits[k].distance < 0.02f * frame.cell)
-                code = Surroundings::kNear;
+                code = PatchSample::kNear;
             else if (only_delta(at.bsdf))
-                code = Surroundings::kMirrorOrGlass;
+                code = PatchSample::kMirrorOrGlass;
             else if (frame.holds(cell))
                 code = 16 * frame.index(cell) + ReachedSides::side_index(at.geometric_normal, at.front);
         }
     });
 }
 
-ExposedAreas exposed_areas(VoxelGrid const& grid, Patches const& patches, Surroundings const& surroundings,
-                           ReachedSides const& reached, std::span<std::uint8_t const> lit, bool sky_shines,
+ExposedAreas exposed_areas(std::size_t cells, Patches const& patches, std::span<PatchSample const> samples,
+                           ReachedSides const& reached, SortedPhotons const& photons, bool sky_shines,
                            RadianceBy by)
 {
     ExposedAreas out;
-    out.of_cell.resize(grid.blocks.values.size());
+    out.of_cell.resize(cells);
     out.of_patch.resize(patches.count());
-    std::vector<CellArea> whole(out.of_cell.size());
+    std::vector<CellArea> whole(cells);
     std::vector<float> whole_patch(patches.count());
     auto const lets_light_in = [&](std::uint32_t code) {
-        if (code == Surroundings::kNear) return false;
-        if (code == Surroundings::kSky) return sky_shines;
-        return code == Surroundings::kMirrorOrGlass || (reached.of_cell[code / 16] >> code % 16 & 1) != 0;
+        if (code == PatchSample::kNear) return false;
+        if (code == PatchSample::kSky) return sky_shines;
+        return code == PatchSample::kMirrorOrGlass || (reached.of_cell[code / 16] >> code % 16 & 1) != 0;
     };
-    auto const is_exposed = [&](std::size_t i, std::size_t side) {
-        return std::ranges::any_of(surroundings.of_piece[i][side], lets_light_in);
+    auto const is_exposed = [&](PatchSample const& s, std::size_t side) {
+        return std::ranges::any_of(s.met[side], lets_light_in);
     };
-    for (std::size_t i = 0; i < grid.pieces.size(); ++i) {
-        std::uint32_t const patch = patches.of_piece[i];
-        whole_patch[patch] += grid.pieces[i].area;
+    for (PatchSample const& s : samples) {
+        whole_patch[s.patch] += s.area;
         for (std::size_t side = 0; side < 2; ++side)
-            if (is_exposed(i, side)) out.of_patch[patch][side] += grid.pieces[i].area;
+            if (is_exposed(s, side)) out.of_patch[s.patch][side] += s.area;
     }
     for (std::size_t patch = 0; patch < whole_patch.size(); ++patch)
         for (std::size_t side = 0; side < 2; ++side) {
             float& exposed = out.of_patch[patch][side];
             exposed = judged(exposed, whole_patch[patch], 0);
-            if (exposed == 0 && lit[2 * patch + side] != 0) exposed = whole_patch[patch]; // rays were wrong
+            if (exposed == 0 && photons.hit(2 * patch + side)) exposed = whole_patch[patch]; // rays were wrong
         }
-    for (std::size_t i = 0; i < grid.pieces.size(); ++i) {
-        SurfacePiece const& piece = grid.pieces[i];
-        std::uint32_t const patch = patches.of_piece[i];
+    for (PatchSample const& s : samples)
         for (std::size_t side = 0; side < 2; ++side) {
-            vec3 const normal = side == 0 ? piece.normal : -piece.normal;
-            add_piece(normal, piece.area, by, whole[piece.block]);
-            if (out.of_patch[patch][side] == whole_patch[patch] || is_exposed(i, side))
-                add_piece(normal, piece.area, by, out.of_cell[piece.block]);
+            vec3 const normal = side == 0 ? s.normal : -s.normal;
+            std::uint32_t const cell = patches.cell_of_patch[s.patch];
+            add_piece(normal, s.area, by, whole[cell]);
+            if (out.of_patch[s.patch][side] == whole_patch[s.patch] || is_exposed(s, side))
+                add_piece(normal, s.area, by, out.of_cell[cell]);
             else
-                out.hidden_m2 += double(piece.area);
+                out.hidden_m2 += double(s.area);
         }
-    }
     for (std::size_t i = 0; i < whole.size(); ++i)
         for (int k = 0; k < 6; ++k) {
             float& exposed = out.of_cell[i].bin[k];

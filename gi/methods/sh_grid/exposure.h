@@ -11,37 +11,44 @@
 
 namespace gi {
 
-/// What a few rays from the two sides of pieces of surfaces meet. It depends on geometry alone.
-struct Surroundings {
+/// A piece of a patch that stands for a part of it, and what a few rays from its two sides meet.
+struct PatchSample {
     static constexpr std::size_t kRays = 3; ///< per side, cosine-distributed
     static constexpr std::uint32_t
         kNear = 0xffffffffu,          ///< something nearer than a cell: a gap, a fold, what lies on it
         kSky = 0xfffffffeu,           ///< nothing in the grid
         kMirrorOrGlass = 0xfffffffdu; ///< a surface that passes light on
-    /// 16 x cell + ReachedSides::side_index() of the side that is met, or one of the above.
-    using OfPiece = std::array<std::array<std::uint32_t, kRays>, 2>;
 
-    std::vector<OfPiece> of_piece;
+    std::uint32_t patch, triangle;
+    vec3 point, normal; ///< of the piece
+    float area;         ///< of the part, m^2
+    /// 16 x cell + ReachedSides::side_index() of the side that is met, or one of the above.
+    std::array<std::array<std::uint32_t, kRays>, 2> met;
 };
 
-/// Appends what the rays of pieces first, first + 1, ... meet. Throws Interrupted.
-void look_around(World const& world, ExactVisibility const& visibility, VoxelGrid const& grid, std::size_t first,
-                 RayWorld met, BuildStop const& stop, Surroundings& out);
+/// Appends samples of patches: all pieces of a patch with few, else some, each for an equal part of the area.
+/// @param patch_of  patch of each piece
+void choose_samples(std::span<SurfacePiece const> pieces, std::span<std::uint32_t const> patch_of,
+                    std::vector<PatchSample>& out);
+
+/// Sends the rays of samples; their answers depend on geometry alone. Throws Interrupted.
+void look_around(World const& world, ExactVisibility const& visibility, GridFrame const& frame, RayWorld met,
+                 BuildStop const& stop, std::span<PatchSample> samples);
 
 /// Areas of the surfaces in a cell that light can reach, each side by itself, m^2.
 using CellArea = AxisBins<float>;
 
 /// Areas that light can reach.
 struct ExposedAreas {
-    std::vector<CellArea> of_cell;              ///< by index in grid.blocks
+    std::vector<CellArea> of_cell;              ///< by index of the grid's values
     std::vector<std::array<float, 2>> of_patch; ///< front, back; m^2
     double hidden_m2 = 0;                       ///< left out, of both sides
 };
 
-/// Areas of the pieces of which a ray met a side that light has reached, mirrors or glass, or a sky that shines.
-/// @param lit  per patch, front and back: photons hit it, so that all of it is exposed if rays say none is
-ExposedAreas exposed_areas(VoxelGrid const& grid, Patches const& patches, Surroundings const& surroundings,
-                           ReachedSides const& reached, std::span<std::uint8_t const> lit, bool sky_shines,
+/// Areas of the samples of which a ray met a side that light has reached, mirrors or glass, or a sky that shines.
+/// A patch that photons hit is exposed as a whole if rays say that none of it is.
+ExposedAreas exposed_areas(std::size_t cells, Patches const& patches, std::span<PatchSample const> samples,
+                           ReachedSides const& reached, SortedPhotons const& photons, bool sky_shines,
                            RadianceBy by);
 
 } // namespace gi

@@ -20,7 +20,7 @@ RadianceLevels to_levels(GridLevel const& of)
     for (std::size_t k = 0; k < out.count; ++k) out.level[k] = grids.levels[k].view();
     out.cells = grids.levels[0].cells;
     out.patches = grids.patches;
-    out.cell_of_patch = of.geometry().patches.cell_of_patch;
+    out.cell_of_patch = of.patches.cell_of_patch;
     return out;
 }
 
@@ -41,8 +41,7 @@ void IndirectField::changed(Changes const& c)
     surfaces_changed_ = surfaces_changed_ || c.geometry || c.bounds;
     materials_changed_ = materials_changed_ || c.materials;
     coverage_changed_ = coverage_changed_ || c.coverage;
-    light_changed_ = light_changed_ || c.geometry || c.bounds || c.materials || c.coverage || c.lights ||
-                     c.emitters || c.environment || c.light_select;
+    light_changed_ = light_changed_ || c.materials || c.coverage || c.lights || c.emitters || c.environment;
 }
 
 /// Materials that only mirror and refract, as far as no texture changes them: their triangles are in no grid.
@@ -86,12 +85,7 @@ void IndirectField::place_levels(ExactVisibility const& visibility, std::span<Fr
     for (Bounds const& box : boxes) {
         GridLevel& level = levels.emplace_back();
         level.bounds = box;
-        level.fixed.voxels = empty_voxel_grid(box, settings_.sh_grid.voxels);
-        add_triangles(world_, 0, first_moving_, level.fixed.voxels, stop);
-        look_around(world_, visibility, level.fixed.voxels, 0, RayWorld::what_stays, stop,
-                    level.fixed.surroundings);
-        if (first_moving_ == world_.triangles.size())
-            level.fixed.patches = find_patches(world_, level.fixed.voxels);
+        find_fixed_surfaces(level, visibility, stop);
     }
     if (fits) levels.push_back(std::move(levels_.back()));
     levels_ = std::move(levels);
@@ -99,87 +93,123 @@ void IndirectField::place_levels(ExactVisibility const& visibility, std::span<Fr
     surfaces_changed_ = light_changed_ = update_all_ = true;
 }
 
+void IndirectField::find_fixed_surfaces(GridLevel& level, ExactVisibility const& visibility, BuildStop const& stop)
+{
+    VoxelGrid grid = empty_voxel_grid(level.bounds, settings_.sh_grid.voxels);
+    add_triangles(world_, 0, first_moving_, grid, stop);
+    std::vector<std::uint32_t> patch_of;
+    level.patches.first_moving = std::uint32_t(first_moving_);
+    level.patches.fixed = find_patches(world_, grid, level.patches.cell_of_patch, patch_of);
+    choose_samples(grid.pieces, patch_of, level.samples);
+    look_around(world_, visibility, grid.blocks.frame, RayWorld::what_stays, stop, level.samples);
+    level.fixed_patches = level.patches.count();
+    level.fixed_samples = level.samples.size();
+    level.fixed_blocks = level.blocks = std::move(grid.blocks);
+}
+
 void IndirectField::find_moving_surfaces(ExactVisibility const& visibility, BuildStop const& stop)
 {
     StageTimer const timer(report_, "voxels");
     if (first_moving_ == world_.triangles.size()) return;
     for (GridLevel& level : levels_) {
-        level.moving = level.fixed;
-        VoxelGrid& voxels = level.moving->voxels;
-        add_triangles(world_, first_moving_, world_.triangles.size(), voxels, stop);
-        look_around(world_, visibility, voxels, level.fixed.voxels.pieces.size(), RayWorld::all, stop,
-                    level.moving->surroundings);
-        level.moving->patches = find_patches(world_, voxels);
+        VoxelGrid grid{level.fixed_blocks, {}};
+        add_triangles(world_, first_moving_, world_.triangles.size(), grid, stop);
+        level.patches.cell_of_patch.resize(level.fixed_patches);
+        level.samples.resize(level.fixed_samples);
+        std::vector<std::uint32_t> patch_of;
+        level.patches.moving = find_patches(world_, grid, level.patches.cell_of_patch, patch_of);
+        choose_samples(grid.pieces, patch_of, level.samples);
+        look_around(world_, visibility, grid.blocks.frame, RayWorld::all, stop,
+                    std::span(level.samples).subspan(level.fixed_samples));
+        level.blocks = std::move(grid.blocks);
     }
 }
 
-void IndirectField::trace_photons(ExactVisibility const& visibility, BuildStop const& stop, PathCounts& counts)
+/// Traces a part of the light paths of a set. @param part  of parts()
+void IndirectField::trace_photons(ExactVisibility const& visibility, int part, BuildStop const& stop,
+                                  PathCounts& counts)
 {
     StageTimer const timer(report_, "photons");
-    LightPaths paths{.count = std::uint32_t(settings_.sh_grid.photons),
+    std::uint64_t const all = std::uint64_t(settings_.sh_grid.photons), n = std::uint64_t(parts());
+    LightPaths paths{.count = std::uint32_t(all),
                      .bounces = std::min(settings_.sh_grid.reflections, settings_.bounces),
                      .seed = settings_.seed,
                      .pass = *first_index_ + photon_sets_, // the same photons in every frame: no flicker
                      .stop = &stop};
     if (levels_.size() > 1) paths.focus = levels_[0].bounds;
-    photons_.clear();
-    if (photon_sets_ == 0)
-        for (GridLevel& level : levels_) {
-            level.reached.emplace(level.geometry().voxels.blocks.frame);
-            level.lit.assign(2 * level.geometry().patches.count(), 0);
-        }
+    std::vector<Photon> found;
+    auto const first = std::uint32_t(all * std::uint64_t(part) / n),
+               end = std::uint32_t(all * std::uint64_t(part + 1) / n);
     constexpr std::uint32_t kTogether = 1 << 16; // bounds the memory of vertices
-    for (paths.first = 0; paths.first < paths.count; paths.first += kTogether) {
-        paths.last = std::min(paths.count - paths.first, kTogether) + paths.first;
+    for (paths.first = first; paths.first < end; paths.first += kTogether) {
+        paths.last = std::min(end - paths.first, kTogether) + paths.first;
         auto const vertices = trace_light_paths(view(world_), world_.bounds, visibility, paths, counts);
-        for (GridLevel& level : levels_) {
-            level.reached->add(vertices);
-            CellsView<BlockVoxels> const blocks = level.geometry().voxels.blocks.view();
-            PatchesView const patches = level.geometry().patches.view();
-            for (VirtualLight const& v : vertices) {
-                std::uint32_t const patch = patch_at(blocks, patches, v.position, v.triangle);
-                if (patch != kNoCell) level.lit[2 * patch + (v.front ? 0 : 1)] = 1;
-            }
-        }
-        reflect_photons(vertices, settings_.seed + paths.pass + (std::uint64_t(paths.first) << 32), photons_);
+        for (GridLevel& level : levels_) level.reached->add(vertices);
+        reflect_photons(vertices, settings_.seed + paths.pass + (std::uint64_t(paths.first) << 32), found);
     }
+    photons_.resize(n);
+    photons_[std::size_t(part)] = std::move(found);
+}
+
+void IndirectField::trace_all_photons(ExactVisibility const& visibility, BuildStop const& stop, PathCounts& counts)
+{
+    if (photon_sets_ == 0)
+        for (GridLevel& level : levels_) level.reached.emplace(level.blocks.frame);
+    for (int part = 0; part < parts(); ++part) trace_photons(visibility, part, stop, counts);
+    photon_parts_left_ = 0;
     ++photon_sets_;
+}
+
+/// After geometry has moved: one part per call.
+void IndirectField::trace_next_photons(ExactVisibility const& visibility, BuildStop const& stop,
+                                       PathCounts& counts)
+{
+    trace_photons(visibility, next_photon_part_, stop, counts);
+    next_photon_part_ = (next_photon_part_ + 1) % parts();
+    if (--photon_parts_left_ == 0) photon_sets_ = 1;
 }
 
 void IndirectField::make_radiance_grids()
 {
     StageTimer const timer(report_, "radiance grids");
+    std::vector<Photon> all;
+    for (std::vector<Photon> const& part : photons_) all.insert(all.end(), part.begin(), part.end());
     for (GridLevel& level : levels_) {
-        GridLevel::Geometry const& g = level.geometry();
-        auto const areas =
-            exposed_areas(g.voxels, g.patches, g.surroundings, *level.reached, level.lit, sky_shines(), by());
+        SortedPhotons const sorted = sort_photons(level.blocks, level.patches, all);
+        auto const areas = exposed_areas(level.blocks.values.size(), level.patches, level.samples, *level.reached,
+                                         sorted, sky_shines(), by());
         level.hidden_m2 = areas.hidden_m2;
-        level.grids = gi::make_radiance_grids(g.voxels.blocks, g.patches, areas, photons_, by());
+        level.grids = gi::make_radiance_grids(level.blocks, level.patches, areas, all, sorted, by());
     }
     stored_ = dvec3{0};
-    for (Photon const& p : photons_) stored_ += dvec3(p.flux);
+    for (Photon const& p : all) stored_ += dvec3(p.flux);
 }
 
 /// Cells where surfaces are now; those that stay keep their values. Of a coarse level, those deep in the fine one
 /// are not needed.
 void IndirectField::place_cells(GridLevel& level)
 {
-    SparseCells<BlockVoxels> const& blocks = level.geometry().voxels.blocks;
-    GridFrame const& frame = blocks.frame;
-    Field old = std::move(level.field);
-    level.field = {SparseCells<FieldCell>(frame), settings_.sh_grid.degree};
-    level.new_cells.clear();
+    GridFrame const& frame = level.blocks.frame;
     Bounds const fine = levels_.front().bounds;
-    for (std::uint32_t const cell : cells_near_surfaces(blocks)) {
-        vec3 const center = frame.center(frame.cell_of(cell)), around = vec3{3 * frame.cell};
-        if (&level != &levels_.front() && holds(fine, {center - around, center + around})) continue;
-        std::uint32_t const place = level.field.cells.place_at(frame.cell_of(cell)),
-                            before = old.cells.place.empty() ? kNoCell : old.cells.place[cell];
-        if (before == kNoCell)
-            level.new_cells.push_back(place);
-        else
-            level.field.cells.values[place] = old.cells.values[before];
+    std::vector<std::uint32_t> wanted = cells_near_surfaces(level.blocks);
+    if (&level != &levels_.front())
+        std::erase_if(wanted, [&](std::uint32_t cell) {
+            vec3 const center = frame.center(frame.cell_of(cell)), around = vec3{3 * frame.cell};
+            return holds(fine, {center - around, center + around});
+        });
+    constexpr std::size_t kStale = 8; // every kStale-th cell may lie where surfaces no longer are
+    SparseCells<FieldCell>& cells = level.field.cells;
+    level.field.degree = settings_.sh_grid.degree;
+    if (cells.place.empty()) cells = SparseCells<FieldCell>(frame);
+    if (cells.values.size() > wanted.size() + wanted.size() / kStale) {
+        SparseCells<FieldCell> fresh(frame);
+        for (std::uint32_t const cell : wanted)
+            if (cells.place[cell] != kNoCell) fresh.at(frame.cell_of(cell)) = cells.values[cells.place[cell]];
+        cells = std::move(fresh);
     }
+    level.new_cells.clear();
+    for (std::uint32_t const cell : wanted)
+        if (cells.place[cell] == kNoCell) level.new_cells.push_back(cells.place_at(frame.cell_of(cell)));
 }
 
 void IndirectField::update_cells(ExactVisibility const& visibility, int part, int parts, BuildStop const& stop,
@@ -190,8 +220,7 @@ void IndirectField::update_cells(ExactVisibility const& visibility, int part, in
     FieldDirections const directions(s.directions, s.degree, *first_index_ + updates_);
     std::size_t const n = directions.all.size();
     std::vector<FieldTarget> targets;
-    for (GridLevel const& level : levels_)
-        targets.push_back({level.geometry().voxels.blocks.view(), level.geometry().patches.view()});
+    for (GridLevel const& level : levels_) targets.push_back({level.blocks.view(), level.patches.view()});
     for (std::uint32_t index = 0; index < levels_.size(); ++index) {
         GridLevel& level = levels_[index];
         SparseCells<FieldCell>& cells = level.field.cells;
@@ -264,27 +293,35 @@ void IndirectField::update(ExactVisibility const& visibility, std::span<FrameVie
                            BuildStop const& stop, PathCounts& counts)
 {
     place_levels(visibility, views, stop);
-    int const parts = settings_.sh_grid.field_passes;
-    if (surfaces_changed_ || light_changed_) {
+    if (light_changed_ || surfaces_changed_) {
         photon_sets_ = updates_ = calls_at_rest_ = 0;
         if (surfaces_changed_) find_moving_surfaces(visibility, stop);
-        trace_photons(visibility, stop, counts);
+        if (light_changed_) {
+            trace_all_photons(visibility, stop, counts);
+        } else {
+            photon_parts_left_ = parts();
+            trace_next_photons(visibility, stop, counts);
+        }
         make_radiance_grids();
         if (surfaces_changed_)
             for (GridLevel& level : levels_) place_cells(level);
-        parts_left_ = update_all_ ? 1 : parts;
+        parts_left_ = update_all_ ? 1 : parts();
         surfaces_changed_ = light_changed_ = false;
+    } else if (photon_parts_left_ > 0) {
+        trace_next_photons(visibility, stop, counts);
+        make_radiance_grids();
+        parts_left_ = parts();
     } else if (parts_left_ == 0 && ++calls_at_rest_ >= 4 && std::has_single_bit(calls_at_rest_)) {
         // A field costs as much as many passes.
-        trace_photons(visibility, stop, counts);
+        trace_all_photons(visibility, stop, counts);
         make_radiance_grids();
         parts_left_ = 1;
         update_all_ = true;
         ++updates_;
     }
     if (parts_left_ == 0) return;
-    update_cells(visibility, update_all_ ? 0 : next_part_, update_all_ ? 1 : parts, stop, counts);
-    next_part_ = (next_part_ + 1) % parts;
+    update_cells(visibility, update_all_ ? 0 : next_part_, update_all_ ? 1 : parts(), stop, counts);
+    next_part_ = (next_part_ + 1) % parts();
     --parts_left_;
     update_all_ = false;
     has_field_ = true;
@@ -297,15 +334,17 @@ void IndirectField::report_counts()
         GridLevel const& level = levels_[k];
         std::string const grid = levels_.size() == 1 ? "grid" : k == 0 ? "fine grid" : "coarse grid";
         report_.count(grid + ": side of a cell of the field, m", double(level.field.cells.frame.cell));
-        report_.count(grid + ": voxels with surfaces", double(level.geometry().voxels.voxels()));
-        report_.count(grid + ": cells with surfaces", double(level.geometry().voxels.blocks.values.size()));
+        report_.count(grid + ": voxels with surfaces", double(count_voxels(level.blocks)));
+        report_.count(grid + ": cells with surfaces", double(level.blocks.values.size()));
         report_.count(grid + ": cells of the field", double(level.field.cells.values.size()));
         report_.count(grid + ": flux held, W (luminance)", watt(level.grids.flux()));
         report_.count(grid + ": flux of photons without a surface in it, W (luminance)", watt(level.grids.lost));
         report_.count(grid + ": area that no light can reach, both sides, m^2", level.hidden_m2);
     }
     if (levels_.empty()) return;
-    report_.count("photons of the last set", double(photons_.size()));
+    std::size_t photons = 0;
+    for (std::vector<Photon> const& part : photons_) photons += part.size();
+    report_.count("photons of the last set", double(photons));
     report_.count("sets of photons", double(photon_sets_));
     report_.count("flux of the photons, W (luminance)", watt(stored_));
 }

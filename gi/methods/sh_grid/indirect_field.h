@@ -14,22 +14,17 @@
 namespace gi {
 
 struct GridLevel {
-    struct Geometry {
-        VoxelGrid voxels;
-        Surroundings surroundings;
-        Patches patches;
-    };
     Bounds bounds;
-    Geometry fixed;                 ///< triangles that stay
-    std::optional<Geometry> moving; ///< all triangles; none = nothing can move
+    SparseCells<BlockVoxels> fixed_blocks; ///< of triangles that stay
+    SparseCells<BlockVoxels> blocks;       ///< of all, first those of the former
+    Patches patches;
+    std::vector<PatchSample> samples; ///< of patches that stay, then of others
+    std::size_t fixed_patches = 0, fixed_samples = 0;
     std::optional<ReachedSides> reached;
     RadianceGrids grids;
     Field field;
     std::vector<std::uint32_t> new_cells; ///< indices of those without a value yet
-    std::vector<std::uint8_t> lit;        ///< per patch, front and back: photons hit it
     double hidden_m2 = 0;                 ///< area that no light can reach, of both sides
-
-    Geometry const& geometry() const { return moving ? *moving : fixed; }
 };
 
 class IndirectField {
@@ -42,8 +37,8 @@ public:
     /// Follows the world: geometry that moved, lights or materials that changed.
     void changed(Changes const& changes);
     /// Brings the fields up to date for one more pass. After a change their cells follow within `field_passes`
-    /// calls; in a world at rest, calls 4, 8, 16, ... average the fields of more photons
-    /// and other directions.
+    /// calls, after motion the photons at the same pace; in a world at rest, calls 4, 8, 16, ... average the
+    /// fields of more photons and other directions.
     /// @param visibility  of the world as it is now  @param index  of the pass; the first decides which photons
     /// are traced. Throws Interrupted if a stop is requested and there is no field yet.
     void prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
@@ -57,12 +52,16 @@ private:
                 PathCounts& counts);
     std::vector<bool> only_smooth() const;
     void place_levels(ExactVisibility const& visibility, std::span<FrameView const> views, BuildStop const& stop);
+    void find_fixed_surfaces(GridLevel& level, ExactVisibility const& visibility, BuildStop const& stop);
     void find_moving_surfaces(ExactVisibility const& visibility, BuildStop const& stop);
-    void trace_photons(ExactVisibility const& visibility, BuildStop const& stop, PathCounts& counts);
+    void trace_photons(ExactVisibility const& visibility, int part, BuildStop const& stop, PathCounts& counts);
+    void trace_next_photons(ExactVisibility const& visibility, BuildStop const& stop, PathCounts& counts);
+    void trace_all_photons(ExactVisibility const& visibility, BuildStop const& stop, PathCounts& counts);
     void make_radiance_grids();
     void place_cells(GridLevel& level);
     void update_cells(ExactVisibility const& visibility, int part, int parts, BuildStop const& stop,
                       PathCounts& counts);
+    int parts() const { return settings_.sh_grid.field_passes; }
     RadianceBy by() const { return settings_.sh_grid.radiance_by; }
     bool sky_shines() const { return !view(world_).environment_radiance.empty(); }
 
@@ -77,7 +76,9 @@ private:
 
     std::vector<GridLevel> levels_;
     bool surfaces_changed_ = true, light_changed_ = true, coverage_changed_ = false, materials_changed_ = false;
-    std::vector<Photon> photons_;   ///< of the last set
+    std::vector<std::vector<Photon>> photons_; ///< of the last set, by part of the light paths
+    int photon_parts_left_ = 0;                ///< that do not know the latest geometry
+    int next_photon_part_ = 0;
     std::uint32_t photon_sets_ = 0; ///< since the last change
     dvec3 stored_{0};               ///< flux of photons, W
     bool has_field_ = false;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <span>
 #include <tbb/parallel_for.h>
 #include <tuple>
 
@@ -31,7 +30,8 @@ bool before(vec3 a, vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y
 
 } // namespace
 
-Patches find_patches(World const& world, VoxelGrid const& grid)
+PatchTable find_patches(World const& world, VoxelGrid const& grid, std::vector<std::uint32_t>& cell_of_patch,
+                        std::vector<std::uint32_t>& of_piece)
 {
     std::size_t const cells = grid.blocks.values.size(), pieces = grid.pieces.size();
     // Pieces by cell, and by triangle in each.
@@ -41,13 +41,14 @@ Patches find_patches(World const& world, VoxelGrid const& grid)
     std::vector<std::uint32_t> next = first;
     for (std::uint32_t i = 0; i < pieces; ++i) order[next[grid.pieces[i].block]++] = i;
 
-    Patches out;
-    out.of_piece.resize(pieces);
+    PatchTable out;
+    of_piece.resize(pieces);
     out.first_entry.resize(cells + 1);
     out.first_patch.resize(cells + 1);
     std::vector<std::vector<std::uint32_t>> triangles(cells), patches(cells);
     float const small = square(grid.blocks.frame.cell) / 20;
     tbb::parallel_for(std::size_t(0), cells, [&](std::size_t cell) {
+        if (first[cell] == first[cell + 1]) return;
         std::span<std::uint32_t> const own{order.data() + first[cell], order.data() + first[cell + 1]};
         std::ranges::stable_sort(own, {}, [&](std::uint32_t i) { return grid.pieces[i].triangle; });
         std::vector<std::uint32_t>& of = triangles[cell];
@@ -59,7 +60,7 @@ Patches find_patches(World const& world, VoxelGrid const& grid)
                 area.emplace_back(0);
             }
             area.back() += p.area * p.normal;
-            out.of_piece[i] = std::uint32_t(of.size() - 1);
+            of_piece[i] = std::uint32_t(of.size() - 1);
         }
         std::size_t const n = of.size();
         JoinedSets sets(n);
@@ -103,16 +104,17 @@ Patches find_patches(World const& world, VoxelGrid const& grid)
         out.first_patch[cell + 1] = count;
     });
     std::partial_sum(out.first_entry.begin(), out.first_entry.end(), out.first_entry.begin());
+    out.first_patch[0] = std::uint32_t(cell_of_patch.size());
     std::partial_sum(out.first_patch.begin(), out.first_patch.end(), out.first_patch.begin());
     out.triangles.reserve(out.first_entry.back());
     out.patches.reserve(out.first_entry.back());
     for (std::size_t cell = 0; cell < cells; ++cell) {
         for (std::uint32_t k = first[cell]; k < first[cell + 1]; ++k) {
-            std::uint32_t& entry = out.of_piece[order[k]];
-            entry = out.first_patch[cell] + patches[cell][entry];
+            std::uint32_t& patch = of_piece[order[k]];
+            patch = out.first_patch[cell] + patches[cell][patch];
         }
         out.triangles.insert(out.triangles.end(), triangles[cell].begin(), triangles[cell].end());
-        out.cell_of_patch.resize(out.first_patch[cell + 1], std::uint32_t(cell));
+        cell_of_patch.resize(out.first_patch[cell + 1], std::uint32_t(cell));
         for (std::uint32_t const p : patches[cell]) out.patches.push_back(out.first_patch[cell] + p);
     }
     return out;

@@ -5,17 +5,20 @@
 #include "gi/methods/sh_grid/axis_bins.h"
 #include "gi/methods/sh_grid/voxels.h"
 
+#include <span>
+
 namespace gi {
 
-/// To find patches. Those of a cell follow each other, in the order of the cells' values.
-struct PatchesView {
-    View<std::uint32_t const> first_entry; ///< per cell, and one more
+/// To find patches by cells. Those of a cell follow each other.
+struct PatchTableView {
+    View<std::uint32_t const> first_entry; ///< per cell, in the order of the grid's values, and one more
     View<std::uint32_t const> triangles;   ///< of entries, ascending in each cell
     View<std::uint32_t const> patches;     ///< of entries
 
     /// The patch of a triangle in a cell, or kNoCell. @param place  of the cell's value
     GI_FN std::uint32_t find(std::uint32_t place, std::uint32_t triangle) const
     {
+        if (std::size_t(place) + 1 >= first_entry.size()) return kNoCell;
         std::uint32_t low = first_entry[place], high = first_entry[place + 1];
         std::uint32_t const end = high;
         while (low < high) {
@@ -29,19 +32,38 @@ struct PatchesView {
     }
 };
 
-struct Patches {
-    std::vector<std::uint32_t> first_entry, triangles, patches; ///< see PatchesView
+struct PatchTable {
+    std::vector<std::uint32_t> first_entry, triangles, patches; ///< see PatchTableView
     std::vector<std::uint32_t> first_patch;                     ///< per cell, and one more
-    std::vector<std::uint32_t> cell_of_patch;                   ///< index of its value
-    std::vector<std::uint32_t> of_piece;                        ///< per VoxelGrid::pieces
 
-    PatchesView view() const { return {first_entry, triangles, patches}; }
-    std::size_t count() const { return first_patch.empty() ? 0 : first_patch.back(); }
+    PatchTableView view() const { return {first_entry, triangles, patches}; }
 };
 
-/// Patches of less than a twentieth of a cell's face are joined with the others of their cell that face the same
-/// way: else single photons would make them glare.
-Patches find_patches(World const& world, VoxelGrid const& grid);
+struct PatchesView {
+    PatchTableView fixed, moving;
+    std::uint32_t first_moving; ///< triangle
+    GI_FN std::uint32_t find(std::uint32_t place, std::uint32_t triangle) const
+    {
+        return (triangle < first_moving ? fixed : moving).find(place, triangle);
+    }
+};
+
+/// Patches of triangles that stay, numbered from 0, and after them those of triangles that can move.
+struct Patches {
+    PatchTable fixed, moving;
+    std::uint32_t first_moving = 0;           ///< triangle
+    std::vector<std::uint32_t> cell_of_patch; ///< index of its value
+
+    PatchesView view() const { return {fixed.view(), moving.view(), first_moving}; }
+    std::size_t count() const { return cell_of_patch.size(); }
+};
+
+/// Patches of the pieces in a grid, numbered from cell_of_patch.size(). Those of less than a twentieth of a cell's
+/// face are joined with the others of their cell that face the same way: else single photons would make them
+/// glare.
+/// @param cell_of_patch  theirs are appended  @param of_piece  overwritten: the patch of each piece
+PatchTable find_patches(World const& world, VoxelGrid const& grid, std::vector<std::uint32_t>& cell_of_patch,
+                        std::vector<std::uint32_t>& of_piece);
 
 /// The patch that a point on a triangle belongs to, also where rounding moved the point to the next cell, or
 /// kNoCell.

@@ -1,6 +1,9 @@
 #include "gi/methods/sh_grid/photons.h"
 
 #include "gi/core/rng.h"
+#include "gi/kernel/launch.h"
+#include "gi/kernel/sort.h"
+#include "gi/methods/sh_grid/photon_kernels.h"
 
 #include <tbb/parallel_for.h>
 
@@ -12,6 +15,21 @@ void ReachedSides::add(std::span<VirtualLight const> vertices)
         glm::ivec3 const cell = frame.at(v.position);
         if (frame.holds(cell)) of_cell[frame.index(cell)] |= std::uint16_t(1u << side_index(v.normal, v.front));
     }
+}
+
+SortedPhotons sort_photons(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
+                           std::span<Photon const> photons)
+{
+    std::size_t const n = photons.size(), sides = 2 * patches.count();
+    SortedPhotons out{std::vector<std::uint32_t>(n), std::vector<std::uint32_t>(sides + 1)};
+    std::vector<std::uint64_t> keys(n), scratch_keys(n);
+    std::vector<std::uint32_t> scratch_order(n);
+    View<Photon const> const all{photons.data(), n};
+    launch(Space::host, "find photon patches", n,
+           FindPhotonPatches{blocks.view(), patches.view(), all, keys, out.order});
+    sort_pairs(Space::host, keys, out.order, scratch_keys, scratch_order);
+    launch(Space::host, "find first photons", sides + 1, FindFirstPhotons{keys, out.firsts});
+    return out;
 }
 
 void reflect_photons(std::span<VirtualLight const> vertices, std::uint64_t seed, std::vector<Photon>& out)

@@ -2,8 +2,7 @@
 // Photons as the radiance grids store them (Chang, Park and Ihm, sec. 3.2): where light leaves a surface after a
 // reflection, and in which direction.
 
-#include "gi/methods/sh_grid/axis_bins.h"
-#include "gi/methods/sh_grid/voxels.h"
+#include "gi/methods/sh_grid/patches.h"
 #include "gi/methods/vpl/virtual_lights.h"
 
 #include <span>
@@ -30,6 +29,16 @@ struct ReachedSides {
     explicit ReachedSides(GridFrame const& f) : frame(f), of_cell(f.cells()) {}
     void add(std::span<VirtualLight const> vertices);
 };
+
+/// Photons by the sides of patches that they leave.
+struct SortedPhotons {
+    std::vector<std::uint32_t> order;  ///< indices, those of no patch last
+    std::vector<std::uint32_t> firsts; ///< per side (2 x patch, + 1: back) in `order`, and one more
+
+    bool hit(std::size_t side) const { return firsts[side] < firsts[side + 1]; }
+};
+SortedPhotons sort_photons(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
+                           std::span<Photon const> photons);
 
 /// Reflects each vertex of light paths once, in a random direction, and appends the photons.
 /// @param seed  of the directions

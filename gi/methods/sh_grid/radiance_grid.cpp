@@ -1,7 +1,6 @@
 #include "gi/methods/sh_grid/radiance_kernels.h"
 
 #include "gi/kernel/launch.h"
-#include "gi/kernel/sort.h"
 
 namespace gi {
 namespace {
@@ -20,35 +19,29 @@ SparseCells<CellLight> coarser(SparseCells<CellLight> const& fine)
 } // namespace
 
 RadianceGrids make_radiance_grids(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
-                                  ExposedAreas const& areas, std::span<Photon const> photons, RadianceBy by)
+                                  ExposedAreas const& areas, std::span<Photon const> photons,
+                                  SortedPhotons const& sorted, RadianceBy by)
 {
-    std::size_t const n = photons.size(), cells = blocks.values.size(), sides = 2 * patches.count();
+    std::size_t const cells = blocks.values.size();
     RadianceGrids grids;
     grids.patches.resize(patches.count());
     for (std::size_t k = 0; k < grids.patches.size(); ++k)
         for (std::size_t side = 0; side < 2; ++side) grids.patches[k].area[side] = areas.of_patch[k][side];
-    View<Photon const> const all{photons.data(), n};
-    std::vector<std::uint64_t> keys(n), scratch_keys(n);
-    std::vector<std::uint32_t> order(n), scratch_order(n), firsts(sides + 1);
-    launch(Space::host, "find photon patches", n,
-           FindPhotonPatches{blocks.view(), patches.view(), all, keys, order});
-    sort_pairs(Space::host, keys, order, scratch_keys, scratch_order);
-    launch(Space::host, "find first photons", sides + 1, FindFirstPhotons{keys, firsts});
-
     SparseCells<CellLight> finest(blocks.frame);
     finest.place = blocks.place;
     finest.cells = blocks.cells;
     finest.values.resize(cells);
     launch(Space::host, "sum photons", cells,
-           SumPhotons{.photons = all,
-                      .order = order,
-                      .firsts = firsts,
-                      .first_patch = patches.first_patch,
+           SumPhotons{.photons = {photons.data(), photons.size()},
+                      .order = sorted.order,
+                      .firsts = sorted.firsts,
+                      .first_patch = {patches.fixed.first_patch, patches.moving.first_patch},
                       .areas = areas.of_cell,
                       .by = by,
                       .patches = grids.patches,
                       .cells = finest.values});
-    for (std::size_t k = firsts[sides]; k < n; ++k) grids.lost += dvec3(photons[order[k]].flux);
+    for (std::size_t k = sorted.firsts.back(); k < photons.size(); ++k)
+        grids.lost += dvec3(photons[sorted.order[k]].flux);
     grids.levels.push_back(std::move(finest));
     while (max_component(vec3(grids.levels.back().frame.size)) > 1)
         grids.levels.push_back(coarser(grids.levels.back()));

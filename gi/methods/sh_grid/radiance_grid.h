@@ -75,9 +75,9 @@ struct RadianceGrids {
     dvec3 flux() const; ///< of the finest level, W
 };
 
-/// Grids with the photons' flux: photons sorted by patch, and each patch's and cell's summed in
-/// their order.
+/// Grids with the photons' flux: each patch's and cell's summed in their order.
 RadianceGrids make_radiance_grids(SparseCells<BlockVoxels> const& blocks, Patches const& patches,
-                                  ExposedAreas const& areas, std::span<Photon const> photons, RadianceBy by);
+                                  ExposedAreas const& areas, std::span<Photon const> photons,
+                                  SortedPhotons const& sorted, RadianceBy by);
 
 } // namespace gi

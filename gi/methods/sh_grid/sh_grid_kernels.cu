@@ -1,5 +1,6 @@
 #include "gi/kernel/launch.cuh"
 #include "gi/methods/sh_grid/field_kernels.h"
+#include "gi/methods/sh_grid/photon_kernels.h"
 #include "gi/methods/sh_grid/radiance_kernels.h"
 
 namespace gi {

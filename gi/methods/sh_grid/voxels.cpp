@@ -96,7 +96,7 @@ bool scatters(WorldView const& w, std::uint32_t triangle, dvec3 area)
 
 } // namespace
 
-std::uint64_t VoxelGrid::voxels() const
+std::uint64_t count_voxels(SparseCells<BlockVoxels> const& blocks)
 {
     std::uint64_t sum = 0;
     for (BlockVoxels const v : blocks.values) sum += std::uint64_t(std::popcount(v));

@@ -27,8 +27,10 @@ struct VoxelGrid {
     std::vector<SurfacePiece> pieces; ///< of area above 0, in the order of the triangles
 
     float voxel_m() const { return blocks.frame.cell / 4; }
-    std::uint64_t voxels() const; ///< with surfaces
 };
+
+/// Number of voxels with surfaces.
+std::uint64_t count_voxels(SparseCells<BlockVoxels> const& blocks);
 
 /// An empty grid over a box, with some room around it. @param voxels  along the longest side, at least 8
 /// @param bounds  not empty, m. Throws InputError above ShGridSettings::kMostVoxels.
