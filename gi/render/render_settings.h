@@ -131,7 +131,7 @@ struct ShGridSettings {
     int degree = 2;             ///< of the spherical harmonics
     int directions = 400;       ///< per cell of the field
     int gather_directions = 0;  ///< samples of the diffuse lobe; 0 = convolution in closed form
-    int glossy_directions = 64; ///< samples of glossy lobes
+    int glossy_directions = 8;  ///< samples of glossy lobes
     float obscurance_m = 0;     ///< surfaces nearer than this darken diffuse light; 0 = off
     int field_shadow_rays = 4;  ///< from a surface to cells of the field; 0 = none, weights alone
     int field_passes = 3;       ///< passes over which the field follows a change of the scene

@@ -36,9 +36,13 @@ void choose_samples(std::span<SurfacePiece const> pieces, std::span<std::uint32_
                     std::vector<PatchSample>& out)
 {
     constexpr std::size_t kMost = 16; // of a patch
-    std::vector<std::uint32_t> order(pieces.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return patch_of[i]; });
+    if (pieces.empty()) return;
+    // Pieces by patch; the patches follow each other in numbers.
+    auto const [low, high] = std::ranges::minmax(patch_of);
+    std::vector<std::uint32_t> order(pieces.size()), place(high - low + 2);
+    for (std::uint32_t const p : patch_of) ++place[p - low + 1];
+    std::partial_sum(place.begin(), place.end(), place.begin());
+    for (std::uint32_t i = 0; i < pieces.size(); ++i) order[place[patch_of[i] - low]++] = i;
     auto const add = [&](std::uint32_t i, float area) {
         SurfacePiece const& p = pieces[i];
         out.push_back({patch_of[i], p.triangle, p.point, p.normal, area, {}});

@@ -165,8 +165,9 @@ vec3 FieldLight::reflect(TreePoint& point, FieldCell const& cell) const
     lobe.diffuse = vec3{0};
     lobe.clear = 0;
     vec3 sum{0};
+    vec2 const shift = point.rng.uniform2();
     for (int k = 0; k < n; ++k) {
-        vec2 const u{(float(k) + point.rng.uniform()) / float(n), point.rng.uniform()};
+        vec2 const u = glm::fract(shift + float(k) * vec2{1 / float(n), 0.61803399f}); // a lattice
         vec3 const wi = bsdf_detail::sample_specular(b, point.wo, u);
         if (!(wi.z > 0)) continue;
         BsdfValue const value = evaluate(lobe, point.wo, wi);

@@ -32,7 +32,9 @@ IndirectField::IndirectField(World const& world, RenderSettings const& settings,
       settings_(settings),
       first_moving_(std::min(first_moving, world.triangles.size())),
       report_(report),
-      stop_(stop)
+      stop_(stop),
+      voxels_(settings.sh_grid.voxels),
+      light_paths_(std::uint32_t(settings.sh_grid.photons))
 {
 }
 
@@ -95,7 +97,7 @@ void IndirectField::place_levels(ExactVisibility const& visibility, std::span<Fr
 
 void IndirectField::find_fixed_surfaces(GridLevel& level, ExactVisibility const& visibility, BuildStop const& stop)
 {
-    VoxelGrid grid = empty_voxel_grid(level.bounds, settings_.sh_grid.voxels);
+    VoxelGrid grid = empty_voxel_grid(level.bounds, voxels_);
     add_triangles(world_, 0, first_moving_, grid, stop);
     std::vector<std::uint32_t> patch_of;
     level.patches.first_moving = std::uint32_t(first_moving_);
@@ -110,7 +112,7 @@ void IndirectField::find_fixed_surfaces(GridLevel& level, ExactVisibility const&
 void IndirectField::find_moving_surfaces(ExactVisibility const& visibility, BuildStop const& stop)
 {
     StageTimer const timer(report_, "voxels");
-    if (first_moving_ == world_.triangles.size()) return;
+    if (!moves()) return;
     for (GridLevel& level : levels_) {
         VoxelGrid grid{level.fixed_blocks, {}};
         add_triangles(world_, first_moving_, world_.triangles.size(), grid, stop);
@@ -130,8 +132,8 @@ void IndirectField::trace_photons(ExactVisibility const& visibility, int part, B
                                   PathCounts& counts)
 {
     StageTimer const timer(report_, "photons");
-    std::uint64_t const all = std::uint64_t(settings_.sh_grid.photons), n = std::uint64_t(parts());
-    LightPaths paths{.count = std::uint32_t(all),
+    std::uint64_t const all = light_paths_, n = std::uint64_t(parts());
+    LightPaths paths{.count = light_paths_,
                      .bounces = std::min(settings_.sh_grid.reflections, settings_.bounces),
                      .seed = settings_.seed,
                      .pass = *first_index_ + photon_sets_, // the same photons in every frame: no flicker
@@ -283,9 +285,39 @@ void IndirectField::prepare(ExactVisibility const& visibility, std::uint32_t ind
     if (settings_.bounces < 1 || world_.light_select.empty() || world_.bounds.empty()) return levels_.clear();
     if (!first_index_) first_index_ = index;
     try {
-        update(visibility, views, BuildStop(stop_), counts);
+        if (!has_field_ && settings_.budget_s > 0)
+            fit_budget(visibility, views, BuildStop(stop_), counts);
+        else
+            update(visibility, views, BuildStop(stop_), counts);
     } catch (Interrupted const&) {
         if (!has_field_) throw;
+    }
+}
+
+/// Makes coarse fields, and finer ones as long as their time, judged by that of the last, leaves half of the
+/// budget to the passes.
+void IndirectField::fit_budget(ExactVisibility const& visibility, std::span<FrameView const> views,
+                               BuildStop const& stop, PathCounts& counts)
+{
+    constexpr int kFirst = 32;                      // voxels
+    constexpr double kSurfaces = 1.8, kLight = 4.5; // growth of time when voxels are doubled
+    ShGridSettings const& asked = settings_.sh_grid;
+    double const most_s = 0.5 * settings_.budget_s;
+    int doublings = 0;
+    for (voxels_ = asked.voxels; voxels_ / 2 >= kFirst; voxels_ /= 2) ++doublings;
+    for (;; --doublings) {
+        voxels_ = asked.voxels >> doublings;
+        light_paths_ = std::max(1u, std::uint32_t(asked.photons) >> 2 * doublings);
+        auto const begun = Clock::now();
+        update(visibility, views, stop, counts);
+        double const surfaces_s = seconds_since(begun) - last_update_s_;
+        // Of a moving world, most surfaces stay, and light follows in parts.
+        double const next_s = moves() ? kLight * last_update_s_ / parts()
+                                      : seconds_since(started_) + kSurfaces * surfaces_s + kLight * last_update_s_;
+        if (doublings == 0 || next_s > most_s) return;
+        levels_.clear();
+        has_field_ = false;
+        surfaces_changed_ = light_changed_ = update_all_ = true;
     }
 }
 
@@ -293,6 +325,7 @@ void IndirectField::update(ExactVisibility const& visibility, std::span<FrameVie
                            BuildStop const& stop, PathCounts& counts)
 {
     place_levels(visibility, views, stop);
+    auto const begun = Clock::now();
     if (light_changed_ || surfaces_changed_) {
         photon_sets_ = updates_ = calls_at_rest_ = 0;
         if (surfaces_changed_) find_moving_surfaces(visibility, stop);
@@ -311,7 +344,9 @@ void IndirectField::update(ExactVisibility const& visibility, std::span<FrameVie
         trace_next_photons(visibility, stop, counts);
         make_radiance_grids();
         parts_left_ = parts();
-    } else if (parts_left_ == 0 && ++calls_at_rest_ >= 4 && std::has_single_bit(calls_at_rest_)) {
+    } else if (parts_left_ == 0 && ++calls_at_rest_ >= 4 && std::has_single_bit(calls_at_rest_) &&
+               (moves() || !(settings_.budget_s > 0) ||
+                seconds_since(started_) + last_update_s_ < settings_.budget_s)) {
         // A field costs as much as many passes.
         trace_all_photons(visibility, stop, counts);
         make_radiance_grids();
@@ -323,6 +358,7 @@ void IndirectField::update(ExactVisibility const& visibility, std::span<FrameVie
     update_cells(visibility, update_all_ ? 0 : next_part_, update_all_ ? 1 : parts(), stop, counts);
     next_part_ = (next_part_ + 1) % parts();
     --parts_left_;
+    if (update_all_) last_update_s_ = seconds_since(begun);
     update_all_ = false;
     has_field_ = true;
 }

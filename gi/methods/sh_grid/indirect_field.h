@@ -9,6 +9,7 @@
 #include "gi/render/render_settings.h"
 #include "gi/scene/motion/moving_world.h"
 
+#include <chrono>
 #include <optional>
 
 namespace gi {
@@ -43,11 +44,21 @@ public:
     /// are traced. Throws Interrupted if a stop is requested and there is no field yet.
     void prepare(ExactVisibility const& visibility, std::uint32_t index, std::span<FrameView const> views,
                  PathCounts& counts);
+    /// Fewer than the settings' if they would take more than half of the budget.
+    int voxels() const { return voxels_; }
+    std::uint32_t light_paths() const { return light_paths_; }
     /// The finest level first; empty without indirect light.
     std::span<GridLevel const> levels() const { return levels_; }
     void report_counts();
 
 private:
+    using Clock = std::chrono::steady_clock;
+    static double seconds_since(Clock::time_point start)
+    {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    }
+    void fit_budget(ExactVisibility const& visibility, std::span<FrameView const> views, BuildStop const& stop,
+                    PathCounts& counts);
     void update(ExactVisibility const& visibility, std::span<FrameView const> views, BuildStop const& stop,
                 PathCounts& counts);
     std::vector<bool> only_smooth() const;
@@ -61,6 +72,7 @@ private:
     void place_cells(GridLevel& level);
     void update_cells(ExactVisibility const& visibility, int part, int parts, BuildStop const& stop,
                       PathCounts& counts);
+    bool moves() const { return first_moving_ < world_.triangles.size(); }
     int parts() const { return settings_.sh_grid.field_passes; }
     RadianceBy by() const { return settings_.sh_grid.radiance_by; }
     bool sky_shines() const { return !view(world_).environment_radiance.empty(); }
@@ -70,6 +82,10 @@ private:
     std::size_t first_moving_;
     Report& report_;
     StopRequest const* stop_;
+    int voxels_;                ///< along the longest side
+    std::uint32_t light_paths_; ///< of a set of photons
+    Clock::time_point started_ = Clock::now();
+    double last_update_s_ = 0;                 ///< of photons and whole fields
     std::optional<std::uint32_t> first_index_; ///< of the passes
     std::vector<Camera> cameras_;              ///< of the last call
     std::vector<bool> only_smooth_;            ///< per material, when the grids were placed

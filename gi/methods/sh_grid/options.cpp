@@ -19,8 +19,10 @@ RenderOptionTable const& sh_grid_options()
     using S = ShGridSettings;
     static RenderOptionTable const all{
         field("voxels", {8, S::kMostVoxels},
-              "voxels along the scene's longest side; the field has a quarter of them", &S::voxels),
-        field("photons", {1, 1 << 24}, "light paths per update of the field", &S::photons),
+              "voxels along the scene's longest side, the field has a quarter of them; with a --budget fewer, if\n"
+              "they would take more than half of it",
+              &S::voxels),
+        field("photons", {1, 1 << 24}, "light paths per update of the field; fewer as --voxels are", &S::photons),
         field("reflections", {1, 64}, "of a photon, at most", &S::reflections),
         field("field-degree", {1, 4}, "of the spherical harmonics", &S::degree),
         field("field-directions", {16, 65536}, "directions per cell of the field", &S::directions),

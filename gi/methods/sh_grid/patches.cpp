@@ -1,9 +1,11 @@
 #include "gi/methods/sh_grid/patches.h"
 
+#include "gi/core/rqmc.h"
+
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <tbb/parallel_for.h>
-#include <tuple>
 
 namespace gi {
 namespace {
@@ -21,12 +23,32 @@ struct JoinedSets {
     void join(std::uint32_t a, std::uint32_t b) { parent[root(a)] = root(b); }
 };
 
-struct Corner {
-    vec3 position;
-    std::uint32_t entry;
-};
+/// Triangles of a cell by a corner and the axis that they face along.
+class FacingCorners {
+public:
+    explicit FacingCorners(std::size_t triangles) : slots_(std::bit_ceil(6 * triangles + 1)) {}
+    /// Returns a triangle that was added with this corner and axis, or kNoCell; then adds it.
+    std::uint32_t add(vec3 corner, std::uint32_t axis, std::uint32_t triangle)
+    {
+        std::uint32_t hash = axis;
+        for (int k = 0; k < 3; ++k)
+            hash = hash_words(hash, std::bit_cast<std::uint32_t>(corner[k] + 0.0f)); // no -0
+        for (std::size_t i = hash;; ++i) {
+            Slot& slot = slots_[i & (slots_.size() - 1)];
+            if (slot.triangle != kNoCell && (slot.corner != corner || slot.axis != axis)) continue;
+            std::uint32_t const earlier = slot.triangle;
+            if (earlier == kNoCell) slot = {corner, axis, triangle};
+            return earlier;
+        }
+    }
 
-bool before(vec3 a, vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
+private:
+    struct Slot {
+        vec3 corner{0};
+        std::uint32_t axis = 0, triangle = kNoCell;
+    };
+    std::vector<Slot> slots_;
+};
 
 } // namespace
 
@@ -64,30 +86,21 @@ PatchTable find_patches(World const& world, VoxelGrid const& grid, std::vector<s
         }
         std::size_t const n = of.size();
         JoinedSets sets(n);
-        std::vector<Corner> corners;
+        std::vector<std::uint32_t> axis(n);
+        for (std::uint32_t k = 0; k < n; ++k) axis[k] = main_axis(area[k]);
+        FacingCorners corners(n);
         for (std::uint32_t k = 0; k < n; ++k)
-            for (int c = 0; c < 3; ++c) corners.push_back({world.positions[world.triangles[of[k]][c]], k});
-        std::ranges::sort(corners, before, &Corner::position);
-        auto const axis = [&](std::uint32_t k) { return main_axis(area[k]); };
-        for (std::size_t k = 0; k < corners.size();) {
-            std::size_t end = k + 1;
-            while (end < corners.size() && corners[end].position == corners[k].position) ++end;
-            std::uint32_t last[6];
-            std::ranges::fill(last, kNoCell);
-            for (; k < end; ++k) {
-                std::uint32_t const entry = corners[k].entry;
-                std::uint32_t& same = last[axis(entry)];
-                if (same != kNoCell) sets.join(entry, same);
-                same = entry;
+            for (int c = 0; c < 3; ++c) {
+                std::uint32_t const same = corners.add(world.positions[world.triangles[of[k]][c]], axis[k], k);
+                if (same != kNoCell) sets.join(k, same);
             }
-        }
         std::vector<float> whole(n);
         for (std::uint32_t k = 0; k < n; ++k) whole[sets.root(k)] += glm::length(area[k]);
         std::uint32_t lump[6];
         std::ranges::fill(lump, kNoCell);
         for (std::uint32_t k = 0; k < n; ++k) {
             if (sets.root(k) != k || whole[k] >= small) continue;
-            std::uint32_t& same = lump[axis(k)];
+            std::uint32_t& same = lump[axis[k]];
             if (same == kNoCell)
                 same = k;
             else

@@ -32,7 +32,10 @@ public:
     }
     std::string options() const override
     {
-        return TreeRenderer::options() + " " + as_options(sh_grid_options(), settings_, {"voxels", "photons"});
+        RenderSettings chosen = settings_;
+        chosen.sh_grid.voxels = field_.voxels();
+        chosen.sh_grid.photons = int(field_.light_paths());
+        return TreeRenderer::options() + " " + as_options(sh_grid_options(), chosen, {"voxels", "photons"});
     }
 
 protected:
