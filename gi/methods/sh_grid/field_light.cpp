@@ -1,5 +1,6 @@
 #include "gi/methods/sh_grid/field_light.h"
 
+#include "gi/methods/sh_grid/field_glyphs.h"
 #include "gi/methods/slhb/directions/direction_map.h"
 #include "gi/scene/shading/warp.h"
 
@@ -220,6 +221,11 @@ void FieldLight::indirect(std::span<TreePoint> points, std::span<vec3> out, Path
         none += points[i].wo.z > 0 && seen[i] == 0 ? 1 : 0;
     }
     unseen_.fetch_add(none, std::memory_order_relaxed);
+}
+
+std::optional<Glyph> FieldLight::glyph(Ray const& ray, float reach) const
+{
+    return settings_.glyphs ? nearest_glyph(levels_[0], degree_, ray, reach) : std::nullopt;
 }
 
 void FieldLight::add(NearCell const& near, float weight, FieldCell& out) const

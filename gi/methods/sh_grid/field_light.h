@@ -20,6 +20,7 @@ struct GatherSettings {
     int glossy_directions = 64; ///< N_g: samples of a glossy lobe
     float obscurance_m = 0;     ///< surfaces nearer than this darken the diffuse light (sec. 4.4); 0 = off
     bool block_leaks = true;
+    bool glyphs = false; ///< draw the finest level's cells
     int shadow_rays = 4; ///< to cells, which are chosen by their weights; 0 = the weighted mean of all cells
 };
 
@@ -30,6 +31,7 @@ public:
                GatherSettings const& settings);
 
     void indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts& counts) const override;
+    std::optional<Glyph> glyph(Ray const& ray, float reach) const override;
     /// Points so far from which no cell is seen: they get no indirect light.
     std::uint64_t unseen() const { return unseen_; }
 

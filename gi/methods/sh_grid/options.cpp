@@ -44,7 +44,10 @@ RenderOptionTable const& sh_grid_options()
         field("multilevel", {"on", "off"}, "read coarser grids of radiance where directions are sparse",
               &S::multilevel),
         field("leak-weights", {"on", "off"},
-              "weigh cells of the field by what may lie between them and the surface", &S::leak_weights)};
+              "weigh cells of the field by what may lie between them and the surface", &S::leak_weights),
+        field("field-glyphs", {"on", "off"},
+              "draw a sphere in each cell of the field, which shows what arrives there by direction",
+              &S::field_glyphs)};
     return all;
 }
 

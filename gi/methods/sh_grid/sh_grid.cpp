@@ -51,7 +51,8 @@ protected:
         ShGridSettings const& s = settings_.sh_grid;
         light_.emplace(field_.levels(), *visibility_,
                        GatherSettings{s.gather_directions, s.glossy_directions, s.obscurance_m,
-                                      s.leak_weights == Switch::on, s.field_shadow_rays});
+                                      s.leak_weights == Switch::on, s.field_glyphs == Switch::on,
+                                      s.field_shadow_rays});
         return &*light_;
     }
 

@@ -22,6 +22,21 @@ void TreeTracer::aim_at_lights(TreeRay& r, ShadingPoint const& at, vec3 wo, int 
     }
 }
 
+/// Returns true if a glyph hides what the ray from the camera has hit.
+bool TreeTracer::draw_glyph(TreeRay const& r, Hit const& hit) const
+{
+    std::optional<Glyph> const g = light != nullptr ? light->glyph(r.ray, hit.distance) : std::nullopt;
+    if (!g) return false;
+    PathSample& s = *r.sample;
+    s.hit = true;
+    s.albedo = vec3{1};
+    s.normal = g->normal;
+    s.position = r.ray.origin + g->distance * r.ray.direction;
+    s.depth = glm::dot(s.position - camera.origin, camera.forward);
+    layer_of(s, 2) += g->radiance;
+    return true;
+}
+
 void TreeTracer::shade(TreeRay& r, Hit const& hit, int generation, std::vector<TreeRay>& next,
                        std::vector<ShadowRay>& shadows, std::vector<TreePoint>& points, TreeCounts& counts) const
 {
@@ -91,10 +106,14 @@ void TreeTracer::trace(std::span<glm::ivec2 const> pixels, std::uint32_t index, 
         hits.resize(rays.size());
         visibility.nearest(queries, hits);
         counts.paths.nearest_rays += rays.size();
-        if (generation == 0)
-            for (std::size_t k = 0; k < hits.size(); ++k) first[k] = {hits[k].triangle, hits[k].barycentric};
-        for (std::size_t k = 0; k < rays.size(); ++k)
+        for (std::size_t k = 0; k < rays.size(); ++k) {
+            if (generation == 0 && draw_glyph(rays[k], hits[k])) {
+                first[k] = {};
+                continue;
+            }
+            if (generation == 0) first[k] = {hits[k].triangle, hits[k].barycentric};
             shade(rays[k], hits[k], generation, next, shadows, points, counts);
+        }
         queries.clear();
         for (ShadowRay const& s : shadows) queries.push_back(s.query);
         blocked.resize(queries.size());

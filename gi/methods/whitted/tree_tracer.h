@@ -9,6 +9,7 @@
 #include "gi/render/path_step.h"
 #include "gi/render/ray_path.h"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,13 @@ struct TreePoint {
     PathSample* sample;
 };
 
+/// Something drawn in front of the scene's surfaces, which neither lights nor hides anything but them.
+struct Glyph {
+    float distance; ///< m
+    vec3 normal;    ///< unit
+    vec3 radiance;  ///< towards the camera
+};
+
 /// Indirect light at surfaces.
 class SurfaceLight {
 public:
@@ -31,6 +39,8 @@ public:
     /// Radiance that leaves surfaces towards wo by their non-delta lobes, of light that does not come directly
     /// from its source. @param out  one per point, overwritten
     virtual void indirect(std::span<TreePoint> points, std::span<vec3> out, PathCounts& counts) const = 0;
+    /// The first glyph along a ray from the camera. @param reach  m, to the surface behind
+    virtual std::optional<Glyph> glyph(Ray const&, float /*reach*/) const { return std::nullopt; }
 };
 
 /// Work and losses.
@@ -67,6 +77,7 @@ private:
         vec3 radiance;
         PathSample* sample;
     };
+    bool draw_glyph(TreeRay const& r, Hit const& hit) const;
     void shade(TreeRay& r, Hit const& hit, int generation, std::vector<TreeRay>& next,
                std::vector<ShadowRay>& shadows, std::vector<TreePoint>& points, TreeCounts& counts) const;
     void aim_at_lights(TreeRay& r, ShadingPoint const& at, vec3 wo, int generation,
