@@ -144,6 +144,10 @@ void trace_lanes(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Accepts con
                 int const first = top;
                 for (std::uint32_t bits = met & (met - 1); bits != 0; bits &= bits - 1) {
                     BvhEntry e = entry(std::countr_zero(bits));
+                    if constexpr (any) { // any order will do; leaves are the first children
+                        stack[top++] = e;
+                        continue;
+                    }
                     if (e.distance < nearest.distance) std::swap(e, nearest);
                     int to = top++;
                     for (; to > first && stack[to - 1].distance < e.distance; --to) stack[to] = stack[to - 1];
