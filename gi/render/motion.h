@@ -3,7 +3,7 @@
 // the triangle and the point first hit by a pixel's last path.
 
 #include "gi/image_io/picture.h"
-#include "gi/render/exact_visibility.h"
+#include "gi/render/ray_query.h"
 #include "gi/scene/model/camera.h"
 #include "gi/scene/model/world.h"
 

@@ -6,7 +6,7 @@
 // directly (also through mirrors and glass), L1 direct light, L2 all indirect light.
 
 #include "gi/render/interleaving.h"
-#include "gi/render/ray_path.h"
+#include "gi/render/path_batch.h"
 #include "gi/scene/shading/narrow_lobes.h"
 
 #include <utility>

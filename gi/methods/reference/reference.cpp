@@ -1,6 +1,7 @@
 #include "gi/methods/reference/reference.h"
 
 #include "gi/methods/reference/path_tracer.h"
+#include "gi/render/exact_visibility.h"
 #include "gi/render/fingerprint.h"
 #include "gi/render/flush_denormals.h"
 #include "gi/render/motion.h"
