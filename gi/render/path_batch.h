@@ -26,12 +26,7 @@ void add_unshadowed(std::span<Path* const> paths, Visibility const& visibility, 
     std::vector<Path*> waiting;
     std::vector<RayQuery> queries;
     for (Path* p : paths) {
-        if (!(max_component(p->shadow_radiance) > 0)) continue;
-        if (!(p->shadow.reach > 0)) { // the light lies on the surface
-            layer_of(p->sample, p->shadow_scatterings) += p->shadow_radiance;
-            continue;
-        }
-        p->shadow.seed = p->rng.next();
+        if (!needs_shadow_ray(*p)) continue;
         waiting.push_back(p);
         queries.push_back(p->shadow);
     }
@@ -39,8 +34,7 @@ void add_unshadowed(std::span<Path* const> paths, Visibility const& visibility, 
     std::vector<std::uint8_t> blocked(waiting.size());
     visibility.occluded(queries, blocked);
     for (std::size_t i = 0; i < waiting.size(); ++i)
-        if (blocked[i] == 0)
-            layer_of(waiting[i]->sample, waiting[i]->shadow_scatterings) += waiting[i]->shadow_radiance;
+        if (blocked[i] == 0) add_noted_light(*waiting[i]);
 }
 
 /// Traces all paths to their ends.
@@ -59,10 +53,7 @@ void trace_together(std::span<Path> paths, WorldView const& world, Visibility co
     for (int vertex = 0; !active.empty(); ++vertex) {
         std::size_t const n = active.size();
         counts.nearest_rays += n;
-        for (std::size_t i = 0; i < n; ++i) {
-            queries[i] = {.ray = active[i]->ray, .seed = active[i]->rng.next()};
-            if (vertex == 0) queries[i].start = camera_clearance(queries[i].ray.origin);
-        }
+        for (std::size_t i = 0; i < n; ++i) queries[i] = next_query(*active[i], vertex);
         std::span<Hit> const found = std::span(hits).first(n);
         visibility.nearest(std::span(queries).first(n), found);
         prepare(std::span<Path* const>(active), std::span<Hit const>(found));

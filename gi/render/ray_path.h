@@ -73,6 +73,26 @@ GI_FN inline void aim_at_light(RayPath& p, ShadingPoint const& at, LightSample c
     p.shadow = shadow_ray(at.position, at.geometric_normal, at.clearance, light);
 }
 
+GI_FN inline void add_noted_light(RayPath& p) { layer_of(p.sample, p.shadow_scatterings) += p.shadow_radiance; }
+
+/// True if a shadow ray decides about the noted light sample; one that lies on the surface itself is added.
+GI_FN inline bool needs_shadow_ray(RayPath& p)
+{
+    if (!(max_component(p.shadow_radiance) > 0)) return false;
+    if (!(p.shadow.reach > 0)) {
+        add_noted_light(p);
+        return false;
+    }
+    p.shadow.seed = p.rng.next();
+    return true;
+}
+
+/// The ray to the next surface. @param vertex  number of surfaces before
+GI_FN inline RayQuery next_query(RayPath& p, int vertex)
+{
+    return {.ray = p.ray, .seed = p.rng.next(), .start = vertex == 0 ? camera_clearance(p.ray.origin) : 0};
+}
+
 /// Continues a path along a sampled direction. Returns false if it ends.
 GI_FN inline bool continue_path(RayPath& p, ShadingPoint const& at, BsdfSample const& next)
 {

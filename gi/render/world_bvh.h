@@ -56,6 +56,7 @@ public:
         first_[2] = triangles;
         for (int k = 0; k < 2; ++k) trees_[k] = build_bvh<S>(list(world, k), stop);
     }
+    void test_alpha(bool alpha_tests) { alpha_tests_ = alpha_tests; }
     /// Refits the dynamic tree.
     void moved(WorldView const& world) { refit(trees_[1], list(world, 1)); }
 

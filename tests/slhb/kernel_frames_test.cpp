@@ -379,7 +379,7 @@ TEST(KernelFrames, RefuseWhatKernelsLackAndGoOn)
     gather.slhb.gather = true;
     EXPECT_THROW(start_kernel_frames(Space::host, both.world, frame_eye(), gather, both.report), InputError);
     if (device_present()) return;
-    device.slhb.space = Space::device;
+    device.space = Space::device;
     EXPECT_THROW(start_slhb_frames(both.world, frame_eye(), device, both.report), InputError);
 }
 

@@ -250,7 +250,7 @@ TEST(KernelRender, WhatKernelsLackIsRefused)
     gather.slhb.gather = true;
     refused(room_camera(), gather);
     if (device_present()) return;
-    device.slhb.space = Space::device;
+    device.space = Space::device;
     EXPECT_THROW(render_with_slhb(world, room_camera(), device), InputError);
 }
 

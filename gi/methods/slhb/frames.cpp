@@ -249,7 +249,7 @@ private:
     {
         renderer_->report_work();
         result.rays = renderer_->rays() - rays_before;
-        result.options = as_options(settings_.slhb);
+        result.options = as_options(settings_);
     }
 
     void end_frame()
@@ -300,7 +300,7 @@ private:
 std::unique_ptr<FrameRenderer> start_slhb_frames(MovingWorld const& world, Camera const& camera,
                                                  RenderSettings const& settings, Report& report)
 {
-    if (settings.slhb.space == Space::host)
+    if (settings.space == Space::host)
         return std::make_unique<SlhbFrames<SlhbRenderer>>(world, camera, settings, report);
     check_device(Space::device);
     return start_kernel_frames(Space::device, world, camera, settings, report);

@@ -33,9 +33,6 @@ RenderOptionTable make_table()
              &S::interleave);
     interleave.live = false;
     return {
-        slhb("device", {"cpu", "cuda"},
-             "cpu; or cuda: everything on the GPU, also --reuse and --shutter",
-             &S::space),
         slhb("schedule", {"auto", "stored", "streamed", "temporal"},
              "stored: one set of axes; streamed: new axes in every pass; temporal: some new; auto: streamed,\n"
              "but stored under a sky; in moving scenes stored with --reuse, streamed with --shutter",

@@ -26,7 +26,7 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
     renderer.report_work();
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());
     result.rays = renderer.rays();
-    result.options = as_options(chosen.slhb);
+    result.options = as_options(chosen);
     result.picture = loop.sums().picture(world);
     return result;
 }
