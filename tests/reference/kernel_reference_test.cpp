@@ -77,8 +77,10 @@ Scene lit_room()
 }
 
 template <Space S>
-void check_cornell()
+void check_scenes()
 {
+    World const atrium = world_of(generate_atrium({.bays = 2, .detail = 0.3})); // has textures, a sky and a sun
+    expect_like_embree<S>(atrium, atrium.cameras.at(0), few_paths(), "atrium");
     World const world = world_of(generate_cornell());
     for (int const bounces : {0, 3})
         expect_like_embree<S>(world, world.cameras.at(0), few_paths(bounces), "cornell");
@@ -87,7 +89,7 @@ void check_cornell()
     s.share = {.first = 5, .count = 7, .merge = {}};
     expect_like_embree<S>(world, world.cameras.at(0), s, "a share of the paths");
 }
-LIGHTWELL_TEST_BOTH(KernelReference, CornellAsOnEmbree, check_cornell);
+LIGHTWELL_TEST_BOTH(KernelReference, GeneratedScenesAsOnEmbree, check_scenes);
 
 template <Space S>
 void check_materials()
@@ -245,10 +247,34 @@ void check_frames()
     veil.alpha = 0.5f;
     next(world.set_material(2, veil), "half transparent");
     next(place({-0.1, 0.6, -0.3}), "moved on");
-    RenderResult const a = found->frame(room_eye(), {}, {}), b = expected->frame(room_eye(), {}, {});
-    expect_same_picture(a, b, "a frame");
+    expect_same_picture(found->frame(room_eye(), {}, {}), expected->frame(room_eye(), {}, {}), "a frame");
+    auto const moments = [&](FrameRenderer& frames) { // as the shutter sees them
+        return frames.frame(room_eye(), {}, {}, [&](std::uint32_t pass) {
+            return Moment{place({-0.02 * pass, 0.3, 0}), room_eye()};
+        });
+    };
+    RenderResult const blurred = moments(*found);
+    expected->changed(place({0, 0.3, 0}));
+    expect_same_picture(blurred, moments(*expected), "many moments");
 }
 LIGHTWELL_TEST_BOTH(KernelReference, FramesFollowWhatMoves, check_frames);
+
+/// With a budget, pixels take indirect light from neighbours in turn.
+template <Space S>
+void check_budget()
+{
+    Report report;
+    MovingWorld const world(std::make_shared<Scene const>(lit_room()), 0, report);
+    RenderSettings s = few_paths(4, 256);
+    s.budget_s = 0.2;
+    auto const frames = start_reference_kernel_frames(S, world, room_eye(), s, report);
+    frames->frame(room_eye(), {}, {});
+    RenderResult const found = frames->frame(room_eye(), {}, {});
+    EXPECT_GT(found.paths, 0u);
+    double const truth = mean_of(by_kernels(S, world.world(), room_eye(), few_paths(4, 256)).picture).mean;
+    EXPECT_NEAR(mean_of(found.picture).mean, truth, 0.1 * truth);
+}
+LIGHTWELL_TEST_BOTH(KernelReference, BudgetsOfFrames, check_budget);
 
 TEST(KernelReference, NeedsADevice)
 {

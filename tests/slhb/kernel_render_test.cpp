@@ -218,8 +218,13 @@ void check_nothing()
     EXPECT_NEAR(
         mean_of(render_with_kernels(S, world_of(sky), camera, small_settings(8, 4, 2)).result.picture).mean, 2,
         1e-5);
+    add_quad(sky, {-0.3f, -0.3f, 0}, {0.6f, 0, 0}, {0, 0.6f, 0}, add_material(sky, mirror(vec3{1})));
+    sky.meshes[0].triangles.resize(1);
+    SlhbRun const one = render_with_kernels(S, world_of(sky), camera, small_settings(8, 4, 2));
+    EXPECT_GT(one.counts.at("exact rays"), 0);
+    EXPECT_NEAR(mean_of(one.result.picture).mean, 2, 1e-4);
 }
-LIGHTWELL_TEST_BOTH(KernelRender, EmptySceneIsBlackAndEmptySkyIsSky, check_nothing);
+LIGHTWELL_TEST_BOTH(KernelRender, EmptySceneIsBlackAndSkyIsSkyAlsoInOneMirror, check_nothing);
 
 template <Space S>
 void check_lens()
@@ -249,6 +254,11 @@ TEST(KernelRender, WhatKernelsLackIsRefused)
     refused(room_camera(), cone);
     gather.slhb.gather = true;
     refused(room_camera(), gather);
+    RenderSettings rays = settings_of(1, 1), shadow_rays = settings_of(1, 1);
+    rays.slhb.look_ups = LookUps::none;
+    refused(room_camera(), rays);
+    shadow_rays.slhb.shadows = Shadows::rays;
+    refused(room_camera(), shadow_rays);
     if (device_present()) return;
     device.space = Space::device;
     EXPECT_THROW(render_with_slhb(world, room_camera(), device), InputError);

@@ -270,7 +270,7 @@ private:
         TriangleSoup soup = make_soup(world);
         settings_.slhb = choose_frame_settings(asked_, world, soup, views[0].camera);
         if (kByKernels) {
-            settings_.slhb.interleave = 1; // regardless of the budget
+            limit_to_kernels(settings_.slhb);
             for (FrameView const& v : views) check_kernels_can(v.camera, settings_.slhb);
         }
         if constexpr (!kByKernels)

@@ -26,7 +26,19 @@ void check_kernels_can(Camera const& camera, SlhbSettings const& s)
     if (s.cache == RadianceCaching::on)
         throw InputError("--device cuda with --radiance-cache on", "its kernels do not end paths in a cache",
                          suggestion);
+    if (s.look_ups == LookUps::none)
+        throw InputError("--device cuda with --look-ups none", "its kernels find surfaces by look-ups",
+                         "leave it out, or choose --method reference");
+    if (s.shadows == Shadows::rays)
+        throw InputError("--device cuda with --shadows rays", "its kernels look into shadow maps", suggestion);
     if (s.gather) throw InputError("--device cuda with --gather", "its kernels choose axes at random", suggestion);
+}
+
+void limit_to_kernels(SlhbSettings& chosen)
+{
+    chosen.interleave = 1; // regardless of the budget
+    chosen.look_ups = LookUps::all;
+    chosen.shadows = Shadows::maps;
 }
 
 template <Space S>

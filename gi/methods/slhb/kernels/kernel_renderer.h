@@ -19,8 +19,10 @@
 namespace gi {
 
 /// Throws InputError on features that kernels lack: an orthographic camera, --cone, --gather, --packed,
-/// --interleave.
+/// --interleave, --look-ups none, --shadows rays.
 void check_kernels_can(Camera const& camera, SlhbSettings const& settings);
+/// Sets what the plan would choose for the CPU to what kernels have.
+void limit_to_kernels(SlhbSettings& chosen);
 
 template <Space S>
 class KernelRenderer {

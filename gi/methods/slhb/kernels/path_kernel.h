@@ -10,7 +10,6 @@
 #include "gi/methods/slhb/kernels/axis_step.h"
 #include "gi/methods/slhb/kernels/path_random.h"
 #include "gi/methods/slhb/lights/shadow_look.h"
-#include "gi/render/ray_path.h"
 #include "gi/render/world_bvh.h"
 #include "gi/scene/shading/narrow_lobes.h"
 
