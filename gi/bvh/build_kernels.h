@@ -15,7 +15,7 @@ struct BinaryNode {
 
 /// Cheapest cuts of a binary node's subtree into wide nodes: cost[k] with at most k + 1 roots, m^2.
 struct Cuts {
-    static constexpr int kMost = kWidth - 1;
+    static constexpr int kMost = kBvhWidth - 1;
 
     float cost[kMost];
     /// split[0]: 0 = the subtree is one leaf, else its node gives that many of its 8 children to the left.
@@ -208,7 +208,7 @@ struct FindCuts {
         };
         float const area = node_boxes[at + triangles].half_area();
         std::uint8_t split = 1;
-        float const as_node = kNodeCost * area + best_split(kWidth, split);
+        float const as_node = kNodeCost * area + best_split(kBvhWidth, split);
         bool const leaf = node.triangles <= kLeafTriangles && !(as_node < kLeafCost * area);
         c.cost[0] = leaf ? kLeafCost * area : as_node;
         c.split[0] = leaf ? 0 : split;
@@ -225,7 +225,7 @@ struct FindCuts {
 
 /// Children of a wide node: binary nodes; the leaves among them come first.
 struct Children {
-    std::uint32_t node[kWidth];
+    std::uint32_t node[kBvhWidth];
     std::uint32_t leaves = 0, all = 0;
 };
 
@@ -248,15 +248,15 @@ struct ChooseChildren {
             std::uint32_t node;
             int roots;
         };
-        Part stack[2 * kWidth];
+        Part stack[2 * kBvhWidth];
         int top = 0;
         Children c;
-        std::uint32_t found[kWidth], n = 0;
+        std::uint32_t found[kBvhWidth], n = 0;
         if (std::uint32_t const root = roots[i]; is_leaf(root)) { // of the whole tree
             found[n++] = root;
         } else {
             int const left = cuts[root - triangles].split[0];
-            stack[top++] = {inner[root - triangles].right, kWidth - left};
+            stack[top++] = {inner[root - triangles].right, kBvhWidth - left};
             stack[top++] = {inner[root - triangles].left, left};
         }
         while (top > 0) {
@@ -361,7 +361,7 @@ struct RefitNodes {
     GI_FN void operator()(std::size_t i) const
     {
         WideNode& node = nodes[first + i];
-        Box child[kWidth], all;
+        Box child[kBvhWidth], all;
         for (std::uint32_t k = 0; k < node.children; ++k) {
             std::uint32_t const at = node.child(k);
             child[k] = node.is_leaf(k) ? box_of(leaves[at]) : boxes[at];
@@ -369,7 +369,7 @@ struct RefitNodes {
         }
         boxes[first + i] = all;
         set_frame(node, all.empty() ? Box{vec3{0}, vec3{0}} : all);
-        for (int k = 0; k < kWidth; ++k) set_child_box(node, k, child[k]);
+        for (int k = 0; k < kBvhWidth; ++k) set_child_box(node, k, child[k]);
     }
 };
 

@@ -40,7 +40,7 @@ struct BvhEntry {
     std::uint32_t node;
     float distance; ///< where the ray enters it
 };
-inline constexpr std::size_t kStackEntries = kDeepest * (kWidth - 1) + 1;
+inline constexpr std::size_t kStackEntries = kDeepest * (kBvhWidth - 1) + 1;
 
 /// Factor of the distances where rays leave boxes: exceeds the rounding of boxes that are far away. Near ones are
 /// enlarged when they are built, see set_child_box.
@@ -48,7 +48,7 @@ inline constexpr float kBoxSlack = 1 + 0x1p-20f;
 
 /// Tests the children's boxes. Returns a bit per child that the ray meets before `reach`; enters[k] = where.
 GI_FN inline std::uint32_t meet_children(WideNode const& node, BvhRay const& ray, float reach,
-                                         float enters[kWidth])
+                                         float enters[kBvhWidth])
 {
     float scale[3], from[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -56,7 +56,7 @@ GI_FN inline std::uint32_t meet_children(WideNode const& node, BvhRay const& ray
         from[axis] = (node.corner[axis] - ray.origin[axis]) * ray.inverse[axis];
     }
     std::uint32_t hit = 0;
-    for (int k = 0; k < kWidth; ++k) {
+    for (int k = 0; k < kBvhWidth; ++k) {
         float near = ray.start, far = reach;
         for (int axis = 0; axis < 3; ++axis) {
             bool const up = ray.inverse[axis] > 0;
@@ -100,7 +100,7 @@ GI_FN void trace_scalar(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Acce
         BvhEntry const at = stack[--top];
         if (at.distance > hit.distance) continue;
         WideNode const& node = bvh.nodes[at.node];
-        float enters[kWidth];
+        float enters[kBvhWidth];
         std::uint32_t const met = meet_children(node, ray, hit.distance, enters);
         int const first = top; // the nearest on top
         for (std::uint32_t k = 0; k < node.children; ++k) {

@@ -14,9 +14,9 @@ namespace gi {
 namespace bvh_lanes {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Eight = hn::FixedTag<float, kWidth>;
-using EightBytes = hn::FixedTag<std::uint8_t, kWidth>;
-using EightIntegers = hn::FixedTag<std::int32_t, kWidth>;
+using Eight = hn::FixedTag<float, kBvhWidth>;
+using EightBytes = hn::FixedTag<std::uint8_t, kBvhWidth>;
+using EightIntegers = hn::FixedTag<std::int32_t, kBvhWidth>;
 using Four = hn::FixedTag<float, kLeafTriangles>;
 using V8 = hn::Vec<Eight>;
 using V4 = hn::Vec<Four>;
@@ -45,8 +45,8 @@ struct Lanes {
     {
         for (int axis = 0; axis < 3; ++axis) {
             origin[axis] = hn::Set(Four(), r.origin[axis]);
-            std::size_t const low = offsetof(WideNode, low) + std::size_t(axis) * kWidth,
-                              high = offsetof(WideNode, high) + std::size_t(axis) * kWidth;
+            std::size_t const low = offsetof(WideNode, low) + std::size_t(axis) * kBvhWidth,
+                              high = offsetof(WideNode, high) + std::size_t(axis) * kBvhWidth;
             near[axis] = r.inverse[axis] > 0 ? low : high;
             far[axis] = r.inverse[axis] > 0 ? high : low;
         }
@@ -127,7 +127,7 @@ void trace_lanes(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Accepts con
         std::uint32_t met = 0;
         if ((at & kIsLeaf) == 0) {
             WideNode const& node = bvh.nodes[at];
-            alignas(32) float enters[kWidth];
+            alignas(32) float enters[kBvhWidth];
             met = lanes.meet_children(node, hit.distance, enters);
             auto const entry = [&](int child) -> BvhEntry {
                 std::uint32_t const k = std::uint32_t(child), index = node.child(k);

@@ -12,7 +12,7 @@
 
 namespace gi {
 
-inline constexpr int kWidth = 8, kLeafTriangles = 4;
+inline constexpr int kBvhWidth = 8, kLeafTriangles = 4;
 inline constexpr std::uint32_t kNoLeafTriangle = 0xffffffffu;
 
 struct alignas(16) WideNode {
@@ -23,7 +23,7 @@ struct alignas(16) WideNode {
     std::uint32_t first_leaf;
     std::uint32_t leaves; ///< number of leaf children
     std::uint32_t unused;
-    std::uint8_t low[3][kWidth], high[3][kWidth]; ///< per axis and child
+    std::uint8_t low[3][kBvhWidth], high[3][kBvhWidth]; ///< per axis and child
 
     GI_FN float step(int axis) const { return std::bit_cast<float>(std::uint32_t(exponent[axis]) << 23); }
     GI_FN bool is_leaf(std::uint32_t k) const { return k < leaves; }

@@ -25,7 +25,7 @@ constexpr Method virtual_lights(std::string_view name, std::string_view summary)
 }
 
 constexpr std::array kMethods{
-    Method{"reference", "path tracing with exact rays (Embree): slow, unbiased, for comparison", render_reference,
+    Method{"reference", "path tracing with exact rays: slow, unbiased, for comparison", render_reference,
            start_reference_frames},
     Method{"slhb", "path tracing through spherical layered hit buffers: look-ups instead of rays", render_slhb,
            start_slhb_frames, slhb_options},

@@ -6,7 +6,7 @@
 // is updated, by refitting its boxes. Measured against rebuilding it: docs/results/2026-11-21-moving.md.
 
 #include "gi/core/progress.h"
-#include "gi/scene/model/camera.h"
+#include "gi/render/ray_query.h"
 #include "gi/scene/model/world.h"
 
 #include <cstdint>
@@ -15,29 +15,6 @@
 #include <span>
 
 namespace gi {
-
-inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
-
-struct Hit {
-    std::uint32_t triangle = kNoTriangle; ///< index into World::triangles, kNoTriangle = no hit
-    vec2 barycentric{0};                  ///< weights of vertices 1 and 2
-    float distance = kInf;
-};
-
-struct RayQuery {
-    static constexpr float kFar = 1e30f;
-
-    Ray ray;
-    float reach = kFar;     ///< m; farther surfaces are ignored
-    std::uint32_t seed = 0; ///< of the random decisions about partial coverage
-    float start = 0;        ///< m; nearer surfaces are ignored
-};
-
-/// Which geometry rays can hit.
-enum class RayWorld : std::uint8_t {
-    all,
-    what_stays ///< static triangles only
-};
 
 class ExactVisibility {
 public:

@@ -20,14 +20,14 @@ struct Interleaving {
                                                  ///< its turn
 
     /// Returns the number of pixels for which this one computes indirect light in this pass: 0 or n^2.
-    std::uint32_t share(std::uint32_t pixel, std::uint32_t width, std::uint32_t pass) const
+    GI_FN std::uint32_t share(std::uint32_t pixel, std::uint32_t width, std::uint32_t pass) const
     {
         std::uint32_t const all = n * n, own = pixel % width % n + pixel / width % n * n;
         return own == turn(pass) ? all : 0;
     }
     /// Returns the pixel of each n x n block that computes indirect light in this pass: its column plus n times
     /// its row.
-    std::uint32_t turn(std::uint32_t pass) const
+    GI_FN std::uint32_t turn(std::uint32_t pass) const
     {
         std::uint32_t const all = n * n;
         return (all - pass % all * kStride % all) % all;

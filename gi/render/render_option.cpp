@@ -44,11 +44,17 @@ RenderOptionTable const& common_options()
     static RenderOptionTable const all = [&] {
         RenderOptionTable table{
             common("bounces", {0, 1024}, "indirect bounces; 0 = direct light only", &S::bounces),
-            common("filter", {"box", "tent"}, "pixel filter: box, one pixel wide; tent, a radius of one pixel", &S::filter),
+            common("filter", {"box", "tent"}, "pixel filter: box, one pixel wide; tent, a radius of one pixel",
+                   &S::filter),
             common("seed", {0, 0x1p64}, "seed of the random numbers", &S::seed),
             common("threads", {0, 4096}, "threads; 0 = all", &S::threads),
         };
         table.back().live = false;
+        RenderOption device = common(
+            "device", {"cpu", "cuda"},
+            "of reference and slhb: cpu; or cuda: everything on the GPU, also --reuse and --shutter", &S::space);
+        device.methods = {"reference", "slhb"};
+        table.push_back(std::move(device));
         return table;
     }();
     return all;

@@ -1,6 +1,6 @@
 #pragma once
-// Options of RenderSettings. Each setting is declared once, in the table of its method's folder or, if all methods
-// share it, in common_options(); gi/methods/registry.h lists all.
+// Options of RenderSettings. Each setting is declared once, in the table of its method's folder or, if different
+// methods share it, in common_options(); gi/methods/registry.h lists all.
 
 #include "gi/core/option.h"
 #include "gi/render/render_settings.h"
@@ -14,7 +14,7 @@ struct UnusedBy {
 };
 
 struct RenderOption : Option<RenderSettings> {
-    std::string group;                     ///< heading in --help and panel; empty for options of all methods
+    std::string group;                     ///< heading in --help and panel; empty for common options
     std::vector<std::string_view> methods; ///< that read it, a last * for any ending; empty = all
     std::vector<UnusedBy> unused_by = {};
     bool live = true; ///< viewers and AR sessions have it
@@ -23,7 +23,7 @@ struct RenderOption : Option<RenderSettings> {
 };
 using RenderOptionTable = std::vector<RenderOption>;
 
-/// Bounces, seed, pixel filter and threads.
+/// Bounces, seed, pixel filter, threads, and the device of the methods that have kernels.
 RenderOptionTable const& common_options();
 
 /// Options and their values as on the command line: "--hit-buffer 128 --packed". Flags that are off are left out.

@@ -1,9 +1,9 @@
 #pragma once
 // Settings and results common to all light-transport methods.
 
-#include "gi/image_io/picture.h"
 #include "gi/core/progress.h"
 #include "gi/core/report.h"
+#include "gi/image_io/picture.h"
 #include "gi/kernel/space.h"
 
 #include <algorithm>
@@ -61,16 +61,16 @@ struct ExactParts {
 /// Settings of the method slhb; 0 or empty = chosen by the scene plan.
 struct SlhbSettings {
     Schedule schedule = Schedule::automatic;
-    std::string directions;    ///< such as "icosahedron:320"; schedule stored
-    int resolution = 0;        ///< texels per side of a hit buffer, about
-    int axes = 0;              ///< per pass; schedules streamed and temporal
-    int fresh_axes = 0;        ///< axes replaced per pass; schedule temporal
-    int light_samples = 0;             ///< light samples with a shadow map per pass
-    int fresh_light_samples = 0;       ///< light samples replaced per pass
-    int shadow_resolution = 0; ///< texels per side of a shadow map
-    int most_layers = 0;       ///< per texel; 0 = all
-    int memory_mib = 0;        ///< memory limit of hit buffers and shadow maps
-    bool packed = false;       ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
+    std::string directions;      ///< such as "icosahedron:320"; schedule stored
+    int resolution = 0;          ///< texels per side of a hit buffer, about
+    int axes = 0;                ///< per pass; schedules streamed and temporal
+    int fresh_axes = 0;          ///< axes replaced per pass; schedule temporal
+    int light_samples = 0;       ///< light samples with a shadow map per pass
+    int fresh_light_samples = 0; ///< light samples replaced per pass
+    int shadow_resolution = 0;   ///< texels per side of a shadow map
+    int most_layers = 0;         ///< per texel; 0 = all
+    int memory_mib = 0;          ///< memory limit of hit buffers and shadow maps
+    bool packed = false;         ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
     LookUps look_ups = LookUps::automatic;
     Shadows shadows = Shadows::automatic;
     RadianceCaching cache = RadianceCaching::automatic;
@@ -79,10 +79,8 @@ struct SlhbSettings {
     float cone = 0;      ///< texels; radius of the disk of columns that a look-up may use (Yu 2012, fig. 5.6)
     int interleave = 0;  ///< n: compute indirect light for one pixel in each n x n block per pass, weighted by
                          ///< n^2; 1 = for all
-    Space space = Space::host; ///< device: everything in CUDA kernels, see
-                               ///< gi/methods/slhb/kernels/kernel_render.h
-    bool gather = false;       ///< first bounce over all axes in turn instead of at random
-    ExactParts exact;          ///< on the host; for bench accuracy
+    bool gather = false; ///< first bounce over all axes in turn instead of at random
+    ExactParts exact;    ///< on the host; for bench accuracy
 };
 
 /// Maximum number of points in an imperfect shadow map.
@@ -90,13 +88,13 @@ inline constexpr int kMostPoints = 1 << 17;
 
 /// Settings of the methods vpl_*, see gi/methods/vpl.
 struct VirtualLightSettings {
-    int light_paths = 256;    ///< light paths per pass; each surface point that one hits becomes a virtual light
-    float near_m = 0;         ///< virtual lights nearer than about this are bounded, and camera paths add the
-                              ///< rest; 0 = 2 % of the scene's radius
-    int points = 1024;        ///< drawn into each imperfect shadow map
+    int light_paths = 256;     ///< light paths per pass; each surface point that one hits becomes a virtual light
+    float near_m = 0;          ///< virtual lights nearer than about this are bounded, and camera paths add the
+                               ///< rest; 0 = 2 % of the scene's radius
+    int points = 1024;         ///< drawn into each imperfect shadow map
     double points_percent = 0; ///< if > 0: the points, as a share of the map's texels, %
-    int point_map = 64;       ///< texels per side of an imperfect shadow map
-    float ao_radius_m = 0.5f; ///< ambient and directional occlusion ignore surfaces farther away
+    int point_map = 64;        ///< texels per side of an imperfect shadow map
+    float ao_radius_m = 0.5f;  ///< ambient and directional occlusion ignore surfaces farther away
 
     int points_per_map() const
     {
@@ -166,6 +164,7 @@ struct RenderSettings {
     std::filesystem::path checkpoint{};    ///< file for the exact state of an unfinished render, or of a resuming
                                            ///< one that stops early; empty = none. The caller deletes it after
                                            ///< saving the picture unless RenderResult::resumable
+    Space space = Space::host;             ///< that traces the paths; device: slhb and reference, by CUDA kernels
     SlhbSettings slhb{};
     VirtualLightSettings vpl{};
     WhittedSettings whitted{};
@@ -177,7 +176,7 @@ struct RenderSettings {
 struct RenderStatus {
     double fraction = 0;
     std::uint32_t paths = 0; ///< per pixel so far
-    double relmse = 0; ///< estimated from the variance, see Accumulator::relative_mse; 0 = not known yet
+    double relmse = 0;       ///< estimated from the variance, see Accumulator::relative_mse; 0 = not known yet
 };
 
 /// Called between passes.

@@ -61,7 +61,7 @@ void set_options(gi::RenderSettings& s, py::dict const& options, std::string con
     }
     std::string const schedule = gi::render_option("schedule").get(s);
     check_options(given, s, {{method, s.slhb.schedule, "--schedule " + schedule}});
-    gi::check_device(s.slhb.space);
+    gi::check_device(s.space);
 }
 
 } // namespace

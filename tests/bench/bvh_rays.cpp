@@ -8,6 +8,7 @@
 #include "gi/core/report.h"
 #include "gi/core/rng.h"
 #include "gi/render/bvh_visibility.h"
+#include "gi/render/exact_visibility.h"
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/plan.h"

@@ -5,7 +5,7 @@
 
 #include "gi/core/quantile.h"
 #include "gi/core/report.h"
-#include "gi/methods/reference/path_tracer.h"
+#include "gi/methods/reference/embree_paths.h"
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/model/plan.h"
@@ -52,7 +52,7 @@ double trace_all(PathTracer<Visibility> const& tracer, int size, std::uint32_t p
             for (std::uint32_t i = 0; i < paths; ++i) {
                 batch.clear();
                 for (int y = top; y < top + kTile; ++y)
-                    for (int x = left; x < left + kTile; ++x) batch.push_back(tracer.start(x, y, i));
+                    for (int x = left; x < left + kTile; ++x) batch.push_back(tracer.steps.start(x, y, i));
                 tracer.trace(batch, counts);
                 for (Path const& p : batch)
                     sum += double(p.sample.radiance[0].x + p.sample.radiance[1].x + p.sample.radiance[2].x);
@@ -129,12 +129,11 @@ void measure(std::string const& name, Scene scene)
     if (world.cameras.empty()) throw std::runtime_error(name + " has no camera");
     CameraRays const camera = camera_rays(world.cameras[0], kSize, kSize, world.origin);
 
+    PathSteps const steps{view(world), camera, 64, 0, PixelFilter::box, kSize};
     std::vector<Wave> waves;
     RecordingVisibility const recorder{exact, waves};
-    double const expected =
-        trace_all(PathTracer<RecordingVisibility>{view(world), recorder, camera, 64, 0, PixelFilter::box, kSize},
-                  kSize, kPaths);
-    PathTracer<ExactVisibility> const tracer{view(world), exact, camera, 64, 0, PixelFilter::box, kSize};
+    double const expected = trace_all(PathTracer<RecordingVisibility>{steps, recorder}, kSize, kPaths);
+    PathTracer<ExactVisibility> const tracer{steps, exact};
     double n = 0;
     for (Wave const& w : waves) n += double(w.queries.size());
 

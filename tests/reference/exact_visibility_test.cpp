@@ -1,5 +1,6 @@
 #include "gi/core/rng.h"
 #include "gi/render/bvh_visibility.h"
+#include "gi/render/exact_visibility.h"
 #include "tests/support/scenes.h"
 
 #include <gtest/gtest.h>
@@ -35,11 +36,34 @@ struct OwnBvh {
     OwnBvh(World const& world, bool holes) : visibility(world, holes, kStays) {}
 };
 
+/// The rays of kernels, one at a time.
+struct KernelForm {
+    struct Visibility {
+        WorldView world;
+        WorldBvh<Space::host> bvh;
+
+        void moved(World const& now)
+        {
+            world = view(now);
+            bvh.moved(world);
+        }
+        void nearest(std::span<RayQuery const> queries, std::span<Hit> hits) const
+        {
+            for (std::size_t i = 0; i < queries.size(); ++i) hits[i] = bvh.rays().nearest(world, queries[i]);
+        }
+        void occluded(std::span<RayQuery const> queries, std::span<std::uint8_t> blocked) const
+        {
+            for (std::size_t i = 0; i < queries.size(); ++i) blocked[i] = bvh.rays().occluded(world, queries[i]);
+        }
+    } visibility;
+    KernelForm(World const& world, bool holes) : visibility{view(world), {view(world), holes, kStays}} {}
+};
+
 template <class Rays>
 class MovingVisibility : public testing::Test {
 };
-using BothRays = testing::Types<Embree, OwnBvh>;
-TYPED_TEST_SUITE(MovingVisibility, BothRays);
+using AllRays = testing::Types<Embree, OwnBvh, KernelForm>;
+TYPED_TEST_SUITE(MovingVisibility, AllRays);
 
 /// Do rays find in `moving` what they find in `now`? @return how many of them hit what moves
 template <class Visibility>

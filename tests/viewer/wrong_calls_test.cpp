@@ -50,7 +50,7 @@ TEST(WrongCalls, LeaveAMessageAndNoFiles)
              {"render cornell --method vpl_imperfect --point-map 100", "--point-map 100"},
              {"render cornell --method vpl_ao --ao-radius -1", "--ao-radius"},
              {"render cornell --device tpu", "--device"},
-             {"render cornell --device cuda", "--method reference"},
+             {"render cornell --method whitted --device cuda", "--device with --method whitted"},
              {"render cornell --axes 4", "--axes with --method reference"},
              {"render cornell --method slhb --schedule stored --axes 4", "--axes with --schedule stored"},
              {"render cornell --method slhb --schedule temporal --directions icosahedron:80", "--directions"},
@@ -254,8 +254,9 @@ TEST(WrongCalls, ADeviceThatIsNotThere)
 {
     if (gi::device_present()) GTEST_SKIP() << "SKIPPED: there is a CUDA device";
     TemporaryFolder const folder;
-    expect_refused("render cornell --method slhb --device cuda",
-                   gi::kCudaBuild ? "no CUDA device" : "without CUDA", folder.path());
+    for (char const* const method : {"slhb", "reference"})
+        expect_refused(std::string("render cornell --method ") + method + " --device cuda",
+                       gi::kCudaBuild ? "no CUDA device" : "without CUDA", folder.path());
     EXPECT_TRUE(folder.files().empty());
 }
 

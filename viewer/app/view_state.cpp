@@ -15,7 +15,7 @@ void ViewState::change(Change const& c, std::function<void(std::string const&)> 
             if (is_one_of_ranks)
                 throw gi::InputError("'device' while several ranks run", "every rank needs such a device",
                                      "start them with --set device=" + get(changed, "device").get<std::string>());
-            gi::check_device(changed.render.slhb.space);
+            gi::check_device(changed.render.space);
         }
         if (c.key == "stereo" && changed.stereo == name_of(StereoMode::two_windows) && !has_two_windows)
             throw gi::InputError("'stereo' = two-windows", "there is no second window",

@@ -36,7 +36,7 @@ void RenderSession::apply(Change const& change)
     if (is_hidden_mask(change.key)) return hidden_.apply(change);
     Settings changed = settings_;
     set(changed, change);
-    if (change.key == "device") gi::check_device(changed.render.slhb.space);
+    if (change.key == "device") gi::check_device(changed.render.space);
     if (change.key == "denoise") gi::check_filter(denoise_settings(changed, 0));
     settings_ = std::move(changed);
     if (restarts_methods(change.key)) restart();

@@ -66,7 +66,7 @@ gi::RenderSettings make_settings(RenderOptions& o)
     s.paths = o.budget.empty() && o.until.empty() ? o.paths.value_or(kDefaultPaths) : kNoLimit;
     if (!o.budget.empty()) s.budget_s = parse_duration("--budget", o.budget);
     if (!o.until.empty()) s.until_relmse = parse_target("--until", o.until, "relmse");
-    gi::check_device(s.slhb.space);
+    gi::check_device(s.space);
     s.resume = o.resume && !is_sequence; // a sequence is resumed frame by frame
     if (o.shutter_s > 0) check_shutter(o, s);
     if (!o.out.empty() && !is_sequence && o.shutter_s == 0) s.checkpoint = o.out + ".state";

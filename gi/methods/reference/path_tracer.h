@@ -1,55 +1,22 @@
 #pragma once
-// Path tracing: next-event estimation and BSDF sampling (gi/render/path_step.h), Russian roulette on throughput.
-// The estimator is unbiased except for the limit on bounces; nothing is clamped.
-//
-// Light is sorted by the number of non-delta scatterings between the light and the eye: L0 emitted light seen
-// directly (also through mirrors and glass), L1 direct light, L2 all indirect light.
+// The path tracer on the CPU: many paths together, see gi/render/path_batch.h. The estimator: path_steps.h.
 
-#include "gi/render/interleaving.h"
-#include "gi/render/ray_path.h"
-#include "gi/scene/shading/narrow_lobes.h"
-
-#include <utility>
+#include "gi/methods/reference/path_steps.h"
+#include "gi/render/path_batch.h"
 
 namespace gi {
-
-/// Size of the tiles whose paths advance together, px.
-inline constexpr int kTile = 16;
-
-/// State of one path.
-struct Path : RayPath {
-    LightChoice light;       ///< chosen for the next surface
-    bool emitted = false;    ///< emission of the next surface or sky has already been counted
-    std::uint32_t share = 1; ///< number of pixels for which it computes indirect light, see Interleaving
-    FirstHit first;
-};
 
 /// @tparam Visibility  see trace_together
 template <class Visibility>
 struct PathTracer {
-    WorldView world;
+    PathSteps steps;
     Visibility const& visibility;
-    CameraRays camera;
-    int bounces;
-    std::uint64_t seed;
-    PixelFilter filter;
-    int width;
-    Interleaving interleaving{};
 
-    /// Starts path number `index` of pixel (x, y) at the camera.
-    Path start(int x, int y, std::uint32_t index) const
-    {
-        Path p;
-        start_path(p, camera, filter, seed, {x, y}, width, index);
-        std::uint32_t const pixel = std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x);
-        if (interleaving.n > 1) p.share = interleaving.share(pixel, std::uint32_t(width), index);
-        return p;
-    }
     /// Traces all paths to their ends.
     void trace(std::span<Path> paths, PathCounts& counts) const
     {
         trace_together(
-            paths, world, visibility, counts,
+            paths, steps.world, visibility, counts,
             [&](std::span<Path* const> active, std::span<Hit const> hits) { choose_lights(active, hits); },
             [&](Path& p, Hit const& hit, int vertex) { return advance(p, hit, vertex, counts); });
     }
@@ -57,64 +24,23 @@ struct PathTracer {
 private:
     /// Flattened into one function, so that vectors stay in registers: measured to save 3 to 16 % of a path's
     /// time.
-    [[gnu::flatten]] bool advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const;
+    [[gnu::flatten]] bool advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const
+    {
+        return steps.advance(p, hit, vertex, counts);
+    }
     void choose_lights(std::span<Path* const> paths, std::span<Hit const> hits) const;
 };
-
-/// Advances from a hit to the next ray. Returns false if the path ends.
-template <class Visibility>
-bool PathTracer<Visibility>::advance(Path& p, Hit const& hit, int vertex, PathCounts& counts) const
-{
-    if (hit.triangle == kNoTriangle) {
-        if (!p.emitted) add_environment(world, p, vertex);
-        return false;
-    }
-    vec3 const arrival = p.ray.direction;
-    ShadingPoint const at = shading_point(world, hit.triangle, hit.barycentric, arrival);
-    if (vertex == 0) {
-        p.first = {hit.triangle, hit.barycentric};
-        see_first_surface(p.sample, at, camera);
-    }
-    if (!std::exchange(p.emitted, false) && max_component(at.emission) > 0)
-        layer_of(p.sample, p.scatterings) +=
-            p.throughput * met_emission(world, p, at, hit.triangle, arrival, hit.distance);
-    if (vertex == kLongestPath) {
-        ++counts.cut_paths;
-        return false;
-    }
-
-    vec3 const wo = at.frame.to_local(-arrival);
-    bool const last = p.scatterings > bounces; // mirrors and glass do not count as scatterings
-    bool const in_turn = vertex == 0 && interleaving.n > 1 && bounces > 0;
-    bool const narrow = in_turn && has_narrow_lobe(at.bsdf), alone = in_turn && !narrow;
-    if (!last && !world.light_select.empty() && !only_delta(at.bsdf)) {
-        LightSample const light = sample_light(world, p.light, at.position, p.rng.uniform2());
-        auto const pdf = [](BsdfValue const& bsdf, vec3) { return bsdf.pdf; };
-        aim_at_light(p, at, light, unshadowed_light(at, wo, light, alone, pdf));
-    }
-
-    float const u_lobe = p.rng.uniform();
-    if (in_turn && !(narrow && takes_narrow_lobe(at.bsdf, wo, u_lobe))) {
-        p.sample.turn = p.share > 0 ? IndirectTurn::taken : IndirectTurn::waits;
-        if (p.share == 0) return false;
-        p.throughput *= float(p.share);
-        p.emitted = alone;
-    }
-    BsdfSample const next = gi::sample(at.bsdf, wo, at.front, u_lobe, p.rng.uniform2());
-    if (last && !next.delta) return false;
-    p.throughput *= next.weight;
-    return continue_path(p, at, next);
-}
 
 /// In a separate loop, so that the cache misses of many choices overlap: the tables of a sky are large.
 template <class Visibility>
 void PathTracer<Visibility>::choose_lights(std::span<Path* const> paths, std::span<Hit const> hits) const
 {
+    WorldView const& world = steps.world;
     if (world.light_select.empty()) return;
     for (std::size_t i = 0; i < paths.size(); ++i) {
         if (hits[i].triangle == kNoTriangle) continue;
-        LightChoice const choice = choose_light(world, paths[i]->rng.uniform_double());
-        paths[i]->light = choice;
+        steps.choose_light(*paths[i]);
+        LightChoice const& choice = paths[i]->light;
         if (!light_detail::is_environment(world, choice)) continue;
         vec3 const* const texel = &world.environment_radiance[choice.texel]; // the sample lies within half a texel
         std::size_t const row = world.environment_width;

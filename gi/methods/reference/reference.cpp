@@ -1,14 +1,15 @@
 #include "gi/methods/reference/reference.h"
 
-#include "gi/methods/reference/path_tracer.h"
+#include "gi/kernel/device.h"
+#include "gi/methods/reference/embree_paths.h"
+#include "gi/methods/reference/kernel_paths.h"
+#include "gi/methods/reference/kernels.h"
 #include "gi/render/fingerprint.h"
-#include "gi/render/flush_denormals.h"
 #include "gi/render/motion.h"
 #include "gi/render/pass_loop.h"
-#include "gi/scene/model/plan.h"
+#include "gi/render/render_option.h"
 
 #include <algorithm>
-#include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
 namespace gi {
@@ -16,77 +17,44 @@ namespace {
 
 double rays_of(PathCounts const& c) { return double(c.nearest_rays + c.shadow_rays); }
 
+/// @tparam Paths  EmbreePaths, or KernelPaths of a space
 /// @param first_hits  one per pixel, set by its last path; empty = not needed
 /// @param memory  buffer for interleaved passes, in which pixels take indirect light from those in turn
-void trace_pass(PathTracer<ExactVisibility> const& tracer, Accumulator& sums, std::uint32_t first_path,
+template <class Paths>
+void trace_pass(Paths& tracing, PathSteps const& steps, Accumulator& sums, std::uint32_t first_path,
                 std::uint32_t paths, std::span<FirstHit> first_hits = {},
                 std::vector<PathSample>* memory = nullptr)
 {
-    tbb::combinable<PathCounts> counts;
-    bool const interleaved = tracer.interleaving.n > 1;
-    std::span<PathSample> waiting;
-    if (interleaved) {
+    std::uint32_t const first = first_path + sums.paths;
+    if (steps.interleaving.n > 1) {
         memory->resize(sums.pixels.size());
-        waiting = *memory;
-    }
-    int const columns = (sums.width + kTile - 1) / kTile, rows = (sums.height + kTile - 1) / kTile;
-    tbb::parallel_for(0, columns * rows, [&](int tile) {
-        FlushDenormals const guard;
-        PathCounts& local = counts.local();
-        int const left = tile % columns * kTile, right = std::min(left + kTile, sums.width);
-        int const top = tile / columns * kTile, bottom = std::min(top + kTile, sums.height);
-        std::vector<Path> batch;
-        for (std::uint32_t i = 0; i < paths; ++i) {
-            batch.clear();
-            for (int y = top; y < bottom; ++y)
-                for (int x = left; x < right; ++x)
-                    batch.push_back(tracer.start(x, y, first_path + sums.paths + i));
-            tracer.trace(batch, local);
-            auto next = batch.begin();
-            bool const last = i + 1 == paths && !first_hits.empty();
-            for (int y = top; y < bottom; ++y)
-                for (int x = left; x < right; ++x, ++next) {
-                    std::size_t const pixel = std::size_t(y) * std::size_t(sums.width) + std::size_t(x);
-                    if (interleaved)
-                        waiting[pixel] = next->sample;
-                    else
-                        sums.add(pixel, next->sample, sums.paths + i);
-                    if (last) first_hits[pixel] = next->first;
-                }
-        }
-    });
-    if (interleaved) {
-        spread_indirect(waiting, sums.width, tracer.interleaving, first_path + sums.paths);
+        std::span<PathSample> const waiting = *memory;
+        auto const keep = [&](std::size_t pixel, std::uint32_t, PathSample const& s) { waiting[pixel] = s; };
+        sums.counts += tracing.trace(steps, sums.height, first, paths, first_hits, keep);
+        spread_indirect(waiting, sums.width, steps.interleaving, first);
         tbb::parallel_for(std::size_t(0), waiting.size(),
                           [&](std::size_t p) { sums.add(p, waiting[p], sums.paths); });
+    } else {
+        auto const add = [&](std::size_t pixel, std::uint32_t k, PathSample const& s) {
+            sums.add(pixel, s, sums.paths + k);
+        };
+        sums.counts += tracing.trace(steps, sums.height, first, paths, first_hits, add);
     }
     sums.paths += paths;
-    sums.counts += counts.combine([](PathCounts a, PathCounts const& b) { return a += b; });
 }
 
-/// The BVH of a world, and path tracers that use it.
-struct Structures {
-    std::unique_ptr<ExactVisibility> visibility;
-
-    /// @param first_moving  index of the first dynamic triangle
-    /// @param stop  see ExactVisibility
-    void build(World const& world, int threads, Report& report, std::size_t first_moving,
-               StopRequest const* stop = nullptr)
-    {
-        StageTimer const timer(report, "build (Embree BVH)");
-        visibility =
-            std::make_unique<ExactVisibility>(world, plan_scene(world).alpha_tests, threads, first_moving, stop);
-    }
-    PathTracer<ExactVisibility> tracer(World const& world, Camera const& camera, RenderSettings const& s) const
-    {
-        return {view(world), *visibility, camera_rays(camera, s.width, s.height, world.origin), s.bounces, s.seed,
-                s.filter,    s.width};
-    }
-};
+/// Builds what is missing for tracing.
+template <class Paths>
+PathSteps start_steps(Paths& tracing, World const& world, Camera const& camera, RenderSettings const& s)
+{
+    return {tracing.prepare(), camera_rays(camera, s.width, s.height, world.origin),
+            s.bounces,         s.seed,
+            s.filter,          s.width};
+}
 
 /// @param print  of the scene and settings
 RenderResult trace_all(PassLoop& loop, std::uint64_t print, PassLoop::Pass const& pass, World const& world,
-                       Report& report)
+                       RenderSettings const& settings, Report& report)
 {
     RenderResult result = loop.run(print, pass);
     PathCounts const& total = loop.sums().counts;
@@ -94,9 +62,11 @@ RenderResult trace_all(PassLoop& loop, std::uint64_t print, PassLoop::Pass const
     report.count("shadow rays", double(total.shadow_rays));
     result.rays = rays_of(total);
     result.picture = loop.sums().picture(world);
+    if (settings.space == Space::device) result.options = as_options(common_options(), settings, {"device"});
     return result;
 }
 
+template <class Paths>
 class ReferenceFrames : public FrameRenderer {
 public:
     ReferenceFrames(MovingWorld const& world, RenderSettings const& settings, Report& report)
@@ -104,16 +74,14 @@ public:
           settings_(settings),
           report_(report),
           interleaving_(settings.budget_s > 0 ? kMostInterleaving : 1, settings.budget_s),
+          tracing_(world.world(), settings_, world.world().static_triangles, report),
           motion_(world.world())
     {
     }
     void changed(Changes const& changes) override
     {
         motion_.changed(changes);
-        if (changes.materials || changes.coverage) structures_.visibility.reset();
-        if (!changes.geometry || !structures_.visibility) return;
-        StageTimer const timer(report_, "BVH of dynamic triangles (Embree)");
-        structures_.visibility->moved(world_.world());
+        tracing_.changed(changes);
     }
     RenderResult frame(Camera const& camera, StopRequest const& stop, RenderProgress const& progress,
                        Moments const& moments) override
@@ -127,11 +95,11 @@ public:
             for (std::uint32_t i = 0; i < paths; ++i) {
                 Moment const now = moments(sums.paths);
                 changed(now.changes);
-                trace_pass(tracer(now.camera), sums, paths_, 1);
+                trace_pass(tracing_, steps(now.camera), sums, paths_, 1);
             }
         };
-        tracer(camera); // so that the BVH is built before the passes
-        RenderResult result = trace_all(loop, 0, pass, world_.world(), report_);
+        steps(camera); // so that the BVH is built before the passes
+        RenderResult result = trace_all(loop, 0, pass, world_.world(), settings_, report_);
         paths_ += result.paths;
         if (!moments) motion_.add(0, result.picture);
         motion_.end_frame();
@@ -152,13 +120,13 @@ public:
             settings.paths = paths;
             settings.budget_s = settings.until_relmse = 0;
             PassLoop loop(settings, stop, silent, report_);
-            PathTracer<ExactVisibility> const through = tracer(v.camera, settings);
+            PathSteps const through = steps(v.camera, settings);
             results.push_back(trace_all(
                 loop, 0,
                 [&](Accumulator& sums, std::uint32_t n) {
-                    trace_pass(through, sums, paths_, n, motion_.first_hits(k));
+                    trace_pass(tracing_, through, sums, paths_, n, motion_.first_hits(k));
                 },
-                world_.world(), report_));
+                world_.world(), settings, report_));
             motion_.add(k, results.back().picture);
             hide_pixels(results.back().picture, v.hidden);
         }
@@ -171,12 +139,13 @@ private:
     /// With a budget, renders passes of one path, in which pixels may wait for indirect light.
     void trace_frame(Camera const& camera, Accumulator& sums, std::uint32_t paths)
     {
-        PathTracer<ExactVisibility> through = tracer(camera);
-        if (!(settings_.budget_s > 0)) return trace_pass(through, sums, paths_, paths, motion_.first_hits(0));
+        PathSteps through = steps(camera);
+        if (!(settings_.budget_s > 0))
+            return trace_pass(tracing_, through, sums, paths_, paths, motion_.first_hits(0));
         for (std::uint32_t i = 0; i < paths; ++i) {
             double const earlier = rays_of(sums.counts);
             through.interleaving.n = std::uint32_t(interleaving_.n());
-            trace_pass(through, sums, paths_, 1, motion_.first_hits(0), &waiting_);
+            trace_pass(tracing_, through, sums, paths_, 1, motion_.first_hits(0), &waiting_);
             // Two rays per pixel are for its first surface.
             double const first = 2.0 * sums.width * sums.height,
                          later = std::max(0.0, rays_of(sums.counts) - earlier - first);
@@ -184,45 +153,74 @@ private:
         }
     }
 
-    /// Returns a tracer for the current world.
-    PathTracer<ExactVisibility> tracer(Camera const& camera) { return tracer(camera, settings_); }
-    PathTracer<ExactVisibility> tracer(Camera const& camera, RenderSettings const& settings)
+    /// Steps through the current world.
+    PathSteps steps(Camera const& camera) { return steps(camera, settings_); }
+    PathSteps steps(Camera const& camera, RenderSettings const& settings)
     {
-        World const& world = world_.world();
-        if (!structures_.visibility) structures_.build(world, settings_.threads, report_, world.static_triangles);
-        return structures_.tracer(world, camera, settings);
+        return start_steps(tracing_, world_.world(), camera, settings);
     }
 
     MovingWorld const& world_;
     RenderSettings settings_;
     Report& report_;
-    Structures structures_;
     std::uint32_t paths_ = 0; ///< so far, over all frames
     FrameInterleaving interleaving_;
+    Paths tracing_;
     std::vector<PathSample> waiting_; ///< buffer for interleaved passes
     MotionVectors motion_;
 };
+
+/// @param name  for checkpoints
+template <class Paths>
+RenderResult render_picture(char const* name, World const& world, Camera const& camera,
+                            RenderSettings const& settings, StopRequest const& stop,
+                            RenderProgress const& progress, Report& report)
+{
+    PassLoop loop(settings, stop, progress, report);
+    Paths tracing(world, settings, world.triangles.size(), report, &stop);
+    PathSteps const steps = start_steps(tracing, world, camera, settings);
+    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, name) : 0;
+    auto const pass = [&](Accumulator& sums, std::uint32_t paths) {
+        trace_pass(tracing, steps, sums, loop.first_path(), paths);
+    };
+    return trace_all(loop, print, pass, world, settings, report);
+}
 
 } // namespace
 
 RenderResult render_reference(World const& world, Camera const& camera, RenderSettings const& settings,
                               StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
-    PassLoop loop(settings, stop, progress, report);
-    Structures structures;
-    structures.build(world, settings.threads, report, world.triangles.size(), &stop);
-    std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, settings, "reference") : 0;
-    PathTracer<ExactVisibility> const tracer = structures.tracer(world, camera, settings);
-    auto const pass = [&](Accumulator& sums, std::uint32_t paths) {
-        trace_pass(tracer, sums, loop.first_path(), paths);
-    };
-    return trace_all(loop, print, pass, world, report);
+    if (settings.space == Space::host)
+        return render_picture<EmbreePaths>("reference", world, camera, settings, stop, progress, report);
+    check_device(Space::device);
+    return render_reference_by_kernels(Space::device, world, camera, settings, stop, progress, report);
 }
 
 std::unique_ptr<FrameRenderer> start_reference_frames(MovingWorld const& world, Camera const&,
                                                       RenderSettings const& settings, Report& report)
 {
-    return std::make_unique<ReferenceFrames>(world, settings, report);
+    if (settings.space == Space::host)
+        return std::make_unique<ReferenceFrames<EmbreePaths>>(world, settings, report);
+    check_device(Space::device);
+    return start_reference_kernel_frames(Space::device, world, settings, report);
+}
+
+RenderResult render_reference_by_kernels(Space space, World const& world, Camera const& camera,
+                                         RenderSettings const& settings, StopRequest const& stop,
+                                         RenderProgress const& progress, Report& report)
+{
+    auto const& render = space == Space::host ? render_picture<KernelPaths<Space::host>>
+                                              : render_picture<KernelPaths<Space::device>>;
+    return render("reference by kernels", world, camera, settings, stop, progress, report);
+}
+
+std::unique_ptr<FrameRenderer> start_reference_kernel_frames(Space space, MovingWorld const& world,
+                                                             RenderSettings const& settings, Report& report)
+{
+    if (space == Space::host)
+        return std::make_unique<ReferenceFrames<KernelPaths<Space::host>>>(world, settings, report);
+    return std::make_unique<ReferenceFrames<KernelPaths<Space::device>>>(world, settings, report);
 }
 
 } // namespace gi

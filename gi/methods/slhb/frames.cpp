@@ -249,7 +249,7 @@ private:
     {
         renderer_->report_work();
         result.rays = renderer_->rays() - rays_before;
-        result.options = as_options(settings_.slhb);
+        result.options = as_options(settings_);
     }
 
     void end_frame()
@@ -270,7 +270,7 @@ private:
         TriangleSoup soup = make_soup(world);
         settings_.slhb = choose_frame_settings(asked_, world, soup, views[0].camera);
         if (kByKernels) {
-            settings_.slhb.interleave = 1; // regardless of the budget
+            limit_to_kernels(settings_.slhb);
             for (FrameView const& v : views) check_kernels_can(v.camera, settings_.slhb);
         }
         if constexpr (!kByKernels)
@@ -300,7 +300,7 @@ private:
 std::unique_ptr<FrameRenderer> start_slhb_frames(MovingWorld const& world, Camera const& camera,
                                                  RenderSettings const& settings, Report& report)
 {
-    if (settings.slhb.space == Space::host)
+    if (settings.space == Space::host)
         return std::make_unique<SlhbFrames<SlhbRenderer>>(world, camera, settings, report);
     check_device(Space::device);
     return start_kernel_frames(Space::device, world, camera, settings, report);

@@ -33,10 +33,6 @@ RenderOptionTable make_table()
              &S::interleave);
     interleave.live = false;
     return {
-        slhb("device", {"cpu", "cuda"},
-             "cpu; or cuda: everything on the GPU, also --reuse and --shutter. Paths end at mirrors, glass and\n"
-             "narrow lobes: the light beyond is missing from the picture, and is counted",
-             &S::space),
         slhb("schedule", {"auto", "stored", "streamed", "temporal"},
              "stored: one set of axes; streamed: new axes in every pass; temporal: some new; auto: streamed,\n"
              "but stored under a sky; in moving scenes stored with --reuse, streamed with --shutter",

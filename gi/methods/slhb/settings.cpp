@@ -112,7 +112,7 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
 RadianceCaching choose_cache(RenderSettings const& asked, bool lasting)
 {
     SlhbSettings const& s = asked.slhb;
-    if (asked.bounces == 0 || s.exact.any() || s.space == Space::device) return RadianceCaching::off;
+    if (asked.bounces == 0 || s.exact.any() || asked.space == Space::device) return RadianceCaching::off;
     if (s.cache != RadianceCaching::automatic) return s.cache;
     if (asked.budget_s > 0 && !(asked.until_relmse > 0)) return RadianceCaching::on;
     return lasting ? RadianceCaching::automatic : RadianceCaching::off;
@@ -190,10 +190,10 @@ SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& wor
     return with_rays(asked, s, world, soup, camera, costs, true);
 }
 
-std::string as_options(SlhbSettings const& chosen)
+std::string as_options(RenderSettings const& chosen)
 {
-    RenderSettings all;
-    SlhbSettings& s = all.slhb = chosen;
+    RenderSettings all = chosen;
+    SlhbSettings& s = all.slhb;
     if (s.look_ups == LookUps::automatic) s.look_ups = LookUps::all;
     if (s.shadows == Shadows::automatic) s.shadows = Shadows::maps;
     std::vector<std::string_view> names{"schedule", "hit-buffer", "light-samples", "shadow-map", "interleave"};
@@ -205,8 +205,8 @@ std::string as_options(SlhbSettings const& chosen)
     if (s.cache != RadianceCaching::automatic) names.push_back("radiance-cache");
     if (s.cone > 0) names.push_back("cone");
     names.insert(names.end(), {"packed", "gather"});
-    if (s.space == Space::device) names.push_back("device");
-    return as_options(slhb_options(), all, names);
+    std::string const device = chosen.space == Space::device ? " --device cuda" : "";
+    return as_options(slhb_options(), all, names) + device;
 }
 
 std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, Camera const& camera)

@@ -20,7 +20,7 @@ SlhbSettings choose_frame_settings(RenderSettings const& asked, World const& wor
 RenderOptionTable const& slhb_options();
 
 /// Returns chosen settings as command-line options that reproduce the picture.
-std::string as_options(SlhbSettings const& chosen);
+std::string as_options(RenderSettings const& chosen);
 
 /// Returns the decisions of choose_settings for a scene, with reasons, as items of the plan.
 std::vector<PlanItem> explain_settings(RenderSettings const& asked, World const& world, Camera const& camera);

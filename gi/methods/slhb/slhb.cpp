@@ -15,7 +15,7 @@ namespace gi {
 RenderResult render_slhb(World const& world, Camera const& camera, RenderSettings const& settings,
                          StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
-    if (settings.slhb.space == Space::device) {
+    if (settings.space == Space::device) {
         check_device(Space::device);
         return render_by_kernels(Space::device, world, camera, settings, stop, progress, report);
     }
@@ -41,7 +41,7 @@ RenderResult render_slhb(World const& world, Camera const& camera, RenderSetting
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());
     report.lose("radiance samples for which the radiance cache had no room", renderer.refused_notes());
     result.rays = renderer.rays();
-    result.options = as_options(chosen.slhb);
+    result.options = as_options(chosen);
     result.picture = loop.sums().picture(world);
     return result;
 }

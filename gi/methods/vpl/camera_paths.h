@@ -9,7 +9,8 @@
 // mirrors and glass. No light is lost by clamping, and with exact visibility of virtual lights the sum is
 // unbiased. f_x is the largest channel; cos_x uses the shading normal and cos_y the geometric one.
 
-#include "gi/render/ray_path.h"
+#include "gi/render/exact_visibility.h"
+#include "gi/render/path_batch.h"
 
 namespace gi {
 

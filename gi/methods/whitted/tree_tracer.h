@@ -7,6 +7,7 @@
 
 #include "gi/core/rng.h"
 #include "gi/render/path_step.h"
+#include "gi/render/exact_visibility.h"
 #include "gi/render/ray_path.h"
 
 #include <optional>

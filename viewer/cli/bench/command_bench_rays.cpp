@@ -4,6 +4,7 @@
 #include "gi/methods/slhb/directions/directions.h"
 #include "gi/methods/slhb/hit_buffer/query_batch.h"
 #include "gi/render/bvh_visibility.h"
+#include "gi/render/exact_visibility.h"
 #include "gi/scene/model/plan.h"
 #include "gi/scene/shading/warp.h"
 #include "viewer/bench/bench_record.h"

@@ -16,7 +16,7 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
     TriangleSoup soup = make_soup(world);
     RenderSettings chosen = settings;
     chosen.slhb = choose_settings(settings, world, soup, camera);
-    chosen.slhb.interleave = 1; // regardless of the budget
+    limit_to_kernels(chosen.slhb);
     FrameView const eye{camera, settings.width, settings.height};
     KernelRenderer<S> renderer(world, {&eye, 1}, chosen, std::move(soup), world.triangles.size(), report);
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, "slhb by kernels") : 0;
@@ -26,7 +26,7 @@ RenderResult render(World const& world, Camera const& camera, RenderSettings con
     renderer.report_work();
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());
     result.rays = renderer.rays();
-    result.options = as_options(chosen.slhb);
+    result.options = as_options(chosen);
     result.picture = loop.sums().picture(world);
     return result;
 }

@@ -8,8 +8,7 @@
 
 namespace gi {
 
-/// See RenderFunction in gi/methods. path_kernel.h lists the light that is missing from the picture; the report
-/// counts it. Throws InputError on unsupported features, see check_kernels_can.
+/// See RenderFunction in gi/methods. Throws InputError on unsupported features, see check_kernels_can.
 RenderResult render_by_kernels(Space space, World const& world, Camera const& camera,
                                RenderSettings const& settings, StopRequest const& stop,
                                RenderProgress const& progress, Report& report);

@@ -3,6 +3,7 @@
 #include "gi/methods/slhb/directions/grid_bounds.h"
 #include "gi/methods/slhb/ray_plan.h"
 #include "gi/render/pass_samples.h"
+#include "gi/scene/model/plan.h"
 
 #include <algorithm>
 #include <tbb/parallel_for.h>
@@ -14,7 +15,7 @@ void check_kernels_can(Camera const& camera, SlhbSettings const& s)
     char const* const suggestion = "leave it out, or render with --device cpu";
     if (camera.orthographic)
         throw InputError("--device cuda with an orthographic camera",
-                         "its first surfaces need exact rays, which the device lacks",
+                         "its first surfaces are drawn, which only perspective cameras can",
                          "choose a perspective camera, or --device cpu");
     if (s.cone > 0) throw InputError("--device cuda with --cone", "its kernels use one column only", suggestion);
     if (s.packed)
@@ -25,7 +26,19 @@ void check_kernels_can(Camera const& camera, SlhbSettings const& s)
     if (s.cache == RadianceCaching::on)
         throw InputError("--device cuda with --radiance-cache on", "its kernels do not end paths in a cache",
                          suggestion);
+    if (s.look_ups == LookUps::none)
+        throw InputError("--device cuda with --look-ups none", "its kernels find surfaces by look-ups",
+                         "leave it out, or choose --method reference");
+    if (s.shadows == Shadows::rays)
+        throw InputError("--device cuda with --shadows rays", "its kernels look into shadow maps", suggestion);
     if (s.gather) throw InputError("--device cuda with --gather", "its kernels choose axes at random", suggestion);
+}
+
+void limit_to_kernels(SlhbSettings& chosen)
+{
+    chosen.interleave = 1; // regardless of the budget
+    chosen.look_ups = LookUps::all;
+    chosen.shadows = Shadows::maps;
 }
 
 template <Space S>
@@ -44,6 +57,7 @@ KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const>
 {
     see(views);
     end_frame();
+    build_exact();
     make_axes();
     make_light_points();
 }
@@ -53,6 +67,15 @@ template <Space S>
 bool KernelRenderer<S>::meets_light() const
 {
     return !world_.emitters.empty() || !view(world_).environment_radiance.empty();
+}
+
+template <Space S>
+void KernelRenderer<S>::build_exact()
+{
+    bool const needed = narrow_somewhere(world_);
+    if (needed == scene_.has_rays()) return;
+    StageTimer const timer(report_, "build (BVH)");
+    scene_.use_rays(needed, plan_scene(world_).alpha_tests, first_moving_);
 }
 
 template <Space S>
@@ -98,6 +121,7 @@ void KernelRenderer<S>::changed(Changes const& c)
         }
         scene_.update(world_, soup_, c);
     }
+    if (c.materials) build_exact();
     bool axes = axes_.walks() != walks(), light_points = changes_lights(c);
     if (c.geometry) {
         if (grow(grid_bounds_, world_.bounds)) {
@@ -170,7 +194,7 @@ void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, V
     for (std::size_t k = 0; k < views_.size(); ++k) {
         View const& v = views_[k];
         Accumulator& to = sums[k];
-        TracePaths paths{};
+        PassOfPaths paths{};
         paths.camera = v.eye;
         paths.primary = v.primary.view();
         paths.hidden = v.hidden.view();
@@ -188,11 +212,10 @@ void KernelRenderer<S>::pass(std::uint32_t index, std::span<Accumulator> sums, V
         to.counts.cut_paths += done.cut_paths;
         to.counts.invalid_paths += done.invalid_paths;
         queries_ += done.queries;
+        exact_rays_ += done.exact_rays;
         shadow_lookups_ += done.shadow_lookups;
         hidden_ += v.hidden_pixels;
         pixels_ += v.pixels();
-        report_.lose("paths that ended at a mirror, glass or narrow lobe, as the kernels have no exact rays",
-                     done.narrow_ends);
     }
 }
 
@@ -209,6 +232,7 @@ template <Space S>
 void KernelRenderer<S>::report_work() const
 {
     report_.count("hit-buffer queries", double(queries_));
+    report_.count("exact rays", double(exact_rays_));
     report_.count("shadow-map look-ups", double(shadow_lookups_));
     if (hidden_ > 0) {
         report_.count("pixels not rendered, as nobody sees them", double(hidden_));

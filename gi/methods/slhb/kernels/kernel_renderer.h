@@ -4,7 +4,8 @@
 // rounding.
 //
 // Hit buffers are built from all triangles: after motion, the buffers used by paths and all shadow maps are
-// rebuilt (dynamic geometry is not added to static buffers as on the CPU). Views do not reuse each other's light,
+// rebuilt (dynamic geometry is not added to static buffers as on the CPU). The BVH for exact rays, built if some
+// lobe is narrow, has a tree of dynamic triangles, which is refitted. Views do not reuse each other's light,
 // and paths do not share vertices. For the limits of paths see path_kernel.h.
 
 #include "gi/methods/slhb/directions/frame_axes.h"
@@ -18,8 +19,10 @@
 namespace gi {
 
 /// Throws InputError on features that kernels lack: an orthographic camera, --cone, --gather, --packed,
-/// --interleave.
+/// --interleave, --look-ups none, --shadows rays.
 void check_kernels_can(Camera const& camera, SlhbSettings const& settings);
+/// Sets what the plan would choose for the CPU to what kernels have.
+void limit_to_kernels(SlhbSettings& chosen);
 
 template <Space S>
 class KernelRenderer {
@@ -39,7 +42,7 @@ public:
     void add_motion(std::size_t view, Picture& picture) const;
     /// Empty: no light is reused from a partner.
     std::span<std::uint32_t const> light_from(std::size_t) const { return {}; }
-    double rays() const { return double(queries_ + shadow_lookups_); }
+    double rays() const { return double(queries_ + exact_rays_ + shadow_lookups_); }
     std::uint64_t lost_layers() const { return axes_.lost(); }
     void report_work() const;
 
@@ -58,6 +61,7 @@ private:
 
     bool meets_light() const;
     bool walks() const { return settings_.bounces > 0 || meets_light(); }
+    void build_exact();
     void make_axes();
     void make_light_points();
     void prepare(std::uint32_t index);
@@ -75,7 +79,7 @@ private:
     FrameAxes axes_;
     std::optional<LightPoints> light_points_;
     EarlierCorners earlier_;
-    std::uint64_t queries_ = 0, shadow_lookups_ = 0;
+    std::uint64_t queries_ = 0, exact_rays_ = 0, shadow_lookups_ = 0;
     std::uint64_t hidden_ = 0, pixels_ = 0; ///< pixels not traced because they are hidden; all pixels; over all
                                             ///< passes
     std::uint64_t earlier_maps_ = 0;        ///< built for earlier light points that no longer exist

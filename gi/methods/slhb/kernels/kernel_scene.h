@@ -10,6 +10,7 @@
 #include "gi/scene/model/world_on.h"
 
 #include <array>
+#include <optional>
 #include <utility>
 
 namespace gi {
@@ -28,6 +29,14 @@ public:
     {
         world_.update(world, changes);
         if (changes.geometry) soup_.update(soup, world.static_triangles);
+        if (changes.geometry && bvh_) bvh_->moved(world_.view());
+    }
+    bool has_rays() const { return bvh_.has_value(); }
+    /// Builds or drops what exact rays go through. @param first_moving  index of the first dynamic triangle
+    void use_rays(bool needed, bool alpha_tests, std::size_t first_moving)
+    {
+        bvh_.reset();
+        if (needed) bvh_.emplace(world_.view(), alpha_tests, first_moving);
     }
 
     AxisSet::BuiltAxis build_axis(std::size_t a, RasterGrid const& grid, std::uint32_t seed)
@@ -102,7 +111,7 @@ public:
     }
 
     /// @param paths  with the host's parameters and those of the view; this function fills in the rest
-    std::vector<PathSample> trace(TracePaths paths)
+    std::vector<PathSample> trace(PassOfPaths paths)
     {
         std::size_t const pixels = paths.primary.size();
         if (samples_.size() != pixels) samples_ = Buffer<PathSample, S>(pixels);
@@ -114,7 +123,11 @@ public:
         paths.chances = {std::as_const(chances_).view()};
         paths.samples = samples_.view();
         paths.counts = counts.view();
-        launch(S, "trace paths", pixels, paths);
+        if (bvh_) paths.rays = bvh_->rays();
+        if (bvh_)
+            launch(S, "trace paths with exact rays", pixels, TracePaths<true>{paths});
+        else
+            launch(S, "trace paths", pixels, TracePaths<false>{paths});
         counts_ = download(counts)[0];
         return download(samples_);
     }
@@ -135,6 +148,7 @@ private:
     SoupOn<S> soup_;
     Buffer<std::uint8_t, S> marked_;
     std::uint32_t most_layers_;
+    std::optional<WorldBvh<S>> bvh_; ///< none if no lobe needs exact rays
     std::vector<HitBufferOn<S>> axes_;
     Buffer<AxisView, S> axis_views_;
     Buffer<FewAxes, S> few_;

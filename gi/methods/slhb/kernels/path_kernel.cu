@@ -4,6 +4,7 @@
 
 namespace gi {
 
-template void launch_device(char const*, std::size_t, TracePaths const&);
+template void launch_device(char const*, std::size_t, TracePaths<false> const&);
+template void launch_device(char const*, std::size_t, TracePaths<true> const&);
 
 } // namespace gi

@@ -3,14 +3,14 @@
 // Estimators and random numbers are those of SlhbTracer (tracer.h), so that both trace the same paths up to
 // rounding.
 //
-// It has no exact rays. A path that chooses a mirror, glass or a narrow lobe ends there and is counted; its light
-// is missing from the picture. Direct light on such surfaces gets its full weight instead, because no exact ray
-// will find the light. Cone, gathering, interleaving and shared vertices are not supported.
+// Mirrors, glass and narrow lobes continue by exact rays through the project's own BVH. Cone, gathering,
+// interleaving and shared vertices are not supported.
 
 #include "gi/kernel/atomics.h"
 #include "gi/methods/slhb/kernels/axis_step.h"
 #include "gi/methods/slhb/kernels/path_random.h"
 #include "gi/methods/slhb/lights/shadow_look.h"
+#include "gi/render/world_bvh.h"
 #include "gi/scene/shading/narrow_lobes.h"
 
 namespace gi {
@@ -23,13 +23,14 @@ struct LightPointView {
 };
 
 struct PathKernelCounts {
-    std::uint64_t queries = 0, shadow_lookups = 0;
-    std::uint64_t narrow_ends = 0; ///< paths that needed an exact ray
+    std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0;
     std::uint64_t cut_paths = 0, invalid_paths = 0;
 };
 
-struct TracePaths {
+/// What the paths of a pass read and write.
+struct PassOfPaths {
     WorldView world;
+    KernelRays rays; ///< without trees if no lobe is narrow
     CameraRays camera;
     View<NearestTexel const> primary; ///< per pixel, in rows of `width`
     View<std::uint8_t const> hidden;  ///< per pixel: 1 = hidden, nothing is traced; empty = none hidden
@@ -45,34 +46,47 @@ struct TracePaths {
     std::uint32_t seed, pass;
     View<PathSample> samples;      ///< per pixel
     View<PathKernelCounts> counts; ///< one
+};
 
+/// @tparam by_rays  some lobes may be narrow; otherwise the kernel needs fewer registers and no stacks
+template <bool by_rays>
+struct TracePaths : PassOfPaths {
     GI_FN void operator()(std::size_t i) const;
 
 private:
-    /// State of one path; an arrival_pdf of 0 means the camera. Every surface scatters once, so that scatterings
-    /// also count surfaces.
+    /// State of one path.
     struct State : PathState {
         RqmcStream random;
         std::uint32_t triangle = kNoPrimitive;
         vec2 barycentric{1.0f / 3};
-        vec3 position{0};            ///< only read after the first surface
-        vec3 direction{0};           ///< of arrival
-        float distance = 0;          ///< length of the last walk, m
-        bool counts_emission = true; ///< emission of the surface hit counts
+        vec3 position{0};          ///< only read where has_position
+        bool has_position = false; ///< found by a look-up, which gives the point instead of weights
+        vec3 direction{0};         ///< of arrival
+        float distance = 0;        ///< m, from the last surface
+        int vertex = 0;            ///< number of surfaces before, delta lobes included
 
-        GI_FN std::uint32_t dimension(PathDimension d) const
-        {
-            return dimension_of(std::uint32_t(scatterings), d);
-        }
+        GI_FN std::uint32_t dimension(PathDimension d) const { return dimension_of(std::uint32_t(vertex), d); }
+        GI_FN float number(PathDimension d) const { return random.sample(dimension(d)); }
     };
 
     GI_FN State start(std::size_t pixel) const;
     GI_FN vec3 sky(State const& s) const;
     GI_FN vec3 emission(State const& s, ShadingPoint const& at) const;
     GI_FN vec3 direct(State const& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
-    /// Returns false if the path ends.
-    GI_FN bool leave(State& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
-    /// True at the last surface, where light samples must account for all light, see SlhbTracer.
+    /// Continues the path to the next surface. Returns false if it ends.
+    GI_FN bool scatter(State& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
+    /// The same by a mirror, glass or a narrow lobe.
+    GI_FN bool scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe,
+                              PathKernelCounts& local) const;
+    GI_FN bool scatter_by_look_up(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                  PathKernelCounts& local) const;
+    GI_FN bool survives(State& s) const
+    {
+        return survives_roulette(s, roulette, [&s] { return s.number(PathDimension::roulette); });
+    }
+    /// True where only delta lobes continue; mirrors and glass do not count as scatterings.
+    GI_FN bool is_last(State const& s) const { return s.scatterings > bounces; }
+    /// True at the last scattering, where light samples must account for all light, see SlhbTracer.
     GI_FN bool lit_alone(State const& s, bool narrow) const
     {
         return s.scatterings == bounces && !narrow && !smooth;

@@ -3,7 +3,8 @@
 
 namespace gi {
 
-GI_FN inline TracePaths::State TracePaths::start(std::size_t pixel) const
+template <bool by_rays>
+GI_FN typename TracePaths<by_rays>::State TracePaths<by_rays>::start(std::size_t pixel) const
 {
     auto const id = std::uint32_t(pixel);
     Ray const ray = camera.through(vec2{float(id % width), float(id / width)} + place);
@@ -15,38 +16,39 @@ GI_FN inline TracePaths::State TracePaths::start(std::size_t pixel) const
     return s;
 }
 
-GI_FN inline vec3 TracePaths::sky(State const& s) const
+template <bool by_rays>
+GI_FN vec3 TracePaths<by_rays>::sky(State const& s) const
 {
-    if (s.scatterings == 0) return background_radiance(world, s.direction);
+    if (s.vertex == 0) return background_radiance(world, s.direction);
     if (world.environment_radiance.empty()) return vec3{0};
     return s.throughput * met_environment(world, s, s.direction);
 }
 
-/// Emission of a light hit by the camera or a walk.
-GI_FN inline vec3 TracePaths::emission(State const& s, ShadingPoint const& at) const
+/// Emission of a light hit by the camera, a look-up or an exact ray.
+template <bool by_rays>
+GI_FN vec3 TracePaths<by_rays>::emission(State const& s, ShadingPoint const& at) const
 {
-    if (!s.counts_emission || !(max_component(at.emission) > 0)) return vec3{0};
+    if (!(max_component(at.emission) > 0)) return vec3{0};
     return s.throughput * met_emission(world, s, at, s.triangle, s.direction, s.distance);
 }
 
-GI_FN inline vec3 TracePaths::direct(State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
-                                     PathKernelCounts& local) const
+template <bool by_rays>
+GI_FN vec3 TracePaths<by_rays>::direct(State const& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                       PathKernelCounts& local) const
 {
     std::size_t k = 0;
     if (!chances.empty()) {
-        double u = double(s.random.sample(s.dimension(PathDimension::light_point)));
+        double u = double(s.number(PathDimension::light_point));
         k = chances.sample(u);
     } else {
         k = s.random.turn(s.dimension(PathDimension::light_point)) % light_points.size();
     }
     LightPointView const& l = light_points[k];
     LightSample const light = sample_light(world, l.choice, at.position, l.u);
-    // No walk from a narrow lobe finds a light.
-    bool const alone = lit_alone(s, narrow) || (narrow && light.distance != kInf);
     auto const pdf = [narrow](BsdfValue const& bsdf, vec3 wi) {
         return narrow ? bsdf.pdf : glm::max(wi.z, 0.0f) * kInvPi;
     };
-    vec3 const value = unshadowed_light(at, wo, light, alone, pdf);
+    vec3 const value = unshadowed_light(at, wo, light, lit_alone(s, narrow), pdf);
     if (!(max_component(value) > 0)) return vec3{0};
     vec2 const u = s.random.noise2(s.dimension(PathDimension::shadow));
     ShadowPlace const in_map = shadow_detail::look(l.shadow, at.position, at.geometric_normal, u);
@@ -55,53 +57,88 @@ GI_FN inline vec3 TracePaths::direct(State const& s, ShadingPoint const& at, vec
     return reached ? s.throughput * value : vec3{0};
 }
 
-GI_FN inline bool TracePaths::leave(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
-                                    PathKernelCounts& local) const
+template <bool by_rays>
+GI_FN bool TracePaths<by_rays>::scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe,
+                                               PathKernelCounts& local) const
+{
+    vec2 const u{s.number(PathDimension::lobe_u), s.number(PathDimension::lobe_v)};
+    BsdfSample const sampled = gi::sample(at.bsdf, wo, at.front, u_lobe, u);
+    if (is_last(s) && !sampled.delta) return false;
+    vec3 const direction = at.frame.to_world(sampled.wi);
+    if (!is_on_one_side(at, direction, sampled.wi)) return false;
+    s.throughput *= sampled.weight;
+    s.arrival_pdf = sampled.delta ? 0 : sampled.pdf;
+    if (!survives(s)) return false;
+    if (!sampled.delta) ++s.scatterings;
+    ++s.vertex;
+    std::uint32_t const ray_seed = hash_words(s.random.own_seed() + std::uint32_t(s.vertex), pass);
+    Hit const hit = rays.nearest(world, {.ray = {leave(at, direction), direction}, .seed = ray_seed});
+    ++local.exact_rays;
+    static_assert(kNoTriangle == kNoPrimitive);
+    s.triangle = hit.triangle;
+    s.barycentric = hit.barycentric;
+    s.has_position = false;
+    s.distance = hit.distance;
+    s.direction = direction;
+    return true;
+}
+
+template <bool by_rays>
+GI_FN bool TracePaths<by_rays>::scatter_by_look_up(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                                   PathKernelCounts& local) const
 {
     static_assert(kNoLayerHit == kNoPrimitive);
-    if (narrow && takes_narrow_lobe(at.bsdf, wo, s.random.sample(s.dimension(PathDimension::lobe)))) {
-        ++local.narrow_ends;
-        return false;
-    }
-    if (!(wo.z > 0)) return false;
+    if (is_last(s) || !(wo.z > 0)) return false;
     // Beyond the last surface, only lights that walks can hit would contribute.
     if (s.scatterings == bounces &&
         (lit_alone(s, narrow) || (world.environment_radiance.empty() && world.emitter_pdf.empty())))
         return false;
-    AxisSample const a = choice.sample(std::uint32_t(s.scatterings), at.frame.normal,
-                                       s.random.sample(s.dimension(PathDimension::axis)));
+    AxisSample const a =
+        choice.sample(std::uint32_t(s.scatterings), at.frame.normal, s.number(PathDimension::axis));
     AxisView const& along = axes[a.axis];
     WalkOrigin origin;
     if (!scatter_along(s, at, wo, narrow, a, world.surfaces[s.triangle], s.triangle, along.grid().axis, origin))
         return false;
-    auto const uniform = [&s] { return s.random.sample(s.dimension(PathDimension::roulette)); };
-    if (!survives_roulette(s, roulette, uniform)) return false;
+    if (!survives(s)) return false;
     LayerHit const hit = nearest_layer(along, world.surfaces, origin);
     ++local.queries;
     s.triangle = hit.triangle;
     s.distance = glm::length(hit.position - at.position);
-    s.counts_emission = !narrow;
     s.position = hit.position;
+    s.has_position = true;
     s.barycentric = vec2{1.0f / 3};
     s.direction = a.direction;
     ++s.scatterings;
+    ++s.vertex;
     return true;
 }
 
-GI_FN inline void TracePaths::add_counts(PathKernelCounts const& local) const
+template <bool by_rays>
+GI_FN bool TracePaths<by_rays>::scatter(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                        PathKernelCounts& local) const
+{
+    if (by_rays && narrow)
+        if (float const u_lobe = s.number(PathDimension::lobe); takes_narrow_lobe(at.bsdf, wo, u_lobe))
+            return scatter_by_ray(s, at, wo, u_lobe, local);
+    return scatter_by_look_up(s, at, wo, narrow, local);
+}
+
+template <bool by_rays>
+GI_FN void TracePaths<by_rays>::add_counts(PathKernelCounts const& local) const
 {
     PathKernelCounts& all = counts[0];
     auto const more = [](std::uint64_t& sum, std::uint64_t n) {
         if (n > 0) atomic_add(sum, n);
     };
     more(all.queries, local.queries);
+    more(all.exact_rays, local.exact_rays);
     more(all.shadow_lookups, local.shadow_lookups);
-    more(all.narrow_ends, local.narrow_ends);
     more(all.cut_paths, local.cut_paths);
     more(all.invalid_paths, local.invalid_paths);
 }
 
-GI_FN inline void TracePaths::operator()(std::size_t i) const
+template <bool by_rays>
+GI_FN void TracePaths<by_rays>::operator()(std::size_t i) const
 {
     PathSample out;
     if (!hidden.empty() && hidden[i] != 0) {
@@ -116,26 +153,22 @@ GI_FN inline void TracePaths::operator()(std::size_t i) const
             break;
         }
         Surface const& surface = world.surfaces[s.triangle];
-        bool const first = s.scatterings == 0;
-        if (!first && (surface.is(Surface::kSmooth) || surface.is(Surface::kVaries)))
+        if (s.has_position && (surface.is(Surface::kSmooth) || surface.is(Surface::kVaries)))
             s.barycentric = barycentric_at(surface, s.position);
         ShadingPoint at = shading_point(world, s.triangle, s.barycentric, s.direction);
-        if (first) {
-            see_first_surface(out, at, camera);
-        } else {
-            at.position = s.position;
-        }
+        if (s.has_position) at.position = s.position;
+        if (s.vertex == 0) see_first_surface(out, at, camera);
         layer_of(out, s.scatterings) += emission(s, at);
-        if (s.scatterings > bounces) break;
-        if (s.scatterings == kLongestPath) {
+        if (!by_rays && is_last(s)) break;
+        if (s.vertex == kLongestPath) {
             ++local.cut_paths;
             break;
         }
         vec3 const wo = at.frame.to_local(-s.direction);
-        bool const narrow = has_narrow_lobe(at.bsdf);
-        if (!light_points.empty() && !only_delta(at.bsdf))
+        bool const narrow = by_rays && has_narrow_lobe(at.bsdf);
+        if (!is_last(s) && !light_points.empty() && !only_delta(at.bsdf))
             layer_of(out, s.scatterings + 1) += direct(s, at, wo, narrow, local);
-        if (!leave(s, at, wo, narrow, local)) break;
+        if (!scatter(s, at, wo, narrow, local)) break;
     }
     local.invalid_paths += discard_invalid(out);
     samples[i] = out;

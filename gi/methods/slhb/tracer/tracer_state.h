@@ -3,7 +3,7 @@
 
 #include "gi/methods/slhb/kernels/path_random.h"
 #include "gi/methods/slhb/tracer/tracer.h"
-#include "gi/render/ray_path.h"
+#include "gi/render/path_batch.h"
 #include "gi/scene/shading/narrow_lobes.h"
 
 #include <algorithm>

@@ -1,0 +1,95 @@
+#pragma once
+// Where the reference traces its paths on the CPU: tile by tile, through Embree.
+
+#include "gi/methods/reference/path_tracer.h"
+#include "gi/render/exact_visibility.h"
+#include "gi/render/flush_denormals.h"
+#include "gi/render/render_settings.h"
+#include "gi/scene/model/plan.h"
+#include "gi/scene/motion/moving_world.h"
+
+#include <algorithm>
+#include <memory>
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+namespace gi {
+
+/// Size of the tiles whose paths advance together, px.
+inline constexpr int kTile = 16;
+
+class EmbreePaths {
+public:
+    /// Builds nothing yet. All arguments must outlive this object.
+    /// @param first_moving, stop  see ExactVisibility
+    EmbreePaths(World const& world, RenderSettings const& settings, std::size_t first_moving, Report& report,
+                StopRequest const* stop = nullptr)
+        : world_(world), threads_(settings.threads), first_moving_(first_moving), report_(report), stop_(stop)
+    {
+    }
+
+    void changed(Changes const& changes)
+    {
+        if (changes.materials || changes.coverage) visibility_.reset();
+        if (!changes.geometry || !visibility_) return;
+        StageTimer const timer(report_, "BVH of dynamic triangles (Embree)");
+        visibility_->moved(world_);
+    }
+
+    /// Builds what is missing. Returns the current world as trace() needs it.
+    WorldView prepare()
+    {
+        if (!visibility_) {
+            StageTimer const timer(report_, "build (Embree BVH)");
+            visibility_ = std::make_unique<ExactVisibility>(world_, plan_scene(world_).alpha_tests, threads_,
+                                                            first_moving_, stop_);
+        }
+        return view(world_);
+    }
+
+    /// Traces some paths of every pixel.
+    /// @param first_path  number of the first of them
+    /// @param first_hits  per pixel, set by the last path; empty = not needed
+    /// @param use  (pixel, number of the path from 0, PathSample), from several threads; the paths of a pixel in
+    ///   order, by one thread
+    template <class Use>
+    PathCounts trace(PathSteps const& steps, int height, std::uint32_t first_path, std::uint32_t paths,
+                     std::span<FirstHit> first_hits, Use const& use) const
+    {
+        PathTracer<ExactVisibility> const tracer{steps, *visibility_};
+        tbb::combinable<PathCounts> counts;
+        int const columns = (steps.width + kTile - 1) / kTile, rows = (height + kTile - 1) / kTile;
+        tbb::parallel_for(0, columns * rows, [&](int tile) {
+            FlushDenormals const guard;
+            PathCounts& local = counts.local();
+            int const left = tile % columns * kTile, right = std::min(left + kTile, steps.width);
+            int const top = tile / columns * kTile, bottom = std::min(top + kTile, height);
+            std::vector<Path> batch;
+            for (std::uint32_t i = 0; i < paths; ++i) {
+                batch.clear();
+                for (int y = top; y < bottom; ++y)
+                    for (int x = left; x < right; ++x) batch.push_back(steps.start(x, y, first_path + i));
+                tracer.trace(batch, local);
+                auto next = batch.begin();
+                bool const last = i + 1 == paths && !first_hits.empty();
+                for (int y = top; y < bottom; ++y)
+                    for (int x = left; x < right; ++x, ++next) {
+                        std::size_t const pixel = std::size_t(y) * std::size_t(steps.width) + std::size_t(x);
+                        use(pixel, i, next->sample);
+                        if (last) first_hits[pixel] = next->first;
+                    }
+            }
+        });
+        return counts.combine([](PathCounts a, PathCounts const& b) { return a += b; });
+    }
+
+private:
+    World const& world_;
+    int threads_;
+    std::size_t first_moving_;
+    Report& report_;
+    StopRequest const* stop_;
+    std::unique_ptr<ExactVisibility> visibility_;
+};
+
+} // namespace gi

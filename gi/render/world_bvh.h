@@ -1,0 +1,79 @@
+#pragma once
+// The project's own BVH (gi/bvh) of a world in a memory space: one tree of the static triangles and one of those
+// that may move, which is refitted; and exact rays through both in kernels, one at a time.
+
+#include "gi/bvh/traverse.h"
+#include "gi/render/coverage_test.h"
+#include "gi/render/ray_query.h"
+
+#include <algorithm>
+
+namespace gi {
+
+/// Exact rays of kernels. The trees lie in the space that runs the kernel.
+struct KernelRays {
+    BvhView trees[2];         ///< static, dynamic; either may be empty
+    bool alpha_tests = false; ///< some surfaces are partly transparent
+
+    /// As ExactVisibility::nearest.
+    GI_FN Hit nearest(WorldView const& world, RayQuery const& q) const
+    {
+        BvhHit const hit = trace<false>(world, q);
+        return hit.triangle == kNoBvhTriangle ? Hit{} : Hit{hit.triangle, hit.weights, hit.distance};
+    }
+    /// As ExactVisibility::occluded.
+    GI_FN bool occluded(WorldView const& world, RayQuery const& q) const
+    {
+        return trace<true>(world, q).triangle != kNoBvhTriangle;
+    }
+
+private:
+    template <bool any>
+    GI_FN BvhHit trace(WorldView const& world, RayQuery const& q) const
+    {
+        BvhRay const ray(q.ray, q.start);
+        BvhHit hit;
+        hit.distance = q.reach;
+        auto const accepts = [&](std::uint32_t triangle, vec2 weights) {
+            return !alpha_tests || covers(world, triangle, weights, q.seed);
+        };
+        for (BvhView const& tree : trees)
+            if (!any || hit.triangle == kNoBvhTriangle) trace_scalar<any>(tree, ray, hit, accepts);
+        return hit;
+    }
+};
+
+template <Space S>
+class WorldBvh {
+public:
+    /// @param world  its arrays lie in space S
+    /// @param alpha_tests, first_moving, stop  as for ExactVisibility
+    WorldBvh(WorldView const& world, bool alpha_tests, std::size_t first_moving, StopRequest const* stop = nullptr)
+        : alpha_tests_(alpha_tests)
+    {
+        auto const triangles = std::uint32_t(world.triangles.size());
+        first_[1] = std::uint32_t(std::min<std::size_t>(first_moving, triangles));
+        first_[2] = triangles;
+        for (int k = 0; k < 2; ++k) trees_[k] = build_bvh<S>(list(world, k), stop);
+    }
+    void test_alpha(bool alpha_tests) { alpha_tests_ = alpha_tests; }
+    /// Refits the dynamic tree.
+    void moved(WorldView const& world) { refit(trees_[1], list(world, 1)); }
+
+    KernelRays rays() const { return {{trees_[0].view(), trees_[1].view()}, alpha_tests_}; }
+    Bvh<S> const& still() const { return trees_[0]; }
+    Bvh<S> const& moving() const { return trees_[1]; }
+    bool alpha_tests() const { return alpha_tests_; }
+
+private:
+    TriangleList list(WorldView const& world, int tree) const
+    {
+        return {world.positions, world.triangles, first_[tree], first_[tree + 1]};
+    }
+
+    std::uint32_t first_[3] = {}; ///< triangles of the trees: of the first, of the second, end
+    Bvh<S> trees_[2];             ///< static, dynamic
+    bool alpha_tests_;
+};
+
+} // namespace gi
