@@ -1,9 +1,9 @@
 #pragma once
 // Settings and results common to all light-transport methods.
 
-#include "gi/image_io/picture.h"
 #include "gi/core/progress.h"
 #include "gi/core/report.h"
+#include "gi/image_io/picture.h"
 #include "gi/kernel/space.h"
 
 #include <algorithm>
@@ -61,16 +61,16 @@ struct ExactParts {
 /// Settings of the method slhb; 0 or empty = chosen by the scene plan.
 struct SlhbSettings {
     Schedule schedule = Schedule::automatic;
-    std::string directions;    ///< such as "icosahedron:320"; schedule stored
-    int resolution = 0;        ///< texels per side of a hit buffer, about
-    int axes = 0;              ///< per pass; schedules streamed and temporal
-    int fresh_axes = 0;        ///< axes replaced per pass; schedule temporal
-    int light_samples = 0;             ///< light samples with a shadow map per pass
-    int fresh_light_samples = 0;       ///< light samples replaced per pass
-    int shadow_resolution = 0; ///< texels per side of a shadow map
-    int most_layers = 0;       ///< per texel; 0 = all
-    int memory_mib = 0;        ///< memory limit of hit buffers and shadow maps
-    bool packed = false;       ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
+    std::string directions;      ///< such as "icosahedron:320"; schedule stored
+    int resolution = 0;          ///< texels per side of a hit buffer, about
+    int axes = 0;                ///< per pass; schedules streamed and temporal
+    int fresh_axes = 0;          ///< axes replaced per pass; schedule temporal
+    int light_samples = 0;       ///< light samples with a shadow map per pass
+    int fresh_light_samples = 0; ///< light samples replaced per pass
+    int shadow_resolution = 0;   ///< texels per side of a shadow map
+    int most_layers = 0;         ///< per texel; 0 = all
+    int memory_mib = 0;          ///< memory limit of hit buffers and shadow maps
+    bool packed = false;         ///< layers of 32 bits: 12 of depth, 1 of facing, 19 of the triangle
     LookUps look_ups = LookUps::automatic;
     Shadows shadows = Shadows::automatic;
     RadianceCaching cache = RadianceCaching::automatic;
@@ -90,13 +90,13 @@ inline constexpr int kMostPoints = 1 << 17;
 
 /// Settings of the methods vpl_*, see gi/methods/vpl.
 struct VirtualLightSettings {
-    int light_paths = 256;    ///< light paths per pass; each surface point that one hits becomes a virtual light
-    float near_m = 0;         ///< virtual lights nearer than about this are bounded, and camera paths add the
-                              ///< rest; 0 = 2 % of the scene's radius
-    int points = 1024;        ///< drawn into each imperfect shadow map
+    int light_paths = 256;     ///< light paths per pass; each surface point that one hits becomes a virtual light
+    float near_m = 0;          ///< virtual lights nearer than about this are bounded, and camera paths add the
+                               ///< rest; 0 = 2 % of the scene's radius
+    int points = 1024;         ///< drawn into each imperfect shadow map
     double points_percent = 0; ///< if > 0: the points, as a share of the map's texels, %
-    int point_map = 64;       ///< texels per side of an imperfect shadow map
-    float ao_radius_m = 0.5f; ///< ambient and directional occlusion ignore surfaces farther away
+    int point_map = 64;        ///< texels per side of an imperfect shadow map
+    float ao_radius_m = 0.5f;  ///< ambient and directional occlusion ignore surfaces farther away
 
     int points_per_map() const
     {
@@ -125,16 +125,18 @@ enum class RadianceBy : std::uint8_t {
 /// Settings of the method sh_grid, see gi/methods/sh_grid.
 struct ShGridSettings {
     static constexpr int kMostVoxels = 1024;
-    int voxels = 128;           ///< along the longest side; the field has a quarter of them
-    int photons = 262144;       ///< light paths per update
-    int reflections = 64;       ///< of a photon, at most
-    int degree = 2;             ///< of the spherical harmonics
-    int directions = 400;       ///< per cell of the field
-    int gather_directions = 0;  ///< samples of the diffuse lobe; 0 = convolution in closed form
-    int glossy_directions = 64; ///< samples of glossy lobes
-    float obscurance_m = 0;     ///< surfaces nearer than this darken diffuse light; 0 = off
-    int field_shadow_rays = 4;  ///< from a surface to cells of the field; 0 = none, weights alone
-    int field_passes = 3;       ///< passes over which the field follows a change of the scene
+    int voxels = 128;            ///< along the longest side; the field has a quarter of them
+    int photons = 262144;        ///< light paths per update
+    int caustic_photons = 65536; ///< light paths per pass that begin on mirrors and glass; 0 = no caustics
+    float caustic_radius_m = 0;  ///< of the first disks in which photons of caustics count; 0 = chosen by them
+    int reflections = 64;        ///< of a photon, at most
+    int degree = 2;              ///< of the spherical harmonics
+    int directions = 400;        ///< per cell of the field
+    int gather_directions = 0;   ///< samples of the diffuse lobe; 0 = convolution in closed form
+    int glossy_directions = 64;  ///< samples of glossy lobes
+    float obscurance_m = 0;      ///< surfaces nearer than this darken diffuse light; 0 = off
+    int field_shadow_rays = 4;   ///< from a surface to cells of the field; 0 = none, weights alone
+    int field_passes = 3;        ///< passes over which the field follows a change of the scene
     FieldRays field_rays = FieldRays::exact;
     RadianceBy radiance_by = RadianceBy::normal;
     Switch multilevel = Switch::off;  ///< read coarser grids of radiance where directions are sparse
@@ -176,7 +178,7 @@ struct RenderSettings {
 struct RenderStatus {
     double fraction = 0;
     std::uint32_t paths = 0; ///< per pixel so far
-    double relmse = 0; ///< estimated from the variance, see Accumulator::relative_mse; 0 = not known yet
+    double relmse = 0;       ///< estimated from the variance, see Accumulator::relative_mse; 0 = not known yet
 };
 
 /// Called between passes.
