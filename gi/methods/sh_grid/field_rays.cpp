@@ -45,6 +45,8 @@ std::optional<Ray> follow(WorldView const& w, Hit const& hit, RayQuery const& qu
     Pcg32 rng = Pcg32::for_path(0x3f1e, query.seed, std::bit_cast<std::uint32_t>(direction.x));
     BsdfSample const next = sample(at.bsdf, at.frame.to_local(-direction), at.front, rng.uniform(), vec2{0.5f});
     ray.tint *= next.weight;
+    // Over the square of the index: the same inside of glass as before it. Cells there serve surfaces outside.
+    if (next.transmitted && !at.bsdf.thin) ray.tint *= square(at.front ? at.bsdf.ior : 1 / at.bsdf.ior);
     bool const straight = next.transmitted && at.bsdf.thin;
     if (!straight) ray.bent_after = std::min(ray.bent_after, glm::dot(at.position - start, direction));
     vec3 const leaves = straight ? direction : at.frame.to_world(next.wi);
