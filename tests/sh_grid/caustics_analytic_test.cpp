@@ -81,6 +81,33 @@ TEST(ShGridCaustics, APaneLetsTheSunIn)
     EXPECT_NEAR(seen / truth, 1, 0.02);
 }
 
+/// A sun that falls by a mirror past an edge at x = 0: the edge gets sharper with more passes.
+TEST(ShGridCaustics, EdgesGetSharper)
+{
+    Scene scene;
+    add_quad(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add_material(scene, lambert(vec3{1})));
+    add_quad(scene, {-1, -1, 1}, {1, 0, 0}, {0, 2, 2}, add_material(scene, mirror(vec3{1})));
+    Light sun;
+    sun.type = LightType::directional;
+    sun.direction = {0, -1, 0};
+    sun.intensity = vec3{kPi};
+    add_light(scene, sun);
+    World const world = world_of(scene);
+    constexpr int kSize = 32;
+    double off[2] = {0, 0};
+    for (int k = 0; k < 2; ++k) {
+        Report report;
+        RenderSettings s = caustic_settings(kSize, k == 0 ? 4 : 64, 32);
+        s.sh_grid.caustic_photons = 16384;
+        Picture const p =
+            render_sh_grid(world, orthographic({0, 0, 0.5}, {0, 0, 0}, 0.6), s, {}, {}, report).picture;
+        for (int x = 0; x < kSize; ++x) // the mean of a column hides the noise
+            off[k] += std::abs(mean_in(p, "L1", {x, 0}, {x + 1, kSize}, kSize) - (x < kSize / 2 ? 1 : 0)) / kSize;
+    }
+    fmt::print("off by {:.4f} after 4 passes, {:.4f} after 64\n", off[0], off[1]);
+    EXPECT_LT(off[1], 0.75 * off[0]);
+}
+
 /// Inside of a box that glows evenly, of which a wall is a perfect mirror, light of one scattering is the albedo,
 /// and that of more albedo^2 / (1 - albedo): a half and a half.
 TEST(ShGridCaustics, FurnaceWithAMirrorWall)
@@ -141,6 +168,41 @@ TEST(ShGridCaustics, EnergyOfTheReference)
             EXPECT_NEAR(l2, 1, 0.05);
         }
     }
+}
+
+/// At rest the disks shrink from pass to pass; a camera that moves gets the first photons again.
+TEST(ShGridCaustics, PhotonsStayWhileTheCameraMoves)
+{
+    World const world = box_with_sphere(glass(1.5f, false));
+    ExactVisibility const visibility(world, false, 0);
+    RenderSettings const s = caustic_settings(16, 1, 32);
+    Report report;
+    Caustics caustics(world, s, report, nullptr);
+    PathCounts counts;
+    std::uint32_t index = 0;
+    auto const pass = [&](double x) {
+        FrameView const view{look_at({x, 0.3, 0.95}, {0, -0.9, -0.2}, 80), 16, 16};
+        caustics.prepare(visibility, index++, {&view, 1}, {}, counts);
+        return caustics.map();
+    };
+    float const first = pass(0)->radius();
+    vec3 const flux = caustics.map()->photons()[0].flux;
+    EXPECT_GT(first, 0);
+    EXPECT_NEAR(pass(0)->radius() / first, std::sqrt((1 + 2.0 / 3) / 2), 1e-4);
+    EXPECT_NEAR(pass(0)->radius() / first, std::sqrt((1 + 2.0 / 3) / 2 * (2 + 2.0 / 3) / 3), 1e-4);
+    for (double const x : {0.1, 0.2, 0.3}) {
+        EXPECT_EQ(pass(x)->radius(), first);
+        EXPECT_EQ(caustics.map()->photons()[0].flux, flux);
+    }
+    EXPECT_LT(pass(0.3)->radius(), first);
+    Changes turned;
+    turned.cameras = true;
+    caustics.changed(turned);
+    EXPECT_LT(pass(0.3)->radius(), first);
+    Changes lights;
+    lights.lights = true;
+    caustics.changed(lights);
+    EXPECT_EQ(pass(0.3)->radius(), first);
 }
 
 /// Tints keep 7 bits or more of their largest channel, and 1 exactly.
